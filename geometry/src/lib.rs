@@ -1,0 +1,17 @@
+//! NURBS surfaces from CAD files: exact jets, local frames and closest points.
+//!
+//! A [`NurbsPatch`] gives the surface point with its derivatives (a [`Jet`]), a [`Frame`] turns a jet into normal,
+//! metric, curvature and Christoffel symbols, and a [`PatchSet`] finds the closest point on many patches.
+
+pub mod basis;
+pub mod frame;
+pub mod io;
+pub mod patch;
+pub mod primitives;
+pub mod project;
+pub mod surface;
+
+pub use frame::Frame;
+pub use patch::{NurbsPatch, PatchError};
+pub use project::{EdgeKind, Foot, Hint, Location, PatchSet, Status};
+pub use surface::{Jet, Jet3, Vec3};

@@ -1,0 +1,64 @@
+//! Closest point on a set of patches.
+use crate::surface::{Jet, Vec3};
+
+/// How a patch edge continues.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EdgeKind {
+    /// Another patch continues with the same tangent plane.
+    Smooth,
+    /// Another patch continues at an angle.
+    Sharp,
+    /// Nothing continues: a free border.
+    Free,
+}
+
+/// Where on the set of patches a foot point lies. Edge numbers: 0 is xi1 = min, 1 is xi1 = max, 2 is xi2 = min,
+/// 3 is xi2 = max. Corner numbers: bit 0 set at xi1 = max, bit 1 set at xi2 = max.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Location {
+    Face,
+    Edge { edge: u8, kind: EdgeKind },
+    Corner { corner: u8, kind: EdgeKind },
+    /// On a line inside a patch where an inner knot of full multiplicity breaks the tangent; `dir` is the
+    /// direction (0 or 1) whose knot it is.
+    Crease { dir: u8 },
+    /// On an edge that is one point in space.
+    Pole { edge: u8 },
+}
+
+/// How sure a foot point is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Converged; no other point of the set is as close, as far as the search can tell.
+    Unique,
+    /// Converged, but the point sits at (or beyond) a centre of curvature: other points are as close.
+    NonUnique,
+    /// The iteration did not reach its tolerance; the best point found is given.
+    NotConverged,
+}
+
+/// Where a search may start: the foot found before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hint {
+    pub patch: u32,
+    pub xi: [f64; 2],
+}
+
+/// The closest point of a query.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Foot {
+    pub patch: u32,
+    pub xi: [f64; 2],
+    pub location: Location,
+    pub status: Status,
+    /// Jet of the patch at `xi`.
+    pub jet: Jet,
+    /// +1 or -1: `side * (rho_1 x rho_2)` points out of the master on this patch.
+    pub side: f64,
+    /// Euclidean distance, >= 0.
+    pub distance: f64,
+    /// Distance with sign: positive outside, decided by the pseudo-normal at edges and corners.
+    pub signed_distance: f64,
+    /// Outward unit normal; the angle-weighted pseudo-normal at sharp edges and corners.
+    pub normal: Vec3,
+}

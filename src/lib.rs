@@ -1,0 +1,13 @@
+//! Contact between finite-element shells and CAD surfaces.
+
+pub mod assembly;
+pub mod contact;
+pub mod mesh;
+pub mod model;
+pub mod output;
+pub mod scene;
+pub mod shell;
+pub mod solve;
+
+#[cfg(feature = "cli")]
+pub mod cli;

@@ -1,0 +1,67 @@
+//! Finite-element meshes: nodes, elements, named node and face sets.
+//!
+//! Local node order of every element is tensor-product: `i` (r) fastest, then `j` (s), then `k` (t, the thickness).
+//! H8 node `i + 2 j + 4 k`; Q18 node `i + 3 j + 9 k`.
+use covact_geometry::Vec3;
+use std::collections::BTreeMap;
+
+/// The element shapes a body can be made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ElementKind {
+    /// 8-node solid-shell, linear.
+    H8,
+}
+
+impl ElementKind {
+    /// Nodes of one element.
+    pub const fn nodes(self) -> usize {
+        match self {
+            ElementKind::H8 => 8,
+        }
+    }
+}
+
+/// One face of one element. Local faces: 0 is r = -1, 1 is r = +1, 2 is s = -1, 3 is s = +1, 4 is t = -1 (bottom),
+/// 5 is t = +1 (top).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Face {
+    pub element: u32,
+    pub face: u8,
+}
+
+/// Nodes of the local faces of H8, ordered so that face parameters (u fastest) give an outward normal u x v.
+pub const H8_FACES: [[u8; 4]; 6] = [
+    [0, 4, 2, 6],
+    [1, 3, 5, 7],
+    [0, 1, 4, 5],
+    [2, 6, 3, 7],
+    [0, 2, 1, 3],
+    [4, 5, 6, 7],
+];
+
+/// A mesh of one body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    pub kind: ElementKind,
+    /// Node positions, in the scene's length unit.
+    pub nodes: Vec<Vec3>,
+    /// Node numbers of the elements, `kind.nodes()` each.
+    pub connectivity: Vec<u32>,
+    /// Named node sets, each sorted and without duplicates.
+    pub node_sets: BTreeMap<String, Vec<u32>>,
+    /// Named face sets, each sorted and without duplicates.
+    pub face_sets: BTreeMap<String, Vec<Face>>,
+}
+
+impl Mesh {
+    /// Number of elements.
+    pub fn elements(&self) -> usize {
+        self.connectivity.len() / self.kind.nodes()
+    }
+
+    /// Node numbers of element `e`.
+    pub fn element(&self, e: usize) -> &[u32] {
+        let n = self.kind.nodes();
+        &self.connectivity[e * n..(e + 1) * n]
+    }
+}
