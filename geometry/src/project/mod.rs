@@ -62,3 +62,7 @@ pub struct Foot {
     /// Outward unit normal; the angle-weighted pseudo-normal at sharp edges and corners.
     pub normal: Vec3,
 }
+
+/// Patches with their tree, their shared edges and their sides.
+#[derive(Debug, Clone)]
+pub struct PatchSet {}
