@@ -1,1 +1,2 @@
-//! (being written)
+//! Newton's method with incremental loading on a sparse direct solver.
+pub mod event;

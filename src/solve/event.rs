@@ -1,0 +1,64 @@
+//! What a run tells while it goes: the library never prints, it calls an [`Observer`].
+use serde::Serialize;
+
+/// Events of a run, in the order they happen. Serialised as one JSON object a line by `covact run --json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+pub enum Event {
+    /// The model is built; nothing has been solved.
+    Model {
+        dofs: usize,
+        contact_points: usize,
+        /// Effects that are on, by name.
+        effects: Vec<String>,
+        /// Automatic choices, e.g. penalties and sides, in words.
+        notes: Vec<String>,
+    },
+    /// A step from `time - dt` to `time` starts.
+    StepStarted { step: u32, time: f64, dt: f64 },
+    /// One Newton iteration is done.
+    Iteration {
+        step: u32,
+        iteration: u32,
+        /// Residual relative to the largest force.
+        residual: f64,
+        /// Energy measure |du . R| relative to the first iteration of the step.
+        energy: f64,
+        /// Points in contact.
+        active: usize,
+        /// Points whose status changed.
+        changed: usize,
+        /// Factor of the line search (1: full step).
+        line_search: f64,
+    },
+    StepAccepted {
+        step: u32,
+        time: f64,
+        iterations: u32,
+        active: usize,
+        penetration: f64,
+    },
+    /// A step failed, everything was rolled back, and a smaller one is tried.
+    StepCut {
+        step: u32,
+        dt: f64,
+        next_dt: f64,
+        reason: String,
+    },
+    /// Something the user should know.
+    Warning { text: String },
+    /// The run ended.
+    Finished { status: String, wall_s: f64 },
+}
+
+/// Receives the events of a run.
+pub trait Observer {
+    fn event(&mut self, event: &Event);
+}
+
+/// Ignores every event.
+pub struct Silent;
+
+impl Observer for Silent {
+    fn event(&mut self, _: &Event) {}
+}
