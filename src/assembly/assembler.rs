@@ -3,7 +3,7 @@
 //! Elements and slave points are evaluated in parallel, a chunk at a time, and summed in order by one thread, so that
 //! the result is the same to the last bit for every number of threads.
 use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
-use crate::contact::law::Penalty;
+use crate::contact::law::{NormalLaw, Penalty};
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
 use crate::model::{Model, PairModel};
@@ -33,12 +33,12 @@ pub enum Fault {
     Value(#[from] ValueError),
 }
 
-/// Totals of a contact pair's rigid surface.
+/// What a rigid surface does to the bodies.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SurfaceForce {
-    /// Force of the bodies on the surface.
+    /// Force of the surface on the bodies.
     pub force: Vec3,
-    /// Moment of that force about the surface's reference point.
+    /// Moment of that force about the origin.
     pub moment: Vec3,
 }
 
@@ -84,6 +84,8 @@ pub struct Assembler<'m> {
     /// Dead loads at the present time.
     external: Vec<f64>,
     contact: Vec<f64>,
+    /// Penalty per pair; an automatic one may be raised in the course of a run.
+    pub penalties: Vec<f64>,
 }
 
 const PAIRS: usize = 36;
@@ -147,6 +149,7 @@ impl<'m> Assembler<'m> {
             work: ConstrainedScatter::default(),
             external: vec![0.0; n],
             contact: vec![0.0; n],
+            penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
         })
     }
 
@@ -288,13 +291,22 @@ impl<'m> Assembler<'m> {
         for (index, pair) in self.model.pairs.iter().enumerate() {
             let surface = &self.model.surfaces[pair.surface];
             let master = surface.at(time)?;
-            let reference = surface.motion.reference_point(time)?;
             let n = pair.points.len();
             let points = &mut state.points[first..first + n];
             let touches = &mut self.touches[..n];
             let u = &state.u;
+            let law = Penalty {
+                eps_n: self.penalties[index],
+            };
+            let batch = Batch {
+                model: self.model,
+                pair,
+                master: &master,
+                law: &law,
+                u,
+            };
             match pair.tangent {
-                Tangent::Exact => evaluate_pair(self.model, pair, &master, u, points, touches, &Exact),
+                Tangent::Exact => batch.evaluate(points, touches, &Exact),
                 Tangent::Published {
                     rotational,
                     curvature,
@@ -303,7 +315,7 @@ impl<'m> Assembler<'m> {
                         rotational,
                         curvature,
                     };
-                    evaluate_pair(self.model, pair, &master, u, points, touches, &parts)
+                    batch.evaluate(points, touches, &parts)
                 }
             }
             let mut deepest = 0.0f64;
@@ -334,8 +346,8 @@ impl<'m> Assembler<'m> {
                 totals.contact_energy += 0.5 * touch.n * touch.xi3 * p.area;
                 let force = touch.residual * p.area;
                 let on = &mut totals.surfaces[pair.surface];
-                on.force += force;
-                on.moment += (self.model.point_position(p, u) - reference).cross(&force);
+                on.force -= force;
+                on.moment -= self.model.point_position(p, u).cross(&force);
                 for (node, w) in p.terms() {
                     for c in 0..3 {
                         residual[3 * node + c] += w * force[c];
@@ -444,24 +456,32 @@ fn put(
         .expect("a face's nodes lie in one element, which the pattern holds");
 }
 
-fn evaluate_pair<T: RigidTangent>(
-    model: &Model,
-    pair: &PairModel,
-    master: &RigidMaster,
-    u: &[f64],
-    states: &mut [PointState],
-    touches: &mut [Result<Option<Touch>, PointFault>],
-    tangent: &T,
-) {
-    let law = Penalty { eps_n: pair.eps_n };
-    (pair.points.par_iter())
-        .zip(states.par_iter_mut())
-        .zip(touches.par_iter_mut())
-        .with_min_len(64)
-        .for_each(|((p, s), out)| {
-            let x = model.point_position(p, u);
-            *out = master.touch(&x, &mut s.hint, &law, tangent);
-        });
+/// The slave points of a pair at one trial state.
+struct Batch<'a, L> {
+    model: &'a Model,
+    pair: &'a PairModel,
+    master: &'a RigidMaster<'a>,
+    law: &'a L,
+    u: &'a [f64],
+}
+
+impl<L: NormalLaw> Batch<'_, L> {
+    /// Evaluates every point; law and tangent are types here, nothing is chosen inside the loop.
+    fn evaluate<T: RigidTangent>(
+        &self,
+        states: &mut [PointState],
+        touches: &mut [Result<Option<Touch>, PointFault>],
+        tangent: &T,
+    ) {
+        (self.pair.points.par_iter())
+            .zip(states.par_iter_mut())
+            .zip(touches.par_iter_mut())
+            .with_min_len(64)
+            .for_each(|((p, s), out)| {
+                let x = self.model.point_position(p, self.u);
+                *out = self.master.touch(&x, &mut s.hint, self.law, tangent);
+            });
+    }
 }
 
 fn element_fault(body: &str, fault: ElementFault) -> Fault {
