@@ -1,2 +1,3 @@
 //! Newton's method with incremental loading on a sparse direct solver.
 pub mod event;
+pub mod linear;
