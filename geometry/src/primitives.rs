@@ -1,1 +1,1 @@
-//! (being written)
+//! Exact NURBS forms of simple surfaces.
