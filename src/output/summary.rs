@@ -16,10 +16,25 @@ pub enum RunStatus {
     Done,
     /// A step failed at the smallest step size; what was computed before is kept.
     NotConverged,
+    /// The end time was reached, but a contact pair never touched.
+    NoContact,
     /// The user stopped the run; what was computed before is kept.
     Interrupted,
     /// Something else went wrong, e.g. a full disk.
     Failed,
+}
+
+impl RunStatus {
+    /// The name in `summary.json`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            RunStatus::Done => "done",
+            RunStatus::NotConverged => "not_converged",
+            RunStatus::NoContact => "no_contact",
+            RunStatus::Interrupted => "interrupted",
+            RunStatus::Failed => "failed",
+        }
+    }
 }
 
 /// `summary.json`.

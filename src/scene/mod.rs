@@ -9,6 +9,7 @@ mod load;
 mod problem;
 mod schema;
 mod types;
+mod units;
 mod value;
 
 pub use expression::{Expression, ExpressionError};
