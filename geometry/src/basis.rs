@@ -5,6 +5,10 @@
 //! `q` from the (m-1)-th of level `q - 1`. The divisions by knot differences are done once per span when the basis
 //! is made.
 
+mod short;
+
+pub(crate) use short::Short;
+
 use num_dual::DualNum;
 
 /// Largest polynomial degree.
@@ -342,21 +346,16 @@ impl Basis {
         recursion(self.degree.min(N - 1), knots, inverse, t, out);
     }
 
-    /// [`evaluate`](Self::evaluate) for a buffer of six, with the loops unrolled for degrees up to 5.
+    /// [`evaluate`](Self::evaluate) for degrees up to 5.
     #[inline]
-    pub(crate) fn evaluate_short<const K: usize>(
-        &self,
-        span: usize,
-        t: f64,
-        out: &mut [[f64; 6]; K],
-    ) {
+    pub(crate) fn evaluate_short<const K: usize>(&self, span: usize, t: f64, out: &mut Short<K>) {
         let (knots, inverse) = self.span_data(span);
         match self.degree {
-            1 => recursion(1, knots, inverse, t, out),
-            2 => recursion(2, knots, inverse, t, out),
-            3 => recursion(3, knots, inverse, t, out),
-            4 => recursion(4, knots, inverse, t, out),
-            _ => recursion(5, knots, inverse, t, out),
+            1 => short::evaluate::<1, K>(knots, inverse, t, out),
+            2 => short::evaluate::<2, K>(knots, inverse, t, out),
+            3 => short::evaluate::<3, K>(knots, inverse, t, out),
+            4 => short::evaluate::<4, K>(knots, inverse, t, out),
+            _ => short::evaluate::<5, K>(knots, inverse, t, out),
         }
     }
 
@@ -405,7 +404,7 @@ impl Basis {
 }
 
 /// The recursion from level 0 to level `p`. `knots[p - 1]` and `knots[p]` are the ends of the span.
-#[inline(always)]
+#[inline]
 fn recursion<D: DualNum<f64> + Copy, const N: usize, const K: usize>(
     p: usize,
     knots: &[f64],
