@@ -14,8 +14,8 @@ use num_dual::DualNum;
 /// Largest polynomial degree.
 pub const MAX_DEGREE: usize = 15;
 
-/// Functions that can be non-zero at a point.
-pub(crate) const WIDTH: usize = MAX_DEGREE + 1;
+/// The most functions that are not zero at a point.
+pub const WIDTH: usize = MAX_DEGREE + 1;
 
 /// Why a knot vector cannot be used. Indices count from zero.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -333,17 +333,17 @@ impl Basis {
 
     /// Values and derivatives of the `degree + 1` functions that are not zero in span `span`, at `t`: `out[m][r]` is
     /// the m-th derivative of function `first_function(span) + r`. Outside of the span its polynomials are continued.
-    /// `K` is the highest derivative plus one (at least 1); `N` at least `degree + 1`, entries beyond the degree
-    /// are left as they are.
+    /// `K` is the highest derivative plus one; entries beyond the degree are left as they are.
     #[inline]
-    pub fn evaluate<D: DualNum<f64> + Copy, const N: usize, const K: usize>(
+    pub fn evaluate<D: DualNum<f64> + Copy, const K: usize>(
         &self,
         span: usize,
         t: D,
-        out: &mut [[D; N]; K],
+        out: &mut [[D; WIDTH]; K],
     ) {
+        const { assert!(K > 0, "room for the functions themselves") };
         let (knots, inverse) = self.span_data(span);
-        recursion(self.degree.min(N - 1), knots, inverse, t, out);
+        recursion(self.degree, knots, inverse, t, out);
     }
 
     /// [`evaluate`](Self::evaluate) for degrees up to 5.
@@ -405,12 +405,12 @@ impl Basis {
 
 /// The recursion from level 0 to level `p`. `knots[p - 1]` and `knots[p]` are the ends of the span.
 #[inline]
-fn recursion<D: DualNum<f64> + Copy, const N: usize, const K: usize>(
+fn recursion<D: DualNum<f64> + Copy, const K: usize>(
     p: usize,
     knots: &[f64],
     inverse: &[f64],
     t: D,
-    out: &mut [[D; N]; K],
+    out: &mut [[D; WIDTH]; K],
 ) {
     let zero = D::from(0.0);
     for row in out.iter_mut() {
