@@ -45,7 +45,9 @@ fn truncated_samples_of_other_writers() {
 fn overwritten_bytes_never_panic() {
     let mut state = 12345u64;
     let mut random = |below: usize| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         (state >> 33) as usize % below
     };
     let signs = b"0123456789-+.,;HDE SGDPT\xff\xe9{}[]\"\n";
@@ -73,7 +75,9 @@ fn error(change: impl Fn(&mut Vec<String>)) -> String {
     let text = std::fs::read_to_string(path).unwrap();
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     change(&mut lines);
-    read_iges(lines.join("\n").as_bytes(), "part.igs").unwrap_err().to_string()
+    read_iges(lines.join("\n").as_bytes(), "part.igs")
+        .unwrap_err()
+        .to_string()
 }
 
 /// Line 11 is the first of the 128: `128,11,9,3,3,0,0,1,0,0,0.,0.,...`.
@@ -91,14 +95,14 @@ fn messages_say_where_what_was_expected_and_what_is_there() {
     );
     assert_eq!(
         replace(11, "128,11,9,", "128,99,9,"),
-        "part.igs:89:48: expected 4131 values for 100 x 10 control points of degree 3 x 3, \
+        "part.igs:88:48: expected 4132 values for 100 x 10 control points of degree 3 x 3, \
          found the end of the data after 524 values"
     );
     // A count that no file could fill must not be allocated.
     assert_eq!(
-        replace(11, "128,11,9,3,3,0,0,1,0,0,", "128,9999999,9,3,3,0,0,"),
+        replace(11, "128,11,9,3,3,0,0,1,0,0,", "128,99999999,9,3,3,0,0,"),
         "part.igs:11:5: expected an upper index K1 that the 521 values of this entity can fill, \
-         found \"9999999\""
+         found \"99999999\""
     );
     assert_eq!(
         replace(10, "144,3,", "144,9,"),

@@ -14,12 +14,19 @@ fn kratos_runs_through_the_first_direction_first() {
     assert_eq!((file.patches[0].entity, patch.counts()), (2, [3, 2]));
     for (u, y) in [(0.0, 0.0), (0.3, 1.0), (0.5, 4.0), (0.9, 2.5)] {
         let x = patch.point([u, y]);
-        assert!((x.y - y).abs() < 1e-15 && (x.x.hypot(x.z) - 2.0).abs() < 1e-15, "{x:?}");
+        assert!(
+            (x.y - y).abs() < 1e-15 && (x.x.hypot(x.z) - 2.0).abs() < 1e-15,
+            "{x:?}"
+        );
     }
     let area = crate::support::area(patch);
     assert!((area - 4.0 * std::f64::consts::PI).abs() < 1e-12, "{area}");
     assert_eq!(file.skipped[0].entity, 3);
-    assert!(file.skipped[0].reason.starts_with("trimmed (1 boundary loops)"));
+    assert!(
+        file.skipped[0]
+            .reason
+            .starts_with("trimmed (1 boundary loops)")
+    );
 }
 
 /// Written by geomdl 5.3 (`exchange.export_json`), which evaluates the point below.
@@ -29,7 +36,11 @@ fn geomdl_runs_through_the_second_direction_first() {
     assert_eq!(file.format, CadFormat::Geomdl);
     let patch = &file.patches[0].patch;
     assert_eq!((patch.counts(), patch.degree()), ([3, 2], [2, 1]));
-    let reference = Vec3::new(0.49586776859504134, 0.49586776859504134, 0.02975206611570248);
+    let reference = Vec3::new(
+        0.49586776859504134,
+        0.49586776859504134,
+        0.02975206611570248,
+    );
     assert!((patch.point([0.3, 0.6]) - reference).norm() < 1e-15);
 }
 
@@ -54,8 +65,8 @@ fn errors_have_a_place() {
             kratos,
             "[1, [2.0, 0.0, 0.0, 1.0]],\n",
             "",
-            "f.json:26:11: expected Kratos CAD JSON, found 5 control points where 6 are needed, \
-             expected a NURBS surface",
+            "f.json:26:11: expected a NURBS surface (in Kratos CAD JSON), \
+             found 5 control points where 6 are needed",
         ),
         (
             kratos,
@@ -76,8 +87,18 @@ fn errors_have_a_place() {
             "\"size_u\": 300000000000",
             "expected size_u * size_v = 300000000000 * 2 (in geomdl JSON), found 6 control points",
         ),
-        (geomdl, "\"shape\"", "\"form\"", "f.json:1:1: expected the key \"breps\" (Kratos) or \"shape\" (geomdl), found the keys [form]"),
-        (geomdl, "\"degree_u\"", "\"degree\"", "missing field `degree_u`"),
+        (
+            geomdl,
+            "\"shape\"",
+            "\"form\"",
+            "f.json:1:1: expected the key \"breps\" (Kratos) or \"shape\" (geomdl), found the keys [form]",
+        ),
+        (
+            geomdl,
+            "\"degree_u\"",
+            "\"degree\"",
+            "missing field `degree_u`",
+        ),
     ] {
         let message = change(file, from, to).unwrap_err();
         assert!(message.contains(expected), "{message}\n{expected}");
@@ -87,14 +108,28 @@ fn errors_have_a_place() {
 
 #[test]
 fn what_is_no_surface_is_named() {
-    let file = change("cad/ruled.geomdl.json", "\"type\": \"surface\"", "\"type\": \"curve\"").unwrap();
+    let file = change(
+        "cad/ruled.geomdl.json",
+        "\"type\": \"surface\"",
+        "\"type\": \"curve\"",
+    )
+    .unwrap();
     assert_eq!((file.patches.len(), file.skipped.len()), (0, 1));
     assert_eq!(file.skipped[0].reason, "a curve, only surfaces are read");
     let trims = "\"size_u\": 3, \"trims\": {\"count\": 1, \"data\": [{}]}";
     let file = change("cad/ruled.geomdl.json", "\"size_u\": 3", trims).unwrap();
-    assert!(file.skipped[0].reason.starts_with("trimmed (1 trim curves)"));
-    let error = change("cad/ruled.geomdl.json", "\"shape\"", "\"shape\"").unwrap().convert_to(
-        &covact_geometry::io::LengthUnit::from_name("mm").unwrap(),
+    assert!(
+        file.skipped[0]
+            .reason
+            .starts_with("trimmed (1 trim curves)")
     );
-    assert!(error.unwrap_err().to_string().contains("states no length unit"));
+    let error = change("cad/ruled.geomdl.json", "\"shape\"", "\"shape\"")
+        .unwrap()
+        .convert_to(&covact_geometry::io::LengthUnit::from_name("mm").unwrap());
+    assert!(
+        error
+            .unwrap_err()
+            .to_string()
+            .contains("states no length unit")
+    );
 }

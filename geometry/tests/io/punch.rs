@@ -14,14 +14,20 @@ use std::f64::consts::PI;
 fn punch() -> Vec<CadPatch> {
     let file = read_path(&assets().join("punch.igs")).unwrap();
     assert_eq!(file.unit.name, "mm");
-    assert!(file.skipped.is_empty() && file.notes.is_empty(), "{:?}", file.notes);
+    assert!(
+        file.skipped.is_empty() && file.notes.is_empty(),
+        "{:?}",
+        file.notes
+    );
     file.patches
 }
 
 #[test]
 fn areas_are_those_of_the_closed_forms() {
     let sum = |label: &str| -> f64 {
-        let of = punch().into_iter().filter(|p| p.name.as_deref() == Some(label));
+        let of = punch()
+            .into_iter()
+            .filter(|p| p.name.as_deref() == Some(label));
         of.map(|p| area(&p.patch)).sum()
     };
     let straight = 2.0 * 24.0 + 2.0 * 14.0;
@@ -35,14 +41,21 @@ fn areas_are_those_of_the_closed_forms() {
     for (label, reference) in expected {
         let found = sum(label);
         // The quadrature is exact to rounding here; the file has 16 digits.
-        assert!((found / reference - 1.0).abs() < 1e-12, "{label}: {found} for {reference}");
+        assert!(
+            (found / reference - 1.0).abs() < 1e-12,
+            "{label}: {found} for {reference}"
+        );
     }
 }
 
 #[test]
 fn box_is_that_of_the_drawing() {
     let corner = |pick: fn(f64, f64) -> f64, which: usize| {
-        punch().iter().map(|p| p.patch.bounds()[which]).reduce(|a, b| a.zip_map(&b, pick)).unwrap()
+        punch()
+            .iter()
+            .map(|p| p.patch.bounds()[which])
+            .reduce(|a, b| a.zip_map(&b, pick))
+            .unwrap()
     };
     assert!((corner(f64::min, 0) - Vec3::new(-20.0, -15.0, 0.0)).norm() < 1e-12);
     assert!((corner(f64::max, 1) - Vec3::new(20.0, 15.0, 15.0)).norm() < 1e-12);
@@ -97,14 +110,23 @@ fn edges_are_shared_whole_and_smoothly() {
                     partners += 1;
                     for k in 0..5 {
                         let turn = (edge.normals[k] - other.normals[at(k)]).norm();
-                        assert!(turn < 1e-12, "normals differ by {turn} at {:?}", edge.points[k]);
+                        assert!(
+                            turn < 1e-12,
+                            "normals differ by {turn} at {:?}",
+                            edge.points[k]
+                        );
                     }
                 }
             }
         }
         let on_rim = edge.points.iter().all(|x| (x.z - 15.0).abs() < 1e-12);
         rim += usize::from(on_rim);
-        assert_eq!(partners, usize::from(!on_rim), "edge at {:?}", edge.points[2]);
+        assert_eq!(
+            partners,
+            usize::from(!on_rim),
+            "edge at {:?}",
+            edge.points[2]
+        );
     }
     // Four straight walls and two pieces in each of four corners.
     assert_eq!(rim, 12);

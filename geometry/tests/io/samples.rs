@@ -6,12 +6,26 @@ use std::path::{Path, PathBuf};
 
 /// File, unit, patches, skipped, notes, entities (type.form x count). The entities were counted in the directory
 /// sections by other means.
-type Row = (&'static str, &'static str, usize, usize, usize, &'static str);
+type Row = (
+    &'static str,
+    &'static str,
+    usize,
+    usize,
+    usize,
+    &'static str,
+);
 
 const OWN: &[Row] = &[
     ("punch.igs", "mm", 45, 0, 0, "128.0x45"),
     ("sphere.igs", "mm", 1, 0, 0, "128.0x1"),
-    ("cad/bicubic_patch_faces.igs", "mm", 1, 0, 0, "128.0x1 144.0x1"),
+    (
+        "cad/bicubic_patch_faces.igs",
+        "mm",
+        1,
+        0,
+        0,
+        "128.0x1 144.0x1",
+    ),
     (
         "cad/bicubic_patch_brep.igs",
         "mm",
@@ -84,7 +98,14 @@ const OWN: &[Row] = &[
         0,
         "126.0x5 128.0x1 186.0x1 502.1x1 504.1x1 508.1x1 510.1x1 514.1x1",
     ),
-    ("cad/quarter_cylinder.cad.json", "unspecified", 1, 1, 0, "0.0x2"),
+    (
+        "cad/quarter_cylinder.cad.json",
+        "unspecified",
+        1,
+        1,
+        0,
+        "0.0x2",
+    ),
     ("cad/ruled.geomdl.json", "unspecified", 1, 0, 0, "0.0x1"),
 ];
 
@@ -132,8 +153,22 @@ const OTHERS: &[Row] = &[
     ),
     ("sunglasses_lens.igs", "in", 9, 0, 0, "128.0x9"),
     // Its file name was shortened by hand without its length: a note.
-    ("testfile.igs", "mm", 1, 0, 1, "128.8x1 314.0x1 406.3x1 406.15x1"),
-    ("wigley.iges", "m", 0, 1, 0, "110.0x4 126.0x4 128.0x1 502.1x1 504.1x1 508.1x1 510.1x1"),
+    (
+        "testfile.igs",
+        "mm",
+        1,
+        0,
+        1,
+        "128.8x1 314.0x1 406.3x1 406.15x1",
+    ),
+    (
+        "wigley.iges",
+        "m",
+        0,
+        1,
+        0,
+        "110.0x4 126.0x4 128.0x1 502.1x1 504.1x1 508.1x1 510.1x1",
+    ),
 ];
 
 /// Directory with the other writers' files, named by an environment variable.
@@ -151,7 +186,9 @@ pub fn own_files() -> impl Iterator<Item = PathBuf> {
 
 pub fn other_files() -> impl Iterator<Item = PathBuf> {
     let dir = others();
-    OTHERS.iter().filter_map(move |row| Some(dir.as_ref()?.join(row.0)))
+    OTHERS
+        .iter()
+        .filter_map(move |row| Some(dir.as_ref()?.join(row.0)))
 }
 
 fn check(dir: &Path, row: &Row) -> CadFile {
@@ -167,7 +204,11 @@ fn check(dir: &Path, row: &Row) -> CadFile {
     assert_eq!(file.patches.len(), patches, "{name}");
     assert_eq!(file.skipped.len(), skipped, "{name}: {:?}", file.skipped);
     assert_eq!(file.notes.len(), notes, "{name}: {:?}", file.notes);
-    assert!(file.skipped.iter().all(|s| !s.reason.is_empty() && !s.name.is_empty()));
+    assert!(
+        file.skipped
+            .iter()
+            .all(|s| !s.reason.is_empty() && !s.name.is_empty())
+    );
     file
 }
 
@@ -192,7 +233,12 @@ fn every_128_of_a_skipped_face_is_named() {
     let file = read_path(&assets().join("cad/bicubic_patch_brep.igs")).unwrap();
     let face = &file.skipped[0];
     assert_eq!((face.entity, face.type_number), (1, 510));
-    assert!(face.reason.contains("entity 3 (128 Rational B-Spline Surface)"), "{}", face.reason);
+    assert!(
+        face.reason
+            .contains("entity 3 (128 Rational B-Spline Surface)"),
+        "{}",
+        face.reason
+    );
 }
 
 #[derive(serde::Deserialize)]
@@ -245,8 +291,14 @@ fn areas_and_boxes_agree_with_open_cascade() {
         for k in 0..3 {
             let size = reference.high[k] - reference.low[k];
             let slack = 2e-3 * size + 1e-6;
-            assert!((low[k] - reference.low[k]).abs() < slack, "{name} {k}: {low:?}");
-            assert!((high[k] - reference.high[k]).abs() < slack, "{name} {k}: {high:?}");
+            assert!(
+                (low[k] - reference.low[k]).abs() < slack,
+                "{name} {k}: {low:?}"
+            );
+            assert!(
+                (high[k] - reference.high[k]).abs() < slack,
+                "{name} {k}: {high:?}"
+            );
         }
     }
 }

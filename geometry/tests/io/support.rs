@@ -37,7 +37,9 @@ pub fn area(patch: &NurbsPatch) -> f64 {
     let rule = gauss(12);
     let halves = |dir| -> Vec<[f64; 2]> {
         let spans = patch.spans(dir).into_iter();
-        spans.flat_map(|[a, b]| [[a, 0.5 * (a + b)], [0.5 * (a + b), b]]).collect()
+        spans
+            .flat_map(|[a, b]| [[a, 0.5 * (a + b)], [0.5 * (a + b), b]])
+            .collect()
     };
     let mut area = 0.0;
     for [u0, u1] in halves(0) {
@@ -122,7 +124,12 @@ pub fn iges_with(global: &str, entities: &[Entity], comma: char, end: char) -> S
             writeln!(parameter, "{line:<64}{number:>8}P{count:>7}").unwrap();
         }
     }
-    let totals = format!("S{:>7}G{:>7}D{:>7}P{count:>7}", 1, globals.len(), 2 * entities.len());
+    let totals = format!(
+        "S{:>7}G{:>7}D{:>7}P{count:>7}",
+        1,
+        globals.len(),
+        2 * entities.len()
+    );
     file + &directory + &parameter + &format!("{totals:<72}T{:>7}\n", 1)
 }
 
