@@ -299,7 +299,8 @@ impl Basis {
         }
     }
 
-    /// Spans between which the span of `t` is found.
+    /// First and last span between which the span of `t` lies. The upper one is that of the next piece and one more,
+    /// in case rounding puts a point at the start of the next piece into this one.
     #[inline]
     fn bracket(&self, t: f64) -> (usize, usize) {
         let pieces = self.buckets.len() - 1;
@@ -308,7 +309,7 @@ impl Basis {
         let last = self.spans.len() - 1;
         (
             self.buckets[piece] as usize,
-            (self.buckets[piece + 1] as usize + 1).min(last),
+            (self.buckets[piece + 1] as usize + 2).min(last),
         )
     }
 

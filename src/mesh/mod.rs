@@ -2,6 +2,28 @@
 //!
 //! Local node order of every element is tensor-product: `i` (r) fastest, then `j` (s), then `k` (t, the thickness).
 //! H8 node `i + 2 j + 4 k`; Q18 node `i + 3 j + 9 k`.
+mod build;
+mod check;
+mod error;
+mod generate;
+mod gmsh;
+mod measure;
+mod orient;
+mod raw;
+mod sets;
+mod spacing;
+mod topology;
+
+pub use build::build;
+pub use error::{MAX_NODES, MeshError, Position, SetKind};
+pub use generate::{block, cylinder_panel, plate, sphere_panel};
+pub use gmsh::read_gmsh;
+pub use measure::{ElementSize, H8_EDGES, Range};
+pub use raw::{MeshReport, ThicknessRule};
+pub use sets::Selected;
+pub use spacing::positions;
+pub use topology::ThicknessColumns;
+
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
 

@@ -22,7 +22,8 @@ impl NurbsPatch {
         NurbsSurface::new(BSplineSurface::new_unchecked((knots(0), knots(1)), net))
     }
 
-    /// A surface of truck as a patch. Degrees follow from the numbers of knots and control points.
+    /// A surface of truck as a patch. Degrees follow from the numbers of knots and control points. After truck's degree
+    /// elevation call its `optimize` first: elevation leaves inner knots of multiplicity `degree + 1`, which are refused.
     ///
     /// # Errors
     /// As for [`new`](Self::new), and a control net that is not a full rectangle.

@@ -1,0 +1,182 @@
+//! Errors of mesh generators, readers, checks and sets.
+use std::fmt;
+use std::path::PathBuf;
+
+/// Largest number of nodes a generator or reader makes; beyond it the input is taken for a mistake.
+pub const MAX_NODES: u64 = 50_000_000;
+
+/// Place in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Position {
+    /// Text file: line and column, both counted from 1.
+    Text { line: usize, column: usize },
+    /// Binary file: byte offset from 0.
+    Byte(usize),
+}
+
+impl fmt::Display for Position {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Position::Text { line, column } => write!(f, "{line}:{column}"),
+            Position::Byte(offset) => write!(f, "byte {offset}"),
+        }
+    }
+}
+
+/// Node or face set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SetKind {
+    Node,
+    Face,
+}
+
+impl fmt::Display for SetKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            SetKind::Node => "node",
+            SetKind::Face => "face",
+        })
+    }
+}
+
+/// What is wrong with a mesh or with its description.
+#[derive(Debug, thiserror::Error)]
+pub enum MeshError {
+    /// A field of a generator or a selection has a value that cannot be meant.
+    #[error("{what}: {field} is {value}, expected {expected}")]
+    Invalid {
+        /// Generator or selection, by its name in the scene.
+        what: &'static str,
+        /// Field of it.
+        field: String,
+        value: String,
+        expected: String,
+    },
+    /// More nodes than [`MAX_NODES`].
+    #[error("{what}: {nodes} nodes are more than the limit of {MAX_NODES}")]
+    TooManyNodes { what: &'static str, nodes: u128 },
+    /// The elements cannot be spaced as asked.
+    #[error("spacing along {axis}: {reason}")]
+    Spacing { axis: String, reason: String },
+    /// A file cannot be read.
+    #[error("cannot read mesh file {}: {source}", path.display())]
+    Io {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    /// The name of a file does not tell its format.
+    #[error("{}: mesh files end in .msh (gmsh 4.1) or .inp (Abaqus, CalculiX)", path.display())]
+    UnknownFormat { path: PathBuf },
+    /// A file does not follow its format.
+    #[error("{}:{at}: expected {expected}, found {found}", path.display())]
+    Syntax {
+        path: PathBuf,
+        at: Position,
+        expected: String,
+        found: String,
+    },
+    /// A file holds something valid that is not supported.
+    #[error("{}:{at}: {what} is not supported: {help}", path.display())]
+    Unsupported {
+        path: PathBuf,
+        at: Position,
+        what: String,
+        help: String,
+    },
+    /// A file holds no hexahedra.
+    #[error("{}: no hexahedra in this file (its elements: {found}): {help}", path.display())]
+    NoElements {
+        path: PathBuf,
+        found: String,
+        help: String,
+    },
+    /// A node position is not finite.
+    #[error("node {node} has the position ({}, {}, {})", position[0], position[1], position[2])]
+    NotFinite { node: u32, position: [f64; 3] },
+    /// An element or a set names a node or an element that does not exist.
+    #[error("{what} refers to {kind} {number}, but there are only {count}")]
+    OutOfRange {
+        what: String,
+        kind: &'static str,
+        number: u64,
+        count: usize,
+    },
+    /// An element is turned inside out or has no volume.
+    #[error(
+        "element {element}{} at ({:.6}, {:.6}, {:.6}) is inverted or degenerate: its smallest Jacobian is {jacobian:.3e}; {count} element(s) in all",
+        tag.map(|t| format!(" (number {t} in the file)")).unwrap_or_default(),
+        position[0], position[1], position[2]
+    )]
+    Inverted {
+        /// First such element, counted from 0.
+        element: u32,
+        /// Its number in the mesh file.
+        tag: Option<u64>,
+        /// Its centre.
+        position: [f64; 3],
+        /// Smallest Jacobian determinant at its nodes (volume per volume of the cube [-1, 1]^3).
+        jacobian: f64,
+        /// How many elements are inverted.
+        count: usize,
+    },
+    /// Two nodes lie at the same place: parts that touch but are not joined.
+    #[error(
+        "nodes {first} and {second} lie at the same place ({:.6}, {:.6}, {:.6}); {count} such pair(s) in all: join them in the mesher",
+        position[0], position[1], position[2]
+    )]
+    DuplicateNodes {
+        first: u32,
+        second: u32,
+        position: [f64; 3],
+        count: usize,
+    },
+    /// A node belongs to no element.
+    #[error(
+        "node {node} at ({:.6}, {:.6}, {:.6}) belongs to no element; {count} such node(s) in all",
+        position[0], position[1], position[2]
+    )]
+    UnusedNode {
+        node: u32,
+        position: [f64; 3],
+        count: usize,
+    },
+    /// A face is shared by more than two elements, or by two on the same side.
+    #[error(
+        "elements {} meet in one face at ({:.6}, {:.6}, {:.6}): a face belongs to at most two elements, on opposite sides",
+        elements.iter().map(u32::to_string).collect::<Vec<_>>().join(", "),
+        position[0], position[1], position[2]
+    )]
+    NonManifold {
+        elements: Vec<u32>,
+        position: [f64; 3],
+    },
+    /// No set of this name.
+    #[error(
+        "no {kind} set `{name}`{}; {}",
+        suggestion.as_ref().map(|s| format!(", did you mean `{s}`?")).unwrap_or_default(),
+        if available.is_empty() { format!("the mesh has no {kind} sets") } else { format!("{kind} sets: {}", available.join(", ")) }
+    )]
+    UnknownSet {
+        kind: SetKind,
+        name: String,
+        suggestion: Option<String>,
+        available: Vec<String>,
+    },
+    /// A set of this name exists already.
+    #[error("the mesh already has a set `{name}`")]
+    SetExists { name: String },
+    /// A selection finds nothing.
+    #[error(
+        "{selection} selects nothing: the nearest {candidate} is {nearest:.6} {unit} away from it"
+    )]
+    EmptySelection {
+        /// The selection in words.
+        selection: String,
+        /// `node` or `outer face`.
+        candidate: &'static str,
+        /// Distance by which the nearest candidate misses it, in `unit`.
+        nearest: f64,
+        /// `length units` or `degrees`.
+        unit: &'static str,
+    },
+}
