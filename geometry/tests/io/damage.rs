@@ -36,7 +36,7 @@ fn truncated_samples_of_other_writers() {
     for path in other_files() {
         // Large files less often: a prime number of bytes, so that every column is met.
         let size = std::fs::metadata(&path).unwrap().len() as usize;
-        cut_everywhere(&path, if size < 100_000 { 100 } else { size / 97 | 1 });
+        cut_everywhere(&path, if size < 100_000 { 100 } else { (size / 97) | 1 });
     }
 }
 
