@@ -581,7 +581,7 @@ fn shuffled_elements_get_one_thickness() {
     assert!(
         thickness(&mesh)
             .iter()
-            .all(|v| (v + 0.1 * Vec3::z()).norm() < 1e-14)
+            .all(|v| (v + Vec3::z() * 0.1).norm() < 1e-14)
     );
     // Cubes without a surface: nothing to go by, and that is told.
     let (_, report) = read(shuffled(&plate_of([4.0, 3.0], 3.0), None));

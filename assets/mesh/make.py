@@ -1,4 +1,4 @@
-"""Makes the .msh files of this folder with gmsh 4.15 (pip install gmsh). Run it in this folder."""
+"""Makes the mesh files of this folder with gmsh 4.15 (pip install gmsh). Run it in this folder."""
 
 import gmsh
 
@@ -66,6 +66,7 @@ gmsh.initialize()
 gmsh.option.setNumber("General.Terminal", 0)
 plate()
 gmsh.write("plate.msh")
+gmsh.write("plate.inp")
 gmsh.option.setNumber("Mesh.Binary", 1)
 gmsh.write("plate_binary.msh")
 gmsh.option.setNumber("Mesh.SaveParametric", 1)
