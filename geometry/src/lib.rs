@@ -4,6 +4,7 @@
 //! metric, curvature and Christoffel symbols, and a [`PatchSet`] finds the closest point on many patches.
 
 pub mod basis;
+pub mod bezier;
 pub mod frame;
 pub mod io;
 pub mod patch;
@@ -11,7 +12,8 @@ pub mod primitives;
 pub mod project;
 pub mod surface;
 
+pub use bezier::{BezierPiece, bezier_pieces};
 pub use frame::Frame;
-pub use patch::{NurbsPatch, PatchError};
+pub use patch::{NurbsPatch, PatchError, PatchShape};
 pub use project::{EdgeKind, Foot, Hint, Location, PatchSet, Status};
 pub use surface::{Jet, Jet3, Vec3};

@@ -1,5 +1,7 @@
 //! Jets: a surface point with its parametric derivatives.
 
+use num_dual::DualNum;
+
 /// A point or vector of three-dimensional space.
 pub type Vec3<D = f64> = nalgebra::Vector3<D>;
 
@@ -17,7 +19,51 @@ pub struct Jet<D = f64> {
 /// A [`Jet`] with third derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jet3<D = f64> {
+    /// The point with its first and second derivatives.
     pub jet: Jet<D>,
     /// Third derivatives in the order 111, 112, 122, 222.
     pub rho_ijk: [Vec3<D>; 4],
+}
+
+/// Derivatives of `numerator / weight` from those of both, in the order 0 | 1, 2 | 11, 12, 22: the quotient rule solved
+/// for the highest derivative (Piegl and Tiller 1997, eq. 4.20).
+#[inline]
+pub(crate) fn quotient<D: DualNum<f64> + Copy>(a: &[Vec3<D>; 6], w: &[D; 6]) -> Jet<D> {
+    let inv = w[0].recip();
+    let rho = a[0] * inv;
+    let rho_1 = (a[1] - rho * w[1]) * inv;
+    let rho_2 = (a[2] - rho * w[2]) * inv;
+    let two = D::from(2.0);
+    Jet {
+        rho,
+        rho_i: [rho_1, rho_2],
+        rho_ij: [
+            (a[3] - rho_1 * (w[1] * two) - rho * w[3]) * inv,
+            (a[4] - rho_1 * w[2] - rho_2 * w[1] - rho * w[4]) * inv,
+            (a[5] - rho_2 * (w[2] * two) - rho * w[5]) * inv,
+        ],
+    }
+}
+
+/// [`quotient`] to third order; the last four entries are 111, 112, 122, 222.
+pub(crate) fn quotient3<D: DualNum<f64> + Copy>(a: &[Vec3<D>; 10], w: &[D; 10]) -> Jet3<D> {
+    let jet = quotient(
+        &[a[0], a[1], a[2], a[3], a[4], a[5]],
+        &[w[0], w[1], w[2], w[3], w[4], w[5]],
+    );
+    let Jet {
+        rho,
+        rho_i: [r1, r2],
+        rho_ij: [r11, r12, r22],
+    } = jet;
+    let inv = w[0].recip();
+    let (two, three) = (D::from(2.0), D::from(3.0));
+    let r111 = (a[6] - (r11 * w[1] + r1 * w[3]) * three - rho * w[6]) * inv;
+    let r112 = (a[7] - (r12 * w[1] + r1 * w[4]) * two - r11 * w[2] - r2 * w[3] - rho * w[7]) * inv;
+    let r122 = (a[8] - (r12 * w[2] + r2 * w[4]) * two - r22 * w[1] - r1 * w[5] - rho * w[8]) * inv;
+    let r222 = (a[9] - (r22 * w[2] + r2 * w[5]) * three - rho * w[9]) * inv;
+    Jet3 {
+        jet,
+        rho_ijk: [r111, r112, r122, r222],
+    }
 }

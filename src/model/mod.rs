@@ -1,1 +1,157 @@
-//! (being written)
+//! The model: what a scene becomes before anything is solved. All choices of effects are made here, once.
+pub mod build;
+pub mod constraints;
+pub mod effects;
+pub mod error;
+pub mod free_motion;
+pub mod initial;
+pub mod loads;
+pub mod motion;
+pub mod penalty;
+pub mod slave;
+
+use crate::assembly::DofMap;
+use crate::contact::points::SlavePoint;
+use crate::contact::rigid::RigidMaster;
+use crate::mesh::Mesh;
+use crate::scene::{Tangent, TimeFunction, ValueError};
+use crate::shell::H8Block;
+use constraints::{MeanPrescribed, Prescribed};
+use covact_geometry::{PatchSet, Vec3};
+use loads::{DeadLoad, FollowerPressure};
+use motion::Motion;
+
+pub use error::ModelError;
+
+/// Bodies, rigid surfaces, contact pairs, supports and loads, with all names resolved.
+#[derive(Debug)]
+pub struct Model {
+    pub title: String,
+    /// Undeformed positions of all nodes, body after body.
+    pub nodes: Vec<Vec3>,
+    pub bodies: Vec<BodyModel>,
+    pub surfaces: Vec<SurfaceModel>,
+    pub pairs: Vec<PairModel>,
+    /// Names of the supports.
+    pub supports: Vec<String>,
+    pub prescribed: Vec<Prescribed>,
+    pub means: Vec<MeanPrescribed>,
+    pub dead_loads: Vec<(String, DeadLoad)>,
+    pub follower_loads: Vec<(String, FollowerPressure)>,
+    /// Which degrees of freedom are unknown.
+    pub dofs: DofMap,
+    /// Effects that are on, by name.
+    pub effects: Vec<String>,
+    /// Choices the program made, in words.
+    pub notes: Vec<String>,
+    /// Things the user should look at.
+    pub warnings: Vec<String>,
+    /// Times at which something prescribed has a kink, ascending.
+    pub breakpoints: Vec<f64>,
+}
+
+/// A deformable body.
+#[derive(Debug)]
+pub struct BodyModel {
+    pub name: String,
+    pub mesh: Mesh,
+    pub block: H8Block,
+    /// Number of the body's first node in the model.
+    pub first_node: u32,
+}
+
+/// A rigid surface.
+#[derive(Debug)]
+pub struct SurfaceModel {
+    pub name: String,
+    /// Patches in the scene's length unit and the surface's own coordinates.
+    pub set: PatchSet,
+    pub motion: Motion,
+    /// Depth below which a point does not count (length).
+    pub depth: f64,
+}
+
+/// A contact pair.
+#[derive(Debug)]
+pub struct PairModel {
+    pub name: String,
+    pub body: usize,
+    pub surface: usize,
+    pub points: Vec<SlavePoint>,
+    /// Penalty (force / length^3).
+    pub eps_n: f64,
+    /// The penalty may be raised to keep the penetration small.
+    pub automatic: bool,
+    pub tangent: Tangent,
+    /// Mean edge length of the slave faces.
+    pub element_size: f64,
+}
+
+impl Model {
+    /// Deformed position of a node.
+    #[inline]
+    pub fn position(&self, node: usize, u: &[f64]) -> Vec3 {
+        self.nodes[node] + Vec3::new(u[3 * node], u[3 * node + 1], u[3 * node + 2])
+    }
+
+    /// Deformed position of a slave point.
+    #[inline]
+    pub fn point_position(&self, p: &SlavePoint, u: &[f64]) -> Vec3 {
+        (p.terms()).fold(Vec3::zeros(), |x, (n, w)| x + self.position(n, u) * w)
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.dofs.dofs() - self.dofs.removed().count()
+    }
+
+    /// Number of slave points.
+    pub fn contact_points(&self) -> usize {
+        self.pairs.iter().map(|p| p.points.len()).sum()
+    }
+
+    /// Increments from the present displacements to what is prescribed at `time`, for prescribed degrees of freedom
+    /// and those tied by mid-surface supports; returns the largest.
+    pub fn increments(&self, u: &[f64], time: f64, g: &mut [f64]) -> Result<f64, ValueError> {
+        g.fill(0.0);
+        let value = |dof: u32, f: &Option<TimeFunction>| match f {
+            None => Ok(0.0),
+            Some(f) => f.eval_at(&self.nodes[dof as usize / 3], time),
+        };
+        for p in &self.prescribed {
+            g[p.dof as usize] = value(p.dof, &p.value)? - u[p.dof as usize];
+        }
+        for m in &self.means {
+            let now = u[m.free as usize] + u[m.tied as usize];
+            g[m.tied as usize] = 2.0 * value(m.free, &m.mean)? - now;
+        }
+        let largest = g.iter().fold(0.0f64, |a, x| a.max(x.abs()));
+        self.dofs.particular(g);
+        Ok(largest)
+    }
+}
+
+impl BodyModel {
+    /// Node numbers of an element in the model.
+    #[inline]
+    pub fn element_nodes(&self, e: usize) -> [u32; 8] {
+        self.block.nodes_of(e).map(|n| n + self.first_node)
+    }
+
+    /// Deformed positions of an element's nodes.
+    #[inline]
+    pub fn positions(&self, model: &Model, e: usize, u: &[f64]) -> [Vec3; 8] {
+        self.element_nodes(e).map(|n| model.position(n as usize, u))
+    }
+}
+
+impl SurfaceModel {
+    /// The surface at its position of time `t`.
+    pub fn at(&self, t: f64) -> Result<RigidMaster<'_>, ValueError> {
+        Ok(RigidMaster {
+            surface: &self.set,
+            pose: self.motion.pose(t)?,
+            depth: self.depth,
+        })
+    }
+}

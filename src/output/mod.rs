@@ -1,1 +1,37 @@
-//! (being written)
+//! Results on disk: fields for ParaView, the history table, the summary.
+//!
+//! Every file is written whole or not at all ([`atomic`]); the history grows by whole lines. [`Results`] writes a folder:
+//!
+//! - `results.pvd` lists a `.vtu` file per accepted step for each body ([`BodyFields`]) and each rigid surface
+//!   ([`SurfaceOutput`]); `results_tessellated.pvd` is the same with rigid surfaces as flat quadrilaterals;
+//! - `history.csv` has one line per accepted step ([`History`], its columns are documented in [`COLUMNS`]);
+//! - `summary.json` says how the run went and what it cost ([`Summary`]).
+//!
+//! Points of a body stay at their undeformed positions and carry the displacement, so ParaView's "Warp By Vector"
+//! deforms them. A rigid surface is written where it is. ParaView draws curved cells as flat ones unless "Nonlinear
+//! Subdivision Level" is raised.
+
+pub mod atomic;
+mod bezier;
+mod body;
+mod columns;
+mod error;
+mod history;
+mod measure;
+mod results;
+mod summary;
+mod surface;
+mod vtu;
+
+pub use bezier::{BezierError, MAX_DEGREE, SurfacePiece};
+pub use body::{
+    BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, STRESS_COMPONENTS, von_mises,
+};
+pub use columns::{COLUMNS, ColumnDoc, column_table, documented};
+pub use error::OutputError;
+pub use history::{History, Table, read_csv};
+pub use measure::{Phases, cpu_seconds, peak_memory_mb};
+pub use results::{Results, SurfaceState, file_stem};
+pub use summary::{RunStatus, SUMMARY_FORMAT, Summary, Versions};
+pub use surface::SurfaceOutput;
+pub use vtu::{Field, Place};

@@ -1,1 +1,60 @@
-//! Readers of CAD files.
+//! Readers of CAD files: IGES 5.3 and the JSON formats of Kratos and geomdl.
+//!
+//! [`read_path`] tells the format from the content. What comes back is a [`CadFile`]: the untrimmed NURBS patches, and
+//! an account of everything else the file holds. Nothing is dropped silently: a surface that was not read is
+//! [`Skipped`] with its reason, and what was tolerated although the standard does not allow it is in the notes.
+
+mod error;
+mod iges;
+mod json;
+mod report;
+mod unit;
+
+pub use error::CadError;
+pub use iges::{entity_name, read_iges};
+pub use json::read_json;
+pub use report::{CadFile, CadFormat, CadPatch, EntityCount, Skipped};
+pub use unit::LengthUnit;
+
+use std::path::Path;
+
+/// Reads a CAD file, IGES or JSON by its content (the extension plays no part).
+///
+/// # Errors
+/// [`CadError::Read`] when the file cannot be opened, [`CadError::Content`] with line and column when it is damaged,
+/// and [`CadError::Format`] when it is neither IGES nor JSON (a STEP file, for one).
+pub fn read_path(path: &Path) -> Result<CadFile, CadError> {
+    let name = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|source| CadError::Read {
+        path: name.clone(),
+        source,
+    })?;
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+    let start = text.trim_ascii_start();
+    if start.starts_with(b"{") || start.starts_with(b"[") {
+        return read_json(text, &name);
+    }
+    let kind = if start.is_empty() {
+        Some("an empty file")
+    } else if start.starts_with(b"ISO-10303-21") {
+        Some("a STEP file")
+    } else if start.starts_with(b"solid") && !text[..text.len().min(80)].ends_with(b"S      1") {
+        // An IGES comment may begin with the same word, but then its first line is 80 columns of section S.
+        (text
+            .split(|&b| b == b'\n')
+            .next()
+            .is_none_or(|l| l.len() < 73))
+        .then_some("an STL file")
+    } else if text[..text.len().min(400)].contains(&0) {
+        Some("binary data")
+    } else {
+        None
+    };
+    match kind {
+        Some(found) => Err(CadError::Format {
+            path: name,
+            found: found.to_owned(),
+        }),
+        None => read_iges(text, &name),
+    }
+}

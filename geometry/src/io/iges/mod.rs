@@ -1,0 +1,106 @@
+//! IGES 5.3 files (ANS US PRO/IPO-100-1996), fixed-length ASCII form.
+//!
+//! The layers, one file each: 80-column `records` in their sections, `params` (free-format values with their places in
+//! the file), the `global` section, the `directory`, then entities: `surface` (128), `transform` (124), and `faces`,
+//! which decides what every surface entity becomes.
+
+mod directory;
+mod faces;
+mod global;
+mod names;
+mod number;
+mod params;
+mod records;
+mod surface;
+mod transform;
+
+pub use names::entity_name;
+
+use super::CadError;
+use super::error::Fail;
+use super::report::{CadFile, CadFormat, EntityCount};
+use std::collections::BTreeMap;
+
+/// What all layers above the directory look at.
+struct Model<'a> {
+    sections: records::Sections<'a>,
+    global: global::Global,
+    entries: Vec<directory::Entry>,
+}
+
+impl<'a> Model<'a> {
+    /// The values of an entity.
+    fn params(&'a self, entry: &directory::Entry) -> Result<params::Params<'a>, Fail> {
+        entry.params(&self.sections, self.global.delimiters)
+    }
+
+    /// Index of the entity with directory number `pointer` in `entries`.
+    fn index(&self, pointer: i64, place: (usize, usize), what: &str) -> Result<usize, Fail> {
+        let index = usize::try_from(pointer)
+            .ok()
+            .filter(|p| p % 2 == 1)
+            .map(|p| p / 2);
+        index.filter(|&i| i < self.entries.len()).ok_or_else(|| {
+            let last = 2 * self.entries.len();
+            let expected = format!("{what}: an odd directory number from 1 to {last}");
+            Fail::new(place, expected, pointer.to_string())
+        })
+    }
+
+    /// The entity with directory number `pointer`.
+    fn entry(
+        &self,
+        pointer: i64,
+        place: (usize, usize),
+        what: &str,
+    ) -> Result<&directory::Entry, Fail> {
+        Ok(&self.entries[self.index(pointer, place, what)?])
+    }
+}
+
+/// Reads an IGES file. `name` stands for the file in messages.
+///
+/// Entity 128 is read, free-standing or in a 144 without boundary curves, with the transformation matrices (124) of both.
+/// All other surfaces (trimmed ones included) are listed as skipped.
+///
+/// # Errors
+/// [`CadError::Content`] with the place of the damage. A sound file that holds no surface is no error.
+pub fn read_iges(bytes: &[u8], name: &str) -> Result<CadFile, CadError> {
+    read(bytes, name).map_err(|fail| fail.in_file(name))
+}
+
+fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
+    let mut notes = Vec::new();
+    let sections = records::split(bytes, &mut notes)?;
+    let global = global::read(&sections, &mut notes)?;
+    let entries = directory::read(&sections, &mut notes)?;
+    let mut counts = BTreeMap::new();
+    for entry in &entries {
+        *counts.entry((entry.type_number, entry.form)).or_insert(0) += 1;
+    }
+    let entities = counts
+        .into_iter()
+        .map(|((type_number, form), count)| EntityCount {
+            type_number,
+            form,
+            name: entity_name(type_number, form).to_owned(),
+            count,
+        })
+        .collect();
+    let model = Model {
+        sections,
+        global,
+        entries,
+    };
+    let (patches, skipped) = faces::read(&model, &mut notes)?;
+    Ok(CadFile {
+        path: name.to_owned(),
+        format: CadFormat::Iges,
+        unit: model.global.unit.clone(),
+        resolution: model.global.resolution.map(|r| r / model.global.scale),
+        patches,
+        entities,
+        skipped,
+        notes,
+    })
+}

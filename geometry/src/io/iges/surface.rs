@@ -1,0 +1,246 @@
+//! Rational B-spline surfaces, entity 128.
+
+use super::super::error::Fail;
+use super::Model;
+use super::directory::Entry;
+use super::params::Params;
+use super::transform::Affine;
+use crate::{NurbsPatch, Vec3};
+
+/// A surface, or why it is none; and how many values its own data took (pointers to properties follow).
+pub struct Surface {
+    pub patch: Result<NurbsPatch, String>,
+    pub values: usize,
+}
+
+/// Sizes in front of the data: upper indices K of the control points and degrees M, by direction.
+struct Header {
+    counts: [usize; 2],
+    degree: [usize; 2],
+    /// PROP1 and PROP2.
+    closed: [bool; 2],
+    polynomial: bool,
+}
+
+/// Values up to the first knot: type, K1, K2, M1, M2, PROP1 to PROP5.
+const HEADER: usize = 10;
+
+impl Header {
+    fn read(params: &Params) -> Result<Self, Fail> {
+        let mut counts = [0; 2];
+        let mut degree = [0; 2];
+        for d in 0..2 {
+            counts[d] = params.count(1 + d, &format!("the upper index K{}", d + 1))?;
+            degree[d] = params.count(3 + d, &format!("the degree M{}", d + 1))?;
+            // Each index has a knot of its own, so more than there are values cannot be.
+            if counts[d] >= params.len() {
+                let expected = format!(
+                    "an upper index K{} that the {} values of this entity can fill",
+                    d + 1,
+                    params.len()
+                );
+                return Err(params.fail(1 + d, expected));
+            }
+            counts[d] += 1;
+            if degree[d] == 0 || degree[d] >= counts[d] {
+                let expected = format!("a degree M{} from 1 to K{0} = {}", d + 1, counts[d] - 1);
+                return Err(params.fail(3 + d, expected));
+            }
+        }
+        let mut flags = [false; 5];
+        for (i, flag) in flags.iter_mut().enumerate() {
+            *flag = match params.integer(5 + i, "a property flag")? {
+                0 => false,
+                1 => true,
+                _ => return Err(params.fail(5 + i, format!("0 or 1 for flag PROP{}", i + 1))),
+            };
+        }
+        // PROP4 and PROP5 (periodic) say nothing that the knots do not say.
+        Ok(Self {
+            counts,
+            degree,
+            closed: [flags[0], flags[1]],
+            polynomial: flags[2],
+        })
+    }
+}
+
+/// Reads an entity 128 and maps its points by `map`. Damaged data is an error; data that is whole but makes no surface
+/// is a reason to skip it.
+pub fn read(
+    model: &Model,
+    entry: &Entry,
+    map: &Affine,
+    notes: &mut Vec<String>,
+) -> Result<Surface, Fail> {
+    let params = model.params(entry)?;
+    let header = Header::read(&params)?;
+    let Header { counts, degree, .. } = header;
+    let knot_counts = [counts[0] + degree[0] + 1, counts[1] + degree[1] + 1];
+    // Cannot overflow: each count is below the number of values, which fit in memory.
+    let points = counts[0].saturating_mul(counts[1]);
+    let values = points
+        .saturating_mul(4)
+        .saturating_add(HEADER + knot_counts[0] + knot_counts[1] + 4);
+    if params.len() < values {
+        let expected = format!(
+            "{values} values for {} x {} control points of degree {} x {}",
+            counts[0], counts[1], degree[0], degree[1]
+        );
+        return Err(params.fail(params.len(), expected));
+    }
+    let mut at = HEADER;
+    let mut take = |count: usize, what: &str| {
+        at += count;
+        params.reals(at - count, count, what)
+    };
+    let mut note = |text: String| notes.push(format!("entity {} (128): {text}", entry.number));
+    let mut knots = [
+        take(knot_counts[0], "a knot of the first direction")?,
+        take(knot_counts[1], "a knot of the second direction")?,
+    ];
+    let weights = take(points, "a weight")?;
+    let coordinates = take(3 * points, "a coordinate of a control point")?;
+    let range = take(4, "a limit of the parameter range U0, U1, V0, V1")?;
+
+    let scale = model.global.scale;
+    let net: Vec<Vec3> = coordinates
+        .chunks_exact(3)
+        .map(|c| map.apply(Vec3::new(c[0], c[1], c[2])) / scale)
+        .collect();
+    let rational = weights.iter().any(|&w| w != weights[0]) || weights[0] <= 0.0;
+    if rational && header.polynomial {
+        note(
+            "the flag PROP3 says polynomial, but the weights differ; the weights count".to_owned(),
+        );
+    }
+    for (d, knots) in knots.iter_mut().enumerate() {
+        let moved = merge_close(knots);
+        if moved > 0 {
+            note(format!(
+                "direction {}: {moved} knots moved onto their neighbour",
+                d + 1
+            ));
+        }
+    }
+    let weights = rational.then_some(&weights[..]);
+    let patch = match NurbsPatch::new(degree, knots, counts, &net, weights) {
+        Ok(patch) => restrict(patch, &range, &mut note)?,
+        Err(e) => {
+            return Ok(Surface {
+                patch: Err(e.to_string()),
+                values,
+            });
+        }
+    };
+    if let Ok(patch) = &patch {
+        check_closed(patch, header.closed, model.global.resolution, &mut note);
+    }
+    Ok(Surface { patch, values })
+}
+
+/// Knots that rounding has set apart: differences up to 1e-9 of the whole range, of either sign, are closed. Writers
+/// print as few as 9 digits; a span of that size has no extent in space but spoils derivatives.
+fn merge_close(knots: &mut [f64]) -> usize {
+    let range = knots.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b))
+        - knots.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+    let mut moved = 0;
+    for i in 1..knots.len() {
+        let step = knots[i] - knots[i - 1];
+        if step != 0.0 && step.abs() <= 1e-9 * range {
+            knots[i] = knots[i - 1];
+            moved += 1;
+        }
+    }
+    moved
+}
+
+/// Cuts the patch at the parameter range U0, U1, V0, V1 of the file.
+fn restrict(
+    patch: NurbsPatch,
+    range: &[f64],
+    note: &mut impl FnMut(String),
+) -> Result<Result<NurbsPatch, String>, Fail> {
+    let full = patch.domain();
+    let mut domain = full;
+    for d in 0..2 {
+        let [start, end] = full[d];
+        let (mut from, mut to) = (range[2 * d], range[2 * d + 1]);
+        let name = ["U", "V"][d];
+        // Ten times what `with_domain` moves by itself, so that rounding in nine digits passes without a note.
+        let slack = 1e-8 * (end - start);
+        if from == to {
+            note(format!(
+                "the parameter range {name}0, {name}1 is empty; the knots' range was used"
+            ));
+            continue;
+        }
+        if from > to {
+            return Ok(Err(format!(
+                "the parameter range {name}0 = {from}, {name}1 = {to} runs backwards"
+            )));
+        }
+        if to <= start || from >= end {
+            return Ok(Err(format!(
+                "the parameter range {name} = {from} to {to} lies outside of the knots' range {start} to {end}"
+            )));
+        }
+        if from < start - slack || to > end + slack {
+            note(format!(
+                "the parameter range {name} = {from} to {to} exceeds the knots' range {start} to {end}, where the \
+                 surface ends"
+            ));
+        }
+        if (from - start).abs() <= slack || from < start {
+            from = start;
+        }
+        if (to - end).abs() <= slack || to > end {
+            to = end;
+        }
+        if from > start || to < end {
+            note(format!(
+                "cut to {name} = {from} to {to} of the knots' range {start} to {end}"
+            ));
+        }
+        domain[d] = [from, to];
+    }
+    Ok(if domain == full {
+        Ok(patch)
+    } else {
+        patch.with_domain(domain).map_err(|e| e.to_string())
+    })
+}
+
+/// Notes a direction that is flagged closed while its two edges lie apart.
+fn check_closed(
+    patch: &NurbsPatch,
+    closed: [bool; 2],
+    resolution: Option<f64>,
+    note: &mut impl FnMut(String),
+) {
+    let domain = patch.domain();
+    let [low, high] = patch.bounds();
+    let slack = resolution.unwrap_or(0.0).max(1e-6 * (high - low).norm());
+    for d in (0..2).filter(|&d| closed[d]) {
+        let gap = (0..=4)
+            .map(|k| {
+                let [from, to] = domain[1 - d];
+                let across = from + (to - from) * f64::from(k) / 4.0;
+                let at = |along: f64| {
+                    patch.point(if d == 0 {
+                        [along, across]
+                    } else {
+                        [across, along]
+                    })
+                };
+                (at(domain[d][0]) - at(domain[d][1])).norm()
+            })
+            .fold(0.0, f64::max);
+        if gap > slack {
+            note(format!(
+                "flagged closed in direction {}, but the two edges lie up to {gap:.3e} apart",
+                d + 1
+            ));
+        }
+    }
+}

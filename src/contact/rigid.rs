@@ -1,0 +1,186 @@
+//! Contact of slave points with a rigid surface of NURBS patches.
+use super::corner;
+use super::kernel::{self, Normal};
+use super::law::NormalLaw;
+use super::published::{self, Parts};
+use covact_geometry::{EdgeKind, Foot, Frame, Hint, Location, PatchSet, Status, Vec3};
+use nalgebra::{Isometry3, Matrix3, Point3, Rotation3};
+
+/// Which tangent a batch uses: a type, so that the choice is made outside the loop over points.
+pub trait RigidTangent: Sync {
+    /// Tangent at a face point on a rigid master.
+    fn face(&self, frame: &Frame, xi3: f64, normal: &Normal) -> Matrix3<f64>;
+}
+
+/// The exact tangent.
+#[derive(Debug, Clone, Copy)]
+pub struct Exact;
+
+impl RigidTangent for Exact {
+    #[inline]
+    fn face(&self, frame: &Frame, xi3: f64, normal: &Normal) -> Matrix3<f64> {
+        kernel::normal_tangent_rigid(frame, xi3, normal)
+    }
+}
+
+impl RigidTangent for Parts {
+    #[inline]
+    fn face(&self, frame: &Frame, _xi3: f64, normal: &Normal) -> Matrix3<f64> {
+        published::normal_tangent_rigid(frame, normal, *self)
+    }
+}
+
+/// A rigid surface at its present position.
+#[derive(Debug, Clone)]
+pub struct RigidMaster<'a> {
+    pub surface: &'a PatchSet,
+    /// From the surface's own coordinates to space.
+    pub pose: Isometry3<f64>,
+    /// Points deeper than this below the surface are not in contact (length).
+    pub depth: f64,
+}
+
+/// What keeps a point from being evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum PointFault {
+    #[error("the closest point search did not converge (patch {patch}, xi = [{}, {}])", xi[0], xi[1])]
+    ProjectionNotConverged { patch: u32, xi: [f64; 2] },
+    #[error(
+        "the point lies at or beyond the focal surface of the master (patch {patch}, xi = [{}, {}], xi3 = {xi3:e})",
+        xi[0], xi[1]
+    )]
+    BeyondFocalSurface { patch: u32, xi: [f64; 2], xi3: f64 },
+    #[error("the master has no normal at patch {patch}, xi = [{}, {}]", xi[0], xi[1])]
+    DegenerateFrame { patch: u32, xi: [f64; 2] },
+    #[error("the point's position is not finite")]
+    NotFinite,
+}
+
+/// A point in contact, per unit area and in space coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// Residual (the slave is pushed by its negative), force / length^2.
+    pub residual: Vec3,
+    /// Derivative of the residual with respect to the slave point, force / length^3.
+    pub tangent: Matrix3<f64>,
+    /// Normal coordinate, negative.
+    pub xi3: f64,
+    /// Normal traction, negative.
+    pub n: f64,
+}
+
+impl RigidMaster<'_> {
+    /// Foot of a point of space within `reach`, in the surface's own coordinates.
+    pub fn foot(&self, x: &Vec3, hint: Option<Hint>, reach: f64) -> Option<Foot> {
+        let local = self.pose.inverse_transform_point(&Point3::from(*x)).coords;
+        self.surface.project(&local, hint, reach)
+    }
+
+    /// Evaluates one slave point; `None` where it is open.
+    ///
+    /// `hint` is where the search starts, and is set to where it ended.
+    pub fn touch<L: NormalLaw, T: RigidTangent>(
+        &self,
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        law: &L,
+        tangent: &T,
+    ) -> Result<Option<Touch>, PointFault> {
+        if !(x.x.is_finite() && x.y.is_finite() && x.z.is_finite()) {
+            return Err(PointFault::NotFinite);
+        }
+        let local = self.pose.inverse_transform_point(&Point3::from(*x)).coords;
+        let Some(foot) = self.surface.project(&local, *hint, self.depth) else {
+            *hint = None;
+            return Ok(None);
+        };
+        let (patch, xi) = (foot.patch, foot.xi);
+        *hint = Some(Hint { patch, xi });
+        if !presses(&foot) {
+            return Ok(None);
+        }
+        if foot.status == Status::NotConverged {
+            return Err(PointFault::ProjectionNotConverged { patch, xi });
+        }
+        let xi3 = foot.signed_distance;
+        let normal = law.normal(xi3);
+        let d = local - foot.jet.rho;
+        let (residual, k) = match foot.location {
+            Location::Corner {
+                kind: EdgeKind::Sharp,
+                ..
+            } => {
+                let eps = normal.n / xi3;
+                (corner::residual(&d, eps), corner::vertex_tangent(eps))
+            }
+            Location::Edge {
+                edge,
+                kind: EdgeKind::Sharp,
+            } => {
+                let along = if edge < 2 { 1 } else { 0 };
+                self.on_line(&foot, along, &d, &normal)
+            }
+            Location::Crease { dir } => self.on_line(&foot, 1 - dir as usize, &d, &normal),
+            _ => self.on_face(&foot, &normal, tangent)?,
+        };
+        let rotation = Rotation3::from(self.pose.rotation);
+        let r = rotation.matrix();
+        Ok(Some(Touch {
+            residual: r * residual,
+            tangent: r * k * r.transpose(),
+            xi3,
+            n: normal.n,
+        }))
+    }
+
+    fn on_line(
+        &self,
+        foot: &Foot,
+        along: usize,
+        d: &Vec3,
+        normal: &Normal,
+    ) -> (Vec3, Matrix3<f64>) {
+        let eps = normal.n / foot.signed_distance;
+        let k = corner::edge_tangent(d, &foot.jet.rho_i[along], &foot.jet.rho_ij[2 * along], eps);
+        (corner::residual(d, eps), k)
+    }
+
+    fn on_face<T: RigidTangent>(
+        &self,
+        foot: &Foot,
+        normal: &Normal,
+        tangent: &T,
+    ) -> Result<(Vec3, Matrix3<f64>), PointFault> {
+        let (patch, xi, xi3) = (foot.patch, foot.xi, foot.signed_distance);
+        if matches!(foot.location, Location::Pole { .. }) {
+            // The parametrisation has no metric here; the normal is known, the curvature part (smaller by
+            // xi3 kappa) is left out of the tangent.
+            let n = foot.normal;
+            return Ok((n * normal.n, n * n.transpose() * normal.dn));
+        }
+        let frame = Frame::new(&foot.jet, foot.side)
+            .ok_or(PointFault::DegenerateFrame { patch, xi })?;
+        let [i11, i12, i22] = [0, 1, 2].map(|i| frame.a[i] - xi3 * frame.h[i]);
+        if i11 <= 0.0 || i11 * i22 - i12 * i12 <= 0.0 {
+            return Err(PointFault::BeyondFocalSurface { patch, xi, xi3 });
+        }
+        let k = tangent.face(&frame, xi3, normal);
+        Ok((frame.n * normal.n, k))
+    }
+}
+
+/// Whether a foot means contact. A foot on a free border is not: the point hangs past the border, beside the surface
+/// or below it, and nothing of the surface stands in its way.
+pub fn presses(foot: &Foot) -> bool {
+    let free = matches!(
+        foot.location,
+        Location::Edge {
+            kind: EdgeKind::Free,
+            ..
+        } | Location::Corner {
+            kind: EdgeKind::Free,
+            ..
+        }
+    );
+    foot.signed_distance < 0.0 && !free
+}

@@ -1,0 +1,21 @@
+//! Supports as constraints on single degrees of freedom.
+use crate::scene::TimeFunction;
+
+/// What a support says of one degree of freedom `3 node + component`.
+#[derive(Debug, Clone)]
+pub struct Prescribed {
+    pub dof: u32,
+    /// Index of the support in the model.
+    pub support: u32,
+    /// Displacement over time; `None` is zero.
+    pub value: Option<TimeFunction>,
+}
+
+/// A mid-surface support: the mean of two degrees of freedom is prescribed, `u_tied = 2 mean - u_free`.
+#[derive(Debug, Clone)]
+pub struct MeanPrescribed {
+    pub free: u32,
+    pub tied: u32,
+    pub support: u32,
+    pub mean: Option<TimeFunction>,
+}

@@ -1,0 +1,47 @@
+//! The effects a scene calls for, by name: what the run then does, and nothing else.
+use super::Model;
+use crate::scene::{Element, Material, Points, Scene, Tangent};
+use std::collections::BTreeSet;
+
+/// Names of the effects that are on, sorted.
+pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
+    let mut on = BTreeSet::new();
+    let mut add = |name: &str| {
+        on.insert(name.to_owned());
+    };
+    add("large_rotation");
+    for body in scene.bodies.values() {
+        add(match body.element {
+            Element::H8 => "element.h8_solid_shell",
+            Element::H8Displacement => "element.h8_displacement",
+        });
+        match scene.materials.get(&body.material) {
+            Some(Material::StVenantKirchhoff(_)) => add("material.st_venant_kirchhoff"),
+            Some(Material::NeoHooke(_)) => add("material.neo_hooke"),
+            None => {}
+        }
+    }
+    for contact in scene.contacts.values() {
+        add("contact.normal.penalty");
+        add("contact.master.rigid");
+        add(match contact.points {
+            Points::Nodes => "contact.points.nodes",
+            Points::Gauss(_) => "contact.points.gauss",
+            Points::Lobatto(_) => "contact.points.lobatto",
+        });
+        add(match contact.tangent {
+            Tangent::Exact => "contact.tangent.exact",
+            Tangent::Published { .. } => "contact.tangent.published",
+        });
+    }
+    if !model.dead_loads.is_empty() {
+        add("load.dead");
+    }
+    if !model.follower_loads.is_empty() {
+        add("load.follower_pressure");
+    }
+    if !model.means.is_empty() {
+        add("support.mid_surface");
+    }
+    on.into_iter().collect()
+}

@@ -1,0 +1,107 @@
+//! Can a body move without being strained? Six rigid motions against its supports.
+use super::Model;
+use covact_geometry::Vec3;
+use nalgebra::{Matrix6, SymmetricEigen, Vector6};
+
+/// A rigid motion that no support hinders.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeMotion {
+    pub body: String,
+    /// How many independent motions are free.
+    pub count: usize,
+    /// In words: along or about which axis the freest of them goes.
+    pub motion: String,
+}
+
+/// Checks every connected piece of every body.
+pub fn free_motions(model: &Model) -> Vec<FreeMotion> {
+    let mut out = Vec::new();
+    for body in &model.bodies {
+        for piece in pieces(body.mesh.nodes.len(), body) {
+            if let Some(free) = free_motion(model, body.first_node, &piece) {
+                out.push(FreeMotion {
+                    body: body.name.clone(),
+                    ..free
+                });
+            }
+        }
+    }
+    out
+}
+
+fn pieces(nodes: usize, body: &super::BodyModel) -> Vec<Vec<u32>> {
+    let mut parent: Vec<u32> = (0..nodes as u32).collect();
+    fn root(parent: &mut [u32], mut i: u32) -> u32 {
+        while parent[i as usize] != i {
+            parent[i as usize] = parent[parent[i as usize] as usize];
+            i = parent[i as usize];
+        }
+        i
+    }
+    for e in 0..body.mesh.elements() {
+        let conn = body.mesh.element(e);
+        let first = root(&mut parent, conn[0]);
+        for &n in &conn[1..] {
+            let r = root(&mut parent, n);
+            parent[r as usize] = first;
+        }
+    }
+    let mut groups = std::collections::BTreeMap::<u32, Vec<u32>>::new();
+    for n in 0..nodes as u32 {
+        let r = root(&mut parent, n);
+        groups.entry(r).or_default().push(n);
+    }
+    groups.into_values().collect()
+}
+
+fn free_motion(model: &Model, first: u32, piece: &[u32]) -> Option<FreeMotion> {
+    let position = |n: u32| model.nodes[(first + n) as usize];
+    let count = piece.len() as f64;
+    let center = piece.iter().fold(Vec3::zeros(), |s, &n| s + position(n)) / count;
+    let size = (piece.iter().map(|&n| (position(n) - center).norm_squared()).sum::<f64>() / count)
+        .sqrt()
+        .max(f64::MIN_POSITIVE);
+    let own = |dof: u32| dof / 3 >= first && piece.binary_search(&(dof / 3 - first)).is_ok();
+    // Each constraint is a row: what the six motions do to the constrained component, lengths scaled by the size.
+    let row = |dof: u32| {
+        let (node, c) = (dof / 3, dof as usize % 3);
+        let r = (model.nodes[node as usize] - center) / size;
+        let mut v = Vector6::zeros();
+        v[c] = 1.0;
+        for k in 0..3 {
+            let mut axis = Vec3::zeros();
+            axis[k] = 1.0;
+            v[3 + k] = axis.cross(&r)[c];
+        }
+        v
+    };
+    let mut gram = Matrix6::<f64>::zeros();
+    for p in model.prescribed.iter().filter(|p| own(p.dof)) {
+        let v = row(p.dof);
+        gram += v * v.transpose();
+    }
+    for m in model.means.iter().filter(|m| own(m.free)) {
+        let v = (row(m.free) + row(m.tied)) * 0.5;
+        gram += v * v.transpose();
+    }
+    let eigen = SymmetricEigen::new(gram);
+    let largest = eigen.eigenvalues.max();
+    let limit = 1e-10 * largest.max(1e-300);
+    let free = eigen.eigenvalues.iter().filter(|&&l| l <= limit).count();
+    if free == 0 {
+        return None;
+    }
+    let at = eigen.eigenvalues.imin();
+    Some(FreeMotion {
+        body: String::new(),
+        count: free,
+        motion: describe(&eigen.eigenvectors.column(at).into_owned()),
+    })
+}
+
+fn describe(v: &Vector6<f64>) -> String {
+    let names = [
+        "along x", "along y", "along z", "about x", "about y", "about z",
+    ];
+    names[v.iamax()].to_owned()
+}

@@ -1,0 +1,85 @@
+//! Files written whole or not at all.
+//!
+//! The bytes go into a temporary file in the same folder, which takes the target's name only after everything has
+//! reached the disk. Whoever reads the target sees the earlier file or the new one, never a part.
+use super::OutputError;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Where bytes go. Files implement it; tests bring sinks that write short or fail.
+pub trait Sink: Write {
+    /// Returns when everything written is on the device.
+    fn sync(&mut self) -> io::Result<()>;
+}
+
+impl Sink for File {
+    fn sync(&mut self) -> io::Result<()> {
+        self.sync_all()
+    }
+}
+
+/// Writes all of `bytes`, however little the sink takes at a time, then flushes and syncs.
+pub fn write_fully<S: Sink + ?Sized>(sink: &mut S, bytes: &[u8]) -> io::Result<()> {
+    sink.write_all(bytes)?;
+    sink.flush()?;
+    sink.sync()
+}
+
+/// Replaces the file at `path` by `bytes`. On failure the temporary file is removed and the earlier file is untouched.
+/// A target that exists and is not a regular file (a folder, a device, a pipe) is refused; a link to a file stays a
+/// link.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+    write_whole_with(path, bytes, |temporary| {
+        OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(temporary)
+    })
+}
+
+/// [`write_whole`] through a sink of the caller's: `open` creates the temporary file at the given path.
+pub fn write_whole_with<S: Sink>(
+    path: &Path,
+    bytes: &[u8],
+    open: impl FnOnce(&Path) -> io::Result<S>,
+) -> Result<(), OutputError> {
+    let target = resolve(path)?;
+    let temporary = temporary_name(&target);
+    let written = open(&temporary)
+        .and_then(|mut sink| write_fully(&mut sink, bytes))
+        .and_then(|()| fs::rename(&temporary, &target));
+    written.map_err(|source| {
+        // The first error is the one to report; a temporary file that was never made cannot be removed.
+        let _ = fs::remove_file(&temporary);
+        OutputError::io("write", path, source)
+    })
+}
+
+/// Makes a folder and its parents; an existing folder is fine.
+pub fn make_folder(path: &Path) -> Result<(), OutputError> {
+    fs::create_dir_all(path).map_err(|e| OutputError::io("create the folder", path, e))
+}
+
+/// The file that `path` means, links followed; refuses what is not a regular file.
+fn resolve(path: &Path) -> Result<PathBuf, OutputError> {
+    match fs::metadata(path) {
+        Ok(meta) if !meta.is_file() => Err(OutputError::NotAFile {
+            path: path.to_path_buf(),
+        }),
+        Ok(_) => fs::canonicalize(path).map_err(|e| OutputError::io("write", path, e)),
+        // Not there yet; anything else wrong with the path shows when the temporary file is made.
+        Err(_) => Ok(path.to_path_buf()),
+    }
+}
+
+/// A name in the target's folder that no other process or thread uses.
+fn temporary_name(target: &Path) -> PathBuf {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let n = COUNT.fetch_add(1, Ordering::Relaxed);
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    // Long names would pass the usual limit of 255 bytes with the additions.
+    let short: String = name.chars().take(40).collect();
+    target.with_file_name(format!(".{short}.{}-{n}.tmp", std::process::id()))
+}

@@ -1,0 +1,178 @@
+//! Fields of a deformable body.
+use super::OutputError;
+use super::vtu::{Array, Field, Grid, Place};
+use crate::mesh::{ElementKind, Mesh};
+use covact_geometry::Vec3;
+use vtkio::model::CellType;
+
+/// Order of the six components of a symmetric tensor, here and in the files; it is VTK's own.
+pub const STRESS_COMPONENTS: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
+
+/// `contact_status` of a node that is on no slave surface.
+pub const NOT_A_SLAVE: u8 = 0;
+/// `contact_status` of a slave node that touches nothing.
+pub const OPEN: u8 = 1;
+/// `contact_status` of a slave node in contact.
+pub const CLOSED: u8 = 2;
+
+/// Tensor-product number of each node of VTK's hexahedron, which counts around the bottom, then around the top.
+const H8_TO_VTK: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+
+/// Contact fields on the nodes of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactFields<'a> {
+    /// Contact pressure, positive in compression (force / area); 0 where there is none.
+    pub pressure: &'a [f64],
+    /// Normal distance, negative in penetration (length). NaN where a node is no slave or finds no master.
+    pub gap: &'a [f64],
+    /// [`NOT_A_SLAVE`], [`OPEN`] or [`CLOSED`].
+    pub status: &'a [u8],
+}
+
+/// A body at one time. All fields but those of place [`Place::Cell`] are per node of the mesh.
+#[derive(Debug, Clone)]
+pub struct BodyFields<'a> {
+    pub name: &'a str,
+    /// The undeformed mesh.
+    pub mesh: &'a Mesh,
+    /// Displacement (length).
+    pub displacement: &'a [Vec3],
+    /// Cauchy stress (force / area) in the order of [`STRESS_COMPONENTS`]; none where it was not computed.
+    pub stress: Option<&'a [[f64; 6]]>,
+    /// None for a body without slave surface.
+    pub contact: Option<ContactFields<'a>>,
+    /// Further fields.
+    pub fields: Vec<Field<'a>>,
+}
+
+/// Equivalent stress of von Mises of a stress in the order of [`STRESS_COMPONENTS`].
+pub fn von_mises(s: &[f64; 6]) -> f64 {
+    let d = [s[0] - s[1], s[1] - s[2], s[2] - s[0]];
+    let normal = 0.5 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    (normal + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])).sqrt()
+}
+
+impl BodyFields<'_> {
+    /// The body as the bytes of a `.vtu` file; `id` is written as cell data `body`.
+    ///
+    /// Point data: `displacement` (3), `cauchy_stress` (6), `von_mises`, `contact_pressure`, `contact_gap`,
+    /// `contact_status` and the further fields; cell data: `element` (counted from 0) and `body`.
+    ///
+    /// # Errors
+    /// [`OutputError::FieldLength`], [`OutputError::DuplicateField`] or [`OutputError::NoSuchNode`] when the fields and
+    /// the mesh do not fit together.
+    pub fn to_vtu(&self, id: u32) -> Result<Vec<u8>, OutputError> {
+        let nodes = self.mesh.nodes.len();
+        let elements = self.mesh.elements();
+        let mut point_data = Vec::new();
+
+        self.check("displacement", nodes, self.displacement.len())?;
+        let u: Vec<f64> = self
+            .displacement
+            .iter()
+            .flat_map(|u| [u.x, u.y, u.z])
+            .collect();
+        point_data.push(Array::new("displacement", 3, u));
+
+        if let Some(stress) = self.stress {
+            self.check("cauchy_stress", nodes, stress.len())?;
+            let flat: Vec<f64> = stress.iter().flatten().copied().collect();
+            let mut array = Array::new("cauchy_stress", 6, flat);
+            array.component_names = STRESS_COMPONENTS.iter().map(|s| s.to_string()).collect();
+            point_data.push(array);
+            let mises: Vec<f64> = stress.iter().map(von_mises).collect();
+            point_data.push(Array::new("von_mises", 1, mises));
+        }
+        if let Some(contact) = &self.contact {
+            self.check("contact_pressure", nodes, contact.pressure.len())?;
+            self.check("contact_gap", nodes, contact.gap.len())?;
+            self.check("contact_status", nodes, contact.status.len())?;
+            point_data.push(Array::new("contact_pressure", 1, contact.pressure.to_vec()));
+            point_data.push(Array::new("contact_gap", 1, contact.gap.to_vec()));
+            point_data.push(Array::new("contact_status", 1, contact.status.to_vec()));
+        }
+
+        let numbers: Vec<u32> = (0..elements as u32).collect();
+        let mut cell_data = vec![
+            Array::new("element", 1, numbers),
+            Array::new("body", 1, vec![id; elements]),
+        ];
+        for field in &self.fields {
+            let (into, count) = match field.place {
+                Place::Point => (&mut point_data, nodes),
+                Place::Cell => (&mut cell_data, elements),
+            };
+            self.check(field.name, count * field.components, field.data.len())?;
+            if into.iter().any(|a| a.name == field.name) {
+                return Err(OutputError::DuplicateField {
+                    part: self.name.to_string(),
+                    field: field.name.to_string(),
+                });
+            }
+            let mut array = Array::new(field.name, field.components as u32, field.data.to_vec());
+            array.component_names = field
+                .component_names
+                .iter()
+                .map(|s| s.to_string())
+                .collect();
+            into.push(array);
+        }
+
+        let (connectivity, offsets, types) = self.cells()?;
+        Grid {
+            part: self.name.to_string(),
+            points: self
+                .mesh
+                .nodes
+                .iter()
+                .flat_map(|x| [x.x, x.y, x.z])
+                .collect(),
+            connectivity,
+            offsets,
+            types,
+            point_data,
+            cell_data,
+            vectors: Some("displacement"),
+            normals: None,
+            rational: false,
+        }
+        .into_bytes()
+    }
+
+    /// Cells in VTK's node order.
+    fn cells(&self) -> Result<(Vec<u64>, Vec<u64>, Vec<CellType>), OutputError> {
+        let nodes = self.mesh.nodes.len();
+        let (order, cell): (&[usize], CellType) = match self.mesh.kind {
+            ElementKind::H8 => (&H8_TO_VTK, CellType::Hexahedron),
+        };
+        let elements = self.mesh.elements();
+        let mut connectivity = Vec::with_capacity(elements * order.len());
+        let mut offsets = Vec::with_capacity(elements);
+        for e in 0..elements {
+            let element = self.mesh.element(e);
+            if let Some(&node) = element.iter().find(|&&n| n as usize >= nodes) {
+                return Err(OutputError::NoSuchNode {
+                    part: self.name.to_string(),
+                    element: e,
+                    node,
+                    nodes,
+                });
+            }
+            connectivity.extend(order.iter().map(|&k| u64::from(element[k])));
+            offsets.push(connectivity.len() as u64);
+        }
+        Ok((connectivity, offsets, vec![cell; elements]))
+    }
+
+    fn check(&self, field: &str, expected: usize, found: usize) -> Result<(), OutputError> {
+        if expected == found {
+            return Ok(());
+        }
+        Err(OutputError::FieldLength {
+            part: self.name.to_string(),
+            field: field.to_string(),
+            expected,
+            found,
+        })
+    }
+}

@@ -1,0 +1,124 @@
+//! The columns of the history table: their names, units and meanings.
+
+/// What a column of `history.csv` holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ColumnDoc {
+    /// Name; `<name>` stands for a surface, support, body or contact pair, `<axis>` for x, y or z.
+    pub pattern: &'static str,
+    /// Unit in terms of the scene's units.
+    pub unit: &'static str,
+    pub meaning: &'static str,
+}
+
+const fn doc(pattern: &'static str, unit: &'static str, meaning: &'static str) -> ColumnDoc {
+    ColumnDoc {
+        pattern,
+        unit,
+        meaning,
+    }
+}
+
+/// Every column a history may have. Names are stable: columns are added, never renamed.
+pub const COLUMNS: &[ColumnDoc] = &[
+    doc("step", "-", "number of the accepted step; 0 is the start"),
+    doc("time", "time", "time at the end of the step"),
+    doc("dt", "time", "length of the step"),
+    doc(
+        "iterations",
+        "-",
+        "Newton iterations of the accepted attempt",
+    ),
+    doc(
+        "cuts",
+        "-",
+        "attempts of this step that failed and were rolled back",
+    ),
+    doc(
+        "residual",
+        "-",
+        "residual of the last iteration, relative to the largest force",
+    ),
+    doc(
+        "force.<name>.<axis>",
+        "force",
+        "total force that a rigid surface, or a support, exerts on the bodies",
+    ),
+    doc(
+        "moment.<name>.<axis>",
+        "force length",
+        "moment of that force about the origin of the scene",
+    ),
+    doc(
+        "displacement.<name>.<axis>",
+        "length",
+        "translation of a rigid surface; mean displacement of a support's or load's nodes",
+    ),
+    doc("energy.internal", "energy", "strain energy of all bodies"),
+    doc(
+        "energy.contact",
+        "energy",
+        "energy stored in the contact penalties",
+    ),
+    doc(
+        "energy.external",
+        "energy",
+        "work done by the loads since the start",
+    ),
+    doc(
+        "penetration.max",
+        "length",
+        "largest penetration of a slave point; 0 without contact",
+    ),
+    doc(
+        "gap.min",
+        "length",
+        "smallest normal distance of a slave point; negative in penetration",
+    ),
+    doc(
+        "pressure.max",
+        "force/length^2",
+        "largest contact pressure at a slave point",
+    ),
+    doc("area.contact", "length^2", "slave area in contact"),
+    doc("points.active", "-", "slave points in contact"),
+    doc(
+        "points.changed",
+        "-",
+        "slave points whose status differs from the step before",
+    ),
+];
+
+/// True when `column` is one of [`COLUMNS`].
+pub fn documented(column: &str) -> bool {
+    COLUMNS.iter().any(|doc| fits(doc.pattern, column))
+}
+
+/// A name may hold dots itself, so the middle is what remains between the known start and end.
+fn fits(pattern: &str, column: &str) -> bool {
+    let Some((head, tail)) = pattern.split_once("<name>") else {
+        return pattern == column;
+    };
+    let Some(rest) = column.strip_prefix(head) else {
+        return false;
+    };
+    let name = if tail == ".<axis>" {
+        [".x", ".y", ".z"]
+            .iter()
+            .find_map(|end| rest.strip_suffix(end))
+    } else {
+        rest.strip_suffix(tail)
+    };
+    name.is_some_and(|name| !name.is_empty())
+}
+
+/// The columns as a Markdown table.
+pub fn column_table() -> String {
+    let mut text = String::from("| column | unit | meaning |\n|---|---|---|\n");
+    for doc in COLUMNS {
+        text.push_str(&format!(
+            "| `{}` | {} | {} |\n",
+            doc.pattern, doc.unit, doc.meaning
+        ));
+    }
+    text
+}

@@ -1,0 +1,101 @@
+//! Why results could not be written.
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why results could not be written or read back.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The operating system refused; `reason` names a full disk or quota in plain words.
+    #[error("cannot {action} `{}`: {reason}", path.display())]
+    Io {
+        /// What was tried: "write", "create the folder", ...
+        action: &'static str,
+        path: PathBuf,
+        reason: String,
+        source: io::Error,
+    },
+    /// The path exists and is something else than a file (a folder, a device, a pipe), which is left alone.
+    #[error("cannot write `{}`: it exists and is not a regular file", path.display())]
+    NotAFile { path: PathBuf },
+    /// A field's length does not fit its mesh.
+    #[error("field `{field}` of `{part}` has {found} numbers where {expected} are needed")]
+    FieldLength {
+        part: String,
+        field: String,
+        expected: usize,
+        found: usize,
+    },
+    /// Two fields of one part have the same name and place.
+    #[error("field `{field}` of `{part}` is given twice")]
+    DuplicateField { part: String, field: String },
+    /// An element names a node that the mesh does not have.
+    #[error("element {element} of `{part}` names node {node}, but there are {nodes} nodes")]
+    NoSuchNode {
+        part: String,
+        element: usize,
+        node: u32,
+        nodes: usize,
+    },
+    /// A rigid surface has a piece that cannot be written.
+    #[error("piece {piece} of surface `{surface}`: {reason}")]
+    Piece {
+        surface: String,
+        piece: usize,
+        reason: super::bezier::BezierError,
+    },
+    /// The serialiser failed.
+    #[error("cannot put `{part}` into the format of its file: {reason}")]
+    Serialise { part: String, reason: String },
+    /// A history column that the documentation does not know.
+    #[error("history column `{0}` is not documented")]
+    UnknownColumn(String),
+    /// Two history columns of one name, e.g. a surface and a support that share theirs.
+    #[error("history column `{0}` is named twice; give surfaces and supports different names")]
+    DuplicateColumn(String),
+    /// A row of the history has the wrong length.
+    #[error("a row of `{}` has {found} numbers where {expected} are needed", path.display())]
+    RowLength {
+        path: PathBuf,
+        expected: usize,
+        found: usize,
+    },
+    /// A table that is read back is not one.
+    #[error("`{}`, line {line}: {reason}", path.display())]
+    Table {
+        path: PathBuf,
+        line: usize,
+        reason: String,
+    },
+}
+
+impl OutputError {
+    /// An error of the operating system, with the usual ones named in plain words.
+    pub(crate) fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
+        let plain = match source.kind() {
+            io::ErrorKind::StorageFull => "the disk is full",
+            io::ErrorKind::QuotaExceeded => "the disk quota is used up",
+            io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only",
+            io::ErrorKind::PermissionDenied => "permission denied",
+            io::ErrorKind::NotFound => "no such file or folder",
+            io::ErrorKind::WriteZero => "the file takes no more data",
+            _ => "",
+        };
+        let reason = if plain.is_empty() {
+            source.to_string()
+        } else {
+            format!("{plain} ({source})")
+        };
+        OutputError::Io {
+            action,
+            path: path.to_path_buf(),
+            reason,
+            source,
+        }
+    }
+
+    /// True when a full disk or quota is the reason.
+    pub fn is_disk_full(&self) -> bool {
+        matches!(self, OutputError::Io { source, .. }
+            if matches!(source.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded))
+    }
+}

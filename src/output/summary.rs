@@ -1,0 +1,95 @@
+//! How a run went and what it cost.
+use super::OutputError;
+use super::atomic::write_whole;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Version of the format of `summary.json`.
+pub const SUMMARY_FORMAT: u32 = 1;
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RunStatus {
+    /// The end time was reached.
+    Done,
+    /// A step failed at the smallest step size; what was computed before is kept.
+    NotConverged,
+    /// The user stopped the run; what was computed before is kept.
+    Interrupted,
+    /// Something else went wrong, e.g. a full disk.
+    Failed,
+}
+
+/// `summary.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    pub status: RunStatus,
+    /// Why the run ended early, in words.
+    pub reason: Option<String>,
+    /// Time that was reached, of the scene's clock.
+    pub time: f64,
+    /// Elapsed seconds from reading the scene to the last result.
+    pub wall_s: f64,
+    /// Processor seconds of all threads; none where the system does not tell.
+    pub cpu_s: Option<f64>,
+    /// Elapsed seconds by phase, without phases inside.
+    pub phases: BTreeMap<String, f64>,
+    /// Largest resident memory in MB (10^6 bytes); none where the system does not tell.
+    pub peak_memory_mb: Option<f64>,
+    pub threads: usize,
+    /// Unknowns, prescribed ones left out.
+    pub dofs: usize,
+    pub contact_points: usize,
+    /// Iterations of all steps, of failed attempts too.
+    pub newton_iterations: u64,
+    /// Accepted steps.
+    pub steps: u32,
+    /// Attempts that failed and were rolled back.
+    pub cuts: u32,
+    /// Effects that were on, by name.
+    pub effects: Vec<String>,
+    pub warnings: Vec<String>,
+    pub versions: Versions,
+}
+
+/// Versions that a result depends on.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Versions {
+    /// Version of this program.
+    pub covact: String,
+    /// Version of the format of this file.
+    pub format: u32,
+}
+
+impl Default for Versions {
+    fn default() -> Self {
+        Versions {
+            covact: env!("CARGO_PKG_VERSION").to_string(),
+            format: SUMMARY_FORMAT,
+        }
+    }
+}
+
+impl Summary {
+    /// Writes the summary as JSON, whole or not at all.
+    pub fn write(&self, path: &Path) -> Result<(), OutputError> {
+        let mut text = serde_json::to_string_pretty(self).map_err(|e| OutputError::Serialise {
+            part: "the summary".to_string(),
+            reason: e.to_string(),
+        })?;
+        text.push('\n');
+        write_whole(path, text.as_bytes())
+    }
+
+    /// Reads a summary back.
+    pub fn read(path: &Path) -> Result<Self, OutputError> {
+        let text = std::fs::read_to_string(path).map_err(|e| OutputError::io("read", path, e))?;
+        serde_json::from_str(&text).map_err(|e| OutputError::Table {
+            path: path.to_path_buf(),
+            line: e.line(),
+            reason: e.to_string(),
+        })
+    }
+}

@@ -1,0 +1,182 @@
+//! Rigid surfaces as exact rational Bezier cells and as flat quadrilaterals.
+use super::OutputError;
+use super::bezier::{MAX_DEGREE, SurfacePiece, vtk_order};
+use super::vtu::{Array, DEGREES, Grid, WEIGHTS};
+use nalgebra::{Isometry3, Point3, Vector3};
+use vtkio::model::CellType;
+
+/// A rigid surface ready to be written at any position: control points in VTK's order and the tessellation are worked
+/// out once.
+#[derive(Debug, Clone)]
+pub struct SurfaceOutput {
+    name: String,
+    exact: Exact,
+    flat: Flat,
+    left_out: Vec<usize>,
+}
+
+/// Bezier cells.
+#[derive(Debug, Clone, Default)]
+struct Exact {
+    points: Vec<Point3<f64>>,
+    weights: Vec<f64>,
+    offsets: Vec<u64>,
+    degrees: Vec<f64>,
+    patch: Vec<u32>,
+    entity: Vec<u32>,
+}
+
+/// Flat quadrilaterals.
+#[derive(Debug, Clone, Default)]
+struct Flat {
+    points: Vec<Point3<f64>>,
+    normals: Vec<Vector3<f64>>,
+    connectivity: Vec<u64>,
+    patch: Vec<u32>,
+    entity: Vec<u32>,
+}
+
+impl SurfaceOutput {
+    /// Prepares the surface `name` in its reference position; every piece is divided into `tessellation` x
+    /// `tessellation` quadrilaterals (at least 1 x 1) for the flat copy.
+    ///
+    /// # Errors
+    /// [`OutputError::Piece`] when a piece has the wrong number of points or a weight that is not positive.
+    pub fn new(
+        name: &str,
+        pieces: Vec<SurfacePiece>,
+        tessellation: u32,
+    ) -> Result<Self, OutputError> {
+        let mut exact = Exact::default();
+        let mut flat = Flat::default();
+        let mut left_out = Vec::new();
+        let n = tessellation.max(1) as usize;
+        for (number, piece) in pieces.into_iter().enumerate() {
+            piece.check().map_err(|reason| OutputError::Piece {
+                surface: name.to_string(),
+                piece: number,
+                reason,
+            })?;
+            let piece = piece.oriented();
+            if piece.degree.iter().any(|&d| d > MAX_DEGREE) {
+                left_out.push(number);
+            } else {
+                exact.push(&piece);
+            }
+            flat.push(&piece, n);
+        }
+        Ok(SurfaceOutput {
+            name: name.to_string(),
+            exact,
+            flat,
+            left_out,
+        })
+    }
+
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Numbers of the pieces whose degree is above [`MAX_DEGREE`]: VTK has no cell for them, so they are in the
+    /// tessellated copy only.
+    pub fn left_out(&self) -> &[usize] {
+        &self.left_out
+    }
+
+    /// The exact surface moved by `at`, as the bytes of a `.vtu` file. Cell data: `patch`, `entity` and the degrees;
+    /// point data: the weights.
+    pub fn to_vtu(&self, at: &Isometry3<f64>) -> Result<Vec<u8>, OutputError> {
+        let e = &self.exact;
+        Grid {
+            part: self.name.clone(),
+            points: moved(&e.points, at),
+            connectivity: (0..e.points.len() as u64).collect(),
+            offsets: e.offsets.clone(),
+            types: vec![CellType::BezierQuadrilateral; e.offsets.len()],
+            point_data: vec![Array::new(WEIGHTS, 1, e.weights.clone())],
+            cell_data: vec![
+                Array::new(DEGREES, 3, e.degrees.clone()),
+                Array::new("patch", 1, e.patch.clone()),
+                Array::new("entity", 1, e.entity.clone()),
+            ],
+            vectors: None,
+            normals: None,
+            rational: true,
+        }
+        .into_bytes()
+    }
+
+    /// The surface as flat quadrilaterals moved by `at`, as the bytes of a `.vtu` file. Point data: outward `normal`;
+    /// cell data: `patch`, `entity`.
+    pub fn to_tessellated_vtu(&self, at: &Isometry3<f64>) -> Result<Vec<u8>, OutputError> {
+        let f = &self.flat;
+        let normals: Vec<f64> = f
+            .normals
+            .iter()
+            .map(|n| at.rotation * n)
+            .flat_map(|n| [n.x, n.y, n.z])
+            .collect();
+        let cells = f.patch.len();
+        Grid {
+            part: self.name.clone(),
+            points: moved(&f.points, at),
+            connectivity: f.connectivity.clone(),
+            offsets: (1..=cells as u64).map(|c| 4 * c).collect(),
+            types: vec![CellType::Quad; cells],
+            point_data: vec![Array::new("normal", 3, normals)],
+            cell_data: vec![
+                Array::new("patch", 1, f.patch.clone()),
+                Array::new("entity", 1, f.entity.clone()),
+            ],
+            vectors: None,
+            normals: Some("normal"),
+            rational: false,
+        }
+        .into_bytes()
+    }
+}
+
+impl Exact {
+    fn push(&mut self, piece: &SurfacePiece) {
+        for k in vtk_order(piece.degree) {
+            let [x, y, z, w] = piece.points[k];
+            self.points.push(Point3::new(x / w, y / w, z / w));
+            self.weights.push(w);
+        }
+        self.offsets.push(self.points.len() as u64);
+        let [p, q] = piece.degree;
+        self.degrees.extend([p as f64, q as f64, 0.0]);
+        self.patch.push(piece.patch);
+        self.entity.push(piece.entity);
+    }
+}
+
+impl Flat {
+    fn push(&mut self, piece: &SurfacePiece, n: usize) {
+        let first = self.points.len();
+        for j in 0..=n {
+            for i in 0..=n {
+                let at = piece.evaluate(i as f64 / n as f64, j as f64 / n as f64);
+                self.points.push(at.point.into());
+                self.normals.push(at.normal.into());
+            }
+        }
+        for j in 0..n {
+            for i in 0..n {
+                let corner = (first + i + (n + 1) * j) as u64;
+                let up = corner + n as u64 + 1;
+                self.connectivity.extend([corner, corner + 1, up + 1, up]);
+                self.patch.push(piece.patch);
+                self.entity.push(piece.entity);
+            }
+        }
+    }
+}
+
+fn moved(points: &[Point3<f64>], at: &Isometry3<f64>) -> Vec<f64> {
+    points
+        .iter()
+        .map(|x| at * x)
+        .flat_map(|x| [x.x, x.y, x.z])
+        .collect()
+}

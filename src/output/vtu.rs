@@ -1,0 +1,235 @@
+//! Unstructured grids in VTK's XML format.
+//!
+//! The serialiser is vtkio's. What its data model lacks is added to the tags it wrote: names of tensor components, the
+//! attributes that make ParaView use rational weights. The ranges it writes are dropped: they would be those of single
+//! components where VTK means magnitudes, and NaN where a field has one.
+use super::OutputError;
+use std::fmt::Write;
+use vtkio::model::{
+    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
+    UnstructuredGridPiece, Version, VertexNumbers, Vtk,
+};
+
+/// Where a field's values sit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// One value per node.
+    Point,
+    /// One value per element.
+    Cell,
+}
+
+/// A named field: `data` holds `components` numbers per node or element, the components of one node together. NaN means
+/// "no value here", which ParaView shows in its NaN colour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Field<'a> {
+    pub name: &'a str,
+    pub components: usize,
+    /// Names of the components; empty where numbers will do.
+    pub component_names: &'a [&'a str],
+    pub data: &'a [f64],
+    pub place: Place,
+}
+
+impl<'a> Field<'a> {
+    /// A scalar field on the nodes.
+    pub fn point(name: &'a str, data: &'a [f64]) -> Self {
+        Field {
+            name,
+            components: 1,
+            component_names: &[],
+            data,
+            place: Place::Point,
+        }
+    }
+}
+
+/// One array of a grid. Built with its component names, which vtkio cannot hold.
+pub(crate) struct Array {
+    pub name: String,
+    pub components: u32,
+    pub component_names: Vec<String>,
+    pub data: IOBuffer,
+}
+
+impl Array {
+    pub fn new(name: &str, components: u32, data: impl Into<IOBuffer>) -> Self {
+        Array {
+            name: name.to_string(),
+            components,
+            component_names: Vec::new(),
+            data: data.into(),
+        }
+    }
+}
+
+/// An unstructured grid about to be written.
+pub(crate) struct Grid {
+    /// What the grid is, for error messages.
+    pub part: String,
+    /// Coordinates, three per point.
+    pub points: Vec<f64>,
+    pub connectivity: Vec<u64>,
+    /// End of each cell in `connectivity`.
+    pub offsets: Vec<u64>,
+    pub types: Vec<CellType>,
+    pub point_data: Vec<Array>,
+    pub cell_data: Vec<Array>,
+    /// Name of the point data that ParaView warps by.
+    pub vectors: Option<&'static str>,
+    /// Name of the point data that shading uses.
+    pub normals: Option<&'static str>,
+    /// The grid has rational Bezier cells: point data [`WEIGHTS`] and cell data [`DEGREES`].
+    pub rational: bool,
+}
+
+/// Point data with the weights of rational cells.
+pub(crate) const WEIGHTS: &str = "RationalWeights";
+/// Cell data with the degrees of higher-order cells.
+pub(crate) const DEGREES: &str = "HigherOrderDegrees";
+
+impl Grid {
+    /// The grid as the bytes of a `.vtu` file, version 2.2 of the format (up to 2.0 VTK permutes edge nodes of
+    /// higher-order cells), little endian, base64.
+    pub fn into_bytes(self) -> Result<Vec<u8>, OutputError> {
+        let patch = TagPatch::of(&self);
+        let part = self.part;
+        let attribute = |array: Array| {
+            let elem = if self.vectors == Some(array.name.as_str()) {
+                ElementType::Vectors
+            } else if self.normals == Some(array.name.as_str()) {
+                ElementType::Normals
+            } else {
+                ElementType::Generic(array.components)
+            };
+            Attribute::DataArray(DataArray {
+                name: array.name,
+                elem,
+                data: array.data,
+            })
+        };
+        let data = Attributes {
+            point: self.point_data.into_iter().map(attribute).collect(),
+            cell: self.cell_data.into_iter().map(attribute).collect(),
+        };
+        let vtk = Vtk {
+            version: Version::XML { major: 2, minor: 2 },
+            title: String::new(),
+            byte_order: ByteOrder::LittleEndian,
+            file_path: None,
+            data: DataSet::inline(UnstructuredGridPiece {
+                points: self.points.into(),
+                cells: Cells {
+                    cell_verts: VertexNumbers::XML {
+                        connectivity: self.connectivity,
+                        offsets: self.offsets,
+                    },
+                    types: self.types,
+                },
+                data,
+            }),
+        };
+        // Into memory, not into the file: the serialiser ignores short writes.
+        let mut bytes = Vec::new();
+        vtk.write_xml(&mut bytes)
+            .map_err(|e| OutputError::Serialise {
+                part,
+                reason: e.to_string(),
+            })?;
+        Ok(patch.apply(&bytes))
+    }
+}
+
+/// Additions to the tags of a serialised grid.
+struct TagPatch {
+    /// Attribute `Name="..."` as it stands in the tag, and the attributes to add after it.
+    arrays: Vec<(String, String)>,
+    rational: bool,
+}
+
+impl TagPatch {
+    fn of(grid: &Grid) -> Self {
+        let mut arrays = Vec::new();
+        for array in grid.point_data.iter().chain(&grid.cell_data) {
+            if array.component_names.is_empty() {
+                continue;
+            }
+            let mut extra = String::new();
+            for (i, name) in array.component_names.iter().enumerate() {
+                // Writing to a String does not fail.
+                let _ = write!(extra, " ComponentName{i}=\"{}\"", escape(name));
+            }
+            arrays.push((format!(" Name=\"{}\"", escape(&array.name)), extra));
+        }
+        TagPatch {
+            arrays,
+            rational: grid.rational,
+        }
+    }
+
+    /// Copies the file with its tags patched. Between tags there is base64, which has no `<`.
+    fn apply(&self, bytes: &[u8]) -> Vec<u8> {
+        let mut out = Vec::with_capacity(bytes.len() + 1024);
+        let mut rest = bytes;
+        while let Some(start) = rest.iter().position(|&b| b == b'<') {
+            let end = rest[start..]
+                .iter()
+                .position(|&b| b == b'>')
+                .map_or(rest.len(), |n| start + n + 1);
+            out.extend_from_slice(&rest[..start]);
+            match std::str::from_utf8(&rest[start..end]) {
+                Ok(tag) => out.extend_from_slice(self.tag(tag).as_bytes()),
+                Err(_) => out.extend_from_slice(&rest[start..end]),
+            }
+            rest = &rest[end..];
+        }
+        out.extend_from_slice(rest);
+        out
+    }
+
+    fn tag(&self, tag: &str) -> String {
+        let mut tag = tag.to_string();
+        if tag.starts_with("<DataArray ") {
+            remove_attribute(&mut tag, " RangeMin=\"");
+            remove_attribute(&mut tag, " RangeMax=\"");
+            for (name, extra) in &self.arrays {
+                if let Some(at) = tag.find(name.as_str()) {
+                    tag.insert_str(at + name.len(), extra);
+                }
+            }
+        } else if self.rational && tag.starts_with("<PointData") {
+            tag.insert_str("<PointData".len(), &format!(" {WEIGHTS}=\"{WEIGHTS}\""));
+        } else if self.rational && tag.starts_with("<CellData") {
+            tag.insert_str("<CellData".len(), &format!(" {DEGREES}=\"{DEGREES}\""));
+        }
+        tag
+    }
+}
+
+/// Removes `start...end-quote` from a tag.
+fn remove_attribute(tag: &mut String, start: &str) {
+    if let Some(at) = tag.find(start) {
+        let value = at + start.len();
+        if let Some(len) = tag[value..].find('"') {
+            tag.replace_range(at..value + len + 1, "");
+        }
+    }
+}
+
+/// Text as the value of an XML attribute.
+pub(crate) fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&apos;"),
+            // XML 1.0 has no way to write other control characters.
+            c if c.is_control() => out.push('_'),
+            c => out.push(c),
+        }
+    }
+    out
+}

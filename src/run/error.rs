@@ -1,0 +1,70 @@
+//! Why a run could not be done.
+use crate::model::ModelError;
+use crate::output::OutputError;
+use crate::scene::{LoadedScene, Place, ValueError};
+
+/// An error with the process's exit code: 3 where the scene or a file it names is wrong, 5 where a result cannot be
+/// written, 1 where the program is.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The scene, or a file it names, is wrong.
+    #[error("{message}")]
+    Scene {
+        message: String,
+        /// JSON pointer of the field at fault.
+        pointer: String,
+        /// Where the field stands in the scene file.
+        place: Option<Place>,
+    },
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A fault of this program.
+    #[error("internal error: {0}")]
+    Internal(String),
+}
+
+impl RunError {
+    pub(super) fn scene(loaded: &LoadedScene, pointer: &str, message: String) -> Self {
+        RunError::Scene {
+            message,
+            pointer: pointer.to_owned(),
+            place: loaded.place_of(pointer),
+        }
+    }
+
+    pub(super) fn model(loaded: &LoadedScene, error: ModelError) -> Self {
+        RunError::scene(loaded, &error.pointer, error.to_string())
+    }
+
+    pub(super) fn internal(error: &dyn std::error::Error) -> Self {
+        RunError::Internal(error.to_string())
+    }
+
+    /// Exit code of the process.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            RunError::Scene { .. } => 3,
+            RunError::Output(_) => 5,
+            RunError::Internal(_) => 1,
+        }
+    }
+
+    /// Where in the scene file the fault lies.
+    pub fn place(&self) -> Option<Place> {
+        match self {
+            RunError::Scene { place, .. } => *place,
+            _ => None,
+        }
+    }
+}
+
+impl From<ValueError> for RunError {
+    /// A value that cannot be evaluated in the course of a run.
+    fn from(e: ValueError) -> Self {
+        RunError::Scene {
+            message: e.to_string(),
+            pointer: String::new(),
+            place: None,
+        }
+    }
+}

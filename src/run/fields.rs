@@ -1,0 +1,210 @@
+//! Fields of an accepted state, gathered on nodes for the output.
+use super::RunError;
+use crate::contact::rigid::presses;
+use crate::model::Model;
+use crate::output::{
+    BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, Results, SurfaceOutput,
+    SurfacePiece, SurfaceState,
+};
+use crate::solve::state::State;
+use covact_geometry::Vec3;
+
+/// Contact fields on all nodes, and totals over all slave points.
+pub struct Fields {
+    surfaces: Vec<SurfaceOutput>,
+    notes: Vec<String>,
+    pressure: Vec<f64>,
+    gap: Vec<f64>,
+    status: Vec<u8>,
+    weight: Vec<f64>,
+    /// Smallest signed distance of a slave point.
+    pub smallest_gap: f64,
+    /// Largest pressure at a slave point.
+    pub largest_pressure: f64,
+    /// Slave area in contact.
+    pub area: f64,
+}
+
+impl Fields {
+    pub fn new(model: &Model, tessellation: u32) -> Result<Self, OutputError> {
+        let mut notes = Vec::new();
+        let mut surfaces = Vec::new();
+        for surface in &model.surfaces {
+            let mut pieces = Vec::new();
+            for (i, patch) in surface.set.patches().iter().enumerate() {
+                let reversed = surface.set.sides()[i] < 0.0;
+                pieces.extend(SurfacePiece::of_patch(patch, i as u32, i as u32, reversed));
+            }
+            let output = SurfaceOutput::new(&surface.name, pieces, tessellation)?;
+            if !output.left_out().is_empty() {
+                notes.push(format!(
+                    "surface `{}`: {} Bezier piece(s) have a degree too high for VTK and are in the tessellated \
+                     copy only",
+                    surface.name,
+                    output.left_out().len()
+                ));
+            }
+            surfaces.push(output);
+        }
+        let n = model.nodes.len();
+        Ok(Fields {
+            surfaces,
+            notes,
+            pressure: vec![0.0; n],
+            gap: vec![f64::NAN; n],
+            status: vec![NOT_A_SLAVE; n],
+            weight: vec![0.0; n],
+            smallest_gap: f64::NAN,
+            largest_pressure: 0.0,
+            area: 0.0,
+        })
+    }
+
+    /// What could not be prepared as asked for.
+    pub fn notes(&self) -> Vec<String> {
+        self.notes.clone()
+    }
+
+    /// Recovers pressure, gap and status at the nodes of all slave surfaces: averages over the slave points by their
+    /// shape functions and areas, `p_I = sum w N_I p / sum w N_I`. With points at nodes that is the point's own
+    /// pressure; as the areas are the modelled ones, it is right on symmetry planes too.
+    pub fn gather(
+        &mut self,
+        model: &Model,
+        penalties: &[f64],
+        state: &State,
+        time: f64,
+    ) -> Result<(), RunError> {
+        self.pressure.fill(0.0);
+        self.gap.fill(0.0);
+        self.weight.fill(0.0);
+        self.status.fill(NOT_A_SLAVE);
+        self.smallest_gap = f64::INFINITY;
+        self.largest_pressure = 0.0;
+        self.area = 0.0;
+        let mut first = 0;
+        for (pair, eps_n) in model.pairs.iter().zip(penalties) {
+            let master = model.surfaces[pair.surface].at(time)?;
+            let states = &state.points[first..first + pair.points.len()];
+            for (p, s) in pair.points.iter().zip(states) {
+                let x = model.point_position(p, &state.u);
+                // A point with no foot at all keeps the gap unknown.
+                let foot = master.foot(&x, s.hint, f64::INFINITY);
+                let closed = (foot.as_ref()).is_some_and(|f| presses(f) && f.distance <= master.depth);
+                let gap = match &foot {
+                    None => f64::NAN,
+                    Some(f) if closed => f.signed_distance,
+                    Some(f) => f.distance,
+                };
+                let pressure = if closed { -eps_n * gap } else { 0.0 };
+                if gap < self.smallest_gap {
+                    self.smallest_gap = gap;
+                }
+                self.largest_pressure = self.largest_pressure.max(pressure);
+                self.area += if closed { p.area } else { 0.0 };
+                for (node, n) in p.terms() {
+                    let w = n * p.area;
+                    self.weight[node] += w;
+                    self.pressure[node] += w * pressure;
+                    self.gap[node] += w * gap;
+                    let status = if closed { CLOSED } else { OPEN };
+                    self.status[node] = self.status[node].max(status);
+                }
+            }
+            first += pair.points.len();
+        }
+        for node in 0..self.weight.len() {
+            if self.status[node] == NOT_A_SLAVE {
+                self.gap[node] = f64::NAN;
+            } else {
+                self.pressure[node] /= self.weight[node];
+                self.gap[node] /= self.weight[node];
+            }
+        }
+        if self.smallest_gap == f64::INFINITY {
+            self.smallest_gap = f64::NAN;
+        }
+        Ok(())
+    }
+
+    /// Writes all bodies and surfaces of an accepted step.
+    pub fn write(
+        &self,
+        model: &Model,
+        results: &mut Results,
+        step: u32,
+        time: f64,
+        state: &State,
+    ) -> Result<(), OutputError> {
+        let displacements: Vec<Vec<Vec3>> = (model.bodies.iter())
+            .map(|b| {
+                let first = 3 * b.first_node as usize;
+                (state.u[first..first + 3 * b.mesh.nodes.len()].chunks_exact(3))
+                    .map(Vec3::from_column_slice)
+                    .collect()
+            })
+            .collect();
+        let stresses = nodal_stresses(model, state);
+        let bodies: Vec<BodyFields> = (model.bodies.iter().enumerate())
+            .map(|(i, body)| {
+                let first = body.first_node as usize;
+                let range = first..first + body.mesh.nodes.len();
+                let slave = model.pairs.iter().any(|p| p.body == i);
+                BodyFields {
+                    name: &body.name,
+                    mesh: &body.mesh,
+                    displacement: &displacements[i],
+                    stress: Some(&stresses[i]),
+                    contact: slave.then(|| ContactFields {
+                        pressure: &self.pressure[range.clone()],
+                        gap: &self.gap[range.clone()],
+                        status: &self.status[range],
+                    }),
+                    fields: Vec::new(),
+                }
+            })
+            .collect();
+        let poses: Vec<_> = (model.surfaces.iter())
+            .map(|s| s.motion.pose(time).unwrap_or_default())
+            .collect();
+        let surfaces: Vec<SurfaceState> = (self.surfaces.iter().zip(&poses))
+            .map(|(surface, at)| SurfaceState { surface, at })
+            .collect();
+        results.write(step, time, &bodies, &surfaces)
+    }
+}
+
+/// Cauchy stress at the nodes of each body: extrapolated within the elements, averaged between them by volume.
+fn nodal_stresses(model: &Model, state: &State) -> Vec<Vec<[f64; 6]>> {
+    let mut first = 0;
+    let mut out = Vec::new();
+    for body in &model.bodies {
+        let (len, count) = (body.block.state_len(), body.block.elements());
+        let mut sum = vec![[0.0; 6]; body.mesh.nodes.len()];
+        let mut weight = vec![0.0; body.mesh.nodes.len()];
+        for e in 0..count {
+            let at = first + e * len;
+            let x = body.positions(model, e, &state.u);
+            let mut nodal = [[0.0; 6]; 8];
+            let element = &state.elements[at..at + len];
+            if body.block.nodal_stresses(e, &x, element, &mut nodal).is_err() {
+                continue;
+            }
+            let volume = body.block.volume(e);
+            for (k, n) in body.block.nodes_of(e).into_iter().enumerate() {
+                weight[n as usize] += volume;
+                for (s, v) in sum[n as usize].iter_mut().zip(&nodal[k]) {
+                    *s += volume * v;
+                }
+            }
+        }
+        for (s, w) in sum.iter_mut().zip(&weight) {
+            if *w > 0.0 {
+                s.iter_mut().for_each(|v| *v /= w);
+            }
+        }
+        first += len * count;
+        out.push(sum);
+    }
+    out
+}

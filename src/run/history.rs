@@ -1,0 +1,99 @@
+//! Rows of `history.csv`.
+use super::fields::Fields;
+use crate::model::Model;
+use crate::solve::newton::Converged;
+use covact_geometry::Vec3;
+
+/// What a row is made of.
+pub struct Record<'a> {
+    pub model: &'a Model,
+    pub step: u32,
+    pub time: f64,
+    pub dt: f64,
+    pub cuts: u32,
+    pub converged: &'a Converged,
+    /// Residual at all degrees of freedom: reactions at the constrained ones.
+    pub residual: &'a [f64],
+    pub fields: &'a Fields,
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Column names of a model, in the order of [`row`].
+pub fn columns(model: &Model) -> Vec<String> {
+    let mut names: Vec<String> = ["step", "time", "dt", "iterations", "cuts", "residual"]
+        .map(String::from)
+        .to_vec();
+    let acting = (model.surfaces.iter().map(|s| &s.name)).chain(&model.supports);
+    for name in acting {
+        for quantity in ["force", "moment"] {
+            names.extend(AXES.map(|axis| format!("{quantity}.{name}.{axis}")));
+        }
+    }
+    names.extend(
+        [
+            "energy.internal",
+            "energy.contact",
+            "penetration.max",
+            "gap.min",
+            "pressure.max",
+            "area.contact",
+            "points.active",
+            "points.changed",
+        ]
+        .map(String::from),
+    );
+    names
+}
+
+/// The values of one accepted step.
+pub fn row(r: &Record) -> Vec<f64> {
+    let totals = &r.converged.totals;
+    let last = r.converged.history.last().copied().unwrap_or((0.0, 0));
+    let changed = r.converged.history.iter().map(|h| h.1).max().unwrap_or(0);
+    let mut out = vec![
+        f64::from(r.step),
+        r.time,
+        r.dt,
+        f64::from(r.converged.iterations),
+        f64::from(r.cuts),
+        last.0,
+    ];
+    for s in &totals.surfaces {
+        out.extend(s.force.iter().chain(s.moment.iter()));
+    }
+    for (force, moment) in reactions(r.model, r.residual) {
+        out.extend(force.iter().chain(moment.iter()));
+    }
+    out.extend([
+        totals.internal_energy,
+        totals.contact_energy,
+        totals.penetration.iter().fold(0.0, |a, b| f64::max(a, *b)),
+        r.fields.smallest_gap,
+        r.fields.largest_pressure,
+        r.fields.area,
+        totals.active as f64,
+        changed as f64,
+    ]);
+    out
+}
+
+/// Force and moment about the origin that each support exerts, the moment with the undeformed positions of its nodes.
+fn reactions(model: &Model, residual: &[f64]) -> Vec<(Vec3, Vec3)> {
+    let mut out = vec![(Vec3::zeros(), Vec3::zeros()); model.supports.len()];
+    let mut add = |support: u32, dof: u32| {
+        let mut f = Vec3::zeros();
+        f[dof as usize % 3] = residual[dof as usize];
+        let (force, moment) = &mut out[support as usize];
+        *force += f;
+        *moment += model.nodes[dof as usize / 3].cross(&f);
+    };
+    for p in &model.prescribed {
+        add(p.support, p.dof);
+    }
+    for m in &model.means {
+        add(m.support, m.free);
+        add(m.support, m.tied);
+    }
+    out
+}

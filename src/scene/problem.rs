@@ -1,0 +1,166 @@
+//! What can be wrong with a scene, and where in the file.
+use serde::Serialize;
+use std::fmt;
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// A place in a text file; both numbers start at 1, columns count characters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct Place {
+    pub line: usize,
+    pub column: usize,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.line, self.column)
+    }
+}
+
+/// One thing that is wrong in a scene.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Problem {
+    /// What is wrong, in one sentence.
+    pub message: String,
+    /// What would be right: the nearest valid name, the list of names, a rule.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub help: Option<String>,
+    /// JSON pointer (RFC 6901) of the value it belongs to, e.g. `/bodies/sheet/mesh/plate`.
+    pub pointer: String,
+    #[serde(flatten)]
+    pub place: Place,
+    /// Bytes of the scene's text that are meant.
+    #[serde(skip)]
+    pub span: Range<usize>,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.message)?;
+        match &self.help {
+            Some(help) => write!(f, " ({help})"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Why a scene could not be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SceneError {
+    /// The file is not there, or is a folder.
+    #[error("there is no scene file `{}`{}", .path.display(), hint(.nearest))]
+    Missing {
+        path: PathBuf,
+        /// A file of a similar name in the same folder.
+        nearest: Option<String>,
+    },
+    /// The operating system refused to read the file.
+    #[error("cannot read the scene `{}`: {reason}", .path.display())]
+    Io { path: PathBuf, reason: String },
+    /// The text is no valid scene.
+    #[error("{}", listing(.name, .problems))]
+    Wrong {
+        /// Name of the scene as the user gave it.
+        name: String,
+        /// Text of the scene (bytes that are not UTF-8 replaced).
+        text: String,
+        /// At least one problem, in the order of the file.
+        problems: Vec<Problem>,
+    },
+}
+
+impl SceneError {
+    /// Place of the first problem, where there is one.
+    pub fn place(&self) -> Option<Place> {
+        match self {
+            SceneError::Wrong { problems, .. } => problems.first().map(|p| p.place),
+            _ => None,
+        }
+    }
+}
+
+fn hint(nearest: &Option<String>) -> String {
+    nearest
+        .as_ref()
+        .map_or(String::new(), |n| format!("; did you mean `{n}`?"))
+}
+
+/// One line a problem, each as `file:line:column: message`.
+fn listing(name: &str, problems: &[Problem]) -> String {
+    let lines: Vec<String> = problems.iter().map(|p| format!("{name}:{p}")).collect();
+    lines.join("\n")
+}
+
+/// Line starts of a text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Lines {
+    starts: Vec<usize>,
+}
+
+impl Lines {
+    pub fn new(text: &str) -> Lines {
+        let ends = text
+            .bytes()
+            .enumerate()
+            .filter(|(_, b)| *b == b'\n')
+            .map(|(i, _)| i + 1);
+        Lines {
+            starts: std::iter::once(0).chain(ends).collect(),
+        }
+    }
+
+    /// Place of a byte offset of `text`, the text these lines were made from.
+    pub fn place(&self, text: &str, offset: usize) -> Place {
+        let offset = offset.min(text.len());
+        let line = self.starts.partition_point(|&s| s <= offset).max(1);
+        let start = self.starts[line - 1];
+        let before = text.as_bytes().get(start..offset).unwrap_or_default();
+        // Bytes 10xxxxxx continue a character.
+        let column = 1 + before.iter().filter(|b| (**b & 0xC0) != 0x80).count();
+        Place { line, column }
+    }
+}
+
+/// The candidate closest to what was written, if one is close enough to be meant.
+pub fn nearest<'a>(
+    written: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
+    let lower = written.to_lowercase();
+    let length = lower.chars().count();
+    candidates
+        .into_iter()
+        .filter_map(|c| {
+            let other = c.to_lowercase();
+            let distance = strsim::damerau_levenshtein(&lower, &other);
+            // A part of the right name (`slave` for `slaves`, `E-modulus` for `E` is not) also counts.
+            let part = length >= 3
+                && (other.contains(&lower) || lower.contains(&other) && other.len() >= 3);
+            let allowed = (length.max(other.chars().count()) / 3).clamp(1, 3);
+            (distance <= allowed || part).then_some((distance, c))
+        })
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, c)| c)
+        .filter(|c| *c != written)
+}
+
+/// "did you mean `b`? Known keys: `a`, `b`" in the words of `what`.
+pub(super) fn suggestion<'a>(
+    written: &str,
+    what: &str,
+    candidates: impl IntoIterator<Item = &'a str> + Clone,
+) -> String {
+    let list: Vec<String> = candidates
+        .clone()
+        .into_iter()
+        .map(|c| format!("`{c}`"))
+        .collect();
+    let known = match list.is_empty() {
+        true => format!("there are no {what}"),
+        false => format!("{what}: {}", list.join(", ")),
+    };
+    match nearest(written, candidates) {
+        Some(near) => format!("did you mean `{near}`? {known}"),
+        None => known,
+    }
+}

@@ -1,0 +1,499 @@
+//! The direct solver: faer's supernodal Cholesky factorizations on node blocks.
+use super::ordering::{self, NodeOrder, buffer};
+use super::{Analysis, DofName, Factorization, LinearError, LinearSolver, Mode, SolverOptions};
+use crate::assembly::{Pattern, SystemMatrix};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::{ldlt::factor::LdltError, llt::factor::LltError};
+use faer::sparse::linalg::cholesky::{simplicial, supernodal};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par};
+use std::fmt;
+use std::sync::Arc;
+
+/// Operations below which a second thread costs more than it saves.
+const PARALLEL_MIN_FLOPS: f64 = 5e8;
+
+/// A sparse direct solver for symmetric systems. See [`LinearSolver`] for how it is used; it can be analysed again
+/// when the pattern changes.
+#[derive(Default)]
+pub struct DirectSolver {
+    options: SolverOptions,
+    prepared: Option<Prepared>,
+}
+
+impl DirectSolver {
+    /// A solver that has analysed nothing yet.
+    pub fn new(options: SolverOptions) -> Self {
+        Self {
+            options,
+            prepared: None,
+        }
+    }
+
+    /// The settings.
+    pub fn options(&self) -> &SolverOptions {
+        &self.options
+    }
+
+    /// What the last analysis found.
+    pub fn analysis(&self) -> Option<&Analysis> {
+        self.prepared.as_ref().map(|p| &p.analysis)
+    }
+
+    /// The order of elimination, `order[new] = old node`.
+    pub fn node_order(&self) -> Option<&[u32]> {
+        self.prepared
+            .as_ref()
+            .map(|p| p.matrix.new_to_old.as_slice())
+    }
+
+    /// Whether the solver is prepared for matrices on `pattern`.
+    pub fn is_analyzed_for(&self, pattern: &Arc<Pattern>) -> bool {
+        self.prepared
+            .as_ref()
+            .is_some_and(|p| same_pattern(&p.pattern, pattern))
+    }
+}
+
+impl fmt::Debug for DirectSolver {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DirectSolver")
+            .field("options", &self.options)
+            .field("analysis", &self.analysis())
+            .finish_non_exhaustive()
+    }
+}
+
+impl LinearSolver for DirectSolver {
+    fn analyze(&mut self, pattern: &Arc<Pattern>) -> Result<&Analysis, LinearError> {
+        self.prepared = None;
+        let prepared = Prepared::new(pattern, &self.options)?;
+        Ok(&self.prepared.insert(prepared).analysis)
+    }
+
+    fn factorize(&mut self, matrix: &SystemMatrix) -> Result<Factorization, LinearError> {
+        let prepared = self.prepared.as_mut().ok_or(LinearError::NotAnalyzed)?;
+        prepared.factor = None;
+        if !same_pattern(&prepared.pattern, matrix.pattern()) {
+            return Err(LinearError::PatternMismatch);
+        }
+        prepared.matrix.gather(matrix)?;
+        let mode = self.options.mode;
+        let llt = mode == Mode::Llt || (mode == Mode::Auto && !prepared.expect_indefinite);
+        let found = if llt {
+            match prepared.llt() {
+                Err(LinearError::NonPositivePivot { .. }) if mode == Mode::Auto => {
+                    prepared.ldlt()?
+                }
+                other => other?,
+            }
+        } else {
+            prepared.ldlt()?
+        };
+        prepared.expect_indefinite = found.negative_pivots > 0;
+        if let Some(dof) = found.smallest_pivot
+            && found.smallest_pivot_ratio < self.options.pivot_tolerance
+        {
+            let ratio = found.smallest_pivot_ratio;
+            return Err(LinearError::TinyPivot { dof, ratio });
+        }
+        prepared.factor = Some(found.mode);
+        Ok(found)
+    }
+
+    fn solve_in_place(&mut self, rhs: &mut [f64]) -> Result<(), LinearError> {
+        let prepared = self.prepared.as_mut().ok_or(LinearError::NotAnalyzed)?;
+        prepared.solve(rhs)
+    }
+}
+
+fn same_pattern(a: &Arc<Pattern>, b: &Arc<Pattern>) -> bool {
+    Arc::ptr_eq(a, b) || (a.id() == b.id() && a.nodes() == b.nodes() && a.blocks() == b.blocks())
+}
+
+/// The lower triangle of the permuted matrix, by columns of dofs.
+#[derive(Debug)]
+struct PermutedMatrix {
+    new_to_old: Vec<u32>,
+    /// Starts of the node columns in `sources`.
+    starts: Vec<u32>,
+    /// Where each block comes from: twice its number in the pattern, plus one if it is transposed. The diagonal
+    /// block is the first of its column.
+    sources: Vec<u32>,
+    dof_starts: Vec<u32>,
+    dof_rows: Vec<u32>,
+    values: Vec<f64>,
+}
+
+impl PermutedMatrix {
+    fn new(pattern: &Pattern, order: NodeOrder) -> Self {
+        let n = pattern.nodes();
+        let old_to_new = &order.old_to_new;
+        let mut starts = vec![0u32; n + 1];
+        for column in 0..n {
+            for &row in pattern.column(column) {
+                let new = old_to_new[column].min(old_to_new[row as usize]);
+                starts[new as usize + 1] += 1;
+            }
+        }
+        for i in 0..n {
+            starts[i + 1] += starts[i];
+        }
+        let mut rows = vec![0u32; pattern.blocks()];
+        let mut sources = vec![0u32; pattern.blocks()];
+        let mut next = starts.clone();
+        let mut add = |column: u32, row: u32, source: u32| {
+            let at = &mut next[column as usize];
+            rows[*at as usize] = row;
+            sources[*at as usize] = source;
+            *at += 1;
+        };
+        for (old, &new) in old_to_new.iter().enumerate() {
+            add(new, new, 2 * pattern.column_starts()[old]);
+        }
+        for column in 0..n {
+            let first = pattern.column_starts()[column];
+            for (k, &row) in pattern.column(column).iter().enumerate().skip(1) {
+                let (c, r) = (old_to_new[column], old_to_new[row as usize]);
+                let transposed = u32::from(c > r);
+                add(c.min(r), c.max(r), 2 * (first + k as u32) + transposed);
+            }
+        }
+        let (dof_starts, dof_rows) = expand(&starts, &rows);
+        Self {
+            new_to_old: order.new_to_old,
+            starts,
+            sources,
+            values: vec![0.0; dof_rows.len()],
+            dof_starts,
+            dof_rows,
+        }
+    }
+
+    /// Copies the values in the new order and checks that they are finite.
+    fn gather(&mut self, matrix: &SystemMatrix) -> Result<(), LinearError> {
+        let from = matrix.values();
+        for column in self.starts.windows(2) {
+            let sources = &self.sources[column[0] as usize..column[1] as usize];
+            let height = 3 * sources.len();
+            let to = &mut self.values[9 * column[0] as usize..][..3 * height];
+            for (k, &source) in sources.iter().enumerate() {
+                let first = 9 * (source >> 1) as usize;
+                let block = &from[first..first + 9];
+                // A product with zero is zero, and NaN if the value is infinite or NaN.
+                if block.iter().map(|v| v * 0.0).sum::<f64>() != 0.0 {
+                    return Err(not_finite(matrix.pattern(), source >> 1));
+                }
+                for b in 0..3 {
+                    let target = &mut to[b * height + 3 * k..][..3];
+                    for (a, t) in target.iter_mut().enumerate() {
+                        *t = if source & 1 == 0 {
+                            block[3 * b + a]
+                        } else {
+                            block[3 * a + b]
+                        };
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn view(&self) -> SparseColMatRef<'_, u32, f64> {
+        let n = self.dof_starts.len() - 1;
+        // The check passes over all indices, which is little beside any factorization.
+        let symbolic = SymbolicSparseColMatRef::new_unsorted_checked(
+            n,
+            n,
+            &self.dof_starts,
+            None,
+            &self.dof_rows,
+        );
+        SparseColMatRef::new(symbolic, &self.values)
+    }
+
+    fn diagonal(&self, dof: usize) -> f64 {
+        let (node, c) = (dof / 3, dof % 3);
+        let first = self.starts[node] as usize;
+        let height = 3 * (self.starts[node + 1] as usize - first);
+        self.values[9 * first + c * height + c]
+    }
+
+    fn dof_name(&self, permuted: usize) -> DofName {
+        DofName {
+            node: self.new_to_old.get(permuted / 3).copied().unwrap_or(0),
+            component: (permuted % 3) as u8,
+        }
+    }
+}
+
+/// Columns and rows of dofs for columns and rows of nodes, every block full.
+fn expand(starts: &[u32], rows: &[u32]) -> (Vec<u32>, Vec<u32>) {
+    let mut dof_starts = Vec::with_capacity(3 * starts.len());
+    let mut dof_rows = Vec::with_capacity(9 * rows.len());
+    dof_starts.push(0);
+    for column in starts.windows(2) {
+        for _ in 0..3 {
+            for &row in &rows[column[0] as usize..column[1] as usize] {
+                dof_rows.extend([3 * row, 3 * row + 1, 3 * row + 2]);
+            }
+            dof_starts.push(dof_rows.len() as u32);
+        }
+    }
+    (dof_starts, dof_rows)
+}
+
+fn not_finite(pattern: &Pattern, block: u32) -> LinearError {
+    let column = pattern.column_starts().partition_point(|&s| s <= block) - 1;
+    LinearError::NonFiniteMatrix {
+        row: pattern.rows()[block as usize],
+        column: column as u32,
+    }
+}
+
+/// Everything that belongs to one pattern.
+struct Prepared {
+    pattern: Arc<Pattern>,
+    analysis: Analysis,
+    matrix: PermutedMatrix,
+    symbolic: supernodal::SymbolicSupernodalCholesky<u32>,
+    factor_values: Vec<f64>,
+    /// Permuted right-hand side; sums of the pivot check.
+    vector: Vec<f64>,
+    memory: MemBuffer,
+    par: Par,
+    /// The last matrix had negative pivots.
+    expect_indefinite: bool,
+    factor: Option<Mode>,
+}
+
+impl Prepared {
+    fn new(pattern: &Arc<Pattern>, options: &SolverOptions) -> Result<Self, LinearError> {
+        let order = ordering::order(pattern, options.ordering)?;
+        let n = pattern.dofs();
+        let mut analysis = Analysis {
+            ordering: order.ordering,
+            flops: order.flops,
+            flops_amd: order.flops_amd,
+            flops_metis: order.flops_metis,
+            fill: order.fill,
+            stored: 0,
+            memory_bytes: 0,
+            threads: 1,
+            metis_failed: order.metis_failed,
+        };
+        if options.threads > 1 && order.flops >= PARALLEL_MIN_FLOPS {
+            analysis.threads = options.threads;
+        }
+        let par = if analysis.threads > 1 {
+            Par::rayon(analysis.threads)
+        } else {
+            Par::Seq
+        };
+        let symbolic = symbolic_factor(pattern, &order)?;
+        let matrix = PermutedMatrix::new(pattern, order);
+        let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
+            &symbolic,
+            par,
+            Default::default(),
+        )
+        .or(supernodal::factorize_supernodal_numeric_ldlt_scratch::<
+            u32,
+            f64,
+        >(&symbolic, par, Default::default()))
+        .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let bytes = scratch.size_bytes();
+        let memory = buffer(scratch)?;
+        analysis.stored = symbolic.len_val();
+        let mut factor_values = Vec::new();
+        factor_values
+            .try_reserve_exact(analysis.stored)
+            .map_err(|_| LinearError::OutOfMemory {
+                bytes: 8 * analysis.stored,
+            })?;
+        factor_values.resize(analysis.stored, 0.0);
+        analysis.memory_bytes = bytes
+            + 8 * (analysis.stored + matrix.values.len() + n)
+            + 4 * (matrix.dof_rows.len() + matrix.dof_starts.len() + matrix.sources.len())
+            + 4 * (symbolic.row_idx().len() + 4 * symbolic.n_supernodes());
+        Ok(Self {
+            pattern: Arc::clone(pattern),
+            analysis,
+            matrix,
+            symbolic,
+            factor_values,
+            vector: vec![0.0; n],
+            memory,
+            par,
+            expect_indefinite: false,
+            factor: None,
+        })
+    }
+
+    fn llt(&mut self) -> Result<Factorization, LinearError> {
+        let result = supernodal::factorize_supernodal_numeric_llt(
+            &mut self.factor_values,
+            self.matrix.view(),
+            Default::default(),
+            &self.symbolic,
+            self.par,
+            MemStack::new(&mut self.memory),
+            Default::default(),
+        );
+        if let Err(LltError::NonPositivePivot { index }) = result {
+            let dof = self.matrix.dof_name(index);
+            return Err(LinearError::NonPositivePivot { dof });
+        }
+        let mut found = Smallest::default();
+        self.for_each_pivot(|dof, l| {
+            found.see(dof, l * l, self.matrix.diagonal(dof).abs());
+        });
+        Ok(found.into_factorization(Mode::Llt, &self.matrix))
+    }
+
+    fn ldlt(&mut self) -> Result<Factorization, LinearError> {
+        let result = supernodal::factorize_supernodal_numeric_ldlt(
+            &mut self.factor_values,
+            self.matrix.view(),
+            Default::default(),
+            &self.symbolic,
+            self.par,
+            MemStack::new(&mut self.memory),
+            Default::default(),
+        );
+        if let Err(LdltError::ZeroPivot { index }) = result {
+            let dof = self.matrix.dof_name(index);
+            return Err(LinearError::ZeroPivot { dof });
+        }
+        let mut indefinite = false;
+        self.for_each_pivot(|_, d| indefinite |= d < 0.0);
+        self.vector.fill(0.0);
+        if indefinite {
+            self.sum_updates();
+        }
+        let mut found = Smallest::default();
+        self.for_each_pivot(|dof, d| {
+            let terms = self.matrix.diagonal(dof).abs().max(self.vector[dof]);
+            found.see(dof, d, terms);
+        });
+        Ok(found.into_factorization(Mode::Ldlt, &self.matrix))
+    }
+
+    /// Calls `f` with every permuted dof and its entry on the factor's diagonal, in order.
+    fn for_each_pivot(&self, mut f: impl FnMut(usize, f64)) {
+        let factor = supernodal::SupernodalLltRef::new(&self.symbolic, &self.factor_values);
+        for s in 0..self.symbolic.n_supernodes() {
+            let node = factor.supernode(s);
+            let (start, values) = (node.start(), node.val());
+            for j in 0..values.ncols() {
+                f(start + j, values[(j, j)]);
+            }
+        }
+    }
+
+    /// `vector[i] = sum_k l_ik^2 |d_k|`: the magnitudes that were subtracted on the way to pivot `i`. For a positive
+    /// definite matrix they add up to less than the diagonal and this is not needed.
+    fn sum_updates(&mut self) {
+        let factor = supernodal::SupernodalLdltRef::new(&self.symbolic, &self.factor_values);
+        for s in 0..self.symbolic.n_supernodes() {
+            let node = factor.supernode(s);
+            let (start, values) = (node.start(), node.val());
+            let columns = values.ncols();
+            for j in 0..columns {
+                let d = values[(j, j)].abs();
+                for i in j + 1..columns {
+                    self.vector[start + i] += values[(i, j)] * values[(i, j)] * d;
+                }
+                for (i, &row) in node.pattern().iter().enumerate() {
+                    let l = values[(columns + i, j)];
+                    self.vector[row as usize] += l * l * d;
+                }
+            }
+        }
+    }
+
+    fn solve(&mut self, rhs: &mut [f64]) -> Result<(), LinearError> {
+        let mode = self.factor.ok_or(LinearError::NotFactorized)?;
+        let n = self.vector.len();
+        if rhs.len() != n {
+            return Err(LinearError::Length {
+                given: rhs.len(),
+                expected: n,
+            });
+        }
+        for (new, &old) in self.matrix.new_to_old.iter().enumerate() {
+            let old = 3 * old as usize;
+            self.vector[3 * new..3 * new + 3].copy_from_slice(&rhs[old..old + 3]);
+        }
+        let x = MatMut::from_column_major_slice_mut(&mut self.vector, n, 1);
+        let stack = MemStack::new(&mut self.memory);
+        match mode {
+            Mode::Llt => supernodal::SupernodalLltRef::new(&self.symbolic, &self.factor_values)
+                .solve_in_place_with_conj(Conj::No, x, Par::Seq, stack),
+            _ => supernodal::SupernodalLdltRef::new(&self.symbolic, &self.factor_values)
+                .solve_in_place_with_conj(Conj::No, x, Par::Seq, stack),
+        }
+        for (new, &old) in self.matrix.new_to_old.iter().enumerate() {
+            let old = 3 * old as usize;
+            rhs[old..old + 3].copy_from_slice(&self.vector[3 * new..3 * new + 3]);
+        }
+        match rhs.iter().position(|x| !x.is_finite()) {
+            Some(dof) => Err(LinearError::NonFiniteSolution {
+                dof: DofName::new(dof),
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Structure of the factor: elimination tree, counts and supernodes of the permuted dofs.
+fn symbolic_factor(
+    pattern: &Pattern,
+    order: &NodeOrder,
+) -> Result<supernodal::SymbolicSupernodalCholesky<u32>, LinearError> {
+    let n = pattern.dofs();
+    let (starts, rows) = ordering::upper(pattern, &order.old_to_new);
+    let (dof_starts, dof_rows) = expand(&starts, &rows);
+    let graph = SymbolicSparseColMatRef::new_unsorted_checked(n, n, &dof_starts, None, &dof_rows);
+    let scratch = simplicial::prefactorize_symbolic_cholesky_scratch::<u32>(n, dof_rows.len())
+        .or(supernodal::factorize_supernodal_symbolic_cholesky_scratch::<u32>(n));
+    let mut memory = buffer(scratch)?;
+    let stack = MemStack::new(&mut memory);
+    let (mut parents, mut counts) = (vec![0i32; n], vec![0u32; n]);
+    let tree = simplicial::prefactorize_symbolic_cholesky(&mut parents, &mut counts, graph, stack);
+    supernodal::factorize_supernodal_symbolic_cholesky(
+        graph,
+        tree,
+        &counts,
+        stack,
+        Default::default(),
+    )
+    .map_err(|_| LinearError::TooLarge)
+}
+
+/// Runs over the pivots and keeps the smallest ratio.
+#[derive(Default)]
+struct Smallest {
+    negative: usize,
+    at: Option<(usize, f64)>,
+}
+
+impl Smallest {
+    fn see(&mut self, dof: usize, pivot: f64, terms: f64) {
+        self.negative += usize::from(pivot < 0.0);
+        // A pivot whose terms are all zero is itself zero, which has been refused.
+        let ratio = pivot.abs() / terms;
+        if self.at.is_none_or(|(_, r)| ratio < r) {
+            self.at = Some((dof, ratio));
+        }
+    }
+
+    fn into_factorization(self, mode: Mode, matrix: &PermutedMatrix) -> Factorization {
+        Factorization {
+            mode,
+            negative_pivots: self.negative,
+            smallest_pivot_ratio: self.at.map_or(1.0, |(_, r)| r),
+            smallest_pivot: self.at.map(|(dof, _)| matrix.dof_name(dof)),
+        }
+    }
+}

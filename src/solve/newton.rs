@@ -1,0 +1,349 @@
+//! Newton's method for one step.
+//!
+//! Full steps by default: a thin shell's first iterate stretches it, so that the residual jumps by orders of magnitude
+//! before it falls, and a search that forbids the jump would crawl. The line search (on the slope of the energy along
+//! the increment, which also covers steps an element cannot take) comes in where full steps fail to make headway.
+use super::convergence::{Norms, Verdict};
+use super::event::{Event, Observer};
+use super::linear::{LinearError, LinearSolver};
+use super::state::State;
+use crate::assembly::{Assembler, Fault, Totals};
+use crate::model::Model;
+use crate::output::Phases;
+use crate::scene;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Why a step failed. All but [`StepFailure::Interrupted`] call for a smaller step.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StepFailure {
+    #[error("no convergence in {iterations} iterations (residual {residual:.3e} of the forces){oscillation}")]
+    TooManyIterations {
+        iterations: u32,
+        residual: f64,
+        /// Empty, or a word on points that switch status at every iteration.
+        oscillation: String,
+    },
+    #[error("the residual is not finite at iteration {iteration}")]
+    NotFinite { iteration: u32 },
+    #[error("{0}")]
+    Fault(#[from] Fault),
+    #[error("linear solver: {0}")]
+    Solve(#[from] LinearError),
+    #[error("the penetration stays above 1 % of an element although the automatic penalty was raised")]
+    PenetrationStays,
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// What a converged step took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Converged {
+    pub iterations: u32,
+    pub totals: Totals,
+    /// Relative residual and points whose status changed, per linearisation.
+    pub history: Vec<(f64, usize)>,
+    /// Largest round-off floor met, relative to the forces.
+    pub floor: f64,
+    /// Largest number of negative pivots met (an unstable equilibrium on the way).
+    pub negative_pivots: usize,
+}
+
+/// Work space of Newton's method: allocated once for a run.
+pub struct Workspace {
+    residual: Vec<f64>,
+    rhs: Vec<f64>,
+    increments: Vec<f64>,
+    du: Vec<f64>,
+    scratch: Vec<f64>,
+    absolute: Vec<f64>,
+    base: State,
+}
+
+impl Workspace {
+    pub fn new(model: &Model) -> Self {
+        let n = 3 * model.nodes.len();
+        Workspace {
+            residual: vec![0.0; n],
+            rhs: vec![0.0; n],
+            increments: vec![0.0; n],
+            du: vec![0.0; n],
+            scratch: vec![0.0; n],
+            absolute: vec![0.0; n],
+            base: State::new(model),
+        }
+    }
+
+    /// Residual at all degrees of freedom of the last evaluation: reactions at the constrained ones.
+    pub fn residual(&self) -> &[f64] {
+        &self.residual
+    }
+}
+
+/// One step of Newton's method.
+pub struct Newton<'a, 'm, S: LinearSolver> {
+    pub model: &'m Model,
+    pub assembler: &'a mut Assembler<'m>,
+    pub solver: &'a mut S,
+    pub workspace: &'a mut Workspace,
+    pub settings: &'a scene::Newton,
+    pub phases: &'a mut Phases,
+    pub interrupt: &'a AtomicBool,
+}
+
+/// Iterations without headway after which the line search is switched on.
+const PATIENCE: u32 = 6;
+/// Smallest factor of the line search.
+const SMALLEST: f64 = 1.0 / 64.0;
+
+impl<S: LinearSolver> Newton<'_, '_, S> {
+    /// Solves for equilibrium at `time`, starting from `trial`, and leaves it there. On failure `trial` is spoilt: the
+    /// caller takes its copy back.
+    pub fn solve(
+        &mut self,
+        step: u32,
+        time: f64,
+        trial: &mut State,
+        observer: &mut dyn Observer,
+    ) -> Result<Converged, StepFailure> {
+        let w = &mut *self.workspace;
+        let outstanding = (self.model)
+            .increments(&trial.u, time, &mut w.increments)
+            .map_err(Fault::from)?;
+        let mut pending = outstanding > 0.0;
+        let mut history: Vec<(f64, usize)> = Vec::new();
+        let (mut floor, mut negative_pivots) = (0.0f64, 0usize);
+        let (mut best, mut since_best) = (f64::INFINITY, 0u32);
+        let mut first_energy = 0.0;
+        let mut factor = 1.0;
+        let mut energy = 0.0;
+        let mut totals = self.linearize(trial, time, pending)?;
+        for iteration in 0.. {
+            if self.interrupt.load(Ordering::Relaxed) {
+                return Err(StepFailure::Interrupted);
+            }
+            let norms = self.norms(trial, &totals);
+            floor = floor.max(norms.floor / norms.force.max(f64::MIN_POSITIVE));
+            history.push((norms.relative(), totals.changed));
+            // The state before the first solve may be converged as it stands only if nothing was prescribed to move.
+            let settled = !pending && (iteration == 0 || totals.changed == 0);
+            observer.event(&Event::Iteration {
+                step,
+                iteration,
+                residual: norms.relative(),
+                energy: if first_energy > 0.0 { energy / first_energy } else { 0.0 },
+                active: totals.active,
+                changed: totals.changed,
+                line_search: factor,
+            });
+            match norms.judge(self.settings.tolerance, settled) {
+                Verdict::Converged => {
+                    return Ok(Converged {
+                        iterations: iteration,
+                        totals,
+                        history,
+                        floor,
+                        negative_pivots,
+                    });
+                }
+                Verdict::Diverged => return Err(StepFailure::NotFinite { iteration }),
+                Verdict::Continue => {}
+            }
+            if iteration >= self.settings.max_iterations {
+                return Err(StepFailure::TooManyIterations {
+                    iterations: iteration,
+                    residual: norms.relative(),
+                    oscillation: oscillation(&history),
+                });
+            }
+            if norms.residual < best {
+                (best, since_best) = (norms.residual, 0);
+            } else {
+                since_best += 1;
+            }
+            negative_pivots = negative_pivots.max(self.solve_linear(pending)?);
+            let search = self.settings.line_search && !pending && since_best >= PATIENCE;
+            (totals, factor) = self.advance(trial, time, search)?;
+            energy = dot(&self.workspace.du, &self.workspace.rhs).abs();
+            if iteration == 0 {
+                first_energy = energy;
+            }
+            pending = false;
+        }
+        unreachable!("the loop ends by its own limit")
+    }
+
+    fn linearize(&mut self, trial: &mut State, time: f64, pending: bool) -> Result<Totals, Fault> {
+        let w = &mut *self.workspace;
+        self.phases.start("assembly");
+        let increments = pending.then_some(&w.increments[..]);
+        let totals =
+            (self.assembler).linearize(trial, time, increments, &mut w.residual, &mut w.rhs);
+        self.phases.stop("assembly");
+        totals
+    }
+
+    /// Solves for the increment; returns the number of negative pivots.
+    fn solve_linear(&mut self, pending: bool) -> Result<usize, StepFailure> {
+        let w = &mut *self.workspace;
+        self.phases.start("factorization");
+        let factored = self.solver.factorize(self.assembler.matrix());
+        self.phases.stop("factorization");
+        let negative = factored?.negative_pivots;
+        self.phases.start("solve");
+        w.du.copy_from_slice(&w.rhs);
+        let solved = self.solver.solve_in_place(&mut w.du);
+        self.phases.stop("solve");
+        solved?;
+        let g = pending.then_some(&w.increments[..]);
+        self.model.dofs.expand(&mut w.du, g);
+        Ok(negative)
+    }
+
+    /// Moves `trial` along the increment and linearises there; halves the step where an element or a contact point
+    /// cannot follow, and searches along it where asked to.
+    fn advance(
+        &mut self,
+        trial: &mut State,
+        time: f64,
+        search: bool,
+    ) -> Result<(Totals, f64), StepFailure> {
+        self.workspace.base.copy_from(trial);
+        let slope = dot(&self.workspace.du, &self.workspace.rhs);
+        let mut s = 1.0;
+        if search {
+            s = self.line_search(trial, time, slope)?;
+        }
+        loop {
+            self.apply(trial, s);
+            let closed = self.workspace.base.points.clone();
+            match self.linearize(trial, time, false) {
+                Ok(totals) => return Ok((totals, s)),
+                Err(fault) if s > SMALLEST => {
+                    let _ = fault;
+                    trial.points.copy_from_slice(&closed);
+                    s *= 0.5;
+                }
+                Err(fault) => return Err(fault.into()),
+            }
+        }
+    }
+
+    /// Factor that brings the slope of the energy along the increment below half of its start, by bisection and
+    /// false position on residuals alone.
+    fn line_search(&mut self, trial: &mut State, time: f64, slope: f64) -> Result<f64, StepFailure> {
+        let mut low = (0.0, slope);
+        let mut high: Option<(f64, f64)> = None;
+        let mut s = 1.0;
+        let mut best = (1.0, f64::INFINITY);
+        for _ in 0..6 {
+            self.apply(trial, s);
+            let g = match self.slope(trial, time) {
+                Ok(g) if g.is_finite() => g,
+                _ => f64::NEG_INFINITY,
+            };
+            if g.abs() < best.1 {
+                best = (s, g.abs());
+            }
+            if g.abs() <= 0.5 * slope.abs() {
+                break;
+            }
+            // The slope falls from its start through zero at the minimum.
+            if g * slope > 0.0 {
+                low = (s, g);
+            } else {
+                high = Some((s, g));
+            }
+            s = match high {
+                None => break,
+                Some((b, gb)) if gb.is_finite() => {
+                    let (a, ga) = low;
+                    (a - ga * (b - a) / (gb - ga)).clamp(a + 0.1 * (b - a), b - 0.1 * (b - a))
+                }
+                Some((b, _)) => 0.5 * (low.0 + b),
+            };
+        }
+        Ok(best.0.max(SMALLEST))
+    }
+
+    /// `-du . residual` at the present trial state.
+    fn slope(&mut self, trial: &mut State, time: f64) -> Result<f64, Fault> {
+        self.phases.start("line_search");
+        let w = &mut *self.workspace;
+        let result = self.assembler.residual(trial, time, &mut w.scratch);
+        self.phases.stop("line_search");
+        result?;
+        self.model.dofs.fold(&mut w.scratch);
+        Ok(-dot(&w.du, &w.scratch))
+    }
+
+    /// `trial = base + s du`, element states included.
+    fn apply(&mut self, trial: &mut State, s: f64) {
+        let w = &*self.workspace;
+        for ((u, b), d) in trial.u.iter_mut().zip(&w.base.u).zip(&w.du) {
+            *u = b + s * d;
+        }
+        let mut first = 0;
+        for body in &self.model.bodies {
+            let (len, count) = (body.block.state_len(), body.block.elements());
+            let range = first..first + len * count;
+            first += len * count;
+            if len == 0 {
+                continue;
+            }
+            let (states, base) = (&mut trial.elements[range.clone()], &w.base.elements[range]);
+            (states.par_chunks_mut(len).zip(base.par_chunks(len)).enumerate())
+                .with_min_len(64)
+                .for_each(|(e, (state, from))| {
+                    let mut du = [0.0; 24];
+                    for (k, n) in body.element_nodes(e).into_iter().enumerate() {
+                        let at = 3 * n as usize;
+                        du[3 * k..3 * k + 3].copy_from_slice(&w.du[at..at + 3]);
+                    }
+                    body.block.update_alpha(e, state, from, &du, s);
+                });
+        }
+    }
+
+    fn norms(&mut self, trial: &State, totals: &Totals) -> Norms {
+        let w = &mut *self.workspace;
+        w.scratch.copy_from_slice(&w.residual);
+        self.model.dofs.fold(&mut w.scratch);
+        let residual = dot(&w.scratch, &w.scratch).sqrt();
+        let reactions: f64 = (self.model.dofs.removed())
+            .map(|d| w.residual[d as usize].powi(2))
+            .sum();
+        let external = self.assembler.external();
+        let external = dot(external, external).sqrt();
+        // Rounding moves a position by its own last digit, so positions count, not displacements alone.
+        for (node, x) in self.model.nodes.iter().enumerate() {
+            for c in 0..3 {
+                let u = trial.u[3 * node + c];
+                w.scratch[3 * node + c] = u.abs().max(f64::EPSILON * x[c].abs());
+            }
+        }
+        self.assembler.matrix().abs_multiply(&w.scratch, &mut w.absolute);
+        self.model.dofs.fold(&mut w.absolute);
+        let floor = 0.5 * f64::EPSILON * dot(&w.absolute, &w.absolute).sqrt();
+        Norms {
+            residual,
+            force: reactions.sqrt().max(external).max(totals.contact_norm),
+            floor,
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// A word on points that keep switching at the end of a failed step.
+fn oscillation(history: &[(f64, usize)]) -> String {
+    let last = &history[history.len().saturating_sub(6)..];
+    let switching = last.iter().map(|h| h.1).min().unwrap_or(0);
+    if last.len() == 6 && switching > 0 {
+        format!("; at least {switching} contact point(s) switched status in each of the last 6")
+    } else {
+        String::new()
+    }
+}

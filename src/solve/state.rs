@@ -1,0 +1,48 @@
+//! What a step may change, so that it can be taken back as a whole.
+use crate::model::Model;
+use covact_geometry::Hint;
+
+/// State of one slave point on a rigid surface without friction: where the last search ended, and whether the point was
+/// closed. There is no history: nothing here outlives the next search.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PointState {
+    pub hint: Option<Hint>,
+    pub closed: bool,
+}
+
+/// Everything that evolves: displacements, element states, point states. A trial copy is taken at the start of a step
+/// and replaces the committed one when the step is accepted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Displacements, 3 per node of the model.
+    pub u: Vec<f64>,
+    /// Element states, `state_len` per element, body after body.
+    pub elements: Vec<f64>,
+    /// Slave points, pair after pair.
+    pub points: Vec<PointState>,
+}
+
+impl State {
+    /// The undeformed state.
+    pub fn new(model: &Model) -> Self {
+        let elements = model.bodies.iter().map(|b| b.block.state_len() * b.block.elements());
+        let points = model.pairs.iter().map(|p| p.points.len());
+        State {
+            u: vec![0.0; 3 * model.nodes.len()],
+            elements: vec![0.0; elements.sum()],
+            points: vec![PointState::default(); points.sum()],
+        }
+    }
+
+    /// Takes over another state without allocating.
+    pub fn copy_from(&mut self, other: &State) {
+        self.u.copy_from_slice(&other.u);
+        self.elements.copy_from_slice(&other.elements);
+        self.points.copy_from_slice(&other.points);
+    }
+
+    /// Bytes that this state occupies.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.u[..]) + size_of_val(&self.elements[..]) + size_of_val(&self.points[..])
+    }
+}

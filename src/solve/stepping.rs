@@ -1,0 +1,105 @@
+//! Step sizes: adapted to the iterations they take, cut on failure, ending on every kink of what is prescribed.
+use crate::scene;
+
+/// Chooses the steps of a run.
+#[derive(Debug, Clone)]
+pub struct Stepping {
+    settings: scene::Step,
+    end: f64,
+    /// Kinks, ascending.
+    breakpoints: Vec<f64>,
+    dt: f64,
+}
+
+/// Iterations above which the next step is not enlarged, and below which it is.
+const MANY: u32 = 10;
+const FEW: u32 = 6;
+
+impl Stepping {
+    pub fn new(settings: scene::Step, end: f64, breakpoints: &[f64]) -> Self {
+        Stepping {
+            settings,
+            end,
+            breakpoints: breakpoints.to_vec(),
+            dt: settings.initial.min(settings.max),
+        }
+    }
+
+    /// End of the step that starts at `time`: what is left up to the next kink is divided into equal steps no larger
+    /// than the present size, so that no sliver remains.
+    pub fn next(&self, time: f64) -> f64 {
+        let tiny = 1e-9 * self.end;
+        let target = (self.breakpoints.iter().copied())
+            .find(|b| *b > time + tiny)
+            .unwrap_or(self.end)
+            .min(self.end);
+        let left = target - time;
+        let count = (left / self.dt - 1e-6).ceil().max(1.0);
+        if count <= 1.0 { target } else { time + left / count }
+    }
+
+    /// Whether the end is reached.
+    pub fn done(&self, time: f64) -> bool {
+        time >= self.end * (1.0 - 1e-12)
+    }
+
+    /// A step was accepted after `iterations`.
+    pub fn accepted(&mut self, iterations: u32) {
+        if !self.settings.adaptive {
+            self.dt = self.settings.initial.min(self.settings.max);
+        } else if iterations < FEW {
+            self.dt = (1.5 * self.dt).min(self.settings.max);
+        } else if iterations > MANY {
+            self.dt = (0.75 * self.dt).max(self.settings.min);
+        }
+    }
+
+    /// A step of size `dt` failed: the size to try next, or `None` where it would be below the smallest.
+    pub fn failed(&mut self, dt: f64) -> Option<f64> {
+        let next = 0.5 * dt;
+        if next < self.settings.min {
+            return None;
+        }
+        self.dt = next;
+        Some(next)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stepping(breakpoints: &[f64]) -> Stepping {
+        let settings = scene::Step {
+            initial: 0.3,
+            min: 0.01,
+            max: 0.3,
+            adaptive: true,
+        };
+        Stepping::new(settings, 1.0, breakpoints)
+    }
+
+    #[test]
+    fn steps_end_on_kinks_and_leave_no_slivers() {
+        let s = stepping(&[0.5]);
+        let mut times = vec![0.0];
+        while !s.done(*times.last().unwrap()) {
+            times.push(s.next(*times.last().unwrap()));
+            assert!(times.len() < 20);
+        }
+        assert_eq!(times, [0.0, 0.25, 0.5, 0.75, 1.0]);
+    }
+
+    #[test]
+    fn cuts_stop_at_the_smallest_step() {
+        let mut s = stepping(&[]);
+        let mut dt = 0.3;
+        let mut cuts = 0;
+        while let Some(next) = s.failed(dt) {
+            assert_eq!(next, 0.5 * dt);
+            dt = next;
+            cuts += 1;
+        }
+        assert_eq!(cuts, 4);
+    }
+}

@@ -1,0 +1,441 @@
+//! Field files read back with vtkio, and the tags that ParaView needs.
+use covact::mesh::{ElementKind, Mesh};
+use covact::output::{
+    BezierError, BodyFields, CLOSED, ContactFields, Field, MAX_DEGREE, NOT_A_SLAVE, OPEN,
+    OutputError, Place, SurfaceOutput, SurfacePiece, von_mises,
+};
+use covact_geometry::{NurbsPatch, Vec3};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use std::collections::BTreeMap;
+use vtkio::model::{
+    Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
+};
+
+/// `n` elements in a row along x, each a unit cube.
+fn row(n: u32) -> Mesh {
+    let mut nodes = Vec::new();
+    for k in 0..2 {
+        for j in 0..2 {
+            for i in 0..=n {
+                nodes.push(Vec3::new(f64::from(i), f64::from(j), f64::from(k)));
+            }
+        }
+    }
+    let at = |i: u32, j: u32, k: u32| i + (n + 1) * (j + 2 * k);
+    let mut connectivity = Vec::new();
+    for e in 0..n {
+        for (k, j, i) in (0..8).map(|c| (c >> 2, (c >> 1) & 1, c & 1)) {
+            connectivity.push(at(e + i, j, k));
+        }
+    }
+    Mesh {
+        kind: ElementKind::H8,
+        nodes,
+        connectivity,
+        node_sets: BTreeMap::new(),
+        face_sets: BTreeMap::new(),
+    }
+}
+
+fn read(bytes: &[u8]) -> UnstructuredGridPiece {
+    let vtk = Vtk::parse_xml(bytes).unwrap();
+    let DataSet::UnstructuredGrid { mut pieces, .. } = vtk.data else {
+        panic!("not an unstructured grid");
+    };
+    assert_eq!(pieces.len(), 1);
+    match pieces.remove(0) {
+        Piece::Inline(piece) => *piece,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn array(attributes: &[Attribute], name: &str) -> (usize, Vec<f64>) {
+    for attribute in attributes {
+        if let Attribute::DataArray(a) = attribute
+            && a.name == name
+        {
+            return (a.num_comp(), a.data.cast_into::<f64>().unwrap());
+        }
+    }
+    panic!("no array {name}");
+}
+
+fn tag<'a>(text: &'a str, start: &str) -> &'a str {
+    let at = text.find(start).unwrap_or_else(|| panic!("no {start}"));
+    &text[at..at + text[at..].find('>').unwrap() + 1]
+}
+
+/// A quarter of the unit circle in the plane z = 0 swept along z to 2: exact cylinder.
+fn quarter_cylinder(reversed: bool) -> SurfacePiece {
+    let w = 0.5f64.sqrt();
+    let arc = [[1.0, 0.0, 1.0], [1.0, 1.0, w], [0.0, 1.0, 1.0]];
+    let points = [0.0, 2.0]
+        .iter()
+        .flat_map(|&z| arc.map(|[x, y, w]| [w * x, w * y, w * z, w]))
+        .collect();
+    SurfacePiece {
+        degree: [2, 1],
+        points,
+        patch: 3,
+        entity: 17,
+        reversed,
+    }
+}
+
+#[test]
+fn a_body_reads_back_as_it_was() {
+    let mesh = row(3);
+    let n = mesh.nodes.len();
+    let u: Vec<Vec3> = (0..n)
+        .map(|i| Vec3::new(0.1, -0.2, 1.0 / (i as f64 + 3.0)))
+        .collect();
+    let stress: Vec<[f64; 6]> = (0..n)
+        .map(|i| std::array::from_fn(|k| (i * 6 + k) as f64 * std::f64::consts::PI))
+        .collect();
+    let pressure: Vec<f64> = (0..n).map(|i| (i as f64).sqrt()).collect();
+    let gap: Vec<f64> = (0..n)
+        .map(|i| if i < 5 { f64::NAN } else { -1e-7 * i as f64 })
+        .collect();
+    let status: Vec<u8> = (0..n).map(|i| [NOT_A_SLAVE, OPEN, CLOSED][i % 3]).collect();
+    let plastic = [0.5, 0.25, 0.125];
+    let fields = BodyFields {
+        name: "sheet",
+        mesh: &mesh,
+        displacement: &u,
+        stress: Some(&stress),
+        contact: Some(ContactFields {
+            pressure: &pressure,
+            gap: &gap,
+            status: &status,
+        }),
+        fields: vec![
+            Field::point("temperature", &pressure),
+            Field {
+                name: "plastic_strain",
+                components: 1,
+                component_names: &[],
+                data: &plastic,
+                place: Place::Cell,
+            },
+        ],
+    };
+    let bytes = fields.to_vtu(4).unwrap();
+    let piece = read(&bytes);
+    let flat: Vec<f64> = mesh.nodes.iter().flat_map(|x| [x.x, x.y, x.z]).collect();
+    assert_eq!(piece.points.cast_into::<f64>().unwrap(), flat);
+    assert_eq!(piece.cells.types, [CellType::Hexahedron; 3]);
+    let VertexNumbers::XML {
+        connectivity,
+        offsets,
+    } = &piece.cells.cell_verts
+    else {
+        panic!();
+    };
+    assert_eq!(*offsets, [8, 16, 24]);
+    // VTK counts around each face: (0,0) (1,0) (1,1) (0,1).
+    assert_eq!(connectivity[..8], [0, 1, 5, 4, 8, 9, 13, 12]);
+
+    let point = &piece.data.point;
+    let flat: Vec<f64> = u.iter().flat_map(|x| [x.x, x.y, x.z]).collect();
+    assert_eq!(array(point, "displacement"), (3, flat));
+    let flat: Vec<f64> = stress.iter().flatten().copied().collect();
+    assert_eq!(array(point, "cauchy_stress"), (6, flat));
+    assert_eq!(array(point, "von_mises").1[2], von_mises(&stress[2]));
+    assert_eq!(array(point, "contact_pressure"), (1, pressure.clone()));
+    assert_eq!(array(point, "temperature"), (1, pressure.clone()));
+    let back = array(point, "contact_gap").1;
+    assert!(
+        back.iter()
+            .zip(&gap)
+            .all(|(a, b)| a.to_bits() == b.to_bits())
+    );
+    assert!(back[4].is_nan() && !back[5].is_nan());
+    let status: Vec<f64> = status.iter().map(|&s| f64::from(s)).collect();
+    assert_eq!(array(point, "contact_status"), (1, status));
+    let cell = &piece.data.cell;
+    assert_eq!(array(cell, "element"), (1, vec![0.0, 1.0, 2.0]));
+    assert_eq!(array(cell, "body"), (1, vec![4.0; 3]));
+    assert_eq!(array(cell, "plastic_strain"), (1, plastic.to_vec()));
+
+    let text = std::str::from_utf8(&bytes).unwrap();
+    let file = tag(text, "<VTKFile");
+    assert!(
+        file.contains("version=\"2.2\"") && file.contains("LittleEndian"),
+        "{file}"
+    );
+    assert!(tag(text, "<PointData").contains("Vectors=\"displacement\""));
+    let stress = tag(text, "<DataArray type=\"Float64\" Name=\"cauchy_stress\"");
+    for (i, name) in ["XX", "YY", "ZZ", "XY", "YZ", "XZ"].iter().enumerate() {
+        assert!(
+            stress.contains(&format!("ComponentName{i}=\"{name}\"")),
+            "{stress}"
+        );
+    }
+    assert_eq!(text.matches("ComponentName0").count(), 1);
+    assert!(!text.contains("Range") && !text.contains("NaN"));
+}
+
+/// Uniaxial stress, pure shear (sqrt(3) tau) and pressure.
+#[test]
+fn von_mises_of_simple_states() {
+    assert_eq!(von_mises(&[-7.0, 0.0, 0.0, 0.0, 0.0, 0.0]), 7.0);
+    for k in 3..6 {
+        let mut s = [0.0; 6];
+        s[k] = 2.0;
+        assert!((von_mises(&s) - 2.0 * 3f64.sqrt()).abs() < 1e-15);
+    }
+    assert_eq!(von_mises(&[5.0, 5.0, 5.0, 0.0, 0.0, 0.0]), 0.0);
+}
+
+#[test]
+fn fields_that_do_not_fit_are_refused() {
+    let mesh = row(2);
+    let u = vec![Vec3::zeros(); mesh.nodes.len()];
+    let plain = BodyFields {
+        name: "b",
+        mesh: &mesh,
+        displacement: &u,
+        stress: None,
+        contact: None,
+        fields: Vec::new(),
+    };
+    plain.to_vtu(0).unwrap();
+
+    let short = BodyFields {
+        displacement: &u[1..],
+        ..plain.clone()
+    };
+    let text = short.to_vtu(0).unwrap_err().to_string();
+    assert_eq!(
+        text,
+        "field `displacement` of `b` has 11 numbers where 12 are needed"
+    );
+
+    let data = vec![0.0; 24];
+    let wide = Field {
+        components: 2,
+        ..Field::point("flux", &data)
+    };
+    let twice = BodyFields {
+        fields: vec![wide, wide],
+        ..plain.clone()
+    };
+    let error = twice.to_vtu(0).unwrap_err();
+    assert!(
+        matches!(error, OutputError::DuplicateField { .. }),
+        "{error}"
+    );
+
+    let mut broken = mesh.clone();
+    broken.connectivity[9] = 99;
+    let broken = BodyFields {
+        mesh: &broken,
+        ..plain
+    };
+    let text = broken.to_vtu(0).unwrap_err().to_string();
+    assert_eq!(
+        text,
+        "element 1 of `b` names node 99, but there are 12 nodes"
+    );
+}
+
+#[test]
+fn a_cylinder_is_exact_bezier_with_weights() {
+    let surface = SurfaceOutput::new("tool", vec![quarter_cylinder(false)], 4).unwrap();
+    let turn = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.5);
+    let at = Isometry3::from_parts(Translation3::new(0.0, 0.0, 7.0), turn);
+    let bytes = surface.to_vtu(&at).unwrap();
+    let text = std::str::from_utf8(&bytes).unwrap();
+    let point = tag(text, "<PointData");
+    assert!(
+        point.contains("RationalWeights=\"RationalWeights\""),
+        "{point}"
+    );
+    let cell = tag(text, "<CellData");
+    assert!(
+        cell.contains("HigherOrderDegrees=\"HigherOrderDegrees\""),
+        "{cell}"
+    );
+    assert!(!text.contains("Scalars="));
+
+    let piece = read(&bytes);
+    assert_eq!(piece.cells.types, [CellType::BezierQuadrilateral]);
+    assert_eq!(
+        array(&piece.data.cell, "HigherOrderDegrees"),
+        (3, vec![2.0, 1.0, 0.0])
+    );
+    assert_eq!(array(&piece.data.cell, "patch"), (1, vec![3.0]));
+    assert_eq!(array(&piece.data.cell, "entity"), (1, vec![17.0]));
+    let w = 0.5f64.sqrt();
+    assert_eq!(
+        array(&piece.data.point, "RationalWeights"),
+        (1, vec![1.0, 1.0, 1.0, 1.0, w, w])
+    );
+    // Corners first, then the middle points of the arcs, turned by 0.5 and lifted by 7.
+    let x = piece.points.cast_into::<f64>().unwrap();
+    let corner = [0.5f64.cos(), 0.5f64.sin(), 7.0];
+    let middle = [2f64.sqrt(), std::f64::consts::FRAC_PI_4 + 0.5, 9.0];
+    for k in 0..3 {
+        assert!((x[k] - corner[k]).abs() < 1e-15);
+    }
+    assert!((x[15].hypot(x[16]) - middle[0]).abs() < 1e-15);
+    assert!((x[16].atan2(x[15]) - middle[1]).abs() < 1e-15);
+    assert_eq!(x[17], middle[2]);
+}
+
+#[test]
+fn the_tessellation_lies_on_the_surface_with_outward_normals() {
+    for reversed in [false, true] {
+        let piece = quarter_cylinder(reversed);
+        let surface = SurfaceOutput::new("tool", vec![piece], 5).unwrap();
+        let at = Isometry3::rotation(nalgebra::Vector3::z() * 0.3);
+        let bytes = surface.to_tessellated_vtu(&at).unwrap();
+        let grid = read(&bytes);
+        assert_eq!(grid.cells.types, [CellType::Quad; 25]);
+        assert_eq!(array(&grid.data.cell, "patch").1, [3.0; 25]);
+        let x = grid.points.cast_into::<f64>().unwrap();
+        let (components, n) = array(&grid.data.point, "normal");
+        assert_eq!((components, x.len(), n.len()), (3, 108, 108));
+        // rho_1 x rho_2 points away from the axis.
+        let sign = if reversed { -1.0 } else { 1.0 };
+        for (x, n) in x.chunks_exact(3).zip(n.chunks_exact(3)) {
+            assert!((x[0].hypot(x[1]) - 1.0).abs() < 1e-15);
+            assert!((n[0] - sign * x[0]).abs() < 1e-14);
+            assert!((n[1] - sign * x[1]).abs() < 1e-14);
+            assert!(n[2].abs() < 1e-15);
+        }
+        // The cells' own orientation is the normals'.
+        let VertexNumbers::XML { connectivity, .. } = &grid.cells.cell_verts else {
+            panic!();
+        };
+        for quad in connectivity.chunks_exact(4) {
+            let p = |k: usize| Vec3::from_column_slice(&x[3 * quad[k] as usize..][..3]);
+            let normal = (p(1) - p(0)).cross(&(p(3) - p(0)));
+            let first = 3 * quad[0] as usize;
+            assert!(normal.dot(&Vec3::from_column_slice(&n[first..first + 3])) > 0.0);
+        }
+    }
+}
+
+/// An octant of the unit sphere whose side u = 1 is drawn together to the pole.
+#[test]
+fn the_normal_at_a_pole_is_that_of_the_sphere() {
+    let w = 0.5f64.sqrt();
+    let arc = [(1.0, 0.0, 1.0), (1.0, 1.0, w), (0.0, 1.0, 1.0)];
+    let points = arc
+        .iter()
+        .flat_map(|&(x, y, wv)| {
+            arc.map(|(r, z, wu)| [r * x * wu * wv, r * y * wu * wv, z * wu * wv, wu * wv])
+        })
+        .collect();
+    let piece = SurfacePiece {
+        degree: [2, 2],
+        points,
+        patch: 0,
+        entity: 0,
+        reversed: true,
+    };
+    let surface = SurfaceOutput::new("ball", vec![piece], 6).unwrap();
+    let grid = read(&surface.to_tessellated_vtu(&Isometry3::identity()).unwrap());
+    let x = grid.points.cast_into::<f64>().unwrap();
+    let n = array(&grid.data.point, "normal").1;
+    let mut poles = 0;
+    for (x, n) in x.chunks_exact(3).zip(n.chunks_exact(3)) {
+        // Beside the pole the normal is taken 5e-8 (in parameters) away.
+        let tolerance = if x[2] > 1.0 - 1e-12 { 2e-7 } else { 1e-13 };
+        poles += usize::from(tolerance > 1e-8);
+        for k in 0..3 {
+            assert!((x[k] - n[k]).abs() < tolerance, "{x:?} {n:?}");
+        }
+    }
+    assert_eq!(poles, 7);
+}
+
+/// The full sphere of nine by five control points (Piegl and Tiller 1997, "The NURBS Book", section 8.3): four by two
+/// spans, exact.
+#[test]
+fn a_patch_of_several_spans_becomes_pieces_of_the_same_sphere() {
+    let w = 0.5f64.sqrt();
+    let circle = [1, 1, 0, -1, -1, -1, 0, 1, 1].map(f64::from);
+    let half = [(0.0, -1.0), (1.0, -1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+    let mut points = Vec::new();
+    let mut weights = Vec::new();
+    for (j, (r, z)) in half.into_iter().enumerate() {
+        for i in 0..9 {
+            // The y coordinates are the x coordinates a quarter turn on.
+            let (x, y) = (circle[i], circle[if i < 8 { (i + 6) % 8 } else { 6 }]);
+            points.push(Vec3::new(r * x, r * y, z));
+            weights.push([1.0, w][i % 2] * [1.0, w][j % 2]);
+        }
+    }
+    let knots = [
+        vec![0., 0., 0., 1., 1., 2., 2., 3., 3., 4., 4., 4.],
+        vec![0., 0., 0., 1., 1., 2., 2., 2.],
+    ];
+    let patch = NurbsPatch::new([2, 2], knots, [9, 5], &points, Some(&weights)).unwrap();
+    let pieces = SurfacePiece::of_patch(&patch, 5, 31, false);
+    assert_eq!(pieces.len(), 8);
+    let surface = SurfaceOutput::new("ball", pieces, 6).unwrap();
+    let identity = Isometry3::identity();
+    let exact = read(&surface.to_vtu(&identity).unwrap());
+    assert_eq!(exact.cells.types, [CellType::BezierQuadrilateral; 8]);
+    assert_eq!(array(&exact.data.cell, "entity").1, [31.0; 8]);
+    let flat = read(&surface.to_tessellated_vtu(&identity).unwrap());
+    assert_eq!(flat.cells.num_cells(), 8 * 36);
+    let x = flat.points.cast_into::<f64>().unwrap();
+    let n = array(&flat.data.point, "normal").1;
+    for (x, n) in x.chunks_exact(3).zip(n.chunks_exact(3)) {
+        let (x, n) = (Vec3::from_column_slice(x), Vec3::from_column_slice(n));
+        assert!((x.norm() - 1.0).abs() < 1e-14);
+        assert!((x - n).norm() < 2e-7, "{x} {n}");
+    }
+}
+
+#[test]
+fn pieces_that_vtk_cannot_hold_are_named() {
+    let flat = |degree: [usize; 2]| SurfacePiece {
+        degree,
+        points: (0..=degree[1])
+            .flat_map(|j| (0..=degree[0]).map(move |i| [i as f64, j as f64, 0.0, 1.0]))
+            .collect(),
+        patch: 0,
+        entity: 0,
+        reversed: false,
+    };
+    let pieces = vec![
+        flat([1, 1]),
+        flat([2, MAX_DEGREE + 1]),
+        flat([MAX_DEGREE, 3]),
+    ];
+    let surface = SurfaceOutput::new("s", pieces, 1).unwrap();
+    assert_eq!(surface.left_out(), [1]);
+    let identity = Isometry3::identity();
+    assert_eq!(
+        read(&surface.to_vtu(&identity).unwrap()).cells.num_cells(),
+        2
+    );
+    let copy = read(&surface.to_tessellated_vtu(&identity).unwrap());
+    assert_eq!(copy.cells.num_cells(), 3);
+
+    let mut bad = flat([2, 2]);
+    bad.points[4][3] = 0.0;
+    let error = SurfaceOutput::new("s", vec![flat([1, 1]), bad], 1).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "piece 1 of surface `s`: control point 4 has weight 0, which is not positive"
+    );
+    let mut bad = flat([2, 2]);
+    bad.points.pop();
+    let error = SurfaceOutput::new("s", vec![bad], 1).unwrap_err();
+    let OutputError::Piece { reason, .. } = error else {
+        panic!("{error:?}");
+    };
+    assert!(matches!(
+        reason,
+        BezierError::PointCount {
+            expected: 9,
+            found: 8,
+            ..
+        }
+    ));
+}

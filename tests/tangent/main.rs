@@ -1,0 +1,3 @@
+//! Tangents of contact against dual numbers.
+mod normal;
+mod support;
