@@ -17,13 +17,23 @@ pub enum EdgeKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Location {
     Face,
-    Edge { edge: u8, kind: EdgeKind },
-    Corner { corner: u8, kind: EdgeKind },
+    Edge {
+        edge: u8,
+        kind: EdgeKind,
+    },
+    Corner {
+        corner: u8,
+        kind: EdgeKind,
+    },
     /// On a line inside a patch where an inner knot of full multiplicity breaks the tangent; `dir` is the
     /// direction (0 or 1) whose knot it is.
-    Crease { dir: u8 },
+    Crease {
+        dir: u8,
+    },
     /// On an edge that is one point in space.
-    Pole { edge: u8 },
+    Pole {
+        edge: u8,
+    },
 }
 
 /// How sure a foot point is.
