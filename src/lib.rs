@@ -5,6 +5,7 @@ pub mod contact;
 pub mod mesh;
 pub mod model;
 pub mod output;
+pub mod run;
 pub mod scene;
 pub mod shell;
 pub mod solve;

@@ -1,4 +1,5 @@
 //! Rational Bezier pieces: VTK's node order and evaluation.
+use covact_geometry::{NurbsPatch, bezier_pieces};
 
 /// Highest degree that VTK's Bezier cells take (`vtkHigherOrderInterpolation::MaxDegree`).
 pub const MAX_DEGREE: usize = 10;
@@ -42,6 +43,20 @@ pub(crate) struct PointNormal {
 }
 
 impl SurfacePiece {
+    /// The pieces of a NURBS patch: one per pair of non-empty spans, the same surface exactly.
+    pub fn of_patch(surface: &NurbsPatch, patch: u32, entity: u32, reversed: bool) -> Vec<Self> {
+        bezier_pieces(surface)
+            .into_iter()
+            .map(|piece| SurfacePiece {
+                degree: piece.degree,
+                points: piece.points,
+                patch,
+                entity,
+                reversed,
+            })
+            .collect()
+    }
+
     pub(crate) fn check(&self) -> Result<(), BezierError> {
         if self.degree.contains(&0) {
             return Err(BezierError::Degree(self.degree));
@@ -81,10 +96,13 @@ impl SurfacePiece {
     /// Point and outward normal at parameters in [0, 1]; the piece is checked and oriented.
     pub(crate) fn evaluate(&self, u: f64, v: f64) -> PointNormal {
         let (point, cross) = self.point_and_cross(u, v);
-        // Where a side of the piece is drawn together to a point, a tangent is zero: take the normal beside it.
+        // Where a side of the piece is drawn together to a point, a tangent is zero: take the normal beside it, as near
+        // as rounding lets it be seen.
         let normal = unit(cross).or_else(|| {
-            let inside = |t: f64| t + 1e-5 * (0.5 - t);
-            unit(self.point_and_cross(inside(u), inside(v)).1)
+            [1e-7, 1e-5, 1e-3].iter().find_map(|step| {
+                let inside = |t: f64| t + step * (0.5 - t);
+                unit(self.point_and_cross(inside(u), inside(v)).1)
+            })
         });
         PointNormal {
             point,

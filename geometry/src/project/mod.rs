@@ -1,4 +1,27 @@
 //! Closest point on a set of patches.
+//!
+//! [`PatchSet`] joins patches over their common edges, orients them, and finds the closest point of any query point.
+//! The search is global: a tree over the exact Bezier pieces of all patches is descended by lower bounds, a safeguarded
+//! Newton iteration with active bounds gives stationary points (on faces, edges, creases, corners), and every piece is
+//! either proved to hold nothing nearer or cut and searched further. See Konyukhov and Schweizerhof, "On the solvability
+//! of closest point projection procedures in contact analysis", CMAME 197 (2008), for the mechanics of faces, edges and
+//! vertices.
+
+mod finish;
+mod local;
+mod piece;
+mod report;
+mod search;
+mod set;
+mod sides;
+mod topology;
+mod tree;
+
+pub use report::{CurvatureExtreme, CurvatureRange};
+pub use set::{PatchSet, PatchSetError};
+pub use sides::{ComponentSide, SideError, SideOutcome};
+pub use topology::{EdgeReport, Joint, PartialJoint};
+
 use crate::surface::{Jet, Vec3};
 
 /// How a patch edge continues.
@@ -50,18 +73,24 @@ pub enum Status {
 /// Where a search may start: the foot found before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hint {
+    /// Number of the patch.
     pub patch: u32,
+    /// Parameters on it.
     pub xi: [f64; 2],
 }
 
 /// The closest point of a query.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Foot {
+    /// Number of the patch.
     pub patch: u32,
+    /// Parameters of the foot.
     pub xi: [f64; 2],
+    /// Face, edge, corner, crease or pole.
     pub location: Location,
+    /// How sure it is.
     pub status: Status,
-    /// Jet of the patch at `xi`.
+    /// Jet of the patch at `xi`; on a crease, of the side the iteration came from.
     pub jet: Jet,
     /// +1 or -1: `side * (rho_1 x rho_2)` points out of the master on this patch.
     pub side: f64,
@@ -73,6 +102,12 @@ pub struct Foot {
     pub normal: Vec3,
 }
 
-/// Patches with their tree, their shared edges and their sides.
-#[derive(Debug, Clone)]
-pub struct PatchSet {}
+impl Foot {
+    /// Where to start when the query has moved a little.
+    pub fn hint(&self) -> Hint {
+        Hint {
+            patch: self.patch,
+            xi: self.xi,
+        }
+    }
+}

@@ -1,0 +1,228 @@
+#!/usr/bin/env python3
+"""Renders a picture from a results folder, off screen.
+
+    pip install pyvista
+    python assets/render.py out --field von_mises --label "von Mises stress [MPa]" --output punch.png
+
+Bodies are warped by their displacement and coloured by a field of the nodes; rigid surfaces are drawn half transparent
+from their tessellated copies, with the borders of their patches. Without a field bodies are plain grey.
+"""
+import argparse
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+
+AXES = "xyz"
+# Directions from which the camera looks at the model: azimuth from the x axis towards y, elevation (degrees).
+VIEWS = {
+    "iso": (-55, 25),
+    "low": (-55, 10),
+    "high": (-55, 45),
+    "front": (-90, 0),
+    "side": (0, 0),
+    "top": (-90, 89.9),
+}
+# Components of a symmetric tensor, as the result files name them.
+TENSOR = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"]
+
+
+def arguments():
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("folder", type=Path, help="results folder, with results_tessellated.pvd")
+    p.add_argument("--output", type=Path, default=Path("picture.png"))
+    p.add_argument("--field", help="point data to colour by; displacement and vectors: magnitude unless --component")
+    p.add_argument("--component", help="x, y, z of a vector; XX ... XZ of a tensor")
+    p.add_argument("--label", help="title of the colour bar, with the unit; default: the field's name")
+    p.add_argument("--range", type=float, nargs=2, metavar=("LOW", "HIGH"), help="of the colours")
+    p.add_argument("--cmap", default="viridis", help="colour map")
+    p.add_argument("--time", type=float, help="the last time not after this one; default: the last")
+    p.add_argument("--warp", type=float, default=1.0, help="factor on the displacement")
+    p.add_argument("--parts", nargs="*", help="draw only parts of these names")
+    p.add_argument("--mirror", default="", help="xy: mirror the bodies over x = 0 and y = 0")
+    p.add_argument("--clip", nargs="*", default=[], metavar="SIDE",
+                   help="cut rigid surfaces open: +y keeps y >= 0, x<3 and z>1.5 keep what they say")
+    p.add_argument("--clip-bodies", nargs="*", default=[], metavar="SIDE", help="the same for bodies, after mirroring")
+    p.add_argument("--camera", default="iso",
+                   help=f"{', '.join(VIEWS)}, or AZIMUTH,ELEVATION in degrees")
+    p.add_argument("--zoom", type=float, default=1.0)
+    p.add_argument("--fit", choices=["bodies", "all"], default="bodies", help="what the picture is centred on")
+    p.add_argument("--opacity", type=float, default=0.35, help="of rigid surfaces; 0 leaves them out")
+    p.add_argument("--no-edges", action="store_true", help="leave out the element edges")
+    p.add_argument("--size", type=int, nargs=2, default=[1400, 900], metavar=("WIDTH", "HEIGHT"))
+    return p.parse_args()
+
+
+def read_step(folder, time):
+    """The parts at one time: [(name, grid)], and the time."""
+    import xml.etree.ElementTree as ET
+
+    pvd = folder / "results_tessellated.pvd"
+    if not pvd.exists():
+        sys.exit(f"{pvd} does not exist")
+    entries = [(float(d.get("timestep")), d.get("name"), d.get("file")) for d in ET.parse(pvd).iter("DataSet")]
+    times = sorted({e[0] for e in entries})
+    if time is not None:
+        times = [t for t in times if t <= time * (1 + 1e-12)]
+    if not times:
+        sys.exit(f"{pvd} has no step" + ("" if time is None else f" up to time {time}"))
+    return [(name, pv.read(folder / file)) for t, name, file in entries if t == times[-1]], times[-1]
+
+
+def colours(grid, field, component):
+    """The field as one number per node, and whether mirroring over x, y, z turns its sign."""
+    data = grid.point_data[field]
+    if data.ndim == 1:
+        return data, [1, 1, 1]
+    names = list(AXES) if data.shape[1] == 3 else TENSOR if data.shape[1] == 6 else []
+    if component is None:
+        if data.shape[1] == 3:
+            return np.linalg.norm(data, axis=1), [1, 1, 1]
+        sys.exit(f"{field} has {data.shape[1]} components: choose one by --component {names}")
+    lookup = {n.lower(): i for i, n in enumerate(names)}
+    if component.lower() not in lookup:
+        sys.exit(f"{field} has the components {names}, not {component}")
+    signs = [(-1) ** component.lower().count(a) for a in AXES]
+    return data[:, lookup[component.lower()]], signs
+
+
+def mirrored(grid, axes, signs):
+    """The grid with its mirror images over the planes through the origin."""
+    images = [grid]
+    for axis in axes:
+        k = AXES.index(axis)
+        for image in list(images):
+            copy = image.copy()
+            points = np.array(copy.points)
+            points[:, k] *= -1
+            copy.points = points
+            if "colour" in copy.point_data:
+                copy.point_data["colour"] = signs[k] * np.array(copy.point_data["colour"])
+            images.append(copy)
+    return images
+
+
+def clipped(grid, sides):
+    for side in sides:
+        try:
+            if side[0] in "+-" and side[1:] in AXES:
+                axis, keep_above, at = side[1:], side[0] == "+", 0.0
+            else:
+                axis, keep_above, at = side[0], {">": True, "<": False}[side[1]], float(side[2:])
+                AXES.index(axis)
+        except (KeyError, ValueError, IndexError):
+            sys.exit(f"--clip {side}: write +y, -x, x<3 or z>1.5")
+        origin = [at if a == axis else 0.0 for a in AXES]
+        grid = grid.clip(normal=axis, origin=origin, invert=not keep_above)
+    return grid
+
+
+def add_body(plotter, grid, args, style):
+    grid = grid.copy()
+    signs = [1, 1, 1]
+    if args.field and args.field in grid.point_data:
+        grid.point_data["colour"], signs = colours(grid, args.field, args.component)
+    grid.points = grid.points + args.warp * grid.point_data["displacement"]
+    bounds = []
+    for image in mirrored(grid, args.mirror, signs):
+        shown = clipped(image, args.clip_bodies)
+        if shown.n_cells == 0:
+            continue
+        surface = shown.extract_surface(algorithm="dataset_surface")
+        bounds.append(surface.bounds)
+        look = style if "colour" in surface.point_data else {"color": "lightsteelblue"}
+        plotter.add_mesh(surface, show_edges=not args.no_edges, edge_color="#404040", line_width=0.6,
+                         edge_opacity=0.45, ambient=0.25, diffuse=0.75, specular=0.1, **look)
+        outline = surface.extract_feature_edges(feature_angle=50, manifold_edges=False, non_manifold_edges=False)
+        if outline.n_cells:
+            plotter.add_mesh(outline, color="#303030", line_width=1.2)
+    return bounds
+
+
+def add_surface(plotter, grid, args):
+    grid = clipped(grid, args.clip)
+    if grid.n_cells == 0:
+        return []
+    surface = grid.extract_surface(algorithm="dataset_surface")
+    surface.point_data.active_normals_name = "normal"
+    plotter.add_mesh(surface, color="#8a93a0", opacity=args.opacity, smooth_shading=True, specular=0.5,
+                     specular_power=20, ambient=0.2)
+    for patch in np.unique(surface.cell_data["patch"]):
+        part = surface.extract_cells(surface.cell_data["patch"] == patch).extract_surface(algorithm="dataset_surface")
+        border = part.clean().extract_feature_edges(
+            boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False)
+        if border.n_cells:
+            plotter.add_mesh(border, color="#4a525e", line_width=1.5, opacity=min(1.0, 2 * args.opacity))
+    return [surface.bounds]
+
+
+def place_camera(plotter, args, bounds):
+    if args.camera in VIEWS:
+        azimuth, elevation = np.radians(VIEWS[args.camera])
+    else:
+        try:
+            azimuth, elevation = np.radians([float(x) for x in args.camera.split(",")])
+        except ValueError:
+            sys.exit(f"--camera {args.camera}: one of {', '.join(VIEWS)}, or AZIMUTH,ELEVATION")
+    b = np.array(bounds)
+    low, high = b[:, ::2].min(axis=0), b[:, 1::2].max(axis=0)
+    centre = (low + high) / 2
+    away = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
+    camera = plotter.camera
+    camera.focal_point = centre
+    camera.position = centre + away * np.linalg.norm(high - low)
+    camera.up = (0, 0, 1)
+    camera.view_angle = 25
+    plotter.reset_camera(bounds=[low[0], high[0], low[1], high[1], low[2], high[2]])
+    camera.zoom(1.25 * args.zoom)
+    # Everything may be nearer or farther than what the picture is centred on.
+    plotter.renderer.ResetCameraClippingRange()
+
+
+def main():
+    args = arguments()
+    parts, time = read_step(args.folder, args.time)
+    names = sorted({name for name, _ in parts})
+    for name in args.parts or []:
+        if name not in names:
+            sys.exit(f"no part {name}; there are: {', '.join(names)}")
+    parts = [(name, grid) for name, grid in parts if not args.parts or name in args.parts]
+    bodies = [grid for _, grid in parts if "displacement" in grid.point_data]
+    surfaces = [grid for _, grid in parts if "displacement" not in grid.point_data]
+
+    style = {}
+    if args.field:
+        coloured = [g for g in bodies if args.field in g.point_data]
+        if not coloured:
+            fields = sorted({f for g in bodies for f in g.point_data.keys()})
+            sys.exit(f"no body has the field {args.field}; there are: {', '.join(fields)}")
+        low, high = np.inf, -np.inf
+        for grid in coloured:
+            values, signs = colours(grid, args.field, args.component)
+            low, high = min(low, np.nanmin(values)), max(high, np.nanmax(values))
+            if any(signs[AXES.index(a)] < 0 for a in args.mirror):
+                low, high = min(low, -high), max(high, -low)
+        bar = {"title": args.label or args.field, "vertical": True, "position_x": 0.87, "position_y": 0.2,
+               "height": 0.6, "width": 0.05, "title_font_size": 22, "label_font_size": 20, "color": "black",
+               "fmt": "%.4g", "n_labels": 6}
+        style = {"scalars": "colour", "clim": args.range or [low, high], "cmap": args.cmap, "scalar_bar_args": bar,
+                 "nan_color": "lightgrey"}
+
+    plotter = pv.Plotter(off_screen=True, window_size=args.size)
+    plotter.set_background("white", top="#e8eef5")
+    plotter.enable_anti_aliasing("ssaa")
+    plotter.enable_depth_peeling(8)
+    body_bounds = [b for grid in bodies for b in add_body(plotter, grid, args, style)]
+    surface_bounds = [b for grid in surfaces for b in add_surface(plotter, grid, args)] if args.opacity > 0 else []
+    wanted = body_bounds if args.fit == "bodies" and body_bounds else body_bounds + surface_bounds
+    if not wanted:
+        sys.exit("nothing to draw")
+    place_camera(plotter, args, wanted)
+    args.output.parent.mkdir(parents=True, exist_ok=True)
+    plotter.screenshot(args.output)
+    print(f"{args.output}: time {time:g}")
+
+
+if __name__ == "__main__":
+    main()

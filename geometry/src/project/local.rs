@@ -1,0 +1,249 @@
+//! Closest point within a smooth region of one patch: safeguarded Newton iteration with active bounds.
+
+use super::PatchSet;
+use crate::surface::{Jet, Vec3};
+
+/// Part of a patch between knot lines in which the surface is smooth (or simply one piece of it).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Region {
+    pub patch: u32,
+    /// Span numbers, first and one past the last, of each direction.
+    pub spans: [[usize; 2]; 2],
+    /// Parameters, `[direction][start, end]`; start and end may be equal (a search along an edge).
+    pub domain: [[f64; 2]; 2],
+}
+
+/// State of the iteration at a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Local {
+    pub region: Region,
+    pub xi: [f64; 2],
+    pub span: [usize; 2],
+    pub jet: Jet,
+    /// Squared distance.
+    pub d2: f64,
+    /// Gradient `-rho_i . d` of half the squared distance, `d = q - rho`.
+    pub gradient: [f64; 2],
+    /// Hessian `a_ij - rho_ij . d`: 11, 12, 22.
+    pub hessian: [f64; 3],
+    /// Metric a_11, a_12, a_22.
+    pub metric: [f64; 3],
+    /// -1 on the lower bound, +1 on the upper bound, else 0.
+    pub at: [i8; 2],
+    /// Whether the bound holds the point: the distance would fall across it.
+    pub active: [bool; 2],
+    pub converged: bool,
+}
+
+const ITERATIONS: usize = 40;
+/// Halvings of a step before it is given up.
+const HALVINGS: usize = 12;
+/// Share of the predicted decrease that a step must reach (Armijo).
+const ARMIJO: f64 = 1e-4;
+
+impl PatchSet {
+    /// Evaluates at `xi`, which is moved into the region; `span` is where to look for the span first.
+    #[inline]
+    fn state(&self, q: &Vec3, region: &Region, xi: [f64; 2], mut span: [usize; 2]) -> Local {
+        let grid = &self.grids[region.patch as usize];
+        let mut x = xi;
+        let mut at = [0; 2];
+        for k in 0..2 {
+            let [low, high] = region.domain[k];
+            if x[k] <= low {
+                (x[k], at[k]) = (low, -1);
+            } else if x[k] >= high {
+                (x[k], at[k]) = (high, 1);
+            }
+            let [first, end] = region.spans[k];
+            let breaks = &grid.breaks[k];
+            span[k] = span[k].clamp(first, end - 1);
+            while span[k] + 1 < end && x[k] >= breaks[span[k] + 1] {
+                span[k] += 1;
+            }
+            while span[k] > first && x[k] < breaks[span[k]] {
+                span[k] -= 1;
+            }
+        }
+        let jet = self.patches[region.patch as usize].jet_in_span(span, x);
+        let d = q - jet.rho;
+        let [r1, r2] = &jet.rho_i;
+        let gradient = [-r1.dot(&d), -r2.dot(&d)];
+        let metric = [r1.dot(r1), r1.dot(r2), r2.dot(r2)];
+        let hessian = [
+            metric[0] - jet.rho_ij[0].dot(&d),
+            metric[1] - jet.rho_ij[1].dot(&d),
+            metric[2] - jet.rho_ij[2].dot(&d),
+        ];
+        let fixed = |k: usize| region.domain[k][0] == region.domain[k][1];
+        let held =
+            |k: usize| fixed(k) || at[k] < 0 && gradient[k] > 0.0 || at[k] > 0 && gradient[k] < 0.0;
+        Local {
+            region: *region,
+            xi: x,
+            span,
+            jet,
+            d2: d.norm_squared(),
+            gradient,
+            hessian,
+            metric,
+            at,
+            active: [held(0), held(1)],
+            converged: false,
+        }
+    }
+
+    /// Whether `|rho_i . d| <= tolerance |rho_i| max(|d|, size)` in every direction that is free.
+    #[inline]
+    fn stationary(&self, s: &Local, tolerance: f64) -> bool {
+        let limit = tolerance * tolerance * s.d2.max(self.size * self.size);
+        (0..2).all(|k| s.active[k] || s.gradient[k] * s.gradient[k] <= limit * s.metric[2 * k])
+    }
+
+    /// Iterates from `xi` to a point where the distance is stationary within `region`.
+    #[inline]
+    pub(super) fn descend(
+        &self,
+        q: &Vec3,
+        region: &Region,
+        xi: [f64; 2],
+        span: [usize; 2],
+        tolerance: f64,
+    ) -> Local {
+        self.descend_from(q, self.state(q, region, xi, span), tolerance)
+    }
+
+    fn descend_from(&self, q: &Vec3, mut s: Local, tolerance: f64) -> Local {
+        for _ in 0..ITERATIONS {
+            if self.stationary(&s, tolerance) {
+                s.converged = true;
+                break;
+            }
+            let mut step = bounded(&s, newton_step(&s));
+            let mut slope = s.gradient[0] * step[0] + s.gradient[1] * step[1];
+            if slope >= 0.0 || !slope.is_finite() {
+                step = bounded(&s, diagonal_step(&s));
+                slope = s.gradient[0] * step[0] + s.gradient[1] * step[1];
+            }
+            // Below this the distances that are compared differ by rounding only.
+            let noise = 1e-14 * (s.d2 + s.jet.rho.norm_squared());
+            let mut next = self.state(q, &s.region, moved(&s, step, 1.0), s.span);
+            let mut factor = 1.0;
+            let mut tries = 0;
+            while next.d2 > s.d2 + 2.0 * ARMIJO * factor * slope + noise || next.d2.is_nan() {
+                tries += 1;
+                if tries > HALVINGS {
+                    return s;
+                }
+                factor *= 0.5;
+                next = self.state(q, &s.region, moved(&s, step, factor), s.span);
+            }
+            if next.xi == s.xi {
+                // No representable progress.
+                s.converged = self.stationary(&s, tolerance.max(1e-9));
+                break;
+            }
+            s = next;
+        }
+        s
+    }
+
+    /// Brings a point that is converged roughly to machine precision: iterates within `region`, then makes two undamped
+    /// Newton steps. The result converges as `converged` says.
+    pub(super) fn polish(
+        &self,
+        q: &Vec3,
+        region: &Region,
+        xi: [f64; 2],
+        span: [usize; 2],
+    ) -> Local {
+        let start = self.state(q, region, xi, span);
+        let mut s = self.descend_from(q, start, 1e-12);
+        for _ in 0..2 {
+            let Some(step) = undamped_step(&s) else {
+                break;
+            };
+            let next = self.state(q, region, moved(&s, step, 1.0), s.span);
+            // Undamped does not mean blind: a step that leads away is not one of convergence.
+            if !(next.d2 <= s.d2 + 1e-12 * (s.d2 + s.jet.rho.norm_squared())) {
+                break;
+            }
+            s = Local {
+                converged: s.converged,
+                ..next
+            };
+        }
+        s.converged = s.converged || self.stationary(&s, 1e-12);
+        s
+    }
+}
+
+fn moved(s: &Local, step: [f64; 2], factor: f64) -> [f64; 2] {
+    [s.xi[0] + factor * step[0], s.xi[1] + factor * step[1]]
+}
+
+/// Newton step in the free directions, Gauss-Newton where the Hessian is not positive definite.
+#[inline]
+fn newton_step(s: &Local) -> [f64; 2] {
+    solve(s, &s.hessian)
+        .or_else(|| solve(s, &s.metric))
+        .unwrap_or_else(|| diagonal_step(s))
+}
+
+/// Newton step, or `None` where the Hessian is not positive definite.
+fn undamped_step(s: &Local) -> Option<[f64; 2]> {
+    solve(s, &s.hessian)
+}
+
+/// Solves `F_ij step_j = -g_i` in the free directions if `f` is safely positive definite there.
+#[inline]
+fn solve(s: &Local, f: &[f64; 3]) -> Option<[f64; 2]> {
+    let g = &s.gradient;
+    let scale = [1e-12 * s.metric[0], 1e-12 * s.metric[2]];
+    match s.active {
+        [true, true] => Some([0.0; 2]),
+        [false, true] => (f[0] > scale[0]).then(|| [-g[0] / f[0], 0.0]),
+        [true, false] => (f[2] > scale[1]).then(|| [0.0, -g[1] / f[2]]),
+        [false, false] => {
+            let det = f[0] * f[2] - f[1] * f[1];
+            (f[0] > scale[0] && f[2] > scale[1] && det > 1e-12 * f[0] * f[2]).then(|| {
+                [
+                    (f[1] * g[1] - f[2] * g[0]) / det,
+                    (f[1] * g[0] - f[0] * g[1]) / det,
+                ]
+            })
+        }
+    }
+}
+
+/// Each free direction by itself, with the metric alone; a direction of no length stays.
+fn diagonal_step(s: &Local) -> [f64; 2] {
+    let one = |k: usize| {
+        let a = s.metric[2 * k];
+        if s.active[k] || a <= f64::MIN_POSITIVE {
+            0.0
+        } else {
+            -0.5 * s.gradient[k] / a
+        }
+    };
+    [one(0), one(1)]
+}
+
+/// Shortens a step to the bounds: a direction that would leave stops there and the other is solved for again.
+#[inline]
+fn bounded(s: &Local, step: [f64; 2]) -> [f64; 2] {
+    let clamp = |k: usize, x: f64| {
+        let [low, high] = s.region.domain[k];
+        x.clamp(low - s.xi[k], high - s.xi[k])
+    };
+    let cut = [clamp(0, step[0]), clamp(1, step[1])];
+    let mut out = cut;
+    for k in 0..2 {
+        let other = 1 - k;
+        let f = s.hessian[2 * other];
+        if cut[k] != step[k] && cut[other] == step[other] && !s.active[other] && f > 0.0 {
+            out[other] = clamp(other, -(s.gradient[other] + s.hessian[1] * cut[k]) / f);
+        }
+    }
+    out
+}

@@ -1,0 +1,286 @@
+//! Global search: tree descent, local iteration, and proofs that nothing nearer was missed.
+
+use super::PatchSet;
+use super::local::{Local, Region};
+use super::piece::{Piece, box_distance2, hull, outside_ball, split};
+use crate::surface::Vec3;
+
+/// Tolerance of local iterations during the search; the winner is polished afterwards.
+pub(super) const ROUGH: f64 = 1e-10;
+/// Parts into which pieces may be cut within one query before the search gives up proving.
+const MOST_PARTS: usize = 100_000;
+
+/// The nearest point so far.
+pub(super) struct Search<'a> {
+    set: &'a PatchSet,
+    q: Vec3,
+    /// Points farther away than this are of no interest.
+    reach: f64,
+    pub best: Option<(u32, Local)>,
+    /// Distance of the best point, or the reach.
+    distance: f64,
+    parts: usize,
+    /// False where the number of parts ran out before the proof was complete.
+    pub complete: bool,
+}
+
+/// Part of a piece.
+struct Part {
+    /// Parameters from 0 to 1 of the piece.
+    range: [[f64; 2]; 2],
+    depth: u32,
+}
+
+/// A stationary point of a piece, with the radius (in scaled parameters) around it in which no point of the piece is
+/// nearer to the query.
+#[derive(Clone, Copy)]
+struct Known {
+    at: [f64; 2],
+    radius: f64,
+}
+
+impl<'a> Search<'a> {
+    pub fn new(set: &'a PatchSet, q: Vec3, reach: f64) -> Self {
+        Search {
+            set,
+            q,
+            reach,
+            best: None,
+            distance: reach,
+            parts: 0,
+            complete: true,
+        }
+    }
+
+    /// Takes a point if it is nearer than the best one.
+    pub fn offer(&mut self, piece: u32, local: Local) {
+        let distance = local.d2.sqrt();
+        if distance < self.distance || self.best.is_none() && distance <= self.reach {
+            self.distance = distance;
+            self.best = Some((piece, local));
+        }
+    }
+
+    /// Radius of the ball that pieces must be proved to lie outside of: the best distance less a tolerance well above
+    /// rounding and far below any tolerance of the result. Negative where nothing can be better.
+    #[inline]
+    fn cut(&self) -> f64 {
+        if self.best.is_some() {
+            let tolerance = 1e-11 * self.set.size + 1e-14 * self.distance;
+            if self.distance > tolerance {
+                self.distance - tolerance
+            } else {
+                -1.0
+            }
+        } else {
+            self.reach
+        }
+    }
+
+    #[inline]
+    fn limit2(&self) -> f64 {
+        let c = self.cut();
+        if c < 0.0 { -1.0 } else { c * c }
+    }
+
+    /// Searches everything that may hold a nearer point than the one offered before, if any.
+    pub fn run(&mut self) {
+        let set = self.set;
+        let q = self.q;
+        let limit2 = self.limit2();
+        set.tree.visit(&q, limit2, |piece| {
+            self.piece(piece);
+            self.limit2()
+        });
+    }
+
+    fn piece(&mut self, id: u32) {
+        let piece = &self.set.pieces.list[id as usize];
+        let net = self.set.pieces.net(piece);
+        let own = self.best.filter(|(best, _)| *best == id).map(|b| b.1);
+        let local = match own {
+            Some(local) => local,
+            _ => {
+                let c = self.cut();
+                if c < 0.0 || c.is_finite() && outside_ball(net, piece.degree, &self.q, c) {
+                    return;
+                }
+                self.iterate(id, piece, nearest_control_point(net, piece, &self.q))
+            }
+        };
+        let known = self.known(piece, &local);
+        if covered(piece, &known, &[[0.0, 1.0]; 2]) || self.cut() < 0.0 {
+            return;
+        }
+        self.subdivide(id, piece, net, known);
+    }
+
+    /// Local iteration within a piece from `u` (0 to 1 in each direction).
+    fn iterate(&mut self, id: u32, piece: &Piece, u: [f64; 2]) -> Local {
+        let xi = [0, 1].map(|k| {
+            let [a, b] = piece.domain[k];
+            a + u[k] * (b - a)
+        });
+        let local = self
+            .set
+            .descend(&self.q, &region_of(piece), xi, piece.span, ROUGH);
+        self.offer(id, local);
+        local
+    }
+
+    /// Where a stationary point is, and how far around it the piece is proved to be no nearer.
+    ///
+    /// With `F = |q - rho|^2 / 2` and `g = F_,i`, every point of the piece satisfies
+    /// `F >= F* + g.D + D.F_ij.D / 2 - L |D|^3 / 6`, `L` a bound on the third derivative; on an active bound `g.D >= 0`
+    /// is worth `2 g / extent` of the Hessian. So `F >= F*` for `|D| <= 3 lambda / L`.
+    fn known(&self, piece: &Piece, s: &Local) -> Known {
+        let width = [0, 1].map(|k| piece.domain[k][1] - piece.domain[k][0]);
+        let at = [0, 1].map(|k| (s.xi[k] - piece.domain[k][0]) / width[k]);
+        if !s.converged {
+            return Known { at, radius: 0.0 };
+        }
+        let [m1, m2] = piece.scale;
+        let (c1, c2) = (width[0] / m1, width[1] / m2);
+        let mut h = [
+            s.hessian[0] * c1 * c1,
+            s.hessian[1] * c1 * c2,
+            s.hessian[2] * c2 * c2,
+        ];
+        if s.active[0] {
+            h[0] += 2.0 * s.gradient[0].abs() * c1 / m1;
+        }
+        if s.active[1] {
+            h[2] += 2.0 * s.gradient[1].abs() * c2 / m2;
+        }
+        let (mean, half) = (0.5 * (h[0] + h[2]), 0.5 * (h[0] - h[2]));
+        let lambda = mean - (half * half + h[1] * h[1]).sqrt();
+        let far = s.d2.sqrt() + 1.5 * (m1 + m2);
+        let third = 3.0 * std::f64::consts::SQRT_2 * piece.second + piece.third * far;
+        let radius = if lambda > 0.0 {
+            // 0.999 leaves room for rounding and for the gradient that the iteration has left over.
+            0.999 * 3.0 * lambda / third
+        } else {
+            0.0
+        };
+        Known { at, radius }
+    }
+
+    /// Proves or improves by bisection.
+    #[cold]
+    #[inline(never)]
+    fn subdivide(&mut self, id: u32, piece: &Piece, net: &[[f64; 4]], first: Known) {
+        let size = net.len();
+        let mut nets: Vec<[f64; 4]> = Vec::with_capacity(16 * size);
+        nets.extend_from_slice(net);
+        let mut parts = vec![Part {
+            range: [[0.0, 1.0]; 2],
+            depth: 0,
+        }];
+        let mut known = [first; 4];
+        let mut latest = 0;
+        while let Some(part) = parts.pop() {
+            let start = parts.len() * size;
+            let c = self.cut();
+            if c < 0.0 {
+                return;
+            }
+            if known.iter().any(|k| covered(piece, k, &part.range)) {
+                continue;
+            }
+            let own = &nets[start..start + size];
+            if part.depth > 0 && c.is_finite() {
+                let [low, high] = hull(own);
+                if box_distance2(&self.q, &low, &high) >= c * c
+                    || outside_ball(own, piece.degree, &self.q, c)
+                {
+                    continue;
+                }
+            }
+            let middle = part.range.map(|[a, b]| 0.5 * (a + b));
+            if part.depth > 0 && part.depth % 2 == 0 {
+                let local = self.iterate(id, piece, middle);
+                let found = self.known(piece, &local);
+                let apart = |k: &Known| {
+                    (k.at[0] - found.at[0]).abs() + (k.at[1] - found.at[1]).abs() > 1e-9
+                };
+                if known.iter().all(apart) {
+                    latest = (latest + 1) % known.len();
+                    known[latest] = found;
+                }
+                if covered(piece, &found, &part.range) {
+                    continue;
+                }
+            }
+            let extent = [0, 1].map(|k| piece.scale[k] * (part.range[k][1] - part.range[k][0]));
+            self.parts += 1;
+            if self.parts > MOST_PARTS {
+                self.complete = false;
+                return;
+            }
+            if extent[0].max(extent[1]) < 1e-8 * self.set.size {
+                continue;
+            }
+            let dir = usize::from(extent[1] > extent[0]);
+            let [a, b] = part.range[dir];
+            // A stationary point on the cut leaves parts in which the distance only grows, where the bounds are sharp.
+            let wanted = (known[latest].at[dir] - a) / (b - a);
+            let t = if part.depth < 4 && wanted > 0.05 && wanted < 0.95 {
+                wanted
+            } else {
+                0.5
+            };
+            nets.resize(start + 2 * size, [0.0; 4]);
+            let (left, right) = nets[start..].split_at_mut(size);
+            split(left, &mut right[..size], piece.degree, dir, t);
+            let cut = a + t * (b - a);
+            for half in [[a, cut], [cut, b]] {
+                let mut range = part.range;
+                range[dir] = half;
+                parts.push(Part {
+                    range,
+                    depth: part.depth + 1,
+                });
+            }
+        }
+    }
+}
+
+/// Whether a part lies within the radius of a stationary point.
+#[inline]
+fn covered(piece: &Piece, known: &Known, range: &[[f64; 2]; 2]) -> bool {
+    let far = [0, 1].map(|k| {
+        let [a, b] = range[k];
+        piece.scale[k] * (known.at[k] - a).abs().max((known.at[k] - b).abs())
+    });
+    far[0] * far[0] + far[1] * far[1] <= known.radius * known.radius
+}
+
+/// The region that a piece is.
+#[inline]
+pub(super) fn region_of(piece: &Piece) -> Region {
+    Region {
+        patch: piece.patch,
+        spans: piece.span.map(|s| [s, s + 1]),
+        domain: piece.domain,
+    }
+}
+
+/// Parameters (0 to 1) that belong to the nearest control point, pulled off the edges, which may be points in space.
+#[inline]
+fn nearest_control_point(net: &[[f64; 4]], piece: &Piece, q: &Vec3) -> [f64; 2] {
+    let mut best = (f64::INFINITY, 0);
+    for (k, p) in net.iter().enumerate() {
+        let inv = 1.0 / p[3];
+        let d = [p[0] * inv - q.x, p[1] * inv - q.y, p[2] * inv - q.z];
+        let d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        if d2 < best.0 {
+            best = (d2, k);
+        }
+    }
+    let n1 = piece.degree[0] + 1;
+    let u = [
+        (best.1 % n1) as f64 / piece.degree[0] as f64,
+        (best.1 / n1) as f64 / piece.degree[1] as f64,
+    ];
+    u.map(|u| u.clamp(0.05, 0.95))
+}

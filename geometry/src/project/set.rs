@@ -1,0 +1,213 @@
+//! The set of patches and its search.
+
+use super::local::Region;
+use super::piece::{Pieces, hull};
+use super::search::Search;
+use super::topology::{self, Topology};
+use super::tree::Tree;
+use super::{Foot, Hint};
+use crate::bezier::bezier_pieces;
+use crate::patch::NurbsPatch;
+use crate::surface::Vec3;
+
+/// Normals that turn by more than this (radians) across a joint or a crease make it sharp: one degree, above what CAD
+/// systems leave in joints that are meant to be tangential.
+pub(super) const SHARP_ANGLE: f64 = std::f64::consts::PI / 180.0;
+
+/// Why a set of patches could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PatchSetError {
+    /// No patches.
+    #[error("there are no patches")]
+    Empty,
+    /// The tolerance is not a positive finite number.
+    #[error("the tolerance {0} for joining edges is not a positive number")]
+    Tolerance(f64),
+    /// Every patch is a point, or so large that squared lengths overflow.
+    #[error("the patches have no usable size: {0}")]
+    Size(f64),
+    /// More pieces than can be numbered.
+    #[error("the patches have too many spans")]
+    TooLarge,
+    /// Going round over common edges leads back to the other side (a Moebius strip).
+    #[error(
+        "patches {0} and {1} cannot be oriented alike: the surface that they belong to has one side \
+         only (patches {2:?})"
+    )]
+    NotOrientable(usize, usize, Vec<usize>),
+}
+
+/// Numbers of the pieces of one patch, and where it may break.
+#[derive(Debug, Clone)]
+pub(super) struct Grid {
+    /// Number of the first piece; piece `(i, j)` is `first + i + spans[0] * j`.
+    pub first: u32,
+    pub spans: [usize; 2],
+    /// Borders of spans.
+    pub breaks: [Vec<f64>; 2],
+    /// For every border of spans: 0 smooth, 1 tangents may differ in length, 2 the surface has a crease or ends.
+    pub kinks: [Vec<u8>; 2],
+}
+
+/// Patches with their tree, their shared edges and their sides. Queries take `&self` and lock nothing.
+#[derive(Debug, Clone)]
+pub struct PatchSet {
+    pub(super) patches: Vec<NurbsPatch>,
+    pub(super) grids: Vec<Grid>,
+    pub(super) pieces: Pieces,
+    pub(super) tree: Tree,
+    pub(super) size: f64,
+    pub(super) tolerance: f64,
+    pub(super) topology: Topology,
+    pub(super) sides: Vec<f64>,
+}
+
+impl PatchSet {
+    /// Joins patches to a set: finds common edges, connected components and a consistent orientation, in which the first
+    /// patch of every component keeps its own (`rho_1 x rho_2` points out).
+    ///
+    /// Edges are joined where they are within `tolerance` (a length) of each other; by default that is 1e-5 of
+    /// [`size`](Self::size), but no more than a hundredth of the shortest edge. [`edges`](Self::edges) tells what was
+    /// joined and the largest gap.
+    ///
+    /// # Errors
+    /// No patches, a useless tolerance or size, or a surface with one side only.
+    pub fn new(patches: Vec<NurbsPatch>, tolerance: Option<f64>) -> Result<Self, PatchSetError> {
+        if patches.is_empty() {
+            return Err(PatchSetError::Empty);
+        }
+        if let Some(tolerance) = tolerance
+            && !(tolerance.is_finite() && tolerance > 0.0)
+        {
+            return Err(PatchSetError::Tolerance(tolerance));
+        }
+        let mut pieces = Pieces::default();
+        let mut grids = Vec::with_capacity(patches.len());
+        for (number, patch) in patches.iter().enumerate() {
+            let beziers = bezier_pieces(patch);
+            if pieces.list.len() + beziers.len() >= 1 << 31 {
+                return Err(PatchSetError::TooLarge);
+            }
+            grids.push(grid(patch, pieces.list.len() as u32));
+            for bezier in &beziers {
+                pieces.push(number as u32, bezier);
+            }
+        }
+        let boxes: Vec<[Vec3; 2]> = pieces.list.iter().map(|p| hull(pieces.net(p))).collect();
+        let tree = Tree::new(&boxes);
+        let [low, high] = tree.bounds();
+        let size = (high - low).norm();
+        if !(size > 1e-100 && size < 1e100) {
+            return Err(PatchSetError::Size(size));
+        }
+        let sides = vec![1.0; patches.len()];
+        let mut set = PatchSet {
+            patches,
+            grids,
+            pieces,
+            tree,
+            size,
+            tolerance: 0.0,
+            topology: Topology::default(),
+            sides,
+        };
+        topology::build(&mut set, tolerance)?;
+        Ok(set)
+    }
+
+    /// The patches, by number.
+    pub fn patches(&self) -> &[NurbsPatch] {
+        &self.patches
+    }
+
+    /// Closest point of the set to `q`, or `None` where nothing lies within the distance `reach` (which may be
+    /// infinite) or `q` is not finite.
+    ///
+    /// Without a hint the tree is searched from the top. With a hint the iteration starts there, and its distance then
+    /// bounds the same search: the answer is the same, found sooner. The result is the global minimum up to 1e-11 of the
+    /// size of the set plus 1e-14 of the distance; where several points are equally near, which of them is given
+    /// depends on the hint.
+    pub fn project(&self, q: &Vec3, hint: Option<Hint>, reach: f64) -> Option<Foot> {
+        if !(q.x.is_finite() && q.y.is_finite() && q.z.is_finite() && reach >= 0.0) {
+            return None;
+        }
+        let mut search = Search::new(self, *q, reach);
+        if let Some(hint) = hint
+            && let Some(patch) = self.patches.get(hint.patch as usize)
+            && hint.xi.iter().all(|x| x.is_finite())
+        {
+            let span = patch.find_span(hint.xi);
+            let region = self.region(hint.patch, span);
+            let local = self.descend(q, &region, hint.xi, span, super::search::ROUGH);
+            search.offer(self.piece_number(hint.patch, local.span), local);
+        }
+        search.run();
+        let complete = search.complete;
+        let (_, local) = search.best?;
+        Some(self.finish(q, local, complete))
+    }
+
+    /// Number of the piece of a pair of spans.
+    #[inline]
+    pub(super) fn piece_number(&self, patch: u32, span: [usize; 2]) -> u32 {
+        let grid = &self.grids[patch as usize];
+        grid.first + (span[0] + grid.spans[0] * span[1]) as u32
+    }
+
+    /// The region between creases and edges that holds a pair of spans.
+    #[inline]
+    pub(super) fn region(&self, patch: u32, span: [usize; 2]) -> Region {
+        let grid = &self.grids[patch as usize];
+        let mut spans = [[0; 2]; 2];
+        let mut domain = [[0.0; 2]; 2];
+        for k in 0..2 {
+            let kinks = &grid.kinks[k];
+            let mut first = span[k].min(grid.spans[k] - 1);
+            let mut end = first + 1;
+            while kinks[first] == 0 {
+                first -= 1;
+            }
+            while kinks[end] == 0 {
+                end += 1;
+            }
+            spans[k] = [first, end];
+            domain[k] = [grid.breaks[k][first], grid.breaks[k][end]];
+        }
+        Region {
+            patch,
+            spans,
+            domain,
+        }
+    }
+}
+
+fn grid(patch: &NurbsPatch, first: u32) -> Grid {
+    let mut spans = [0; 2];
+    let mut breaks = [Vec::new(), Vec::new()];
+    let mut kinks = [Vec::new(), Vec::new()];
+    for k in 0..2 {
+        let ranges = patch.spans(k);
+        spans[k] = ranges.len();
+        let [start, end] = patch.domain()[k];
+        breaks[k] = ranges.iter().map(|r| r[0]).chain([end]).collect();
+        breaks[k][0] = start;
+        let creases = patch.crease_knots(k);
+        let sharp = patch.sharp_knots(k, SHARP_ANGLE);
+        kinks[k] = breaks[k]
+            .iter()
+            .map(|x| {
+                if *x == start || *x == end || sharp.contains(x) {
+                    2
+                } else {
+                    u8::from(creases.contains(x))
+                }
+            })
+            .collect();
+    }
+    Grid {
+        first,
+        spans,
+        breaks,
+        kinks,
+    }
+}

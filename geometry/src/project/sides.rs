@@ -1,0 +1,182 @@
+//! Which side of every component is the outside.
+
+use super::set::PatchSet;
+use super::{EdgeKind, Foot, Location};
+use crate::surface::Vec3;
+
+/// How the side of a component was decided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SideOutcome {
+    /// The points said so.
+    Decided {
+        /// Points that voted.
+        votes: usize,
+        /// Points whose foot lies on the component but that did not vote: on a free border, far away in comparison with
+        /// others, or on the surface.
+        ignored: usize,
+    },
+    /// No point could vote; the side stays as it was.
+    Undecided {
+        /// Points whose foot lies on the component.
+        ignored: usize,
+    },
+}
+
+/// The side of one connected component.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComponentSide {
+    /// Number of the component.
+    pub component: usize,
+    /// Side of its first patch: +1 where `rho_1 x rho_2` points out.
+    pub side: f64,
+    /// How it was decided.
+    pub outcome: SideOutcome,
+}
+
+/// Why sides could not be chosen.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SideError {
+    /// Points lie on both sides of a component.
+    #[error(
+        "points lie on both sides of patch {patch}: {front} in front of and {back} behind the connected \
+         patches {patches:?} (front: the side of rho_1 x rho_2 of patch {})", patches[0]
+    )]
+    BothSides {
+        /// The patch that the nearest point of the minority projects to.
+        patch: usize,
+        /// Number of points in front of the component.
+        front: usize,
+        /// Number of points behind it.
+        back: usize,
+        /// Patches of the component.
+        patches: Vec<usize>,
+    },
+}
+
+/// Points nearer than this fraction of the size lie on the surface and have no side.
+const ON_SURFACE: f64 = 1e-9;
+/// Points vote if they are no farther away than this multiple of the nearest one's distance ...
+const FAR: f64 = 3.0;
+/// ... or than this fraction of the size of the set.
+const NEAR: f64 = 0.05;
+
+impl PatchSet {
+    /// Side of every patch: +1 where `rho_1 x rho_2` points out of the master, -1 where it points in.
+    pub fn sides(&self) -> &[f64] {
+        &self.sides
+    }
+
+    /// Patches of every connected component.
+    pub fn components(&self) -> &[Vec<usize>] {
+        &self.topology.components
+    }
+
+    /// Gives the first patch of every component the side of its own parametrisation, or the other one if `reversed`; the
+    /// rest of the component follows.
+    pub fn set_side_as_given(&mut self, reversed: bool) {
+        for component in 0..self.topology.components.len() {
+            self.set_component_side(component, if reversed { -1.0 } else { 1.0 });
+        }
+    }
+
+    /// Sets the side of a component's first patch (the sign of `side`); the others follow. Numbers past the last
+    /// component are ignored.
+    pub fn set_component_side(&mut self, component: usize, side: f64) {
+        let Some(members) = self.topology.components.get(component) else {
+            return;
+        };
+        let wanted = if side < 0.0 { -1.0 } else { 1.0 };
+        let factor = wanted * self.sides[members[0]];
+        for &patch in members {
+            self.sides[patch] *= factor;
+        }
+    }
+
+    /// Chooses the side of every component so that the points (where the slave starts) lie outside.
+    ///
+    /// Every point votes for the component that holds its closest point. Points do not vote if their foot lies on a free
+    /// border, a pole or a free corner (they are beside the surface rather than above it), if they are within 1e-9 of
+    /// the size of the surface, or if they are farther away than both three times the distance of the nearest voter of
+    /// the component and 5 % of the size of the set.
+    ///
+    /// # Errors
+    /// [`SideError::BothSides`] where voters of a component contradict each other. No side is changed then.
+    pub fn orient_towards(&mut self, points: &[Vec3]) -> Result<Vec<ComponentSide>, SideError> {
+        let count = self.topology.components.len();
+        let mut votes: Vec<Vec<(f64, usize, bool)>> = vec![Vec::new(); count];
+        let mut ignored = vec![0; count];
+        let mut hint = None;
+        for point in points {
+            let Some(foot) = self.project(point, hint, f64::INFINITY) else {
+                continue;
+            };
+            hint = Some(foot.hint());
+            let component = self.topology.component_of[foot.patch as usize];
+            if beside(&foot) || foot.distance <= ON_SURFACE * self.size {
+                ignored[component] += 1;
+                continue;
+            }
+            // In front of the component's first patch as it is given.
+            let first = self.topology.components[component][0];
+            let front = foot.signed_distance * self.sides[first] > 0.0;
+            votes[component].push((foot.distance, foot.patch as usize, front));
+        }
+        let mut out = Vec::with_capacity(count);
+        for (component, (votes, mut ignored)) in votes.iter_mut().zip(ignored).enumerate() {
+            let nearest = votes.iter().map(|v| v.0).fold(f64::INFINITY, f64::min);
+            let limit = (FAR * nearest).max(NEAR * self.size);
+            let all = votes.len();
+            votes.retain(|v| v.0 <= limit);
+            ignored += all - votes.len();
+            let front = votes.iter().filter(|v| v.2).count();
+            let back = votes.len() - front;
+            let members = &self.topology.components[component];
+            if front > 0 && back > 0 {
+                let minority = front < back;
+                let patch = votes
+                    .iter()
+                    .filter(|v| v.2 == minority)
+                    .min_by(|a, b| a.0.total_cmp(&b.0))
+                    .map_or(members[0], |v| v.1);
+                return Err(SideError::BothSides {
+                    patch,
+                    front,
+                    back,
+                    patches: members.clone(),
+                });
+            }
+            let (side, outcome) = if votes.is_empty() {
+                (self.sides[members[0]], SideOutcome::Undecided { ignored })
+            } else {
+                let votes = votes.len();
+                (
+                    if front > 0 { 1.0 } else { -1.0 },
+                    SideOutcome::Decided { votes, ignored },
+                )
+            };
+            out.push(ComponentSide {
+                component,
+                side,
+                outcome,
+            });
+        }
+        for side in &out {
+            self.set_component_side(side.component, side.side);
+        }
+        Ok(out)
+    }
+}
+
+/// Whether the query of a foot may lie beside the surface rather than above it.
+fn beside(foot: &Foot) -> bool {
+    matches!(
+        foot.location,
+        Location::Edge {
+            kind: EdgeKind::Free,
+            ..
+        } | Location::Corner {
+            kind: EdgeKind::Free,
+            ..
+        } | Location::Pole { .. }
+    )
+}
