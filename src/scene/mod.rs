@@ -2,6 +2,7 @@
 //!
 //! [`load`] reads a file into a [`LoadedScene`]; [`check()`] finds everything that is wrong without a mesh or CAD file
 //! being read. Both say where in the file.
+mod check;
 mod decode;
 mod expression;
 mod json;
@@ -12,6 +13,7 @@ mod types;
 mod units;
 mod value;
 
+pub use check::check;
 pub use expression::{Expression, ExpressionError};
 pub use load::{FORMAT, LoadedScene, load, parse, pointer};
 pub use problem::{Place, Problem, SceneError, nearest};

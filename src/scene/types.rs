@@ -206,7 +206,7 @@ pub struct Block {
 
 /// How nodes are spaced along an axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Spacing {
     #[default]
     Uniform,
@@ -235,7 +235,7 @@ pub struct MeshFile {
 
 /// Set selected by geometry, on the undeformed mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Selection {
     /// Nodes inside a box (its borders included).
     NodesInBox { min: [f64; 3], max: [f64; 3] },
@@ -256,6 +256,7 @@ pub enum Selection {
 /// A rigid surface: exactly one of `cad`, `sphere`, `cylinder`, `plane`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[schemars(extend("oneOf" = [{"required": ["cad"]}, {"required": ["sphere"]}, {"required": ["cylinder"]}, {"required": ["plane"]}]))]
 pub struct Surface {
     /// NURBS patches from a CAD file.
     pub cad: Option<CadFile>,
@@ -418,7 +419,7 @@ pub enum Penalty {
 
 /// Tangent matrix of contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Tangent {
     /// Consistent at every penetration.
     #[default]
@@ -472,6 +473,7 @@ pub struct Components {
 /// A load: exactly one of `force`, `traction`, `pressure`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{"required": ["force"]}, {"required": ["traction"]}, {"required": ["pressure"]}]))]
 pub struct Load {
     /// Node or face set, `body.set` (traction and pressure need faces).
     pub on: String,

@@ -1,0 +1,231 @@
+//! Everything that can be wrong with a scene that has been read, without its mesh and CAD files being read.
+mod checker;
+mod names;
+mod shapes;
+
+use super::load::LoadedScene;
+use super::problem::Problem;
+use super::types::*;
+use super::value::{POSITION_AND_TIME, TIME};
+use checker::{Checker, path};
+use names::Sets;
+
+/// All problems of a scene, in the order of the file; none: the scene can be built.
+pub fn check(loaded: &LoadedScene) -> Vec<Problem> {
+    let mut c = Checker::new(loaded);
+    let scene = &loaded.scene;
+    names::check(&mut c, scene);
+    for (name, material) in &scene.materials {
+        check_material(&mut c, name, material);
+    }
+    if scene.bodies.is_empty() {
+        c.add("/bodies", "a scene needs at least one body", None);
+    }
+    for (name, body) in &scene.bodies {
+        let at = path(&["bodies", name]);
+        c.refers(
+            &format!("{at}/material"),
+            "material",
+            "materials",
+            &body.material,
+            scene.materials.keys(),
+        );
+        shapes::check_mesh(&mut c, &format!("{at}/mesh"), &body.mesh);
+        for (set, selection) in &body.sets {
+            let at = path(&["bodies", name, "sets", set]);
+            shapes::check_selection(&mut c, &at, selection);
+        }
+    }
+    for (name, surface) in &scene.surfaces {
+        shapes::check_surface(&mut c, &path(&["surfaces", name]), surface);
+    }
+    let sets = Sets::new(scene);
+    for (name, contact) in &scene.contacts {
+        check_contact(&mut c, &path(&["contacts", name]), contact, scene, &sets);
+    }
+    for (name, support) in &scene.supports {
+        check_support(&mut c, &path(&["supports", name]), support, &sets);
+    }
+    for (name, load) in &scene.loads {
+        check_load(&mut c, &path(&["loads", name]), load, &sets);
+    }
+    check_solution(&mut c, &scene.solution);
+    c.whole("/output/tessellation", scene.output.tessellation, 1, 200);
+    c.finish()
+}
+
+fn check_material(c: &mut Checker, name: &str, material: &Material) {
+    let (law, elastic) = match material {
+        Material::StVenantKirchhoff(e) => ("st_venant_kirchhoff", e),
+        Material::NeoHooke(e) => ("neo_hooke", e),
+    };
+    let at = path(&["materials", name, law]);
+    c.positive(&format!("{at}/E"), "Young's modulus `E`", elastic.e);
+    if !(elastic.nu > -1.0 && elastic.nu < 0.5) {
+        let help = "-1 < nu < 0.5; nearly incompressible materials take e.g. 0.499";
+        let message = format!("Poisson's ratio `nu` is {}", elastic.nu);
+        c.add(&format!("{at}/nu"), message, Some(help.into()));
+    }
+}
+
+fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, sets: &Sets) {
+    sets.check(c, &format!("{at}/slave"), &contact.slave, true, "contact");
+    c.refers(
+        &format!("{at}/master"),
+        "surface",
+        "surfaces",
+        &contact.master,
+        scene.surfaces.keys(),
+    );
+    match contact.points {
+        Points::Nodes => {}
+        Points::Gauss(n) => c.whole(&format!("{at}/points/gauss"), n.into(), 1, 10),
+        Points::Lobatto(n) => c.whole(&format!("{at}/points/lobatto"), n.into(), 2, 10),
+    }
+    match contact.penalty {
+        Penalty::Auto => {}
+        Penalty::Value(p) => c.positive(&format!("{at}/penalty/value"), "the penalty", p),
+        Penalty::Scaled(p) => c.positive(
+            &format!("{at}/penalty/scaled"),
+            "the factor of the penalty",
+            p,
+        ),
+    }
+}
+
+fn check_support(c: &mut Checker, at: &str, support: &Support, sets: &Sets) {
+    sets.check(c, &format!("{at}/on"), &support.on, false, "a support");
+    c.exactly_one(
+        at,
+        "support",
+        &[
+            ("fixed", support.fixed),
+            ("symmetry", support.symmetry.is_some()),
+            ("displacement", support.displacement.is_some()),
+        ],
+    );
+    if let Some(components) = &support.displacement {
+        let all = [
+            ("x", &components.x),
+            ("y", &components.y),
+            ("z", &components.z),
+        ];
+        if all.iter().all(|(_, v)| v.is_none()) {
+            let message = "no component is prescribed";
+            c.add(
+                &format!("{at}/displacement"),
+                message,
+                Some("give one of `x`, `y`, `z`".into()),
+            );
+        }
+        for (axis, value) in all {
+            if let Some(value) = value {
+                c.value(
+                    &format!("{at}/displacement/{axis}"),
+                    value,
+                    &POSITION_AND_TIME,
+                );
+            }
+        }
+    }
+}
+
+fn check_load(c: &mut Checker, at: &str, load: &Load, sets: &Sets) {
+    let on_faces = load.force.is_none();
+    let what = if load.pressure.is_some() {
+        "a pressure"
+    } else {
+        "a traction"
+    };
+    sets.check(
+        c,
+        &format!("{at}/on"),
+        &load.on,
+        on_faces,
+        if on_faces { what } else { "a force" },
+    );
+    c.exactly_one(
+        at,
+        "load",
+        &[
+            ("force", load.force.is_some()),
+            ("traction", load.traction.is_some()),
+            ("pressure", load.pressure.is_some()),
+        ],
+    );
+    // A total force is one vector for the whole set, so it cannot depend on position.
+    for (key, values, variables) in [
+        ("force", &load.force, &TIME[..]),
+        ("traction", &load.traction, &POSITION_AND_TIME[..]),
+    ] {
+        for (i, value) in values.iter().flatten().enumerate() {
+            c.value(&format!("{at}/{key}/{i}"), value, variables);
+        }
+    }
+    if let Some(value) = &load.pressure {
+        c.value(&format!("{at}/pressure"), value, &POSITION_AND_TIME);
+    } else if load.follower {
+        let help = "forces and tractions keep their direction";
+        c.add(
+            &format!("{at}/follower"),
+            "only a pressure can follow the faces",
+            Some(help.into()),
+        );
+    }
+}
+
+fn check_solution(c: &mut Checker, solution: &Solution) {
+    c.positive("/solution/end_time", "the end time", solution.end_time);
+    let step = &solution.step;
+    for (key, value) in [
+        ("initial", step.initial),
+        ("min", step.min),
+        ("max", step.max),
+    ] {
+        c.positive(
+            &format!("/solution/step/{key}"),
+            &format!("the {key} step"),
+            value,
+        );
+    }
+    let default = Step::default();
+    // Of two sizes in the wrong order the one that the user wrote is meant.
+    let blamed = |a: &'static str, a_given: bool, b: &'static str| if a_given { a } else { b };
+    if step.min > step.initial {
+        let key = blamed("min", step.min != default.min, "initial");
+        let message = format!(
+            "the smallest step {} is larger than the first step {}",
+            step.min, step.initial
+        );
+        c.add(
+            &format!("/solution/step/{key}"),
+            message,
+            Some("min <= initial <= max".into()),
+        );
+    }
+    if step.initial > step.max {
+        let key = blamed("initial", step.initial != default.initial, "max");
+        let message = format!(
+            "the first step {} is larger than the largest step {}",
+            step.initial, step.max
+        );
+        c.add(
+            &format!("/solution/step/{key}"),
+            message,
+            Some("min <= initial <= max".into()),
+        );
+    }
+    let newton = &solution.newton;
+    c.whole(
+        "/solution/newton/max_iterations",
+        newton.max_iterations,
+        1,
+        10_000,
+    );
+    if !(newton.tolerance > 0.0 && newton.tolerance < 1.0) {
+        let message = format!("the tolerance is {}", newton.tolerance);
+        let help = "a part of the largest force: between 0 and 1, usually 1e-8";
+        c.add("/solution/newton/tolerance", message, Some(help.into()));
+    }
+    c.whole("/solution/threads", solution.threads, 0, 4096);
+}

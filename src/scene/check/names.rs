@@ -1,0 +1,212 @@
+//! Names, and what refers to them.
+use super::checker::{Checker, path};
+use crate::scene::problem::{nearest, suggestion};
+use crate::scene::types::*;
+use std::collections::BTreeMap;
+
+/// Names can be used in `body.set`, in columns of the history and in file names.
+pub(super) fn check(c: &mut Checker, scene: &Scene) {
+    let sections: [(&str, Vec<&String>); 6] = [
+        ("materials", scene.materials.keys().collect()),
+        ("bodies", scene.bodies.keys().collect()),
+        ("surfaces", scene.surfaces.keys().collect()),
+        ("contacts", scene.contacts.keys().collect()),
+        ("supports", scene.supports.keys().collect()),
+        ("loads", scene.loads.keys().collect()),
+    ];
+    for (section, names) in &sections {
+        for name in names {
+            check_name(c, &path(&[section, name]), name, *section == "bodies");
+        }
+    }
+    for (name, body) in &scene.bodies {
+        let (generated, what) = generated_sets(&body.mesh);
+        for set in body.sets.keys() {
+            let at = path(&["bodies", name, "sets", set]);
+            check_name(c, &at, set, false);
+            if generated.contains(&set.as_str()) {
+                c.add(
+                    &at,
+                    format!("the {what} has a set `{set}` of its own"),
+                    Some("choose another name".into()),
+                );
+            }
+        }
+    }
+    // The history has columns such as `displacement.<name>.x` for each of these.
+    let mut first: BTreeMap<&String, &str> = BTreeMap::new();
+    for (section, names) in &sections {
+        if !matches!(*section, "surfaces" | "supports" | "loads") {
+            continue;
+        }
+        for &name in names {
+            match first.get(name) {
+                Some(other) => {
+                    let message = format!("the name `{name}` is also used in `{other}`");
+                    let help = "surfaces, supports and loads share the columns of the history; choose another name";
+                    c.add(&path(&[section, name]), message, Some(help.into()));
+                }
+                None => {
+                    first.insert(name, section);
+                }
+            }
+        }
+    }
+}
+
+fn check_name(c: &mut Checker, at: &str, name: &str, body: bool) {
+    if name.trim().is_empty() {
+        return c.add(at, "a name is empty", None);
+    }
+    let bad = |ch: char| ch.is_control() || matches!(ch, ',' | '"' | ';') || (body && ch == '.');
+    if let Some(ch) = name.chars().find(|ch| bad(*ch)) {
+        let help = match ch {
+            '.' => "the dot separates body and set, as in `sheet.top`",
+            _ => "names become columns of the history",
+        };
+        c.add(
+            at,
+            format!("the name `{name}` holds the character {ch:?}"),
+            Some(help.into()),
+        );
+    }
+}
+
+/// Sets that a generator makes, and its name; none for files.
+fn generated_sets(mesh: &MeshSource) -> (Vec<&'static str>, &'static str) {
+    let turn = |range: [f64; 2]| (range[1] - range[0] - 360.0).abs() < 1e-9;
+    let (mut sets, closed, what) = match mesh {
+        MeshSource::Plate(_) => (
+            vec!["bottom", "top", "x_min", "x_max", "y_min", "y_max"],
+            false,
+            "plate",
+        ),
+        MeshSource::CylinderPanel(p) => {
+            let sets = vec!["inner", "outer", "phi_min", "phi_max", "y_min", "y_max"];
+            (sets, turn(p.angles), "cylinder panel")
+        }
+        MeshSource::SpherePanel(p) => {
+            let sets = vec![
+                "inner",
+                "outer",
+                "latitude_min",
+                "latitude_max",
+                "longitude_min",
+                "longitude_max",
+            ];
+            (sets, turn(p.longitude), "sphere panel")
+        }
+        MeshSource::Block(_) => {
+            let sets = vec![
+                "bottom", "top", "x_min", "x_max", "y_min", "y_max", "z_min", "z_max",
+            ];
+            (sets, false, "block")
+        }
+        MeshSource::File(_) => (Vec::new(), false, "file"),
+    };
+    if closed {
+        sets.retain(|s| !s.starts_with("phi") && !s.starts_with("longitude"));
+    }
+    (sets, what)
+}
+
+/// The sets of all bodies, as far as they are known without reading a file.
+pub(super) struct Sets<'a> {
+    bodies: BTreeMap<&'a str, BodySets<'a>>,
+}
+
+struct BodySets<'a> {
+    /// Name, and whether it has faces.
+    sets: BTreeMap<&'a str, bool>,
+    /// A mesh file may hold more.
+    open: bool,
+}
+
+impl<'a> Sets<'a> {
+    pub fn new(scene: &'a Scene) -> Self {
+        let bodies = scene.bodies.iter().map(|(name, body)| {
+            let mut sets: BTreeMap<&str, bool> = generated_sets(&body.mesh)
+                .0
+                .into_iter()
+                .map(|s| (s, true))
+                .collect();
+            for (set, selection) in &body.sets {
+                let faces = matches!(
+                    selection,
+                    Selection::FacesInBox { .. } | Selection::FacesFacing { .. }
+                );
+                sets.insert(set, faces);
+            }
+            let open = matches!(body.mesh, MeshSource::File(_));
+            (name.as_str(), BodySets { sets, open })
+        });
+        Sets {
+            bodies: bodies.collect(),
+        }
+    }
+
+    /// `reference` is `body.set` of a body and, where that is known, of one of its sets; `user` needs faces.
+    pub fn check(&self, c: &mut Checker, at: &str, reference: &str, faces: bool, user: &str) {
+        let Some((body, set)) = reference.split_once('.') else {
+            return c.add(
+                at,
+                format!("`{reference}` does not name a set"),
+                Some(self.form(reference)),
+            );
+        };
+        let Some(known) = self.bodies.get(body) else {
+            let help = match nearest(body, self.bodies.keys().copied()) {
+                Some(near) => format!("did you mean `{near}.{set}`? bodies: {}", self.list()),
+                None => format!("bodies: {}", self.list()),
+            };
+            return c.add(at, format!("there is no body `{body}`"), Some(help));
+        };
+        match known.sets.get(set) {
+            Some(has_faces) => {
+                if faces && !has_faces {
+                    let message =
+                        format!("`{reference}` is a set of nodes, but {user} needs faces");
+                    let with: Vec<&str> = known
+                        .sets
+                        .iter()
+                        .filter(|(_, f)| **f)
+                        .map(|(s, _)| *s)
+                        .collect();
+                    c.add(
+                        at,
+                        message,
+                        Some(format!("face sets of `{body}`: {}", with.join(", "))),
+                    );
+                }
+            }
+            None if known.open => {}
+            None => {
+                let help = suggestion(
+                    set,
+                    &format!("sets of `{body}`"),
+                    known.sets.keys().copied(),
+                );
+                c.add(
+                    at,
+                    format!("the body `{body}` has no set `{set}`"),
+                    Some(help),
+                );
+            }
+        }
+    }
+
+    fn list(&self) -> String {
+        let names: Vec<String> = self.bodies.keys().map(|b| format!("`{b}`")).collect();
+        names.join(", ")
+    }
+
+    fn form(&self, reference: &str) -> String {
+        match self.bodies.get(reference) {
+            Some(body) => {
+                let set = body.sets.keys().next().copied().unwrap_or("set");
+                format!("write body and set, as in `{reference}.{set}`")
+            }
+            None => format!("write `body.set`; bodies: {}", self.list()),
+        }
+    }
+}

@@ -1,0 +1,328 @@
+//! What is wrong with a scene of the right form is found, all of it at once, and its place.
+use covact::scene::{check, parse};
+
+const SCENE: &str = r#"{
+  "covact": 1,
+  "materials": {"steel": {"neo_hooke": {"E": 210000, "nu": 0.3}}},
+  "bodies": {
+    "sheet": {
+      "mesh": {"plate": {"size": [10, 10], "thickness": 0.8, "elements": [4, 4]}},
+      "material": "steel",
+      "sets": {"mid": {"nodes_near_point": {"point": [5, 5, 0], "tolerance": 0.1}}}
+    }
+  },
+  "surfaces": {
+    "ball": {"sphere": {"radius": 5}, "motion": {"translation": [0, 0, "-t"]}}
+  },
+  "contacts": {"c1": {"slave": "sheet.top", "master": "ball", "points": {"gauss": 2}}},
+  "supports": {"edge": {"on": "sheet.x_min", "displacement": {"z": "0.1*x*t"}}},
+  "loads": {"p": {"on": "sheet.bottom", "pressure": "t", "follower": true}},
+  "solution": {"step": {"initial": 0.1}}
+}
+"#;
+
+fn problems(text: &str) -> Vec<String> {
+    let loaded = parse(text, "scene.json").unwrap_or_else(|e| panic!("{e}"));
+    check(&loaded).iter().map(|p| p.to_string()).collect()
+}
+
+/// Every case is (replaced, by, start of the only problem).
+fn check_all(cases: &[(&str, &str, &str)]) {
+    for (from, to, expected) in cases {
+        assert!(SCENE.contains(from), "{from}");
+        let found = problems(&SCENE.replacen(from, to, 1));
+        assert_eq!(found.len(), 1, "{from} -> {to}: {found:?}");
+        assert!(
+            found[0].starts_with(expected),
+            "found    {}\nexpected {expected}",
+            found[0]
+        );
+    }
+}
+
+#[test]
+fn the_scene_itself_is_right() {
+    assert_eq!(problems(SCENE), Vec::<String>::new());
+}
+
+#[test]
+fn names_that_do_not_exist() {
+    check_all(&[
+        (
+            "\"material\": \"steel\"",
+            "\"material\": \"stell\"",
+            "7:19: there is no material `stell` (did you mean `steel`? materials: `steel`)",
+        ),
+        (
+            "\"master\": \"ball\"",
+            "\"master\": \"bal\"",
+            "14:55: there is no surface `bal` (did you mean `ball`?",
+        ),
+        (
+            "sheet.top",
+            "shet.top",
+            "14:32: there is no body `shet` (did you mean `sheet.top`? bodies: `sheet`)",
+        ),
+        (
+            "sheet.top",
+            "sheet.tops",
+            "14:32: the body `sheet` has no set `tops` (did you mean `top`? sets of `sheet`: `bottom`, `mid`, `top`,",
+        ),
+        (
+            "sheet.x_min",
+            "sheet",
+            "15:31: `sheet` does not name a set (write body and set, as in `sheet.bottom`)",
+        ),
+        (
+            "sheet.top",
+            "sheet.mid",
+            "14:32: `sheet.mid` is a set of nodes, but contact needs faces (face sets of",
+        ),
+        (
+            "sheet.bottom",
+            "sheet.mid",
+            "16:25: `sheet.mid` is a set of nodes, but a pressure needs faces",
+        ),
+    ]);
+    // Supports take nodes, and a force takes them, too.
+    assert!(problems(&SCENE.replace("sheet.x_min", "sheet.mid")).is_empty());
+    let force = SCENE.replace("sheet.bottom", "sheet.mid").replace(
+        "\"pressure\": \"t\", \"follower\": true",
+        "\"force\": [0, 0, \"t\"]",
+    );
+    assert!(problems(&force).is_empty());
+}
+
+#[test]
+fn one_and_only_one() {
+    check_all(&[
+        (
+            "\"sphere\": {\"radius\": 5}, ",
+            "",
+            "12:5: the surface does not say what it is (exactly one of `cad`,",
+        ),
+        (
+            "\"sphere\": {\"radius\": 5}",
+            "\"sphere\": {\"radius\": 5}, \"plane\": {\"size\": [1, 1]}",
+            "12:5: the surface has `sphere` and `plane` at once (exactly one of",
+        ),
+        (
+            "\"displacement\": {\"z\": \"0.1*x*t\"}",
+            "\"mid_surface\": true",
+            "15:16: the support does not say what",
+        ),
+        (
+            "\"displacement\":",
+            "\"fixed\": true, \"displacement\":",
+            "15:16: the support has `fixed` and `displacement`",
+        ),
+        (
+            "{\"z\": \"0.1*x*t\"}",
+            "{}",
+            "15:46: no component is prescribed (give one of `x`, `y`, `z`)",
+        ),
+        (
+            "\"pressure\": \"t\", \"follower\": true",
+            "\"follower\": false",
+            "16:13: the load does not say what it is",
+        ),
+        (
+            "\"pressure\": \"t\"",
+            "\"traction\": [0, 0, \"x\"]",
+            "16:75: only a pressure can follow the faces",
+        ),
+    ]);
+}
+
+#[test]
+fn numbers_out_of_range() {
+    check_all(&[
+        (
+            "210000",
+            "-1",
+            "3:46: Young's modulus `E` is -1 (it must be positive)",
+        ),
+        (
+            "0.3}",
+            "0.5}",
+            "3:54: Poisson's ratio `nu` is 0.5 (-1 < nu < 0.5;",
+        ),
+        (
+            "[10, 10]",
+            "[10, 0]",
+            "6:39: a length of the plate is 0 (it must be positive)",
+        ),
+        (
+            "[4, 4]",
+            "[0, 4]",
+            "6:75: `elements` is 0 (a whole number from 1 to 50000000)",
+        ),
+        (
+            "[4, 4]",
+            "[40000, 40000]",
+            "6:62: 1.600e9 elements in all (at most 5e7)",
+        ),
+        (
+            "\"tolerance\": 0.1",
+            "\"tolerance\": -1",
+            "8:78: the tolerance is -1",
+        ),
+        ("\"radius\": 5", "\"radius\": 0", "12:35: the radius is 0"),
+        (
+            "\"radius\": 5",
+            "\"radius\": 5, \"axis\": [0, 0, 0]",
+            "12:38: the axis has no direction",
+        ),
+        (
+            "{\"gauss\": 2}",
+            "{\"gauss\": 11}",
+            "14:83: `gauss` is 11 (a whole number from 1 to 10)",
+        ),
+        (
+            "{\"gauss\": 2}",
+            "{\"lobatto\": 1}",
+            "14:85: `lobatto` is 1 (a whole number from 2 to 10)",
+        ),
+        (
+            "\"points\"",
+            "\"penalty\": {\"value\": 0}, \"points\"",
+            "14:84: the penalty is 0",
+        ),
+        (
+            "\"initial\": 0.1",
+            "\"initial\": 0.2",
+            "17:36: the first step 0.2 is larger than the largest step 0.1",
+        ),
+        (
+            "\"initial\": 0.1",
+            "\"min\": 0.2, \"max\": 1",
+            "17:32: the smallest step 0.2 is larger than the first step",
+        ),
+        (
+            "\"step\":",
+            "\"newton\": {\"tolerance\": 1}, \"step\":",
+            "17:41: the tolerance is 1 (a part of",
+        ),
+        (
+            "\"step\":",
+            "\"end_time\": 0, \"step\":",
+            "17:29: the end time is 0",
+        ),
+        (
+            "\"elements\": [4, 4]",
+            "\"elements\": [4, 4], \"spacing\": [\"uniform\", {\"fine\": {\"length\": 10, \"fine\": 2}}]",
+            "6:126: the fine part 10 is not shorter than the axis 10",
+        ),
+    ]);
+}
+
+#[test]
+fn values() {
+    check_all(&[
+        (
+            "\"-t\"",
+            "\"-x\"",
+            "12:74: unknown variable `x` (possible here: `t`, `pi`, `e`)",
+        ),
+        (
+            "0.1*x*t",
+            "0.1*x*s",
+            "15:74: unknown variable `s` (possible here: `x`, `y`, `z`, `t`",
+        ),
+        (
+            "0.1*x*t",
+            "0.1*sim(x)",
+            "15:70: unknown function `sim` (did you mean `sin`?",
+        ),
+        (
+            "\"-t\"",
+            "{\"table\": [[0, 0], [1, 1], [1, 2]]}",
+            "12:100: times of a table must increase: row 3 has t = 1",
+        ),
+        ("\"-t\"", "{\"table\": []}", "12:73: the table has no rows"),
+        ("\"-t\"", "\"1/0\"", "12:72: the expression `1/0` is inf"),
+        (
+            "\"pressure\": \"t\", \"follower\": true",
+            "\"force\": [0, 0, \"x\"]",
+            "16:56: unknown variable `x` (possible here: `t`, `pi`, `e`)",
+        ),
+    ]);
+}
+
+#[test]
+fn names_that_cannot_be_used() {
+    check_all(&[
+        (
+            "\"mid\"",
+            "\"top\"",
+            "8:16: the plate has a set `top` of its own (choose another name)",
+        ),
+        (
+            "\"p\":",
+            "\"edge\":",
+            "16:13: the name `edge` is also used in `supports`",
+        ),
+        (
+            "\"p\":",
+            "\"p,q\":",
+            "16:13: the name `p,q` holds the character ','",
+        ),
+    ]);
+    let dotted = SCENE.replace("\"sheet\"", "\"she.et\"");
+    assert!(
+        problems(&dotted)
+            .iter()
+            .any(|p| p.starts_with("5:5: the name `she.et` holds the character '.'"))
+    );
+}
+
+#[test]
+fn files_that_are_not_there() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("punch.igs"), "x").unwrap();
+    let path = folder.path().join("scene.json");
+    let with = |file: &str| {
+        SCENE.replace(
+            "\"sphere\": {\"radius\": 5}",
+            &format!("\"cad\": {{\"file\": {file:?}}}"),
+        )
+    };
+    let found = |file: &str| {
+        std::fs::write(&path, with(file)).unwrap();
+        let loaded = covact::scene::load(&path).unwrap();
+        check(&loaded)
+            .iter()
+            .map(|p| p.to_string())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(found("punch.igs"), Vec::<String>::new());
+    let one = found("punhc.igs");
+    assert_eq!(one.len(), 1, "{one:?}");
+    assert!(
+        one[0].starts_with("12:30: there is no file `"),
+        "{}",
+        one[0]
+    );
+    assert!(
+        one[0].ends_with("(did you mean `punch.igs`?)"),
+        "{}",
+        one[0]
+    );
+    assert!(found("../")[0].contains("is a folder, not a file"));
+}
+
+#[test]
+fn all_problems_are_listed_in_the_order_of_the_file() {
+    let text = SCENE
+        .replace("210000", "0")
+        .replace("\"thickness\": 0.8", "\"thickness\": -1")
+        .replace("\"master\": \"ball\"", "\"master\": \"bowl\"")
+        .replace("\"-t\"", "\"-\"")
+        .replace("0.1*x*t", "(x");
+    let found = problems(&text);
+    let lines: Vec<&str> = found
+        .iter()
+        .map(|p| p.split(':').next().unwrap_or_default())
+        .collect();
+    assert_eq!(lines, ["3", "6", "12", "14", "15"], "{found:?}");
+}
