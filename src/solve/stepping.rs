@@ -38,6 +38,11 @@ impl Stepping {
         if count <= 1.0 { target } else { time + left / count }
     }
 
+    /// Whether what is prescribed has a kink at `time`: the path so far says nothing about what follows.
+    pub fn at_kink(&self, time: f64) -> bool {
+        self.breakpoints.iter().any(|b| (b - time).abs() <= 1e-9 * self.end)
+    }
+
     /// Whether the end is reached.
     pub fn done(&self, time: f64) -> bool {
         time >= self.end * (1.0 - 1e-12)
