@@ -33,10 +33,19 @@ fn above(set: &PatchSet, count: usize, most: f64, seed: u64) -> Vec<(Vec3, f64)>
 
 #[test]
 fn near_bicubic() {
-    for (degree, count, rational) in [(3, 20, false), (3, 12, true), (2, 15, true), (5, 9, false), (1, 12, false)] {
+    for (degree, count, rational) in [
+        (3, 20, false),
+        (3, 12, true),
+        (2, 15, true),
+        (5, 9, false),
+        (1, 12, false),
+    ] {
         let set = set(vec![bumpy(degree, count, rational, 7)]);
         let truths = above(&set, queries(300), 0.5, 11);
-        assert_eq!(count_wrong(&format!("near, degree {degree}"), &set, &truths), 0);
+        assert_eq!(
+            count_wrong(&format!("near, degree {degree}"), &set, &truths),
+            0
+        );
     }
 }
 
@@ -76,9 +85,17 @@ fn far_away() {
     let truths: Vec<(Vec3, f64)> = (0..queries(300))
         .map(|k| {
             let q = random.direction() * (1000.0 * set.size());
-            let truth = if k % 3 == 0 { exhaustive(set.patches(), &q, 4, 30) } else { f64::INFINITY };
+            let truth = if k % 3 == 0 {
+                exhaustive(set.patches(), &q, 4, 30)
+            } else {
+                f64::INFINITY
+            };
             // Elsewhere a dense cloud of points gives an upper bound.
-            let truth = if truth.is_finite() { truth } else { exhaustive(set.patches(), &q, 2, 6) };
+            let truth = if truth.is_finite() {
+                truth
+            } else {
+                exhaustive(set.patches(), &q, 2, 6)
+            };
             (q, truth)
         })
         .collect();
@@ -114,9 +131,13 @@ fn beyond_edges_and_corners() {
             let t = jet.rho_i[along].normalize();
             conormal -= t * conormal.dot(&t);
         }
-        let d = (conormal.normalize() + n * random.between(-1.0, 1.0)).normalize() * random.between(0.01, 0.5);
+        let d = (conormal.normalize() + n * random.between(-1.0, 1.0)).normalize()
+            * random.between(0.01, 0.5);
         let q = jet.rho + d;
-        truths.push((q, exhaustive_if(k % 10 == 0 && k < 2000, &set, &q).min(d.norm())));
+        truths.push((
+            q,
+            exhaustive_if(k % 10 == 0 && k < 2000, &set, &q).min(d.norm()),
+        ));
     }
     assert!(corners > 50);
     assert_eq!(count_wrong("edges and corners", &set, &truths), 0);
@@ -126,7 +147,13 @@ fn beyond_edges_and_corners() {
         .filter(|(q, _)| {
             matches!(
                 cold(&set, *q).location,
-                Location::Edge { kind: EdgeKind::Free, .. } | Location::Corner { kind: EdgeKind::Free, .. }
+                Location::Edge {
+                    kind: EdgeKind::Free,
+                    ..
+                } | Location::Corner {
+                    kind: EdgeKind::Free,
+                    ..
+                }
             )
         })
         .count();
@@ -161,15 +188,29 @@ fn spheres() {
             let offset = (end + tilt) * random.between(1.0, 3.0);
             pole.push((centre + offset, (offset.norm() - 2.0).abs()));
         }
-        assert_eq!(count_wrong(&format!("sphere of {name}, near"), &set, &near), 0);
-        assert_eq!(count_wrong(&format!("sphere of {name}, pole"), &set, &pole), 0);
+        assert_eq!(
+            count_wrong(&format!("sphere of {name}, near"), &set, &near),
+            0
+        );
+        assert_eq!(
+            count_wrong(&format!("sphere of {name}, pole"), &set, &pole),
+            0
+        );
         let centres: Vec<(Vec3, f64)> = (0..queries(100))
             .map(|k| {
-                let off = random.direction() * if k == 0 { 0.0 } else { 10f64.powf(random.between(-16.0, -3.0)) };
+                let off = random.direction()
+                    * if k == 0 {
+                        0.0
+                    } else {
+                        10f64.powf(random.between(-16.0, -3.0))
+                    };
                 (centre + off, 2.0 - off.norm())
             })
             .collect();
-        assert_eq!(count_wrong(&format!("sphere of {name}, centre"), &set, &centres), 0);
+        assert_eq!(
+            count_wrong(&format!("sphere of {name}, centre"), &set, &centres),
+            0
+        );
         assert_eq!(cold(&set, centre).status, Status::NonUnique);
         assert_eq!(cold(&set, near[0].0).status, Status::Unique);
     }
