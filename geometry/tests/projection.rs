@@ -33,10 +33,19 @@ fn above(set: &PatchSet, count: usize, most: f64, seed: u64) -> Vec<(Vec3, f64)>
 
 #[test]
 fn near_bicubic() {
-    for (degree, count, rational) in [(3, 20, false), (3, 12, true), (2, 15, true), (5, 9, false), (1, 12, false)] {
+    for (degree, count, rational) in [
+        (3, 20, false),
+        (3, 12, true),
+        (2, 15, true),
+        (5, 9, false),
+        (1, 12, false),
+    ] {
         let set = set(vec![bumpy(degree, count, rational, 7)]);
         let truths = above(&set, queries(300), 0.5, 11);
-        assert_eq!(count_wrong(&format!("near, degree {degree}"), &set, &truths), 0);
+        assert_eq!(
+            count_wrong(&format!("near, degree {degree}"), &set, &truths),
+            0
+        );
     }
 }
 
@@ -76,9 +85,17 @@ fn far_away() {
     let truths: Vec<(Vec3, f64)> = (0..queries(300))
         .map(|k| {
             let q = random.direction() * (1000.0 * set.size());
-            let truth = if k % 3 == 0 { exhaustive(set.patches(), &q, 4, 30) } else { f64::INFINITY };
+            let truth = if k % 3 == 0 {
+                exhaustive(set.patches(), &q, 4, 30)
+            } else {
+                f64::INFINITY
+            };
             // Elsewhere a dense cloud of points gives an upper bound.
-            let truth = if truth.is_finite() { truth } else { exhaustive(set.patches(), &q, 2, 6) };
+            let truth = if truth.is_finite() {
+                truth
+            } else {
+                exhaustive(set.patches(), &q, 2, 6)
+            };
             (q, truth)
         })
         .collect();
@@ -114,9 +131,13 @@ fn beyond_edges_and_corners() {
             let t = jet.rho_i[along].normalize();
             conormal -= t * conormal.dot(&t);
         }
-        let d = (conormal.normalize() + n * random.between(-1.0, 1.0)).normalize() * random.between(0.01, 0.5);
+        let d = (conormal.normalize() + n * random.between(-1.0, 1.0)).normalize()
+            * random.between(0.01, 0.5);
         let q = jet.rho + d;
-        truths.push((q, exhaustive_if(k % 10 == 0 && k < 2000, &set, &q).min(d.norm())));
+        truths.push((
+            q,
+            exhaustive_if(k % 10 == 0 && k < 2000, &set, &q).min(d.norm()),
+        ));
     }
     assert!(corners > 50);
     assert_eq!(count_wrong("edges and corners", &set, &truths), 0);
@@ -126,7 +147,13 @@ fn beyond_edges_and_corners() {
         .filter(|(q, _)| {
             matches!(
                 cold(&set, *q).location,
-                Location::Edge { kind: EdgeKind::Free, .. } | Location::Corner { kind: EdgeKind::Free, .. }
+                Location::Edge {
+                    kind: EdgeKind::Free,
+                    ..
+                } | Location::Corner {
+                    kind: EdgeKind::Free,
+                    ..
+                }
             )
         })
         .count();
@@ -161,15 +188,29 @@ fn spheres() {
             let offset = (end + tilt) * random.between(1.0, 3.0);
             pole.push((centre + offset, (offset.norm() - 2.0).abs()));
         }
-        assert_eq!(count_wrong(&format!("sphere of {name}, near"), &set, &near), 0);
-        assert_eq!(count_wrong(&format!("sphere of {name}, pole"), &set, &pole), 0);
+        assert_eq!(
+            count_wrong(&format!("sphere of {name}, near"), &set, &near),
+            0
+        );
+        assert_eq!(
+            count_wrong(&format!("sphere of {name}, pole"), &set, &pole),
+            0
+        );
         let centres: Vec<(Vec3, f64)> = (0..queries(100))
             .map(|k| {
-                let off = random.direction() * if k == 0 { 0.0 } else { 10f64.powf(random.between(-16.0, -3.0)) };
+                let off = random.direction()
+                    * if k == 0 {
+                        0.0
+                    } else {
+                        10f64.powf(random.between(-16.0, -3.0))
+                    };
                 (centre + off, 2.0 - off.norm())
             })
             .collect();
-        assert_eq!(count_wrong(&format!("sphere of {name}, centre"), &set, &centres), 0);
+        assert_eq!(
+            count_wrong(&format!("sphere of {name}, centre"), &set, &centres),
+            0
+        );
         assert_eq!(cold(&set, centre).status, Status::NonUnique);
         assert_eq!(cold(&set, near[0].0).status, Status::Unique);
     }
@@ -215,4 +256,134 @@ fn crease() {
         .filter(|(q, _)| cold(&set, *q).location == (Location::Crease { dir: 0 }))
         .count();
     assert!(on_crease > truths.len() / 5, "{on_crease}");
+}
+
+/// Surface of a `.surf` file: degrees and counts, knots of both directions, then x y z w per control point, xi2
+/// fastest.
+fn read_surface(text: &str) -> NurbsPatch {
+    let mut numbers = text.split_whitespace().map(|s| s.parse::<f64>().unwrap());
+    let mut next = || numbers.next().unwrap();
+    let degree = [next() as usize, next() as usize];
+    let counts = [next() as usize, next() as usize];
+    let mut knots = [0, 1].map(|k| vec![0.0; counts[k] + degree[k] + 1]);
+    knots.iter_mut().flatten().for_each(|k| *k = next());
+    let mut points = vec![Vec3::zeros(); counts[0] * counts[1]];
+    let mut weights = vec![0.0; points.len()];
+    for i in 0..counts[0] {
+        for j in 0..counts[1] {
+            let k = i + counts[0] * j;
+            points[k] = Vec3::new(next(), next(), next());
+            weights[k] = next();
+        }
+    }
+    NurbsPatch::new(degree, knots, counts, &points, Some(&weights)).unwrap()
+}
+
+#[test]
+fn query_sets_of_other_codes() {
+    // Surfaces and points that other closest-point codes were compared on; where they lie is told by a variable.
+    let Some(folder) = std::env::var_os("COVACT_QUERY_SETS") else {
+        eprintln!("skipped: COVACT_QUERY_SETS does not name a folder of .surf and .q files");
+        return;
+    };
+    let folder = std::path::Path::new(&folder);
+    let mut read = 0;
+    for name in ["A3near", "A3edge", "CRcrease", "SPHnear"] {
+        let file = |end: &str| std::fs::read_to_string(folder.join(format!("{name}.{end}")));
+        let (Ok(surface), Ok(points)) = (file("surf"), file("q")) else {
+            eprintln!("skipped: no {name}");
+            continue;
+        };
+        read += 1;
+        let set = set(vec![read_surface(&surface)]);
+        let truths: Vec<(Vec3, f64)> = points
+            .lines()
+            .take(queries(200))
+            .map(|line| {
+                let x: Vec<f64> = line
+                    .split_whitespace()
+                    .map(|s| s.parse().unwrap())
+                    .collect();
+                let q = Vec3::new(x[0], x[1], x[2]);
+                let truth = match name {
+                    "SPHnear" => (q.norm() - 1.0).abs(),
+                    _ => exhaustive(set.patches(), &q, 3, 12),
+                };
+                (q, truth)
+            })
+            .collect();
+        assert_eq!(count_wrong(name, &set, &truths), 0);
+    }
+    assert!(read > 0, "no query sets in {}", folder.display());
+}
+
+#[test]
+fn several_patches() {
+    // A bumpy sheet cut in four along knots, and a sphere that cuts through it.
+    let whole = bumpy(3, 20, false, 7);
+    let mut patches = Vec::new();
+    let cut = 8.0 / 17.0;
+    for [a, b] in [[0.0, cut], [cut, 1.0]] {
+        for [c, d] in [[0.0, cut], [cut, 1.0]] {
+            patches.push(whole.with_domain([[a, b], [c, d]]).unwrap());
+        }
+    }
+    let alone = PatchSet::new(vec![whole], None).unwrap();
+    let four = set(patches.clone());
+    assert_eq!((four.edges().smooth, four.edges().free.len()), (4, 8));
+    let truths: Vec<(Vec3, f64)> = above(&alone, queries(300), 0.5, 3)
+        .into_iter()
+        .map(|(q, d)| (q, cold(&alone, q).distance.min(d)))
+        .collect();
+    assert_eq!(count_wrong("four patches", &four, &truths), 0);
+    // Near the joints the cut sheet gives the same feet, on faces.
+    let mut random = Random(9);
+    for _ in 0..100 {
+        let xi = [cut + random.between(-1e-7, 1e-7), random.next()];
+        let q = alone.patches()[0].point(xi) + Vec3::z() * 0.1;
+        let (one, other) = (cold(&alone, q), cold(&four, q));
+        assert!((one.jet.rho - other.jet.rho).norm() < 1e-13);
+        assert_eq!(one.location, other.location);
+    }
+    patches.push(sphere(1.0, Vec3::new(4.7, 4.7, 0.0), Vec3::z()).unwrap());
+    let five = set(patches);
+    assert_eq!(five.components().len(), 2);
+    let truths: Vec<(Vec3, f64)> = (0..queries(300).min(2000))
+        .map(|_| {
+            let q = Vec3::new(
+                random.between(0.0, 10.0),
+                random.between(0.0, 10.0),
+                random.between(-3.0, 3.0),
+            );
+            let ball = ((q - Vec3::new(4.7, 4.7, 0.0)).norm() - 1.0).abs();
+            (q, exhaustive(alone.patches(), &q, 2, 8).min(ball))
+        })
+        .collect();
+    assert_eq!(count_wrong("sheet and sphere", &five, &truths), 0);
+}
+
+#[test]
+fn warm_and_cold_agree_to_rounding() {
+    let set = set(vec![bumpy(3, 20, true, 7)]);
+    let mut random = Random(77);
+    let mut moved = 0.0f64;
+    for (q, _) in above(&set, 200, 0.3, 5) {
+        let foot = cold(&set, q);
+        // A step nearby, projected with the old foot as the hint.
+        let near = q + random.direction() * 0.005;
+        let (warm, fresh) = (
+            set.project(&near, Some(foot.hint()), f64::INFINITY)
+                .unwrap(),
+            cold(&set, near),
+        );
+        assert_eq!(warm.location, fresh.location);
+        for k in 0..2 {
+            assert!(
+                (warm.xi[k] - fresh.xi[k]).abs() < 1e-13,
+                "{warm:?} {fresh:?}"
+            );
+        }
+        moved = moved.max((warm.xi[0] - foot.xi[0]).abs());
+    }
+    assert!(moved > 1e-5);
 }

@@ -73,7 +73,11 @@ pub fn bumpy(degree: usize, count: usize, rational: bool, seed: u64) -> NurbsPat
                 y + random.between(-0.05, 0.05),
                 z,
             ));
-            weights.push(if rational { random.between(0.7, 1.4) } else { 1.0 });
+            weights.push(if rational {
+                random.between(0.7, 1.4)
+            } else {
+                1.0
+            });
         }
     }
     let knots = clamped(degree, count);
@@ -128,7 +132,8 @@ pub fn exhaustive(patches: &[NurbsPatch], q: &Vec3, per_span: usize, starts: usi
             for (s2, [a2, b2]) in patch.spans(1).into_iter().enumerate() {
                 let mut best = (f64::INFINITY, [0.0; 2]);
                 for k in 0..(per_span + 1) * (per_span + 1) {
-                    let t = [k % (per_span + 1), k / (per_span + 1)].map(|k| k as f64 / per_span as f64);
+                    let t = [k % (per_span + 1), k / (per_span + 1)]
+                        .map(|k| k as f64 / per_span as f64);
                     let xi = [a1 + t[0] * (b1 - a1), a2 + t[1] * (b2 - a2)];
                     let d2 = (patch.jet_in_span([s1, s2], xi).rho - q).norm_squared();
                     if d2 < best.0 {
@@ -156,14 +161,11 @@ fn refine(patch: &NurbsPatch, span: [usize; 2], mut xi: [f64; 2], q: &Vec3) -> f
         let jet = patch.jet_in_span(span, xi);
         let d = q - jet.rho;
         let g = [jet.rho_i[0].dot(&d), jet.rho_i[1].dot(&d)];
-        let h = |i: usize, j: usize| {
-            jet.rho_i[i].dot(&jet.rho_i[j]) - jet.rho_ij[i + j].dot(&d)
-        };
+        let h = |i: usize, j: usize| jet.rho_i[i].dot(&jet.rho_i[j]) - jet.rho_ij[i + j].dot(&d);
         let a = [jet.rho_i[0].norm_squared(), jet.rho_i[1].norm_squared()];
         let shift = damping * (a[0].max(a[1]) + 1e-300);
-        let held = |k: usize| {
-            xi[k] <= range[k][0] && g[k] < 0.0 || xi[k] >= range[k][1] && g[k] > 0.0
-        };
+        let held =
+            |k: usize| xi[k] <= range[k][0] && g[k] < 0.0 || xi[k] >= range[k][1] && g[k] > 0.0;
         let (h11, h12, h22) = (h(0, 0) + shift, h(0, 1), h(1, 1) + shift);
         let step = match [held(0), held(1)] {
             [true, true] => return now,
@@ -172,7 +174,10 @@ fn refine(patch: &NurbsPatch, span: [usize; 2], mut xi: [f64; 2], q: &Vec3) -> f
             _ => {
                 let det = h11 * h22 - h12 * h12;
                 if det > 0.0 && h11 > 0.0 {
-                    [(h22 * g[0] - h12 * g[1]) / det, (h11 * g[1] - h12 * g[0]) / det]
+                    [
+                        (h22 * g[0] - h12 * g[1]) / det,
+                        (h11 * g[1] - h12 * g[0]) / det,
+                    ]
                 } else {
                     damping = damping.max(1e-3) * 4.0;
                     if damping > 1e12 {
@@ -204,14 +209,24 @@ pub fn check_foot(set: &PatchSet, q: &Vec3, foot: &Foot) {
     let rho = patch.point(foot.xi);
     let noise = 1e-12 * (set.size() + q.norm());
     assert!((rho - foot.jet.rho).norm() <= noise, "{q:?} {foot:?}");
-    assert!(((q - rho).norm() - foot.distance).abs() <= noise, "{q:?} {foot:?}");
+    assert!(
+        ((q - rho).norm() - foot.distance).abs() <= noise,
+        "{q:?} {foot:?}"
+    );
     assert!((foot.signed_distance.abs() - foot.distance).abs() <= noise);
     assert!((foot.normal.norm() - 1.0).abs() < 1e-12, "{q:?} {foot:?}");
-    if foot.location == covact_geometry::Location::Face {
+    if foot.location == covact_geometry::Location::Face
+        && foot.status == covact_geometry::Status::Unique
+    {
         for tangent in foot.jet.rho_i {
             let residual = tangent.dot(&(q - foot.jet.rho));
-            let scale = tangent.norm() * foot.distance.max(set.size());
-            assert!(residual.abs() <= 1e-10 * scale, "{residual:e} {q:?} {foot:?}");
+            // Near poles a tangent is a difference of large terms.
+            let floor = 1e-4 * foot.jet.rho_i[0].norm().max(foot.jet.rho_i[1].norm());
+            let scale = tangent.norm().max(floor) * foot.distance.max(set.size());
+            assert!(
+                residual.abs() <= 1e-11 * scale,
+                "{residual:e} {q:?} {foot:?}"
+            );
         }
     }
 }
@@ -231,7 +246,10 @@ pub fn count_wrong(name: &str, set: &PatchSet, truths: &[(Vec3, f64)]) -> usize 
         hint = Some(cold.hint());
         if cold.distance > limit || warm.distance > limit {
             if wrong < 3 {
-                eprintln!("{name}: {q:?} truth {truth:e} cold {cold:?} warm {}", warm.distance);
+                eprintln!(
+                    "{name}: {q:?} truth {truth:e} cold {cold:?} warm {}",
+                    warm.distance
+                );
             }
             wrong += 1;
         }
@@ -239,6 +257,9 @@ pub fn count_wrong(name: &str, set: &PatchSet, truths: &[(Vec3, f64)]) -> usize 
             unsure += 1;
         }
     }
-    eprintln!("{name}: {wrong} wrong, {unsure} not converged, of {}", truths.len());
+    eprintln!(
+        "{name}: {wrong} wrong, {unsure} not converged, of {}",
+        truths.len()
+    );
     wrong + unsure
 }
