@@ -1,6 +1,7 @@
 //! Thick cylinder of MacNeal and Harder (1985), plane strain, internal pressure, nearly incompressible.
 use super::support::{Model, plain, st_venant};
-use covact::shell::{Formulation, Quad};
+use covact::shell::face::shape;
+use covact::shell::{Formulation, Quad, gauss};
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
 
@@ -10,7 +11,7 @@ const ARC: usize = 9;
 
 /// Radial displacement of the inner surface over the exact one. `radial`: the thickness coordinate t runs along the
 /// radius, otherwise along the axis.
-fn ratio(nu: f64, formulation: Formulation, radial: bool) -> f64 {
+fn ratio(nu: f64, formulation: Formulation, radial: bool, facets: bool) -> f64 {
     let node = |r: usize, j: usize, k: usize| (k * (ARC + 1) + j) * RADII.len() + r;
     let mut nodes = vec![];
     for k in 0..2 {
@@ -37,7 +38,6 @@ fn ratio(nu: f64, formulation: Formulation, radial: bool) -> f64 {
     let mesh = plain(nodes, connectivity);
     let mut load = vec![0.0; 3 * mesh.nodes.len()];
     for j in 0..ARC {
-        // The pressure acts on the flat facets, in the direction out of the hole.
         let corners = [
             node(0, j, 0),
             node(0, j + 1, 0),
@@ -47,10 +47,25 @@ fn ratio(nu: f64, formulation: Formulation, radial: bool) -> f64 {
         let quad = Quad {
             corners: corners.map(|n| mesh.nodes[n]),
         };
-        let normal = quad.area_vector(0.0, 0.0).normalize();
-        for (n, area) in corners.into_iter().zip(quad.weights()) {
-            for axis in 0..3 {
-                load[3 * n + axis] += area * normal[axis];
+        if facets {
+            // Out of the hole, normal to the flat facet.
+            let normal = quad.area_vector(0.0, 0.0).normalize();
+            for (n, area) in corners.into_iter().zip(quad.weights()) {
+                for axis in 0..3 {
+                    load[3 * n + axis] += area * normal[axis];
+                }
+            }
+        } else {
+            // The same shape functions over the arc.
+            let rule = gauss(5).unwrap();
+            let span = 10f64.to_radians();
+            for (s, w) in rule.iter() {
+                let angle = span * (j as f64 + 0.5 * (1.0 + s));
+                for (n, shape) in corners.into_iter().zip(shape(s, 0.0)) {
+                    let force = w * 0.5 * span * RADII[0] * shape;
+                    load[3 * n] += force * angle.cos();
+                    load[3 * n + 1] += force * angle.sin();
+                }
             }
         }
     }
@@ -80,11 +95,21 @@ fn thick_cylinder() {
     // The published exact value for nu = 0.4999.
     let exact: f64 = 1.4999 * 9.0 / 72e3 * (27.0 + 0.0002 * 3.0);
     assert!((exact - 5.0623e-3).abs() < 1e-7);
-    for radial in [false, true] {
-        let value = ratio(0.4999, Formulation::Eas7, radial);
-        let brick = ratio(0.4999, Formulation::Displacement, radial);
-        println!("thick cylinder, t radial {radial}: {value:.4}, brick {brick:.4}");
-        assert!(value > 0.98 && value < 1.001, "t radial {radial}: {value}");
-        assert!(brick < 0.2, "the brick must lock: {brick}");
+    // Pressure on flat facets has 0.25 % less resultant than on the arc, which the exact value belongs to; MacNeal and
+    // Harder's HEX8 results (0.986) are for facets. Expected: an independent implementation with t axial, own value with
+    // t radial.
+    for (radial, expected) in [(false, 0.986), (true, 0.980)] {
+        let facets = ratio(0.4999, Formulation::Eas7, radial, true);
+        let arc = ratio(0.4999, Formulation::Eas7, radial, false);
+        let brick = ratio(0.4999, Formulation::Displacement, radial, true);
+        println!(
+            "thick cylinder, t radial {radial}: facets {facets:.4}, arc {arc:.4}, brick {brick:.4}"
+        );
+        assert!(
+            (facets - expected).abs() < 5e-4,
+            "t radial {radial}: {facets}"
+        );
+        assert!(arc > 0.98 && arc < 1.0, "t radial {radial}: {arc}");
+        assert!(brick < 0.06, "the brick must lock: {brick}");
     }
 }

@@ -82,8 +82,8 @@ fn scordelis_lo_roof() {
     close(
         "Scordelis-Lo 8 x 8, brick",
         scordelis_lo(8, Formulation::Displacement),
-        0.0370,
-        2e-3,
+        0.0371358,
+        1e-4,
     );
 }
 
@@ -199,12 +199,14 @@ fn twisted_beam(nx: usize, ny: usize, t: f64, force: f64, axis: usize) -> f64 {
 }
 
 /// Twisted beam of MacNeal and Harder (1985), 24 x 4 elements: thick, reference 0.005424 and 0.001754; thin
-/// (T. Belytschko et al. 1989), reference 0.005256 and 0.001294.
+/// (T. Belytschko et al. 1989), reference 0.005256 and 0.001294. The thin beam loses three digits to round-off in any
+/// stiffness matrix (eps (L/h)^4); its expected values are those of the other implementation after iterative refinement
+/// in extended precision, 0.0052237277 and 0.0012861856.
 #[test]
 fn twisted_beams() {
     for (t, force, z, y, references) in [
         (0.32, 1.0, 0.005406, 0.0017428, [0.005424, 0.001754]),
-        (0.0032, 1e-6, 0.0052328, 0.0012877, [0.005256, 0.001294]),
+        (0.0032, 1e-6, 0.00522373, 0.00128619, [0.005256, 0.001294]),
     ] {
         for (axis, expected, reference) in [(2, z, references[0]), (1, y, references[1])] {
             let w = twisted_beam(24, 4, t, force, axis);
