@@ -63,7 +63,7 @@ impl Quad {
     }
 
     /// Integral of every shape function over the face, `int N_k dA`; with the 3 x 3 Gauss rule it is exact for plane
-    /// faces (there the area element is linear) and accurate to 1e-4 of the warp angle squared otherwise.
+    /// faces (there the area element is linear) and an approximation on warped ones.
     pub fn weights(&self) -> [f64; 4] {
         self.weights_with(&GAUSS_3)
     }
@@ -108,4 +108,88 @@ pub fn tributary_areas(mesh: &Mesh, faces: &[Face]) -> Vec<(u32, f64)> {
         }
     }
     areas.into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::ElementKind;
+
+    /// Unit cube: outward normals, unit areas, and a quarter of the area at every corner of a face.
+    #[test]
+    fn faces_of_a_cube() {
+        let nodes =
+            (0..8).map(|a| Vec3::new((a & 1) as f64, ((a >> 1) & 1) as f64, (a >> 2) as f64));
+        let mesh = Mesh {
+            kind: ElementKind::H8,
+            nodes: nodes.collect(),
+            connectivity: (0..8).collect(),
+            node_sets: Default::default(),
+            face_sets: Default::default(),
+        };
+        for face in 0..6 {
+            let quad = Quad::of(&mesh, Face { element: 0, face }).unwrap();
+            let mut outward = Vec3::zeros();
+            outward[face as usize / 2] = if face % 2 == 1 { 4.0 } else { -4.0 };
+            // The area of the parameter square is 4.
+            assert!(
+                (quad.area_vector(0.3, -0.2) * 16.0 - outward).norm() < 1e-14,
+                "face {face}"
+            );
+            assert!(quad.weights().iter().all(|w| (w - 0.25).abs() < 1e-15));
+            let centre = quad.point(0.0, 0.0) - Vec3::repeat(0.5);
+            assert!((centre - outward / 8.0).norm() < 1e-15);
+        }
+        assert!(
+            Quad::of(
+                &mesh,
+                Face {
+                    element: 1,
+                    face: 0
+                }
+            )
+            .is_none()
+        );
+        assert!(
+            Quad::of(
+                &mesh,
+                Face {
+                    element: 0,
+                    face: 6
+                }
+            )
+            .is_none()
+        );
+        let both = [
+            Face {
+                element: 0,
+                face: 4,
+            },
+            Face {
+                element: 0,
+                face: 1,
+            },
+        ];
+        let areas = tributary_areas(&mesh, &both);
+        assert_eq!(
+            areas.iter().map(|a| a.0).collect::<Vec<_>>(),
+            [0, 1, 2, 3, 5, 7]
+        );
+        assert!((areas[1].1 - 0.5).abs() < 1e-15 && (areas[0].1 - 0.25).abs() < 1e-15);
+    }
+
+    /// A trapezoid with parallel sides 1 and 2 at distance 1: the shape functions' integrals by hand.
+    #[test]
+    fn tributary_areas_of_a_trapezoid() {
+        let corners =
+            [[0.0, 0.0], [2.0, 0.0], [0.5, 1.0], [1.5, 1.0]].map(|p| Vec3::new(p[0], p[1], 0.0));
+        let weights = Quad { corners }.weights();
+        // Width 2 - y: int (1 - y)(2 - y)/2 dy = 5/12, int y (2 - y)/2 dy = 1/3.
+        for (found, expected) in weights
+            .iter()
+            .zip([5.0 / 12.0, 5.0 / 12.0, 1.0 / 3.0, 1.0 / 3.0])
+        {
+            assert!((found - expected).abs() < 1e-15, "{weights:?}");
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Tangents of the trilinear element and the strains made of them, generic over the scalar.
 use super::material::{Collapsed, MaterialLaw};
-use super::reference::{BASE, GP, LINE, MODES, PARAMETERS, Reference, TYING, WEIGHT, sign};
+use super::reference::{BASE, GP, LINE, PARAMETERS, Reference, TYING, WEIGHT, sign};
 use num_dual::DualNum;
 
 /// A vector as a plain array, which any scalar can be put into.
@@ -244,9 +244,7 @@ pub(super) fn forces<D: DualNum<f64> + Copy, L: MaterialLaw, const NE: usize>(
         }
     }
     let mut h = [D::zero(); NE];
-    for m in 0..NE.min(MODES) {
-        h[m] = force[TYING + m];
-    }
+    h.copy_from_slice(&force[TYING..TYING + NE]);
     Ok((energy, f, h))
 }
 

@@ -240,12 +240,20 @@ fn isotropic(a: &[f64; 6], lambda: f64, kappa: f64) -> [[f64; 6]; 6] {
         let ((i, j), (k, l)) = (super::VOIGT[v], super::VOIGT[w]);
         lambda * a[v] * a[w] + kappa * (full[i][k] * full[j][l] + full[i][l] * full[j][k])
     };
+    // Unrolled, so that every index above is a constant; the lower triangle is the upper one.
     let mut c = [[0.0; 6]; 6];
     macro_rules! fill {
-        ($($v:literal: $($w:literal)*;)*) => { $($( c[$v][$w] = entry($v, $w); c[$w][$v] = c[$v][$w]; )*)* };
+        ($($v:literal $w:literal,)*) => { $( c[$v][$w] = entry($v, $w); )* };
     }
-    // Unrolled, so that every index above is a constant.
-    fill! { 0: 0 1 2 3 4 5; 1: 1 2 3 4 5; 2: 2 3 4 5; 3: 3 4 5; 4: 4 5; 5: 5; }
+    fill! {
+        0 0, 0 1, 0 2, 0 3, 0 4, 0 5, 1 1, 1 2, 1 3, 1 4, 1 5,
+        2 2, 2 3, 2 4, 2 5, 3 3, 3 4, 3 5, 4 4, 4 5, 5 5,
+    }
+    for v in 1..6 {
+        for w in 0..v {
+            c[v][w] = c[w][v];
+        }
+    }
     c
 }
 

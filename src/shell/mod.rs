@@ -10,6 +10,9 @@
 //! - [`material`]: St. Venant-Kirchhoff and neo-Hooke.
 //! - [`quadrature`], [`face`]: Gauss and Lobatto rules and the bilinear faces that loads and contact integrate over.
 
+// Index loops show the sums the way they are written on paper, over several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
 mod brick;
 mod error;
 pub mod face;

@@ -488,9 +488,7 @@ fn gather<const NE: usize, const AXIS: usize>(
     for b in 0..8 {
         let column = 8 * AXIS + b;
         let mut sum = [0.0; 24];
-        for r in 0..8 * (AXIS + 1) {
-            sum[r] = half[column][r];
-        }
+        sum[..8 * (AXIS + 1)].copy_from_slice(&half[column][..8 * (AXIS + 1)]);
         for m in 0..NE {
             for r in 0..8 * (AXIS + 1) {
                 sum[r] -= l[m][r] * scaled[m][column];

@@ -193,7 +193,7 @@ fn check_element<L: MaterialLaw, const NE: usize>(law: &L, formulation: Formulat
     let u = deformed(0.1);
     let ua = u.map(|u| u.data.0[0]);
     let mut seed = 3;
-    let alpha: [f64; NE] = std::array::from_fn(|_| 0.02 * random(&mut seed));
+    let alpha: [f64; NE] = std::array::from_fn(|_| 0.002 * random(&mut seed));
     let mut state = vec![0.0; tangent::state_len(NE)];
     state[..NE].copy_from_slice(&alpha);
     let mut out = H8System::default();
@@ -227,18 +227,30 @@ fn check_element<L: MaterialLaw, const NE: usize>(law: &L, formulation: Formulat
     };
     let k = nalgebra::DMatrix::from_column_slice(24, 24, &out.k) + lm.transpose() * dl;
     let f = nalgebra::DVector::from_column_slice(&out.f) + lm.transpose() * dh;
-    let mut found = vec![];
-    for column in 0..24 + NE {
-        for row in 0..24 + NE {
-            found.push(match (row < 24, column < 24) {
-                (true, true) => k[(row, column)],
-                (true, false) => lm[(column - 24, row)],
-                (false, true) => lm[(row - 24, column)],
-                (false, false) => d[(row - 24, column - 24)],
-            });
+    // Block by block, because enhanced strains have other units than displacements.
+    let mut tangent_error: f64 = 0.0;
+    for (rows, columns) in [
+        (0..24, 0..24),
+        (0..24, 24..24 + NE),
+        (24..24 + NE, 0..24),
+        (24..24 + NE, 24..24 + NE),
+    ] {
+        let (mut found, mut expected) = (vec![], vec![]);
+        for column in columns.clone() {
+            for row in rows.clone() {
+                found.push(match (row < 24, column < 24) {
+                    (true, true) => k[(row, column)],
+                    (true, false) => lm[(column - 24, row)],
+                    (false, true) => lm[(row - 24, column)],
+                    (false, false) => d[(row - 24, column - 24)],
+                });
+                expected.push(exact[column][row]);
+            }
+        }
+        if !found.is_empty() {
+            tangent_error = tangent_error.max(relative(&found, &expected));
         }
     }
-    let tangent_error = relative(&found, &exact.concat());
     if displacement {
         let (_, exact) = brick::forces(law, &re, &ua).unwrap();
         return [tangent_error, relative(&out.f, &exact), 0.0];
@@ -440,6 +452,12 @@ fn residual_repeats_the_assembly_and_alpha_follows_it() {
         let u = deformed(0.05);
         let mut state = vec![0.0; block.state_len()];
         let mut out = H8System::default();
+        // Solve for alpha first: with h = 0 the change of alpha vanishes with du.
+        for _ in 0..12 {
+            block.evaluate(0, &u, &mut state, &mut out).unwrap();
+            let alpha = state.clone();
+            block.update_alpha(&mut state, &[Vec3::zeros(); 8], 1.0, &alpha);
+        }
         block.evaluate(0, &u, &mut state, &mut out).unwrap();
         let mut f = [0.0; 24];
         let energy = block.residual(0, &u, &state, &mut f).unwrap();
