@@ -1,1 +1,6 @@
-fn main() {}
+//! The `covact` program.
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    covact::cli::main()
+}

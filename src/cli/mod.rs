@@ -1,1 +1,142 @@
-//! (being written)
+//! The command line. Nothing else in the library prints.
+mod check;
+mod inspect;
+mod new;
+mod progress;
+mod report;
+mod run;
+
+use clap::{Args, Parser, Subcommand};
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Exit codes of the program; 0 is success.
+pub mod exit {
+    /// A fault of the program itself.
+    pub const BUG: u8 = 1;
+    /// The command line is wrong.
+    pub const USAGE: u8 = 2;
+    /// The scene, or a file it names, is wrong.
+    pub const SCENE: u8 = 3;
+    /// The run did not reach its end; what was computed is kept.
+    pub const NOT_CONVERGED: u8 = 4;
+    /// Reading or writing failed.
+    pub const IO: u8 = 5;
+}
+
+/// Contact between finite-element shells and CAD surfaces.
+#[derive(Debug, Parser)]
+#[command(
+    name = "covact",
+    version,
+    after_help = "Exit codes: 0 done, 1 a bug of covact, 2 wrong usage, 3 the scene or a file it names is wrong, \
+                  4 not converged or interrupted (what was computed is kept), 5 reading or writing failed."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Solve a scene
+    Run(RunArgs),
+    /// Read and check everything a scene names; solve nothing
+    Check(CheckArgs),
+    /// Show what is in a CAD file
+    Inspect(InspectArgs),
+    /// Print the JSON schema of scenes
+    Schema,
+    /// Write a scene to start from
+    New(NewArgs),
+}
+
+#[derive(Debug, Args)]
+struct RunArgs {
+    /// Scene file (JSON)
+    scene: PathBuf,
+    /// Folder for the results
+    #[arg(short, long, value_name = "FOLDER")]
+    out: PathBuf,
+    /// Print one JSON object per event and line
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+    /// Print errors only
+    #[arg(short, long)]
+    quiet: bool,
+    /// Threads; 0: as the scene says, or what the machine has
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
+}
+
+#[derive(Debug, Args)]
+struct CheckArgs {
+    /// Scene file (JSON)
+    scene: PathBuf,
+    /// Print the findings as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct InspectArgs {
+    /// IGES file, or JSON of Kratos or geomdl
+    file: PathBuf,
+    /// Print the findings as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct NewArgs {
+    /// Name of the scene; `NAME.json` is written
+    name: String,
+}
+
+/// Runs the program with the arguments of the process.
+pub fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(report::panic));
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(e) => {
+            // Prints help and version to standard output, everything else to standard error.
+            let written = e.print();
+            let code = if e.use_stderr() { exit::USAGE } else { 0 };
+            return ExitCode::from(if written.is_ok() { code } else { exit::IO });
+        }
+    };
+    let result = std::panic::catch_unwind(move || match cli.command {
+        Command::Run(args) => run::run(&args),
+        Command::Check(args) => check::check(&args),
+        Command::Inspect(args) => inspect::inspect(&args),
+        Command::Schema => print(&crate::scene::schema()),
+        Command::New(args) => new::new(&args),
+    });
+    // The hook has told about the panic.
+    ExitCode::from(result.unwrap_or(exit::BUG))
+}
+
+/// Prints to standard output and returns the exit code. A reader that goes away (`covact schema | head`) is no error.
+fn print(text: &str) -> u8 {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Ok(()) => 0,
+        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => 0,
+        Err(e) => {
+            report::error(&format!("cannot write to the standard output: {e}"));
+            exit::IO
+        }
+    }
+}
+
+/// Prints data as one JSON document.
+fn print_json<T: serde::Serialize>(data: &T) -> u8 {
+    match serde_json::to_string_pretty(data) {
+        Ok(text) => print(&(text + "\n")),
+        Err(e) => {
+            report::error(&format!("cannot write the findings as JSON: {e}"));
+            exit::BUG
+        }
+    }
+}

@@ -60,10 +60,10 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         effects: Vec::new(),
         notes: builder.notes,
         warnings: builder.warnings,
-        breakpoints: Vec::new(),
+        kinks: Vec::new(),
     };
     model.effects = super::effects::effects(scene, &model);
-    model.breakpoints = breakpoints(&model, scene.solution.end_time);
+    model.kinks = kinks(&model, scene.solution.end_time);
     if let Some(free) = super::free_motion::free_motions(&model).first() {
         return Err(text(
             "/supports",
@@ -79,7 +79,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
 }
 
 /// Times inside the run at which something prescribed has a kink.
-fn breakpoints(model: &Model, end: f64) -> Vec<f64> {
+fn kinks(model: &Model, end: f64) -> Vec<f64> {
     let mut times: Vec<f64> = (model.surfaces.iter().flat_map(|s| s.motion.functions()))
         .chain(model.dead_loads.iter().flat_map(|(_, l)| l.functions()))
         .chain(model.follower_loads.iter().map(|(_, l)| &l.value))

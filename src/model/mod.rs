@@ -47,7 +47,7 @@ pub struct Model {
     /// Things the user should look at.
     pub warnings: Vec<String>,
     /// Times at which something prescribed has a kink, ascending.
-    pub breakpoints: Vec<f64>,
+    pub kinks: Vec<f64>,
 }
 
 /// A deformable body.

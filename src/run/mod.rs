@@ -175,7 +175,12 @@ impl March<'_, '_> {
         for note in fields.notes() {
             self.warn(note);
         }
-        let mut stepping = Stepping::new(settings.step, settings.end_time, &self.model.breakpoints);
+        let mut stepping = Stepping::new(
+            settings.step,
+            settings.end_time,
+            &self.model.kinks,
+            &settings.stops,
+        );
         let mut committed = State::new(self.model);
         let mut trial = committed.clone();
         // The state before the last accepted step and that step's size, while the path is smooth.

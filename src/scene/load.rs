@@ -161,7 +161,7 @@ fn not_utf8(name: &str, error: &std::string::FromUtf8Error) -> SceneError {
 }
 
 /// A file in the same folder whose name is like that of `path`.
-pub(super) fn nearest_file(path: &Path) -> Option<String> {
+pub(crate) fn nearest_file(path: &Path) -> Option<String> {
     let wanted = path.file_name()?.to_str()?;
     let parent = path.parent().filter(|p| !p.as_os_str().is_empty());
     let folder = std::fs::read_dir(parent.unwrap_or(Path::new("."))).ok()?;

@@ -15,6 +15,8 @@ mod value;
 
 pub use check::check;
 pub use expression::{Expression, ExpressionError};
+#[cfg(feature = "cli")]
+pub(crate) use load::nearest_file;
 pub use load::{FORMAT, LoadedScene, load, parse, pointer};
 pub use problem::{Place, Problem, SceneError, nearest};
 pub use schema::schema;

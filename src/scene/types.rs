@@ -71,6 +71,36 @@ pub enum LengthUnit {
     Foot,
 }
 
+impl LengthUnit {
+    /// Metres in one unit.
+    pub fn metres(self) -> f64 {
+        match self {
+            LengthUnit::Nanometre => 1e-9,
+            LengthUnit::Micrometre => 1e-6,
+            LengthUnit::Millimetre => 1e-3,
+            LengthUnit::Centimetre => 1e-2,
+            LengthUnit::Metre => 1.0,
+            LengthUnit::Kilometre => 1e3,
+            LengthUnit::Inch => 0.0254,
+            LengthUnit::Foot => 0.3048,
+        }
+    }
+
+    /// Symbol, as scenes write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            LengthUnit::Nanometre => "nm",
+            LengthUnit::Micrometre => "um",
+            LengthUnit::Millimetre => "mm",
+            LengthUnit::Centimetre => "cm",
+            LengthUnit::Metre => "m",
+            LengthUnit::Kilometre => "km",
+            LengthUnit::Inch => "in",
+            LengthUnit::Foot => "ft",
+        }
+    }
+}
+
 /// Constitutive law, written `{"st_venant_kirchhoff": {"E": 210000, "nu": 0.3}}`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -483,7 +513,7 @@ pub struct Load {
     /// Force per undeformed area, of constant direction. Expressions may use x, y, z and t.
     #[serde(default)]
     pub traction: Option<[Value; 3]>,
-    /// Pressure against the outward normal (force / area). Expressions may use x, y, z and t.
+    /// Pressure against the outward normal (force / area). Expressions may use x, y, z and t; those of a follower t.
     #[serde(default)]
     pub pressure: Option<Value>,
     /// The pressure follows the deformed faces (their area and normal).
@@ -497,6 +527,8 @@ pub struct Load {
 pub struct Solution {
     /// The run goes from time 0 to this time.
     pub end_time: f64,
+    /// Times at which a step must end, ascending; steps end at the rows of tables in any case.
+    pub stops: Vec<f64>,
     pub step: Step,
     pub newton: Newton,
     pub linear_solver: LinearSolver,
@@ -579,6 +611,7 @@ impl Default for Solution {
     fn default() -> Self {
         Solution {
             end_time: 1.0,
+            stops: Vec::new(),
             step: Step::default(),
             newton: Newton::default(),
             linear_solver: LinearSolver::Auto,

@@ -147,7 +147,9 @@ impl<'a> Checker<'a> {
                     Some("write `[[t, value], ...]`".into()),
                 );
             }
-            ValueError::Number(_) | ValueError::NotFinite { .. } => self.add(at, message, None),
+            ValueError::Number(_) | ValueError::NotFinite { .. } | ValueError::Eval(_) => {
+                self.add(at, message, None);
+            }
         }
     }
 

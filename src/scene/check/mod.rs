@@ -163,7 +163,13 @@ fn check_load(c: &mut Checker, at: &str, load: &Load, sets: &Sets) {
         }
     }
     if let Some(value) = &load.pressure {
-        c.value(&format!("{at}/pressure"), value, &POSITION_AND_TIME);
+        // The position that a follower would depend on moves with the body.
+        let variables = if load.follower {
+            &TIME[..]
+        } else {
+            &POSITION_AND_TIME
+        };
+        c.value(&format!("{at}/pressure"), value, variables);
     } else if load.follower {
         let help = "forces and tractions keep their direction";
         c.add(

@@ -1,0 +1,247 @@
+//! The progress of a run, as people and programs want to see it.
+use super::{print, report};
+use crate::solve::event::{Event, Observer};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Parts of the bar; a run's time is scaled to it.
+const PARTS: u64 = 10_000;
+
+/// One JSON object an event and line, on standard output.
+pub(super) struct JsonLines;
+
+impl Observer for JsonLines {
+    fn event(&mut self, event: &Event) {
+        if let Ok(line) = serde_json::to_string(event) {
+            print(&(line + "\n"));
+        }
+    }
+}
+
+/// A table of steps, one line each, on standard error.
+pub(super) struct Plain {
+    table: Table,
+}
+
+impl Plain {
+    pub fn new(end_time: f64) -> Self {
+        Plain {
+            table: Table::new(end_time, false),
+        }
+    }
+}
+
+impl Observer for Plain {
+    fn event(&mut self, event: &Event) {
+        for line in self.table.lines(event) {
+            report::stderr(&format!("{line}\n"));
+        }
+    }
+}
+
+/// A table of steps and iterations above a progress bar.
+pub(super) struct Terminal {
+    table: Table,
+    bar: ProgressBar,
+}
+
+impl Terminal {
+    pub fn new(end_time: f64) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(PARTS), ProgressDrawTarget::stderr());
+        let colour = if report::colours() { ".green" } else { "" };
+        let template = format!("{{elapsed:>6}} [{{bar:32{colour}}}] {{msg}}");
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        Terminal {
+            table: Table::new(end_time, true),
+            bar,
+        }
+    }
+}
+
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Observer for Terminal {
+    fn event(&mut self, event: &Event) {
+        for line in self.table.lines(event) {
+            self.bar.println(line);
+        }
+        match event {
+            Event::StepStarted { step, time, dt } => {
+                self.bar.set_message(format!(
+                    "step {step} to t = {} (dt = {})",
+                    short(*time),
+                    short(*dt)
+                ));
+                self.bar.tick();
+            }
+            Event::StepAccepted { time, .. } => {
+                let part = (time / self.table.end_time).clamp(0.0, 1.0);
+                self.bar.set_position((part * PARTS as f64) as u64);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Turns events into lines of text.
+struct Table {
+    end_time: f64,
+    iterations: bool,
+    dt: f64,
+}
+
+impl Table {
+    fn new(end_time: f64, iterations: bool) -> Self {
+        Table {
+            end_time,
+            iterations,
+            dt: 0.0,
+        }
+    }
+
+    fn lines(&mut self, event: &Event) -> Vec<String> {
+        match event {
+            Event::Model {
+                dofs,
+                contact_points,
+                effects,
+                notes,
+            } => {
+                let mut lines = vec![format!("{dofs} dofs, {contact_points} contact points")];
+                if !effects.is_empty() {
+                    lines.push(format!("effects: {}", effects.join(", ")));
+                }
+                lines.extend(notes.iter().map(|n| format!("note: {n}")));
+                lines.push(match self.iterations {
+                    true => format!(
+                        "{:>5} {:>10} {:>10} {:>5} {:>10} {:>10} {:>8} {:>8} {:>7}",
+                        "step",
+                        "time",
+                        "dt",
+                        "iter",
+                        "residual",
+                        "energy",
+                        "active",
+                        "changed",
+                        "search"
+                    ),
+                    false => format!(
+                        "{:>5} {:>10} {:>10} {:>5} {:>8} {:>12}",
+                        "step", "time", "dt", "iter", "active", "penetration"
+                    ),
+                });
+                lines
+            }
+            Event::StepStarted { dt, .. } => {
+                self.dt = *dt;
+                Vec::new()
+            }
+            Event::Iteration {
+                step,
+                iteration,
+                residual,
+                energy,
+                active,
+                changed,
+                line_search,
+            } if self.iterations => {
+                vec![format!(
+                    "{step:>5} {:>10} {:>10} {iteration:>5} {residual:>10.3e} {energy:>10.3e} {active:>8} {changed:>8} \
+                     {line_search:>7.3}",
+                    "", ""
+                )]
+            }
+            Event::Iteration { .. } | Event::Finished { .. } => Vec::new(),
+            Event::StepAccepted {
+                step,
+                time,
+                iterations,
+                active,
+                penetration,
+            } => {
+                let (time, dt) = (short(*time), short(self.dt));
+                vec![match self.iterations {
+                    true => format!(
+                        "{step:>5} {time:>10} {dt:>10} {iterations:>5} accepted, {active} points active, penetration \
+                         {penetration:.3e}"
+                    ),
+                    false => format!(
+                        "{step:>5} {time:>10} {dt:>10} {iterations:>5} {active:>8} {penetration:>12.3e}"
+                    ),
+                }]
+            }
+            Event::StepCut {
+                step,
+                dt,
+                next_dt,
+                reason,
+            } => {
+                let (dt, next) = (short(*dt), short(*next_dt));
+                vec![format!(
+                    "{step:>5} {:>10} {dt:>10} cut to {next}: {reason}",
+                    ""
+                )]
+            }
+            Event::Warning { text } => vec![format!("warning: {text}")],
+        }
+    }
+}
+
+/// About six digits, without trailing zeros.
+fn short(x: f64) -> String {
+    let text = if x != 0.0 && (x.abs() < 1e-3 || x.abs() >= 1e6) {
+        return format!("{x:.3e}");
+    } else {
+        format!("{x:.6}")
+    };
+    text.trim_end_matches('0').trim_end_matches('.').to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        for (x, text) in [
+            (0.125, "0.125"),
+            (0.1 + 0.2, "0.3"),
+            (1.0, "1"),
+            (0.0, "0"),
+            (1.5e-5, "1.500e-5"),
+        ] {
+            assert_eq!(short(x), text);
+        }
+    }
+
+    #[test]
+    fn every_line_of_the_table_is_as_wide_as_its_head() {
+        let mut table = Table::new(1.0, true);
+        let model = Event::Model {
+            dofs: 3,
+            contact_points: 2,
+            effects: vec![],
+            notes: vec!["a".into()],
+        };
+        let head = table.lines(&model);
+        assert_eq!(head[..2], ["3 dofs, 2 contact points", "note: a"]);
+        let iteration = Event::Iteration {
+            step: 1,
+            iteration: 2,
+            residual: 1.25e-7,
+            energy: 1.0,
+            active: 5,
+            changed: 0,
+            line_search: 1.0,
+        };
+        let line = table.lines(&iteration);
+        assert_eq!(line[0].len(), head[2].len());
+        assert!(line[0].contains("1.250e-7"));
+        assert!(Table::new(1.0, false).lines(&iteration).is_empty());
+    }
+}

@@ -1,0 +1,79 @@
+//! `covact run`.
+use super::progress::{JsonLines, Plain, Terminal};
+use super::{RunArgs, check, exit, report};
+use crate::output::RunStatus;
+use crate::run::{self, RunOptions};
+use crate::solve::event::{Observer, Silent};
+use std::io::IsTerminal;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+pub(super) fn run(args: &RunArgs) -> u8 {
+    let scene = match check::load(&args.scene) {
+        Ok(scene) => scene,
+        Err(e) => return report::scene_error(&e, args.json),
+    };
+    let interrupt = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&interrupt);
+    let handler = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            // The second time: at once. 130 is what shells report for this signal.
+            std::process::exit(130);
+        }
+        report::stderr(
+            "\nstopping after this step, what was computed is kept (again to stop at once)\n",
+        );
+    });
+    if let Err(e) = handler {
+        report::warning(&format!("interrupting will lose the step under way: {e}"));
+    }
+
+    let end_time = scene.scene.solution.end_time;
+    let mut observer: Box<dyn Observer + Send> = if args.json {
+        Box::new(JsonLines)
+    } else if args.quiet {
+        Box::new(Silent)
+    } else if std::io::stderr().is_terminal() {
+        Box::new(Terminal::new(end_time))
+    } else {
+        Box::new(Plain::new(end_time))
+    };
+    let options = RunOptions {
+        threads: args.threads,
+    };
+    let result = run::run(&scene, &args.out, &options, observer.as_mut(), &interrupt);
+    // Clears the progress bar before anything else is printed.
+    drop(observer);
+    let summary = match result {
+        Ok(summary) => summary,
+        Err(e) => return report::run_error(&e, &scene, args.json),
+    };
+    let (code, status) = match summary.status {
+        RunStatus::Done => (0, "done"),
+        RunStatus::NotConverged => (exit::NOT_CONVERGED, "not converged"),
+        RunStatus::Interrupted => (exit::NOT_CONVERGED, "interrupted"),
+        RunStatus::Failed => (exit::IO, "failed"),
+    };
+    if code != 0 {
+        let reason = summary
+            .reason
+            .as_ref()
+            .map_or(String::new(), |r| format!(": {r}"));
+        let kept = format!(
+            "{} steps up to time {} are in {}",
+            summary.steps,
+            summary.time,
+            args.out.display()
+        );
+        report::error(&format!("{status}{reason}; {kept}"));
+    } else if !args.quiet && !args.json {
+        report::stderr(&format!(
+            "{status}: {} steps, {} iterations, {:.2} s; results in {}\n",
+            summary.steps,
+            summary.newton_iterations,
+            summary.wall_s,
+            args.out.display()
+        ));
+    }
+    code
+}
