@@ -40,6 +40,7 @@ impl RunStatus {
 /// `summary.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
+    /// How the run ended.
     pub status: RunStatus,
     /// Why the run ended early, in words.
     pub reason: Option<String>,
@@ -53,9 +54,11 @@ pub struct Summary {
     pub phases: BTreeMap<String, f64>,
     /// Largest resident memory in MB (10^6 bytes); none where the system does not tell.
     pub peak_memory_mb: Option<f64>,
+    /// Threads used.
     pub threads: usize,
     /// Unknowns, prescribed ones left out.
     pub dofs: usize,
+    /// Slave points of all contact pairs.
     pub contact_points: usize,
     /// Iterations of all steps, of failed attempts too.
     pub newton_iterations: u64,
@@ -65,7 +68,9 @@ pub struct Summary {
     pub cuts: u32,
     /// Effects that were on, by name.
     pub effects: Vec<String>,
+    /// What the user should know, in words.
     pub warnings: Vec<String>,
+    /// Versions that made this file.
     pub versions: Versions,
 }
 
