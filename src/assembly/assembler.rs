@@ -238,18 +238,19 @@ impl<'m> Assembler<'m> {
             let u = &state.u;
             for start in (0..count).step_by(CHUNK) {
                 let n = CHUNK.min(count - start);
-                let evaluate = |(i, (out, s)): (usize, (&mut H8System, &mut [f64]))| {
+                let evaluate = |i: usize, out: &mut H8System, s: &mut [f64]| {
                     let x = body.displacements(start + i, u);
                     body.block.evaluate(start + i, &x, s, out)
                 };
-                let chunk_states =
-                    states[start * len..(start + n) * len].par_chunks_mut(len.max(1));
-                (self.systems[..n].par_iter_mut())
-                    .zip(chunk_states)
-                    .enumerate()
-                    .with_min_len(8)
-                    .try_for_each(evaluate)
-                    .map_err(|fault| element_fault(&body.name, fault))?;
+                let outputs = (self.systems[..n].par_iter_mut()).with_min_len(8);
+                let done = if len == 0 {
+                    (outputs.enumerate()).try_for_each(|(i, out)| evaluate(i, out, &mut []))
+                } else {
+                    let chunk = &mut states[start * len..(start + n) * len];
+                    (outputs.zip(chunk.par_chunks_mut(len)).enumerate())
+                        .try_for_each(|(i, (out, s))| evaluate(i, out, s))
+                };
+                done.map_err(|fault| element_fault(&body.name, fault))?;
                 for i in 0..n {
                     let nodes = body.element_nodes(start + i);
                     let system = &mut self.systems[i];
