@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Renders a picture from a results folder, off screen.
 
-    pip install pyvista
+    pip install pyvista pillow
     python assets/render.py out --field von_mises --label "von Mises stress [MPa]" --output punch.png
 
 Bodies are warped by their displacement and coloured by a field of the nodes; rigid surfaces are drawn half transparent
@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pyvista as pv
+from PIL import Image
 
 AXES = "xyz"
 # Directions from which the camera looks at the model: azimuth from the x axis towards y, elevation (degrees).
@@ -41,6 +42,7 @@ def arguments():
     p.add_argument("--warp", type=float, default=1.0, help="factor on the displacement")
     p.add_argument("--parts", nargs="*", help="draw only parts of these names")
     p.add_argument("--mirror", default="", help="xy: mirror the bodies over x = 0 and y = 0")
+    p.add_argument("--mirror-surfaces", default="", help="the same for rigid surfaces that are modelled in part")
     p.add_argument("--clip", nargs="*", default=[], metavar="SIDE",
                    help="cut rigid surfaces open: +y keeps y >= 0, x<3 and z>1.5 keep what they say")
     p.add_argument("--clip-bodies", nargs="*", default=[], metavar="SIDE", help="the same for bodies, after mirroring")
@@ -99,6 +101,10 @@ def mirrored(grid, axes, signs):
             copy.points = points
             if "colour" in copy.point_data:
                 copy.point_data["colour"] = signs[k] * np.array(copy.point_data["colour"])
+            if "normal" in copy.point_data:
+                normals = np.array(copy.point_data["normal"])
+                normals[:, k] *= -1
+                copy.point_data["normal"] = normals
             images.append(copy)
     return images
 
@@ -132,18 +138,25 @@ def add_body(plotter, grid, args, style):
         surface = shown.extract_surface(algorithm="dataset_surface")
         bounds.append(surface.bounds)
         look = style if "colour" in surface.point_data else {"color": "lightsteelblue"}
-        plotter.add_mesh(surface, show_edges=not args.no_edges, edge_color="#404040", line_width=0.6,
+        plotter.add_mesh(surface, show_edges=not args.no_edges, edge_color="#404040", line_width=1.6,
                          edge_opacity=0.45, ambient=0.25, diffuse=0.75, specular=0.1, **look)
         outline = surface.extract_feature_edges(feature_angle=50, manifold_edges=False, non_manifold_edges=False)
+        for axis in args.mirror:
+            # No line where the model meets its image.
+            if outline.n_cells:
+                away = np.abs(outline.cell_centers().points[:, AXES.index(axis)]) > 1e-6 * surface.length
+                outline = outline.extract_cells(away)
         if outline.n_cells:
-            plotter.add_mesh(outline, color="#303030", line_width=1.2)
+            plotter.add_mesh(outline, color="#303030", line_width=3.5)
     return bounds
 
 
 def add_surface(plotter, grid, args):
-    grid = clipped(grid, args.clip)
-    if grid.n_cells == 0:
-        return []
+    images = [clipped(image, args.clip) for image in mirrored(grid, args.mirror_surfaces, [1, 1, 1])]
+    return [draw_surface(plotter, image, args) for image in images if image.n_cells > 0]
+
+
+def draw_surface(plotter, grid, args):
     surface = grid.extract_surface(algorithm="dataset_surface")
     surface.point_data.active_normals_name = "normal"
     plotter.add_mesh(surface, color="#8a93a0", opacity=args.opacity, smooth_shading=True, specular=0.5,
@@ -153,8 +166,8 @@ def add_surface(plotter, grid, args):
         border = part.clean().extract_feature_edges(
             boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False)
         if border.n_cells:
-            plotter.add_mesh(border, color="#4a525e", line_width=1.5, opacity=min(1.0, 2 * args.opacity))
-    return [surface.bounds]
+            plotter.add_mesh(border, color="#4a525e", line_width=4, opacity=min(1.0, 2 * args.opacity))
+    return surface.bounds
 
 
 def place_camera(plotter, args, bounds):
@@ -175,7 +188,10 @@ def place_camera(plotter, args, bounds):
     camera.up = (0, 0, 1)
     camera.view_angle = 25
     plotter.reset_camera(bounds=[low[0], high[0], low[1], high[1], low[2], high[2]])
-    camera.zoom(1.25 * args.zoom)
+    camera.zoom(1.2 * args.zoom)
+    if args.field:
+        # Room for the colour bar.
+        camera.SetWindowCenter(0.1, 0.0)
     # Everything may be nearer or farther than what the picture is centred on.
     plotter.renderer.ResetCameraClippingRange()
 
@@ -203,16 +219,21 @@ def main():
             low, high = min(low, np.nanmin(values)), max(high, np.nanmax(values))
             if any(signs[AXES.index(a)] < 0 for a in args.mirror):
                 low, high = min(low, -high), max(high, -low)
-        bar = {"title": args.label or args.field, "vertical": True, "position_x": 0.87, "position_y": 0.2,
-               "height": 0.6, "width": 0.05, "title_font_size": 22, "label_font_size": 20, "color": "black",
+        # A scale that all but begins or ends at zero does.
+        low, high = (0.0 if abs(x) < 1e-3 * (high - low) else x for x in (low, high))
+        bar = {"title": (args.label or args.field) + "\n", "vertical": True, "position_x": 0.88, "position_y": 0.2,
+               "height": 0.6, "width": 0.05, "title_font_size": 44, "label_font_size": 38, "color": "black",
                "fmt": "%.4g", "n_labels": 6}
         style = {"scalars": "colour", "clim": args.range or [low, high], "cmap": args.cmap, "scalar_bar_args": bar,
                  "nan_color": "lightgrey"}
 
-    plotter = pv.Plotter(off_screen=True, window_size=args.size)
+    plotter = pv.Plotter(off_screen=True, window_size=[2 * n for n in args.size])
     plotter.set_background("white", top="#e8eef5")
-    plotter.enable_anti_aliasing("ssaa")
-    plotter.enable_depth_peeling(8)
+    # Transparent surfaces in the right order need depth peeling, which fails with multisampling: smooth edges come from
+    # averaging a picture of twice the size.
+    plotter.enable_depth_peeling(20, 0.0)
+    plotter.render_window.SetMultiSamples(0)
+    plotter.render_window.SetAlphaBitPlanes(1)
     body_bounds = [b for grid in bodies for b in add_body(plotter, grid, args, style)]
     surface_bounds = [b for grid in surfaces for b in add_surface(plotter, grid, args)] if args.opacity > 0 else []
     wanted = body_bounds if args.fit == "bodies" and body_bounds else body_bounds + surface_bounds
@@ -220,7 +241,10 @@ def main():
         sys.exit("nothing to draw")
     place_camera(plotter, args, wanted)
     args.output.parent.mkdir(parents=True, exist_ok=True)
-    plotter.screenshot(args.output)
+    image = plotter.screenshot(return_img=True)[:, :, :3].astype(float)
+    height, width = image.shape[0] // 2, image.shape[1] // 2
+    image = image[: 2 * height, : 2 * width].reshape(height, 2, width, 2, 3).mean(axis=(1, 3))
+    Image.fromarray(np.rint(image).astype(np.uint8)).save(args.output, optimize=True)
     print(f"{args.output}: time {time:g}")
 
 

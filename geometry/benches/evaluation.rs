@@ -70,10 +70,7 @@ fn evaluation(c: &mut Criterion) {
         group.throughput(Throughput::Elements(COUNT as u64));
         group.sample_size(20);
         group.bench_function("jet", |b| {
-            b.iter(|| {
-                xi.iter()
-                    .for_each(|&xi| drop(black_box(patch.jet(black_box(xi)))))
-            });
+            b.iter(|| xi.iter().for_each(|&xi| discard(patch.jet(black_box(xi)))));
         });
         let one_span: Vec<[f64; 2]> = {
             let [a, b] = patch.spans(0)[5];
@@ -87,10 +84,7 @@ fn evaluation(c: &mut Criterion) {
             });
         });
         group.bench_function("jet3", |b| {
-            b.iter(|| {
-                xi.iter()
-                    .for_each(|&xi| drop(black_box(patch.jet3(black_box(xi)))))
-            });
+            b.iter(|| xi.iter().for_each(|&xi| discard(patch.jet3(black_box(xi)))));
         });
         group.bench_function("jet and frame", |b| {
             b.iter(|| {

@@ -5,13 +5,17 @@
 //! `q` from the (m-1)-th of level `q - 1`. The divisions by knot differences are done once per span when the basis
 //! is made.
 
+mod short;
+
+pub(crate) use short::Short;
+
 use num_dual::DualNum;
 
 /// Largest polynomial degree.
 pub const MAX_DEGREE: usize = 15;
 
-/// Functions that can be non-zero at a point.
-pub(crate) const WIDTH: usize = MAX_DEGREE + 1;
+/// The most functions that are not zero at a point.
+pub const WIDTH: usize = MAX_DEGREE + 1;
 
 /// Why a knot vector cannot be used. Indices count from zero.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -329,34 +333,29 @@ impl Basis {
 
     /// Values and derivatives of the `degree + 1` functions that are not zero in span `span`, at `t`: `out[m][r]` is
     /// the m-th derivative of function `first_function(span) + r`. Outside of the span its polynomials are continued.
-    /// `K` is the highest derivative plus one (at least 1); `N` at least `degree + 1`, entries beyond the degree
-    /// are left as they are.
+    /// `K` is the highest derivative plus one; entries beyond the degree are left as they are.
     #[inline]
-    pub fn evaluate<D: DualNum<f64> + Copy, const N: usize, const K: usize>(
+    pub fn evaluate<D: DualNum<f64> + Copy, const K: usize>(
         &self,
         span: usize,
         t: D,
-        out: &mut [[D; N]; K],
+        out: &mut [[D; WIDTH]; K],
     ) {
+        const { assert!(K > 0, "room for the functions themselves") };
         let (knots, inverse) = self.span_data(span);
-        recursion(self.degree.min(N - 1), knots, inverse, t, out);
+        recursion(self.degree, knots, inverse, t, out);
     }
 
-    /// [`evaluate`](Self::evaluate) for a buffer of six, with the loops unrolled for degrees up to 5.
+    /// [`evaluate`](Self::evaluate) for degrees up to 5.
     #[inline]
-    pub(crate) fn evaluate_short<const K: usize>(
-        &self,
-        span: usize,
-        t: f64,
-        out: &mut [[f64; 6]; K],
-    ) {
+    pub(crate) fn evaluate_short<const K: usize>(&self, span: usize, t: f64, out: &mut Short<K>) {
         let (knots, inverse) = self.span_data(span);
         match self.degree {
-            1 => recursion(1, knots, inverse, t, out),
-            2 => recursion(2, knots, inverse, t, out),
-            3 => recursion(3, knots, inverse, t, out),
-            4 => recursion(4, knots, inverse, t, out),
-            _ => recursion(5, knots, inverse, t, out),
+            1 => short::evaluate::<1, K>(knots, inverse, t, out),
+            2 => short::evaluate::<2, K>(knots, inverse, t, out),
+            3 => short::evaluate::<3, K>(knots, inverse, t, out),
+            4 => short::evaluate::<4, K>(knots, inverse, t, out),
+            _ => short::evaluate::<5, K>(knots, inverse, t, out),
         }
     }
 
@@ -405,13 +404,13 @@ impl Basis {
 }
 
 /// The recursion from level 0 to level `p`. `knots[p - 1]` and `knots[p]` are the ends of the span.
-#[inline(always)]
-fn recursion<D: DualNum<f64> + Copy, const N: usize, const K: usize>(
+#[inline]
+fn recursion<D: DualNum<f64> + Copy, const K: usize>(
     p: usize,
     knots: &[f64],
     inverse: &[f64],
     t: D,
-    out: &mut [[D; N]; K],
+    out: &mut [[D; WIDTH]; K],
 ) {
     let zero = D::from(0.0);
     for row in out.iter_mut() {

@@ -105,6 +105,27 @@ fn shorter_evaluations_agree() {
     }
 }
 
+/// Equal weights of any size are no weights.
+#[test]
+fn equal_weights_cancel() {
+    for degree in [[2, 3], [7, 2]] {
+        let plain = patch(degree, KINDS[2], 0.0, 13);
+        let points = plain.points();
+        let knots = [plain.knots(0).to_vec(), plain.knots(1).to_vec()];
+        let weights = vec![3.7; points.len()];
+        let heavy =
+            NurbsPatch::new(degree, knots, plain.counts(), &points, Some(&weights)).unwrap();
+        assert!(!heavy.is_rational());
+        for xi in samples(&plain, 20, 8) {
+            let error = worst(&[(list(&heavy.jet3(xi)), list(&plain.jet3(xi)))]);
+            assert!(error.iter().all(|&e| e < 1e-12), "{error:?}");
+            let (a, b) = (heavy.jet(xi), plain.jet(xi));
+            assert!((a.rho - b.rho).norm() < 1e-14 * b.rho.norm());
+            assert!((a.rho_ij[1] - b.rho_ij[1]).norm() < 1e-12 * (1.0 + b.rho_ij[1].norm()));
+        }
+    }
+}
+
 /// Shape functions: partition of unity, derivatives that sum to zero, and the jet as their sum with the points.
 #[test]
 fn shape_functions_reproduce_the_jet() {

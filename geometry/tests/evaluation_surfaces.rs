@@ -196,10 +196,11 @@ fn equations_of_gauss_and_weingarten() {
             for (x, y) in eye.into_iter().zip([1.0, 0.0, 1.0]) {
                 assert!((x - y).abs() < tol);
             }
-            for k in 0..3 {
-                let sum =
-                    jet.rho_i[0] * gamma[0][k] + jet.rho_i[1] * gamma[1][k] + frame.n * frame.h[k];
-                assert!((sum - jet.rho_ij[k]).norm() < tol * jet.rho_ij[k].norm().max(1.0));
+            let [gamma_1, gamma_2] = gamma;
+            for (k, rho_k) in jet.rho_ij.iter().enumerate() {
+                let tangential = jet.rho_i[0] * gamma_1[k] + jet.rho_i[1] * gamma_2[k];
+                let sum = tangential + frame.n * frame.h[k];
+                assert!((sum - rho_k).norm() < tol * rho_k.norm().max(1.0));
             }
             let moved = [0, 1].map(|dir| {
                 let mut x = xi.map(Dual64::from);
@@ -207,21 +208,21 @@ fn equations_of_gauss_and_weingarten() {
                 let jet = patch.jet_generic(&points, x, None).unwrap().jet;
                 Frame::new(&jet, 1.0).unwrap()
             });
-            for dir in 0..2 {
-                let exact = moved[dir].n.map(|x| x.eps);
+            for (moved, n_i) in moved.iter().zip(frame.n_i()) {
+                let exact = moved.n.map(|x| x.eps);
                 assert!(exact.norm() > 0.0);
-                assert!((frame.n_i()[dir] - exact).norm() < tol * exact.norm().max(1.0));
+                assert!((n_i - exact).norm() < tol * exact.norm().max(1.0));
             }
             let index = |i: usize, j: usize| i + j;
             let a = |i: usize, j: usize, l: usize| moved[l].a[index(i, j)].eps;
             for (i, j) in [(0, 0), (0, 1), (1, 1)] {
-                for k in 0..2 {
+                for (k, gamma) in gamma.iter().enumerate() {
                     let mut sum = 0.0;
                     for l in 0..2 {
                         let bracket = a(j, l, i) + a(i, l, j) - a(i, j, l);
                         sum += 0.5 * frame.a_inv[index(k, l)] * bracket;
                     }
-                    assert!((sum - gamma[k][index(i, j)]).abs() < tol * sum.abs().max(1.0));
+                    assert!((sum - gamma[index(i, j)]).abs() < tol * sum.abs().max(1.0));
                 }
             }
             let symmetric = |m: [f64; 3]| nalgebra::Matrix2::new(m[0], m[1], m[1], m[2]);

@@ -7,7 +7,7 @@ use crate::contact::law::{NormalLaw, Penalty};
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
 use crate::model::{Model, PairModel};
-use crate::scene::{Tangent, ValueError};
+use crate::scene::{EvalError, Tangent};
 use crate::shell::{ElementFault, H8System};
 use crate::solve::state::{PointState, State};
 use covact_geometry::Vec3;
@@ -30,7 +30,7 @@ pub enum Fault {
         fault: PointFault,
     },
     #[error(transparent)]
-    Value(#[from] ValueError),
+    Value(#[from] EvalError),
 }
 
 /// What a rigid surface does to the bodies.
@@ -204,7 +204,7 @@ impl<'m> Assembler<'m> {
             let mut f = [0.0; 24];
             for e in 0..body.block.elements() {
                 let at = first + e * len;
-                let x = body.positions(self.model, e, &state.u);
+                let x = body.displacements(e, &state.u);
                 let energy = (body.block)
                     .residual(e, &x, &state.elements[at..at + len], &mut f)
                     .map_err(|fault| element_fault(&body.name, fault))?;
@@ -233,9 +233,8 @@ impl<'m> Assembler<'m> {
             let u = &state.u;
             for start in (0..count).step_by(CHUNK) {
                 let n = CHUNK.min(count - start);
-                let model = self.model;
                 let evaluate = |(i, (out, s)): (usize, (&mut H8System, &mut [f64]))| {
-                    let x = body.positions(model, start + i, u);
+                    let x = body.displacements(start + i, u);
                     body.block.evaluate(start + i, &x, s, out)
                 };
                 let chunk_states = states[start * len..(start + n) * len].par_chunks_mut(len.max(1));
@@ -261,7 +260,9 @@ impl<'m> Assembler<'m> {
                     match kind {
                         Kind::Free => self.matrix.scatter(map, &system.k),
                         Kind::Prescribed => {
-                            self.dofs.condense_matrix(&nodes, &mut system.k);
+                            (self.dofs)
+                                .condense_matrix(&nodes, &mut system.k)
+                                .expect("an element without ties has all its nodes");
                             self.matrix.scatter(map, &system.k);
                         }
                         Kind::Tied => (self.matrix)

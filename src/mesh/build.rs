@@ -1,6 +1,8 @@
 //! From the scene's description to a mesh.
 use super::raw::{ThicknessRule, report};
-use super::{Mesh, MeshError, MeshReport, block, cylinder_panel, plate, read_gmsh, sphere_panel};
+use super::{
+    Mesh, MeshError, MeshReport, block, cylinder_panel, plate, read_gmsh, read_inp, sphere_panel,
+};
 use crate::scene::{MeshFile, MeshSource};
 use std::path::Path;
 
@@ -32,11 +34,13 @@ fn read_file(file: &MeshFile, scene_dir: &Path) -> Result<(Mesh, MeshReport), Me
     }
     let path = scene_dir.join(&file.path);
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    if extension.as_deref() != Some("msh") {
-        return Err(MeshError::UnknownFormat { path });
-    }
+    let read = match extension.as_deref() {
+        Some("msh") => read_gmsh,
+        Some("inp") => read_inp,
+        _ => return Err(MeshError::UnknownFormat { path }),
+    };
     match std::fs::read(&path) {
-        Ok(bytes) => read_gmsh(&bytes, &path, file.scale),
+        Ok(bytes) => read(&bytes, &path, file.scale),
         Err(source) => Err(MeshError::Io { path, source }),
     }
 }

@@ -159,7 +159,8 @@ fn close_pairs(nodes: &[Vec3], size: f64) -> Vec<[u32; 2]> {
     // Cells of half the shortest edge hold a node or two; a node next to a cell's border is also put into the cell
     // beyond, so that both nodes of a pair always share a cell.
     let cell = 0.5 * size;
-    let index = |x: f64| (x / cell).floor() as i64;
+    // The shift keeps the nodes of regular meshes off the borders of cells.
+    let index = |x: f64| (x / cell + 0.31).floor() as i64;
     let mut cells = Vec::with_capacity(nodes.len());
     for (n, x) in nodes.iter().enumerate() {
         let low = x.map(|v| index(v - tolerance));

@@ -153,7 +153,7 @@ pub enum MeshError {
     /// No set of this name.
     #[error(
         "no {kind} set `{name}`{}; {}",
-        suggestion.as_ref().map(|s| format!(", did you mean `{s}`?")).unwrap_or_default(),
+        suggestion.as_ref().map(|s| format!(" (did you mean `{s}`?)")).unwrap_or_default(),
         if available.is_empty() { format!("the mesh has no {kind} sets") } else { format!("{kind} sets: {}", available.join(", ")) }
     )]
     UnknownSet {

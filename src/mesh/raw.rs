@@ -179,7 +179,10 @@ fn match_surfaces(
             ));
         }
         if !faces.is_empty() {
-            mesh.face_sets.insert(name.clone(), faces);
+            mesh.face_sets
+                .entry(name.clone())
+                .or_default()
+                .extend(faces);
         }
     }
 }

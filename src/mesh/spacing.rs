@@ -1,5 +1,5 @@
 //! Node positions along one axis.
-use super::MeshError;
+use super::{MAX_NODES, MeshError};
 use crate::scene::Spacing;
 
 /// Largest growth from one element to the next that `fine` spacing may need.
@@ -21,6 +21,11 @@ pub fn positions(
     let n = elements as usize;
     if n == 0 || !(length.is_finite() && length > 0.0) {
         return Err(error(format!("{n} elements over a length of {length}")));
+    }
+    if u64::from(elements) >= MAX_NODES {
+        return Err(error(format!(
+            "{n} elements are more than the limit of {MAX_NODES} nodes"
+        )));
     }
     let mut s = match *spacing {
         Spacing::Uniform => (0..=n).map(|i| length * i as f64 / n as f64).collect(),

@@ -3,12 +3,14 @@ use super::constraints::{MeanPrescribed, Prescribed};
 use super::error::{At, text};
 use super::loads::{DeadLoad, FollowerPressure, load_points};
 use super::motion::Motion;
-use super::slave::{face_nodes, slave_points};
+use super::slave::slave_points;
 use super::{BodyModel, Model, ModelError, PairModel, SurfaceModel, penalty};
 use crate::assembly::{DofMap, DofMapBuilder};
 use crate::mesh::{self, Face, Mesh, ThicknessColumns};
-use crate::scene::{self, Axis, LoadedScene, Penalty, Scene, Side, TimeFunction, Value};
-use crate::shell::{self, H8Block};
+use crate::scene::{
+    self, Axis, LoadedScene, POSITION_AND_TIME, Penalty, Scene, Side, TIME, TimeFunction, Value,
+};
+use crate::shell::{H8Block, Law};
 use covact_geometry::{NurbsPatch, PatchSet, Vec3, io, primitives};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -58,10 +60,10 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         effects: Vec::new(),
         notes: builder.notes,
         warnings: builder.warnings,
-        breakpoints: Vec::new(),
+        kinks: Vec::new(),
     };
     model.effects = super::effects::effects(scene, &model);
-    model.breakpoints = breakpoints(&model, scene.solution.end_time);
+    model.kinks = kinks(&model, scene.solution.end_time);
     if let Some(free) = super::free_motion::free_motions(&model).first() {
         return Err(text(
             "/supports",
@@ -76,17 +78,14 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     Ok(model)
 }
 
-fn breakpoints(model: &Model, end: f64) -> Vec<f64> {
-    let mut times: Vec<f64> = (model.surfaces.iter().flat_map(|s| s.motion.breakpoints()))
-        .chain(model.dead_loads.iter().flat_map(|(_, l)| l.breakpoints()))
-        .chain((model.follower_loads.iter()).flat_map(|(_, l)| l.value.breakpoints()))
-        .chain((model.prescribed.iter()).flat_map(|p| {
-            p.value.as_ref().map(TimeFunction::breakpoints).unwrap_or_default()
-        }))
-        .chain((model.means.iter()).flat_map(|p| {
-            p.mean.as_ref().map(TimeFunction::breakpoints).unwrap_or_default()
-        }))
-        .filter(|t| *t > 0.0 && *t < end)
+/// Times inside the run at which something prescribed has a kink.
+fn kinks(model: &Model, end: f64) -> Vec<f64> {
+    let mut times: Vec<f64> = (model.surfaces.iter().flat_map(|s| s.motion.functions()))
+        .chain(model.dead_loads.iter().flat_map(|(_, l)| l.functions()))
+        .chain(model.follower_loads.iter().map(|(_, l)| &l.value))
+        .chain(model.prescribed.iter().filter_map(|p| p.value.as_ref()))
+        .chain(model.means.iter().filter_map(|p| p.mean.as_ref()))
+        .flat_map(|f| f.kinks(0.0, end))
         .collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
@@ -110,11 +109,8 @@ impl<'s> Builder<'s> {
             mesh.check().at(at)?;
             (self.notes).extend(report.notes.iter().map(|n| format!("body `{name}`: {n}")));
             let material = self.material(name, &body.material)?;
-            let formulation = match body.element {
-                scene::Element::H8 => shell::Formulation::Eas7,
-                scene::Element::H8Displacement => shell::Formulation::Displacement,
-            };
-            let block = H8Block::new(&mesh, formulation, material).at(at)?;
+            let law = Law::new(&material).at(|| format!("/bodies/{name}/material"))?;
+            let block = H8Block::new(&mesh, body.element.into(), law).at(at)?;
             let first_node = u32::try_from(self.nodes.len())
                 .map_err(|_| text(at(), "too many nodes: more than 2^32"))?;
             self.nodes.extend_from_slice(&mesh.nodes);
@@ -175,7 +171,8 @@ impl<'s> Builder<'s> {
                 text(pointer("master"), format!("there is no surface `{}`", contact.master))
             })?;
             let model = &self.bodies[body];
-            let points = slave_points(&model.mesh, &faces, contact.points, model.first_node);
+            let points = slave_points(&model.mesh, &faces, contact.points, model.first_node)
+                .at(|| pointer("points"))?;
             let size = penalty::slave_size(&model.mesh, &faces);
             let material = &self.scene.bodies[&model.name].material;
             let automatic = penalty::automatic(&self.scene.materials[material], &size);
@@ -271,7 +268,17 @@ impl<'s> Builder<'s> {
         let path = self.dir.join(&cad.file);
         let file = io::read_path(&path).at(|| field("file"))?;
         let shown = cad.file.display();
-        let factor = file.unit.metres() / self.scene.units.length.metres();
+        let own = io::LengthUnit::from_name(self.scene.units.length.name());
+        let factor = match own.as_ref().and_then(|own| file.unit.factor_to(own)) {
+            Some(factor) => factor,
+            None => {
+                self.notes.push(format!(
+                    "surface `{name}`: {shown} states no length unit; its numbers are taken as {}",
+                    self.scene.units.length.name()
+                ));
+                1.0
+            }
+        };
         let wanted = |entity: u32| cad.entities.is_empty() || cad.entities.contains(&entity);
         let skipped: Vec<_> = file.skipped.iter().filter(|s| wanted(s.entity)).collect();
         let list = || {
@@ -326,7 +333,7 @@ impl<'s> Builder<'s> {
             "surface `{name}`: {} patch(es) from {shown}, {} -> {} (factor {factor}), \
              x {:.6} to {:.6}, y {:.6} to {:.6}, z {:.6} to {:.6}",
             patches.len(),
-            file.unit.name(),
+            file.unit.name,
             self.scene.units.length.name(),
             bounds[0].x,
             bounds[1].x,
@@ -398,7 +405,7 @@ impl<'s> Builder<'s> {
         &mut self,
     ) -> Result<(Vec<String>, Vec<Prescribed>, Vec<MeanPrescribed>, DofMap), ModelError> {
         let mut names: Vec<String> = Vec::new();
-        let mut owner: BTreeMap<u32, (u32, Option<Value>)> = BTreeMap::new();
+        let mut owner: BTreeMap<u32, (u32, Option<TimeFunction>)> = BTreeMap::new();
         let (mut prescribed, mut means) = (Vec::new(), Vec::new());
         let mut dofs = DofMapBuilder::new(self.nodes.len());
         let mut columns: BTreeMap<usize, ThicknessColumns> = BTreeMap::new();
@@ -410,7 +417,7 @@ impl<'s> Builder<'s> {
             for (component, value) in components(support) {
                 let compiled = match &value {
                     None => None,
-                    Some(v) => Some(v.compile(&["x", "y", "z", "t"]).at(|| pointer("displacement"))?),
+                    Some(v) => Some(v.compile(&POSITION_AND_TIME).at(|| pointer("displacement"))?),
                 };
                 let mut done = std::collections::BTreeSet::new();
                 for &node in &nodes {
@@ -435,7 +442,8 @@ impl<'s> Builder<'s> {
                     };
                     let key = partner.unwrap_or(dof);
                     if let Some((other, earlier)) = owner.get(&key) {
-                        if *earlier == value {
+                        let x = self.nodes[key as usize / 3];
+                        if agree(earlier, &compiled, x, self.scene.solution.end_time) {
                             continue;
                         }
                         return Err(text(
@@ -448,7 +456,7 @@ impl<'s> Builder<'s> {
                             ),
                         ));
                     }
-                    owner.insert(key, (index, value.clone()));
+                    owner.insert(key, (index, compiled.clone()));
                     match partner {
                         None => {
                             dofs.prescribe(dof).at(|| pointer("on"))?;
@@ -488,7 +496,7 @@ impl<'s> Builder<'s> {
             };
             if let Some(force) = &load.force {
                 let shares = self.shares(&load.on, &pointer("on"))?;
-                let value = vector(force, "force", &["t"])?;
+                let value = vector(force, "force", &TIME)?;
                 dead.push((name.clone(), DeadLoad::Force { shares, value }));
                 continue;
             }
@@ -496,18 +504,18 @@ impl<'s> Builder<'s> {
             let (mesh, first) = (&self.bodies[body].mesh, self.bodies[body].first_node);
             let points = load_points(mesh, &faces, first);
             if let Some(traction) = &load.traction {
-                let value = vector(traction, "traction", &["x", "y", "z", "t"])?;
+                let value = vector(traction, "traction", &POSITION_AND_TIME)?;
                 dead.push((name.clone(), DeadLoad::Traction { points, value }));
             } else if let Some(pressure) = &load.pressure {
                 if load.follower {
-                    let value = pressure.compile(&["t"]).at(|| pointer("pressure"))?;
+                    let value = pressure.compile(&TIME).at(|| pointer("pressure"))?;
                     let faces = (faces.iter())
-                        .map(|&f| face_nodes(mesh, f).map(|n| n + first))
+                        .map(|&f| mesh.face_nodes(f).map(|n| n + first))
                         .collect();
                     follower.push((name.clone(), FollowerPressure { faces, value }));
                 } else {
                     let value = pressure
-                        .compile(&["x", "y", "z", "t"])
+                        .compile(&POSITION_AND_TIME)
                         .at(|| pointer("pressure"))?;
                     dead.push((name.clone(), DeadLoad::Pressure { points, value }));
                 }
@@ -521,7 +529,8 @@ impl<'s> Builder<'s> {
         let (_, mesh, first) = self.body(reference, pointer)?;
         let set = split(reference).1;
         if let Some(faces) = mesh.face_sets.get(set) {
-            let points = slave_points(mesh, faces, scene::Points::Nodes, first);
+            let points = slave_points(mesh, faces, scene::Points::Nodes, first)
+                .at(|| pointer.to_owned())?;
             let total: f64 = points.iter().map(|p| p.area).sum();
             return Ok(points.iter().map(|p| (p.nodes[0], p.area / total)).collect());
         }
@@ -529,6 +538,22 @@ impl<'s> Builder<'s> {
         let share = 1.0 / nodes.len().max(1) as f64;
         Ok(nodes.into_iter().map(|n| (n, share)).collect())
     }
+}
+
+/// Whether two supports prescribe the same displacement at `x`, as they may where a symmetry plane meets another
+/// support: compared at a few times, relative to the largest value.
+fn agree(a: &Option<TimeFunction>, b: &Option<TimeFunction>, x: Vec3, end: f64) -> bool {
+    let value = |f: &Option<TimeFunction>, t: f64| match f {
+        None => Some(0.0),
+        Some(f) => f.eval_at(x.into(), t).ok(),
+    };
+    [0.0, 0.31, 0.77, 1.0].iter().all(|s| {
+        let t = s * end;
+        match (value(a, t), value(b, t)) {
+            (Some(a), Some(b)) => (a - b).abs() <= 1e-12 * a.abs().max(b.abs()),
+            _ => false,
+        }
+    })
 }
 
 /// Constrained components of a support, `None` standing for zero.

@@ -1,9 +1,7 @@
 //! Loads: nodal forces, dead tractions, dead and follower pressure.
-use super::slave::{face_nodes, face_positions};
 use crate::mesh::{Face, Mesh};
-use crate::scene::{TimeFunction, ValueError};
-use crate::shell::face::FacePoint;
-use crate::shell::quadrature;
+use crate::scene::{EvalError, TimeFunction};
+use crate::shell::face::{self, Quad};
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use num_dual::DualNum;
@@ -48,20 +46,21 @@ pub struct FollowerPressure {
 
 /// Two Gauss points a direction integrate a bilinear face's forces exactly for constant values.
 pub fn load_points(mesh: &Mesh, faces: &[Face], offset: u32) -> Vec<LoadPoint> {
-    let (g, w) = quadrature::gauss(2);
     let mut out = Vec::with_capacity(4 * faces.len());
     for &f in faces {
-        let nodes = face_nodes(mesh, f).map(|n| n + offset);
-        let x = face_positions(mesh, f);
-        for (v, wv) in g.iter().zip(&w) {
-            for (u, wu) in g.iter().zip(&w) {
-                let p = FacePoint::bilinear(&x, *u, *v);
+        let nodes = mesh.face_nodes(f).map(|n| n + offset);
+        let quad = Quad {
+            corners: mesh.face_nodes(f).map(|n| mesh.nodes[n as usize]),
+        };
+        for v in GAUSS_2 {
+            for u in GAUSS_2 {
+                let area = quad.area_vector(u, v);
                 out.push(LoadPoint {
                     nodes,
-                    shape: p.n,
-                    area: wu * wv * p.area,
-                    normal: p.normal,
-                    position: p.x,
+                    shape: face::shape(u, v),
+                    area: area.norm(),
+                    normal: area.normalize(),
+                    position: quad.point(u, v),
                 });
             }
         }
@@ -71,7 +70,7 @@ pub fn load_points(mesh: &Mesh, faces: &[Face], offset: u32) -> Vec<LoadPoint> {
 
 impl DeadLoad {
     /// Adds the nodal forces at time `t` to `force` (3 per node).
-    pub fn add(&self, t: f64, force: &mut [f64]) -> Result<(), ValueError> {
+    pub fn add(&self, t: f64, force: &mut [f64]) -> Result<(), EvalError> {
         let mut put = |node: u32, f: Vec3| {
             let at = 3 * node as usize;
             (0..3).for_each(|c| force[at + c] += f[c]);
@@ -83,14 +82,14 @@ impl DeadLoad {
             }
             DeadLoad::Traction { points, value } => {
                 for p in points {
-                    let at = |i: usize| value[i].eval_at(&p.position, t);
+                    let at = |i: usize| value[i].eval_at(p.position.into(), t);
                     let f = Vec3::new(at(0)?, at(1)?, at(2)?) * p.area;
                     (0..4).for_each(|k| put(p.nodes[k], f * p.shape[k]));
                 }
             }
             DeadLoad::Pressure { points, value } => {
                 for p in points {
-                    let f = p.normal * (-value.eval_at(&p.position, t)? * p.area);
+                    let f = p.normal * (-value.eval_at(p.position.into(), t)? * p.area);
                     (0..4).for_each(|k| put(p.nodes[k], f * p.shape[k]));
                 }
             }
@@ -98,13 +97,11 @@ impl DeadLoad {
         Ok(())
     }
 
-    /// Times at which the load has a kink.
-    pub fn breakpoints(&self) -> Vec<f64> {
+    /// Its functions of time.
+    pub fn functions(&self) -> &[TimeFunction] {
         match self {
-            DeadLoad::Force { value, .. } | DeadLoad::Traction { value, .. } => {
-                value.iter().flat_map(TimeFunction::breakpoints).collect()
-            }
-            DeadLoad::Pressure { value, .. } => value.breakpoints(),
+            DeadLoad::Force { value, .. } | DeadLoad::Traction { value, .. } => value,
+            DeadLoad::Pressure { value, .. } => std::slice::from_ref(value),
         }
     }
 }
@@ -112,9 +109,9 @@ impl DeadLoad {
 /// Nodal forces of a follower pressure `p` on a bilinear face with deformed corners `x`: `-p int N (x_,u x x_,v)`.
 pub fn follower_force<D: DualNum<f64> + Copy>(x: &[Vector3<D>; 4], p: f64) -> SVector<D, 12> {
     let mut f = SVector::<D, 12>::from_element(D::zero());
-    for_gauss(|n, nu, nv, w| {
+    for_gauss(|n, nu, nv| {
         let (xu, xv) = (combine(x, nu), combine(x, nv));
-        let area = xu.cross(&xv) * D::from(-p * w);
+        let area = xu.cross(&xv) * D::from(-p);
         for k in 0..4 {
             (0..3).for_each(|c| f[3 * k + c] += area[c] * n[k]);
         }
@@ -126,11 +123,11 @@ pub fn follower_force<D: DualNum<f64> + Copy>(x: &[Vector3<D>; 4], p: f64) -> SV
 /// loaded area, which vanish where that border is held.
 pub fn follower_stiffness(x: &[Vec3; 4], p: f64) -> SMatrix<f64, 12, 12> {
     let mut k = SMatrix::<f64, 12, 12>::zeros();
-    for_gauss(|n, nu, nv, w| {
+    for_gauss(|n, nu, nv| {
         let (xu, xv) = (combine(x, nu), combine(x, nv));
         for l in 0..4 {
             let turn: Matrix3<f64> =
-                (xu.cross_matrix() * nv[l] - xv.cross_matrix() * nu[l]) * (-p * w);
+                (xu.cross_matrix() * nv[l] - xv.cross_matrix() * nu[l]) * -p;
             for i in 0..4 {
                 let mut block = k.fixed_view_mut::<3, 3>(3 * i, 3 * l);
                 block += turn * n[i];
@@ -144,12 +141,14 @@ fn combine<D: DualNum<f64> + Copy>(x: &[Vector3<D>; 4], n: &[f64; 4]) -> Vector3
     x[0] * D::from(n[0]) + x[1] * D::from(n[1]) + x[2] * D::from(n[2]) + x[3] * D::from(n[3])
 }
 
-fn for_gauss(mut f: impl FnMut(&[f64; 4], &[f64; 4], &[f64; 4], f64)) {
-    let g = 1.0 / 3f64.sqrt();
-    for v in [-g, g] {
-        for u in [-g, g] {
-            let (n, nu, nv) = crate::shell::face::bilinear(u, v);
-            f(&n, &nu, &nv, 1.0);
+/// Points of the two-point Gauss rule; its weights are one.
+const GAUSS_2: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
+
+fn for_gauss(mut f: impl FnMut(&[f64; 4], &[f64; 4], &[f64; 4])) {
+    for v in GAUSS_2 {
+        for u in GAUSS_2 {
+            let [nu, nv] = face::shape_derivatives(u, v);
+            f(&face::shape(u, v), &nu, &nv);
         }
     }
 }

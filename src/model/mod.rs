@@ -14,7 +14,7 @@ use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::RigidMaster;
 use crate::mesh::Mesh;
-use crate::scene::{Tangent, TimeFunction, ValueError};
+use crate::scene::{EvalError, Tangent, TimeFunction};
 use crate::shell::H8Block;
 use constraints::{MeanPrescribed, Prescribed};
 use covact_geometry::{PatchSet, Vec3};
@@ -47,7 +47,7 @@ pub struct Model {
     /// Things the user should look at.
     pub warnings: Vec<String>,
     /// Times at which something prescribed has a kink, ascending.
-    pub breakpoints: Vec<f64>,
+    pub kinks: Vec<f64>,
 }
 
 /// A deformable body.
@@ -112,11 +112,11 @@ impl Model {
 
     /// Increments from the present displacements to what is prescribed at `time`, for prescribed degrees of freedom
     /// and those tied by mid-surface supports; returns the largest.
-    pub fn increments(&self, u: &[f64], time: f64, g: &mut [f64]) -> Result<f64, ValueError> {
+    pub fn increments(&self, u: &[f64], time: f64, g: &mut [f64]) -> Result<f64, EvalError> {
         g.fill(0.0);
         let value = |dof: u32, f: &Option<TimeFunction>| match f {
             None => Ok(0.0),
-            Some(f) => f.eval_at(&self.nodes[dof as usize / 3], time),
+            Some(f) => f.eval_at(self.nodes[dof as usize / 3].into(), time),
         };
         for p in &self.prescribed {
             g[p.dof as usize] = value(p.dof, &p.value)? - u[p.dof as usize];
@@ -138,16 +138,19 @@ impl BodyModel {
         self.block.nodes_of(e).map(|n| n + self.first_node)
     }
 
-    /// Deformed positions of an element's nodes.
+    /// Displacements of an element's nodes, from those of the model.
     #[inline]
-    pub fn positions(&self, model: &Model, e: usize, u: &[f64]) -> [Vec3; 8] {
-        self.element_nodes(e).map(|n| model.position(n as usize, u))
+    pub fn displacements(&self, e: usize, u: &[f64]) -> [Vec3; 8] {
+        self.element_nodes(e).map(|n| {
+            let at = 3 * n as usize;
+            Vec3::new(u[at], u[at + 1], u[at + 2])
+        })
     }
 }
 
 impl SurfaceModel {
     /// The surface at its position of time `t`.
-    pub fn at(&self, t: f64) -> Result<RigidMaster<'_>, ValueError> {
+    pub fn at(&self, t: f64) -> Result<RigidMaster<'_>, EvalError> {
         Ok(RigidMaster {
             surface: &self.set,
             pose: self.motion.pose(t)?,

@@ -1,5 +1,5 @@
 //! Rigid motion of a surface: placement first, then the prescribed rotation and translation.
-use crate::scene::{self, TimeFunction, ValueError};
+use crate::scene::{self, EvalError, TIME, TimeFunction, ValueError};
 use covact_geometry::Vec3;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion};
 
@@ -30,7 +30,7 @@ pub fn rotation(axis: [f64; 3], degrees: f64) -> UnitQuaternion<f64> {
 impl Motion {
     /// Compiles the scene's motion. The scale of the placement is applied to the surface itself, not here.
     pub fn new(motion: &scene::Motion, placement: &scene::Placement) -> Result<Self, ValueError> {
-        let compile = |v: &scene::Value| v.compile(&["t"]);
+        let compile = |v: &scene::Value| v.compile(&TIME);
         let [x, y, z] = &motion.translation;
         let rotation = match &motion.rotation {
             None => None,
@@ -55,7 +55,7 @@ impl Motion {
     }
 
     /// From the surface's own coordinates to space at time `t`.
-    pub fn pose(&self, t: f64) -> Result<Isometry3<f64>, ValueError> {
+    pub fn pose(&self, t: f64) -> Result<Isometry3<f64>, EvalError> {
         let [x, y, z] = &self.translation;
         let moved = Vec3::new(x.eval(t)?, y.eval(t)?, z.eval(t)?);
         let turned = match &self.rotation {
@@ -69,23 +69,9 @@ impl Motion {
         Ok(Translation3::from(moved) * turned * self.placement)
     }
 
-    /// Point that moments are taken about at time `t`: the centre of rotation, or where the origin of the placed
-    /// surface has moved.
-    pub fn reference_point(&self, t: f64) -> Result<Vec3, ValueError> {
-        let [x, y, z] = &self.translation;
-        let moved = Vec3::new(x.eval(t)?, y.eval(t)?, z.eval(t)?);
-        let base = match &self.rotation {
-            Some(turn) => turn.center,
-            None => self.placement.translation.vector,
-        };
-        Ok(base + moved)
-    }
-
-    /// Times at which the motion has a kink; steps end there.
-    pub fn breakpoints(&self) -> Vec<f64> {
+    /// Its functions of time.
+    pub fn functions(&self) -> impl Iterator<Item = &TimeFunction> {
         let angle = self.rotation.as_ref().map(|r| &r.angle);
-        (self.translation.iter().chain(angle))
-            .flat_map(TimeFunction::breakpoints)
-            .collect()
+        self.translation.iter().chain(angle)
     }
 }

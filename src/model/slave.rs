@@ -1,61 +1,53 @@
 //! Slave points of a contact pair from the faces of a body.
 use crate::contact::points::SlavePoint;
-use crate::mesh::{Face, H8_FACES, Mesh};
+use crate::mesh::{Face, Mesh};
 use crate::scene::Points;
-use crate::shell::face::{self, FacePoint};
-use crate::shell::quadrature;
-use covact_geometry::Vec3;
-use std::collections::BTreeMap;
-
-/// Node numbers of a face, ordered so that face parameters give the outward normal.
-pub fn face_nodes(mesh: &Mesh, f: Face) -> [u32; 4] {
-    let conn = mesh.element(f.element as usize);
-    H8_FACES[f.face as usize].map(|k| conn[k as usize])
-}
-
-/// Positions of a face's nodes on the undeformed mesh.
-pub fn face_positions(mesh: &Mesh, f: Face) -> [Vec3; 4] {
-    face_nodes(mesh, f).map(|n| mesh.nodes[n as usize])
-}
+use crate::shell::quadrature::{self, QuadratureError, Rule};
+use crate::shell::{Quad, face, tributary_areas};
 
 /// Samples the faces as the scene asks; node numbers are the mesh's shifted by `offset`.
 ///
 /// Nodes carry their true tributary area `int N dA`; so on a symmetry plane a node stands for the half that is
 /// modelled, and its pressure is right.
-pub fn slave_points(mesh: &Mesh, faces: &[Face], points: Points, offset: u32) -> Vec<SlavePoint> {
-    let (abscissae, weights) = match points {
-        Points::Nodes => return nodes(mesh, faces, offset),
-        Points::Gauss(n) => quadrature::gauss(n as usize),
-        Points::Lobatto(n) => quadrature::lobatto(n as usize),
+///
+/// # Errors
+/// A number of points that no rule has.
+pub fn slave_points(
+    mesh: &Mesh,
+    faces: &[Face],
+    points: Points,
+    offset: u32,
+) -> Result<Vec<SlavePoint>, QuadratureError> {
+    let rule = match points {
+        Points::Nodes => {
+            return Ok((tributary_areas(mesh, faces).into_iter())
+                .map(|(n, area)| SlavePoint::at_node(n + offset, area))
+                .collect());
+        }
+        Points::Gauss(n) => quadrature::gauss(n as usize)?,
+        Points::Lobatto(n) => quadrature::lobatto(n as usize)?,
     };
-    let mut out = Vec::with_capacity(faces.len() * abscissae.len() * abscissae.len());
+    Ok(sampled(mesh, faces, &rule, offset))
+}
+
+fn sampled(mesh: &Mesh, faces: &[Face], rule: &Rule, offset: u32) -> Vec<SlavePoint> {
+    let per_face = rule.points().len().pow(2);
+    let mut out = Vec::with_capacity(faces.len() * per_face);
     for &f in faces {
-        let numbers = face_nodes(mesh, f).map(|n| n + offset);
-        let x = face_positions(mesh, f);
-        for (v, wv) in abscissae.iter().zip(&weights) {
-            for (u, wu) in abscissae.iter().zip(&weights) {
-                let p = FacePoint::bilinear(&x, *u, *v);
+        let nodes = mesh.face_nodes(f).map(|n| n + offset);
+        let quad = Quad {
+            corners: mesh.face_nodes(f).map(|n| mesh.nodes[n as usize]),
+        };
+        for (v, wv) in rule.iter() {
+            for (u, wu) in rule.iter() {
                 out.push(SlavePoint {
-                    nodes: numbers,
-                    shape: p.n,
+                    nodes,
+                    shape: face::shape(u, v),
                     count: 4,
-                    area: wu * wv * p.area,
+                    area: wu * wv * quad.area_vector(u, v).norm(),
                 });
             }
         }
     }
     out
-}
-
-fn nodes(mesh: &Mesh, faces: &[Face], offset: u32) -> Vec<SlavePoint> {
-    let mut area: BTreeMap<u32, f64> = BTreeMap::new();
-    for &f in faces {
-        let shares = face::tributary_areas(&face_positions(mesh, f));
-        for (n, a) in face_nodes(mesh, f).into_iter().zip(shares) {
-            *area.entry(n).or_default() += a;
-        }
-    }
-    (area.into_iter())
-        .map(|(n, a)| SlavePoint::at_node(n + offset, a))
-        .collect()
 }

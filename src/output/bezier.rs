@@ -7,14 +7,25 @@ pub const MAX_DEGREE: usize = 10;
 /// Why a piece cannot be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BezierError {
+    /// Not (p + 1) (q + 1) control points.
     #[error("degree {degree:?} needs {expected} control points, there are {found}")]
     PointCount {
+        /// Degrees p and q.
         degree: [usize; 2],
+        /// Points needed.
         expected: usize,
+        /// Points found.
         found: usize,
     },
+    /// A weight that is zero, negative or not a number.
     #[error("control point {point} has weight {weight}, which is not positive")]
-    Weight { point: usize, weight: f64 },
+    Weight {
+        /// Place of the control point, xi1 fastest.
+        point: usize,
+        /// The weight.
+        weight: f64,
+    },
+    /// A direction of degree zero.
     #[error("degree {0:?} has a zero")]
     Degree([usize; 2]),
 }
@@ -69,7 +80,11 @@ impl SurfacePiece {
                 found: self.points.len(),
             });
         }
-        match self.points.iter().position(|p| !(p[3] > 0.0)) {
+        match self
+            .points
+            .iter()
+            .position(|p| p[3] <= 0.0 || p[3].is_nan())
+        {
             Some(point) => Err(BezierError::Weight {
                 point,
                 weight: self.points[point][3],

@@ -18,6 +18,13 @@ pub const CLOSED: u8 = 2;
 /// Tensor-product number of each node of VTK's hexahedron, which counts around the bottom, then around the top.
 const H8_TO_VTK: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
+/// Node order and type of the cell that an element is written as.
+fn vtk_cell(kind: ElementKind) -> (&'static [usize], CellType) {
+    match kind {
+        ElementKind::H8 => (&H8_TO_VTK, CellType::Hexahedron),
+    }
+}
+
 /// Contact fields on the nodes of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactFields<'a> {
@@ -32,6 +39,7 @@ pub struct ContactFields<'a> {
 /// A body at one time. All fields but those of place [`Place::Cell`] are per node of the mesh.
 #[derive(Debug, Clone)]
 pub struct BodyFields<'a> {
+    /// Name of the body in the scene.
     pub name: &'a str,
     /// The undeformed mesh.
     pub mesh: &'a Mesh,
@@ -118,7 +126,8 @@ impl BodyFields<'_> {
             into.push(array);
         }
 
-        let (connectivity, offsets, types) = self.cells()?;
+        let (order, cell) = vtk_cell(self.mesh.kind);
+        let connectivity = self.connectivity(order)?;
         Grid {
             part: self.name.to_string(),
             points: self
@@ -128,8 +137,8 @@ impl BodyFields<'_> {
                 .flat_map(|x| [x.x, x.y, x.z])
                 .collect(),
             connectivity,
-            offsets,
-            types,
+            offsets: (1..=elements).map(|e| (e * order.len()) as u64).collect(),
+            types: vec![cell; elements],
             point_data,
             cell_data,
             vectors: Some("displacement"),
@@ -139,16 +148,11 @@ impl BodyFields<'_> {
         .into_bytes()
     }
 
-    /// Cells in VTK's node order.
-    fn cells(&self) -> Result<(Vec<u64>, Vec<u64>, Vec<CellType>), OutputError> {
+    /// Node numbers of all elements in VTK's order.
+    fn connectivity(&self, order: &[usize]) -> Result<Vec<u64>, OutputError> {
         let nodes = self.mesh.nodes.len();
-        let (order, cell): (&[usize], CellType) = match self.mesh.kind {
-            ElementKind::H8 => (&H8_TO_VTK, CellType::Hexahedron),
-        };
-        let elements = self.mesh.elements();
-        let mut connectivity = Vec::with_capacity(elements * order.len());
-        let mut offsets = Vec::with_capacity(elements);
-        for e in 0..elements {
+        let mut connectivity = Vec::with_capacity(self.mesh.elements() * order.len());
+        for e in 0..self.mesh.elements() {
             let element = self.mesh.element(e);
             if let Some(&node) = element.iter().find(|&&n| n as usize >= nodes) {
                 return Err(OutputError::NoSuchNode {
@@ -159,9 +163,8 @@ impl BodyFields<'_> {
                 });
             }
             connectivity.extend(order.iter().map(|&k| u64::from(element[k])));
-            offsets.push(connectivity.len() as u64);
         }
-        Ok((connectivity, offsets, vec![cell; elements]))
+        Ok(connectivity)
     }
 
     fn check(&self, field: &str, expected: usize, found: usize) -> Result<(), OutputError> {

@@ -7,6 +7,7 @@ pub struct ColumnDoc {
     pub pattern: &'static str,
     /// Unit in terms of the scene's units.
     pub unit: &'static str,
+    /// What the number is.
     pub meaning: &'static str,
 }
 

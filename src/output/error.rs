@@ -10,42 +10,69 @@ pub enum OutputError {
     Io {
         /// What was tried: "write", "create the folder", ...
         action: &'static str,
+        /// The file or folder.
         path: PathBuf,
+        /// What went wrong, in words.
         reason: String,
+        /// The error of the operating system.
         source: io::Error,
     },
     /// The path exists and is something else than a file (a folder, a device, a pipe), which is left alone.
     #[error("cannot write `{}`: it exists and is not a regular file", path.display())]
-    NotAFile { path: PathBuf },
+    NotAFile {
+        /// The path.
+        path: PathBuf,
+    },
     /// A field's length does not fit its mesh.
     #[error("field `{field}` of `{part}` has {found} numbers where {expected} are needed")]
     FieldLength {
+        /// Body, surface or file.
         part: String,
+        /// Name of the field.
         field: String,
+        /// Numbers needed.
         expected: usize,
+        /// Numbers found.
         found: usize,
     },
     /// Two fields of one part have the same name and place.
     #[error("field `{field}` of `{part}` is given twice")]
-    DuplicateField { part: String, field: String },
+    DuplicateField {
+        /// Body, surface or file.
+        part: String,
+        /// Name of the field.
+        field: String,
+    },
     /// An element names a node that the mesh does not have.
     #[error("element {element} of `{part}` names node {node}, but there are {nodes} nodes")]
     NoSuchNode {
+        /// Body, surface or file.
         part: String,
+        /// Element, counted from 0.
         element: usize,
+        /// The node it names.
         node: u32,
+        /// Nodes of the mesh.
         nodes: usize,
     },
     /// A rigid surface has a piece that cannot be written.
     #[error("piece {piece} of surface `{surface}`: {reason}")]
     Piece {
+        /// Name of the surface.
         surface: String,
+        /// Piece, counted from 0.
         piece: usize,
+        /// What is wrong with it.
         reason: super::bezier::BezierError,
     },
     /// The serialiser failed.
     #[error("cannot put `{part}` into the format of its file: {reason}")]
-    Serialise { part: String, reason: String },
+    Serialise {
+        /// Body, surface or file.
+        part: String,
+        /// What went wrong, in words.
+        reason: String,
+    },
     /// A history column that the documentation does not know.
     #[error("history column `{0}` is not documented")]
     UnknownColumn(String),
@@ -55,15 +82,21 @@ pub enum OutputError {
     /// A row of the history has the wrong length.
     #[error("a row of `{}` has {found} numbers where {expected} are needed", path.display())]
     RowLength {
+        /// The file or folder.
         path: PathBuf,
+        /// Numbers needed.
         expected: usize,
+        /// Numbers found.
         found: usize,
     },
     /// A table that is read back is not one.
     #[error("`{}`, line {line}: {reason}", path.display())]
     Table {
+        /// The file or folder.
         path: PathBuf,
+        /// Line, counted from 1.
         line: usize,
+        /// What went wrong, in words.
         reason: String,
     },
 }

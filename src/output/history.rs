@@ -58,6 +58,7 @@ impl History {
         })
     }
 
+    /// Column names, from left to right.
     pub fn columns(&self) -> &[String] {
         &self.columns
     }
@@ -136,7 +137,9 @@ fn quoted(text: &str) -> String {
 /// A table read back.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
+    /// Column names, from left to right.
     pub columns: Vec<String>,
+    /// Rows from top to bottom, a number per column.
     pub rows: Vec<Vec<f64>>,
 }
 

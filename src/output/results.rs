@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 /// A rigid surface at one time.
 #[derive(Debug, Clone, Copy)]
 pub struct SurfaceState<'a> {
+    /// The surface.
     pub surface: &'a SurfaceOutput,
     /// From the reference position to the current one.
     pub at: &'a Isometry3<f64>,
@@ -212,11 +213,11 @@ pub fn file_stem(name: &str) -> String {
         })
         .collect();
     if stem.is_empty() {
-        "part".to_string()
-    } else if stem.starts_with('-') {
-        // A leading dash reads as an option on a command line.
-        format!("_{}", &stem[1..])
-    } else {
-        stem
+        return "part".to_string();
+    }
+    // A leading dash reads as an option on a command line.
+    match stem.strip_prefix('-') {
+        Some(rest) => format!("_{rest}"),
+        None => stem,
     }
 }

@@ -16,15 +16,31 @@ pub enum RunStatus {
     Done,
     /// A step failed at the smallest step size; what was computed before is kept.
     NotConverged,
+    /// The end time was reached, but a contact pair never touched.
+    NoContact,
     /// The user stopped the run; what was computed before is kept.
     Interrupted,
     /// Something else went wrong, e.g. a full disk.
     Failed,
 }
 
+impl RunStatus {
+    /// The name in `summary.json`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            RunStatus::Done => "done",
+            RunStatus::NotConverged => "not_converged",
+            RunStatus::NoContact => "no_contact",
+            RunStatus::Interrupted => "interrupted",
+            RunStatus::Failed => "failed",
+        }
+    }
+}
+
 /// `summary.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
+    /// How the run ended.
     pub status: RunStatus,
     /// Why the run ended early, in words.
     pub reason: Option<String>,
@@ -38,9 +54,11 @@ pub struct Summary {
     pub phases: BTreeMap<String, f64>,
     /// Largest resident memory in MB (10^6 bytes); none where the system does not tell.
     pub peak_memory_mb: Option<f64>,
+    /// Threads used.
     pub threads: usize,
     /// Unknowns, prescribed ones left out.
     pub dofs: usize,
+    /// Slave points of all contact pairs.
     pub contact_points: usize,
     /// Iterations of all steps, of failed attempts too.
     pub newton_iterations: u64,
@@ -50,7 +68,9 @@ pub struct Summary {
     pub cuts: u32,
     /// Effects that were on, by name.
     pub effects: Vec<String>,
+    /// What the user should know, in words.
     pub warnings: Vec<String>,
+    /// Versions that made this file.
     pub versions: Versions,
 }
 

@@ -73,6 +73,7 @@ impl SurfaceOutput {
         })
     }
 
+    /// Name of the surface in the scene.
     pub fn name(&self) -> &str {
         &self.name
     }

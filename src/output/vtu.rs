@@ -23,11 +23,15 @@ pub enum Place {
 /// "no value here", which ParaView shows in its NaN colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Field<'a> {
+    /// Name of the array.
     pub name: &'a str,
+    /// Numbers per node or element.
     pub components: usize,
     /// Names of the components; empty where numbers will do.
     pub component_names: &'a [&'a str],
+    /// The numbers, `components` for each node or element.
     pub data: &'a [f64],
+    /// On nodes or on elements.
     pub place: Place,
 }
 

@@ -1,7 +1,7 @@
 //! Why a run could not be done.
 use crate::model::ModelError;
 use crate::output::OutputError;
-use crate::scene::{LoadedScene, Place, ValueError};
+use crate::scene::{EvalError, LoadedScene, Place};
 
 /// An error with the process's exit code: 3 where the scene or a file it names is wrong, 5 where a result cannot be
 /// written, 1 where the program is.
@@ -28,7 +28,7 @@ impl RunError {
         RunError::Scene {
             message,
             pointer: pointer.to_owned(),
-            place: loaded.place_of(pointer),
+            place: Some(loaded.place_of(pointer)),
         }
     }
 
@@ -58,9 +58,9 @@ impl RunError {
     }
 }
 
-impl From<ValueError> for RunError {
+impl From<EvalError> for RunError {
     /// A value that cannot be evaluated in the course of a run.
-    fn from(e: ValueError) -> Self {
+    fn from(e: EvalError) -> Self {
         RunError::Scene {
             message: e.to_string(),
             pointer: String::new(),

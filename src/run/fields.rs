@@ -6,6 +6,7 @@ use crate::output::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, Results, SurfaceOutput,
     SurfacePiece, SurfaceState,
 };
+use crate::shell::extrapolate;
 use crate::solve::state::State;
 use covact_geometry::Vec3;
 
@@ -184,12 +185,13 @@ fn nodal_stresses(model: &Model, state: &State) -> Vec<Vec<[f64; 6]>> {
         let mut weight = vec![0.0; body.mesh.nodes.len()];
         for e in 0..count {
             let at = first + e * len;
-            let x = body.positions(model, e, &state.u);
-            let mut nodal = [[0.0; 6]; 8];
+            let u = body.displacements(e, &state.u);
+            let mut points = [[0.0; 6]; 8];
             let element = &state.elements[at..at + len];
-            if body.block.nodal_stresses(e, &x, element, &mut nodal).is_err() {
+            if body.block.stresses(e, &u, element, &mut points).is_err() {
                 continue;
             }
+            let nodal = extrapolate(&points);
             let volume = body.block.volume(e);
             for (k, n) in body.block.nodes_of(e).into_iter().enumerate() {
                 weight[n as usize] += volume;

@@ -175,9 +175,16 @@ impl March<'_, '_> {
         for note in fields.notes() {
             self.warn(note);
         }
-        let mut stepping = Stepping::new(settings.step, settings.end_time, &self.model.breakpoints);
+        let mut stepping = Stepping::new(
+            settings.step,
+            settings.end_time,
+            &self.model.kinks,
+            &settings.stops,
+        );
         let mut committed = State::new(self.model);
         let mut trial = committed.clone();
+        // The state before the last accepted step and that step's size, while the path is smooth.
+        let mut before: Option<(State, f64)> = None;
         self.write(&mut results, &mut fields, &committed)?;
         while !stepping.done(self.time) {
             let end = stepping.next(self.time);
@@ -188,14 +195,33 @@ impl March<'_, '_> {
                 time: end,
                 dt,
             });
-            trial.copy_from(&committed);
             let penalties = self.assembler.penalties.clone();
-            let attempt = self.step(step, end, &mut trial);
             let cuts_before = self.cuts;
+            match &before {
+                Some((state, size)) => committed.extrapolate(state, dt / size, &mut trial),
+                None => trial.copy_from(&committed),
+            }
+            let mut attempt = self.step(step, end, &mut trial);
+            if before.is_some() && matches!(&attempt, Err(f) if *f != StepFailure::Interrupted) {
+                // The continued path may have led astray: once more from where the last step ended.
+                self.assembler.penalties.copy_from_slice(&penalties);
+                trial.copy_from(&committed);
+                attempt = self.step(step, end, &mut trial);
+            }
             match attempt {
                 Ok(converged) => {
                     self.accept(step, end, &converged);
+                    match &mut before {
+                        Some((state, size)) => {
+                            std::mem::swap(state, &mut committed);
+                            *size = dt;
+                        }
+                        None => before = Some((committed.clone(), dt)),
+                    }
                     committed.copy_from(&trial);
+                    if stepping.at_kink(end) {
+                        before = None;
+                    }
                     stepping.accepted(converged.iterations);
                     let every = self.scene.output.every;
                     let last = stepping.done(self.time);

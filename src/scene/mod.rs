@@ -10,6 +10,7 @@ mod load;
 mod problem;
 mod schema;
 mod types;
+mod units;
 mod value;
 
 pub use check::check;

@@ -532,6 +532,8 @@ pub struct Load {
 pub struct Solution {
     /// The run goes from time 0 to this time.
     pub end_time: f64,
+    /// Times at which a step must end, ascending; steps end at the rows of tables in any case.
+    pub stops: Vec<f64>,
     pub step: Step,
     pub newton: Newton,
     pub linear_solver: LinearSolver,
@@ -615,6 +617,7 @@ impl Default for Solution {
     fn default() -> Self {
         Solution {
             end_time: 1.0,
+            stops: Vec::new(),
             step: Step::default(),
             newton: Newton::default(),
             linear_solver: LinearSolver::Auto,

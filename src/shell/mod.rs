@@ -1,1 +1,37 @@
-//! (being written)
+//! Solid-shell elements, their materials, and quadrature.
+//!
+//! Elements have displacement unknowns only, three per node, on the top and the bottom face of the shell, so that
+//! contact sees a genuine surface. Everything is total Lagrange: Green-Lagrange strains `E_ij = (g_i.g_j - G_i.G_j)/2`
+//! in the convected frame `G_i = X_,i`, `g_i = x_,i` of the natural coordinates (r, s, t), t being the thickness.
+//! Strains, stresses and tangents keep their covariant and contravariant components throughout, and isotropic laws are
+//! evaluated with the metric, so no rotation to Cartesian axes is paid for.
+//!
+//! - [`H8Block`]: the elements of one body, evaluated one at a time ([`H8System`] receives forces and tangent).
+//! - [`material`]: St. Venant-Kirchhoff and neo-Hooke.
+//! - [`quadrature`], [`face`]: Gauss and Lobatto rules and the bilinear faces that loads and contact integrate over.
+
+// Index loops show the sums the way they are written on paper, over several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
+mod brick;
+mod error;
+pub mod face;
+mod h8;
+mod kinematics;
+pub mod material;
+pub mod quadrature;
+mod reference;
+mod stress;
+mod tangent;
+#[cfg(test)]
+mod tests;
+
+pub use error::{ElementFault, FaultCause, ShellError};
+pub use face::{Quad, tributary_areas};
+pub use h8::{Formulation, H8Block, H8System};
+pub use material::{Law, MaterialLaw, Metric, NeoHooke, Response, StVenantKirchhoff};
+pub use quadrature::{Rule, gauss, lobatto};
+pub use stress::extrapolate;
+
+/// Voigt order of strains and stresses: 11, 22, 33, 12, 23, 13; strains with engineering shears `2 E_ij`.
+pub const VOIGT: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];

@@ -295,12 +295,10 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
             (states.par_chunks_mut(len).zip(base.par_chunks(len)).enumerate())
                 .with_min_len(64)
                 .for_each(|(e, (state, from))| {
-                    let mut du = [0.0; 24];
-                    for (k, n) in body.element_nodes(e).into_iter().enumerate() {
-                        let at = 3 * n as usize;
-                        du[3 * k..3 * k + 3].copy_from_slice(&w.du[at..at + 3]);
-                    }
-                    body.block.update_alpha(e, state, from, &du, s);
+                    // The condensation cache must be that of the linearisation that produced du.
+                    state.copy_from_slice(from);
+                    let du = body.displacements(e, &w.du);
+                    body.block.update_alpha(state, &du, s, &from[..body.block.alpha_len()]);
                 });
         }
     }

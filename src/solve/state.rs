@@ -41,6 +41,21 @@ impl State {
         self.points.copy_from_slice(&other.points);
     }
 
+    /// Continues the change from `before` to `self` by `ratio` into `out`: a start for the next step that has the
+    /// rotations right to second order, where standing still would stretch a thin shell. (The condensation caches
+    /// among the element states are continued too, to no effect: the next linearisation writes them before they are
+    /// read.)
+    pub fn extrapolate(&self, before: &State, ratio: f64, out: &mut State) {
+        let along = |now: &[f64], before: &[f64], out: &mut [f64]| {
+            for ((o, n), b) in out.iter_mut().zip(now).zip(before) {
+                *o = n + ratio * (n - b);
+            }
+        };
+        along(&self.u, &before.u, &mut out.u);
+        along(&self.elements, &before.elements, &mut out.elements);
+        out.points.copy_from_slice(&self.points);
+    }
+
     /// Bytes that this state occupies.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.u[..]) + size_of_val(&self.elements[..]) + size_of_val(&self.points[..])

@@ -6,8 +6,10 @@ use crate::scene;
 pub struct Stepping {
     settings: scene::Step,
     end: f64,
-    /// Kinks, ascending.
-    breakpoints: Vec<f64>,
+    /// Kinks of what is prescribed.
+    kinks: Vec<f64>,
+    /// Kinks and times asked for, ascending.
+    stops: Vec<f64>,
     dt: f64,
 }
 
@@ -16,26 +18,35 @@ const MANY: u32 = 10;
 const FEW: u32 = 6;
 
 impl Stepping {
-    pub fn new(settings: scene::Step, end: f64, breakpoints: &[f64]) -> Self {
+    /// Steps from 0 to `end` that end on every kink and on every time of `stops`.
+    pub fn new(settings: scene::Step, end: f64, kinks: &[f64], stops: &[f64]) -> Self {
+        let mut all: Vec<f64> = kinks.iter().chain(stops).copied().collect();
+        all.sort_by(f64::total_cmp);
         Stepping {
             settings,
             end,
-            breakpoints: breakpoints.to_vec(),
+            kinks: kinks.to_vec(),
+            stops: all,
             dt: settings.initial.min(settings.max),
         }
     }
 
-    /// End of the step that starts at `time`: what is left up to the next kink is divided into equal steps no larger
+    /// End of the step that starts at `time`: what is left up to the next stop is divided into equal steps no larger
     /// than the present size, so that no sliver remains.
     pub fn next(&self, time: f64) -> f64 {
         let tiny = 1e-9 * self.end;
-        let target = (self.breakpoints.iter().copied())
+        let target = (self.stops.iter().copied())
             .find(|b| *b > time + tiny)
             .unwrap_or(self.end)
             .min(self.end);
         let left = target - time;
         let count = (left / self.dt - 1e-6).ceil().max(1.0);
         if count <= 1.0 { target } else { time + left / count }
+    }
+
+    /// Whether what is prescribed has a kink at `time`: the path so far says nothing about what follows.
+    pub fn at_kink(&self, time: f64) -> bool {
+        self.kinks.iter().any(|b| (b - time).abs() <= 1e-9 * self.end)
     }
 
     /// Whether the end is reached.
@@ -69,18 +80,18 @@ impl Stepping {
 mod tests {
     use super::*;
 
-    fn stepping(breakpoints: &[f64]) -> Stepping {
+    fn stepping(stops: &[f64]) -> Stepping {
         let settings = scene::Step {
             initial: 0.3,
             min: 0.01,
             max: 0.3,
             adaptive: true,
         };
-        Stepping::new(settings, 1.0, breakpoints)
+        Stepping::new(settings, 1.0, &[], stops)
     }
 
     #[test]
-    fn steps_end_on_kinks_and_leave_no_slivers() {
+    fn steps_end_on_stops_and_leave_no_slivers() {
         let s = stepping(&[0.5]);
         let mut times = vec![0.0];
         while !s.done(*times.last().unwrap()) {

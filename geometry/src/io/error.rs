@@ -6,30 +6,50 @@ pub enum CadError {
     /// The operating system refused.
     #[error("{path}: cannot be read: {source}")]
     Read {
+        /// The path.
         path: String,
+        /// What it said.
         #[source]
         source: std::io::Error,
     },
     /// The file is of a kind that is not read.
     #[error("{path}: expected an IGES file, or JSON as Kratos or geomdl write it, found {found}")]
-    Format { path: String, found: String },
+    Format {
+        /// Path or name of the file.
+        path: String,
+        /// What the file seems to be.
+        found: String,
+    },
     /// The content is damaged. Lines and columns (bytes) count from 1.
     #[error("{path}:{line}:{column}: expected {expected}, found {found}")]
     Content {
+        /// Path or name of the file.
         path: String,
+        /// Line, from 1.
         line: usize,
+        /// Column in bytes, from 1.
         column: usize,
+        /// What should stand there.
         expected: String,
+        /// What stands there.
         found: String,
     },
     /// Lengths cannot be converted, because the file does not say which unit it uses.
     #[error("{path}: the file states no length unit, so it cannot be converted to {wanted}")]
-    UnknownUnit { path: String, wanted: String },
+    UnknownUnit {
+        /// Path or name of the file.
+        path: String,
+        /// The unit asked for.
+        wanted: String,
+    },
     /// A patch cannot be scaled.
     #[error("{path}: entity {entity}: {reason}")]
     Scale {
+        /// Path or name of the file.
         path: String,
+        /// Entity number of the patch.
         entity: u32,
+        /// Why the scaled patch is none.
         reason: String,
     },
 }

@@ -60,6 +60,7 @@ pub struct Skipped {
 pub struct CadFile {
     /// Path or name, as messages show it.
     pub path: String,
+    /// What kind of file it is.
     pub format: CadFormat,
     /// Length unit of all patches.
     pub unit: LengthUnit,

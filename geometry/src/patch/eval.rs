@@ -3,11 +3,8 @@
 use num_dual::DualNum;
 
 use super::{NurbsPatch, PatchError};
-use crate::basis::{Basis, WIDTH};
+use crate::basis::{Short, WIDTH};
 use crate::surface::{Jet, Jet3, Vec3, quotient, quotient3};
-
-/// Basis functions of one direction with their derivatives up to order `K - 1`.
-type Functions<const N: usize, const K: usize> = [[f64; N]; K];
 
 impl NurbsPatch {
     /// Surface point with first and second derivatives.
@@ -36,7 +33,9 @@ impl NurbsPatch {
     /// Surface point.
     pub fn point(&self, xi: [f64; 2]) -> Vec3 {
         let xi = self.snap(xi);
-        let [[x, y, z, w]] = self.derivatives::<1, 1>(self.find_span(xi), xi);
+        let mut sum = [[0.0; 4]];
+        self.derivatives::<1, 1>(self.find_span(xi), xi, &mut sum);
+        let [[x, y, z, w]] = sum;
         Vec3::new(x, y, z) / w
     }
 
@@ -62,23 +61,26 @@ impl NurbsPatch {
     /// one-sided derivatives at knots. Numbers past the last span mean the last span.
     #[inline]
     pub fn jet_in_span(&self, span: [usize; 2], xi: [f64; 2]) -> Jet {
-        let d = self.derivatives::<3, 6>(span, xi);
-        let a = d.map(|p| Vec3::new(p[0], p[1], p[2]));
+        let mut d = [[0.0; 4]; 6];
+        self.derivatives::<3, 6>(span, xi, &mut d);
+        let a = |k: usize| Vec3::new(d[k][0], d[k][1], d[k][2]);
         if self.rational {
-            quotient(&a, &d.map(|p| p[3]))
+            let w = [d[0][3], d[1][3], d[2][3], d[3][3], d[4][3], d[5][3]];
+            quotient(&[a(0), a(1), a(2), a(3), a(4), a(5)], &w)
         } else {
             let inv = 1.0 / self.points[0][3];
             Jet {
-                rho: a[0] * inv,
-                rho_i: [a[1] * inv, a[2] * inv],
-                rho_ij: [a[3] * inv, a[4] * inv, a[5] * inv],
+                rho: a(0) * inv,
+                rho_i: [a(1) * inv, a(2) * inv],
+                rho_ij: [a(3) * inv, a(4) * inv, a(5) * inv],
             }
         }
     }
 
     /// [`jet_in_span`](Self::jet_in_span) with third derivatives.
     pub fn jet3_in_span(&self, span: [usize; 2], xi: [f64; 2]) -> Jet3 {
-        let d = self.derivatives::<4, 10>(span, xi);
+        let mut d = [[0.0; 4]; 10];
+        self.derivatives::<4, 10>(span, xi, &mut d);
         quotient3(&d.map(|p| Vec3::new(p[0], p[1], p[2])), &d.map(|p| p[3]))
     }
 
@@ -142,14 +144,15 @@ impl NurbsPatch {
         }
     }
 
-    /// Derivatives of the homogeneous surface below order `K`, in the order 0 | 1, 2 | 11, 12, 22 | 111, ...;
-    /// `M = K (K + 1) / 2` of them.
+    /// Adds to `sum` the derivatives of the homogeneous surface below order `K`, in the order 0 | 1, 2 | 11, 12, 22 |
+    /// 111, ...; `M = K (K + 1) / 2` of them.
     #[inline]
     fn derivatives<const K: usize, const M: usize>(
         &self,
         span: [usize; 2],
         xi: [f64; 2],
-    ) -> [[f64; 4]; M] {
+        sum: &mut [[f64; 4]; M],
+    ) {
         let [b1, b2] = &self.basis;
         let (p, q) = (b1.degree(), b2.degree());
         let first = b1.first_function(span[0]) + b1.count() * b2.first_function(span[1]);
@@ -159,39 +162,20 @@ impl NurbsPatch {
             rows: q + 1,
         };
         if p <= 5 && q <= 5 {
-            let (n1, n2) = (
-                short::<K>(b1, span[0], xi[0]),
-                short::<K>(b2, span[1], xi[1]),
-            );
+            let (mut n1, mut n2): (Short<K>, Short<K>) = ([[0.0; 6]; K], [[0.0; 6]; K]);
+            b1.evaluate_short(span[0], xi[0], &mut n1);
+            b2.evaluate_short(span[1], xi[1], &mut n2);
             match p {
-                1 => net.contract::<2, 6, K, M>(&n1, &n2),
-                2 => net.contract::<3, 6, K, M>(&n1, &n2),
-                3 => net.contract::<4, 6, K, M>(&n1, &n2),
-                4 => net.contract::<5, 6, K, M>(&n1, &n2),
-                _ => net.contract::<6, 6, K, M>(&n1, &n2),
+                1 => net.contract(2, &n1, &n2, sum),
+                2 => net.contract(3, &n1, &n2, sum),
+                3 => net.contract(4, &n1, &n2, sum),
+                4 => net.contract(5, &n1, &n2, sum),
+                _ => net.contract(6, &n1, &n2, sum),
             }
         } else {
-            net.contract_wide(
-                p + 1,
-                &long::<K>(b1, span[0], xi[0]),
-                &long(b2, span[1], xi[1]),
-            )
+            net.contract_wide::<K, M>(self, span, xi, sum);
         }
     }
-}
-
-#[inline]
-fn short<const K: usize>(basis: &Basis, span: usize, t: f64) -> Functions<6, K> {
-    let mut n = [[0.0; 6]; K];
-    basis.evaluate_short(span, t, &mut n);
-    n
-}
-
-#[inline(never)]
-fn long<const K: usize>(basis: &Basis, span: usize, t: f64) -> Functions<WIDTH, K> {
-    let mut n = [[0.0; WIDTH]; K];
-    basis.evaluate(span, t, &mut n);
-    n
 }
 
 /// Pairs of derivative orders `(m1, m2)` with `m1 + m2 < k`: 00 | 10, 01 | 20, 11, 02 | ...
@@ -207,47 +191,47 @@ struct Net<'a> {
 }
 
 impl Net<'_> {
-    /// Sum over rows of `P` points.
-    #[inline]
-    fn contract<const P: usize, const N: usize, const K: usize, const M: usize>(
+    /// Sums over the rows and the first `width` points of each.
+    #[inline(always)]
+    fn contract<const N: usize, const K: usize, const M: usize>(
         &self,
-        n1: &Functions<N, K>,
-        n2: &Functions<N, K>,
-    ) -> [[f64; 4]; M] {
-        let mut sum = [[0.0; 4]; M];
-        for s in 0..self.rows {
-            let row = &self.points[s * self.stride..][..P];
+        width: usize,
+        n1: &[[f64; N]; K],
+        n2: &[[f64; N]; K],
+        sum: &mut [[f64; 4]; M],
+    ) {
+        for (s, row) in self.points.chunks(self.stride).take(self.rows).enumerate() {
+            let row = &row[..width];
             let mut part = [[0.0; 4]; K];
             for (r, point) in row.iter().enumerate() {
                 for (m, part) in part.iter_mut().enumerate() {
                     add(part, point, n1[m][r]);
                 }
             }
-            add_row(&mut sum, &part, n2, s);
+            let mut slot = 0;
+            for m in 0..K {
+                for m2 in 0..=m {
+                    add(&mut sum[slot], &part[m - m2], n2[m2][s]);
+                    slot += 1;
+                }
+            }
         }
-        sum
     }
 
-    /// Sum over rows of `width` points.
+    /// [`contract`](Self::contract) for the degrees that the short buffers do not hold.
     #[inline(never)]
     fn contract_wide<const K: usize, const M: usize>(
         &self,
-        width: usize,
-        n1: &Functions<WIDTH, K>,
-        n2: &Functions<WIDTH, K>,
-    ) -> [[f64; 4]; M] {
-        let mut sum = [[0.0; 4]; M];
-        for s in 0..self.rows {
-            let row = &self.points[s * self.stride..][..width];
-            let mut part = [[0.0; 4]; K];
-            for (r, point) in row.iter().enumerate() {
-                for (m, part) in part.iter_mut().enumerate() {
-                    add(part, point, n1[m][r]);
-                }
-            }
-            add_row(&mut sum, &part, n2, s);
+        patch: &NurbsPatch,
+        span: [usize; 2],
+        xi: [f64; 2],
+        sum: &mut [[f64; 4]; M],
+    ) {
+        let mut n = [[[0.0; WIDTH]; K]; 2];
+        for (dir, n) in n.iter_mut().enumerate() {
+            patch.basis[dir].evaluate(span[dir], xi[dir], n);
         }
-        sum
+        self.contract(patch.basis[0].degree() + 1, &n[0], &n[1], sum);
     }
 }
 
@@ -256,22 +240,5 @@ impl Net<'_> {
 fn add(sum: &mut [f64; 4], point: &[f64; 4], f: f64) {
     for (sum, x) in sum.iter_mut().zip(point) {
         *sum += f * x;
-    }
-}
-
-/// Adds the row `s`, already summed over xi1, to all derivatives.
-#[inline(always)]
-fn add_row<const N: usize, const K: usize, const M: usize>(
-    sum: &mut [[f64; 4]; M],
-    part: &[[f64; 4]; K],
-    n2: &Functions<N, K>,
-    s: usize,
-) {
-    let mut slot = 0;
-    for m in 0..K {
-        for m2 in 0..=m {
-            add(&mut sum[slot], &part[m - m2], n2[m2][s]);
-            slot += 1;
-        }
     }
 }

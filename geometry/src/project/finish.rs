@@ -17,6 +17,9 @@ impl PatchSet {
         if best.at != [0, 0] {
             best = self.cross(q, best);
         }
+        if let Some(turn) = self.near_pole(&best) {
+            best = self.snap_to_pole(q, best, turn);
+        }
         let patch = best.region.patch;
         let side = self.sides[patch as usize];
         let location = self.locate(&best);
@@ -31,10 +34,14 @@ impl PatchSet {
         } else {
             distance
         };
-        let status = if !complete || !best.converged {
+        let pole = matches!(location, Location::Pole { .. });
+        // At a centre of curvature the equations are singular and their residual says little.
+        let status = if !complete {
             Status::NotConverged
-        } else if focal(&best) {
+        } else if !pole && focal(&best) {
             Status::NonUnique
+        } else if !best.converged {
+            Status::NotConverged
         } else {
             Status::Unique
         };
@@ -48,6 +55,26 @@ impl PatchSet {
             distance,
             signed_distance,
             normal,
+        }
+    }
+
+    /// Moves a point next to a pole, where the turning parameter is lost in rounding, onto it if that is no farther from
+    /// `q` by more than 1e-12 of the size.
+    #[cold]
+    #[inline(never)]
+    fn snap_to_pole(&self, q: &Vec3, s: Local, turn: usize) -> Local {
+        let out = 1 - turn;
+        let mut xi = s.xi;
+        let [a, b] = s.region.domain[out];
+        xi[out] = if xi[out] - a < b - xi[out] { a } else { b };
+        let mut t = self.state(q, &s.region, xi, s.span);
+        if t.metric[2 * turn] <= s.metric[2 * turn]
+            && t.d2.sqrt() <= s.d2.sqrt() + 1e-12 * self.size
+        {
+            t.converged = true;
+            t
+        } else {
+            s
         }
     }
 

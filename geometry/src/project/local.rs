@@ -44,7 +44,13 @@ const ARMIJO: f64 = 1e-4;
 impl PatchSet {
     /// Evaluates at `xi`, which is moved into the region; `span` is where to look for the span first.
     #[inline]
-    fn state(&self, q: &Vec3, region: &Region, xi: [f64; 2], mut span: [usize; 2]) -> Local {
+    pub(super) fn state(
+        &self,
+        q: &Vec3,
+        region: &Region,
+        xi: [f64; 2],
+        mut span: [usize; 2],
+    ) -> Local {
         let grid = &self.grids[region.patch as usize];
         let mut x = xi;
         let mut at = [0; 2];
@@ -93,11 +99,27 @@ impl PatchSet {
         }
     }
 
-    /// Whether `|rho_i . d| <= tolerance |rho_i| max(|d|, size)` in every direction that is free.
+    /// Whether `|rho_i . d| <= tolerance |rho_i| max(|d|, size)` in every direction that is free, or below the rounding
+    /// of `rho_i` (near poles it is a difference of large terms).
     #[inline]
     fn stationary(&self, s: &Local, tolerance: f64) -> bool {
-        let limit = tolerance * tolerance * s.d2.max(self.size * self.size);
-        (0..2).all(|k| s.active[k] || s.gradient[k] * s.gradient[k] <= limit * s.metric[2 * k])
+        let floor = 2e-15 / tolerance;
+        self.residual2(s, floor) <= tolerance * tolerance * s.d2.max(self.size * self.size)
+    }
+
+    /// Largest `(rho_i . d / |rho_i|)^2` of the free directions, `|rho_i|` no less than `floor` times its bound.
+    #[inline]
+    fn residual2(&self, s: &Local, floor: f64) -> f64 {
+        let scale = &self.grids[s.region.patch as usize].scale;
+        let one = |k: usize| {
+            let length2 = s.metric[2 * k].max(floor * floor * scale[k] * scale[k]);
+            if s.active[k] {
+                0.0
+            } else {
+                s.gradient[k] * s.gradient[k] / length2
+            }
+        };
+        one(0).max(one(1))
     }
 
     /// Iterates from `xi` to a point where the distance is stationary within `region`.
@@ -114,10 +136,19 @@ impl PatchSet {
     }
 
     fn descend_from(&self, q: &Vec3, mut s: Local, tolerance: f64) -> Local {
+        let mut escapes = 0;
         for _ in 0..ITERATIONS {
             if self.stationary(&s, tolerance) {
                 s.converged = true;
-                break;
+                if escapes < 2
+                    && (s.active[0] || s.active[1])
+                    && let Some(out) = self.escape_pole(q, &s, tolerance)
+                {
+                    escapes += 1;
+                    s = out;
+                } else {
+                    break;
+                }
             }
             let mut step = bounded(&s, newton_step(&s));
             let mut slope = s.gradient[0] * step[0] + s.gradient[1] * step[1];
@@ -130,7 +161,13 @@ impl PatchSet {
             let mut next = self.state(q, &s.region, moved(&s, step, 1.0), s.span);
             let mut factor = 1.0;
             let mut tries = 0;
-            while next.d2 > s.d2 + 2.0 * ARMIJO * factor * slope + noise || next.d2.is_nan() {
+            loop {
+                let accepted = next.d2 <= s.d2 + 2.0 * ARMIJO * factor * slope
+                    || next.d2 <= s.d2 + noise
+                        && self.residual2(&next, 2e-3) <= self.residual2(&s, 2e-3);
+                if accepted {
+                    break;
+                }
                 tries += 1;
                 if tries > HALVINGS {
                     return s;
@@ -146,6 +183,41 @@ impl PatchSet {
             s = next;
         }
         s
+    }
+
+    /// Whether a point lies on a pole or within about 1e-8 of the patch's width of it, and in which direction the parameter
+    /// turns about it.
+    #[inline]
+    pub(super) fn near_pole(&self, s: &Local) -> Option<usize> {
+        let scale = &self.grids[s.region.patch as usize].scale;
+        (0..2).find(|&k| s.metric[2 * k] <= 1e-16 * scale[k] * scale[k])
+    }
+
+    /// On a pole every value of the turning parameter is the same point, but the way out differs: takes the value
+    /// (of nine in the region) from which the distance falls most, if it falls from any.
+    #[cold]
+    #[inline(never)]
+    fn escape_pole(&self, q: &Vec3, s: &Local, tolerance: f64) -> Option<Local> {
+        let turn = self.near_pole(s)?;
+        let out = 1 - turn;
+        if !s.active[out] {
+            return None;
+        }
+        let [a, b] = s.region.domain[turn];
+        let mut best: Option<(f64, Local)> = None;
+        for k in 0..9 {
+            let mut xi = s.xi;
+            xi[turn] = a + (b - a) * f64::from(k) / 8.0;
+            let t = self.state(q, &s.region, xi, s.span);
+            let slope = t.gradient[out].abs() / t.metric[2 * out].sqrt();
+            if !t.active[out]
+                && slope > tolerance * t.d2.sqrt().max(self.size)
+                && best.as_ref().is_none_or(|b| slope > b.0)
+            {
+                best = Some((slope, t));
+            }
+        }
+        best.map(|b| b.1)
     }
 
     /// Brings a point that is converged roughly to machine precision: iterates within `region`, then makes two undamped
@@ -164,8 +236,9 @@ impl PatchSet {
                 break;
             };
             let next = self.state(q, region, moved(&s, step, 1.0), s.span);
-            // Undamped does not mean blind: a step that leads away is not one of convergence.
-            if !(next.d2 <= s.d2 + 1e-12 * (s.d2 + s.jet.rho.norm_squared())) {
+            // Undamped does not mean blind: close to a pole rounding alone can lead away again.
+            let better = self.residual2(&next, 2e-3) <= self.residual2(&s, 2e-3);
+            if !better && (s.converged || next.d2 > s.d2) {
                 break;
             }
             s = Local {
@@ -173,7 +246,13 @@ impl PatchSet {
                 ..next
             };
         }
-        s.converged = s.converged || self.stationary(&s, 1e-12);
+        // Next to a pole the turning parameter is lost in rounding, and with it some digits of the residual.
+        let tolerance = if self.near_pole(&s).is_some() {
+            1e-9
+        } else {
+            1e-12
+        };
+        s.converged = s.converged || self.stationary(&s, tolerance);
         s
     }
 }

@@ -327,8 +327,9 @@ pub(super) fn split(
             left[at(r)] = work[0];
             right[at(p - r)] = work[p - r];
             for i in 0..p - r {
-                for k in 0..4 {
-                    work[i][k] += t * (work[i + 1][k] - work[i][k]);
+                let next = work[i + 1];
+                for (x, next) in work[i].iter_mut().zip(next) {
+                    *x += t * (next - *x);
                 }
             }
         }

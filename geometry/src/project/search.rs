@@ -211,7 +211,7 @@ impl<'a> Search<'a> {
                     continue;
                 }
             }
-            let extent = [0, 1].map(|k| piece.scale[k] * (part.range[k][1] - part.range[k][0]));
+            let extent = extents(&nets[start..start + size], piece.degree);
             self.parts += 1;
             if self.parts > MOST_PARTS {
                 self.complete = false;
@@ -253,6 +253,26 @@ fn covered(piece: &Piece, known: &Known, range: &[[f64; 2]; 2]) -> bool {
         piece.scale[k] * (known.at[k] - a).abs().max((known.at[k] - b).abs())
     });
     far[0] * far[0] + far[1] * far[1] <= known.radius * known.radius
+}
+
+/// Longest control polygon in each direction. Next to a pole the one around it is short, so no cuts are wasted on it.
+fn extents(net: &[[f64; 4]], degree: [usize; 2]) -> [f64; 2] {
+    let n1 = degree[0] + 1;
+    let point = |k: usize| {
+        let [x, y, z, w] = net[k];
+        Vec3::new(x, y, z) / w
+    };
+    let rows = (0..=degree[1]).map(|j| {
+        (0..degree[0])
+            .map(|i| (point(i + 1 + n1 * j) - point(i + n1 * j)).norm())
+            .sum::<f64>()
+    });
+    let columns = (0..n1).map(|i| {
+        (0..degree[1])
+            .map(|j| (point(i + n1 * (j + 1)) - point(i + n1 * j)).norm())
+            .sum::<f64>()
+    });
+    [rows.fold(0.0, f64::max), columns.fold(0.0, f64::max)]
 }
 
 /// The region that a piece is.

@@ -47,6 +47,8 @@ pub(super) struct Grid {
     pub breaks: [Vec<f64>; 2],
     /// For every border of spans: 0 smooth, 1 tangents may differ in length, 2 the surface has a crease or ends.
     pub kinks: [Vec<u8>; 2],
+    /// Bounds on `|rho_i|`.
+    pub scale: [f64; 2],
 }
 
 /// Patches with their tree, their shared edges and their sides. Queries take `&self` and lock nothing.
@@ -91,6 +93,13 @@ impl PatchSet {
             grids.push(grid(patch, pieces.list.len() as u32));
             for bezier in &beziers {
                 pieces.push(number as u32, bezier);
+            }
+            let grid = &mut grids[number];
+            for piece in &pieces.list[grid.first as usize..] {
+                for k in 0..2 {
+                    let [a, b] = piece.domain[k];
+                    grid.scale[k] = grid.scale[k].max(piece.scale[k] / (b - a));
+                }
             }
         }
         let boxes: Vec<[Vec3; 2]> = pieces.list.iter().map(|p| hull(pieces.net(p))).collect();
@@ -209,5 +218,6 @@ fn grid(patch: &NurbsPatch, first: u32) -> Grid {
         spans,
         breaks,
         kinks,
+        scale: [0.0; 2],
     }
 }

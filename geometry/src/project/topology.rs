@@ -277,8 +277,9 @@ fn compare(
 ) {
     let ab = contact(set, &samples[a], &samples[b], b);
     let ba = contact(set, &samples[b], &samples[a], a);
-    let inner = |c: &Contact| c.covered[1..SAMPLES - 1].iter().any(|&x| x);
-    if !inner(&ab) && !inner(&ba) {
+    // Edges that only touch at a point share one sample at most.
+    let touches = |c: &Contact| c.covered.iter().filter(|&&x| x).count() < 2;
+    if touches(&ab) && touches(&ba) {
         return;
     }
     let sense = if ab.sense + ba.sense >= 0.0 {
@@ -345,9 +346,14 @@ fn contact(set: &PatchSet, one: &Samples, other: &Samples, number: usize) -> Con
         if distance > set.tolerance {
             continue;
         }
+        // Edges that cross are no joint.
+        let (t, u) = (&one.tangents[k], &local.jet.rho_i[along]);
+        let product = t.dot(u);
+        if product.abs() < 0.9 * t.norm() * u.norm() {
+            continue;
+        }
         out.covered[k] = true;
         out.gap = out.gap.max(distance);
-        let product = one.tangents[k].dot(&local.jet.rho_i[along]);
         if product != 0.0 {
             out.sense += product.signum();
         }

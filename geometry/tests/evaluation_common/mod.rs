@@ -96,9 +96,7 @@ fn de_boor<D: DualNum<f64> + Copy>(
         for j in (level..=degree).rev() {
             let (low, high) = (knots[i - degree + j], knots[i + 1 + j - level]);
             let alpha = (t - low) / (high - low);
-            for c in 0..4 {
-                d[j][c] = d[j - 1][c] * (-alpha + 1.0) + d[j][c] * alpha;
-            }
+            d[j] = std::array::from_fn(|c| d[j - 1][c] * (-alpha + 1.0) + d[j][c] * alpha);
         }
     }
     d[degree]

@@ -139,6 +139,7 @@ impl<'a> Cursor<'a> {
 
     /// A finite real.
     pub fn real(&mut self, expected: &str) -> Result<f64, MeshError> {
+        let start = self.mark();
         let value = match self.encoding {
             Encoding::Text => self.text_number(expected)?,
             Encoding::Binary { .. } => f64::from_le_bytes(self.raw(expected)?),
@@ -146,7 +147,7 @@ impl<'a> Cursor<'a> {
         if f64::is_finite(value) {
             Ok(value)
         } else {
-            Err(self.syntax(self.pos.saturating_sub(1), expected, value.to_string()))
+            Err(self.syntax(start, expected, value.to_string()))
         }
     }
 

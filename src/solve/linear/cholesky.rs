@@ -10,9 +10,6 @@ use faer::{Conj, MatMut, Par};
 use std::fmt;
 use std::sync::Arc;
 
-/// Operations below which a second thread costs more than it saves.
-const PARALLEL_MIN_FLOPS: f64 = 5e8;
-
 /// A sparse direct solver for symmetric systems. See [`LinearSolver`] for how it is used; it can be analysed again
 /// when the pattern changes.
 #[derive(Default)]
@@ -282,7 +279,7 @@ impl Prepared {
             threads: 1,
             metis_failed: order.metis_failed,
         };
-        if options.threads > 1 && order.flops >= PARALLEL_MIN_FLOPS {
+        if options.threads > 1 && order.flops >= options.parallel_min_flops {
             analysis.threads = options.threads;
         }
         let par = if analysis.threads > 1 {
@@ -421,6 +418,9 @@ impl Prepared {
                 expected: n,
             });
         }
+        if let Some(dof) = first_not_finite(rhs) {
+            return Err(LinearError::NonFiniteRightHandSide { dof });
+        }
         for (new, &old) in self.matrix.new_to_old.iter().enumerate() {
             let old = 3 * old as usize;
             self.vector[3 * new..3 * new + 3].copy_from_slice(&rhs[old..old + 3]);
@@ -437,13 +437,15 @@ impl Prepared {
             let old = 3 * old as usize;
             rhs[old..old + 3].copy_from_slice(&self.vector[3 * new..3 * new + 3]);
         }
-        match rhs.iter().position(|x| !x.is_finite()) {
-            Some(dof) => Err(LinearError::NonFiniteSolution {
-                dof: DofName::new(dof),
-            }),
+        match first_not_finite(rhs) {
+            Some(dof) => Err(LinearError::NonFiniteSolution { dof }),
             None => Ok(()),
         }
     }
+}
+
+fn first_not_finite(x: &[f64]) -> Option<DofName> {
+    x.iter().position(|x| !x.is_finite()).map(DofName::new)
 }
 
 /// Structure of the factor: elimination tree, counts and supernodes of the permuted dofs.

@@ -30,7 +30,8 @@ pub trait LinearSolver {
     /// Overwrites the right-hand side with the solution.
     ///
     /// # Errors
-    /// [`LinearError::NotFactorized`], [`LinearError::Length`], [`LinearError::NonFiniteSolution`].
+    /// [`LinearError::NotFactorized`], [`LinearError::Length`], [`LinearError::NonFiniteRightHandSide`],
+    /// [`LinearError::NonFiniteSolution`].
     fn solve_in_place(&mut self, rhs: &mut [f64]) -> Result<(), LinearError>;
 
     /// Solves and improves the solution once with the residual in working precision: `x = A^-1 b` and then
@@ -103,6 +104,8 @@ pub struct SolverOptions {
     /// Threads of the dense kernels at most; 1 is serial (and does not allocate). More are used only where they help
     /// ([`Analysis::threads`]).
     pub threads: usize,
+    /// Operations of a factorization below which one thread is used all the same.
+    pub parallel_min_flops: f64,
     /// A pivot smaller than this times the sum of the magnitudes that it is the rest of is refused: fewer than about
     /// two digits of the solution would be right at 1e-14. Zero accepts everything but an exact zero.
     pub pivot_tolerance: f64,
@@ -114,6 +117,7 @@ impl Default for SolverOptions {
             mode: Mode::Auto,
             ordering: OrderingChoice::Best,
             threads: 1,
+            parallel_min_flops: 5e8,
             pivot_tolerance: 1e-14,
         }
     }
@@ -221,6 +225,9 @@ pub enum LinearError {
     /// Nothing but round-off is left of a pivot.
     #[error("the matrix is singular to working precision: {dof} (pivot ratio {ratio:.1e})")]
     TinyPivot { dof: DofName, ratio: f64 },
+    #[error("the right-hand side is not finite: {dof}")]
+    NonFiniteRightHandSide { dof: DofName },
+    /// The solution overflowed; the dof is the first that is affected, not always the one where it began.
     #[error("the solution is not finite: {dof}")]
     NonFiniteSolution { dof: DofName },
 }

@@ -13,6 +13,8 @@ pub struct Delimiters {
 
 #[derive(Clone, Copy)]
 struct Token {
+    /// Where it begins, the count of a string included.
+    at: usize,
     start: usize,
     end: usize,
     string: bool,
@@ -57,11 +59,11 @@ impl<'a> Params<'a> {
             while self.text.get(at) == Some(&b' ') {
                 at += 1;
             }
-            let start = at;
+            let token = at;
             let string = self.string_length(at)?;
             let (start, mut end) = match string {
                 Some((from, length)) => (from, from + length),
-                None => (start, start),
+                None => (token, token),
             };
             at = end;
             let closing = loop {
@@ -77,7 +79,7 @@ impl<'a> Params<'a> {
                             let expected = "a delimiter after the string";
                             return Err(Fail::new(self.place(at), expected, show(&[c])));
                         };
-                        self.too_long.push(self.place(start));
+                        self.too_long.push(self.place(token));
                         at = shorter;
                         end = shorter;
                     }
@@ -91,6 +93,7 @@ impl<'a> Params<'a> {
                 }
             };
             self.tokens.push(Token {
+                at: token,
                 start,
                 end,
                 string: string.is_some(),
@@ -147,7 +150,7 @@ impl<'a> Params<'a> {
 
     /// Place of value `i`, or of the record delimiter if there are fewer values.
     pub fn place_of(&self, i: usize) -> (usize, usize) {
-        self.place(self.tokens.get(i).map_or(self.end, |t| t.start))
+        self.place(self.tokens.get(i).map_or(self.end, |t| t.at))
     }
 
     /// An error at value `i` that says what is there.

@@ -151,13 +151,15 @@ fn lines(bytes: &[u8]) -> Box<dyn Iterator<Item = &[u8]> + '_> {
 /// The standard knows ASCII only. Latin-1 bytes take one column each; where a writer counted UTF-8 characters as one
 /// column, the section letter stands too far right, and the line is counted in characters instead.
 fn as_columns(line: &[u8]) -> Cow<'_, [u8]> {
-    if line.len() > 80 && !line.is_ascii() && !line.get(72).is_some_and(|c| ORDER.contains(c)) {
-        if let Ok(text) = std::str::from_utf8(line) {
-            return text
-                .chars()
-                .map(|c| u8::try_from(u32::from(c)).unwrap_or(b'?'))
-                .collect();
-        }
+    let misplaced = line.len() > 80 && !line.get(72).is_some_and(|c| ORDER.contains(c));
+    if misplaced
+        && !line.is_ascii()
+        && let Ok(text) = std::str::from_utf8(line)
+    {
+        return text
+            .chars()
+            .map(|c| u8::try_from(u32::from(c)).unwrap_or(b'?'))
+            .collect();
     }
     Cow::Borrowed(line)
 }

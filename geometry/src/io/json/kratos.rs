@@ -60,8 +60,8 @@ impl TryFrom<RawSurface> for Surface {
     type Error = String;
 
     fn try_from(raw: RawSurface) -> Result<Self, String> {
-        let mut count = [0; 2];
-        for d in 0..2 {
+        let mut counts = [0; 2];
+        for (d, count) in counts.iter_mut().enumerate() {
             let (knots, degree) = (raw.knot_vectors[d].len(), raw.degrees[d]);
             let needed = degree.saturating_mul(2).saturating_add(2);
             if knots < needed {
@@ -70,7 +70,7 @@ impl TryFrom<RawSurface> for Surface {
                     d + 1
                 ));
             }
-            count[d] = knots - degree - 1;
+            *count = knots - degree - 1;
         }
         let mut points = Vec::with_capacity(raw.control_points.len());
         let mut weights = Vec::with_capacity(raw.control_points.len());
@@ -99,7 +99,7 @@ impl TryFrom<RawSurface> for Surface {
         let patch = NurbsPatch::new(
             raw.degrees,
             raw.knot_vectors,
-            count,
+            counts,
             &points,
             Some(&weights),
         )

@@ -1,0 +1,9 @@
+//! Reading CAD files: samples of several writers, damaged files, small files written by hand, and the punch of the
+//! examples.
+
+mod damage;
+mod iges;
+mod json;
+mod punch;
+mod samples;
+mod support;

@@ -1,0 +1,125 @@
+//! Keyword and data lines of an input file.
+use crate::mesh::{MeshError, Position};
+use std::path::Path;
+
+/// One entry of a line, without the blanks around it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Field<'a> {
+    pub text: &'a str,
+    pub line: usize,
+    pub column: usize,
+}
+
+impl Field<'_> {
+    pub fn syntax(&self, path: &Path, expected: &str) -> MeshError {
+        self.syntax_found(
+            path,
+            expected,
+            if self.text.is_empty() {
+                "nothing"
+            } else {
+                self.text
+            },
+        )
+    }
+
+    pub fn syntax_found(&self, path: &Path, expected: &str, found: &str) -> MeshError {
+        MeshError::Syntax {
+            path: path.to_path_buf(),
+            at: self.position(),
+            expected: expected.to_string(),
+            found: found.chars().take(40).collect(),
+        }
+    }
+
+    pub fn unsupported(&self, path: &Path, what: String, help: &str) -> MeshError {
+        MeshError::Unsupported {
+            path: path.to_path_buf(),
+            at: self.position(),
+            what,
+            help: help.to_string(),
+        }
+    }
+
+    fn position(&self) -> Position {
+        Position::Text {
+            line: self.line,
+            column: self.column,
+        }
+    }
+
+    /// A whole number that is not negative.
+    pub fn integer(&self, path: &Path, expected: &str) -> Result<u64, MeshError> {
+        self.text.parse().map_err(|_| self.syntax(path, expected))
+    }
+
+    /// A finite real, with `d` as an exponent too.
+    pub fn real(&self, path: &Path, expected: &str) -> Result<f64, MeshError> {
+        let number = self.text.replace(['d', 'D'], "e").parse::<f64>();
+        match number {
+            Ok(x) if x.is_finite() => Ok(x),
+            _ => Err(self.syntax(path, expected)),
+        }
+    }
+}
+
+/// Comma-separated fields of a line. A comma at the end starts no field.
+pub(super) fn fields(line: &str, number: usize) -> impl Iterator<Item = Field<'_>> {
+    let line = line.trim_end();
+    let line = line.strip_suffix(',').unwrap_or(line);
+    let mut start = 0;
+    line.split(',').map(move |part| {
+        let blanks = part.len() - part.trim_start().len();
+        let column = line[..start + blanks].chars().count() + 1;
+        start += part.len() + 1;
+        Field {
+            text: part.trim(),
+            line: number,
+            column,
+        }
+    })
+}
+
+/// A keyword line: its name in capitals without blanks, and its parameters (name in capitals, value).
+pub(super) struct Keyword<'a> {
+    pub name: String,
+    pub at: Field<'a>,
+    parameters: Vec<(String, Field<'a>)>,
+}
+
+impl<'a> Keyword<'a> {
+    pub fn new(line: &'a str, number: usize) -> Option<Keyword<'a>> {
+        let mut parts = fields(line, number);
+        let at = parts.next()?;
+        let mut keyword = Keyword {
+            name: squeezed(at.text),
+            at,
+            parameters: Vec::new(),
+        };
+        keyword.extend(parts);
+        Some(keyword)
+    }
+
+    /// Takes the parameters of a continuation line.
+    pub fn extend(&mut self, parts: impl Iterator<Item = Field<'a>>) {
+        for part in parts {
+            let (name, value) = part.text.split_once('=').unwrap_or((part.text, ""));
+            let field = Field {
+                text: value.trim().trim_matches('"'),
+                ..part
+            };
+            self.parameters.push((squeezed(name), field));
+        }
+    }
+
+    pub fn get(&self, name: &str) -> Option<Field<'a>> {
+        self.parameters.iter().find(|p| p.0 == name).map(|p| p.1)
+    }
+}
+
+fn squeezed(text: &str) -> String {
+    text.chars()
+        .filter(|c| !c.is_whitespace())
+        .collect::<String>()
+        .to_uppercase()
+}

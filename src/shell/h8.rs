@@ -1,0 +1,374 @@
+//! The elements of one body: what assembly calls.
+use super::error::{ElementFault, FaultCause, ShellError};
+use super::kinematics::{self, Fields, V};
+use super::material::{Collapsed, Law, MaterialLaw};
+use super::reference::{MODES, Reference};
+use super::{brick, stress, tangent};
+use crate::mesh::{ElementKind, Mesh};
+use crate::scene::Element;
+use covact_geometry::Vec3;
+
+/// Variants of the 8-node element; all have 2 x 2 x 2 Gauss points.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Formulation {
+    /// Solid-shell with assumed transverse shear and thickness strains and seven enhanced strains (33: t, rt, st;
+    /// 11: r; 22: s; 12: r, s), after L. Vu-Quoc and X. G. Tan, CMAME 192 (2003).
+    #[default]
+    Eas7,
+    /// Three enhanced strains, those of the thickness (33: t, rt, st): no in-plane enhancement, so stiff in in-plane
+    /// bending and locking above nu = 0.45, but free of its instability in strong compression.
+    Eas3,
+    /// Assumed strains only; Poisson thickness locking makes it 1.22 times too stiff in bending at nu = 0.3.
+    Eas0,
+    /// Displacement brick without assumed or enhanced strains.
+    Displacement,
+}
+
+impl Formulation {
+    /// Number of enhanced strains.
+    pub const fn modes(self) -> usize {
+        match self {
+            Formulation::Eas7 => 7,
+            Formulation::Eas3 => 3,
+            Formulation::Eas0 | Formulation::Displacement => 0,
+        }
+    }
+}
+
+impl From<Element> for Formulation {
+    fn from(element: Element) -> Formulation {
+        match element {
+            Element::H8 => Formulation::Eas7,
+            Element::H8Displacement => Formulation::Displacement,
+        }
+    }
+}
+
+/// Forces and tangent of one element, dofs numbered `3 node + axis`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct H8System {
+    /// Internal forces, condensed: `f - L^T D^-1 h`.
+    pub f: [f64; 24],
+    /// Tangent `K - L^T D^-1 L`, full and exactly symmetric, by columns.
+    pub k: [f64; 576],
+    /// Strain energy.
+    pub energy: f64,
+    /// Negative pivots in the stiffness D of the enhanced strains: above zero the element is unstable by itself
+    /// (P. Wriggers and S. Reese, CMAME 135 (1996)).
+    pub negative_pivots: u8,
+}
+
+impl Default for H8System {
+    fn default() -> H8System {
+        H8System {
+            f: [0.0; 24],
+            k: [0.0; 576],
+            energy: 0.0,
+            negative_pivots: 0,
+        }
+    }
+}
+
+/// All elements of a body, with one formulation and one law.
+///
+/// Displacements are passed rather than current positions, because strains taken from them keep their digits where
+/// displacements are small. The caller owns the state, [`H8Block::state_len`] numbers per element (zeros at first):
+/// the enhanced strains `alpha` come first, then the condensation cache h, L and the factors of D. Only alpha belongs
+/// to the history of a load step; copying the whole slice is right too.
+#[derive(Debug, Clone)]
+pub struct H8Block {
+    formulation: Formulation,
+    law: Law,
+    nodes: Vec<[u32; 8]>,
+    reference: Vec<Reference>,
+}
+
+/// Runs a block of code with `$law` bound to the concrete law.
+macro_rules! with_law {
+    ($self:ident, $law:ident => $body:expr) => {
+        match &$self.law {
+            Law::StVenantKirchhoff($law) => $body,
+            Law::NeoHooke($law) => $body,
+        }
+    };
+}
+
+impl H8Block {
+    /// Sets up the elements of a mesh.
+    ///
+    /// # Errors
+    /// Elements that refer to missing nodes, inverted elements (Jacobian not positive at a Gauss point or the centre),
+    /// and three enhanced strains with nu above 0.45.
+    pub fn new(mesh: &Mesh, formulation: Formulation, law: Law) -> Result<H8Block, ShellError> {
+        if mesh.kind != ElementKind::H8 {
+            return Err(ShellError::Kind {
+                found: format!("{:?}", mesh.kind),
+            });
+        }
+        if formulation == Formulation::Eas3 && law.nu() > 0.45 {
+            return Err(ShellError::TooFewEnhanced { nu: law.nu() });
+        }
+        let (chunks, rest) = mesh.connectivity.as_chunks::<8>();
+        if !rest.is_empty() {
+            return Err(ShellError::Connectivity {
+                entries: mesh.connectivity.len(),
+            });
+        }
+        let mut reference = Vec::with_capacity(chunks.len());
+        let mut inverted = None;
+        let mut count = 0;
+        for (element, nodes) in chunks.iter().enumerate() {
+            let mut x = [[0.0; 3]; 8];
+            for (x, &node) in x.iter_mut().zip(nodes) {
+                *x = mesh
+                    .nodes
+                    .get(node as usize)
+                    .ok_or(ShellError::Node {
+                        element: element as u32,
+                        node,
+                        nodes: mesh.nodes.len(),
+                    })?
+                    .data
+                    .0[0];
+            }
+            let (re, jacobian) = Reference::new(x);
+            // Written so that NaN counts as inverted.
+            if jacobian > 0.0 {
+                reference.push(re);
+            } else {
+                count += 1;
+                inverted.get_or_insert((element as u32, jacobian));
+            }
+        }
+        match inverted {
+            Some((element, jacobian)) => Err(ShellError::Inverted {
+                element,
+                jacobian,
+                count,
+            }),
+            None => Ok(H8Block {
+                formulation,
+                law,
+                nodes: chunks.to_vec(),
+                reference,
+            }),
+        }
+    }
+
+    /// Number of elements.
+    pub fn elements(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Nodes of element `e`.
+    pub fn nodes_of(&self, e: usize) -> [u32; 8] {
+        self.nodes[e]
+    }
+
+    /// The formulation.
+    pub fn formulation(&self) -> Formulation {
+        self.formulation
+    }
+
+    /// The law.
+    pub fn law(&self) -> Law {
+        self.law
+    }
+
+    /// Numbers of state per element (210 for seven enhanced strains, none without).
+    pub const fn state_len(&self) -> usize {
+        tangent::state_len(self.formulation.modes())
+    }
+
+    /// Numbers of enhanced strains per element, at the start of its state.
+    pub const fn alpha_len(&self) -> usize {
+        self.formulation.modes()
+    }
+
+    /// Undeformed volume of element `e`.
+    pub fn volume(&self, e: usize) -> f64 {
+        self.reference[e].volume.iter().sum()
+    }
+
+    /// Elements whose edges along t are longer than those along r or s (in the mean): a mesh of a thin shell with such
+    /// elements has its thickness along the wrong direction.
+    pub fn longest_along_t(&self) -> Vec<u32> {
+        let length = |v: &V<f64>| kinematics::dot(v, v);
+        let long = |re: &Reference| {
+            let [r, s, t] = Fields::new(&re.nodes).centre();
+            length(&t) > length(&r).min(length(&s))
+        };
+        (0..self.elements())
+            .filter(|&e| long(&self.reference[e]))
+            .map(|e| e as u32)
+            .collect()
+    }
+
+    /// Condensed forces and tangent of element `e` at nodal displacements `u`. Reads alpha in `state` and writes the
+    /// condensation cache there.
+    ///
+    /// # Errors
+    /// [`ElementFault`] where the strain is impossible or D cannot be factorised; `out` and the cache are then
+    /// meaningless, alpha is untouched.
+    pub fn evaluate(
+        &self,
+        e: usize,
+        u: &[Vec3; 8],
+        state: &mut [f64],
+        out: &mut H8System,
+    ) -> Result<(), ElementFault> {
+        let u = arrays(u);
+        let re = &self.reference[e];
+        with_law!(self, law => match self.formulation {
+            Formulation::Eas7 => tangent::evaluate::<_, 7>(law, re, &u, state, out),
+            Formulation::Eas3 => tangent::evaluate::<_, 3>(law, re, &u, state, out),
+            Formulation::Eas0 => tangent::evaluate::<_, 0>(law, re, &u, state, out),
+            Formulation::Displacement => brick::evaluate(law, re, &u, out),
+        })
+        .map_err(|cause| ElementFault {
+            element: e as u32,
+            cause,
+        })
+    }
+
+    /// Forces without tangent, for line searches: `f - L^T D^-1 h` with f and h at `u` and the alpha in `state`, but L
+    /// and D of the last [`H8Block::evaluate`]. At those displacements it repeats that call's forces; elsewhere it is
+    /// the residual that the same Newton matrix would act on. Returns the strain energy at (u, alpha).
+    ///
+    /// # Errors
+    /// [`ElementFault`] where the strain is impossible.
+    pub fn residual(
+        &self,
+        e: usize,
+        u: &[Vec3; 8],
+        state: &[f64],
+        f: &mut [f64; 24],
+    ) -> Result<f64, ElementFault> {
+        let u = arrays(u);
+        let re = &self.reference[e];
+        with_law!(self, law => match self.formulation {
+            Formulation::Eas7 => residual::<_, 7>(law, re, &u, state, f),
+            Formulation::Eas3 => residual::<_, 3>(law, re, &u, state, f),
+            Formulation::Eas0 => residual::<_, 0>(law, re, &u, state, f),
+            Formulation::Displacement => brick::forces(law, re, &u).map(|(energy, forces)| {
+                *f = forces;
+                energy
+            }),
+        })
+        .map_err(|(point, c)| fault(e, point, c))
+    }
+
+    /// `alpha = alpha_from - scale D^-1 (h + L du)`, with D, h, L of the evaluation that produced `du`.
+    pub fn update_alpha(&self, state: &mut [f64], du: &[Vec3; 8], scale: f64, alpha_from: &[f64]) {
+        let ne = self.formulation.modes();
+        let mut step = [0.0; MODES];
+        for m in 0..ne {
+            let row = &state[2 * ne + 24 * m..][..24];
+            step[m] = state[ne + m];
+            for (l, d) in row.chunks_exact(3).zip(du) {
+                step[m] += l[0] * d.x + l[1] * d.y + l[2] * d.z;
+            }
+        }
+        solve(&state[tangent::factors(ne)..], &mut step[..ne]);
+        for m in 0..ne {
+            state[m] = alpha_from[m] - scale * step[m];
+        }
+    }
+
+    /// Cauchy stress (xx, yy, zz, xy, yz, xz) at the Gauss points `i + 2 j + 4 k`, consistent with the assumed and
+    /// enhanced strain: pushed forward with `F = R U`, U being the root of the modified C and R the rotation of the
+    /// element's own deformation gradient.
+    ///
+    /// # Errors
+    /// [`ElementFault`] where the strain is impossible.
+    pub fn stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; 8],
+        state: &[f64],
+        out: &mut [[f64; 6]; 8],
+    ) -> Result<(), ElementFault> {
+        let u = arrays(u);
+        let re = &self.reference[e];
+        let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
+        let strain = match self.formulation {
+            Formulation::Eas7 => kinematics::strains(re, &big, &du, &head::<7>(state)),
+            Formulation::Eas3 => kinematics::strains(re, &big, &du, &head::<3>(state)),
+            Formulation::Eas0 => kinematics::strains(re, &big, &du, &[]),
+            Formulation::Displacement => {
+                let mut strain = [[0.0; 6]; 8];
+                for (g, strain) in strain.iter_mut().enumerate() {
+                    *strain = brick::strain(&big.at(g), &du.at(g));
+                }
+                strain
+            }
+        };
+        for g in 0..8 {
+            out[g] = with_law!(self, law => stress::cauchy(
+                law, &re.metric[g], &big.at(g), &du.at(g), &strain[g]
+            ))
+            .map_err(|c| fault(e, g as u8, c))?;
+        }
+        Ok(())
+    }
+}
+
+/// The fault of a Gauss point.
+fn fault(e: usize, point: u8, c: Collapsed) -> ElementFault {
+    ElementFault {
+        element: e as u32,
+        cause: FaultCause::Collapsed {
+            point,
+            ratio: c.ratio,
+        },
+    }
+}
+
+fn arrays(u: &[Vec3; 8]) -> [V<f64>; 8] {
+    u.map(|u| u.data.0[0])
+}
+
+fn head<const NE: usize>(state: &[f64]) -> [f64; NE] {
+    let mut alpha = [0.0; NE];
+    alpha.copy_from_slice(&state[..NE]);
+    alpha
+}
+
+fn residual<L: MaterialLaw, const NE: usize>(
+    law: &L,
+    re: &Reference,
+    u: &[V<f64>; 8],
+    state: &[f64],
+    f: &mut [f64; 24],
+) -> Result<f64, (u8, Collapsed)> {
+    let (energy, forces, mut h) = kinematics::forces(law, re, u, &head::<NE>(state))?;
+    *f = forces;
+    if NE > 0 {
+        solve(&state[tangent::factors(NE)..], &mut h);
+        for (m, h) in h.iter().enumerate() {
+            for (f, l) in f.iter_mut().zip(&state[2 * NE + 24 * m..]) {
+                *f -= l * h;
+            }
+        }
+    }
+    Ok(energy)
+}
+
+/// Solves with packed factors unit lower, diagonal.
+fn solve(packed: &[f64], x: &mut [f64]) {
+    let n = x.len();
+    let row = |m: usize| &packed[m * (m + 1) / 2..][..=m];
+    for m in 0..n {
+        for k in 0..m {
+            x[m] -= row(m)[k] * x[k];
+        }
+    }
+    for m in 0..n {
+        x[m] /= row(m)[m];
+    }
+    for m in (0..n).rev() {
+        for k in m + 1..n {
+            x[m] -= row(k)[m] * x[k];
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Cauchy stress from the modified strain.
+use super::VOIGT;
+use super::kinematics::V;
+use super::material::{Collapsed, MaterialLaw, Metric};
+use super::reference::{GP, contravariant, det, sign};
+use covact_geometry::Vec3;
+use nalgebra::Matrix3;
+
+fn matrix(v: &[V<f64>; 3]) -> Matrix3<f64> {
+    Matrix3::from_columns(&v.map(Vec3::from))
+}
+
+fn full(v: &[f64; 6], shear: f64) -> Matrix3<f64> {
+    let (a, b, c) = (v[3] * shear, v[4] * shear, v[5] * shear);
+    Matrix3::new(v[0], a, c, a, v[1], b, c, b, v[2])
+}
+
+/// Cauchy stress at one Gauss point with undeformed frame `big`, displacement derivatives `du` and covariant strain.
+pub(super) fn cauchy<L: MaterialLaw>(
+    law: &L,
+    metric: &Metric,
+    big: &[V<f64>; 3],
+    du: &[V<f64>; 3],
+    strain: &[f64; 6],
+) -> Result<[f64; 6], Collapsed> {
+    let (_, s) = law.stress(metric, strain)?;
+    let frame = matrix(big);
+    let dual = matrix(&contravariant(big, det(big)));
+    let stress = frame * full(&s, 1.0) * frame.transpose();
+    let c = Matrix3::identity() + dual * full(strain, 0.5) * dual.transpose() * 2.0;
+    let eigen = c.symmetric_eigen();
+    let ratio = eigen.eigenvalues.product();
+    if eigen.eigenvalues.min() <= 0.0 || !ratio.is_finite() {
+        return Err(Collapsed { ratio });
+    }
+    let v = eigen.eigenvectors;
+    let u = v * Matrix3::from_diagonal(&eigen.eigenvalues.map(f64::sqrt)) * v.transpose();
+    let f = Matrix3::identity() + matrix(du) * dual.transpose();
+    let svd = f.svd(true, true);
+    let (Some(left), Some(right)) = (svd.u, svd.v_t) else {
+        return Err(Collapsed {
+            ratio: f.determinant(),
+        });
+    };
+    let f = left * right * u;
+    let sigma = f * stress * f.transpose() / ratio.sqrt();
+    Ok(VOIGT.map(|(i, j)| sigma[(i, j)]))
+}
+
+/// Extends values at the Gauss points of an element to its eight nodes, trilinearly.
+pub fn extrapolate(points: &[[f64; 6]; 8]) -> [[f64; 6]; 8] {
+    let mut nodes = [[0.0; 6]; 8];
+    for (a, node) in nodes.iter_mut().enumerate() {
+        for (g, point) in points.iter().enumerate() {
+            // The node lies at -+1/GP in coordinates that put the Gauss points at -+1.
+            let w = (0..3).fold(0.125, |w, bit| w * (1.0 + sign(a, bit) * sign(g, bit) / GP));
+            for (n, p) in node.iter_mut().zip(point) {
+                *n += w * p;
+            }
+        }
+    }
+    nodes
+}

@@ -1,0 +1,509 @@
+//! Condensed forces and tangent of the solid-shell element: the loop that assembly spends its time in.
+//!
+//! The strains of the element are linear in few quantities: membrane strains at the Gauss points, and fifteen
+//! parameters (eight assumed strains at tying points, seven enhanced strains). So the tangent is put together as
+//!
+//! `K = K_mm + Z b + (Z b)^T + b^T C b - L^T D^-1 L`
+//!
+//! where `b` (8 x 24) are the strain-displacement rows at the tying points, of which a node touches three, `C` (15 x 15)
+//! is the stiffness among parameters (its corner D that of the enhanced strains), `Z` (24 x 15) couples membrane and
+//! parameters. `C`, `Z` and `K_mm` are sums over Gauss points of small blocks; shape functions being products along
+//! r, s and t, most sums run over 2 values instead of 8. Arrays are laid out for vector units: dofs are numbered
+//! `8 axis + node` inside and `3 node + axis` outside.
+use super::error::FaultCause;
+use super::h8::H8System;
+use super::kinematics::{Fields, V, add, strains};
+use super::material::MaterialLaw;
+use super::reference::{BASE, GP, LINE, MODES, PARAMETERS, Reference, TYING, WEIGHT, sign};
+
+/// Component pairs that are computed, i <= j; the others follow from symmetry.
+const PAIRS: [(usize, usize); 6] = super::VOIGT;
+/// Position of a component pair in [`PAIRS`].
+const PAIR: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
+/// Lanes: three combinations of bottom and top times six component pairs.
+const LANES: usize = 18;
+
+/// Size of the condensation cache and the parameters of an element with `ne` enhanced strains: alpha, h, L (ne x 24,
+/// by rows, dofs `3 node + axis`), and the packed factors of D = (unit lower) (diagonal) (unit lower)^T.
+pub(super) const fn state_len(ne: usize) -> usize {
+    2 * ne + 24 * ne + ne * (ne + 1) / 2
+}
+
+/// Start of the factors of D in the state.
+pub(super) const fn factors(ne: usize) -> usize {
+    26 * ne
+}
+
+/// What the loop over Gauss points gathers.
+struct Sums {
+    /// Membrane blocks at the in-plane points: `[point][11, 22, 12, 21][lane]`.
+    membrane: [[[f64; LANES]; 4]; 4],
+    /// Coupling of displacements `8 axis + node` with parameters; the last slot are the membrane forces.
+    z: [[f64; 24]; PARAMETERS],
+    /// Stiffness among parameters; the last column are the forces on them.
+    c: [[f64; PARAMETERS]; PARAMETERS],
+    energy: f64,
+}
+
+#[inline(always)]
+const fn used<const NE: usize>(parameter: usize) -> bool {
+    parameter < TYING + NE || parameter == PARAMETERS - 1
+}
+
+/// Evaluates one element at displacements `u`: `out` receives condensed forces and tangent, `state` (its alpha being
+/// read) the condensation cache.
+pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
+    law: &L,
+    re: &Reference,
+    u: &[V<f64>; 8],
+    state: &mut [f64],
+    out: &mut H8System,
+) -> Result<(), FaultCause> {
+    let big = Fields::new(&re.nodes);
+    let du = Fields::new(u);
+    let now = add(&big, &du);
+    let mut alpha = [0.0; NE];
+    alpha.copy_from_slice(&state[..NE]);
+    let strain = strains(re, &big, &du, &alpha);
+    let sums = gauss_loop::<L, NE>(law, re, &now, &strain)?;
+    let membrane = membrane_blocks(&sums.membrane);
+    let b = tying_rows(&now);
+
+    // Displacement part: rows of L and of the coupling, forces.
+    let mut l = [[0.0; 24]; MODES];
+    for m in 0..NE {
+        l[m] = times_rows(&sums.z[TYING + m], &sums.c[TYING + m], &b, 1.0);
+    }
+    let mut y = [[0.0; 24]; TYING];
+    for p in 0..TYING {
+        y[p] = times_rows(&sums.z[p], &sums.c[p], &b, 0.5);
+    }
+    let mut force = [0.0; PARAMETERS];
+    for p in 0..TYING + NE {
+        force[p] = sums.c[p][PARAMETERS - 1];
+    }
+    let mut f = times_rows(&sums.z[PARAMETERS - 1], &force, &b, 1.0);
+
+    // Half of the coupling plus half of the initial-stress part of the transverse strains; its transpose is the rest.
+    let geometric = transverse_geometric(&force);
+    let mut half = [[0.0; 24]; 24];
+    for (column, half) in half.iter_mut().enumerate() {
+        let node = column & 7;
+        let rows = [&y[node & 3], &y[4 + (node & 1)], &y[6 + ((node >> 1) & 1)]];
+        let weights = [b[0][column], b[1][column], b[2][column]];
+        for r in 0..24 {
+            half[r] = rows[0][r] * weights[0] + rows[1][r] * weights[1] + rows[2][r] * weights[2];
+        }
+        let axis = column >> 3;
+        for a in 0..8 {
+            half[8 * axis + a] += geometric[node][a];
+        }
+    }
+
+    // Static condensation of the enhanced strains.
+    out.negative_pivots = 0;
+    let mut scaled = [[0.0; 24]; MODES];
+    if NE > 0 {
+        for m in 0..NE {
+            state[NE + m] = force[TYING + m];
+            let row = &mut state[2 * NE + 24 * m..2 * NE + 24 * (m + 1)];
+            for a in 0..8 {
+                for x in 0..3 {
+                    row[3 * a + x] = l[m][8 * x + a];
+                }
+            }
+        }
+        let mut d = [[0.0; MODES]; MODES];
+        for m in 0..NE {
+            d[m][..NE].copy_from_slice(&sums.c[TYING + m][TYING..TYING + NE]);
+        }
+        out.negative_pivots = factorise::<NE>(&mut d)?;
+        let packed = &mut state[factors(NE)..];
+        let mut h = [0.0; MODES];
+        for m in 0..NE {
+            packed[m * (m + 1) / 2..][..=m].copy_from_slice(&d[m][..=m]);
+            h[m] = force[TYING + m];
+            for n in 0..m {
+                h[m] -= d[m][n] * h[n];
+                let (head, tail) = l.split_at_mut(m);
+                for r in 0..24 {
+                    tail[0][r] -= d[m][n] * head[n][r];
+                }
+            }
+            let inverse = d[m][m].recip();
+            for r in 0..24 {
+                scaled[m][r] = l[m][r] * inverse;
+                f[r] -= scaled[m][r] * h[m];
+            }
+        }
+    }
+
+    for a in 0..8 {
+        for x in 0..3 {
+            out.f[3 * a + x] = f[8 * x + a];
+        }
+    }
+    out.energy = sums.energy;
+    gather::<NE, 0>(&membrane, &half, &l, &scaled, out);
+    gather::<NE, 1>(&membrane, &half, &l, &scaled, out);
+    gather::<NE, 2>(&membrane, &half, &l, &scaled, out);
+    Ok(())
+}
+
+#[inline(always)]
+fn gauss_loop<L: MaterialLaw, const NE: usize>(
+    law: &L,
+    re: &Reference,
+    now: &Fields<f64>,
+    strain: &[[f64; 6]; 8],
+) -> Result<Sums, FaultCause> {
+    let mut sums = Sums {
+        membrane: [[[0.0; LANES]; 4]; 4],
+        z: [[0.0; 24]; PARAMETERS],
+        c: [[0.0; PARAMETERS]; PARAMETERS],
+        energy: 0.0,
+    };
+    for q in 0..4 {
+        let (i, j) = (q & 1, q >> 1);
+        // Coupling before shape functions along r and s: [bottom, top][along g_1, g_2][axis][base strain].
+        let mut line = [[[[0.0; 8]; 3]; 2]; 2];
+        let mut base = [[0.0; 8]; 7];
+        for k in 0..2 {
+            let g = q + 4 * k;
+            let response =
+                law.response(&re.metric[g], &strain[g])
+                    .map_err(|c| FaultCause::Collapsed {
+                        point: g as u8,
+                        ratio: c.ratio,
+                    })?;
+            let dv = re.volume[g];
+            sums.energy += response.energy * dv;
+            let s = response.stress.map(|s| s * dv);
+            let c = response.tangent.map(|row| row.map(|c| c * dv));
+            let (g1, g2) = (&now.r[k][j], &now.s[k][i]);
+            add_membrane(&mut sums.membrane[q], &c, &s, g1, g2, &LINE[k]);
+
+            // Stress per base strain: C A, and A^T C A among enhanced strains.
+            let mut ca = [[0.0; 4]; 6];
+            let mut aca = [[0.0; 5]; 4];
+            if NE > 0 {
+                let mut a = re.enhanced[g];
+                let t = GP * sign(g, 2);
+                for row in &mut a {
+                    row[0] *= t;
+                }
+                for v in 0..6 {
+                    for w in 0..6 {
+                        for m in 0..4 {
+                            ca[v][m] += c[v][w] * a[w][m];
+                        }
+                    }
+                }
+                for v in 0..6 {
+                    for m in 0..4 {
+                        for n in 0..4 {
+                            aca[m][n] += a[v][m] * ca[v][n];
+                        }
+                        aca[m][4] += a[v][m] * s[v];
+                    }
+                }
+            }
+            let row = |v: usize| {
+                let x = &ca[v];
+                [c[v][2], c[v][4], c[v][5], x[0], x[1], x[2], x[3], s[v]]
+            };
+            let (m11, m22, m12) = (row(0), row(1), row(3));
+            for x in 0..3 {
+                for n in 0..8 {
+                    let along1 = m11[n] * g1[x] + m12[n] * g2[x];
+                    let along2 = m12[n] * g1[x] + m22[n] * g2[x];
+                    line[0][0][x][n] += LINE[k][0] * along1;
+                    line[0][1][x][n] += LINE[k][0] * along2;
+                    line[1][0][x][n] += LINE[k][1] * along1;
+                    line[1][1][x][n] += LINE[k][1] * along2;
+                }
+            }
+            for (b, v) in [2, 4, 5].into_iter().enumerate() {
+                let r = row(v);
+                for n in 0..8 {
+                    base[b][n] += r[n];
+                }
+            }
+            if NE > 0 {
+                for m in 0..4 {
+                    let r = &aca[m];
+                    let r = [ca[2][m], ca[4][m], ca[5][m], r[0], r[1], r[2], r[3], r[4]];
+                    for n in 0..8 {
+                        base[3 + m][n] += r[n];
+                    }
+                }
+            }
+        }
+        add_parameters::<NE>(&mut sums, q, &line, &base);
+    }
+    Ok(sums)
+}
+
+/// Membrane blocks of one Gauss point: `Q_ab[ij] = c^(a k b l) g_k,i g_l,j + S^ab delta_ij`, times the three products
+/// of shape functions along t.
+#[inline(always)]
+fn add_membrane(
+    sum: &mut [[f64; LANES]; 4],
+    c: &[[f64; 6]; 6],
+    s: &[f64; 6],
+    g1: &V<f64>,
+    g2: &V<f64>,
+    along_t: &[f64; 2],
+) {
+    let mut q = [[0.0; 6]; 4];
+    for (lane, (i, j)) in PAIRS.into_iter().enumerate() {
+        let (aa, bb) = (g1[i] * g1[j], g2[i] * g2[j]);
+        let (ab, ba) = (g1[i] * g2[j], g2[i] * g1[j]);
+        let (mixed, sides) = (ab + ba, c[0][3] * aa + c[1][3] * bb);
+        q[0][lane] = c[0][0] * aa + c[0][3] * mixed + c[3][3] * bb;
+        q[1][lane] = c[1][1] * bb + c[1][3] * mixed + c[3][3] * aa;
+        q[2][lane] = c[0][1] * ab + c[3][3] * ba + sides;
+        q[3][lane] = c[0][1] * ba + c[3][3] * ab + sides;
+    }
+    for lane in 0..3 {
+        q[0][lane] += s[0];
+        q[1][lane] += s[1];
+        q[2][lane] += s[3];
+        q[3][lane] += s[3];
+    }
+    let [lower, upper] = *along_t;
+    for (combination, w) in [lower * lower, lower * upper, upper * upper]
+        .into_iter()
+        .enumerate()
+    {
+        for kind in 0..4 {
+            for lane in 0..6 {
+                sum[kind][6 * combination + lane] += w * q[kind][lane];
+            }
+        }
+    }
+}
+
+/// Spreads the sums of one in-plane point to parameters and nodes.
+#[inline(always)]
+fn add_parameters<const NE: usize>(
+    sums: &mut Sums,
+    q: usize,
+    line: &[[[[f64; 8]; 3]; 2]; 2],
+    base: &[[f64; 8]; 7],
+) {
+    let (i, j) = (q & 1, q >> 1);
+    let n1 = [0, 1, 2, 3].map(|c| 0.5 * sign(c, 0) * LINE[j][c >> 1]);
+    let n2 = [0, 1, 2, 3].map(|c| 0.5 * sign(c, 1) * LINE[i][c & 1]);
+    let mut nodes = [[0.0; 24]; 8];
+    for (n, nodes) in nodes.iter_mut().enumerate() {
+        for x in 0..3 {
+            for t in 0..2 {
+                let (a, b) = (line[t][0][x][n], line[t][1][x][n]);
+                for c in 0..4 {
+                    nodes[8 * x + 4 * t + c] = n1[c] * a + n2[c] * b;
+                }
+            }
+        }
+    }
+    let w = &WEIGHT[q];
+    for p in 0..PARAMETERS {
+        if used::<NE>(p) {
+            for r in 0..24 {
+                sums.z[p][r] += w[p] * nodes[BASE[p]][r];
+            }
+        }
+    }
+    let mut spread = [[0.0; PARAMETERS]; 7];
+    for v in 0..7 {
+        for p in 0..PARAMETERS {
+            spread[v][p] = w[p] * base[v][BASE[p]];
+        }
+    }
+    for p in 0..TYING + NE {
+        for n in 0..PARAMETERS {
+            sums.c[p][n] += w[p] * spread[BASE[p]][n];
+        }
+    }
+}
+
+/// Membrane blocks of the node columns, `[column node][row node][lane]` over the four nodes of a face: the derivatives
+/// along r do not depend on r, so the sum over Gauss points splits into sums along single directions.
+#[inline(always)]
+fn membrane_blocks(points: &[[[f64; LANES]; 4]; 4]) -> [[[f64; LANES]; 4]; 4] {
+    let mut aa = [[[0.0; LANES]; 2]; 2];
+    let mut bb = [[[0.0; LANES]; 2]; 2];
+    let mut ab = [[[0.0; LANES]; 2]; 2];
+    let mut ba = [[[0.0; LANES]; 2]; 2];
+    for m in 0..2 {
+        for n in 0..2 {
+            for point in 0..2 {
+                let w = 0.25 * LINE[point][m] * LINE[point][n];
+                for lane in 0..LANES {
+                    aa[m][n][lane] +=
+                        w * (points[2 * point][0][lane] + points[2 * point + 1][0][lane]);
+                    bb[m][n][lane] += w * (points[point][1][lane] + points[point + 2][1][lane]);
+                }
+            }
+            for q in 0..4 {
+                let (i, j) = (q & 1, q >> 1);
+                let (w_ab, w_ba) = (
+                    0.25 * LINE[j][m] * LINE[i][n],
+                    0.25 * LINE[i][m] * LINE[j][n],
+                );
+                for lane in 0..LANES {
+                    ab[m][n][lane] += w_ab * points[q][2][lane];
+                    ba[m][n][lane] += w_ba * points[q][3][lane];
+                }
+            }
+        }
+    }
+    let mut blocks = [[[0.0; LANES]; 4]; 4];
+    for (column, blocks) in blocks.iter_mut().enumerate() {
+        let (rb, sb) = (column & 1, column >> 1);
+        for (row, block) in blocks.iter_mut().enumerate() {
+            let (ra, sa) = (row & 1, row >> 1);
+            let (e, f, g, h) = (&aa[sa][sb], &bb[ra][rb], &ab[sa][rb], &ba[ra][sb]);
+            let signs = [
+                sign(row, 0) * sign(column, 0),
+                sign(row, 1) * sign(column, 1),
+                sign(row, 0) * sign(column, 1),
+                sign(row, 1) * sign(column, 0),
+            ];
+            for lane in 0..LANES {
+                block[lane] = signs[0] * e[lane]
+                    + signs[1] * f[lane]
+                    + signs[2] * g[lane]
+                    + signs[3] * h[lane];
+            }
+        }
+    }
+    blocks
+}
+
+/// Strain-displacement rows of the tying points that each dof touches: 33 of its corner, 23 of its side r = -+1,
+/// 13 of its side s = -+1.
+#[inline(always)]
+fn tying_rows(now: &Fields<f64>) -> [[f64; 24]; 3] {
+    let mut b = [[0.0; 24]; 3];
+    for a in 0..8 {
+        let (r, s, t) = (sign(a, 0), sign(a, 1), sign(a, 2));
+        let (side23, side13) = (&now.tie23[a & 1], &now.tie13[(a >> 1) & 1]);
+        for x in 0..3 {
+            b[0][8 * x + a] = 0.5 * t * now.t[a & 3][x];
+            b[1][8 * x + a] = 0.25 * (s * side23[1][x] + t * side23[0][x]);
+            b[2][8 * x + a] = 0.25 * (r * side13[1][x] + t * side13[0][x]);
+        }
+    }
+    b
+}
+
+/// `z + factor c^T b` for one parameter with coefficients `c` on the tying points.
+#[inline(always)]
+fn times_rows(z: &[f64; 24], c: &[f64; PARAMETERS], b: &[[f64; 24]; 3], factor: f64) -> [f64; 24] {
+    let mut w = [[0.0; 8]; 3];
+    for a in 0..8 {
+        w[0][a] = factor * c[a & 3];
+        w[1][a] = factor * c[4 + (a & 1)];
+        w[2][a] = factor * c[6 + ((a >> 1) & 1)];
+    }
+    let mut sum = *z;
+    for x in 0..3 {
+        for a in 0..8 {
+            let r = 8 * x + a;
+            sum[r] += w[0][a] * b[0][r] + w[1][a] * b[1][r] + w[2][a] * b[2][r];
+        }
+    }
+    sum
+}
+
+/// Half of the initial-stress stiffness of the transverse strains, a scalar per pair of nodes.
+#[inline(always)]
+fn transverse_geometric(force: &[f64; PARAMETERS]) -> [[f64; 8]; 8] {
+    let mut k = [[0.0; 8]; 8];
+    for c in 0..4 {
+        let value = 0.125 * force[c];
+        k[c][c] += value;
+        k[c + 4][c + 4] += value;
+        k[c][c + 4] -= value;
+        k[c + 4][c] -= value;
+    }
+    for side in 0..2 {
+        let (f23, f13) = (force[4 + side] / 32.0, force[6 + side] / 32.0);
+        for m in 0..4 {
+            for n in 0..4 {
+                // Nodes of the side r = -+1 and of the side s = -+1.
+                let (a, b) = (side + 2 * m, side + 2 * n);
+                k[a][b] += f23 * (sign(a, 1) * sign(b, 2) + sign(b, 1) * sign(a, 2));
+                let (a, b) = (side_s(side, m), side_s(side, n));
+                k[a][b] += f13 * (sign(a, 0) * sign(b, 2) + sign(b, 0) * sign(a, 2));
+            }
+        }
+    }
+    k
+}
+
+/// Node `m` of the side s = -1 (`side` 0) or s = +1.
+#[inline(always)]
+const fn side_s(side: usize, m: usize) -> usize {
+    (m & 1) + 2 * side + 4 * (m >> 1)
+}
+
+/// Replaces the lower triangle of `d` by its factors, unit lower and diagonal; returns the number of negative pivots.
+#[inline(always)]
+fn factorise<const NE: usize>(d: &mut [[f64; MODES]; MODES]) -> Result<u8, FaultCause> {
+    let mut negative = 0;
+    for j in 0..NE {
+        for i in j..NE {
+            let mut sum = d[i][j];
+            for k in 0..j {
+                sum -= d[i][k] * d[j][k] * d[k][k];
+            }
+            d[i][j] = sum;
+        }
+        let pivot = d[j][j];
+        if pivot == 0.0 || !pivot.is_finite() {
+            return Err(FaultCause::Pivot {
+                mode: j as u8,
+                pivot,
+            });
+        }
+        negative += u8::from(pivot < 0.0);
+        for row in d.iter_mut().take(NE).skip(j + 1) {
+            row[j] /= pivot;
+        }
+    }
+    Ok(negative)
+}
+
+/// Adds up the parts for the columns of one axis and writes them, with the transpose, to the node numbering.
+#[inline(always)]
+fn gather<const NE: usize, const AXIS: usize>(
+    membrane: &[[[f64; LANES]; 4]; 4],
+    half: &[[f64; 24]; 24],
+    l: &[[f64; 24]; MODES],
+    scaled: &[[f64; 24]; MODES],
+    out: &mut H8System,
+) {
+    for b in 0..8 {
+        let column = 8 * AXIS + b;
+        let mut sum = [0.0; 24];
+        sum[..8 * (AXIS + 1)].copy_from_slice(&half[column][..8 * (AXIS + 1)]);
+        for m in 0..NE {
+            for r in 0..8 * (AXIS + 1) {
+                sum[r] -= l[m][r] * scaled[m][column];
+            }
+        }
+        for axis in 0..=AXIS {
+            let lane = PAIR[axis][AXIS];
+            for a in 0..8 {
+                let r = 8 * axis + a;
+                let combination = (a >> 2) + (b >> 2);
+                let value =
+                    sum[r] + half[r][column] + membrane[b & 3][a & 3][6 * combination + lane];
+                out.k[(3 * b + AXIS) * 24 + 3 * a + axis] = value;
+                out.k[(3 * a + axis) * 24 + 3 * b + AXIS] = value;
+            }
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Verification of the solid-shell elements: patch tests, the linear obstacle course, nearly incompressible material,
+//! and a large-rotation cantilever.
+mod incompressible;
+mod large_rotation;
+mod obstacle;
+mod patch;
+mod support;

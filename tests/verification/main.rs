@@ -1,0 +1,3 @@
+//! Verification against closed forms and published results, named by their source.
+mod plate_under_ball;
+mod support;
