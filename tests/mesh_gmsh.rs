@@ -405,10 +405,7 @@ fn errors_point_at_line_and_column() {
     let (line, column, message) = syntax(&format!(
         "{HEAD}$Nodes\n1 1 1 1\n3 1 0 1\n5\n0 nan 0\n$EndNodes\n"
     ));
-    assert_eq!(
-        (line, column, message.as_str()),
-        (8, 3, "a node's y | NaN")
-    );
+    assert_eq!((line, column, message.as_str()), (8, 3, "a node's y | NaN"));
     let (line, column, message) = syntax(&format!("{HEAD}$PhysicalNames\n1\n2 3 top\n"));
     assert_eq!(
         (line, column, message.as_str()),

@@ -7,7 +7,7 @@ use crate::contact::law::{NormalLaw, Penalty};
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
 use crate::model::{Model, PairModel};
-use crate::scene::{EvalError, Tangent};
+use crate::scene::{Tangent, ValueError};
 use crate::shell::{ElementFault, H8System};
 use crate::solve::state::{PointState, State};
 use covact_geometry::Vec3;
@@ -30,7 +30,7 @@ pub enum Fault {
         fault: PointFault,
     },
     #[error(transparent)]
-    Value(#[from] EvalError),
+    Value(#[from] ValueError),
 }
 
 /// What a rigid surface does to the bodies.
@@ -134,7 +134,12 @@ impl<'m> Assembler<'m> {
             }
             follower_maps.push(maps);
         }
-        let most = model.pairs.iter().map(|p| p.points.len()).max().unwrap_or(0);
+        let most = model
+            .pairs
+            .iter()
+            .map(|p| p.points.len())
+            .max()
+            .unwrap_or(0);
         let n = 3 * model.nodes.len();
         Ok(Assembler {
             model,
@@ -237,7 +242,8 @@ impl<'m> Assembler<'m> {
                     let x = body.displacements(start + i, u);
                     body.block.evaluate(start + i, &x, s, out)
                 };
-                let chunk_states = states[start * len..(start + n) * len].par_chunks_mut(len.max(1));
+                let chunk_states =
+                    states[start * len..(start + n) * len].par_chunks_mut(len.max(1));
                 (self.systems[..n].par_iter_mut())
                     .zip(chunk_states)
                     .enumerate()

@@ -51,6 +51,7 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     let (code, status) = match summary.status {
         RunStatus::Done => (0, "done"),
         RunStatus::NotConverged => (exit::NOT_CONVERGED, "not converged"),
+        RunStatus::NoContact => (exit::NOT_CONVERGED, "no contact"),
         RunStatus::Interrupted => (exit::NOT_CONVERGED, "interrupted"),
         RunStatus::Failed => (exit::IO, "failed"),
     };

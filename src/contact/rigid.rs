@@ -158,8 +158,8 @@ impl RigidMaster<'_> {
             let n = foot.normal;
             return Ok((n * normal.n, n * n.transpose() * normal.dn));
         }
-        let frame = Frame::new(&foot.jet, foot.side)
-            .ok_or(PointFault::DegenerateFrame { patch, xi })?;
+        let frame =
+            Frame::new(&foot.jet, foot.side).ok_or(PointFault::DegenerateFrame { patch, xi })?;
         let [i11, i12, i22] = [0, 1, 2].map(|i| frame.a[i] - xi3 * frame.h[i]);
         if i11 <= 0.0 || i11 * i22 - i12 * i12 <= 0.0 {
             return Err(PointFault::BeyondFocalSurface { patch, xi, xi3 });

@@ -85,7 +85,8 @@ fn kinks(model: &Model, end: f64) -> Vec<f64> {
         .chain(model.follower_loads.iter().map(|(_, l)| &l.value))
         .chain(model.prescribed.iter().filter_map(|p| p.value.as_ref()))
         .chain(model.means.iter().filter_map(|p| p.mean.as_ref()))
-        .flat_map(|f| f.kinks(0.0, end))
+        .flat_map(TimeFunction::breakpoints)
+        .filter(|t| *t > 0.0 && *t < end)
         .collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
@@ -127,7 +128,10 @@ impl<'s> Builder<'s> {
 
     fn material(&self, body: &str, name: &str) -> Result<scene::Material, ModelError> {
         self.scene.materials.get(name).copied().ok_or_else(|| {
-            text(format!("/bodies/{body}/material"), format!("there is no material `{name}`"))
+            text(
+                format!("/bodies/{body}/material"),
+                format!("there is no material `{name}`"),
+            )
         })
     }
 
@@ -141,7 +145,9 @@ impl<'s> Builder<'s> {
 
     fn faces(&self, reference: &str, pointer: &str) -> Result<(usize, Vec<Face>), ModelError> {
         let (index, mesh, _) = self.body(reference, pointer)?;
-        let faces = mesh.face_set(split(reference).1).at(|| pointer.to_owned())?;
+        let faces = mesh
+            .face_set(split(reference).1)
+            .at(|| pointer.to_owned())?;
         Ok((index, faces.to_vec()))
     }
 
@@ -168,7 +174,10 @@ impl<'s> Builder<'s> {
             let pointer = |field: &str| format!("/contacts/{name}/{field}");
             let (body, faces) = self.faces(&contact.slave, &pointer("slave"))?;
             let surface = *(surface_index.get(contact.master.as_str())).ok_or_else(|| {
-                text(pointer("master"), format!("there is no surface `{}`", contact.master))
+                text(
+                    pointer("master"),
+                    format!("there is no surface `{}`", contact.master),
+                )
             })?;
             let model = &self.bodies[body];
             let points = slave_points(&model.mesh, &faces, contact.points, model.first_node)
@@ -186,7 +195,9 @@ impl<'s> Builder<'s> {
                     "contact `{name}`: penalty {eps_n:.6e} as given ({:.3} of the automatic value)",
                     eps_n / automatic
                 ),
-                _ => format!("contact `{name}`: penalty {eps_n:.6e} (automatic value {automatic:.6e})"),
+                _ => format!(
+                    "contact `{name}`: penalty {eps_n:.6e} (automatic value {automatic:.6e})"
+                ),
             });
             pairs.push(PairModel {
                 name: name.clone(),
@@ -205,7 +216,11 @@ impl<'s> Builder<'s> {
         Ok((pairs, surfaces))
     }
 
-    fn surface(&mut self, name: &str, surface: &scene::Surface) -> Result<SurfaceModel, ModelError> {
+    fn surface(
+        &mut self,
+        name: &str,
+        surface: &scene::Surface,
+    ) -> Result<SurfaceModel, ModelError> {
         let here = || format!("/surfaces/{name}");
         let (patches, tolerance) = self.patches(name, surface)?;
         let scale = surface.placement.scale;
@@ -236,7 +251,8 @@ impl<'s> Builder<'s> {
     ) -> Result<(Vec<NurbsPatch>, Option<f64>), ModelError> {
         let field = |f: &str| format!("/surfaces/{name}/{f}");
         let made = |f: &str, r: Result<Vec<NurbsPatch>, primitives::PrimitiveError>| {
-            r.map(|p| (p, None)).map_err(|e| text(field(f), e.to_string()))
+            r.map(|p| (p, None))
+                .map_err(|e| text(field(f), e.to_string()))
         };
         if let Some(s) = &surface.sphere {
             let p = primitives::sphere(s.radius, s.center.into(), s.axis.into());
@@ -283,7 +299,10 @@ impl<'s> Builder<'s> {
         let skipped: Vec<_> = file.skipped.iter().filter(|s| wanted(s.entity)).collect();
         let list = || {
             let shown = skipped.iter().take(8).map(|s| {
-                format!("entity {} ({} {}): {}", s.entity, s.type_number, s.name, s.reason)
+                format!(
+                    "entity {} ({} {}): {}",
+                    s.entity, s.type_number, s.name, s.reason
+                )
             });
             let more = skipped.len().saturating_sub(8);
             let rest = (more > 0).then(|| format!("and {more} more"));
@@ -322,7 +341,10 @@ impl<'s> Builder<'s> {
         }
         let chosen: Vec<_> = file.patches.iter().filter(|p| wanted(p.entity)).collect();
         if chosen.is_empty() {
-            return Err(text(field("file"), format!("{shown} holds no surface that can be used")));
+            return Err(text(
+                field("file"),
+                format!("{shown} holds no surface that can be used"),
+            ));
         }
         let patches = (chosen.iter())
             .map(|p| p.patch.transformed(&|x| x * factor))
@@ -342,7 +364,8 @@ impl<'s> Builder<'s> {
             bounds[0].z,
             bounds[1].z,
         ));
-        self.notes.extend(file.notes.iter().map(|n| format!("surface `{name}`: {n}")));
+        self.notes
+            .extend(file.notes.iter().map(|n| format!("surface `{name}`: {n}")));
         Ok((patches, cad.tolerance))
     }
 
@@ -378,7 +401,8 @@ impl<'s> Builder<'s> {
                     })
                     .collect();
                 if starts.is_empty() {
-                    self.warnings.push(format!("surface `{name}` takes part in no contact"));
+                    self.warnings
+                        .push(format!("surface `{name}` takes part in no contact"));
                     return Ok(());
                 }
                 model.set.orient_towards(&starts).at(pointer)?;
@@ -417,19 +441,26 @@ impl<'s> Builder<'s> {
             for (component, value) in components(support) {
                 let compiled = match &value {
                     None => None,
-                    Some(v) => Some(v.compile(&POSITION_AND_TIME).at(|| pointer("displacement"))?),
+                    Some(v) => Some(
+                        v.compile(&POSITION_AND_TIME)
+                            .at(|| pointer("displacement"))?,
+                    ),
                 };
                 let mut done = std::collections::BTreeSet::new();
                 for &node in &nodes {
                     let (dof, partner) = if support.mid_surface {
                         let first = self.bodies[body].first_node;
                         let mesh = &self.bodies[body].mesh;
-                        let columns =
-                            columns.entry(body).or_insert_with(|| ThicknessColumns::new(mesh));
+                        let columns = columns
+                            .entry(body)
+                            .or_insert_with(|| ThicknessColumns::new(mesh));
                         let Some([bottom, top]) = columns.ends(node - first) else {
                             return Err(text(
                                 pointer("mid_surface"),
-                                format!("node {} has no partner through the thickness", node - first),
+                                format!(
+                                    "node {} has no partner through the thickness",
+                                    node - first
+                                ),
                             ));
                         };
                         if !done.insert(bottom) {
@@ -529,10 +560,13 @@ impl<'s> Builder<'s> {
         let (_, mesh, first) = self.body(reference, pointer)?;
         let set = split(reference).1;
         if let Some(faces) = mesh.face_sets.get(set) {
-            let points = slave_points(mesh, faces, scene::Points::Nodes, first)
-                .at(|| pointer.to_owned())?;
+            let points =
+                slave_points(mesh, faces, scene::Points::Nodes, first).at(|| pointer.to_owned())?;
             let total: f64 = points.iter().map(|p| p.area).sum();
-            return Ok(points.iter().map(|p| (p.nodes[0], p.area / total)).collect());
+            return Ok(points
+                .iter()
+                .map(|p| (p.nodes[0], p.area / total))
+                .collect());
         }
         let (_, nodes) = self.set_nodes(reference, pointer)?;
         let share = 1.0 / nodes.len().max(1) as f64;
@@ -545,7 +579,7 @@ impl<'s> Builder<'s> {
 fn agree(a: &Option<TimeFunction>, b: &Option<TimeFunction>, x: Vec3, end: f64) -> bool {
     let value = |f: &Option<TimeFunction>, t: f64| match f {
         None => Some(0.0),
-        Some(f) => f.eval_at(x.into(), t).ok(),
+        Some(f) => f.eval_at(&x, t).ok(),
     };
     [0.0, 0.31, 0.77, 1.0].iter().all(|s| {
         let t = s * end;
@@ -574,7 +608,10 @@ fn components(support: &scene::Support) -> Vec<(u32, Option<Value>)> {
     };
     let zero = |v: &Value| *v == Value::Number(0.0);
     ([&d.x, &d.y, &d.z].into_iter().enumerate())
-        .filter_map(|(c, v)| v.as_ref().map(|v| (c as u32, (!zero(v)).then(|| v.clone()))))
+        .filter_map(|(c, v)| {
+            v.as_ref()
+                .map(|v| (c as u32, (!zero(v)).then(|| v.clone())))
+        })
         .collect()
 }
 

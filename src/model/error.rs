@@ -1,7 +1,7 @@
 //! What is wrong with a scene once its meshes and CAD files are read.
 use crate::assembly::{ConstraintError, PatternError};
 use crate::mesh::MeshError;
-use crate::scene::{EvalError, ValueError};
+use crate::scene::ValueError;
 use crate::shell::ShellError;
 use crate::shell::quadrature::QuadratureError;
 use covact_geometry::io::CadError;
@@ -31,8 +31,6 @@ pub enum Cause {
     Side(#[from] SideError),
     #[error(transparent)]
     Value(#[from] ValueError),
-    #[error(transparent)]
-    Eval(#[from] EvalError),
     #[error(transparent)]
     Quadrature(#[from] QuadratureError),
     #[error(transparent)]

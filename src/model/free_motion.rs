@@ -58,7 +58,11 @@ fn free_motion(model: &Model, first: u32, piece: &[u32]) -> Option<FreeMotion> {
     let position = |n: u32| model.nodes[(first + n) as usize];
     let count = piece.len() as f64;
     let center = piece.iter().fold(Vec3::zeros(), |s, &n| s + position(n)) / count;
-    let size = (piece.iter().map(|&n| (position(n) - center).norm_squared()).sum::<f64>() / count)
+    let size = (piece
+        .iter()
+        .map(|&n| (position(n) - center).norm_squared())
+        .sum::<f64>()
+        / count)
         .sqrt()
         .max(f64::MIN_POSITIVE);
     let own = |dof: u32| dof / 3 >= first && piece.binary_search(&(dof / 3 - first)).is_ok();

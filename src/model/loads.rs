@@ -1,6 +1,6 @@
 //! Loads: nodal forces, dead tractions, dead and follower pressure.
 use crate::mesh::{Face, Mesh};
-use crate::scene::{EvalError, TimeFunction};
+use crate::scene::{TimeFunction, ValueError};
 use crate::shell::face::{self, Quad};
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -70,7 +70,7 @@ pub fn load_points(mesh: &Mesh, faces: &[Face], offset: u32) -> Vec<LoadPoint> {
 
 impl DeadLoad {
     /// Adds the nodal forces at time `t` to `force` (3 per node).
-    pub fn add(&self, t: f64, force: &mut [f64]) -> Result<(), EvalError> {
+    pub fn add(&self, t: f64, force: &mut [f64]) -> Result<(), ValueError> {
         let mut put = |node: u32, f: Vec3| {
             let at = 3 * node as usize;
             (0..3).for_each(|c| force[at + c] += f[c]);
@@ -82,14 +82,14 @@ impl DeadLoad {
             }
             DeadLoad::Traction { points, value } => {
                 for p in points {
-                    let at = |i: usize| value[i].eval_at(p.position.into(), t);
+                    let at = |i: usize| value[i].eval_at(&p.position, t);
                     let f = Vec3::new(at(0)?, at(1)?, at(2)?) * p.area;
                     (0..4).for_each(|k| put(p.nodes[k], f * p.shape[k]));
                 }
             }
             DeadLoad::Pressure { points, value } => {
                 for p in points {
-                    let f = p.normal * (-value.eval_at(p.position.into(), t)? * p.area);
+                    let f = p.normal * (-value.eval_at(&p.position, t)? * p.area);
                     (0..4).for_each(|k| put(p.nodes[k], f * p.shape[k]));
                 }
             }
@@ -126,8 +126,7 @@ pub fn follower_stiffness(x: &[Vec3; 4], p: f64) -> SMatrix<f64, 12, 12> {
     for_gauss(|n, nu, nv| {
         let (xu, xv) = (combine(x, nu), combine(x, nv));
         for l in 0..4 {
-            let turn: Matrix3<f64> =
-                (xu.cross_matrix() * nv[l] - xv.cross_matrix() * nu[l]) * -p;
+            let turn: Matrix3<f64> = (xu.cross_matrix() * nv[l] - xv.cross_matrix() * nu[l]) * -p;
             for i in 0..4 {
                 let mut block = k.fixed_view_mut::<3, 3>(3 * i, 3 * l);
                 block += turn * n[i];

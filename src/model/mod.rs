@@ -14,7 +14,7 @@ use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::RigidMaster;
 use crate::mesh::Mesh;
-use crate::scene::{EvalError, Tangent, TimeFunction};
+use crate::scene::{Tangent, TimeFunction, ValueError};
 use crate::shell::H8Block;
 use constraints::{MeanPrescribed, Prescribed};
 use covact_geometry::{PatchSet, Vec3};
@@ -112,11 +112,11 @@ impl Model {
 
     /// Increments from the present displacements to what is prescribed at `time`, for prescribed degrees of freedom
     /// and those tied by mid-surface supports; returns the largest.
-    pub fn increments(&self, u: &[f64], time: f64, g: &mut [f64]) -> Result<f64, EvalError> {
+    pub fn increments(&self, u: &[f64], time: f64, g: &mut [f64]) -> Result<f64, ValueError> {
         g.fill(0.0);
         let value = |dof: u32, f: &Option<TimeFunction>| match f {
             None => Ok(0.0),
-            Some(f) => f.eval_at(self.nodes[dof as usize / 3].into(), time),
+            Some(f) => f.eval_at(&self.nodes[dof as usize / 3], time),
         };
         for p in &self.prescribed {
             g[p.dof as usize] = value(p.dof, &p.value)? - u[p.dof as usize];
@@ -150,7 +150,7 @@ impl BodyModel {
 
 impl SurfaceModel {
     /// The surface at its position of time `t`.
-    pub fn at(&self, t: f64) -> Result<RigidMaster<'_>, EvalError> {
+    pub fn at(&self, t: f64) -> Result<RigidMaster<'_>, ValueError> {
         Ok(RigidMaster {
             surface: &self.set,
             pose: self.motion.pose(t)?,

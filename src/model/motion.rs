@@ -1,5 +1,5 @@
 //! Rigid motion of a surface: placement first, then the prescribed rotation and translation.
-use crate::scene::{self, EvalError, TIME, TimeFunction, ValueError};
+use crate::scene::{self, TIME, TimeFunction, ValueError};
 use covact_geometry::Vec3;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion};
 
@@ -55,13 +55,14 @@ impl Motion {
     }
 
     /// From the surface's own coordinates to space at time `t`.
-    pub fn pose(&self, t: f64) -> Result<Isometry3<f64>, EvalError> {
+    pub fn pose(&self, t: f64) -> Result<Isometry3<f64>, ValueError> {
         let [x, y, z] = &self.translation;
         let moved = Vec3::new(x.eval(t)?, y.eval(t)?, z.eval(t)?);
         let turned = match &self.rotation {
             None => Isometry3::identity(),
             Some(turn) => {
-                let q = UnitQuaternion::from_axis_angle(&turn.axis, turn.angle.eval(t)?.to_radians());
+                let q =
+                    UnitQuaternion::from_axis_angle(&turn.axis, turn.angle.eval(t)?.to_radians());
                 let shift = turn.center - q * turn.center;
                 Isometry3::from_parts(Translation3::from(shift), q)
             }

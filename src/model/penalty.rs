@@ -13,7 +13,9 @@ pub const TOLERATED: f64 = 0.01;
 /// Young's modulus of a material.
 pub fn modulus(material: &Material) -> f64 {
     match material {
-        Material::StVenantKirchhoff(Elastic { e, .. }) | Material::NeoHooke(Elastic { e, .. }) => *e,
+        Material::StVenantKirchhoff(Elastic { e, .. }) | Material::NeoHooke(Elastic { e, .. }) => {
+            *e
+        }
     }
 }
 

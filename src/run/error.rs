@@ -1,7 +1,7 @@
 //! Why a run could not be done.
 use crate::model::ModelError;
 use crate::output::OutputError;
-use crate::scene::{EvalError, LoadedScene, Place};
+use crate::scene::{LoadedScene, Place, ValueError};
 
 /// An error with the process's exit code: 3 where the scene or a file it names is wrong, 5 where a result cannot be
 /// written, 1 where the program is.
@@ -58,9 +58,9 @@ impl RunError {
     }
 }
 
-impl From<EvalError> for RunError {
+impl From<ValueError> for RunError {
     /// A value that cannot be evaluated in the course of a run.
-    fn from(e: EvalError) -> Self {
+    fn from(e: ValueError) -> Self {
         RunError::Scene {
             message: e.to_string(),
             pointer: String::new(),

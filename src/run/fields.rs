@@ -91,7 +91,8 @@ impl Fields {
                 let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
                 let foot = master.foot(&x, s.hint, f64::INFINITY);
-                let closed = (foot.as_ref()).is_some_and(|f| presses(f) && f.distance <= master.depth);
+                let closed =
+                    (foot.as_ref()).is_some_and(|f| presses(f) && f.distance <= master.depth);
                 let gap = match &foot {
                     None => f64::NAN,
                     Some(f) if closed => f.signed_distance,

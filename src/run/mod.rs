@@ -82,7 +82,9 @@ fn solve(
         ..SolverOptions::default()
     });
     let pattern = assembler.matrix().pattern().clone();
-    solver.analyze(&pattern).map_err(|e| RunError::internal(&e))?;
+    solver
+        .analyze(&pattern)
+        .map_err(|e| RunError::internal(&e))?;
     phases.stop("analysis");
     let mut march = March {
         scene: &loaded.scene,
@@ -245,7 +247,10 @@ impl March<'_, '_> {
                     }
                 }
                 Err(StepFailure::Interrupted) => {
-                    return Ok((RunStatus::Interrupted, Some("stopped by the user".to_owned())));
+                    return Ok((
+                        RunStatus::Interrupted,
+                        Some("stopped by the user".to_owned()),
+                    ));
                 }
                 Err(failure) => {
                     self.assembler.penalties = penalties;
@@ -363,7 +368,11 @@ impl March<'_, '_> {
             time: end,
             iterations: converged.iterations,
             active: converged.totals.active,
-            penetration: converged.totals.penetration.iter().fold(0.0, |a, b| a.max(*b)),
+            penetration: converged
+                .totals
+                .penetration
+                .iter()
+                .fold(0.0, |a, b| a.max(*b)),
         });
     }
 

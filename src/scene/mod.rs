@@ -10,7 +10,6 @@ mod load;
 mod problem;
 mod schema;
 mod types;
-mod units;
 mod value;
 
 pub use check::check;

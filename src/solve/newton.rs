@@ -17,7 +17,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Why a step failed. All but [`StepFailure::Interrupted`] call for a smaller step.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StepFailure {
-    #[error("no convergence in {iterations} iterations (residual {residual:.3e} of the forces){oscillation}")]
+    #[error(
+        "no convergence in {iterations} iterations (residual {residual:.3e} of the forces){oscillation}"
+    )]
     TooManyIterations {
         iterations: u32,
         residual: f64,
@@ -30,7 +32,9 @@ pub enum StepFailure {
     Fault(#[from] Fault),
     #[error("linear solver: {0}")]
     Solve(#[from] LinearError),
-    #[error("the penetration stays above 1 % of an element although the automatic penalty was raised")]
+    #[error(
+        "the penetration stays above 1 % of an element although the automatic penalty was raised"
+    )]
     PenetrationStays,
     #[error("interrupted")]
     Interrupted,
@@ -131,7 +135,11 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
                 step,
                 iteration,
                 residual: norms.relative(),
-                energy: if first_energy > 0.0 { energy / first_energy } else { 0.0 },
+                energy: if first_energy > 0.0 {
+                    energy / first_energy
+                } else {
+                    0.0
+                },
                 active: totals.active,
                 changed: totals.changed,
                 line_search: factor,
@@ -231,7 +239,12 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
 
     /// Factor that brings the slope of the energy along the increment below half of its start, by bisection and
     /// false position on residuals alone.
-    fn line_search(&mut self, trial: &mut State, time: f64, slope: f64) -> Result<f64, StepFailure> {
+    fn line_search(
+        &mut self,
+        trial: &mut State,
+        time: f64,
+        slope: f64,
+    ) -> Result<f64, StepFailure> {
         let mut low = (0.0, slope);
         let mut high: Option<(f64, f64)> = None;
         let mut s = 1.0;
@@ -292,14 +305,18 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
                 continue;
             }
             let (states, base) = (&mut trial.elements[range.clone()], &w.base.elements[range]);
-            (states.par_chunks_mut(len).zip(base.par_chunks(len)).enumerate())
-                .with_min_len(64)
-                .for_each(|(e, (state, from))| {
-                    // The condensation cache must be that of the linearisation that produced du.
-                    state.copy_from_slice(from);
-                    let du = body.displacements(e, &w.du);
-                    body.block.update_alpha(state, &du, s, &from[..body.block.alpha_len()]);
-                });
+            (states
+                .par_chunks_mut(len)
+                .zip(base.par_chunks(len))
+                .enumerate())
+            .with_min_len(64)
+            .for_each(|(e, (state, from))| {
+                // The condensation cache must be that of the linearisation that produced du.
+                state.copy_from_slice(from);
+                let du = body.displacements(e, &w.du);
+                body.block
+                    .update_alpha(state, &du, s, &from[..body.block.alpha_len()]);
+            });
         }
     }
 
@@ -320,7 +337,9 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
                 w.scratch[3 * node + c] = u.abs().max(f64::EPSILON * x[c].abs());
             }
         }
-        self.assembler.matrix().abs_multiply(&w.scratch, &mut w.absolute);
+        self.assembler
+            .matrix()
+            .abs_multiply(&w.scratch, &mut w.absolute);
         self.model.dofs.fold(&mut w.absolute);
         let floor = 0.5 * f64::EPSILON * dot(&w.absolute, &w.absolute).sqrt();
         Norms {

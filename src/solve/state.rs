@@ -25,7 +25,10 @@ pub struct State {
 impl State {
     /// The undeformed state.
     pub fn new(model: &Model) -> Self {
-        let elements = model.bodies.iter().map(|b| b.block.state_len() * b.block.elements());
+        let elements = model
+            .bodies
+            .iter()
+            .map(|b| b.block.state_len() * b.block.elements());
         let points = model.pairs.iter().map(|p| p.points.len());
         State {
             u: vec![0.0; 3 * model.nodes.len()],

@@ -41,12 +41,18 @@ impl Stepping {
             .min(self.end);
         let left = target - time;
         let count = (left / self.dt - 1e-6).ceil().max(1.0);
-        if count <= 1.0 { target } else { time + left / count }
+        if count <= 1.0 {
+            target
+        } else {
+            time + left / count
+        }
     }
 
     /// Whether what is prescribed has a kink at `time`: the path so far says nothing about what follows.
     pub fn at_kink(&self, time: f64) -> bool {
-        self.kinks.iter().any(|b| (b - time).abs() <= 1e-9 * self.end)
+        self.kinks
+            .iter()
+            .any(|b| (b - time).abs() <= 1e-9 * self.end)
     }
 
     /// Whether the end is reached.

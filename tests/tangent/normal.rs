@@ -72,9 +72,8 @@ fn exact_tangent_on_a_moving_master() {
     for shape in SHAPES {
         for ratio in [-0.2, -0.05, -0.01, -1e-3, 0.0] {
             let (p, slave, frame, xi3) = state(shape, ratio);
-            let reference = derivative(&p, &slave, |x, s| {
-                residual(&p.weights, x, s, |g| g * EPS_N)
-            });
+            let reference =
+                derivative(&p, &slave, |x, s| residual(&p.weights, x, s, |g| g * EPS_N));
             let normal = Normal {
                 n: EPS_N * xi3,
                 dn: EPS_N,
@@ -110,10 +109,7 @@ fn published_error(shape: Shape, ratio: f64, normal: impl Fn(f64) -> Normal) -> 
     let rows = node_rows(&p.weights, XI);
     let law = normal(xi3);
     let exact = assemble(&kernel::normal_tangent(&frame, xi3, &law), &rows);
-    let published = assemble(
-        &published::normal_tangent(&frame, &law, Parts::ALL),
-        &rows,
-    );
+    let published = assemble(&published::normal_tangent(&frame, &law, Parts::ALL), &rows);
     relative(&published, &exact)
 }
 
@@ -254,7 +250,13 @@ fn neither_the_parametrisation_nor_the_side_of_the_normal_matters() {
 fn tangents_at_an_edge_and_a_vertex() {
     // Edge: the first boundary curve of the patch, closest point re-solved in dual arithmetic.
     let p = patch(Shape::Saddle);
-    let curve = |s: Dual64| jet(&p.points.map(|x| x.map(Dual64::from)), &p.weights, [s, Dual64::from(0.0)]);
+    let curve = |s: Dual64| {
+        jet(
+            &p.points.map(|x| x.map(Dual64::from)),
+            &p.weights,
+            [s, Dual64::from(0.0)],
+        )
+    };
     for distance in [0.2, 1e-3, 0.0] {
         let at = jet(&p.points, &p.weights, [0.4, 0.0]);
         let across = at.rho_i[0].cross(&Vector3::new(0.3, 1.0, 0.8)).normalize();

@@ -33,9 +33,8 @@ fn bernstein<D: DualNum<f64> + Copy>(t: D) -> [[D; 4]; 3] {
 pub fn basis<D: DualNum<f64> + Copy>(weights: &[f64; 16], xi: [D; 2]) -> [[D; 16]; 6] {
     let (u, v) = (bernstein(xi[0]), bernstein(xi[1]));
     let orders = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)];
-    let plain = orders.map(|(a, b)| {
-        std::array::from_fn::<D, 16, _>(|k| u[a][k % 4] * v[b][k / 4] * weights[k])
-    });
+    let plain = orders
+        .map(|(a, b)| std::array::from_fn::<D, 16, _>(|k| u[a][k % 4] * v[b][k / 4] * weights[k]));
     let w = plain.map(|row| row.iter().fold(D::zero(), |s, x| s + *x));
     let mut r = [[D::zero(); 16]; 6];
     for k in 0..16 {
@@ -53,14 +52,9 @@ pub fn basis<D: DualNum<f64> + Copy>(weights: &[f64; 16], xi: [D; 2]) -> [[D; 16
     r
 }
 
-pub fn jet<D: DualNum<f64> + Copy>(
-    points: &[V<D>; 16],
-    weights: &[f64; 16],
-    xi: [D; 2],
-) -> Jet<D> {
-    let r = basis(weights, xi).map(|n| {
-        (0..16).fold(V::from_element(D::zero()), |s, k| s + points[k] * n[k])
-    });
+pub fn jet<D: DualNum<f64> + Copy>(points: &[V<D>; 16], weights: &[f64; 16], xi: [D; 2]) -> Jet<D> {
+    let r = basis(weights, xi)
+        .map(|n| (0..16).fold(V::from_element(D::zero()), |s, k| s + points[k] * n[k]));
     Jet {
         rho: r[0],
         rho_i: [r[1], r[2]],
@@ -109,7 +103,11 @@ pub fn patch(shape: Shape) -> Patch {
         let (i, j) = ((k % 4) as f64 / 3.0 - 0.5, (k / 4) as f64 / 3.0 - 0.5);
         let x = i + 0.06 * (3.0 * j).sin();
         let y = 1.1 * j + 0.05 * i * i;
-        V::new(x, y, 0.5 * (k1 * x * x + k2 * y * y) / radius + 0.01 * i * j)
+        V::new(
+            x,
+            y,
+            0.5 * (k1 * x * x + k2 * y * y) / radius + 0.01 * i * j,
+        )
     });
     let weights = std::array::from_fn(|k| 1.0 + 0.4 * ((7 * k + 3) % 11) as f64 / 11.0);
     Patch {
@@ -135,7 +133,11 @@ pub fn derivative(
         .map(|dof| {
             let seed = |node: usize, v: &V<f64>| {
                 V::new(0, 1, 2).map(|c: i32| {
-                    let eps = if 3 * node + c as usize == dof { 1.0 } else { 0.0 };
+                    let eps = if 3 * node + c as usize == dof {
+                        1.0
+                    } else {
+                        0.0
+                    };
                     Dual64::new(v[c as usize], eps)
                 })
             };
@@ -158,7 +160,10 @@ pub fn norm(m: &[Vec<f64>]) -> f64 {
 /// Relative difference in the Frobenius norm; the reference must not vanish.
 pub fn relative(m: &[Vec<f64>], reference: &[Vec<f64>]) -> f64 {
     let scale = norm(reference);
-    assert!(scale > 1e-6, "compared with nothing: reference norm {scale}");
+    assert!(
+        scale > 1e-6,
+        "compared with nothing: reference norm {scale}"
+    );
     let diff: f64 = (m.iter().flatten())
         .zip(reference.iter().flatten())
         .map(|(a, b)| (a - b) * (a - b))

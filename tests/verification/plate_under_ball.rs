@@ -22,6 +22,9 @@ fn force_on_25_by_25() {
     let f = forces(25);
     println!("{f:?}");
     for (f, reference) in f.iter().zip([629.0, 2571.0, 7275.0, 16638.0]) {
-        assert!((f / reference - 1.0).abs() < 2e-3, "{f} instead of {reference}");
+        assert!(
+            (f / reference - 1.0).abs() < 2e-3,
+            "{f} instead of {reference}"
+        );
     }
 }

@@ -72,9 +72,9 @@ pub fn solve(scene: &Value) -> Outcome {
 impl Outcome {
     /// A column of the history.
     pub fn column(&self, name: &str) -> Vec<f64> {
-        self.history.column(name).unwrap_or_else(|| {
-            panic!("no column {name} in {:?}", self.history.columns)
-        })
+        self.history
+            .column(name)
+            .unwrap_or_else(|| panic!("no column {name} in {:?}", self.history.columns))
     }
 
     /// Value of a column at the step that ends at `time`.
