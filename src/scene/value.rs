@@ -1,5 +1,6 @@
 //! Values that may vary: a number, a table over time, or an expression.
 use super::expression::{Expression, ExpressionError};
+use covact_geometry::Vec3;
 use schemars::JsonSchema;
 use serde::de::{self, Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
@@ -87,6 +88,8 @@ pub enum ValueError {
     /// An expression without variables that is infinite or no number.
     #[error("the expression `{expression}` is {value}")]
     NotFinite { expression: String, value: f64 },
+    #[error(transparent)]
+    Eval(#[from] EvalError),
 }
 
 /// A [`TimeFunction`] gave something infinite or no number.
@@ -194,20 +197,21 @@ impl TimeFunction {
     /// Value at a time, for functions that do not depend on position.
     ///
     /// # Errors
-    /// [`EvalError`] when the result is not finite, which it never is for a function of position.
-    pub fn eval(&self, t: f64) -> Result<f64, EvalError> {
+    /// [`ValueError::Eval`] when the result is not finite, which it never is for a function of position.
+    pub fn eval(&self, t: f64) -> Result<f64, ValueError> {
         self.value([f64::NAN; 3], t, None)
     }
 
     /// Value at an undeformed position and a time.
     ///
     /// # Errors
-    /// [`EvalError`] when the result is not finite.
-    pub fn eval_at(&self, x: [f64; 3], t: f64) -> Result<f64, EvalError> {
+    /// [`ValueError::Eval`] when the result is not finite.
+    pub fn eval_at(&self, x: &Vec3, t: f64) -> Result<f64, ValueError> {
+        let x = [x.x, x.y, x.z];
         self.value(x, t, Some(x))
     }
 
-    fn value(&self, x: [f64; 3], t: f64, place: Option<[f64; 3]>) -> Result<f64, EvalError> {
+    fn value(&self, x: [f64; 3], t: f64, place: Option<[f64; 3]>) -> Result<f64, ValueError> {
         let value = match &self.form {
             Form::Constant(c) => *c,
             Form::Table(rows) => interpolate(rows, t),
@@ -221,12 +225,12 @@ impl TimeFunction {
             _ => "table".to_string(),
         };
         let x = place.filter(|_| self.depends_on_position());
-        Err(EvalError {
+        Err(ValueError::Eval(EvalError {
             expression,
             value,
             time: t,
             x,
-        })
+        }))
     }
 
     /// The value when it is the same always and everywhere.
@@ -251,15 +255,12 @@ impl TimeFunction {
         }
     }
 
-    /// Times strictly between `from` and `to` at which a table has a kink; steps should end there.
-    pub fn kinks(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
-        let rows: &[[f64; 2]] = match &self.form {
-            Form::Table(rows) => rows,
-            _ => &[],
-        };
-        rows.iter()
-            .map(|r| r[0])
-            .filter(move |t| *t > from && *t < to)
+    /// Times at which a table has a row; steps should end there. Empty for other forms.
+    pub fn breakpoints(&self) -> Vec<f64> {
+        match &self.form {
+            Form::Table(rows) => rows.iter().map(|r| r[0]).collect(),
+            _ => Vec::new(),
+        }
     }
 }
 
@@ -300,7 +301,7 @@ mod tests {
         ] {
             assert_eq!(f.eval(t).unwrap(), expected, "t = {t}");
         }
-        assert_eq!(f.kinks(1.0, 4.0).collect::<Vec<_>>(), [2.0]);
+        assert_eq!(f.breakpoints(), [1.0, 2.0, 4.0]);
         assert!(f.depends_on_time() && !f.depends_on_position());
     }
 
@@ -324,7 +325,7 @@ mod tests {
     #[test]
     fn expressions_know_their_variables() {
         let f = function(r#""x + 10*y + 100*z + 1000*t""#, &POSITION_AND_TIME).unwrap();
-        assert_eq!(f.eval_at([1.0, 2.0, 3.0], 4.0).unwrap(), 4321.0);
+        assert_eq!(f.eval_at(&Vec3::new(1.0, 2.0, 3.0), 4.0).unwrap(), 4321.0);
         assert!(f.depends_on_position() && f.depends_on_time());
         let error = function(r#""x*t""#, &TIME).unwrap_err();
         assert_eq!(error.to_string(), "unknown variable `x`");
@@ -341,7 +342,7 @@ mod tests {
         let error = f.eval(1.0).unwrap_err();
         assert_eq!(error.to_string(), "`1/(t-1)` is inf at t = 1");
         let f = function(r#""sqrt(x)""#, &POSITION_AND_TIME).unwrap();
-        let error = f.eval_at([-1.0, 0.0, 0.0], 0.0).unwrap_err();
+        let error = f.eval_at(&Vec3::new(-1.0, 0.0, 0.0), 0.0).unwrap_err();
         assert_eq!(
             error.to_string(),
             "`sqrt(x)` is NaN at t = 0, x = -1, y = 0, z = 0"

@@ -147,7 +147,7 @@ impl<'a> Checker<'a> {
                     Some("write `[[t, value], ...]`".into()),
                 );
             }
-            ValueError::Number(_) | ValueError::NotFinite { .. } => {
+            ValueError::Number(_) | ValueError::NotFinite { .. } | ValueError::Eval(_) => {
                 self.add(at, message, None);
             }
         }
