@@ -75,7 +75,7 @@ fn snippet(problem: &Problem, text: &str) -> String {
         false => GraphicalTheme::unicode_nocolor(),
     };
     let handler = GraphicalReportHandler::new_themed(theme)
-        .with_context_lines(0)
+        .with_context_lines(1)
         .with_wrap_lines(false)
         .without_cause_chain();
     let mut out = String::new();

@@ -137,7 +137,7 @@ pub fn nearest<'a>(
             let part = length >= 3
                 && (other.contains(&lower) || lower.contains(&other) && other.len() >= 3);
             let allowed = (length.max(other.chars().count()) / 3).clamp(1, 3);
-            (distance <= allowed || part).then_some((distance, c))
+            (distance <= allowed && distance < length.max(1) || part).then_some((distance, c))
         })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, c)| c)

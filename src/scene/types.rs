@@ -323,6 +323,7 @@ pub struct CadFile {
     pub tolerance: Option<f64>,
 }
 
+/// An exact sphere.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SphereShape {
@@ -334,6 +335,7 @@ pub struct SphereShape {
     pub axis: [f64; 3],
 }
 
+/// An exact circular cylinder without its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CylinderShape {
@@ -346,6 +348,7 @@ pub struct CylinderShape {
     pub axis: [f64; 3],
 }
 
+/// A flat rectangle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneShape {
@@ -394,6 +397,7 @@ pub struct Motion {
     pub rotation: Option<Rotation>,
 }
 
+/// Rotation about an axis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rotation {
@@ -483,6 +487,7 @@ pub struct Support {
     pub mid_surface: bool,
 }
 
+/// A coordinate axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Axis {
@@ -549,6 +554,7 @@ pub struct Step {
     pub adaptive: bool,
 }
 
+/// Newton's method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Newton {

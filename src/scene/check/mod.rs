@@ -221,6 +221,22 @@ fn check_solution(c: &mut Checker, solution: &Solution) {
             Some("min <= initial <= max".into()),
         );
     }
+    if let Some(i) = solution
+        .stops
+        .windows(2)
+        .position(|w| w[1] <= w[0] || w[1].is_nan())
+    {
+        let message = format!(
+            "the stop {} comes after {}",
+            solution.stops[i + 1],
+            solution.stops[i]
+        );
+        c.add(
+            &format!("/solution/stops/{}", i + 1),
+            message,
+            Some("times must increase".into()),
+        );
+    }
     let newton = &solution.newton;
     c.whole(
         "/solution/newton/max_iterations",

@@ -135,7 +135,8 @@ impl<'a> Sets<'a> {
                     selection,
                     Selection::FacesInBox { .. } | Selection::FacesFacing { .. }
                 );
-                sets.insert(set, faces);
+                // A name that is taken is reported elsewhere.
+                sets.entry(set).or_insert(faces);
             }
             let open = matches!(body.mesh, MeshSource::File(_));
             (name.as_str(), BodySets { sets, open })
