@@ -558,3 +558,21 @@ fn bad_meshes_and_constants_are_refused() {
         Err(ShellError::TooFewEnhanced { .. })
     ));
 }
+
+/// Neo-Hooke loses its shear stiffness mu - lambda ln J where J > exp(mu / lambda), here 1.95: in an element blown up to
+/// J = 3.4 the enhanced strains are unstable, and it says so; at J = 1.3 it does not.
+#[test]
+fn instability_of_enhanced_strains_is_counted() {
+    let x = nodes();
+    let block = H8Block::new(&mesh(&x), Formulation::Eas7, laws()[1]).unwrap();
+    let mut state = vec![0.0; block.state_len()];
+    let mut out = H8System::default();
+    let mut count = |stretch: f64| {
+        block
+            .evaluate(0, &x.map(|x| (stretch - 1.0) * x), &mut state, &mut out)
+            .unwrap();
+        out.negative_pivots
+    };
+    assert_eq!(count(1.09), 0);
+    assert!(count(1.5) > 0);
+}

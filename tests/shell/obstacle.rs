@@ -23,9 +23,9 @@ fn body_force(grid: &Grid, axis: usize, density: f64) -> Vec<f64> {
                         ]
                     };
                     let mut j = nalgebra::Matrix3::zeros();
-                    for a in 0..8 {
+                    for (a, &node) in nodes.iter().enumerate() {
                         let n = one(a);
-                        let x = grid.mesh.nodes[nodes[a] as usize];
+                        let x = grid.mesh.nodes[node as usize];
                         let d = nalgebra::Vector3::new(
                             sign(a, 0) * n[1] * n[2],
                             sign(a, 1) * n[0] * n[2],
@@ -34,10 +34,9 @@ fn body_force(grid: &Grid, axis: usize, density: f64) -> Vec<f64> {
                         j += x * d.transpose() * 0.125;
                     }
                     let dv = j.determinant() * wr * ws * wt;
-                    for a in 0..8 {
+                    for (a, &node) in nodes.iter().enumerate() {
                         let n = one(a);
-                        load[3 * nodes[a] as usize + axis] +=
-                            density * dv * n[0] * n[1] * n[2] * 0.125;
+                        load[3 * node as usize + axis] += density * dv * n[0] * n[1] * n[2] * 0.125;
                     }
                 }
             }

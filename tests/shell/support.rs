@@ -187,9 +187,9 @@ impl Model {
 pub fn solve(k: &[(usize, usize, f64)], load: &[f64], fixed: &BTreeMap<usize, f64>) -> Vec<f64> {
     let mut number = vec![usize::MAX; load.len()];
     let mut free = vec![];
-    for d in 0..load.len() {
+    for (d, number) in number.iter_mut().enumerate() {
         if !fixed.contains_key(&d) {
-            number[d] = free.len();
+            *number = free.len();
             free.push(d);
         }
     }
