@@ -1,8 +1,8 @@
 //! `covact check`.
 use super::{CheckArgs, print, print_json, report};
-use crate::run::{self, CheckReport};
+use crate::model::error::number;
+use crate::run::{self, BodyReport, CheckReport, PairReport, SurfaceReport};
 use crate::scene::{self, LoadedScene, SceneError};
-use std::fmt::Write;
 
 /// Reads a scene and checks what needs no mesh.
 pub(super) fn load(path: &std::path::Path) -> Result<LoadedScene, SceneError> {
@@ -30,39 +30,204 @@ pub(super) fn check(args: &CheckArgs) -> u8 {
     }
 }
 
+/// Paragraphs: a head line, and indented lines of a name and a text.
+#[derive(Default)]
+struct Paragraphs(String);
+
+impl Paragraphs {
+    fn head(&mut self, text: &str) {
+        if !self.0.is_empty() {
+            self.0.push('\n');
+        }
+        self.0 += &format!("{text}\n");
+    }
+
+    fn line(&mut self, name: &str, text: &str) {
+        // A name as wide as its column still keeps its distance.
+        self.0 += &format!("  {name:<15} {text}\n");
+    }
+}
+
 fn listing(found: &CheckReport) -> String {
-    let mut out = String::new();
-    // Writing into a string cannot fail.
-    let mut line = |name: &str, value: String| {
-        let _ = writeln!(out, "{name:<16}{value}");
-    };
+    let mut out = Paragraphs::default();
     if !found.title.is_empty() {
-        line("title", found.title.clone());
+        out.head(&found.title);
     }
-    line("nodes", found.nodes.to_string());
-    line("elements", found.elements.to_string());
-    line("dofs", found.dofs.to_string());
-    line("contact points", found.contact_points.to_string());
+    out.head(&format!(
+        "{} elements, {} nodes, {} unknown displacements (dofs), {} contact points; lengths in {}",
+        found.elements, found.nodes, found.dofs, found.contact_points, found.unit
+    ));
+    for b in &found.bodies {
+        body(&mut out, b, notes(found, "body", &b.name));
+    }
+    for s in &found.surfaces {
+        surface(&mut out, s, notes(found, "surface", &s.name));
+    }
     for p in &found.pairs {
-        let [low, high] = p.gap;
-        line(
-            &format!("contact {}", p.name),
-            format!(
-                "{} points, {} touching, initial gaps {low:.6} to {high:.6}, penalty {:.6e}",
-                p.points, p.touching, p.penalty
-            ),
-        );
+        contact(&mut out, p, notes(found, "contact", &p.name));
     }
-    for (i, effect) in found.effects.iter().enumerate() {
-        line(if i == 0 { "effects" } else { "" }, effect.clone());
+    if !found.supports.is_empty() {
+        out.head("supports");
+        for s in &found.supports {
+            let text = format!("{} on {} ({} components)", s.kind, s.on, s.components);
+            out.line(&s.name, &text);
+        }
     }
-    for (i, note) in found.notes.iter().enumerate() {
-        line(if i == 0 { "notes" } else { "" }, note.clone());
+    if !found.loads.is_empty() {
+        out.head("loads");
+        for l in &found.loads {
+            out.line(&l.name, &format!("{} on {}", l.kind, l.on));
+        }
     }
-    let warnings = match found.warnings.len() {
-        0 => "none".to_string(),
-        n => n.to_string(),
+    out.head("effects that are on (nothing else is computed)");
+    for effect in &found.effects {
+        out.0 += &format!("  {effect:<30} {}\n", meaning(effect));
+    }
+    out.head(&match found.warnings.len() {
+        0 => "no warnings".to_owned(),
+        n => format!("{n} warning(s)"),
+    });
+    out.0
+}
+
+/// Notes about something, without its name.
+fn notes<'f>(found: &'f CheckReport, kind: &str, name: &str) -> impl Iterator<Item = &'f str> {
+    let start = format!("{kind} `{name}`: ");
+    (found.notes.iter()).filter_map(move |n| n.strip_prefix(start.as_str()))
+}
+
+fn range([low, high]: [f64; 2]) -> String {
+    match low == high {
+        true => number(low),
+        false => format!("{} to {}", number(low), number(high)),
+    }
+}
+
+fn body<'n>(out: &mut Paragraphs, b: &BodyReport, notes: impl Iterator<Item = &'n str>) {
+    out.head(&format!("body `{}`", b.name));
+    let parts = match b.parts {
+        1 => String::new(),
+        n => format!(" in {n} unconnected parts"),
     };
-    line("warnings", warnings);
-    out
+    out.line(
+        "mesh",
+        &format!("{} elements, {} nodes{parts}", b.elements, b.nodes),
+    );
+    out.line("element", b.element);
+    out.line("material", &b.material);
+    out.line("extent", &extent(&b.bounds));
+    out.line(
+        "element size",
+        &format!(
+            "edges {}, layers {} thick",
+            range(b.edge),
+            range(b.thickness)
+        ),
+    );
+    out.line(
+        "element shape",
+        &format!(
+            "{} at worst (1: right-angled, 0: collapsed)",
+            number(b.worst_shape)
+        ),
+    );
+    notes.for_each(|n| out.line("note", n));
+}
+
+fn extent([low, high]: &[[f64; 3]; 2]) -> String {
+    let axis = |i: usize| format!("{} {}", ["x", "y", "z"][i], range([low[i], high[i]]));
+    [0, 1, 2].map(axis).join(", ")
+}
+
+fn surface<'n>(out: &mut Paragraphs, s: &SurfaceReport, notes: impl Iterator<Item = &'n str>) {
+    out.head(&format!("surface `{}` (rigid)", s.name));
+    out.line("source", &s.source);
+    let parts = match s.parts {
+        1 => "all connected".to_owned(),
+        n => format!("in {n} unconnected parts"),
+    };
+    out.line("patches", &format!("{}, {parts}", s.patches));
+    let mut edges = vec![
+        format!("{} shared and smooth", s.smooth_edges),
+        format!("{} shared and sharp", s.sharp_edges),
+        format!("{} free (the surface ends there)", s.free_edges),
+    ];
+    for (count, what) in [
+        (s.partial_edges, "shared in part"),
+        (s.branching_edges, "of more than two patches"),
+        (s.poles, "shrunk to a point"),
+    ] {
+        if count > 0 {
+            edges.push(format!("{count} {what}"));
+        }
+    }
+    if s.largest_gap > 0.0 {
+        edges.push(format!("largest gap {}", number(s.largest_gap)));
+    }
+    out.line("edges", &edges.join(", "));
+    let radius = |r: Option<f64>, none: &str| r.map_or(none.to_owned(), number);
+    out.line(
+        "smallest radii",
+        &format!(
+            "{} convex (bulging), {} concave (hollow)",
+            radius(s.smallest_convex_radius, "none"),
+            radius(s.smallest_concave_radius, "none")
+        ),
+    );
+    out.line(
+        "extent",
+        &format!("{} before it is placed", extent(&s.bounds)),
+    );
+    for n in notes {
+        match n.strip_prefix("its outside is ") {
+            Some(text) => out.line("outside", text),
+            None => out.line("note", n),
+        }
+    }
+}
+
+fn contact<'n>(out: &mut Paragraphs, p: &PairReport, notes: impl Iterator<Item = &'n str>) {
+    out.head(&format!("contact `{}`", p.name));
+    out.line(
+        "slave",
+        &format!(
+            "{}: {} points, {}, {} apart",
+            p.slave,
+            p.points,
+            p.sampling,
+            number(p.spacing)
+        ),
+    );
+    out.line("master", &p.master);
+    for n in notes {
+        match n.split_once(' ') {
+            Some(("penalty", text)) => out.line("penalty", text),
+            _ => match n.strip_prefix("initial gaps ") {
+                Some(text) => out.line("initial gaps", text),
+                None => out.line("note", n),
+            },
+        }
+    }
+}
+
+/// An effect in plain words; empty for one that needs none.
+fn meaning(effect: &str) -> &'static str {
+    match effect {
+        "large_rotation" => "displacements and rotations of any size",
+        "element.h8_solid_shell" => "8-node solid-shell elements that do not lock when thin",
+        "element.h8_displacement" => "plain 8-node bricks, for solids (they lock when thin)",
+        "material.st_venant_kirchhoff" => "linear stress-strain law for small strains",
+        "material.neo_hooke" => "rubber-like law for large strains",
+        "contact.normal.penalty" => "contact pressure = penalty times penetration, no friction",
+        "contact.master.rigid" => "surfaces do not deform",
+        "contact.points.nodes" => "contact is sampled at nodes",
+        "contact.points.gauss" => "contact is sampled at Gauss points of the faces",
+        "contact.points.lobatto" => "contact is sampled at Lobatto points of the faces",
+        "contact.tangent.exact" => "tangent matrix exact at every penetration",
+        "contact.tangent.published" => "tangent matrix of the published form",
+        "load.dead" => "loads of constant direction",
+        "load.follower_pressure" => "pressures that follow the deformed faces",
+        "support.mid_surface" => "supports on the mean of both faces of a shell",
+        _ => "",
+    }
 }

@@ -158,8 +158,8 @@ pub(super) fn scene_error(error_: &SceneError, json: bool) -> u8 {
 
 /// Tells why a run or check failed and returns the exit code.
 pub(super) fn run_error(error_: &RunError, scene: &LoadedScene, json: bool) -> u8 {
-    if let RunError::Scene { pointer, .. } = error_ {
-        let problem = scene.problem(pointer, error_.to_string(), None);
+    if let RunError::Scene { pointer, help, .. } = error_ {
+        let problem = scene.problem(pointer, error_.to_string(), help.clone());
         return scene_error(&scene.error(vec![problem]), json);
     }
     error(&error_.to_string());

@@ -1,17 +1,17 @@
 //! Scene to model.
-use super::constraints::{MeanPrescribed, Prescribed};
-use super::error::{At, text};
+mod supports;
+mod surfaces;
+
+use super::error::{At, number, text};
 use super::loads::{DeadLoad, FollowerPressure, load_points};
-use super::motion::Motion;
 use super::slave::slave_points;
 use super::{BodyModel, Model, ModelError, PairModel, SurfaceModel, penalty};
-use crate::assembly::{DofMap, DofMapBuilder};
-use crate::mesh::{self, Face, Mesh, ThicknessColumns};
+use crate::mesh::{self, Face, Mesh};
 use crate::scene::{
-    self, Axis, LoadedScene, POSITION_AND_TIME, Penalty, Scene, Side, TIME, TimeFunction, Value,
+    self, LoadedScene, POSITION_AND_TIME, Penalty, Scene, TIME, TimeFunction, Value,
 };
 use crate::shell::{H8Block, Law};
-use covact_geometry::{NurbsPatch, PatchSet, Vec3, io, primitives};
+use covact_geometry::Vec3;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -43,7 +43,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     };
     builder.bodies()?;
     let (pairs, surfaces) = builder.contacts()?;
-    let (supports, prescribed, means, dofs) = builder.supports()?;
+    let supports = builder.supports()?;
     let (dead_loads, follower_loads) = builder.loads()?;
     let mut model = Model {
         title: scene.title.clone(),
@@ -51,12 +51,12 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         bodies: builder.bodies,
         surfaces,
         pairs,
-        supports,
-        prescribed,
-        means,
+        supports: supports.names,
+        prescribed: supports.prescribed,
+        means: supports.means,
         dead_loads,
         follower_loads,
-        dofs,
+        dofs: supports.dofs,
         effects: Vec::new(),
         notes: builder.notes,
         warnings: builder.warnings,
@@ -65,14 +65,12 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     model.effects = super::effects::effects(scene, &model);
     model.kinks = kinks(&model, scene.solution.end_time);
     if let Some(free) = super::free_motion::free_motions(&model).first() {
-        return Err(text(
-            "/supports",
-            format!(
-                "body `{}` can move freely {} ({} rigid motion(s) that no support hinders): \
-                 add a support that holds it",
-                free.body, free.motion, free.count
-            ),
-        ));
+        let message = format!(
+            "body `{}` can move freely {}: no support hinders it",
+            free.body, free.motion
+        );
+        let help = "add or extend a support until the body is held; contact and loads do not hold it before it touches";
+        return Err(text(format!("/bodies/{}", free.body), message).help(help));
     }
     super::initial::check(&mut model)?;
     Ok(model)
@@ -164,10 +162,13 @@ impl<'s> Builder<'s> {
 
     fn contacts(&mut self) -> Result<(Vec<PairModel>, Vec<SurfaceModel>), ModelError> {
         let mut surfaces = Vec::new();
+        let mut labels = Vec::new();
         let mut surface_index = BTreeMap::new();
         for (name, surface) in &self.scene.surfaces {
             surface_index.insert(name.as_str(), surfaces.len());
-            surfaces.push(self.surface(name, surface)?);
+            let (model, named) = self.surface(name, surface)?;
+            surfaces.push(model);
+            labels.push(named);
         }
         let mut pairs = Vec::new();
         for (name, contact) in &self.scene.contacts {
@@ -190,15 +191,18 @@ impl<'s> Builder<'s> {
                 Penalty::Value(v) => (v, false),
                 Penalty::Scaled(f) => (f * automatic, false),
             };
-            self.notes.push(match contact.penalty {
+            let (value, auto) = (number(eps_n), number(automatic));
+            let how = match contact.penalty {
+                Penalty::Auto => "chosen from the stiffness of the slave's elements".to_owned(),
                 Penalty::Value(_) => format!(
-                    "contact `{name}`: penalty {eps_n:.6e} as given ({:.3} of the automatic value)",
-                    eps_n / automatic
+                    "as given ({} of the automatic {auto})",
+                    number(eps_n / automatic)
                 ),
-                _ => format!(
-                    "contact `{name}`: penalty {eps_n:.6e} (automatic value {automatic:.6e})"
-                ),
-            });
+                Penalty::Scaled(f) => format!("{} of the automatic {auto}", number(f)),
+            };
+            self.notes.push(format!(
+                "contact `{name}`: penalty {value} (pressure per penetration), {how}"
+            ));
             pairs.push(PairModel {
                 name: name.clone(),
                 body,
@@ -211,307 +215,11 @@ impl<'s> Builder<'s> {
             });
         }
         for (index, (name, surface)) in self.scene.surfaces.iter().enumerate() {
-            self.orient(name, surface, index, &mut surfaces[index], &pairs)?;
+            let own: Vec<&PairModel> = pairs.iter().filter(|p| p.surface == index).collect();
+            let model = (&mut surfaces[index], labels[index].as_slice());
+            self.orient(name, surface, model, &own)?;
         }
         Ok((pairs, surfaces))
-    }
-
-    fn surface(
-        &mut self,
-        name: &str,
-        surface: &scene::Surface,
-    ) -> Result<SurfaceModel, ModelError> {
-        let here = || format!("/surfaces/{name}");
-        let (patches, tolerance) = self.patches(name, surface)?;
-        let scale = surface.placement.scale;
-        let patches = if scale == 1.0 {
-            patches
-        } else {
-            (patches.iter())
-                .map(|p| p.transformed(&|x| x * scale))
-                .collect::<Result<Vec<_>, _>>()
-                .map_err(|e| text(here(), e.to_string()))?
-        };
-        let set = PatchSet::new(patches, tolerance.map(|t| t * scale)).at(here)?;
-        let motion = Motion::new(&surface.motion, &surface.placement)
-            .at(|| format!("/surfaces/{name}/motion"))?;
-        let depth = surface.depth.unwrap_or(0.1 * set.size());
-        Ok(SurfaceModel {
-            name: name.to_owned(),
-            set,
-            motion,
-            depth,
-        })
-    }
-
-    fn patches(
-        &mut self,
-        name: &str,
-        surface: &scene::Surface,
-    ) -> Result<(Vec<NurbsPatch>, Option<f64>), ModelError> {
-        let field = |f: &str| format!("/surfaces/{name}/{f}");
-        let made = |f: &str, r: Result<Vec<NurbsPatch>, primitives::PrimitiveError>| {
-            r.map(|p| (p, None))
-                .map_err(|e| text(field(f), e.to_string()))
-        };
-        if let Some(s) = &surface.sphere {
-            let p = primitives::sphere(s.radius, s.center.into(), s.axis.into());
-            return made("sphere", p.map(|p| vec![p]));
-        }
-        if let Some(c) = &surface.cylinder {
-            let p = primitives::cylinder(c.radius, c.length, c.center.into(), c.axis.into());
-            return made("cylinder", p.map(|p| vec![p]));
-        }
-        if let Some(p) = &surface.plane {
-            let p = primitives::plane(p.center.into(), p.normal.into(), p.size);
-            return made("plane", p.map(|p| vec![p]));
-        }
-        let Some(cad) = &surface.cad else {
-            return Err(text(
-                format!("/surfaces/{name}"),
-                "a surface needs one of `cad`, `sphere`, `cylinder`, `plane`",
-            ));
-        };
-        self.cad_patches(name, cad)
-    }
-
-    fn cad_patches(
-        &mut self,
-        name: &str,
-        cad: &scene::CadFile,
-    ) -> Result<(Vec<NurbsPatch>, Option<f64>), ModelError> {
-        let field = |f: &str| format!("/surfaces/{name}/cad/{f}");
-        let path = self.dir.join(&cad.file);
-        let file = io::read_path(&path).at(|| field("file"))?;
-        let shown = cad.file.display();
-        let own = io::LengthUnit::from_name(self.scene.units.length.name());
-        let factor = match own.as_ref().and_then(|own| file.unit.factor_to(own)) {
-            Some(factor) => factor,
-            None => {
-                self.notes.push(format!(
-                    "surface `{name}`: {shown} states no length unit; its numbers are taken as {}",
-                    self.scene.units.length.name()
-                ));
-                1.0
-            }
-        };
-        let wanted = |entity: u32| cad.entities.is_empty() || cad.entities.contains(&entity);
-        let skipped: Vec<_> = file.skipped.iter().filter(|s| wanted(s.entity)).collect();
-        let list = || {
-            let shown = skipped.iter().take(8).map(|s| {
-                format!(
-                    "entity {} ({} {}): {}",
-                    s.entity, s.type_number, s.name, s.reason
-                )
-            });
-            let more = skipped.len().saturating_sub(8);
-            let rest = (more > 0).then(|| format!("and {more} more"));
-            shown.chain(rest).collect::<Vec<_>>().join("; ")
-        };
-        if !skipped.is_empty() {
-            if !cad.allow_skipped {
-                return Err(text(
-                    field("file"),
-                    format!(
-                        "{shown}: {} surface(s) cannot be used: {}. Name the entities to use in \
-                         `entities`, or set `allow_skipped` to go on without them",
-                        skipped.len(),
-                        list()
-                    ),
-                ));
-            }
-            let n = skipped.len();
-            self.warnings.push(format!(
-                "surface `{name}`: {n} surface(s) of {shown} left out: {}",
-                list()
-            ));
-        }
-        for entity in &cad.entities {
-            let known = file.patches.iter().any(|p| p.entity == *entity);
-            if !known && !skipped.iter().any(|s| s.entity == *entity) {
-                let there = file.patches.iter().map(|p| p.entity.to_string());
-                return Err(text(
-                    field("entities"),
-                    format!(
-                        "{shown} has no surface entity {entity}; it has {}",
-                        there.collect::<Vec<_>>().join(", ")
-                    ),
-                ));
-            }
-        }
-        let chosen: Vec<_> = file.patches.iter().filter(|p| wanted(p.entity)).collect();
-        if chosen.is_empty() {
-            return Err(text(
-                field("file"),
-                format!("{shown} holds no surface that can be used"),
-            ));
-        }
-        let patches = (chosen.iter())
-            .map(|p| p.patch.transformed(&|x| x * factor))
-            .collect::<Result<Vec<_>, _>>()
-            .map_err(|e| text(field("file"), e.to_string()))?;
-        let bounds = bounds(&patches);
-        self.notes.push(format!(
-            "surface `{name}`: {} patch(es) from {shown}, {} -> {} (factor {factor}), \
-             x {:.6} to {:.6}, y {:.6} to {:.6}, z {:.6} to {:.6}",
-            patches.len(),
-            file.unit.name,
-            self.scene.units.length.name(),
-            bounds[0].x,
-            bounds[1].x,
-            bounds[0].y,
-            bounds[1].y,
-            bounds[0].z,
-            bounds[1].z,
-        ));
-        self.notes
-            .extend(file.notes.iter().map(|n| format!("surface `{name}`: {n}")));
-        Ok((patches, cad.tolerance))
-    }
-
-    fn orient(
-        &mut self,
-        name: &str,
-        surface: &scene::Surface,
-        index: usize,
-        model: &mut SurfaceModel,
-        pairs: &[PairModel],
-    ) -> Result<(), ModelError> {
-        let pointer = || format!("/surfaces/{name}/side");
-        match surface.side {
-            Side::AsGiven => model.set.set_side_as_given(false),
-            Side::Reversed => model.set.set_side_as_given(true),
-            Side::Point(p) => {
-                let pose = model.motion.pose(0.0).at(pointer)?;
-                let local = pose.inverse_transform_point(&Vec3::from(p).into()).coords;
-                model.set.orient_towards(&[local]).at(pointer)?;
-            }
-            Side::Auto => {
-                let pose = model.motion.pose(0.0).at(pointer)?;
-                let zero = vec![0.0; 3 * self.nodes.len()];
-                let starts: Vec<Vec3> = (pairs.iter().filter(|p| p.surface == index))
-                    .flat_map(|pair| pair.points.iter())
-                    .map(|p| {
-                        let x = (p.terms()).fold(Vec3::zeros(), |x, (n, w)| {
-                            x + (self.nodes[n]
-                                + Vec3::new(zero[3 * n], zero[3 * n + 1], zero[3 * n + 2]))
-                                * w
-                        });
-                        pose.inverse_transform_point(&x.into()).coords
-                    })
-                    .collect();
-                if starts.is_empty() {
-                    self.warnings
-                        .push(format!("surface `{name}` takes part in no contact"));
-                    return Ok(());
-                }
-                model.set.orient_towards(&starts).at(pointer)?;
-            }
-        }
-        let reversed = model.set.sides().iter().filter(|s| **s < 0.0).count();
-        let how = match surface.side {
-            Side::Auto => "where the slave starts",
-            Side::AsGiven => "as the file gives it",
-            Side::Reversed => "the reverse of what the file gives",
-            Side::Point(_) => "where the given point lies",
-        };
-        self.notes.push(format!(
-            "surface `{name}`: outside is {how}; normals of {reversed} of {} patch(es) reversed, \
-             search depth {:.6e}",
-            model.set.patches().len(),
-            model.depth
-        ));
-        Ok(())
-    }
-
-    #[allow(clippy::type_complexity)]
-    fn supports(
-        &mut self,
-    ) -> Result<(Vec<String>, Vec<Prescribed>, Vec<MeanPrescribed>, DofMap), ModelError> {
-        let mut names: Vec<String> = Vec::new();
-        let mut owner: BTreeMap<u32, (u32, Option<TimeFunction>)> = BTreeMap::new();
-        let (mut prescribed, mut means) = (Vec::new(), Vec::new());
-        let mut dofs = DofMapBuilder::new(self.nodes.len());
-        let mut columns: BTreeMap<usize, ThicknessColumns> = BTreeMap::new();
-        for (name, support) in &self.scene.supports {
-            let pointer = |field: &str| format!("/supports/{name}/{field}");
-            let index = names.len() as u32;
-            names.push(name.clone());
-            let (body, nodes) = self.set_nodes(&support.on, &pointer("on"))?;
-            for (component, value) in components(support) {
-                let compiled = match &value {
-                    None => None,
-                    Some(v) => Some(
-                        v.compile(&POSITION_AND_TIME)
-                            .at(|| pointer("displacement"))?,
-                    ),
-                };
-                let mut done = std::collections::BTreeSet::new();
-                for &node in &nodes {
-                    let (dof, partner) = if support.mid_surface {
-                        let first = self.bodies[body].first_node;
-                        let mesh = &self.bodies[body].mesh;
-                        let columns = columns
-                            .entry(body)
-                            .or_insert_with(|| ThicknessColumns::new(mesh));
-                        let Some([bottom, top]) = columns.ends(node - first) else {
-                            return Err(text(
-                                pointer("mid_surface"),
-                                format!(
-                                    "node {} has no partner through the thickness",
-                                    node - first
-                                ),
-                            ));
-                        };
-                        if !done.insert(bottom) {
-                            continue;
-                        }
-                        let dof = |n: u32| 3 * (n + first) + component;
-                        (dof(bottom), Some(dof(top)))
-                    } else {
-                        (3 * node + component, None)
-                    };
-                    let key = partner.unwrap_or(dof);
-                    if let Some((other, earlier)) = owner.get(&key) {
-                        let x = self.nodes[key as usize / 3];
-                        if agree(earlier, &compiled, x, self.scene.solution.end_time) {
-                            continue;
-                        }
-                        return Err(text(
-                            pointer("on"),
-                            format!(
-                                "supports `{}` and `{name}` prescribe different displacements of \
-                                 the same node along {}",
-                                names[*other as usize],
-                                ["x", "y", "z"][component as usize]
-                            ),
-                        ));
-                    }
-                    owner.insert(key, (index, compiled.clone()));
-                    match partner {
-                        None => {
-                            dofs.prescribe(dof).at(|| pointer("on"))?;
-                            prescribed.push(Prescribed {
-                                dof,
-                                support: index,
-                                value: compiled.clone(),
-                            });
-                        }
-                        Some(tied) => {
-                            dofs.tie(tied, dof, -1.0).at(|| pointer("on"))?;
-                            means.push(MeanPrescribed {
-                                free: dof,
-                                tied,
-                                support: index,
-                                mean: compiled.clone(),
-                            });
-                        }
-                    }
-                }
-            }
-        }
-        let map = dofs.build().at(|| "/supports".to_owned())?;
-        Ok((names, prescribed, means, map))
     }
 
     #[allow(clippy::type_complexity)]
@@ -572,51 +280,4 @@ impl<'s> Builder<'s> {
         let share = 1.0 / nodes.len().max(1) as f64;
         Ok(nodes.into_iter().map(|n| (n, share)).collect())
     }
-}
-
-/// Whether two supports prescribe the same displacement at `x`, as they may where a symmetry plane meets another
-/// support: compared at a few times, relative to the largest value.
-fn agree(a: &Option<TimeFunction>, b: &Option<TimeFunction>, x: Vec3, end: f64) -> bool {
-    let value = |f: &Option<TimeFunction>, t: f64| match f {
-        None => Some(0.0),
-        Some(f) => f.eval_at(&x, t).ok(),
-    };
-    [0.0, 0.31, 0.77, 1.0].iter().all(|s| {
-        let t = s * end;
-        match (value(a, t), value(b, t)) {
-            (Some(a), Some(b)) => (a - b).abs() <= 1e-12 * a.abs().max(b.abs()),
-            _ => false,
-        }
-    })
-}
-
-/// Constrained components of a support, `None` standing for zero.
-fn components(support: &scene::Support) -> Vec<(u32, Option<Value>)> {
-    if support.fixed {
-        return (0..3).map(|c| (c, None)).collect();
-    }
-    if let Some(axis) = support.symmetry {
-        let c = match axis {
-            Axis::X => 0,
-            Axis::Y => 1,
-            Axis::Z => 2,
-        };
-        return vec![(c, None)];
-    }
-    let Some(d) = &support.displacement else {
-        return Vec::new();
-    };
-    let zero = |v: &Value| *v == Value::Number(0.0);
-    ([&d.x, &d.y, &d.z].into_iter().enumerate())
-        .filter_map(|(c, v)| {
-            v.as_ref()
-                .map(|v| (c as u32, (!zero(v)).then(|| v.clone())))
-        })
-        .collect()
-}
-
-fn bounds(patches: &[NurbsPatch]) -> [Vec3; 2] {
-    (patches.iter().map(NurbsPatch::bounds))
-        .reduce(|a, b| [a[0].inf(&b[0]), a[1].sup(&b[1])])
-        .unwrap_or_default()
 }

@@ -15,6 +15,16 @@ pub struct ModelError {
     pub pointer: String,
     #[source]
     pub cause: Cause,
+    /// What to do about it, where the cause does not say.
+    pub help: Option<String>,
+}
+
+impl ModelError {
+    /// Adds what to do about it.
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -51,6 +61,7 @@ impl<T, E: Into<Cause>> At<T> for Result<T, E> {
         self.map_err(|e| ModelError {
             pointer: pointer(),
             cause: e.into(),
+            help: None,
         })
     }
 }
@@ -60,5 +71,50 @@ pub fn text(pointer: impl Into<String>, message: impl Into<String>) -> ModelErro
     ModelError {
         pointer: pointer.into(),
         cause: Cause::Text(message.into()),
+        help: None,
+    }
+}
+
+/// A number with at most six significant digits, as messages show it.
+pub fn number(x: f64) -> String {
+    let digits = |text: String| match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
+        false => text,
+    };
+    if x == 0.0 || !x.is_finite() {
+        return if x == 0.0 { "0".into() } else { x.to_string() };
+    }
+    let magnitude = x.abs().log10().floor();
+    if (-4.0..6.0).contains(&magnitude) {
+        return digits(format!("{:.*}", (5.0 - magnitude) as usize, x));
+    }
+    let text = format!("{x:.5e}");
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => format!("{}e{exponent}", digits(mantissa.to_string())),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number;
+
+    #[test]
+    fn numbers_are_short() {
+        for (x, text) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (25.0, "25"),
+            (0.1 + 0.2, "0.3"),
+            (49.436734, "49.4367"),
+            (999999.7, "1000000"),
+            (120000.0, "120000"),
+            (1.4e6, "1.4e6"),
+            (-7.144291e-5, "-7.14429e-5"),
+            (0.007144291, "0.00714429"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(number(x), text);
+        }
     }
 }

@@ -9,7 +9,7 @@ pub struct FreeMotion {
     pub body: String,
     /// How many independent motions are free.
     pub count: usize,
-    /// In words: along or about which axis the freest of them goes.
+    /// In words: along and about which axes they go.
     pub motion: String,
 }
 
@@ -95,17 +95,42 @@ fn free_motion(model: &Model, first: u32, piece: &[u32]) -> Option<FreeMotion> {
     if free == 0 {
         return None;
     }
-    let at = eigen.eigenvalues.imin();
+    // Columns of the eigenvectors without stiffness span the free motions.
+    let along = |k: usize| -> f64 {
+        let free = (0..6).filter(|&i| eigen.eigenvalues[i] <= limit);
+        free.map(|i| eigen.eigenvectors[(k, i)].powi(2)).sum()
+    };
     Some(FreeMotion {
         body: String::new(),
         count: free,
-        motion: describe(&eigen.eigenvectors.column(at).into_owned()),
+        motion: describe(&std::array::from_fn(along), free),
     })
 }
 
-fn describe(v: &Vector6<f64>) -> String {
+/// Words for the free motions: the axes that are free by themselves (share 1), and how many motions remain that combine
+/// several.
+fn describe(share: &[f64; 6], count: usize) -> String {
     let names = [
         "along x", "along y", "along z", "about x", "about y", "about z",
     ];
-    names[v.iamax()].to_owned()
+    let mut words: Vec<String> = (share.iter().zip(names))
+        .filter(|(s, _)| **s > 1.0 - 1e-6)
+        .map(|(_, name)| name.to_owned())
+        .collect();
+    let rest = count - words.len().min(count);
+    if rest > 0 {
+        let partly: Vec<&str> = (share.iter().zip(names))
+            .filter(|(s, _)| **s > 1e-6 && **s <= 1.0 - 1e-6)
+            .map(|(_, name)| name)
+            .collect();
+        words.push(format!(
+            "in {rest} motion(s) that combine {}",
+            partly.join(", ")
+        ));
+    }
+    match words.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, before)) => format!("{} and {last}", before.join(", ")),
+        None => String::new(),
+    }
 }

@@ -1,5 +1,5 @@
 //! How the contact pairs stand before anything moves.
-use super::error::text;
+use super::error::{number, text};
 use super::{Model, ModelError};
 use crate::contact::rigid::presses;
 
@@ -12,6 +12,8 @@ pub struct InitialGap {
     pub largest: f64,
     /// Points that start in contact.
     pub touching: usize,
+    /// Points that start behind the surface, deeper than its search depth: they are not in contact.
+    pub behind: usize,
 }
 
 /// Distances of all points of pair `index` at time 0, wherever they are.
@@ -24,6 +26,7 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
         smallest: f64::INFINITY,
         largest: f64::NEG_INFINITY,
         touching: 0,
+        behind: 0,
     };
     let mut hint = None;
     for p in &pair.points {
@@ -35,7 +38,8 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
             patch: foot.patch,
             xi: foot.xi,
         });
-        let counts = presses(&foot) && foot.distance <= master.depth;
+        let behind = presses(&foot) && foot.distance > master.depth;
+        let counts = presses(&foot) && !behind;
         let distance = if foot.signed_distance < 0.0 && !counts {
             foot.distance
         } else {
@@ -44,6 +48,7 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
         gap.smallest = gap.smallest.min(distance);
         gap.largest = gap.largest.max(distance);
         gap.touching += usize::from(counts);
+        gap.behind += usize::from(behind);
     }
     Ok(gap)
 }
@@ -57,28 +62,44 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
         let surface = &model.surfaces[pair.surface];
         let gap = initial_gap(model, index)?;
         notes.push(format!(
-            "contact `{}`: initial gap {:.6e} to {:.6e} over {} points",
+            "contact `{}`: initial gaps from {} to {} at {} points, {} of them in contact",
             pair.name,
-            gap.smallest,
-            gap.largest,
-            pair.points.len()
+            number(gap.smallest),
+            number(gap.largest),
+            pair.points.len(),
+            gap.touching
         ));
         let limit = 0.5 * pair.element_size;
         if gap.smallest < -limit {
             return Err(text(
-                format!("/contacts/{}", pair.name),
+                format!("/surfaces/{}", surface.name),
                 format!(
-                    "surface `{}` starts {:.6e} deep inside body `{}` (more than half an element, {:.6e}): \
-                     move it back with `placement`, or choose the other `side`",
-                    surface.name, -gap.smallest, model.bodies[pair.body].name, limit
+                    "surface `{}` starts {} deep inside body `{}` (contact `{}`), more than half an element, {}",
+                    surface.name,
+                    number(-gap.smallest),
+                    model.bodies[pair.body].name,
+                    pair.name,
+                    number(limit)
                 ),
-            ));
+            )
+            .help("move it back with `placement`, or choose the other `side`"));
         }
         if gap.smallest < -1e-9 * pair.element_size {
             warnings.push(format!(
-                "contact `{}` starts with an overclosure of {:.3e} at {} point(s); the first step resolves it \
-                 with strain",
-                pair.name, -gap.smallest, gap.touching
+                "contact `{}` starts with an overclosure of {} at {} point(s); the first step resolves it with strain",
+                pair.name,
+                number(-gap.smallest),
+                gap.touching
+            ));
+        }
+        if gap.behind > 0 {
+            warnings.push(format!(
+                "contact `{}`: {} point(s) start behind surface `{}`, deeper than its `depth` {}, and are not in \
+                 contact: move the surface with `placement`, or choose the other `side`",
+                pair.name,
+                gap.behind,
+                surface.name,
+                number(surface.depth)
             ));
         }
         let spacing = point_spacing(model, index);
@@ -86,9 +107,14 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
             && spacing > 0.5 * radius
         {
             warnings.push(format!(
-                "contact `{}`: slave points are {spacing:.3e} apart, coarse for the smallest convex radius \
-                 {radius:.3e} of surface `{}`: it will sink in between them",
-                pair.name, surface.name
+                "contact `{}`: its slave points are {} apart, too coarse for the smallest convex radius {} of surface \
+                 `{}`, which will sink in between them: refine the mesh or take more `points` a face (at most {} \
+                 apart)",
+                pair.name,
+                number(spacing),
+                number(radius),
+                surface.name,
+                number(0.5 * radius)
             ));
         }
     }
@@ -98,7 +124,7 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
 }
 
 /// Mean distance of neighbouring slave points: the square root of the mean tributary area.
-fn point_spacing(model: &Model, index: usize) -> f64 {
+pub fn point_spacing(model: &Model, index: usize) -> f64 {
     let points = &model.pairs[index].points;
     let area: f64 = points.iter().map(|p| p.area).sum();
     (area / points.len().max(1) as f64).sqrt()

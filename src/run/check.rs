@@ -1,20 +1,28 @@
 //! `covact check`: everything up to the first solve, and nothing of it.
 use super::RunError;
-use crate::model::initial::initial_gap;
-use crate::model::{self};
-use crate::scene::LoadedScene;
+use crate::mesh::Range;
+use crate::model::initial::{initial_gap, point_spacing};
+use crate::model::{self, BodyModel, Model, SurfaceModel};
+use crate::scene::{Element, LoadedScene, Material, Penalty, Points, Scene, Support};
 use serde::Serialize;
 
-/// What a scene amounts to.
+/// What a scene amounts to. Lengths are in the scene's unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CheckReport {
     pub title: String,
+    /// Length unit of the scene.
+    pub unit: String,
     pub nodes: usize,
     pub elements: usize,
     /// Unknowns, prescribed ones left out.
     pub dofs: usize,
+    /// Slave points of all contacts.
     pub contact_points: usize,
+    pub bodies: Vec<BodyReport>,
+    pub surfaces: Vec<SurfaceReport>,
     pub pairs: Vec<PairReport>,
+    pub supports: Vec<SupportReport>,
+    pub loads: Vec<LoadReport>,
     /// Effects that are on, by name.
     pub effects: Vec<String>,
     /// Choices the program made, in words.
@@ -22,17 +30,105 @@ pub struct CheckReport {
     pub warnings: Vec<String>,
 }
 
+/// A body and its mesh.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BodyReport {
+    pub name: String,
+    pub nodes: usize,
+    pub elements: usize,
+    /// Parts that share no node.
+    pub parts: usize,
+    /// Formulation of the elements.
+    pub element: &'static str,
+    /// Law and constants of the material.
+    pub material: String,
+    /// Lowest and highest coordinates.
+    pub bounds: [[f64; 3]; 2],
+    /// Shortest and longest edge in the shell's surface.
+    pub edge: [f64; 2],
+    /// Thinnest and thickest layer.
+    pub thickness: [f64; 2],
+    /// Smallest scaled Jacobian of an element: 1 where all corners are right angles, 0 where an element has collapsed.
+    pub worst_shape: f64,
+}
+
+/// A rigid surface at the start.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SurfaceReport {
+    pub name: String,
+    /// CAD file or shape.
+    pub source: String,
+    pub patches: usize,
+    /// Unconnected parts.
+    pub parts: usize,
+    /// Lowest and highest corner of a box around it, before it is placed.
+    pub bounds: [[f64; 3]; 2],
+    /// Shared edges across which the surface is smooth.
+    pub smooth_edges: usize,
+    /// Shared edges at an angle.
+    pub sharp_edges: usize,
+    /// Edges shared over a part of their length.
+    pub partial_edges: usize,
+    /// Edges at which more than two patches meet.
+    pub branching_edges: usize,
+    /// Edges without a neighbour: the surface ends there.
+    pub free_edges: usize,
+    /// Edges that are one point.
+    pub poles: usize,
+    /// Largest distance between edges that count as shared.
+    pub largest_gap: f64,
+    /// Smallest radius of curvature where the surface bulges towards the slave; none: nowhere.
+    pub smallest_convex_radius: Option<f64>,
+    /// Smallest radius of curvature where it is hollow; none: nowhere.
+    pub smallest_concave_radius: Option<f64>,
+    /// Patches whose normal was turned round.
+    pub reversed: usize,
+    /// A point deeper than this below the surface is not in contact.
+    pub depth: f64,
+}
+
 /// A contact pair before anything moves.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PairReport {
     pub name: String,
+    /// Slave faces, `body.set`.
+    pub slave: String,
+    pub master: String,
     pub points: usize,
+    /// Where the slave points lie, in words.
+    pub sampling: String,
+    /// Mean distance of neighbouring slave points.
+    pub spacing: f64,
     /// Penalty (force / length^3).
     pub penalty: f64,
+    /// Whether the program chose the penalty.
+    pub automatic: bool,
     /// Smallest and largest initial distance.
     pub gap: [f64; 2],
     /// Points that start in contact.
     pub touching: usize,
+}
+
+/// A support.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SupportReport {
+    pub name: String,
+    /// Set, `body.set`.
+    pub on: String,
+    /// What it does, in words.
+    pub kind: String,
+    /// Displacement components it prescribes; those that an earlier support prescribes alike are counted there.
+    pub components: usize,
+}
+
+/// A load.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LoadReport {
+    pub name: String,
+    /// Set, `body.set`.
+    pub on: String,
+    /// `force`, `traction`, `pressure` or `follower pressure`.
+    pub kind: &'static str,
 }
 
 /// Reads and checks everything a scene names.
@@ -42,25 +138,156 @@ pub struct PairReport {
 pub fn check(scene: &LoadedScene) -> Result<CheckReport, RunError> {
     let model = model::build::build(scene).map_err(|e| RunError::model(scene, e))?;
     let mut pairs = Vec::new();
-    for (i, pair) in model.pairs.iter().enumerate() {
-        let gap = initial_gap(&model, i).map_err(|e| RunError::model(scene, e))?;
-        pairs.push(PairReport {
-            name: pair.name.clone(),
-            points: pair.points.len(),
-            penalty: pair.eps_n,
-            gap: [gap.smallest, gap.largest],
-            touching: gap.touching,
-        });
+    for index in 0..model.pairs.len() {
+        pairs
+            .push(pair_report(&scene.scene, &model, index).map_err(|e| RunError::model(scene, e))?);
     }
+    let scene = &scene.scene;
     Ok(CheckReport {
         title: model.title.clone(),
+        unit: scene.units.length.name().to_owned(),
         nodes: model.nodes.len(),
         elements: model.bodies.iter().map(|b| b.block.elements()).sum(),
         dofs: model.unknowns(),
         contact_points: model.contact_points(),
+        bodies: model.bodies.iter().map(|b| body_report(scene, b)).collect(),
+        surfaces: (model.surfaces.iter())
+            .map(|s| surface_report(scene, s))
+            .collect(),
         pairs,
+        supports: supports(scene, &model),
+        loads: loads(scene),
         effects: model.effects.clone(),
         notes: model.notes.clone(),
         warnings: model.warnings.clone(),
     })
+}
+
+fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
+    let size = body.mesh.element_size();
+    let range = |r: Option<Range>| r.map_or([0.0; 2], |r| [r.min, r.max]);
+    let described = &scene.bodies[&body.name];
+    let element = match described.element {
+        Element::H8 => "8-node solid-shell",
+        Element::H8Displacement => "8-node brick without enhancement",
+    };
+    let material = match &scene.materials[&described.material] {
+        Material::StVenantKirchhoff(e) => format!("St. Venant-Kirchhoff, E {}, nu {}", e.e, e.nu),
+        Material::NeoHooke(e) => format!("neo-Hooke, E {}, nu {}", e.e, e.nu),
+    };
+    BodyReport {
+        name: body.name.clone(),
+        nodes: body.mesh.nodes.len(),
+        elements: body.block.elements(),
+        parts: body.mesh.components(),
+        element,
+        material,
+        bounds: body.mesh.bounds().map(Into::into),
+        edge: range(size.map(|s| s.edge)),
+        thickness: range(size.map(|s| s.thickness)),
+        worst_shape: size.map_or(0.0, |s| s.shape.min),
+    }
+}
+
+fn surface_report(scene: &Scene, surface: &SurfaceModel) -> SurfaceReport {
+    let described = &scene.surfaces[&surface.name];
+    let source = match (&described.cad, &described.sphere, &described.cylinder) {
+        (Some(cad), ..) => cad.file.display().to_string(),
+        (_, Some(s), _) => format!("sphere of radius {}", s.radius),
+        (_, _, Some(c)) => format!("cylinder of radius {} and length {}", c.radius, c.length),
+        _ => "plane".to_owned(),
+    };
+    let edges = surface.set.edges();
+    let curvature = surface.set.curvature_range();
+    SurfaceReport {
+        name: surface.name.clone(),
+        source,
+        patches: surface.set.patches().len(),
+        parts: surface.set.components().len(),
+        bounds: surface.set.bounds().map(Into::into),
+        smooth_edges: edges.smooth,
+        sharp_edges: edges.sharp,
+        partial_edges: edges.partial.len(),
+        branching_edges: edges.branching.len(),
+        free_edges: edges.free.len(),
+        poles: edges.poles.len(),
+        largest_gap: edges.largest_gap,
+        smallest_convex_radius: curvature.convex.map(|c| c.radius()),
+        smallest_concave_radius: curvature.concave.map(|c| c.radius()),
+        reversed: surface.set.sides().iter().filter(|s| **s < 0.0).count(),
+        depth: surface.depth,
+    }
+}
+
+fn pair_report(
+    scene: &Scene,
+    model: &Model,
+    index: usize,
+) -> Result<PairReport, model::ModelError> {
+    let pair = &model.pairs[index];
+    let contact = &scene.contacts[&pair.name];
+    let gap = initial_gap(model, index)?;
+    Ok(PairReport {
+        name: pair.name.clone(),
+        slave: contact.slave.clone(),
+        master: contact.master.clone(),
+        points: pair.points.len(),
+        sampling: match contact.points {
+            Points::Nodes => "at the nodes of the faces".to_owned(),
+            Points::Gauss(n) => format!("{n} x {n} Gauss points a face"),
+            Points::Lobatto(n) => format!("{n} x {n} Lobatto points a face"),
+        },
+        spacing: point_spacing(model, index),
+        penalty: pair.eps_n,
+        automatic: contact.penalty == Penalty::Auto,
+        gap: [gap.smallest, gap.largest],
+        touching: gap.touching,
+    })
+}
+
+fn supports(scene: &Scene, model: &Model) -> Vec<SupportReport> {
+    let kind = |s: &Support| {
+        let mut words = match (s.fixed, s.symmetry, &s.displacement) {
+            (true, ..) => "holds x, y and z".to_owned(),
+            (_, Some(axis), _) => format!("symmetry: holds {axis:?}").to_lowercase(),
+            (_, _, Some(d)) => {
+                let named = [("x", &d.x), ("y", &d.y), ("z", &d.z)];
+                let given: Vec<&str> =
+                    (named.iter().filter(|(_, v)| v.is_some()).map(|(n, _)| *n)).collect();
+                format!("prescribes {}", given.join(", "))
+            }
+            _ => String::new(),
+        };
+        if s.mid_surface {
+            words += " of the mid-surface";
+        }
+        words
+    };
+    (model.supports.iter().enumerate())
+        .map(|(i, name)| {
+            let own = |support: u32| support as usize == i;
+            SupportReport {
+                name: name.clone(),
+                on: scene.supports[name].on.clone(),
+                kind: kind(&scene.supports[name]),
+                components: model.prescribed.iter().filter(|p| own(p.support)).count()
+                    + model.means.iter().filter(|m| own(m.support)).count(),
+            }
+        })
+        .collect()
+}
+
+fn loads(scene: &Scene) -> Vec<LoadReport> {
+    (scene.loads.iter())
+        .map(|(name, load)| LoadReport {
+            name: name.clone(),
+            on: load.on.clone(),
+            kind: match (&load.force, &load.traction, load.follower) {
+                (Some(_), ..) => "force",
+                (_, Some(_), _) => "traction",
+                (.., true) => "follower pressure",
+                _ => "pressure",
+            },
+        })
+        .collect()
 }

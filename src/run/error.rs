@@ -15,6 +15,8 @@ pub enum RunError {
         pointer: String,
         /// Where the field stands in the scene file.
         place: Option<Place>,
+        /// What to do about it.
+        help: Option<String>,
     },
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -29,11 +31,17 @@ impl RunError {
             message,
             pointer: pointer.to_owned(),
             place: Some(loaded.place_of(pointer)),
+            help: None,
         }
     }
 
     pub(super) fn model(loaded: &LoadedScene, error: ModelError) -> Self {
-        RunError::scene(loaded, &error.pointer, error.to_string())
+        RunError::Scene {
+            message: error.to_string(),
+            place: Some(loaded.place_of(&error.pointer)),
+            pointer: error.pointer,
+            help: error.help,
+        }
     }
 
     pub(super) fn internal(error: &dyn std::error::Error) -> Self {
@@ -65,6 +73,7 @@ impl From<ValueError> for RunError {
             message: e.to_string(),
             pointer: String::new(),
             place: None,
+            help: None,
         }
     }
 }

@@ -6,7 +6,9 @@ mod history;
 mod march;
 mod step;
 
-pub use check::{CheckReport, PairReport, check};
+pub use check::{
+    BodyReport, CheckReport, LoadReport, PairReport, SupportReport, SurfaceReport, check,
+};
 pub use error::RunError;
 
 use crate::assembly::Assembler;

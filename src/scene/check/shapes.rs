@@ -67,7 +67,7 @@ pub(super) fn check_mesh(c: &mut Checker, at: &str, mesh: &MeshSource) {
             check_counts(c, &at, &b.elements, 1);
         }
         MeshSource::File(f) => {
-            c.file(&format!("{at}/file/path"), &f.path, &["msh"]);
+            c.file(&format!("{at}/file/path"), &f.path, &["msh", "inp"]);
             c.positive(&format!("{at}/file/scale"), "the scale", f.scale);
         }
     }

@@ -1,0 +1,336 @@
+//! Rigid surfaces: patches from CAD files or exact shapes, their place and their side.
+use super::super::error::{At, number, text};
+use super::super::motion::Motion;
+use super::super::{ModelError, PairModel, SurfaceModel};
+use super::Builder;
+use crate::scene::{self, Side};
+use covact_geometry::project::{ComponentSide, SideError, SideOutcome};
+use covact_geometry::{NurbsPatch, PatchSet, Vec3, io, primitives};
+
+/// Patches of a surface as its source gives them.
+struct Patches {
+    patches: Vec<NurbsPatch>,
+    /// What the user knows them by, in the same order.
+    labels: Vec<String>,
+    /// Edges closer than this are the same (length).
+    tolerance: Option<f64>,
+}
+
+/// Surfaces that are listed one by one in a message; the rest is counted.
+const LISTED: usize = 8;
+
+impl Builder<'_> {
+    /// The surface, and what its patches are called in messages.
+    pub(super) fn surface(
+        &mut self,
+        name: &str,
+        surface: &scene::Surface,
+    ) -> Result<(SurfaceModel, Vec<String>), ModelError> {
+        let here = || format!("/surfaces/{name}");
+        let source = self.patches(name, surface)?;
+        let scale = surface.placement.scale;
+        let patches = if scale == 1.0 {
+            source.patches
+        } else {
+            (source.patches.iter())
+                .map(|p| p.transformed(&|x| x * scale))
+                .collect::<Result<Vec<_>, _>>()
+                .map_err(|e| text(here(), e.to_string()))?
+        };
+        let set = PatchSet::new(patches, source.tolerance.map(|t| t * scale)).at(here)?;
+        let motion = Motion::new(&surface.motion, &surface.placement)
+            .at(|| format!("/surfaces/{name}/motion"))?;
+        let depth = surface.depth.unwrap_or(0.1 * set.size());
+        let model = SurfaceModel {
+            name: name.to_owned(),
+            set,
+            motion,
+            depth,
+        };
+        Ok((model, source.labels))
+    }
+
+    fn patches(&mut self, name: &str, surface: &scene::Surface) -> Result<Patches, ModelError> {
+        let field = |f: &str| format!("/surfaces/{name}/{f}");
+        let made = |f: &str, r: Result<Vec<NurbsPatch>, primitives::PrimitiveError>| {
+            r.map(|patches| Patches {
+                labels: vec![f.to_owned(); patches.len()],
+                patches,
+                tolerance: None,
+            })
+            .map_err(|e| text(field(f), e.to_string()))
+        };
+        if let Some(s) = &surface.sphere {
+            let p = primitives::sphere(s.radius, s.center.into(), s.axis.into());
+            return made("sphere", p.map(|p| vec![p]));
+        }
+        if let Some(c) = &surface.cylinder {
+            let p = primitives::cylinder(c.radius, c.length, c.center.into(), c.axis.into());
+            return made("cylinder", p.map(|p| vec![p]));
+        }
+        if let Some(p) = &surface.plane {
+            let p = primitives::plane(p.center.into(), p.normal.into(), p.size);
+            return made("plane", p.map(|p| vec![p]));
+        }
+        let Some(cad) = &surface.cad else {
+            return Err(text(
+                format!("/surfaces/{name}"),
+                "a surface needs one of `cad`, `sphere`, `cylinder`, `plane`",
+            ));
+        };
+        self.cad_patches(name, cad)
+    }
+
+    fn cad_patches(&mut self, name: &str, cad: &scene::CadFile) -> Result<Patches, ModelError> {
+        let field = |f: &str| format!("/surfaces/{name}/cad/{f}");
+        let path = self.dir.join(&cad.file);
+        let file = io::read_path(&path).at(|| field("file"))?;
+        let shown = cad.file.display();
+        let own = io::LengthUnit::from_name(self.scene.units.length.name());
+        let factor = match own.as_ref().and_then(|own| file.unit.factor_to(own)) {
+            Some(factor) => factor,
+            None => {
+                self.notes.push(format!(
+                    "surface `{name}`: {shown} states no length unit; its numbers are taken as {}",
+                    self.scene.units.length.name()
+                ));
+                1.0
+            }
+        };
+        let wanted = |entity: u32| cad.entities.is_empty() || cad.entities.contains(&entity);
+        let skipped: Vec<_> = file.skipped.iter().filter(|s| wanted(s.entity)).collect();
+        let list = || {
+            let shown = skipped.iter().take(LISTED).map(|s| {
+                format!(
+                    "entity {} ({} {}): {}",
+                    s.entity, s.type_number, s.name, s.reason
+                )
+            });
+            let more = skipped.len().saturating_sub(LISTED);
+            let rest = (more > 0).then(|| format!("and {more} more"));
+            shown.chain(rest).collect::<Vec<_>>().join("; ")
+        };
+        if !skipped.is_empty() {
+            if !cad.allow_skipped {
+                return Err(text(
+                    field("file"),
+                    format!(
+                        "{shown}: {} of {} surface(s) cannot be used: {}",
+                        skipped.len(),
+                        skipped.len() + file.patches.iter().filter(|p| wanted(p.entity)).count(),
+                        list()
+                    ),
+                )
+                .help(
+                    "write them as untrimmed NURBS surfaces (entity 128), name the entities to use in `entities`, \
+                     or set `allow_skipped` to go on without them",
+                ));
+            }
+            let n = skipped.len();
+            self.warnings.push(format!(
+                "surface `{name}`: {n} surface(s) of {shown} left out: {}",
+                list()
+            ));
+        }
+        for entity in &cad.entities {
+            let known = file.patches.iter().any(|p| p.entity == *entity);
+            if !known && !skipped.iter().any(|s| s.entity == *entity) {
+                let there: Vec<String> =
+                    (file.patches.iter().map(|p| p.entity.to_string())).collect();
+                let message = format!("{shown} has no surface entity {entity}");
+                return Err(text(field("entities"), message).help(format!(
+                    "surface entities of this file: {}",
+                    there.join(", ")
+                )));
+            }
+        }
+        let chosen: Vec<_> = file.patches.iter().filter(|p| wanted(p.entity)).collect();
+        if chosen.is_empty() {
+            return Err(text(
+                field("file"),
+                format!("{shown} holds no surface that can be used"),
+            )
+            .help("`covact inspect` lists what is in a CAD file"));
+        }
+        let patches = (chosen.iter())
+            .map(|p| p.patch.transformed(&|x| x * factor))
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|e| text(field("file"), e.to_string()))?;
+        let unit = self.scene.units.length.name();
+        let conversion = match factor {
+            1.0 => format!("lengths in {unit}"),
+            _ => format!(
+                "lengths converted from {} to {unit} (times {})",
+                file.unit.name,
+                number(factor)
+            ),
+        };
+        self.notes.push(format!(
+            "surface `{name}`: {} patch(es) from {shown}, {conversion}",
+            patches.len(),
+        ));
+        self.notes
+            .extend(file.notes.iter().map(|n| format!("surface `{name}`: {n}")));
+        Ok(Patches {
+            labels: (chosen.iter())
+                .map(|p| format!("entity {}", p.entity))
+                .collect(),
+            patches,
+            tolerance: cad.tolerance,
+        })
+    }
+
+    /// Decides the side of every part of a surface.
+    pub(super) fn orient(
+        &mut self,
+        name: &str,
+        surface: &scene::Surface,
+        (model, labels): (&mut SurfaceModel, &[String]),
+        pairs: &[&PairModel],
+    ) -> Result<(), ModelError> {
+        let pointer = || format!("/surfaces/{name}/side");
+        if pairs.is_empty() {
+            self.warnings
+                .push(format!("surface `{name}` takes part in no contact"));
+        }
+        let how = match surface.side {
+            Side::Auto if pairs.is_empty() => return Ok(()),
+            Side::Auto => {
+                self.orient_to_slave(name, (model, labels), pairs)?;
+                "where the slave starts"
+            }
+            Side::AsGiven => {
+                model.set.set_side_as_given(false);
+                "as its source gives it"
+            }
+            Side::Reversed => {
+                model.set.set_side_as_given(true);
+                "the reverse of what its source gives"
+            }
+            Side::Point(p) => {
+                let pose = model.motion.pose(0.0).at(pointer)?;
+                let local = pose.inverse_transform_point(&Vec3::from(p).into()).coords;
+                let found = (model.set.orient_towards(&[local]))
+                    .map_err(|e| both_sides(name, labels, &e))?;
+                self.undecided(name, (model, labels), &found, "the point");
+                "where the given point lies"
+            }
+        };
+        let reversed = model.set.sides().iter().filter(|s| **s < 0.0).count();
+        self.notes.push(format!(
+            "surface `{name}`: its outside is {how} (normals of {reversed} of {} patch(es) turned round); a point \
+             deeper than {} below it is not in contact (`depth`)",
+            model.set.patches().len(),
+            number(model.depth)
+        ));
+        Ok(())
+    }
+
+    /// The slave points start outside.
+    fn orient_to_slave(
+        &mut self,
+        name: &str,
+        (model, labels): (&mut SurfaceModel, &[String]),
+        pairs: &[&PairModel],
+    ) -> Result<(), ModelError> {
+        let pose = (model.motion.pose(0.0)).at(|| format!("/surfaces/{name}/motion"))?;
+        let local = |x: Vec3| pose.inverse_transform_point(&x.into()).coords;
+        let points: Vec<Vec3> = (pairs.iter().flat_map(|pair| pair.points.iter()))
+            .map(|p| local((p.terms()).fold(Vec3::zeros(), |x, (n, w)| x + self.nodes[n] * w)))
+            .collect();
+        let mut found =
+            (model.set.orient_towards(&points)).map_err(|e| both_sides(name, labels, &e))?;
+        if found.iter().any(|f| undecided(f)) {
+            // Faces that lie on the surface leave the side open; the elements below them do not.
+            let sides = model.set.sides().to_vec();
+            let centers = self.slave_element_centers(name)?;
+            let centers: Vec<Vec3> = centers.into_iter().map(local).collect();
+            let second = model.set.orient_towards(&centers);
+            for (first, second) in found.iter_mut().zip(second.unwrap_or_default()) {
+                if undecided(first) {
+                    *first = second;
+                } else {
+                    let patch = model.set.components()[first.component][0];
+                    model.set.set_component_side(first.component, sides[patch]);
+                }
+            }
+        }
+        self.undecided(name, (model, labels), &found, "where the slave starts");
+        Ok(())
+    }
+
+    /// Centres of the elements below the slave faces of all contacts with a surface.
+    fn slave_element_centers(&self, surface: &str) -> Result<Vec<Vec3>, ModelError> {
+        let mut centers = Vec::new();
+        for (name, contact) in &self.scene.contacts {
+            if contact.master == surface {
+                let (body, faces) =
+                    self.faces(&contact.slave, &format!("/contacts/{name}/slave"))?;
+                let mesh = &self.bodies[body].mesh;
+                centers.extend(
+                    faces
+                        .iter()
+                        .map(|f| mesh.element_center(f.element as usize)),
+                );
+            }
+        }
+        Ok(centers)
+    }
+
+    /// Warns of parts whose side nothing decides.
+    fn undecided(
+        &mut self,
+        name: &str,
+        (model, labels): (&SurfaceModel, &[String]),
+        found: &[ComponentSide],
+        by: &str,
+    ) {
+        let open: Vec<usize> = (found.iter().filter(|f| undecided(f)))
+            .map(|f| model.set.components()[f.component][0])
+            .collect();
+        if let Some(&first) = open.first() {
+            self.warnings.push(format!(
+                "surface `{name}`: {by} does not decide the side of {} of its {} unconnected part(s), the first that \
+                 of {}; there the side is as the source gives it: say `side` if that is wrong",
+                open.len(),
+                found.len(),
+                labels.get(first).map_or("patch 1", String::as_str)
+            ));
+        }
+    }
+}
+
+fn undecided(found: &ComponentSide) -> bool {
+    matches!(found.outcome, SideOutcome::Undecided { .. })
+}
+
+/// The slave starts on both sides of a part.
+fn both_sides(name: &str, labels: &[String], error: &SideError) -> ModelError {
+    let SideError::BothSides {
+        patch,
+        front,
+        back,
+        patches,
+    } = error;
+    let label = |patch: &usize| labels.get(*patch).map_or("?", String::as_str);
+    let mut among: Vec<&str> = patches.iter().take(LISTED).map(label).collect();
+    if patches.len() > LISTED {
+        among.push("...");
+    }
+    let part = match patches.len() {
+        1 => String::new(),
+        n => format!(
+            ", which belongs to a part of {n} patches ({})",
+            among.join(", ")
+        ),
+    };
+    let message = format!(
+        "the outside of surface `{name}` is not clear: the slave starts on both sides of {}{part}: {front} point(s) on \
+         one side, {back} on the other",
+        label(patch)
+    );
+    text(format!("/surfaces/{name}/side"), message).help(
+        "move the surface clear of the body with `placement`, or say `side`: `as_given`, `reversed` or \
+         `{\"point\": [x, y, z]}`",
+    )
+}
