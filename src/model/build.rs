@@ -1,6 +1,7 @@
 //! Scene to model.
 mod supports;
 mod surfaces;
+mod values;
 
 use super::error::{At, number, text};
 use super::loads::{DeadLoad, FollowerPressure, load_points};
@@ -8,7 +9,7 @@ use super::slave::slave_points;
 use super::{BodyModel, Model, ModelError, PairModel, SurfaceModel, penalty};
 use crate::mesh::{self, Face, Mesh};
 use crate::scene::{
-    self, LoadedScene, POSITION_AND_TIME, Penalty, Scene, TIME, TimeFunction, Value,
+    self, LoadedScene, MeshSource, POSITION_AND_TIME, Penalty, Scene, TIME, TimeFunction, Value,
 };
 use crate::shell::{H8Block, Law};
 use covact_geometry::Vec3;
@@ -64,6 +65,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     };
     model.effects = super::effects::effects(scene, &model);
     model.kinks = kinks(&model, scene.solution.end_time);
+    values::check(scene, &model)?;
     if let Some(free) = super::free_motion::free_motions(&model).first() {
         let message = format!(
             "body `{}` can move freely {}: no support hinders it",
@@ -91,6 +93,38 @@ fn kinks(model: &Model, end: f64) -> Vec<f64> {
     times
 }
 
+/// An error of a body's mesh, told with the name of its file where it has one.
+fn mesh_error(body: &str, source: &MeshSource, error: mesh::MeshError) -> ModelError {
+    let pointer = format!("/bodies/{body}/mesh");
+    let help = matches!(error, mesh::MeshError::Inverted { .. }).then_some(
+        "look at these elements in the mesher: a node may have moved through a face, or the surface is too curved for \
+         the elements",
+    );
+    let message = error.to_string();
+    let mut error = match source {
+        MeshSource::File(file) => {
+            let path = file.path.display().to_string();
+            match message.contains(&path) {
+                true => text(format!("{pointer}/file/path"), message),
+                false => text(format!("{pointer}/file/path"), format!("{path}: {message}")),
+            }
+        }
+        _ => text(pointer, message),
+    };
+    error.help = help.map(str::to_owned);
+    error
+}
+
+/// Where a body lies, for selections that miss it.
+fn extent(body: &str, mesh: &Mesh) -> String {
+    let [low, high] = mesh.bounds();
+    let axis = |i: usize| {
+        let name = ["x", "y", "z"][i];
+        format!("{name} {} to {}", number(low[i]), number(high[i]))
+    };
+    format!("body `{body}` lies in {}", [0, 1, 2].map(axis).join(", "))
+}
+
 /// Body and set of `body.set`.
 fn split(reference: &str) -> (&str, &str) {
     reference.split_once('.').unwrap_or((reference, ""))
@@ -100,10 +134,12 @@ impl<'s> Builder<'s> {
     fn bodies(&mut self) -> Result<(), ModelError> {
         for (name, body) in &self.scene.bodies {
             let at = || format!("/bodies/{name}/mesh");
-            let (mut mesh, report) = mesh::build(&body.mesh, self.dir).at(at)?;
+            let (mut mesh, report) =
+                mesh::build(&body.mesh, self.dir).map_err(|e| mesh_error(name, &body.mesh, e))?;
             for (set, selection) in &body.sets {
                 mesh.add_set(set, selection)
-                    .at(|| format!("/bodies/{name}/sets/{set}"))?;
+                    .at(|| format!("/bodies/{name}/sets/{set}"))
+                    .map_err(|e| e.help(extent(name, &mesh)))?;
             }
             mesh.check().at(at)?;
             (self.notes).extend(report.notes.iter().map(|n| format!("body `{name}`: {n}")));

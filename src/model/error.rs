@@ -66,6 +66,15 @@ impl<T, E: Into<Cause>> At<T> for Result<T, E> {
     }
 }
 
+/// An error of a known cause.
+pub fn cause(pointer: impl Into<String>, cause: impl Into<Cause>) -> ModelError {
+    ModelError {
+        pointer: pointer.into(),
+        cause: cause.into(),
+        help: None,
+    }
+}
+
 /// An error told in words.
 pub fn text(pointer: impl Into<String>, message: impl Into<String>) -> ModelError {
     ModelError {

@@ -124,7 +124,7 @@ fn describe(share: &[f64; 6], count: usize) -> String {
             .map(|(_, name)| name)
             .collect();
         words.push(format!(
-            "in {rest} motion(s) that combine {}",
+            "in {rest} way(s) that combine motions {}",
             partly.join(", ")
         ));
     }

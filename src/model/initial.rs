@@ -2,6 +2,7 @@
 use super::error::{number, text};
 use super::{Model, ModelError};
 use crate::contact::rigid::presses;
+use covact_geometry::Vec3;
 
 /// Initial gaps of a pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +15,8 @@ pub struct InitialGap {
     pub touching: usize,
     /// Points that start behind the surface, deeper than its search depth: they are not in contact.
     pub behind: usize,
+    /// At the nearest point, the body lies between its slave face and the surface: the wrong face is the slave.
+    pub turned_away: bool,
 }
 
 /// Distances of all points of pair `index` at time 0, wherever they are.
@@ -27,8 +30,10 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
         largest: f64::NEG_INFINITY,
         touching: 0,
         behind: 0,
+        turned_away: false,
     };
     let mut hint = None;
+    let mut nearest = None;
     for p in &pair.points {
         let x = model.point_position(p, &zero);
         let Some(foot) = master.foot(&x, hint, f64::INFINITY) else {
@@ -45,12 +50,32 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
         } else {
             foot.signed_distance
         };
-        gap.smallest = gap.smallest.min(distance);
+        if distance < gap.smallest {
+            gap.smallest = distance;
+            nearest = Some((p.nodes[0], x, master.pose.rotation * foot.normal));
+        }
         gap.largest = gap.largest.max(distance);
         gap.touching += usize::from(counts);
         gap.behind += usize::from(behind);
     }
+    if let Some((node, x, n)) = nearest {
+        gap.turned_away = turned_away(model, pair.body, node, &x, &n);
+    }
     Ok(gap)
+}
+
+/// Whether the elements at a node lie clearly behind the point `x` as seen along the outward normal `n` of the surface
+/// that it projects to. They should lie in front: the surface pushes the slave face into its body.
+fn turned_away(model: &Model, body: usize, node: u32, x: &Vec3, n: &Vec3) -> bool {
+    let body = &model.bodies[body];
+    let node = node - body.first_node;
+    let (mut sum, mut length) = (0.0, 0.0);
+    for e in (0..body.mesh.elements()).filter(|&e| body.mesh.element(e).contains(&node)) {
+        let inward = body.mesh.element_center(e) - x;
+        sum += inward.dot(n);
+        length += inward.norm();
+    }
+    sum < -0.1 * length
 }
 
 /// Refuses tools that start deep inside a body, and warns of small overclosures and of slave points too coarse for the
@@ -90,6 +115,13 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
                 pair.name,
                 number(-gap.smallest),
                 gap.touching
+            ));
+        }
+        if gap.turned_away {
+            warnings.push(format!(
+                "contact `{}`: body `{}` lies between its slave faces and surface `{}`: are the faces on the other side \
+                 of the body meant?",
+                pair.name, model.bodies[pair.body].name, surface.name
             ));
         }
         if gap.behind > 0 {

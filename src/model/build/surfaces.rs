@@ -1,5 +1,5 @@
 //! Rigid surfaces: patches from CAD files or exact shapes, their place and their side.
-use super::super::error::{At, number, text};
+use super::super::error::{At, cause, number, text};
 use super::super::motion::Motion;
 use super::super::{ModelError, PairModel, SurfaceModel};
 use super::Builder;
@@ -54,7 +54,7 @@ impl Builder<'_> {
         let field = |f: &str| format!("/surfaces/{name}/{f}");
         let made = |f: &str, r: Result<Vec<NurbsPatch>, primitives::PrimitiveError>| {
             r.map(|patches| Patches {
-                labels: vec![f.to_owned(); patches.len()],
+                labels: vec![format!("the {f}"); patches.len()],
                 patches,
                 tolerance: None,
             })
@@ -84,7 +84,14 @@ impl Builder<'_> {
     fn cad_patches(&mut self, name: &str, cad: &scene::CadFile) -> Result<Patches, ModelError> {
         let field = |f: &str| format!("/surfaces/{name}/cad/{f}");
         let path = self.dir.join(&cad.file);
-        let file = io::read_path(&path).at(|| field("file"))?;
+        let file = io::read_path(&path).map_err(|e| {
+            let damaged = matches!(e, io::CadError::Content { .. });
+            let mut error = cause(field("file"), e);
+            error.help = damaged.then(|| {
+                "line and column are those of the CAD file: it is damaged or cut off, export it again".to_owned()
+            });
+            error
+        })?;
         let shown = cad.file.display();
         let own = io::LengthUnit::from_name(self.scene.units.length.name());
         let factor = match own.as_ref().and_then(|own| file.unit.factor_to(own)) {
@@ -146,9 +153,13 @@ impl Builder<'_> {
         }
         let chosen: Vec<_> = file.patches.iter().filter(|p| wanted(p.entity)).collect();
         if chosen.is_empty() {
+            let why = match skipped.is_empty() {
+                true => String::new(),
+                false => format!(": {}", list()),
+            };
             return Err(text(
                 field("file"),
-                format!("{shown} holds no surface that can be used"),
+                format!("{shown} holds no surface that can be used{why}"),
             )
             .help("`covact inspect` lists what is in a CAD file"));
         }
