@@ -249,23 +249,30 @@ impl Builder<'_> {
         let points: Vec<Vec3> = (pairs.iter().flat_map(|pair| pair.points.iter()))
             .map(|p| local((p.terms()).fold(Vec3::zeros(), |x, (n, w)| x + self.nodes[n] * w)))
             .collect();
-        let mut found =
-            (model.set.orient_towards(&points)).map_err(|e| both_sides(name, labels, &e))?;
-        if found.iter().any(|f| undecided(f)) {
-            // Faces that lie on the surface leave the side open; the elements below them do not.
-            let sides = model.set.sides().to_vec();
-            let centers = self.slave_element_centers(name)?;
-            let centers: Vec<Vec3> = centers.into_iter().map(local).collect();
-            let second = model.set.orient_towards(&centers);
-            for (first, second) in found.iter_mut().zip(second.unwrap_or_default()) {
-                if undecided(first) {
-                    *first = second;
-                } else {
-                    let patch = model.set.components()[first.component][0];
-                    model.set.set_component_side(first.component, sides[patch]);
+        // The elements below the faces tell where the faces themselves do not: faces that lie on the surface have no
+        // side, and a few that start with a small overclosure contradict the rest.
+        let centers = self.slave_element_centers(name)?;
+        let centers: Vec<Vec3> = centers.into_iter().map(local).collect();
+        let found = match model.set.orient_towards(&points) {
+            Ok(found) if !found.iter().any(undecided) => found,
+            Ok(mut found) => {
+                let sides = model.set.sides().to_vec();
+                let second = model.set.orient_towards(&centers);
+                for (first, second) in found.iter_mut().zip(second.unwrap_or_default()) {
+                    if undecided(first) {
+                        *first = second;
+                    } else {
+                        let patch = model.set.components()[first.component][0];
+                        (model.set).set_component_side(first.component, sides[patch]);
+                    }
                 }
+                found
             }
-        }
+            Err(contradiction) => match model.set.orient_towards(&centers) {
+                Ok(found) => found,
+                Err(_) => return Err(both_sides(name, labels, &contradiction)),
+            },
+        };
         self.undecided(name, (model, labels), &found, "where the slave starts");
         Ok(())
     }

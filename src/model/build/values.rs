@@ -55,7 +55,11 @@ pub(super) fn check(scene: &Scene, model: &Model) -> Result<(), ModelError> {
     let mut scratch = Vec::new();
     for (name, load) in &model.dead_loads {
         let pointer = || format!("/loads/{name}");
-        if load.functions().iter().any(TimeFunction::depends_on_position) {
+        if load
+            .functions()
+            .iter()
+            .any(TimeFunction::depends_on_position)
+        {
             scratch.resize(3 * model.nodes.len(), 0.0);
             for t in evenly(end, FEW_TIMES) {
                 told(load.add(t, &mut scratch), &pointer)?;

@@ -1,6 +1,5 @@
 //! What users see when the input is wrong: message, place, exit code.
-use std::path::Path;
-use std::process::{Command, Output};
+use crate::support::{assert_parts, covact, refused_in, stderr, stdout};
 
 /// The scene that `covact new` writes.
 fn starter() -> String {
@@ -10,39 +9,10 @@ fn starter() -> String {
     std::fs::read_to_string(folder.path().join("starter.json")).unwrap()
 }
 
-fn covact(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_covact"));
-    command
-        .current_dir(folder)
-        .args(arguments)
-        .env_remove("NO_COLOR")
-        .output()
-        .unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
 /// `covact check` and `covact run` of a scene of this text both fail with exit code 3 and the same message.
 fn refused(text: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("scene.json"), text).unwrap();
-    let check = covact(folder.path(), &["check", "scene.json"]);
-    let run = covact(
-        folder.path(),
-        &["run", "scene.json", "-o", "out", "--quiet"],
-    );
-    assert_eq!(check.status.code(), Some(3), "{}", stderr(&check));
-    assert_eq!(run.status.code(), Some(3), "{}", stderr(&run));
-    assert_eq!(stderr(&check), stderr(&run));
-    assert_eq!(stdout(&check), "");
-    assert!(!folder.path().join("out").exists());
-    stderr(&check)
+    refused_in(folder.path(), text)
 }
 
 /// As [`refused`], for the starter with `from` replaced.
@@ -50,17 +20,6 @@ fn refused_with(from: &str, to: &str) -> String {
     let text = starter();
     assert!(text.contains(from), "{from}");
     refused(text.replacen(from, to, 1).as_bytes())
-}
-
-/// All parts occur, in this order.
-fn assert_parts(message: &str, parts: &[&str]) {
-    let mut rest = message;
-    for part in parts {
-        let at = rest
-            .find(part)
-            .unwrap_or_else(|| panic!("no `{part}` in\n{message}"));
-        rest = &rest[at + part.len()..];
-    }
 }
 
 #[test]

@@ -1,0 +1,280 @@
+//! Scenes that read well and cannot be meant: sets, supports, motions and tools.
+use crate::support::*;
+use serde_json::json;
+
+#[test]
+fn a_set_that_selects_nothing() {
+    let sets = json!({ "edge": { "nodes_in_box": { "min": [50, 0, 0], "max": [60, 1, 1] } } });
+    plate_refused(
+        &[("/bodies/plate/sets", sets)],
+        "/bodies/plate/sets/edge",
+        &[
+            "nodes_in_box",
+            "selects nothing",
+            "the nearest node is 10.0",
+            "help: body `plate` lies in x 0 to 40, y 0 to 40, z -1 to 1",
+        ],
+    );
+}
+
+#[test]
+fn a_body_that_can_move() {
+    let held = json!({ "held": { "on": "plate.x_min", "symmetry": "x" } });
+    plate_refused(
+        &[("/supports", held)],
+        "/bodies/plate",
+        &[
+            "body `plate` can move freely along y, along z and about x: no support hinders it",
+            "help: add or extend a support",
+        ],
+    );
+    plate_refused(
+        &[("/supports", json!({}))],
+        "/bodies/plate",
+        &["along x, along y, along z, about x, about y and about z"],
+    );
+    // A hinge: turning about it is one motion, seen from the middle of the plate a turn and a translation.
+    let hinge = json!({ "hinge": {
+        "on": "plate.x_min", "displacement": { "x": 0, "y": 0, "z": 0 }, "mid_surface": true
+    } });
+    plate_refused(
+        &[("/supports", hinge)],
+        "/bodies/plate",
+        &["in 1 way(s) that combine motions along z, about y"],
+    );
+}
+
+#[test]
+fn two_supports_that_contradict_each_other() {
+    for mid_surface in [false, true] {
+        let push = json!({
+            "on": "plate.x_max", "displacement": { "z": "-t" }, "mid_surface": mid_surface
+        });
+        plate_refused(
+            &[("/supports/push", push)],
+            "/supports/push/on",
+            &[
+                "supports `clamp_x` and `push` prescribe different displacements along z of the node at (40, 0,",
+                "help: take the node out of one of the two sets",
+            ],
+        );
+    }
+}
+
+#[test]
+fn a_name_that_two_things_share() {
+    plate_refused(
+        &[(
+            "/supports/ball",
+            json!({ "on": "plate.x_max", "fixed": true }),
+        )],
+        "/supports/ball",
+        &["the name `ball` is also used in `surfaces`", "help:"],
+    );
+    let sets = json!({ "top": { "nodes_near_point": { "point": [0, 0, 1], "tolerance": 1 } } });
+    plate_refused(
+        &[("/bodies/plate/sets", sets)],
+        "/bodies/plate/sets/top",
+        &[
+            "the plate has a set `top` of its own",
+            "choose another name",
+        ],
+    );
+    // Two bodies of one name are a key given twice.
+    let text = serde_json::to_string(&plate_scene()).unwrap();
+    let body = serde_json::to_string(&plate_scene()["bodies"]["plate"]).unwrap();
+    let twice = text.replace("\"bodies\":{", &format!("\"bodies\":{{\"plate\":{body},"));
+    let folder = tempfile::tempdir().unwrap();
+    assert_parts(
+        &refused_in(folder.path(), twice.as_bytes()),
+        &["the key `plate` is given twice", "help: the first one is"],
+    );
+}
+
+#[test]
+fn numbers_that_cannot_be_meant() {
+    let law = "/materials/steel/st_venant_kirchhoff";
+    let plate = "/bodies/plate/mesh/plate";
+    let (nu, e) = (format!("{law}/nu"), format!("{law}/E"));
+    let thickness = format!("{plate}/thickness");
+    for (pointer, value, message, help) in [
+        (&nu, json!(-1.5), "Poisson's ratio `nu` is -1.5", "-1 < nu"),
+        (&nu, json!(0.5), "Poisson's ratio `nu` is 0.5", "0.499"),
+        (&e, json!(0), "Young's modulus `E` is 0", "must be positive"),
+        (
+            &thickness,
+            json!(-1),
+            "the thickness is -1",
+            "must be positive",
+        ),
+        (
+            &"/surfaces/ball/sphere/radius".to_owned(),
+            json!(-2.5),
+            "the radius is -2.5",
+            "must be positive",
+        ),
+        (
+            &"/solution/end_time".to_owned(),
+            json!(0),
+            "the end time is 0",
+            "must be positive",
+        ),
+    ] {
+        plate_refused(&[(pointer, value)], pointer, &[message, "help: ", help]);
+    }
+    plate_refused(
+        &[("/contacts/press/penalty", json!({ "value": -1 }))],
+        "/contacts/press/penalty/value",
+        &["the penalty is -1"],
+    );
+}
+
+#[test]
+fn a_value_that_is_undefined_during_the_run() {
+    plate_refused(
+        &[(
+            "/surfaces/ball/motion/translation",
+            json!([0, 0, "sqrt(0.7-t)-sqrt(0.7)"]),
+        )],
+        "/surfaces/ball/motion",
+        &["`sqrt(0.7-t)-sqrt(0.7)` is NaN at t = 0.7", "help:"],
+    );
+    plate_refused(
+        &[(
+            "/loads",
+            json!({ "p": { "on": "plate.top", "pressure": "sqrt(x-5)" } }),
+        )],
+        "/loads/p",
+        &["`sqrt(x-5)` is NaN at t = 0, x = "],
+    );
+    let supports = json!({
+        "pull": { "on": "plate.x_max", "displacement": { "x": "1/(1-2*t)", "y": 0, "z": 0 } }
+    });
+    plate_refused(
+        &[("/supports", supports)],
+        "/supports/pull/displacement",
+        &["`1/(1-2*t)` is inf at t = 0.5"],
+    );
+}
+
+#[test]
+fn a_tool_that_starts_deep_inside() {
+    plate_refused(
+        &[
+            ("/surfaces/ball/sphere/center", json!([20, 20, 20])),
+            ("/surfaces/ball/side", json!("as_given")),
+        ],
+        "/surfaces/ball",
+        &[
+            // Its lowest point is at z = -5, the slave face at z = 1; elements are 10 wide.
+            "surface `ball` starts 6 deep inside body `plate` (contact `press`), more than half an element, 5",
+            "help: move it back with `placement`, or choose the other `side`",
+        ],
+    );
+}
+
+#[test]
+fn a_slave_on_both_sides() {
+    plate_refused(
+        &[("/surfaces/ball/sphere/center", json!([20, 20, 20]))],
+        "/surfaces/ball",
+        &[
+            "the outside of surface `ball` is not clear: the slave starts on both sides of the sphere",
+            "help: move the surface clear of the body with `placement`, or say `side`",
+        ],
+    );
+    // Of a CAD file the entity is named. The lowest face of the punch is at z = -0.5, the slave at z = 1.
+    let folder = tempfile::tempdir().unwrap();
+    let punch = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/punch.igs");
+    std::fs::copy(punch, folder.path().join("punch.igs")).unwrap();
+    let surface = json!({
+        "cad": { "file": "punch.igs" }, "placement": { "translation": [0, 0, -0.5] }
+    });
+    plate_refused_in(
+        folder.path(),
+        &[("/surfaces/ball", surface)],
+        "/surfaces/ball",
+        &[
+            "the slave starts on both sides of entity ",
+            "which belongs to a part of 45 patches (entity 1, entity 3,",
+        ],
+    );
+}
+
+/// `covact check` of a changed plate succeeds with these warnings.
+fn warned(changes: &[(&str, serde_json::Value)], parts: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    write_plate(folder.path(), changes);
+    let output = covact(folder.path(), &["check", "scene.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let count = parts.iter().filter(|p| p.starts_with("warning:")).count();
+    assert_parts(&stderr(&output), parts);
+    assert_parts(&stdout(&output), &[&format!("{count} warning(s)")]);
+}
+
+#[test]
+fn slave_points_too_coarse_for_the_tool() {
+    warned(
+        &[(
+            "/surfaces/ball/sphere",
+            json!({ "radius": 3, "center": [0, 0, 4] }),
+        )],
+        &[
+            // 25 nodes share 1600 mm^2.
+            "warning: contact `press`: its slave points are 8 apart, too coarse for the smallest convex radius 3 of \
+             surface `ball`",
+            "at most 1.5 apart",
+        ],
+    );
+}
+
+#[test]
+fn tools_in_the_wrong_place() {
+    let plane = |z: f64| json!({ "plane": { "center": [20, 20, z], "size": [60, 60] } });
+    warned(
+        &[("/surfaces/ball", plane(-3.0))],
+        &["warning: contact `press`: body `plate` lies between its slave faces and surface `ball`"],
+    );
+    let mut above = plane(30.0);
+    above["side"] = json!("as_given");
+    warned(
+        &[("/surfaces/ball", above)],
+        &[
+            "warning: contact `press`: body `plate` lies between",
+            "warning: contact `press`: 25 point(s) start behind surface `ball`, deeper than its `depth` 8.48528",
+            "choose the other `side`",
+        ],
+    );
+    warned(
+        &[("/surfaces/ball/sphere/center", json!([0, 0, 25.99]))],
+        &["warning: contact `press` starts with an overclosure of 0.01 at 1 point(s)"],
+    );
+}
+
+#[test]
+fn a_face_on_the_surface_finds_its_side() {
+    // Every slave point lies on the plane; the elements below tell that the plate is under it.
+    let folder = tempfile::tempdir().unwrap();
+    let plane = json!({ "plane": { "center": [20, 20, 1], "size": [60, 60] } });
+    write_plate(folder.path(), &[("/surfaces/ball", plane)]);
+    let output = covact(folder.path(), &["check", "scene.json"]);
+    assert_eq!(stderr(&output), "");
+    assert_parts(
+        &stdout(&output),
+        &[
+            "where the slave starts (normals of 1 of 1 patch(es) turned round)",
+            "no warnings",
+        ],
+    );
+}
+
+#[test]
+fn a_surface_without_a_contact() {
+    for side in ["auto", "as_given"] {
+        let floor = json!({ "plane": { "center": [0, 0, -5], "size": [100, 100] }, "side": side });
+        warned(
+            &[("/surfaces/floor", floor)],
+            &["warning: surface `floor` takes part in no contact"],
+        );
+    }
+}

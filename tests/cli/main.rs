@@ -1,0 +1,10 @@
+//! The program as its users meet it: what it prints, where, and its exit code.
+mod bad_files;
+mod bad_model;
+mod bad_text;
+mod check;
+mod inspect;
+mod output;
+mod run;
+mod schema;
+mod support;
