@@ -187,6 +187,14 @@ impl Table {
                     ""
                 )]
             }
+            Event::StepRetried {
+                step,
+                start,
+                reason,
+            } => vec![format!(
+                "{step:>5} {:>10} {:>10} again from {start}: {reason}",
+                "", ""
+            )],
             Event::Warning { text } => vec![format!("warning: {text}")],
         }
     }

@@ -38,7 +38,14 @@ pub enum Event {
         active: usize,
         penetration: f64,
     },
-    /// A step failed, everything was rolled back, and a smaller one is tried.
+    /// An attempt at a step failed, everything was rolled back, and the step is tried again from another start.
+    StepRetried {
+        step: u32,
+        /// The new start, in words.
+        start: String,
+        reason: String,
+    },
+    /// A step failed from every start, everything was rolled back, and a smaller one is tried.
     StepCut {
         step: u32,
         dt: f64,

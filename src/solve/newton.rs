@@ -49,7 +49,7 @@ pub struct Converged {
     pub history: Vec<(f64, usize)>,
     /// Largest round-off floor met, relative to the forces.
     pub floor: f64,
-    /// Largest number of negative pivots met (an unstable equilibrium on the way).
+    /// Negative pivots of the last factorization: above zero the equilibrium is unstable.
     pub negative_pivots: usize,
 }
 
@@ -84,6 +84,15 @@ impl Workspace {
     }
 }
 
+/// How long Newton's method goes on without getting nearer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Patience {
+    /// Another start is at hand: give up after a few iterations without headway.
+    Short,
+    /// Use all iterations.
+    Long,
+}
+
 /// One step of Newton's method.
 pub struct Newton<'a, 'm, S: LinearSolver> {
     pub model: &'m Model,
@@ -91,12 +100,18 @@ pub struct Newton<'a, 'm, S: LinearSolver> {
     pub solver: &'a mut S,
     pub workspace: &'a mut Workspace,
     pub settings: &'a scene::Newton,
+    pub patience: Patience,
     pub phases: &'a mut Phases,
     pub interrupt: &'a AtomicBool,
+    /// Iterations done, also by a solve that failed.
+    pub iterations: u32,
 }
 
 /// Iterations without headway after which the line search is switched on.
-const PATIENCE: u32 = 6;
+const UNTIL_SEARCH: u32 = 6;
+/// Iterations without headway after which a start is given up where another is at hand. A thin shell may take six to
+/// come down from the jump of its first iterate.
+const UNTIL_GIVEN_UP: u32 = 9;
 /// Smallest factor of the line search.
 const SMALLEST: f64 = 1.0 / 64.0;
 
@@ -157,7 +172,8 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
                 Verdict::Diverged => return Err(StepFailure::NotFinite { iteration }),
                 Verdict::Continue => {}
             }
-            if iteration >= self.settings.max_iterations {
+            let stuck = self.patience == Patience::Short && since_best >= UNTIL_GIVEN_UP;
+            if iteration >= self.settings.max_iterations || stuck {
                 return Err(StepFailure::TooManyIterations {
                     iterations: iteration,
                     residual: norms.relative(),
@@ -169,8 +185,9 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
             } else {
                 since_best += 1;
             }
-            negative_pivots = negative_pivots.max(self.solve_linear(pending)?);
-            let search = self.settings.line_search && !pending && since_best >= PATIENCE;
+            negative_pivots = self.solve_linear(pending)?;
+            self.iterations += 1;
+            let search = self.settings.line_search && !pending && since_best >= UNTIL_SEARCH;
             (totals, factor) = self.advance(trial, time, search)?;
             energy = dot(&self.workspace.du, &self.workspace.rhs).abs();
             if iteration == 0 {

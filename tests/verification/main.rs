@@ -1,3 +1,4 @@
 //! Verification against closed forms and published results, named by their source.
+mod hertz;
 mod plate_under_ball;
 mod support;

@@ -85,3 +85,77 @@ impl Outcome {
         self.column(name)[row]
     }
 }
+
+/// A body read back from its `.vtu` file.
+pub struct BodyFile {
+    /// Undeformed positions.
+    pub points: Vec<[f64; 3]>,
+    /// Nodes of the hexahedra in VTK's order.
+    cells: Vec<[usize; 8]>,
+    fields: Vec<(String, Vec<f64>)>,
+}
+
+impl Outcome {
+    /// The fields of a body at a step.
+    pub fn body(&self, name: &str, step: u32) -> BodyFile {
+        use vtkio::model::{Attribute, DataSet, Piece, VertexNumbers, Vtk};
+        let path = self.folder.path().join(format!("{name}_{step:04}.vtu"));
+        let vtk = Vtk::import(&path).expect("readable file");
+        let DataSet::UnstructuredGrid { pieces, .. } = vtk.data else {
+            panic!("{} is no unstructured grid", path.display());
+        };
+        let Some(Piece::Inline(piece)) = pieces.into_iter().next() else {
+            panic!("{} has no piece", path.display());
+        };
+        let numbers: Vec<f64> = piece.points.cast_into().expect("numbers");
+        let VertexNumbers::XML { connectivity, .. } = piece.cells.cell_verts else {
+            panic!("XML expected");
+        };
+        let fields = (piece.data.point.into_iter())
+            .filter_map(|a| match a {
+                Attribute::DataArray(d) => Some((d.name, d.data.cast_into().expect("numbers"))),
+                Attribute::Field { .. } => None,
+            })
+            .collect();
+        BodyFile {
+            points: numbers
+                .chunks_exact(3)
+                .map(|p| [p[0], p[1], p[2]])
+                .collect(),
+            cells: (connectivity.chunks_exact(8))
+                .map(|c| std::array::from_fn(|i| c[i] as usize))
+                .collect(),
+            fields,
+        }
+    }
+}
+
+impl BodyFile {
+    /// A point field.
+    pub fn field(&self, name: &str) -> &[f64] {
+        let found = self.fields.iter().find(|f| f.0 == name);
+        &found.unwrap_or_else(|| panic!("no field {name}")).1
+    }
+
+    /// Nodes with the largest z that satisfy a condition.
+    pub fn top_nodes(&self, condition: impl Fn(&[f64; 3]) -> bool) -> Vec<usize> {
+        let top = self.points.iter().fold(f64::MIN, |a, p| a.max(p[2]));
+        (0..self.points.len())
+            .filter(|&n| self.points[n][2] > top - 1e-9 && condition(&self.points[n]))
+            .collect()
+    }
+
+    /// Faces with the largest z and x, y below `limit`, nodes with x fastest.
+    pub fn top_faces(&self, limit: f64) -> Vec<[usize; 4]> {
+        let top = self.points.iter().fold(f64::MIN, |a, p| a.max(p[2]));
+        (self.cells.iter())
+            .map(|c| [c[4], c[5], c[7], c[6]])
+            .filter(|f| {
+                f.iter().all(|&n| {
+                    let p = self.points[n];
+                    p[2] > top - 1e-9 && p[0] <= limit && p[1] <= limit
+                })
+            })
+            .collect()
+    }
+}

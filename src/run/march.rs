@@ -1,0 +1,292 @@
+//! The march through time: steps, roll-back, output.
+use super::RunError;
+use super::fields::Fields;
+use super::history;
+use super::step::Attempts;
+use crate::assembly::Assembler;
+use crate::model::{Model, penalty};
+use crate::output::{History, Phases, Results, RunStatus};
+use crate::scene::Scene;
+use crate::solve::event::{Event, Observer};
+use crate::solve::linear::DirectSolver;
+use crate::solve::newton::{Converged, StepFailure, Workspace};
+use crate::solve::state::State;
+use crate::solve::stepping::Stepping;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// What a run has done so far.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Progress {
+    pub warnings: Vec<String>,
+    /// Newton iterations, those of failed attempts included.
+    pub iterations: u64,
+    pub cuts: u32,
+    pub steps: u32,
+    pub time: f64,
+}
+
+/// How a run ended.
+pub(super) struct Ending {
+    pub status: RunStatus,
+    pub reason: Option<String>,
+}
+
+/// A run under way.
+pub(super) struct March<'a, 'm> {
+    scene: &'a Scene,
+    model: &'m Model,
+    assembler: &'a mut Assembler<'m>,
+    solver: &'a mut DirectSolver,
+    workspace: Workspace,
+    pub observer: &'a mut (dyn Observer + Send),
+    interrupt: &'a AtomicBool,
+    pub phases: Phases,
+    pub progress: Progress,
+    /// Pairs that were in contact at some accepted step.
+    touched: Vec<bool>,
+}
+
+/// Folder, table and fields of a run.
+struct Outputs {
+    results: Results,
+    table: History,
+    fields: Fields,
+    /// Last step whose fields were written.
+    written: Option<u32>,
+}
+
+impl<'a, 'm> March<'a, 'm> {
+    pub fn new(
+        scene: &'a Scene,
+        model: &'m Model,
+        assembler: &'a mut Assembler<'m>,
+        solver: &'a mut DirectSolver,
+        observer: &'a mut (dyn Observer + Send),
+        interrupt: &'a AtomicBool,
+        phases: Phases,
+    ) -> Self {
+        March {
+            scene,
+            model,
+            assembler,
+            solver,
+            workspace: Workspace::new(model),
+            observer,
+            interrupt,
+            phases,
+            progress: Progress {
+                warnings: model.warnings.clone(),
+                ..Progress::default()
+            },
+            touched: vec![false; model.pairs.len()],
+        }
+    }
+
+    /// Runs from time 0 to the end, or to where it gets.
+    pub fn run(&mut self, out: &Path) -> Result<Ending, RunError> {
+        let mut outputs = Outputs {
+            results: Results::create(out)?,
+            table: History::create(&out.join("history.csv"), history::columns(self.model))?,
+            fields: Fields::new(self.model, self.scene.output.tessellation)?,
+            written: None,
+        };
+        for note in outputs.fields.notes() {
+            self.warn(note);
+        }
+        let mut committed = State::new(self.model);
+        outputs
+            .fields
+            .gather(self.model, &self.assembler.penalties, &committed, 0.0)?;
+        self.write(&mut outputs, &committed)?;
+        let ending = self.steps(&mut committed, &mut outputs);
+        if self.scene.output.every > 0 && outputs.written != Some(self.progress.steps) {
+            self.write(&mut outputs, &committed)?;
+        }
+        ending
+    }
+
+    fn steps(&mut self, committed: &mut State, outputs: &mut Outputs) -> Result<Ending, RunError> {
+        let settings = &self.scene.solution;
+        let mut stepping = Stepping::new(
+            settings.step,
+            settings.end_time,
+            &self.model.kinks,
+            &settings.stops,
+        );
+        let mut trial = committed.clone();
+        // The state before the last accepted step and that step's size, while the path is smooth.
+        let mut before: Option<(State, f64)> = None;
+        let mut cuts = 0;
+        while !stepping.done(self.progress.time) {
+            let end = stepping.next(self.progress.time);
+            let dt = end - self.progress.time;
+            let step = self.progress.steps + 1;
+            self.observer.event(&Event::StepStarted {
+                step,
+                time: end,
+                dt,
+            });
+            let result = Attempts {
+                model: self.model,
+                assembler: self.assembler,
+                solver: self.solver,
+                workspace: &mut self.workspace,
+                settings: &settings.newton,
+                phases: &mut self.phases,
+                interrupt: self.interrupt,
+                observer: self.observer,
+                progress: &mut self.progress,
+            }
+            .solve(step, end, dt, committed, before.as_ref(), &mut trial);
+            let failure = match result {
+                Ok(converged) => {
+                    match &mut before {
+                        Some((state, size)) => {
+                            std::mem::swap(state, committed);
+                            *size = dt;
+                        }
+                        None => before = Some((committed.clone(), dt)),
+                    }
+                    committed.copy_from(&trial);
+                    if stepping.at_kink(end) {
+                        before = None;
+                    }
+                    stepping.accepted(converged.iterations);
+                    self.accept(step, end, &converged);
+                    self.record(outputs, committed, dt, cuts, &converged)?;
+                    cuts = 0;
+                    continue;
+                }
+                Err(failure) => failure,
+            };
+            if failure == StepFailure::Interrupted {
+                return Ok(Ending {
+                    status: RunStatus::Interrupted,
+                    reason: Some("stopped by the user".to_owned()),
+                });
+            }
+            cuts += 1;
+            self.progress.cuts += 1;
+            let reason = failure.to_string();
+            let Some(next_dt) = stepping.failed(dt) else {
+                return Ok(Ending {
+                    status: RunStatus::NotConverged,
+                    reason: Some(format!(
+                        "step {step} from time {} failed at the smallest step size: {reason}",
+                        self.progress.time
+                    )),
+                });
+            };
+            self.observer.event(&Event::StepCut {
+                step,
+                dt,
+                next_dt,
+                reason,
+            });
+        }
+        Ok(self.ending())
+    }
+
+    /// How a run that reached its end time ended.
+    fn ending(&self) -> Ending {
+        let never: Vec<&str> = (self.touched.iter().zip(&self.model.pairs))
+            .filter(|(touched, _)| !**touched)
+            .map(|(_, pair)| pair.name.as_str())
+            .collect();
+        if never.is_empty() {
+            return Ending {
+                status: RunStatus::Done,
+                reason: None,
+            };
+        }
+        Ending {
+            status: RunStatus::NoContact,
+            reason: Some(format!(
+                "the surfaces of contact `{}` never touched: check the motion, the `side` and the `depth` of the \
+                 surface",
+                never.join("`, `")
+            )),
+        }
+    }
+
+    fn accept(&mut self, step: u32, end: f64, converged: &Converged) {
+        self.progress.steps = step;
+        self.progress.time = end;
+        for (i, pair) in self.model.pairs.iter().enumerate() {
+            let deepest = converged.totals.penetration[i];
+            self.touched[i] |= deepest > 0.0;
+            let allowed = penalty::TOLERATED * pair.element_size;
+            if !pair.automatic && deepest > allowed {
+                self.warn(format!(
+                    "contact `{}`: penetration above 1 % of an element ({allowed:.3e}) under the given penalty",
+                    pair.name
+                ));
+            }
+        }
+        if converged.negative_pivots > 0 {
+            self.warn(format!(
+                "step {step}: the tangent of the converged state has {} negative pivot(s): the equilibrium is unstable",
+                converged.negative_pivots
+            ));
+        }
+        self.observer.event(&Event::StepAccepted {
+            step,
+            time: end,
+            iterations: converged.iterations,
+            active: converged.totals.active,
+            penetration: (converged.totals.penetration.iter()).fold(0.0, |a, b| a.max(*b)),
+        });
+    }
+
+    /// The row of an accepted step, and its fields where they are wanted.
+    fn record(
+        &mut self,
+        outputs: &mut Outputs,
+        state: &State,
+        dt: f64,
+        cuts: u32,
+        converged: &Converged,
+    ) -> Result<(), RunError> {
+        let (step, time) = (self.progress.steps, self.progress.time);
+        self.phases.start("output");
+        (outputs.fields).gather(self.model, &self.assembler.penalties, state, time)?;
+        let row = history::row(&history::Record {
+            model: self.model,
+            step,
+            time,
+            dt,
+            cuts,
+            converged,
+            residual: self.workspace.residual(),
+            fields: &outputs.fields,
+        });
+        outputs.table.push(&row)?;
+        self.phases.stop("output");
+        let every = self.scene.output.every;
+        if every > 0 && step.is_multiple_of(every) {
+            self.write(outputs, state)?;
+        }
+        Ok(())
+    }
+
+    /// Reports a warning once.
+    fn warn(&mut self, text: String) {
+        if !self.progress.warnings.contains(&text) {
+            self.observer.event(&Event::Warning { text: text.clone() });
+            self.progress.warnings.push(text);
+        }
+    }
+
+    fn write(&mut self, outputs: &mut Outputs, state: &State) -> Result<(), RunError> {
+        if self.scene.output.every == 0 {
+            return Ok(());
+        }
+        let (step, time) = (self.progress.steps, self.progress.time);
+        self.phases.start("output");
+        let written = (outputs.fields).write(self.model, &mut outputs.results, step, time, state);
+        self.phases.stop("output");
+        outputs.written = Some(step);
+        Ok(written?)
+    }
+}

@@ -1,0 +1,177 @@
+//! One step, from the cheapest start that gets there.
+//!
+//! 1. The path so far, continued: rotations are then right to second order, and a smooth path takes three or four
+//!    iterations.
+//! 2. The last accepted state.
+//! 3. The last accepted state under a soft penalty that is stiffened in stages. A flat tool on a flat sheet touches at
+//!    hundreds of points of which a handful stay: under a stiff penalty the points chatter, under a soft one the few
+//!    come out, and each stage starts from nearly the right ones.
+//!
+//! What fails all three is cut.
+use super::march::Progress;
+use crate::assembly::Assembler;
+use crate::model::{Model, penalty};
+use crate::output::Phases;
+use crate::scene;
+use crate::solve::event::{Event, Observer};
+use crate::solve::linear::DirectSolver;
+use crate::solve::newton::{Converged, Newton, Patience, StepFailure, Workspace};
+use crate::solve::state::State;
+use std::sync::atomic::AtomicBool;
+
+/// Stages of a softened start, as multiples of the penalty.
+const STAGES: [f64; 3] = [1e-3, 1e-2, 1e-1];
+/// Times an automatic penalty may be raised within a step.
+const RAISES: usize = 4;
+
+/// The attempts at one step.
+pub(super) struct Attempts<'a, 'm> {
+    pub model: &'m Model,
+    pub assembler: &'a mut Assembler<'m>,
+    pub solver: &'a mut DirectSolver,
+    pub workspace: &'a mut Workspace,
+    pub settings: &'a scene::Newton,
+    pub phases: &'a mut Phases,
+    pub interrupt: &'a AtomicBool,
+    pub observer: &'a mut (dyn Observer + Send),
+    pub progress: &'a mut Progress,
+}
+
+impl Attempts<'_, '_> {
+    /// Solves the step that ends at `end`; `trial` is its state on success and of no use after a failure. Penalties are
+    /// as before on failure.
+    pub fn solve(
+        &mut self,
+        step: u32,
+        end: f64,
+        dt: f64,
+        committed: &State,
+        before: Option<&(State, f64)>,
+        trial: &mut State,
+    ) -> Result<Converged, StepFailure> {
+        let penalties = self.assembler.penalties.clone();
+        let touching = !self.model.pairs.is_empty();
+        if let Some((state, size)) = before {
+            committed.extrapolate(state, dt / size, trial);
+            match self.converge(step, end, trial, Patience::Short) {
+                Err(failure) if failure != StepFailure::Interrupted => {
+                    self.again(step, "the last accepted state", &failure, &penalties);
+                }
+                other => return other,
+            }
+        }
+        trial.copy_from(committed);
+        let patience = if touching {
+            Patience::Short
+        } else {
+            Patience::Long
+        };
+        match self.converge(step, end, trial, patience) {
+            Err(failure) if touching && failure != StepFailure::Interrupted => {
+                self.again(step, "a softened penalty", &failure, &penalties);
+            }
+            other => return other,
+        }
+        trial.copy_from(committed);
+        let result = self.softened(step, end, trial, &penalties);
+        if result.is_err() {
+            self.assembler.penalties.copy_from_slice(&penalties);
+        }
+        result
+    }
+
+    fn softened(
+        &mut self,
+        step: u32,
+        end: f64,
+        trial: &mut State,
+        penalties: &[f64],
+    ) -> Result<Converged, StepFailure> {
+        let mut iterations = 0;
+        for stage in STAGES {
+            for (eps, full) in self.assembler.penalties.iter_mut().zip(penalties) {
+                *eps = stage * full;
+            }
+            iterations += self.newton(step, end, trial, Patience::Long)?.iterations;
+        }
+        self.assembler.penalties.copy_from_slice(penalties);
+        let mut converged = self.converge(step, end, trial, Patience::Long)?;
+        converged.iterations += iterations;
+        Ok(converged)
+    }
+
+    fn again(&mut self, step: u32, start: &str, failure: &StepFailure, penalties: &[f64]) {
+        self.assembler.penalties.copy_from_slice(penalties);
+        self.observer.event(&Event::StepRetried {
+            step,
+            start: start.to_owned(),
+            reason: failure.to_string(),
+        });
+    }
+
+    /// Newton's method, and where an automatic penalty lets a point sink in too far, a stiffer one.
+    fn converge(
+        &mut self,
+        step: u32,
+        end: f64,
+        trial: &mut State,
+        patience: Patience,
+    ) -> Result<Converged, StepFailure> {
+        let mut iterations = 0;
+        for _ in 0..RAISES {
+            let mut converged = self.newton(step, end, trial, patience)?;
+            iterations += converged.iterations;
+            converged.iterations = iterations;
+            if !self.stiffen(step, &converged) {
+                return Ok(converged);
+            }
+        }
+        Err(StepFailure::PenetrationStays)
+    }
+
+    fn newton(
+        &mut self,
+        step: u32,
+        end: f64,
+        trial: &mut State,
+        patience: Patience,
+    ) -> Result<Converged, StepFailure> {
+        let mut newton = Newton {
+            model: self.model,
+            assembler: self.assembler,
+            solver: self.solver,
+            workspace: self.workspace,
+            settings: self.settings,
+            patience,
+            phases: self.phases,
+            interrupt: self.interrupt,
+            iterations: 0,
+        };
+        let result = newton.solve(step, end, trial, self.observer);
+        self.progress.iterations += u64::from(newton.iterations);
+        result
+    }
+
+    /// Raises the automatic penalties of pairs that penetrate too deep; whether there were any.
+    fn stiffen(&mut self, step: u32, converged: &Converged) -> bool {
+        let mut raised = false;
+        for (i, pair) in self.model.pairs.iter().enumerate() {
+            let allowed = penalty::TOLERATED * pair.element_size;
+            let deepest = converged.totals.penetration[i];
+            if !pair.automatic || deepest <= allowed {
+                continue;
+            }
+            let eps = self.assembler.penalties[i] * 2.0 * deepest / allowed;
+            self.assembler.penalties[i] = eps;
+            raised = true;
+            let text = format!(
+                "contact `{}`: penetration {deepest:.3e} above {allowed:.3e} (1 % of an element) at step {step}: \
+                 automatic penalty raised to {eps:.6e}",
+                pair.name
+            );
+            self.observer.event(&Event::Warning { text: text.clone() });
+            self.progress.warnings.push(text);
+        }
+        raised
+    }
+}
