@@ -3,8 +3,9 @@ use crate::support::{Outcome, scene_json, solve};
 use serde_json::{Value, json};
 
 /// A quarter of the clamped plate under a ball on `n` x `n` elements with slave points at Gauss points, pushed in by `depth`
-/// in steps of 1/8. The tolerance is below what is compared.
-pub fn plate(n: u32, depth: f64) -> Value {
+/// in `steps` steps. The tolerance is below what is compared.
+pub fn plate(n: u32, depth: f64, steps: u32) -> Value {
+    let step = 1.0 / f64::from(steps);
     let mut scene = scene_json("ball_on_plate.json");
     scene["bodies"]["plate"]["mesh"]["plate"]["elements"] = json!([n, n]);
     scene["surfaces"]["ball"]["motion"]["translation"] = json!([0, 0, format!("-{depth}*t")]);
@@ -13,7 +14,7 @@ pub fn plate(n: u32, depth: f64) -> Value {
         "points": { "gauss": 2 }
     });
     scene["solution"] = json!({
-        "step": { "initial": 0.125, "max": 0.125 },
+        "step": { "initial": step, "max": step },
         "newton": { "tolerance": 1e-11 },
         "threads": 1
     });

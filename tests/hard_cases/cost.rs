@@ -15,7 +15,7 @@ const N: usize = 6;
 const NODES: usize = 2 * (N + 1) * (N + 1);
 
 fn scene(element: &str) -> Value {
-    let mut scene = plate(N as u32, 5.0);
+    let mut scene = plate(N as u32, 5.0, 8);
     scene["bodies"]["plate"]["element"] = json!(element);
     scene
 }

@@ -6,7 +6,7 @@ use serde_json::json;
 #[test]
 fn failed_steps_leave_no_trace() {
     let run = |initial: f64, iterations: u32| {
-        let mut scene = plate(10, 8.0);
+        let mut scene = plate(8, 8.0, 8);
         scene["solution"]["step"] = json!({ "initial": initial, "max": initial });
         scene["solution"]["newton"]["max_iterations"] = json!(iterations);
         done(&scene)

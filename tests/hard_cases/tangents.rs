@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 #[test]
 fn every_tangent_leads_to_the_same_solution() {
     let run = |tangent: Value| {
-        let mut scene = plate(10, 8.0);
+        let mut scene = plate(10, 8.0, 8);
         scene["contacts"]["press"]["tangent"] = tangent;
         // A soft penalty, so that the penetration, which the published form takes for zero, is visible.
         scene["contacts"]["press"]["penalty"] = json!({ "value": 600 });
