@@ -49,9 +49,9 @@ pub fn normal_tangent<D: DualNum<f64> + Copy>(
             frame.rho_i[0] * a[0] + frame.rho_i[1] * a[1],
             frame.rho_i[0] * a[1] + frame.rho_i[1] * a[2],
         ];
-        for j in 0..2 {
+        for (j, rho_up) in contravariant.iter().enumerate() {
             let c = slot(j + 1, &frame.n);
-            let y = slot(0, &contravariant[j]);
+            let y = slot(0, rho_up);
             k -= (c * y.transpose() + y * c.transpose()) * normal.n;
         }
     }

@@ -1,11 +1,19 @@
-//! Arithmetic expressions in named variables, compiled to a short postfix program.
+//! Arithmetic expressions in named variables, read and evaluated by the crate nanoexpr.
 //!
 //! Usual rules: `^` (or `**`) binds tighter than a sign and from the right, so `-t^2` is -(t^2) and `2^3^2` is 2^9.
+//! Of the crates measured only nanoexpr (MIT, no dependencies, no unsafe code) and meval have these rules; exmex,
+//! fasteval, mathexpr and rhai read `-t^2` as (-t)^2, and meval is built on a release of nom that future compilers
+//! refuse. What is left to do here: our names, IEEE arithmetic, limits, and errors in the scene's words.
 use super::problem::suggestion;
+use nanoexpr::{Context, ErrorKind, Evaluator, Number};
+use std::cell::Cell;
 use std::ops::Range;
 
+type Function1 = fn(f64) -> f64;
+type Function2 = fn(f64, f64) -> f64;
+
 /// Functions of one argument.
-const FUNCTIONS_1: [(&str, fn(f64) -> f64); 19] = [
+const FUNCTIONS_1: [(&str, Function1); 19] = [
     ("abs", f64::abs),
     ("acos", f64::acos),
     ("asin", f64::asin),
@@ -27,8 +35,8 @@ const FUNCTIONS_1: [(&str, fn(f64) -> f64); 19] = [
     ("tanh", f64::tanh),
 ];
 
-/// Functions of two arguments; `min` and `max` take any number of them.
-const FUNCTIONS_2: [(&str, fn(f64, f64) -> f64); 5] = [
+/// Functions of two arguments; `min` and `max` take up to [`ARGUMENTS`].
+const FUNCTIONS_2: [(&str, Function2); 5] = [
     ("atan2", f64::atan2),
     ("hypot", f64::hypot),
     ("max", max),
@@ -38,10 +46,12 @@ const FUNCTIONS_2: [(&str, fn(f64, f64) -> f64); 5] = [
 
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
 
-/// Parentheses, signs and powers may be nested this deep.
+/// Parentheses, signs, operators and calls may be nested this deep: it bounds the stack.
 const MAX_NESTING: usize = 64;
-/// Numbers on the stack of a program.
-const STACK: usize = 32;
+/// Bytes of an expression: it bounds the time.
+const MAX_LENGTH: usize = 4096;
+/// Arguments of a call.
+const ARGUMENTS: usize = 8;
 
 fn sign(x: f64) -> f64 {
     match x {
@@ -69,57 +79,120 @@ pub struct ExpressionError {
     pub span: Range<usize>,
 }
 
-#[derive(Debug, Clone, Copy)]
-enum Op {
-    Number(f64),
-    Variable(u8),
-    Negate,
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Power,
-    Call1(fn(f64) -> f64),
-    Call2(fn(f64, f64) -> f64),
+/// A number by the rules of IEEE 754: infinities and NaN are results, which the caller judges. It has no order, so
+/// comparisons, logic and factorials, which the crate also reads, are refused.
+#[derive(Debug, Clone, Copy, Default)]
+struct Real(f64);
+
+impl Number for Real {
+    fn parse(literal: &str) -> Option<Self> {
+        let x: f64 = literal.parse().ok()?;
+        x.is_finite().then_some(Real(x))
+    }
+    fn add(self, rhs: Self) -> Result<Self, ErrorKind> {
+        Ok(Real(self.0 + rhs.0))
+    }
+    fn subtract(self, rhs: Self) -> Result<Self, ErrorKind> {
+        Ok(Real(self.0 - rhs.0))
+    }
+    fn multiply(self, rhs: Self) -> Result<Self, ErrorKind> {
+        Ok(Real(self.0 * rhs.0))
+    }
+    fn divide(self, rhs: Self) -> Result<Self, ErrorKind> {
+        Ok(Real(self.0 / rhs.0))
+    }
+    fn remainder(self, _: Self) -> Result<Self, ErrorKind> {
+        // A remainder's sign is a matter of taste; mod(a, b) says which it means.
+        Err(ErrorKind::Unsupported)
+    }
+    fn power(self, rhs: Self) -> Result<Self, ErrorKind> {
+        Ok(Real(self.0.powf(rhs.0)))
+    }
+    fn negate(self) -> Result<Self, ErrorKind> {
+        Ok(Real(-self.0))
+    }
 }
 
-/// A compiled expression.
+/// What the names in an expression stand for.
+struct Names<'a, V: Fn(&str) -> Option<f64>> {
+    variable: V,
+    /// Arguments that the last function called with the wrong number of them takes.
+    wanted: &'a Cell<usize>,
+}
+
+impl<V: Fn(&str) -> Option<f64>> Context<Real> for Names<'_, V> {
+    fn variable(&self, name: &str) -> Option<Real> {
+        let constant = || CONSTANTS.iter().find(|c| c.0 == name).map(|c| c.1);
+        (self.variable)(name).or_else(constant).map(Real)
+    }
+
+    fn call(&self, name: &str, arguments: &[Real]) -> Option<Result<Real, ErrorKind>> {
+        let wrong = |wanted| {
+            self.wanted.set(wanted);
+            Some(Err(ErrorKind::ArgumentCount))
+        };
+        if let Some((_, f)) = FUNCTIONS_1.iter().find(|f| f.0 == name) {
+            return match arguments {
+                [a] => Some(Ok(Real(f(a.0)))),
+                _ => wrong(1),
+            };
+        }
+        let (_, f) = FUNCTIONS_2.iter().find(|f| f.0 == name)?;
+        match arguments {
+            [a, b] => Some(Ok(Real(f(a.0, b.0)))),
+            [a, rest @ ..] if rest.len() > 1 && matches!(name, "min" | "max") => {
+                Some(Ok(Real(rest.iter().fold(a.0, |a, b| f(a, b.0)))))
+            }
+            _ => wrong(2),
+        }
+    }
+}
+
+/// A checked expression. Evaluating it reads the text again, in one pass without allocating.
 #[derive(Debug, Clone)]
 pub struct Expression {
-    program: Vec<Op>,
+    text: String,
+    variables: Vec<String>,
     /// Bit k is set when variable k occurs.
     used: u32,
 }
 
 impl Expression {
-    /// Compiles `text`, in which the names of `variables` (at most 32) may occur.
+    /// Checks `text`, in which the names of `variables` (at most 32) may occur.
     ///
     /// # Errors
     /// [`ExpressionError`] with the place in the text.
     pub fn compile(text: &str, variables: &[&str]) -> Result<Expression, ExpressionError> {
-        let mut parser = Parser {
-            text,
-            at: 0,
-            variables,
-            program: Vec::new(),
-            used: 0,
-            nesting: 0,
-            height: 0,
+        let whole = |message: String| ExpressionError {
+            message,
+            help: None,
+            span: 0..text.len(),
         };
-        parser.sum()?;
-        match parser.peek() {
-            None => Ok(Expression {
-                program: parser.program,
-                used: parser.used,
+        if text.trim().is_empty() {
+            return Err(whole("the expression is empty".into()));
+        }
+        if text.len() > MAX_LENGTH {
+            return Err(whole(format!(
+                "the expression is longer than {MAX_LENGTH} bytes"
+            )));
+        }
+        let (used, wanted) = (Cell::new(0u32), Cell::new(0));
+        // Every part of an expression is evaluated whatever the values, so one evaluation meets every error.
+        let names = Names {
+            variable: |name: &str| {
+                let k = variables.iter().take(32).position(|v| *v == name)?;
+                used.set(used.get() | 1 << k);
+                Some(1.0)
+            },
+            wanted: &wanted,
+        };
+        match evaluator(&names).evaluate::<Real>(text) {
+            Ok(_) => Ok(Expression {
+                text: text.to_owned(),
+                variables: variables.iter().map(|v| v.to_string()).collect(),
+                used: used.get(),
             }),
-            Some(c) => {
-                let help = match c {
-                    ')' => "there is no `(` that it closes",
-                    _ => "an operator is missing before it, e.g. `*`",
-                };
-                let found = &text[parser.token()];
-                Err(parser.error(parser.token(), format!("unexpected `{found}`"), Some(help)))
-            }
+            Err(e) => Err(explain(text, variables, e, wanted.get())),
         }
     }
 
@@ -131,318 +204,86 @@ impl Expression {
     /// Value for the given variables (in the order of [`Expression::compile`]; missing ones count as NaN). The result
     /// may be infinite or NaN.
     pub fn eval(&self, variables: &[f64]) -> f64 {
-        let mut stack = [0.0; STACK];
-        let mut n = 0;
-        for op in &self.program {
-            // Compilation bounds the height of the stack and gives every operator its operands.
-            match *op {
-                Op::Number(x) => {
-                    stack[n] = x;
-                    n += 1;
-                }
-                Op::Variable(k) => {
-                    stack[n] = variables.get(usize::from(k)).copied().unwrap_or(f64::NAN);
-                    n += 1;
-                }
-                Op::Negate => stack[n - 1] = -stack[n - 1],
-                Op::Call1(f) => stack[n - 1] = f(stack[n - 1]),
-                _ => {
-                    let (a, b) = (stack[n - 2], stack[n - 1]);
-                    n -= 1;
-                    stack[n - 1] = match *op {
-                        Op::Add => a + b,
-                        Op::Subtract => a - b,
-                        Op::Multiply => a * b,
-                        Op::Divide => a / b,
-                        Op::Power => a.powf(b),
-                        Op::Call2(f) => f(a, b),
-                        _ => f64::NAN,
-                    };
-                }
-            }
+        let wanted = Cell::new(0);
+        let names = Names {
+            variable: |name: &str| {
+                let k = self.variables.iter().position(|v| v == name)?;
+                Some(variables.get(k).copied().unwrap_or(f64::NAN))
+            },
+            wanted: &wanted,
+        };
+        match evaluator(&names).evaluate::<Real>(&self.text) {
+            Ok(Real(x)) => x,
+            Err(_) => f64::NAN,
         }
-        stack[0]
     }
 }
 
-struct Parser<'a> {
-    text: &'a str,
-    at: usize,
-    variables: &'a [&'a str],
-    program: Vec<Op>,
-    used: u32,
-    nesting: usize,
-    /// Height of the stack after the program so far.
-    height: usize,
+fn evaluator<C: Context<Real>>(names: &C) -> Evaluator<'_, C, ARGUMENTS> {
+    Evaluator::new(names).max_depth(MAX_NESTING)
 }
 
-impl Parser<'_> {
-    fn error(
-        &self,
-        span: Range<usize>,
-        message: impl Into<String>,
-        help: Option<&str>,
-    ) -> ExpressionError {
-        ExpressionError {
-            message: message.into(),
-            help: help.map(str::to_string),
-            span,
+/// The crate's error in the scene's words.
+fn explain(
+    text: &str,
+    variables: &[&str],
+    error: nanoexpr::Error,
+    wanted: usize,
+) -> ExpressionError {
+    let mut span = error.span.start..error.span.end;
+    let found = text.get(span.clone()).unwrap_or_default();
+    let name = found.split(['(', ' ']).next().unwrap_or_default();
+    let functions = (FUNCTIONS_1.iter().map(|f| f.0)).chain(FUNCTIONS_2.iter().map(|f| f.0));
+    let mut help = None;
+    let message = match error.kind {
+        ErrorKind::UnknownVariable if functions.clone().any(|f| f == name) => {
+            format!("the function `{name}` needs arguments, as in `{name}(...)`")
         }
+        ErrorKind::UnknownVariable => {
+            let known = (variables.iter().copied()).chain(CONSTANTS.iter().map(|c| c.0));
+            help = Some(suggestion(name, "possible here", known));
+            format!("unknown variable `{name}`")
+        }
+        ErrorKind::UnknownFunction => {
+            help = Some(suggestion(name, "functions", functions));
+            format!("unknown function `{name}`")
+        }
+        ErrorKind::ArgumentCount => {
+            span.end = span.start + name.len();
+            format!("`{name}` takes {wanted} argument{}", plural(wanted))
+        }
+        ErrorKind::TooManyArguments => format!("a function takes at most {ARGUMENTS} arguments"),
+        ErrorKind::InvalidNumber => format!("`{found}` is not a number"),
+        ErrorKind::UnclosedParenthesis => "this `(` is not closed".to_owned(),
+        ErrorKind::UnexpectedEnd => {
+            "the expression ends where a number or name is expected".to_owned()
+        }
+        ErrorKind::TooDeep => {
+            span = 0..text.len();
+            format!("the expression is nested more than {MAX_NESTING} deep")
+        }
+        ErrorKind::Unsupported => {
+            help = Some("there are `+ - * / ^`, and mod(a, b) for a remainder".to_owned());
+            "comparisons, logic, factorials and `%` are not possible".to_owned()
+        }
+        ErrorKind::UnexpectedToken | ErrorKind::UnexpectedCharacter => {
+            help = Some(match found {
+                ")" => "there is no `(` that it closes, or nothing stands before it".to_owned(),
+                _ => "an operator may be missing before it, e.g. `*`".to_owned(),
+            });
+            format!("unexpected `{found}`")
+        }
+        other => other.to_string(),
+    };
+    ExpressionError {
+        message,
+        help,
+        span,
     }
+}
 
-    /// Skips space and looks at the next character.
-    fn peek(&mut self) -> Option<char> {
-        let rest = &self.text[self.at..];
-        self.at += rest.len() - rest.trim_start().len();
-        self.text[self.at..].chars().next()
-    }
-
-    /// The name, number or character at the present place.
-    fn token(&self) -> Range<usize> {
-        let rest = &self.text[self.at..];
-        let word = rest
-            .find(|c: char| !(c.is_alphanumeric() || c == '_'))
-            .unwrap_or(rest.len());
-        self.at..self.at + word.max(rest.chars().next().map_or(0, char::len_utf8))
-    }
-
-    fn eat(&mut self, c: char) -> bool {
-        let found = self.peek() == Some(c);
-        self.at += if found { c.len_utf8() } else { 0 };
-        found
-    }
-
-    fn push(&mut self, op: Op) -> Result<(), ExpressionError> {
-        match op {
-            Op::Number(_) | Op::Variable(_) => self.height += 1,
-            Op::Negate | Op::Call1(_) => {}
-            _ => self.height -= 1,
-        }
-        if self.height > STACK {
-            return Err(self.error(
-                0..self.text.len(),
-                "the expression is nested too deeply",
-                None,
-            ));
-        }
-        self.program.push(op);
-        Ok(())
-    }
-
-    fn sum(&mut self) -> Result<(), ExpressionError> {
-        self.product()?;
-        loop {
-            let op = match self.peek() {
-                Some('+') => Op::Add,
-                Some('-') => Op::Subtract,
-                _ => return Ok(()),
-            };
-            self.at += 1;
-            self.product()?;
-            self.push(op)?;
-        }
-    }
-
-    fn product(&mut self) -> Result<(), ExpressionError> {
-        self.signed()?;
-        loop {
-            let op = match self.peek() {
-                Some('*') => Op::Multiply,
-                Some('/') => Op::Divide,
-                _ => return Ok(()),
-            };
-            self.at += 1;
-            self.signed()?;
-            self.push(op)?;
-        }
-    }
-
-    fn signed(&mut self) -> Result<(), ExpressionError> {
-        self.nesting += 1;
-        if self.nesting > MAX_NESTING {
-            return Err(self.error(
-                0..self.text.len(),
-                "the expression is nested too deeply",
-                None,
-            ));
-        }
-        let result = match self.peek() {
-            Some('-') => {
-                self.at += 1;
-                self.signed().and_then(|()| self.push(Op::Negate))
-            }
-            Some('+') => {
-                self.at += 1;
-                self.signed()
-            }
-            _ => self.power(),
-        };
-        self.nesting -= 1;
-        result
-    }
-
-    fn power(&mut self) -> Result<(), ExpressionError> {
-        self.primary()?;
-        let next = self.peek();
-        if next == Some('^') || self.text[self.at..].starts_with("**") {
-            self.at += if next == Some('^') { 1 } else { 2 };
-            self.signed()?;
-            self.push(Op::Power)?;
-        }
-        Ok(())
-    }
-
-    fn primary(&mut self) -> Result<(), ExpressionError> {
-        match self.peek() {
-            Some('(') => {
-                let open = self.at;
-                self.at += 1;
-                self.sum()?;
-                self.close(open)
-            }
-            Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
-            Some(c) if c.is_alphabetic() || c == '_' => self.name(),
-            Some(c) => {
-                let message = format!("expected a number, a name or `(`, found `{c}`");
-                Err(self.error(self.token(), message, None))
-            }
-            None if self.text.trim().is_empty() => {
-                Err(self.error(0..self.text.len(), "the expression is empty", None))
-            }
-            None => {
-                let end = self.text.len();
-                Err(self.error(
-                    end..end,
-                    "the expression ends where a number or name is expected",
-                    None,
-                ))
-            }
-        }
-    }
-
-    fn close(&mut self, open: usize) -> Result<(), ExpressionError> {
-        if self.eat(')') {
-            return Ok(());
-        }
-        Err(match self.peek() {
-            None => self.error(open..open + 1, "this `(` is not closed", None),
-            Some(_) => {
-                let message = format!(
-                    "expected an operator or `)`, found `{}`",
-                    &self.text[self.token()]
-                );
-                self.error(self.token(), message, None)
-            }
-        })
-    }
-
-    fn number(&mut self) -> Result<(), ExpressionError> {
-        let bytes = &self.text.as_bytes()[self.at..];
-        let digits = |from: usize| {
-            bytes
-                .iter()
-                .skip(from)
-                .take_while(|b| b.is_ascii_digit())
-                .count()
-        };
-        let mut n = digits(0);
-        if bytes.get(n) == Some(&b'.') {
-            n += 1 + digits(n + 1);
-        }
-        if matches!(bytes.get(n), Some(b'e' | b'E')) {
-            let sign = usize::from(matches!(bytes.get(n + 1), Some(b'+' | b'-')));
-            let exponent = digits(n + 1 + sign);
-            n += if exponent > 0 { 1 + sign + exponent } else { 0 };
-        }
-        if bytes.get(n) == Some(&b'.') {
-            n += bytes
-                .iter()
-                .skip(n)
-                .take_while(|b| b.is_ascii_digit() || **b == b'.')
-                .count();
-        }
-        let span = self.at..self.at + n;
-        let word = &self.text[span.clone()];
-        match word.parse::<f64>() {
-            Ok(x) if x.is_finite() => {
-                self.at = span.end;
-                self.push(Op::Number(x))
-            }
-            _ => Err(self.error(span, format!("`{word}` is not a number"), None)),
-        }
-    }
-
-    fn name(&mut self) -> Result<(), ExpressionError> {
-        let span = self.token();
-        let name = &self.text[span.clone()];
-        self.at = span.end;
-        let function_1 = FUNCTIONS_1
-            .iter()
-            .find(|(n, _)| *n == name)
-            .map(|(_, f)| *f);
-        let function_2 = FUNCTIONS_2
-            .iter()
-            .find(|(n, _)| *n == name)
-            .map(|(_, f)| *f);
-        if self.peek() != Some('(') {
-            if let Some(k) = self.variables.iter().position(|v| *v == name) {
-                self.used |= 1 << k;
-                return self.push(Op::Variable(k as u8));
-            }
-            if let Some((_, x)) = CONSTANTS.iter().find(|(n, _)| *n == name) {
-                return self.push(Op::Number(*x));
-            }
-            if function_1.is_some() || function_2.is_some() {
-                let message = format!("the function `{name}` needs arguments, as in `{name}(...)`");
-                return Err(self.error(span, message, None));
-            }
-            let constants = CONSTANTS.iter().map(|(n, _)| *n);
-            let known = self.variables.iter().copied().chain(constants);
-            let help = suggestion(name, "possible here", known);
-            return Err(self.error(span, format!("unknown variable `{name}`"), Some(&help)));
-        }
-        let open = self.at;
-        self.at += 1;
-        let arguments = |n| match n {
-            1 => "1 argument".to_string(),
-            n => format!("{n} arguments"),
-        };
-        let (wanted, any) = match (function_1, function_2) {
-            (Some(_), _) => (1, false),
-            (_, Some(_)) => (2, matches!(name, "min" | "max")),
-            _ => {
-                let functions = FUNCTIONS_1.iter().map(|(n, _)| *n);
-                let known = functions.chain(FUNCTIONS_2.iter().map(|(n, _)| *n));
-                let help = suggestion(name, "functions", known);
-                return Err(self.error(span, format!("unknown function `{name}`"), Some(&help)));
-            }
-        };
-        let mut given = 0;
-        if self.peek() != Some(')') {
-            loop {
-                self.sum()?;
-                given += 1;
-                if given > 1
-                    && let Some(f) = function_2
-                {
-                    self.push(Op::Call2(f))?;
-                }
-                // More arguments than wanted are refused at once, before they unbalance the stack.
-                if !self.eat(',') || (given >= wanted && !any) {
-                    break;
-                }
-            }
-        }
-        if given < wanted || self.text[..self.at].ends_with(',') {
-            let message = format!("`{name}` takes {}", arguments(wanted));
-            return Err(self.error(span, message, None));
-        }
-        self.close(open)?;
-        match function_1 {
-            Some(f) => self.push(Op::Call1(f)),
-            None => Ok(()),
-        }
-    }
+fn plural(n: usize) -> &'static str {
+    if n == 1 { "" } else { "s" }
 }
 
 #[cfg(test)]
@@ -459,17 +300,25 @@ mod tests {
             ("-t^2", -9.0),
             ("2^3^2", 512.0),
             ("2**-1", 0.5),
+            ("2^-t^2", 1.0 / 512.0),
+            ("-t^-2*2", -2.0 / 9.0),
             ("10 - 2 - 3", 5.0),
             ("12 / 2 * t", 18.0),
             ("-2*-t", 6.0),
             ("1e-3*t", 3e-3),
             ("2.5E+1 + .5", 25.5),
             ("min(5, max(t, 4), 7)", 4.0),
+            ("min(1, max(2, 3))", 1.0),
+            ("max(1, 2, 3, 4, 5, 6, 7, 8)", 8.0),
             ("atan2(0, -1) - pi", 0.0),
             ("2*(t+1)*sin(pi/2)", 8.0),
             ("mod(-1, t)", 2.0),
             ("e^ln(t)", 3.0),
             ("hypot(3, 4)\t+\n1", 6.0),
+            ("log10(1000) + sqrt(16) + abs(-1)", 8.0),
+            ("floor(1.5) + ceil(1.5) + sign(-2)", 2.0),
+            ("acos(cos(1)) + asin(sin(1)) + atan(tan(1))", 3.0),
+            ("cosh(1) + sinh(1) + tanh(0) - exp(1)", 0.0),
         ] {
             assert!(
                 (value(text, 3.0) - expected).abs() < 1e-14 * expected.abs().max(1.0),
@@ -484,44 +333,65 @@ mod tests {
             ("", 0..0, "empty"),
             ("2*s", 2..3, "unknown variable `s`"),
             ("sun(t)", 0..3, "unknown function `sun`"),
-            ("sin t", 0..3, "needs arguments"),
+            ("t + sin", 4..7, "needs arguments"),
+            ("sin t", 4..5, "unexpected `t`"),
             ("2t", 1..2, "unexpected `t`"),
             ("(1+t", 0..1, "not closed"),
             ("t)", 1..2, "unexpected `)`"),
             ("1+", 2..2, "ends where"),
-            ("t*é", 2..4, "unknown variable `é`"),
+            ("t*é", 2..4, "unexpected `é`"),
             ("t ° 2", 2..4, "unexpected `°`"),
-            ("sin(t, 2)", 0..3, "takes 1 argument"),
+            ("1 + sin(t, 2)", 4..7, "takes 1 argument"),
             ("hypot(t)", 0..5, "takes 2 arguments"),
             ("hypot(1,2,3)", 0..5, "takes 2 arguments"),
             ("min()", 0..3, "takes 2"),
+            ("max(1,2,3,4,5,6,7,8,9)", 20..21, "at most 8"),
             ("1e999", 0..5, "not a number"),
-            ("1.2.3", 0..5, "not a number"),
+            ("1.2.3", 3..5, "unexpected `.3`"),
+            ("t < 1 ? 2 : 3", 0..5, "not possible"),
+            ("t && s", 0..4, "not possible"),
+            ("3!", 0..2, "not possible"),
+            ("5 % 3", 0..5, "not possible"),
         ] {
             let error = Expression::compile(text, &["t"]).unwrap_err();
             assert!(error.message.contains(part), "{text}: {}", error.message);
             assert_eq!(error.span, span, "{text}: {}", error.message);
         }
-        let help = Expression::compile("sqr(t)", &["t"])
-            .unwrap_err()
-            .help
-            .unwrap();
-        assert!(help.starts_with("did you mean `sqrt`?"), "{help}");
+        let help = |text| {
+            Expression::compile(text, &["t"])
+                .unwrap_err()
+                .help
+                .unwrap_or_default()
+        };
+        assert!(help("sqr(t)").starts_with("did you mean `sqrt`?"));
+        assert!(help("2*po").starts_with("did you mean `pi`?"));
     }
 
     #[test]
     fn deep_nesting_is_refused_not_fatal() {
-        for text in [
-            "(".repeat(100_000),
-            "-".repeat(100_000),
-            "2^".repeat(100_000),
-            "min(1,".repeat(100_000),
-        ] {
-            assert!(Expression::compile(&text, &["t"]).is_err());
-        }
-        // The longest stack that is allowed, and one more.
-        let nested = |n: usize| format!("{}t{}", "1+(".repeat(n), ")".repeat(n));
-        assert_eq!(value(&nested(STACK - 1), 2.0), 2.0 + (STACK - 1) as f64);
-        assert!(Expression::compile(&nested(STACK), &["t"]).is_err());
+        let check = || {
+            let units = ["(", "-", "2^", "min(1,", "1+(", "abs(-(", "t?", "!"];
+            for (unit, n) in units
+                .iter()
+                .flat_map(|u| [MAX_NESTING, 600, 100_000].map(|n| (u, n)))
+            {
+                let text = unit.repeat(n) + "t";
+                assert!(Expression::compile(&text, &["t"]).is_err(), "{unit} {n}");
+            }
+            // Long but not deep: no limit but the length.
+            assert_eq!(value(&("t+".repeat(2000) + "t"), 2.0), 4002.0);
+            assert!(Expression::compile(&("t+".repeat(3000) + "t"), &["t"]).is_err());
+            let nested = |n: usize| format!("{}t{}", "1+(".repeat(n), ")".repeat(n));
+            assert_eq!(value(&nested(31), 2.0), 33.0);
+        };
+        // A quarter of what a thread usually has.
+        let small = std::thread::Builder::new().stack_size(512 << 10);
+        small.spawn(check).unwrap().join().unwrap();
+    }
+
+    #[test]
+    fn threads_may_share_an_expression() {
+        fn shared<T: Send + Sync>() {}
+        shared::<Expression>();
     }
 }

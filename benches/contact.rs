@@ -1,0 +1,188 @@
+//! Time per slave point: the whole way from position to force and tangent, and the kernel alone; then a table of both
+//! with ratios.
+use covact::contact::kernel::{Normal, normal_tangent, normal_tangent_rigid};
+use covact::contact::law::{NormalLaw, Penalty};
+use covact::contact::published::{self, Parts};
+use covact::contact::rigid::{Exact, RigidMaster, RigidTangent};
+use covact_geometry::{Frame, Hint, PatchSet, Vec3, primitives};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use nalgebra::Isometry3;
+use std::hint::black_box;
+use std::time::Instant;
+
+const RADIUS: f64 = 25.0;
+const COUNT: usize = 512;
+const LAW: Penalty = Penalty { eps_n: 6e4 };
+
+/// A slave point and where its last search ended, a hundredth of the radius away.
+type Query = (Vec3, Option<Hint>);
+
+fn ball() -> Option<PatchSet> {
+    let patch = primitives::sphere(RADIUS, Vec3::zeros(), Vec3::y()).ok()?;
+    let mut set = PatchSet::new(vec![patch], None).ok()?;
+    set.set_side_as_given(false);
+    Some(set)
+}
+
+/// Points at a height above the lower half of the ball, away from poles, evenly spread.
+fn queries(set: &PatchSet, height: f64) -> Vec<Query> {
+    let direction = |k: usize, shift: f64| {
+        let (i, j) = ((k % 32) as f64 / 32.0, (k / 32) as f64 / 16.0);
+        let (longitude, latitude) = (2.0 * i + 0.6 + shift, 1.6 * j - 0.8 + shift);
+        let c = latitude.cos();
+        Vec3::new(c * longitude.cos(), latitude.sin(), -c * longitude.sin())
+    };
+    (0..COUNT)
+        .map(|k| {
+            let before = direction(k, 0.01) * (RADIUS + height);
+            let hint = set.project(&before, None, f64::INFINITY).map(|f| f.hint());
+            (direction(k, 0.0) * (RADIUS + height), hint)
+        })
+        .collect()
+}
+
+fn touch_all<T: RigidTangent>(master: &RigidMaster, queries: &[Query], tangent: &T) -> usize {
+    let touch = |(x, hint): &Query| {
+        let mut hint = *hint;
+        let touch = master.touch(black_box(x), &mut hint, &LAW, tangent);
+        black_box(touch).is_ok_and(|t| t.is_some())
+    };
+    queries.iter().filter(|q| touch(q)).count()
+}
+
+/// Named workloads of `COUNT` points each.
+fn workloads(set: &PatchSet) -> Vec<(&'static str, Box<dyn Fn() + '_>)> {
+    let master = RigidMaster {
+        surface: set,
+        pose: Isometry3::identity(),
+        depth: 0.1 * RADIUS,
+    };
+    let (closed, near, far) = (
+        queries(set, -0.01),
+        queries(set, 0.01 * RADIUS),
+        queries(set, 4.0 * RADIUS),
+    );
+    let cold: Vec<Query> = closed.iter().map(|q| (q.0, None)).collect();
+    let frames: Vec<(Frame, f64, Normal)> = (closed.iter())
+        .filter_map(|(x, hint)| {
+            let foot = set.project(x, *hint, f64::INFINITY)?;
+            let frame = Frame::new(&foot.jet, foot.side)?;
+            let xi3 = foot.signed_distance;
+            Some((frame, xi3, LAW.normal(xi3)))
+        })
+        .collect();
+    assert_eq!(frames.len(), COUNT);
+    assert_eq!(touch_all(&master, &closed, &Exact), COUNT);
+    assert_eq!(touch_all(&master, &near, &Exact), 0);
+    assert_eq!(touch_all(&master, &far, &Exact), 0);
+    let jets: Vec<_> = (closed.iter())
+        .filter_map(|(x, hint)| Some(set.project(x, *hint, f64::INFINITY)?.jet))
+        .collect();
+    let kernels = [frames.clone(), frames.clone(), frames.clone(), frames];
+    let [k1, k2, k3, k4] = kernels;
+    let other = master.clone();
+    let (third, fourth, fifth) = (master.clone(), master.clone(), master.clone());
+    let again = closed.clone();
+    vec![
+        (
+            "point/closed, exact",
+            Box::new(move || _ = black_box(touch_all(&master, &closed, &Exact))),
+        ),
+        (
+            "point/closed, published",
+            Box::new(move || _ = black_box(touch_all(&other, &again, &Parts::ALL))),
+        ),
+        (
+            "point/closed, no hint",
+            Box::new(move || _ = black_box(touch_all(&third, &cold, &Exact))),
+        ),
+        (
+            "point/open, near",
+            Box::new(move || _ = black_box(touch_all(&fourth, &near, &Exact))),
+        ),
+        (
+            "point/open, out of reach",
+            Box::new(move || _ = black_box(touch_all(&fifth, &far, &Exact))),
+        ),
+        (
+            "kernel/frame",
+            Box::new(move || {
+                jets.iter().for_each(|j| {
+                    black_box(Frame::new(black_box(j), 1.0));
+                })
+            }),
+        ),
+        (
+            "kernel/3x3 exact",
+            Box::new(move || {
+                k1.iter().for_each(|(f, xi3, n)| {
+                    black_box(normal_tangent_rigid(black_box(f), *xi3, n));
+                })
+            }),
+        ),
+        (
+            "kernel/3x3 published",
+            Box::new(move || {
+                k2.iter().for_each(|(f, _, n)| {
+                    black_box(published::normal_tangent_rigid(black_box(f), n, Parts::ALL));
+                })
+            }),
+        ),
+        (
+            "kernel/9x9 exact",
+            Box::new(move || {
+                k3.iter().for_each(|(f, xi3, n)| {
+                    black_box(normal_tangent(black_box(f), *xi3, n));
+                })
+            }),
+        ),
+        (
+            "kernel/9x9 published",
+            Box::new(move || {
+                k4.iter().for_each(|(f, _, n)| {
+                    black_box(published::normal_tangent(black_box(f), n, Parts::ALL));
+                })
+            }),
+        ),
+    ]
+}
+
+fn contact(c: &mut Criterion) {
+    let Some(set) = ball() else { return };
+    let workloads = workloads(&set);
+    let mut group = c.benchmark_group("contact");
+    group.throughput(Throughput::Elements(COUNT as u64));
+    for (name, work) in &workloads {
+        group.bench_function(*name, |b| b.iter(work));
+    }
+    group.finish();
+    table(&workloads);
+}
+
+/// Medians in nanoseconds per point, and as multiples of the first of their kind.
+fn table(workloads: &[(&'static str, Box<dyn Fn() + '_>)]) {
+    let median = |work: &dyn Fn()| {
+        let mut times: Vec<f64> = (0..101)
+            .map(|_| {
+                let start = Instant::now();
+                work();
+                start.elapsed().as_nanos() as f64 / COUNT as f64
+            })
+            .collect();
+        times.sort_by(f64::total_cmp);
+        times[times.len() / 2]
+    };
+    println!("\n{:<28} {:>9} {:>9}", "", "ns/point", "ratio");
+    let mut first = ("", 1.0);
+    for (name, work) in workloads {
+        let kind = name.split('/').next().unwrap_or_default();
+        let time = median(work);
+        if first.0 != kind {
+            first = (kind, time);
+        }
+        println!("{name:<28} {time:>9.1} {:>9.2}", time / first.1);
+    }
+}
+
+criterion_group!(benches, contact);
+criterion_main!(benches);

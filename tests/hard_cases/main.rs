@@ -1,0 +1,12 @@
+//! What must not change a result, and what an effect must not cost: invariances on a small plate under a ball.
+mod common;
+mod convergence;
+mod cost;
+mod parametrisation;
+mod rollback;
+#[path = "../verification/support.rs"]
+#[allow(dead_code)]
+mod support;
+mod tangents;
+mod threads;
+mod units;
