@@ -2,7 +2,7 @@
 //!
 //! Usual rules: `^` (or `**`) binds tighter than a sign and from the right, so `-t^2` is -(t^2) and `2^3^2` is 2^9.
 //! Of the crates measured only nanoexpr (MIT, no dependencies, no unsafe code) and meval have these rules; exmex,
-//! fasteval, mathexpr and rhai read `-t^2` as (-t)^2, and meval is built on a release of nom that future compilers
+//! fasteval and mathexpr read `-t^2` as (-t)^2, and meval is built on a release of nom that future compilers
 //! refuse. What is left to do here: our names, IEEE arithmetic, limits, and errors in the scene's words.
 use super::problem::suggestion;
 use nanoexpr::{Context, ErrorKind, Evaluator, Number};

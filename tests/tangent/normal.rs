@@ -30,8 +30,8 @@ fn residual<D: DualNum<f64> + Copy>(
     );
     let n = basis(weights, xi)[0];
     let mut out = Vec::new();
-    for k in 0..16 {
-        (0..3).for_each(|c| out.push(-n[k] * r[c]));
+    for n in n {
+        (0..3).for_each(|c| out.push(-n * r[c]));
     }
     (0..3).for_each(|c| out.push(r[c]));
     out
