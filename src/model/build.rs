@@ -1,14 +1,13 @@
 //! Scene to model.
-use super::constraints::{MeanPrescribed, Prescribed};
 use super::error::{At, text};
 use super::loads::{DeadLoad, FollowerPressure, load_points};
 use super::motion::Motion;
 use super::slave::slave_points;
+use super::supports::Supports;
 use super::{BodyModel, Model, ModelError, PairModel, SurfaceModel, penalty};
-use crate::assembly::{DofMap, DofMapBuilder};
-use crate::mesh::{self, Face, Mesh, ThicknessColumns};
+use crate::mesh::{self, Face, Mesh};
 use crate::scene::{
-    self, Axis, LoadedScene, POSITION_AND_TIME, Penalty, Scene, Side, TIME, TimeFunction, Value,
+    self, LoadedScene, POSITION_AND_TIME, Penalty, Scene, Side, TIME, TimeFunction, Value,
 };
 use crate::shell::{H8Block, Law};
 use covact_geometry::{NurbsPatch, PatchSet, Vec3, io, primitives};
@@ -16,11 +15,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// What is being collected while the model is built.
-struct Builder<'s> {
-    scene: &'s Scene,
+pub(super) struct Builder<'s> {
+    pub(super) scene: &'s Scene,
     dir: &'s Path,
-    nodes: Vec<Vec3>,
-    bodies: Vec<BodyModel>,
+    pub(super) nodes: Vec<Vec3>,
+    pub(super) bodies: Vec<BodyModel>,
     body_index: BTreeMap<&'s str, usize>,
     notes: Vec<String>,
     warnings: Vec<String>,
@@ -43,7 +42,12 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     };
     builder.bodies()?;
     let (pairs, surfaces) = builder.contacts()?;
-    let (supports, prescribed, means, dofs) = builder.supports()?;
+    let Supports {
+        names: supports,
+        prescribed,
+        means,
+        dofs,
+    } = builder.supports()?;
     let (dead_loads, follower_loads) = builder.loads()?;
     let mut model = Model {
         title: scene.title.clone(),
@@ -152,7 +156,11 @@ impl<'s> Builder<'s> {
     }
 
     /// Nodes of a node set, or of a face set where there is no node set of that name.
-    fn set_nodes(&self, reference: &str, pointer: &str) -> Result<(usize, Vec<u32>), ModelError> {
+    pub(super) fn set_nodes(
+        &self,
+        reference: &str,
+        pointer: &str,
+    ) -> Result<(usize, Vec<u32>), ModelError> {
         let (index, mesh, first) = self.body(reference, pointer)?;
         let set = split(reference).1;
         let local = match mesh.face_sets.get(set) {
@@ -425,96 +433,6 @@ impl<'s> Builder<'s> {
     }
 
     #[allow(clippy::type_complexity)]
-    fn supports(
-        &mut self,
-    ) -> Result<(Vec<String>, Vec<Prescribed>, Vec<MeanPrescribed>, DofMap), ModelError> {
-        let mut names: Vec<String> = Vec::new();
-        let mut owner: BTreeMap<u32, (u32, Option<TimeFunction>)> = BTreeMap::new();
-        let (mut prescribed, mut means) = (Vec::new(), Vec::new());
-        let mut dofs = DofMapBuilder::new(self.nodes.len());
-        let mut columns: BTreeMap<usize, ThicknessColumns> = BTreeMap::new();
-        for (name, support) in &self.scene.supports {
-            let pointer = |field: &str| format!("/supports/{name}/{field}");
-            let index = names.len() as u32;
-            names.push(name.clone());
-            let (body, nodes) = self.set_nodes(&support.on, &pointer("on"))?;
-            for (component, value) in components(support) {
-                let compiled = match &value {
-                    None => None,
-                    Some(v) => Some(
-                        v.compile(&POSITION_AND_TIME)
-                            .at(|| pointer("displacement"))?,
-                    ),
-                };
-                let mut done = std::collections::BTreeSet::new();
-                for &node in &nodes {
-                    let (dof, partner) = if support.mid_surface {
-                        let first = self.bodies[body].first_node;
-                        let mesh = &self.bodies[body].mesh;
-                        let columns = columns
-                            .entry(body)
-                            .or_insert_with(|| ThicknessColumns::new(mesh));
-                        let Some([bottom, top]) = columns.ends(node - first) else {
-                            return Err(text(
-                                pointer("mid_surface"),
-                                format!(
-                                    "node {} has no partner through the thickness",
-                                    node - first
-                                ),
-                            ));
-                        };
-                        if !done.insert(bottom) {
-                            continue;
-                        }
-                        let dof = |n: u32| 3 * (n + first) + component;
-                        (dof(bottom), Some(dof(top)))
-                    } else {
-                        (3 * node + component, None)
-                    };
-                    let key = partner.unwrap_or(dof);
-                    if let Some((other, earlier)) = owner.get(&key) {
-                        let x = self.nodes[key as usize / 3];
-                        if agree(earlier, &compiled, x, self.scene.solution.end_time) {
-                            continue;
-                        }
-                        return Err(text(
-                            pointer("on"),
-                            format!(
-                                "supports `{}` and `{name}` prescribe different displacements of \
-                                 the same node along {}",
-                                names[*other as usize],
-                                ["x", "y", "z"][component as usize]
-                            ),
-                        ));
-                    }
-                    owner.insert(key, (index, compiled.clone()));
-                    match partner {
-                        None => {
-                            dofs.prescribe(dof).at(|| pointer("on"))?;
-                            prescribed.push(Prescribed {
-                                dof,
-                                support: index,
-                                value: compiled.clone(),
-                            });
-                        }
-                        Some(tied) => {
-                            dofs.tie(tied, dof, -1.0).at(|| pointer("on"))?;
-                            means.push(MeanPrescribed {
-                                free: dof,
-                                tied,
-                                support: index,
-                                mean: compiled.clone(),
-                            });
-                        }
-                    }
-                }
-            }
-        }
-        let map = dofs.build().at(|| "/supports".to_owned())?;
-        Ok((names, prescribed, means, map))
-    }
-
-    #[allow(clippy::type_complexity)]
     fn loads(
         &mut self,
     ) -> Result<(Vec<(String, DeadLoad)>, Vec<(String, FollowerPressure)>), ModelError> {
@@ -572,47 +490,6 @@ impl<'s> Builder<'s> {
         let share = 1.0 / nodes.len().max(1) as f64;
         Ok(nodes.into_iter().map(|n| (n, share)).collect())
     }
-}
-
-/// Whether two supports prescribe the same displacement at `x`, as they may where a symmetry plane meets another
-/// support: compared at a few times, relative to the largest value.
-fn agree(a: &Option<TimeFunction>, b: &Option<TimeFunction>, x: Vec3, end: f64) -> bool {
-    let value = |f: &Option<TimeFunction>, t: f64| match f {
-        None => Some(0.0),
-        Some(f) => f.eval_at(&x, t).ok(),
-    };
-    [0.0, 0.31, 0.77, 1.0].iter().all(|s| {
-        let t = s * end;
-        match (value(a, t), value(b, t)) {
-            (Some(a), Some(b)) => (a - b).abs() <= 1e-12 * a.abs().max(b.abs()),
-            _ => false,
-        }
-    })
-}
-
-/// Constrained components of a support, `None` standing for zero.
-fn components(support: &scene::Support) -> Vec<(u32, Option<Value>)> {
-    if support.fixed {
-        return (0..3).map(|c| (c, None)).collect();
-    }
-    if let Some(axis) = support.symmetry {
-        let c = match axis {
-            Axis::X => 0,
-            Axis::Y => 1,
-            Axis::Z => 2,
-        };
-        return vec![(c, None)];
-    }
-    let Some(d) = &support.displacement else {
-        return Vec::new();
-    };
-    let zero = |v: &Value| *v == Value::Number(0.0);
-    ([&d.x, &d.y, &d.z].into_iter().enumerate())
-        .filter_map(|(c, v)| {
-            v.as_ref()
-                .map(|v| (c as u32, (!zero(v)).then(|| v.clone())))
-        })
-        .collect()
 }
 
 fn bounds(patches: &[NurbsPatch]) -> [Vec3; 2] {

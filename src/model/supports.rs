@@ -1,0 +1,246 @@
+//! Supports as constraints: which degrees of freedom they prescribe or tie, and whether they contradict each other.
+use super::build::Builder;
+use super::constraints::{MeanPrescribed, Prescribed};
+use super::error::{At, text};
+use super::{BodyModel, ModelError};
+use crate::assembly::{DofMap, DofMapBuilder};
+use crate::mesh::ThicknessColumns;
+use crate::scene::{Axis, POSITION_AND_TIME, Support, TimeFunction, Value};
+use covact_geometry::Vec3;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// All supports of a scene.
+pub(super) struct Supports {
+    /// Names, in the order of the indices below.
+    pub names: Vec<String>,
+    pub prescribed: Vec<Prescribed>,
+    pub means: Vec<MeanPrescribed>,
+    pub dofs: DofMap,
+}
+
+/// Displacement over time, `None` standing for zero.
+type Prescription = Option<TimeFunction>;
+
+struct Collector<'a> {
+    nodes: &'a [Vec3],
+    end_time: f64,
+    names: Vec<String>,
+    prescribed: Vec<Prescribed>,
+    means: Vec<MeanPrescribed>,
+    dofs: DofMapBuilder,
+    /// Support and displacement of every prescribed degree of freedom.
+    owners: BTreeMap<u32, (u32, Prescription)>,
+    /// The same of every prescribed mean, by the degree of freedom at the bottom.
+    mean_owners: BTreeMap<u32, (u32, Prescription)>,
+}
+
+impl Builder<'_> {
+    /// Resolves all supports.
+    ///
+    /// # Errors
+    /// [`ModelError`] for unknown sets, values that do not compile, and supports that contradict each other.
+    pub(super) fn supports(&self) -> Result<Supports, ModelError> {
+        let scene = self.scene;
+        let mut all = Collector {
+            nodes: &self.nodes,
+            end_time: scene.solution.end_time,
+            names: scene.supports.keys().cloned().collect(),
+            prescribed: Vec::new(),
+            means: Vec::new(),
+            dofs: DofMapBuilder::new(self.nodes.len()),
+            owners: BTreeMap::new(),
+            mean_owners: BTreeMap::new(),
+        };
+        let mut columns: BTreeMap<usize, ThicknessColumns> = BTreeMap::new();
+        // Supports of single nodes first: where one of a column is held, the mean moves the other.
+        for mid_surface in [false, true] {
+            for (index, (name, support)) in scene.supports.iter().enumerate() {
+                if support.mid_surface != mid_surface {
+                    continue;
+                }
+                let pointer = |field: &str| format!("/supports/{name}/{field}");
+                let (body, nodes) = self.set_nodes(&support.on, &pointer("on"))?;
+                let pairs = if mid_surface {
+                    let body = &self.bodies[body];
+                    let columns = (columns.entry(body.first_node as usize))
+                        .or_insert_with(|| ThicknessColumns::new(&body.mesh));
+                    ends(body, columns, &nodes).map_err(|node| {
+                        let message = format!("node {node} has no partner through the thickness");
+                        text(pointer("mid_surface"), message)
+                    })?
+                } else {
+                    BTreeSet::new()
+                };
+                for (component, value) in components(support) {
+                    let value = (value.map(|v| v.compile(&POSITION_AND_TIME)).transpose())
+                        .at(|| pointer("displacement"))?;
+                    let index = index as u32;
+                    if mid_surface {
+                        for [bottom, top] in &pairs {
+                            all.mean(index, component, [*bottom, *top], &value)?;
+                        }
+                    } else {
+                        for node in &nodes {
+                            all.node(index, 3 * node + component, &value)?;
+                        }
+                    }
+                }
+            }
+        }
+        let dofs = all.dofs.build().at(|| "/supports".to_owned())?;
+        Ok(Supports {
+            names: all.names,
+            prescribed: all.prescribed,
+            means: all.means,
+            dofs,
+        })
+    }
+}
+
+/// Bottom and top node of the columns through `nodes`, in numbers of the model; the error is a node of the mesh without
+/// a column.
+fn ends(
+    body: &BodyModel,
+    columns: &ThicknessColumns,
+    nodes: &[u32],
+) -> Result<BTreeSet<[u32; 2]>, u32> {
+    let first = body.first_node;
+    (nodes.iter())
+        .map(|node| {
+            let node = node - first;
+            let ends = columns.ends(node).ok_or(node)?;
+            Ok(ends.map(|n| n + first))
+        })
+        .collect()
+}
+
+impl Collector<'_> {
+    fn node(&mut self, support: u32, dof: u32, value: &Prescription) -> Result<(), ModelError> {
+        let x = self.nodes[dof as usize / 3];
+        if let Some((other, earlier)) = self.owners.get(&dof) {
+            if agree(&[(earlier, x)], value, x, self.end_time) {
+                return Ok(());
+            }
+            return Err(self.conflict(*other, support, dof));
+        }
+        self.owners.insert(dof, (support, value.clone()));
+        self.dofs.prescribe(dof).at(|| self.pointer(support))?;
+        self.prescribed.push(Prescribed {
+            dof,
+            support,
+            value: value.clone(),
+        });
+        Ok(())
+    }
+
+    fn mean(
+        &mut self,
+        support: u32,
+        component: u32,
+        ends: [u32; 2],
+        value: &Prescription,
+    ) -> Result<(), ModelError> {
+        let [bottom, top] = ends.map(|n| 3 * n + component);
+        let [low, high] = ends.map(|n| self.nodes[n as usize]);
+        let middle = (low + high) * 0.5;
+        if let Some((other, earlier)) = self.mean_owners.get(&bottom) {
+            if agree(&[(earlier, middle)], value, middle, self.end_time) {
+                return Ok(());
+            }
+            return Err(self.conflict(*other, support, bottom));
+        }
+        let (free, tied, held_by) = match (self.owners.get(&bottom), self.owners.get(&top)) {
+            (Some((other, below)), Some((_, above))) => {
+                let both = [(below, low), (above, high)];
+                if agree(&both, value, middle, self.end_time) {
+                    return Ok(());
+                }
+                return Err(self.conflict(*other, support, bottom));
+            }
+            (None, Some((other, _))) => (top, bottom, Some(*other)),
+            (Some((other, _)), None) => (bottom, top, Some(*other)),
+            (None, None) => (bottom, top, None),
+        };
+        self.mean_owners.insert(bottom, (support, value.clone()));
+        self.dofs
+            .tie(tied, free, -1.0)
+            .at(|| self.pointer(support))?;
+        self.means.push(MeanPrescribed {
+            free,
+            tied,
+            support,
+            held_by,
+            mean: value.clone(),
+        });
+        Ok(())
+    }
+
+    fn pointer(&self, support: u32) -> String {
+        format!("/supports/{}/on", self.names[support as usize])
+    }
+
+    fn conflict(&self, one: u32, other: u32, dof: u32) -> ModelError {
+        // In the order of their names, whichever was met first.
+        let [first, second] = [one.min(other), one.max(other)];
+        let name = |s: u32| &self.names[s as usize];
+        let x = self.nodes[dof as usize / 3];
+        text(
+            self.pointer(second),
+            format!(
+                "supports `{}` and `{}` prescribe different displacements along {} at ({:.6}, {:.6}, {:.6})",
+                name(first),
+                name(second),
+                ["x", "y", "z"][dof as usize % 3],
+                x.x,
+                x.y,
+                x.z
+            ),
+        )
+    }
+}
+
+/// Whether the mean of what others prescribe at their positions is `value` at `x`, as where a symmetry plane meets
+/// another support: compared at a few times, relative to the largest value.
+fn agree(others: &[(&Prescription, Vec3)], value: &Prescription, x: Vec3, end: f64) -> bool {
+    let at = |f: &Prescription, x: &Vec3, t: f64| match f {
+        None => Some(0.0),
+        Some(f) => f.eval_at(x, t).ok(),
+    };
+    [0.0, 0.31, 0.77, 1.0].iter().all(|s| {
+        let t = s * end;
+        let given: Option<Vec<f64>> = others.iter().map(|(f, x)| at(f, x, t)).collect();
+        match (given, at(value, &x, t)) {
+            (Some(given), Some(value)) => {
+                let mean = given.iter().sum::<f64>() / given.len() as f64;
+                let largest = given.iter().fold(value.abs(), |a, v| a.max(v.abs()));
+                (mean - value).abs() <= 1e-12 * largest
+            }
+            _ => false,
+        }
+    })
+}
+
+/// Constrained components of a support, `None` standing for zero.
+fn components(support: &Support) -> Vec<(u32, Option<Value>)> {
+    if support.fixed {
+        return (0..3).map(|c| (c, None)).collect();
+    }
+    if let Some(axis) = support.symmetry {
+        let c = match axis {
+            Axis::X => 0,
+            Axis::Y => 1,
+            Axis::Z => 2,
+        };
+        return vec![(c, None)];
+    }
+    let Some(d) = &support.displacement else {
+        return Vec::new();
+    };
+    let zero = |v: &Value| *v == Value::Number(0.0);
+    ([&d.x, &d.y, &d.z].into_iter().enumerate())
+        .filter_map(|(c, v)| {
+            v.as_ref()
+                .map(|v| (c as u32, (!zero(v)).then(|| v.clone())))
+        })
+        .collect()
+}
