@@ -11,11 +11,15 @@ pub struct Prescribed {
     pub value: Option<TimeFunction>,
 }
 
-/// A mid-surface support: the mean of two degrees of freedom is prescribed, `u_tied = 2 mean - u_free`.
+/// A mid-surface support: the mean of two degrees of freedom is prescribed, `u_tied = 2 mean - u_free`. Both feel half
+/// of its reaction.
 #[derive(Debug, Clone)]
 pub struct MeanPrescribed {
     pub free: u32,
     pub tied: u32,
     pub support: u32,
+    /// A second support that prescribes `free` itself; the mean then only moves `tied`.
+    pub held_by: Option<u32>,
+    /// Displacement of the mid-surface over time; `None` is zero.
     pub mean: Option<TimeFunction>,
 }

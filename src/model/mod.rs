@@ -114,16 +114,18 @@ impl Model {
     /// and those tied by mid-surface supports; returns the largest.
     pub fn increments(&self, u: &[f64], time: f64, g: &mut [f64]) -> Result<f64, ValueError> {
         g.fill(0.0);
-        let value = |dof: u32, f: &Option<TimeFunction>| match f {
+        let value = |f: &Option<TimeFunction>, x: Vec3| match f {
             None => Ok(0.0),
-            Some(f) => f.eval_at(&self.nodes[dof as usize / 3], time),
+            Some(f) => f.eval_at(&x, time),
         };
+        let node = |dof: u32| self.nodes[dof as usize / 3];
         for p in &self.prescribed {
-            g[p.dof as usize] = value(p.dof, &p.value)? - u[p.dof as usize];
+            g[p.dof as usize] = value(&p.value, node(p.dof))? - u[p.dof as usize];
         }
         for m in &self.means {
             let now = u[m.free as usize] + u[m.tied as usize];
-            g[m.tied as usize] = 2.0 * value(m.free, &m.mean)? - now;
+            let middle = (node(m.free) + node(m.tied)) * 0.5;
+            g[m.tied as usize] = 2.0 * value(&m.mean, middle)? - now;
         }
         let largest = g.iter().fold(0.0f64, |a, x| a.max(x.abs()));
         self.dofs.particular(g);

@@ -81,19 +81,27 @@ pub fn row(r: &Record) -> Vec<f64> {
 /// Force and moment about the origin that each support exerts, the moment with the undeformed positions of its nodes.
 fn reactions(model: &Model, residual: &[f64]) -> Vec<(Vec3, Vec3)> {
     let mut out = vec![(Vec3::zeros(), Vec3::zeros()); model.supports.len()];
-    let mut add = |support: u32, dof: u32| {
+    let mut add = |support: u32, dof: u32, value: f64| {
         let mut f = Vec3::zeros();
-        f[dof as usize % 3] = residual[dof as usize];
+        f[dof as usize % 3] = value;
         let (force, moment) = &mut out[support as usize];
         *force += f;
         *moment += model.nodes[dof as usize / 3].cross(&f);
     };
     for p in &model.prescribed {
-        add(p.support, p.dof);
+        add(p.support, p.dof, residual[p.dof as usize]);
     }
     for m in &model.means {
-        add(m.support, m.free);
-        add(m.support, m.tied);
+        let half = residual[m.tied as usize];
+        add(m.support, m.tied, half);
+        match m.held_by {
+            None => add(m.support, m.free, residual[m.free as usize]),
+            // The residual there is that of two supports.
+            Some(other) => {
+                add(m.support, m.free, half);
+                add(other, m.free, -half);
+            }
+        }
     }
     out
 }

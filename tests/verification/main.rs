@@ -1,5 +1,8 @@
 //! Verification against closed forms and published results, named by their source.
 mod hertz;
+mod loads;
 mod plate_under_ball;
 mod punch;
+mod strip_over_cylinder;
 mod support;
+mod supports;

@@ -102,9 +102,8 @@ fn tension_pressure_and_lift_off() {
     let (f, t) = forces(&outcome, 1.0);
 
     // Resultants, to what Newton's method leaves (1e-8 of the largest force at a node).
-    let surface = |name: &str| outcome.at(&format!("{name}.cylinder.{}", "x"), 1.0) / WIDTH;
-    assert!((surface("force") / t - 1.0).abs() < 1e-7);
-    let up = outcome.at("force.cylinder.z", 1.0) / WIDTH;
+    let [along, up] = ["x", "z"].map(|a| outcome.at(&format!("force.cylinder.{a}"), 1.0) / WIDTH);
+    assert!((along / t - 1.0).abs() < 1e-7, "{along} instead of {t}");
     assert!((up / f - 1.0).abs() < 1e-7, "{up} instead of {f}");
     // No friction: no moment about the axis of the cylinder, which is R below the origin.
     let moment = outcome.at("moment.cylinder.y", 1.0) + R * outcome.at("force.cylinder.x", 1.0);
@@ -158,7 +157,10 @@ fn tension_pressure_and_lift_off() {
         .map(|&i| pressure[i] / plateau - 1.0)
         .collect();
     let worst = wrapped.iter().fold(0.0f64, |a, e| a.max(e.abs()));
-    println!("{} nodes, pressure off by at most {worst:.2e}", wrapped.len());
+    println!(
+        "{} nodes, pressure off by at most {worst:.2e}",
+        wrapped.len()
+    );
     assert!(wrapped.len() > 20 && worst < 5e-4);
 
     // Half-way, where the bending term is a quarter of F, both forces from the elastica alone, for the depth of the end.

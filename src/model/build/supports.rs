@@ -1,120 +1,130 @@
-//! Supports: which displacement components are prescribed, and by whom.
+//! Supports as constraints: which degrees of freedom they prescribe or tie, and whether they contradict each other.
 use super::super::constraints::{MeanPrescribed, Prescribed};
 use super::super::error::{At, number, text};
-use super::{Builder, ModelError};
+use super::{BodyModel, Builder, ModelError};
 use crate::assembly::{DofMap, DofMapBuilder};
 use crate::mesh::ThicknessColumns;
-use crate::scene::{self, Axis, POSITION_AND_TIME, TimeFunction, Value};
+use crate::scene::{Axis, POSITION_AND_TIME, Support, TimeFunction, Value};
 use covact_geometry::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the supports come to.
+/// All supports of a scene.
 pub(super) struct Supports {
+    /// Names, in the order of the indices below.
     pub names: Vec<String>,
     pub prescribed: Vec<Prescribed>,
     pub means: Vec<MeanPrescribed>,
     pub dofs: DofMap,
 }
 
-/// The support that already prescribes a component of a node.
-struct Claim {
-    support: u32,
-    value: Option<TimeFunction>,
-    /// For a mid-surface support, which prescribes a mean: the component on the other face.
-    bottom: Option<u32>,
-}
+/// Displacement over time, `None` standing for zero.
+type Prescription = Option<TimeFunction>;
 
-/// Supports on their way into the model.
-struct Collector<'b> {
-    nodes: &'b [Vec3],
+struct Collector<'a> {
+    nodes: &'a [Vec3],
     end_time: f64,
     names: Vec<String>,
-    claims: BTreeMap<u32, Claim>,
     prescribed: Vec<Prescribed>,
     means: Vec<MeanPrescribed>,
     dofs: DofMapBuilder,
+    /// Support and displacement of every prescribed degree of freedom.
+    owners: BTreeMap<u32, (u32, Prescription)>,
+    /// The same of every prescribed mean, by the degree of freedom at the bottom.
+    mean_owners: BTreeMap<u32, (u32, Prescription)>,
 }
 
 impl Builder<'_> {
+    /// Resolves all supports.
+    ///
+    /// # Errors
+    /// [`ModelError`] for unknown sets, values that do not compile, and supports that contradict each other.
     pub(super) fn supports(&self) -> Result<Supports, ModelError> {
-        let mut collector = Collector {
+        let scene = self.scene;
+        let mut all = Collector {
             nodes: &self.nodes,
-            end_time: self.scene.solution.end_time,
-            names: Vec::new(),
-            claims: BTreeMap::new(),
+            end_time: scene.solution.end_time,
+            names: scene.supports.keys().cloned().collect(),
             prescribed: Vec::new(),
             means: Vec::new(),
             dofs: DofMapBuilder::new(self.nodes.len()),
+            owners: BTreeMap::new(),
+            mean_owners: BTreeMap::new(),
         };
         let mut columns: BTreeMap<usize, ThicknessColumns> = BTreeMap::new();
-        for (name, support) in &self.scene.supports {
-            let pointer = |field: &str| format!("/supports/{name}/{field}");
-            collector.names.push(name.clone());
-            let (body, nodes) = self.set_nodes(&support.on, &pointer("on"))?;
-            let (mesh, first) = (&self.bodies[body].mesh, self.bodies[body].first_node);
-            for (component, value) in components(support) {
-                let value = match &value {
-                    None => None,
-                    Some(v) => Some(
-                        v.compile(&POSITION_AND_TIME)
-                            .at(|| pointer("displacement"))?,
-                    ),
-                };
-                let dof = |n: u32| 3 * n + component;
-                if !support.mid_surface {
-                    for &node in &nodes {
-                        collector.prescribe(&pointer("on"), dof(node), &value)?;
-                    }
+        // Supports of single nodes first: where one of a column is held, the mean moves the other.
+        for mid_surface in [false, true] {
+            for (index, (name, support)) in scene.supports.iter().enumerate() {
+                if support.mid_surface != mid_surface {
                     continue;
                 }
-                let columns = columns
-                    .entry(body)
-                    .or_insert_with(|| ThicknessColumns::new(mesh));
-                let mut done = BTreeSet::new();
-                for &node in &nodes {
-                    let Some([bottom, top]) = columns.ends(node - first) else {
-                        let message =
-                            format!("node {} has no partner through the thickness", node - first);
-                        let help = "a mid-surface support needs nodes on both faces of a shell";
-                        return Err(text(pointer("mid_surface"), message).help(help));
-                    };
-                    if done.insert(bottom) {
-                        let ends = [dof(bottom + first), dof(top + first)];
-                        collector.prescribe_mean(&pointer("on"), ends, &value)?;
+                let pointer = |field: &str| format!("/supports/{name}/{field}");
+                let (body, nodes) = self.set_nodes(&support.on, &pointer("on"))?;
+                let pairs = if mid_surface {
+                    let body = &self.bodies[body];
+                    let columns = (columns.entry(body.first_node as usize))
+                        .or_insert_with(|| ThicknessColumns::new(&body.mesh));
+                    ends(body, columns, &nodes).map_err(|node| {
+                        let message = format!("node {node} has no partner through the thickness");
+                        text(pointer("mid_surface"), message)
+                            .help("a mid-surface support needs nodes on both faces of a shell")
+                    })?
+                } else {
+                    BTreeSet::new()
+                };
+                for (component, value) in components(support) {
+                    let value = (value.map(|v| v.compile(&POSITION_AND_TIME)).transpose())
+                        .at(|| pointer("displacement"))?;
+                    let index = index as u32;
+                    if mid_surface {
+                        for [bottom, top] in &pairs {
+                            all.mean(index, component, [*bottom, *top], &value)?;
+                        }
+                    } else {
+                        for node in &nodes {
+                            all.node(index, 3 * node + component, &value)?;
+                        }
                     }
                 }
             }
         }
-        let dofs = collector.dofs.build().at(|| "/supports".to_owned())?;
+        let dofs = all.dofs.build().at(|| "/supports".to_owned())?;
         Ok(Supports {
-            names: collector.names,
-            prescribed: collector.prescribed,
-            means: collector.means,
+            names: all.names,
+            prescribed: all.prescribed,
+            means: all.means,
             dofs,
         })
     }
 }
 
+/// Bottom and top node of the columns through `nodes`, in numbers of the model; the error is a node of the mesh without
+/// a column.
+fn ends(
+    body: &BodyModel,
+    columns: &ThicknessColumns,
+    nodes: &[u32],
+) -> Result<BTreeSet<[u32; 2]>, u32> {
+    let first = body.first_node;
+    (nodes.iter())
+        .map(|node| {
+            let node = node - first;
+            let ends = columns.ends(node).ok_or(node)?;
+            Ok(ends.map(|n| n + first))
+        })
+        .collect()
+}
+
 impl Collector<'_> {
-    /// The present support prescribes one component.
-    fn prescribe(
-        &mut self,
-        pointer: &str,
-        dof: u32,
-        value: &Option<TimeFunction>,
-    ) -> Result<(), ModelError> {
-        if let Some(claim) = self.claims.get(&dof) {
-            self.compare(pointer, dof, value, claim)?;
-            return match claim.bottom {
-                // The mean of both faces and this one are prescribed alike: then the other one is, too.
-                Some(bottom) if !self.claims.contains_key(&bottom) => {
-                    self.prescribe(pointer, bottom, value)
-                }
-                _ => Ok(()),
-            };
+    fn node(&mut self, support: u32, dof: u32, value: &Prescription) -> Result<(), ModelError> {
+        let x = self.nodes[dof as usize / 3];
+        if let Some((other, earlier)) = self.owners.get(&dof) {
+            if agree(&[(earlier, x)], value, x, self.end_time) {
+                return Ok(());
+            }
+            return Err(self.conflict(*other, support, dof));
         }
-        let support = self.claim(dof, value, None);
-        self.dofs.prescribe(dof).at(|| pointer.to_owned())?;
+        self.owners.insert(dof, (support, value.clone()));
+        self.dofs.prescribe(dof).at(|| self.pointer(support))?;
         self.prescribed.push(Prescribed {
             dof,
             support,
@@ -123,90 +133,94 @@ impl Collector<'_> {
         Ok(())
     }
 
-    /// The present support prescribes the mean of a component over both faces, `[bottom, top]`.
-    fn prescribe_mean(
+    fn mean(
         &mut self,
-        pointer: &str,
-        [bottom, top]: [u32; 2],
-        value: &Option<TimeFunction>,
+        support: u32,
+        component: u32,
+        ends: [u32; 2],
+        value: &Prescription,
     ) -> Result<(), ModelError> {
-        if let Some(claim) = self.claims.get(&top) {
-            self.compare(pointer, top, value, claim)?;
-            // With one face and the mean prescribed alike the other face is, too.
-            return match claim.bottom {
-                Some(_) => Ok(()),
-                None => self.prescribe(pointer, bottom, value),
-            };
+        let [bottom, top] = ends.map(|n| 3 * n + component);
+        let [low, high] = ends.map(|n| self.nodes[n as usize]);
+        let middle = (low + high) * 0.5;
+        if let Some((other, earlier)) = self.mean_owners.get(&bottom) {
+            if agree(&[(earlier, middle)], value, middle, self.end_time) {
+                return Ok(());
+            }
+            return Err(self.conflict(*other, support, bottom));
         }
-        let support = self.claim(top, value, Some(bottom));
-        self.dofs.tie(top, bottom, -1.0).at(|| pointer.to_owned())?;
+        let (free, tied, held_by) = match (self.owners.get(&bottom), self.owners.get(&top)) {
+            (Some((other, below)), Some((_, above))) => {
+                let both = [(below, low), (above, high)];
+                if agree(&both, value, middle, self.end_time) {
+                    return Ok(());
+                }
+                return Err(self.conflict(*other, support, bottom));
+            }
+            (None, Some((other, _))) => (top, bottom, Some(*other)),
+            (Some((other, _)), None) => (bottom, top, Some(*other)),
+            (None, None) => (bottom, top, None),
+        };
+        self.mean_owners.insert(bottom, (support, value.clone()));
+        self.dofs
+            .tie(tied, free, -1.0)
+            .at(|| self.pointer(support))?;
         self.means.push(MeanPrescribed {
-            free: bottom,
-            tied: top,
+            free,
+            tied,
             support,
+            held_by,
             mean: value.clone(),
         });
         Ok(())
     }
 
-    fn claim(&mut self, dof: u32, value: &Option<TimeFunction>, bottom: Option<u32>) -> u32 {
-        let support = self.names.len() as u32 - 1;
-        let value = value.clone();
-        self.claims.insert(
-            dof,
-            Claim {
-                support,
-                value,
-                bottom,
-            },
-        );
-        support
+    fn pointer(&self, support: u32) -> String {
+        format!("/supports/{}/on", self.names[support as usize])
     }
 
-    /// Refuses a value that differs from an earlier support's.
-    fn compare(
-        &self,
-        pointer: &str,
-        dof: u32,
-        value: &Option<TimeFunction>,
-        claim: &Claim,
-    ) -> Result<(), ModelError> {
+    fn conflict(&self, one: u32, other: u32, dof: u32) -> ModelError {
+        // In the order of their names, whichever was met first.
+        let [first, second] = [one.min(other), one.max(other)];
+        let name = |s: u32| &self.names[s as usize];
         let x = self.nodes[dof as usize / 3];
-        if agree(&claim.value, value, x, self.end_time) {
-            return Ok(());
-        }
         let message = format!(
             "supports `{}` and `{}` prescribe different displacements along {} of the node at ({}, {}, {})",
-            self.names[claim.support as usize],
-            self.names.last().map_or("", String::as_str),
+            name(first),
+            name(second),
             ["x", "y", "z"][dof as usize % 3],
             number(x.x),
             number(x.y),
-            number(x.z),
+            number(x.z)
         );
-        let help = "take the node out of one of the two sets, or prescribe the same value in both";
-        Err(text(pointer, message).help(help))
+        text(self.pointer(second), message)
+            .help("take the node out of one of the two sets, or prescribe the same value in both")
     }
 }
 
-/// Whether two supports prescribe the same displacement at `x`, as they may where a symmetry plane meets another
-/// support: compared at a few times, relative to the largest value.
-fn agree(a: &Option<TimeFunction>, b: &Option<TimeFunction>, x: Vec3, end: f64) -> bool {
-    let value = |f: &Option<TimeFunction>, t: f64| match f {
+/// Whether the mean of what others prescribe at their positions is `value` at `x`, as where a symmetry plane meets
+/// another support: compared at a few times, relative to the largest value.
+fn agree(others: &[(&Prescription, Vec3)], value: &Prescription, x: Vec3, end: f64) -> bool {
+    let at = |f: &Prescription, x: &Vec3, t: f64| match f {
         None => Some(0.0),
-        Some(f) => f.eval_at(&x, t).ok(),
+        Some(f) => f.eval_at(x, t).ok(),
     };
     [0.0, 0.31, 0.77, 1.0].iter().all(|s| {
         let t = s * end;
-        match (value(a, t), value(b, t)) {
-            (Some(a), Some(b)) => (a - b).abs() <= 1e-12 * a.abs().max(b.abs()),
+        let given: Option<Vec<f64>> = others.iter().map(|(f, x)| at(f, x, t)).collect();
+        match (given, at(value, &x, t)) {
+            (Some(given), Some(value)) => {
+                let mean = given.iter().sum::<f64>() / given.len() as f64;
+                let largest = given.iter().fold(value.abs(), |a, v| a.max(v.abs()));
+                (mean - value).abs() <= 1e-12 * largest
+            }
             _ => false,
         }
     })
 }
 
 /// Constrained components of a support, `None` standing for zero.
-fn components(support: &scene::Support) -> Vec<(u32, Option<Value>)> {
+fn components(support: &Support) -> Vec<(u32, Option<Value>)> {
     if support.fixed {
         return (0..3).map(|c| (c, None)).collect();
     }
