@@ -14,7 +14,7 @@ pub struct ModelError {
     /// Field of the scene, e.g. `/contacts/punch/slave`.
     pub pointer: String,
     #[source]
-    pub cause: Cause,
+    pub cause: Box<Cause>,
     /// What to do about it, where the cause does not say.
     pub help: Option<String>,
 }
@@ -60,7 +60,7 @@ impl<T, E: Into<Cause>> At<T> for Result<T, E> {
     fn at(self, pointer: impl FnOnce() -> String) -> Result<T, ModelError> {
         self.map_err(|e| ModelError {
             pointer: pointer(),
-            cause: e.into(),
+            cause: Box::new(e.into()),
             help: None,
         })
     }
@@ -70,7 +70,7 @@ impl<T, E: Into<Cause>> At<T> for Result<T, E> {
 pub fn cause(pointer: impl Into<String>, cause: impl Into<Cause>) -> ModelError {
     ModelError {
         pointer: pointer.into(),
-        cause: cause.into(),
+        cause: Box::new(cause.into()),
         help: None,
     }
 }
@@ -79,7 +79,7 @@ pub fn cause(pointer: impl Into<String>, cause: impl Into<Cause>) -> ModelError 
 pub fn text(pointer: impl Into<String>, message: impl Into<String>) -> ModelError {
     ModelError {
         pointer: pointer.into(),
-        cause: Cause::Text(message.into()),
+        cause: Box::new(Cause::Text(message.into())),
         help: None,
     }
 }

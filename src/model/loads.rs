@@ -127,9 +127,9 @@ pub fn follower_stiffness(x: &[Vec3; 4], p: f64) -> SMatrix<f64, 12, 12> {
         let (xu, xv) = (combine(x, nu), combine(x, nv));
         for l in 0..4 {
             let turn: Matrix3<f64> = (xu.cross_matrix() * nv[l] - xv.cross_matrix() * nu[l]) * -p;
-            for i in 0..4 {
+            for (i, n) in n.iter().enumerate() {
                 let mut block = k.fixed_view_mut::<3, 3>(3 * i, 3 * l);
-                block += turn * n[i];
+                block += turn * *n;
             }
         }
     });

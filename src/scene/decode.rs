@@ -22,7 +22,7 @@ pub(super) fn decode<'de, T: de::Deserialize<'de>>(root: &'de Node) -> Result<T,
         Ok(_) => Err(faults),
         Err(stop) => {
             // A key that is missing because it was misspelt is one mistake, not two.
-            if !(stop.told && !faults.is_empty()) {
+            if !stop.told || faults.is_empty() {
                 faults.push(Fault {
                     message: stop.message,
                     help: stop.help,
