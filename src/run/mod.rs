@@ -13,7 +13,7 @@ pub use error::RunError;
 
 use crate::assembly::Assembler;
 use crate::model;
-use crate::output::{Phases, Summary, Versions, cpu_seconds, peak_memory_mb};
+use crate::output::{Phases, RunStatus, Summary, Versions, cpu_seconds, peak_memory_mb};
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{DirectSolver, LinearSolver, SolverOptions};
@@ -95,8 +95,10 @@ fn solve(
         interrupt,
         phases,
     );
-    let ending = march.run(out)?;
-    let (status, reason) = (ending.status, ending.reason);
+    let (status, reason, failure) = match march.run(out) {
+        Ok(ending) => (ending.status, ending.reason, None),
+        Err(e) => (RunStatus::Failed, Some(e.to_string()), Some(e)),
+    };
     let Progress {
         warnings,
         iterations,
@@ -123,7 +125,16 @@ fn solve(
         warnings,
         versions: Versions::default(),
     };
-    summary.write(&out.join("summary.json"))?;
+    let path = out.join("summary.json");
+    let written = summary.write(&path);
+    if let Some(failure) = failure {
+        // Where not even that could be written, an earlier run's summary must not pass for this one's.
+        if written.is_err() {
+            let _ = std::fs::remove_file(&path);
+        }
+        return Err(failure);
+    }
+    written?;
     march.observer.event(&Event::Finished {
         status: status.name().to_owned(),
         wall_s: summary.wall_s,

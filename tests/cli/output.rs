@@ -88,6 +88,11 @@ fn a_device_that_takes_no_more() {
         "{:?}",
         files.keys()
     );
+    let status = |files: &BTreeMap<String, Vec<u8>>| {
+        let summary: serde_json::Value = serde_json::from_slice(&files["summary.json"]).unwrap();
+        summary["status"].as_str().unwrap().to_owned()
+    };
+    assert_eq!(status(&files), "failed");
     // Over the results of an earlier run: its fields stay as they were.
     let whole = covact(
         folder.path(),
@@ -100,6 +105,10 @@ fn a_device_that_takes_no_more() {
     assert_eq!(
         before.keys().collect::<Vec<_>>(),
         after.keys().collect::<Vec<_>>()
+    );
+    assert_eq!(
+        (status(&before), status(&after)),
+        ("done".into(), "failed".into())
     );
     for (name, bytes) in &before {
         if name.ends_with(".vtu") {
