@@ -199,53 +199,54 @@ fn radii(outcome: &Outcome) -> [f64; 2] {
     [at(RADIUS - 0.5 * WALL), at(RADIUS + 0.5 * WALL)]
 }
 
-/// Hoop force per width of the wall at its mean stretch (nu = 0: the hoop stress depends on the hoop strain alone).
-fn hoop(radii: [f64; 2]) -> f64 {
-    let stretch = 0.5 * (radii[0] + radii[1]) / RADIUS;
-    500.0 * WALL * stretch * (stretch * stretch - 1.0)
+/// Hoop force per width of the wall (nu = 0: the hoop stress depends on the hoop strain alone), the mean of both faces.
+fn hoop([inner, outer]: [f64; 2]) -> f64 {
+    let stress = |stretch: f64| 500.0 * stretch * (stretch * stretch - 1.0);
+    let [low, high] = [RADIUS - 0.5 * WALL, RADIUS + 0.5 * WALL];
+    0.5 * WALL * (stress(inner / low) + stress(outer / high))
 }
 
 /// Equilibrium of the deformed tube: `p r_i = N` (r_i the deformed inner radius) under follower pressure, `p R_i = N` under
-/// dead pressure on the undeformed area.
+/// dead pressure on the undeformed area. A polygon has it to the square of its angle: 24 elements of 3.75 degrees are
+/// off by about angle^2 / 8 = 5e-4.
 #[test]
 fn follower_pressure_grows_with_the_tube_and_dead_pressure_does_not() {
     let p = 7.0;
-    let elements = 24;
-    // A regular polygon: the pressure on its faces acts on the inscribed circle.
-    let inscribed = (0.5 * 90.0_f64.to_radians() / f64::from(elements)).cos();
-
-    let follower = inflated(elements, p, true);
-    let r = radii(&follower);
-    println!("follower {r:?}, {:?}", follower.column("iterations"));
-    assert!(r[0] > 1.25 * RADIUS);
-    // Reactions at the cuts balance the pressure on the deformed projection, exactly.
-    close(
-        "cut x",
-        total(&follower, "force", &TUBE, "x"),
-        -p * r[0],
-        1e-10,
-    );
-    close(
-        "cut z",
-        total(&follower, "force", &TUBE, "z"),
-        -p * r[0],
-        1e-10,
-    );
-    // The mean stretch stands for the whole wall to (h / r)^2 / 12 times a few: 1e-4.
-    close("N", hoop(r), p * r[0] * inscribed, 2e-4);
-
-    let dead = inflated(elements, p, false);
-    let r_dead = radii(&dead);
-    println!("dead {r_dead:?}");
-    let inner = RADIUS - 0.5 * WALL;
-    close(
-        "dead cut x",
-        total(&dead, "force", &TUBE, "x"),
-        -p * inner,
-        1e-10,
-    );
-    close("dead N", hoop(r_dead), p * inner * inscribed, 2e-4);
-    assert!(r_dead[0] < 0.97 * r[0]);
+    let mut rise = Vec::new();
+    for follower in [true, false] {
+        let errors = [12, 24, 48].map(|elements| {
+            let outcome = inflated(elements, p, follower);
+            let r = radii(&outcome);
+            let inner = if follower { r[0] } else { RADIUS - 0.5 * WALL };
+            // Reactions at the cuts balance the pressure on the projection of the inner face, exactly.
+            close(
+                "cut x",
+                total(&outcome, "force", &TUBE, "x"),
+                -p * inner,
+                1e-10,
+            );
+            close(
+                "cut z",
+                total(&outcome, "force", &TUBE, "z"),
+                -p * inner,
+                1e-10,
+            );
+            println!("{:?}", outcome.column("iterations"));
+            if elements == 48 {
+                rise.push(r[0] / RADIUS);
+            }
+            hoop(r) / (p * inner) - 1.0
+        });
+        let rate = ((errors[0] - errors[1]) / (errors[1] - errors[2])).log2();
+        let limit = errors[2] - (errors[1] - errors[2]) / 3.0;
+        println!("follower {follower}: {errors:?}, rate {rate:.3}, limit {limit:.2e}");
+        assert!(errors[1].abs() < 1e-3);
+        assert!((1.95..2.05).contains(&rate));
+        // One element through the thickness has the hoop force to the square of h / R.
+        assert!(limit.abs() < (WALL / RADIUS).powi(2));
+    }
+    println!("deformed radii {rise:?}");
+    assert!(rise[0] > 1.25 && rise[1] < 0.97 * rise[0]);
 }
 
 /// Residuals of every step, relative to the forces.
@@ -269,8 +270,8 @@ fn residuals(outcome: &Outcome) -> Vec<Vec<f64>> {
     steps
 }
 
-/// Border held: the symmetrised load stiffness is exact, so the last residuals above the floor square from one iteration
-/// to the next. Dropping the load stiffness, or half of it, would leave a constant factor.
+/// Border held: the symmetrised load stiffness is exact, so the last residuals square from one iteration to the next,
+/// r_(k+1) <= C r_k^2 (C = 0.3 to 2.4 measured). Without the load stiffness they would fall by a constant factor.
 #[test]
 fn newton_is_quadratic_under_follower_pressure_on_a_held_border() {
     let plate = json!({"plate": {"size": [10, 10], "thickness": 0.2, "elements": [6, 6]}});
@@ -283,24 +284,61 @@ fn newton_is_quadratic_under_follower_pressure_on_a_held_border() {
         })
         .collect::<serde_json::Map<_, _>>()
         .into();
-    let load = json!({"p": {"on": "b.bottom", "pressure": "20*t", "follower": true}});
+    let load = json!({"p": {"on": "b.bottom", "pressure": "4*t", "follower": true}});
     let outcome = solve(&scene(plate, st_venant(1000.0, 0.3), supports, load));
     let height = positions(&outcome)
         .iter()
         .fold(0.0f64, |a, (x, now)| a.max(now[2] - x[2]));
     println!("middle rises by {height}");
     assert!(height > 1.0);
-    let mut checked = 0;
+    let mut small = 0;
     for step in residuals(&outcome) {
-        for w in step.windows(3) {
+        for w in step.windows(2) {
             // In the basin of attraction, and above the floor.
-            if w[0] < 0.05 && w[2] > 1e-12 {
-                let order = (w[2] / w[1]).ln() / (w[1] / w[0]).ln();
-                println!("order {order:.2}");
-                assert!(order > 1.7, "{w:?}");
-                checked += 1;
+            if w[0] < 0.01 && w[1] > 1e-12 {
+                println!("C = {:.2}", w[1] / (w[0] * w[0]));
+                assert!(w[1] < 5.0 * w[0] * w[0], "{w:?}");
+                small += usize::from(w[0] < 2e-4);
             }
         }
     }
-    assert!(checked >= 3, "{checked} triples");
+    // Where the bound means a factor below a thousandth.
+    assert!(small >= 4, "{small} pairs");
+}
+
+/// Strip clamped at one end, bent upwards in its plane by a follower pressure from below. Its border is free: the
+/// symmetrised tangent lacks a part there, Newton's method still converges (slower), and the reactions are those of the
+/// deformed face, whose area vector hangs on its border alone: `p` times the width times its end-to-end vector, turned.
+#[test]
+fn follower_pressure_on_a_free_border_is_balanced() {
+    let (length, width) = (10.0_f64, 0.5);
+    let strip = json!({"plate": {"size": [length, width], "thickness": 0.4, "elements": [24, 1]}});
+    let supports = json!({
+        "wall": {"on": "b.x_min", "fixed": true},
+        "front": {"on": "b.y_min", "symmetry": "y"},
+        "back": {"on": "b.y_max", "symmetry": "y"}
+    });
+    // Six times EI / L^3.
+    let p = 0.5 * 1e6 * 0.4_f64.powi(3) / length.powi(3);
+    let load = json!({"p": {"on": "b.bottom", "pressure": format!("{p}*t"), "follower": true}});
+    let outcome = solve(&scene(strip, st_venant(1e6, 0.0), supports, load));
+    println!(
+        "{:?} iterations, residuals {:?}",
+        outcome.column("iterations"),
+        outcome.column("residual")
+    );
+    let end = (positions(&outcome).into_iter())
+        .find(|(x, _)| x[0] > length - 1e-9 && x[1] < 1e-9 && x[2] < 0.0)
+        .expect("lower end node")
+        .1;
+    println!("end at {end:?}");
+    assert!(end[2] > 0.3 * length);
+    let rise = end[2] + 0.2;
+    close("x", outcome.at("force.wall.x", 1.0), p * width * rise, 1e-9);
+    close(
+        "z",
+        outcome.at("force.wall.z", 1.0),
+        -p * width * end[0],
+        1e-9,
+    );
 }
