@@ -141,7 +141,7 @@ fn tension_pressure_and_lift_off() {
         let [x, z] = now(node);
         x.atan2(z + R)
     };
-    let last = (inner.iter().copied().filter(|&i| pressure[i] > 0.0)).last();
+    let last = inner.iter().copied().rfind(|&i| pressure[i] > 0.0);
     let last = angle(last.expect("contact"));
     let spacing = LENGTH / f64::from(n) / RM;
     println!("lift-off at {last}, closed form {phi_c}, nodes {spacing} apart");
