@@ -56,6 +56,10 @@ pub enum PointFault {
     NotFinite,
 }
 
+/// A foot on an edge or a crease whose distance vector leans along the line by more than this (relative to the size of
+/// the surface) is held along the line too.
+const HELD: f64 = 1e-9;
+
 /// A point in contact, per unit area and in space coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Touch {
@@ -118,9 +122,9 @@ impl RigidMaster<'_> {
                 kind: EdgeKind::Sharp,
             } => {
                 let along = if edge < 2 { 1 } else { 0 };
-                self.on_line(&foot, along, &d, &normal)
+                self.on_line(&foot, along, &d, &normal)?
             }
-            Location::Crease { dir } => self.on_line(&foot, 1 - dir as usize, &d, &normal),
+            Location::Crease { dir } => self.on_line(&foot, 1 - dir as usize, &d, &normal)?,
             _ => self.on_face(&foot, &normal, tangent)?,
         };
         let rotation = Rotation3::from(self.pose.rotation);
@@ -139,10 +143,23 @@ impl RigidMaster<'_> {
         along: usize,
         d: &Vec3,
         normal: &Normal,
-    ) -> (Vec3, Matrix3<f64>) {
+    ) -> Result<(Vec3, Matrix3<f64>), PointFault> {
         let eps = normal.n / foot.signed_distance;
-        let k = corner::edge_tangent(d, &foot.jet.rho_i[along], &foot.jet.rho_ij[2 * along], eps);
-        (corner::residual(d, eps), k)
+        let (rho_s, rho_ss) = (foot.jet.rho_i[along], foot.jet.rho_ij[2 * along]);
+        // Where another line crosses this one, the foot may be held along it too.
+        let held = d.dot(&rho_s).abs() > HELD * self.surface.size() * rho_s.norm();
+        let k = if held {
+            corner::vertex_tangent(eps)
+        } else if rho_s.dot(&rho_s) > rho_ss.dot(d) {
+            corner::edge_tangent(d, &rho_s, &rho_ss, eps)
+        } else {
+            return Err(PointFault::BeyondFocalSurface {
+                patch: foot.patch,
+                xi: foot.xi,
+                xi3: foot.signed_distance,
+            });
+        };
+        Ok((corner::residual(d, eps), k))
     }
 
     fn on_face<T: RigidTangent>(
@@ -169,6 +186,11 @@ impl RigidMaster<'_> {
     }
 }
 
+/// Whether a point lies below the surface, deeper than it is searched: not in contact, though not outside either.
+pub fn behind(foot: &Foot, depth: f64) -> bool {
+    presses(foot) && foot.distance > depth
+}
+
 /// Whether a foot means contact. A foot on a free border is not: the point hangs past the border, beside the surface
 /// or below it, and nothing of the surface stands in its way.
 pub fn presses(foot: &Foot) -> bool {
@@ -183,4 +205,55 @@ pub fn presses(foot: &Foot) -> bool {
         }
     );
     foot.signed_distance < 0.0 && !free
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::law::Penalty;
+    use covact_geometry::NurbsPatch;
+
+    /// The valley `z = |x| + |y|`, hollow along two creases that cross at the origin.
+    fn valley() -> PatchSet {
+        let knots = || vec![0.0, 0.0, 0.5, 1.0, 1.0];
+        let at = |i: usize| i as f64 - 1.0;
+        let points: Vec<Vec3> = (0..9)
+            .map(|k| (at(k % 3), at(k / 3)))
+            .map(|(x, y)| Vec3::new(x, y, x.abs() + y.abs()))
+            .collect();
+        let patch = NurbsPatch::new([1, 1], [knots(), knots()], [3, 3], &points, None);
+        PatchSet::new(vec![patch.unwrap()], None).unwrap()
+    }
+
+    #[test]
+    fn tangents_where_creases_hold_the_foot() {
+        let set = valley();
+        let master = RigidMaster {
+            surface: &set,
+            pose: Isometry3::translation(0.3, 0.0, 0.0),
+            depth: 1.0,
+        };
+        let law = Penalty { eps_n: 5.0 };
+        let touch = |x: Vec3| {
+            (master.touch(&x, &mut None, &law, &Exact))
+                .unwrap()
+                .expect("contact")
+        };
+        // Below the crossing: held in all directions; below one crease: free along it; below a face: along the normal.
+        for (x, rank) in [
+            (Vec3::new(0.3, 0.0, -0.1), 3),
+            (Vec3::new(0.7, 0.0, 0.3), 2),
+            (Vec3::new(0.7, 0.3, 0.6), 1),
+        ] {
+            let at = touch(x);
+            assert_eq!(at.tangent.rank(1e-9), rank, "{x:?}");
+            for c in 0..3 {
+                let mut step = Vec3::zeros();
+                step[c] = 1e-6;
+                let slope = (touch(x + step).residual - touch(x - step).residual) / 2e-6;
+                let error = (slope - at.tangent.column(c)).norm();
+                assert!(error < 1e-7, "{x:?}, direction {c}: {error:e}");
+            }
+        }
+    }
 }
