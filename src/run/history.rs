@@ -14,6 +14,8 @@ pub struct Record<'a> {
     pub converged: &'a Converged,
     /// Residual at all degrees of freedom: reactions at the constrained ones.
     pub residual: &'a [f64],
+    /// Displacements, 3 per node.
+    pub u: &'a [f64],
     pub fields: &'a Fields,
 }
 
@@ -62,7 +64,7 @@ pub fn row(r: &Record) -> Vec<f64> {
     for s in &totals.surfaces {
         out.extend(s.force.iter().chain(s.moment.iter()));
     }
-    for (force, moment) in reactions(r.model, r.residual) {
+    for (force, moment) in reactions(r.model, r.residual, r.u) {
         out.extend(force.iter().chain(moment.iter()));
     }
     out.extend([
@@ -78,15 +80,15 @@ pub fn row(r: &Record) -> Vec<f64> {
     out
 }
 
-/// Force and moment about the origin that each support exerts, the moment with the undeformed positions of its nodes.
-fn reactions(model: &Model, residual: &[f64]) -> Vec<(Vec3, Vec3)> {
+/// Force and moment about the origin that each support exerts on the deformed body.
+fn reactions(model: &Model, residual: &[f64], u: &[f64]) -> Vec<(Vec3, Vec3)> {
     let mut out = vec![(Vec3::zeros(), Vec3::zeros()); model.supports.len()];
     let mut add = |support: u32, dof: u32, value: f64| {
         let mut f = Vec3::zeros();
         f[dof as usize % 3] = value;
         let (force, moment) = &mut out[support as usize];
         *force += f;
-        *moment += model.nodes[dof as usize / 3].cross(&f);
+        *moment += model.position(dof as usize / 3, u).cross(&f);
     };
     for p in &model.prescribed {
         add(p.support, p.dof, residual[p.dof as usize]);
