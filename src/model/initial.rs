@@ -1,7 +1,7 @@
 //! How the contact pairs stand before anything moves.
 use super::error::{number, text};
 use super::{Model, ModelError};
-use crate::contact::rigid::presses;
+use crate::contact::rigid::{behind, presses};
 use covact_geometry::Vec3;
 
 /// Initial gaps of a pair.
@@ -43,7 +43,7 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
             patch: foot.patch,
             xi: foot.xi,
         });
-        let behind = presses(&foot) && foot.distance > master.depth;
+        let behind = behind(&foot, master.depth);
         let counts = presses(&foot) && !behind;
         let distance = if foot.signed_distance < 0.0 && !counts {
             foot.distance

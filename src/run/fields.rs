@@ -1,6 +1,6 @@
 //! Fields of an accepted state, gathered on nodes for the output.
 use super::RunError;
-use crate::contact::rigid::presses;
+use crate::contact::rigid::{behind, presses};
 use crate::model::Model;
 use crate::output::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, Results, SurfaceOutput,
@@ -17,7 +17,15 @@ pub struct Fields {
     pressure: Vec<f64>,
     gap: Vec<f64>,
     status: Vec<u8>,
+    /// Weights of the pair at hand, zero outside [`Fields::gather`].
     weight: Vec<f64>,
+    /// Weighted pressure and gap of the pair at hand.
+    sums: Vec<[f64; 2]>,
+    /// Per slave point: in front of its surface or in contact when last gathered.
+    front: Vec<bool>,
+    /// Per pair: points that were in front of the surface or in contact when last gathered, and now lie below it,
+    /// deeper than its depth.
+    pub sunk: Vec<usize>,
     /// Smallest signed distance of a slave point.
     pub smallest_gap: f64,
     /// Largest pressure at a slave point.
@@ -55,6 +63,9 @@ impl Fields {
             gap: vec![f64::NAN; n],
             status: vec![NOT_A_SLAVE; n],
             weight: vec![0.0; n],
+            sums: vec![[0.0; 2]; n],
+            front: vec![false; model.contact_points()],
+            sunk: vec![0; model.pairs.len()],
             smallest_gap: f64::NAN,
             largest_pressure: 0.0,
             area: 0.0,
@@ -77,22 +88,26 @@ impl Fields {
         time: f64,
     ) -> Result<(), RunError> {
         self.pressure.fill(0.0);
-        self.gap.fill(0.0);
-        self.weight.fill(0.0);
+        self.gap.fill(f64::NAN);
         self.status.fill(NOT_A_SLAVE);
         self.smallest_gap = f64::INFINITY;
         self.largest_pressure = 0.0;
         self.area = 0.0;
+        self.sunk.fill(0);
         let mut first = 0;
-        for (pair, eps_n) in model.pairs.iter().zip(penalties) {
+        for (index, (pair, eps_n)) in model.pairs.iter().zip(penalties).enumerate() {
             let master = model.surfaces[pair.surface].at(time)?;
             let states = &state.points[first..first + pair.points.len()];
-            for (p, s) in pair.points.iter().zip(states) {
+            let fronts = &mut self.front[first..first + pair.points.len()];
+            for ((p, s), front) in pair.points.iter().zip(states).zip(fronts) {
                 let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
                 let foot = master.foot(&x, s.hint, f64::INFINITY);
                 let closed =
                     (foot.as_ref()).is_some_and(|f| presses(f) && f.distance <= master.depth);
+                let sunk = foot.as_ref().is_some_and(|f| behind(f, master.depth));
+                self.sunk[index] += usize::from(*front && sunk);
+                *front = closed || foot.as_ref().is_some_and(|f| f.signed_distance >= 0.0);
                 let gap = match &foot {
                     None => f64::NAN,
                     Some(f) if closed => f.signed_distance,
@@ -107,21 +122,22 @@ impl Fields {
                 for (node, n) in p.terms() {
                     let w = n * p.area;
                     self.weight[node] += w;
-                    self.pressure[node] += w * pressure;
-                    self.gap[node] += w * gap;
+                    self.sums[node][0] += w * pressure;
+                    self.sums[node][1] += w * gap;
                     let status = if closed { CLOSED } else { OPEN };
                     self.status[node] = self.status[node].max(status);
                 }
             }
-            first += pair.points.len();
-        }
-        for node in 0..self.weight.len() {
-            if self.status[node] == NOT_A_SLAVE {
-                self.gap[node] = f64::NAN;
-            } else {
-                self.pressure[node] /= self.weight[node];
-                self.gap[node] /= self.weight[node];
+            // Pressures of several surfaces on the same face add up; the nearest surface gives the gap.
+            for (node, _) in pair.points.iter().flat_map(|p| p.terms()) {
+                let weight = std::mem::take(&mut self.weight[node]);
+                let [pressure, gap] = std::mem::take(&mut self.sums[node]);
+                if weight > 0.0 {
+                    self.pressure[node] += pressure / weight;
+                    self.gap[node] = self.gap[node].min(gap / weight);
+                }
             }
+            first += pair.points.len();
         }
         if self.smallest_gap == f64::INFINITY {
             self.smallest_gap = f64::NAN;

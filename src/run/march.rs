@@ -4,6 +4,7 @@ use super::fields::Fields;
 use super::history;
 use super::step::Attempts;
 use crate::assembly::Assembler;
+use crate::model::error::number;
 use crate::model::{Model, penalty};
 use crate::output::{History, Phases, Results, RunStatus};
 use crate::scene::Scene;
@@ -14,6 +15,10 @@ use crate::solve::state::State;
 use crate::solve::stepping::Stepping;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
+
+/// Residual relative to the forces up to which an equilibrium that only the round-off floor accepts is taken without a
+/// word.
+const RELIABLE: f64 = 1e-4;
 
 /// What a run has done so far.
 #[derive(Debug, Clone, Default)]
@@ -45,6 +50,8 @@ pub(super) struct March<'a, 'm> {
     pub progress: Progress,
     /// Pairs that were in contact at some accepted step.
     touched: Vec<bool>,
+    /// Pairs that are in contact at the last accepted step.
+    touching: Vec<bool>,
 }
 
 /// Folder, table and fields of a run.
@@ -80,6 +87,7 @@ impl<'a, 'm> March<'a, 'm> {
                 ..Progress::default()
             },
             touched: vec![false; model.pairs.len()],
+            touching: vec![false; model.pairs.len()],
         }
     }
 
@@ -129,6 +137,7 @@ impl<'a, 'm> March<'a, 'm> {
             });
             let result = Attempts {
                 model: self.model,
+                committed,
                 assembler: self.assembler,
                 solver: self.solver,
                 workspace: &mut self.workspace,
@@ -138,7 +147,7 @@ impl<'a, 'm> March<'a, 'm> {
                 observer: self.observer,
                 progress: &mut self.progress,
             }
-            .solve(step, end, dt, committed, before.as_ref(), &mut trial);
+            .solve(step, end, dt, before.as_ref(), &mut trial);
             let failure = match result {
                 Ok(converged) => {
                     match &mut before {
@@ -215,7 +224,15 @@ impl<'a, 'm> March<'a, 'm> {
         self.progress.time = end;
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let deepest = converged.totals.penetration[i];
-            self.touched[i] |= deepest > 0.0;
+            let touching = deepest > 0.0;
+            self.touched[i] |= touching;
+            if std::mem::replace(&mut self.touching[i], touching) && !touching {
+                self.warn(format!(
+                    "contact `{}` opened at step {step} (time {}): none of its points touches any more",
+                    pair.name,
+                    number(end)
+                ));
+            }
             let allowed = penalty::TOLERATED * pair.element_size;
             if !pair.automatic && deepest > allowed {
                 self.warn(format!(
@@ -223,6 +240,13 @@ impl<'a, 'm> March<'a, 'm> {
                     pair.name
                 ));
             }
+        }
+        let residual = converged.history.last().map_or(0.0, |last| last.0);
+        if converged.totals.active > 0 && residual > RELIABLE {
+            self.warn(format!(
+                "step {step} is balanced to {residual:.1e} of its forces only, which is what rounding leaves: a penalty, \
+                 a stiffness or a displacement is too large for double precision"
+            ));
         }
         if converged.negative_pivots > 0 {
             self.warn(format!(
@@ -251,6 +275,18 @@ impl<'a, 'm> March<'a, 'm> {
         let (step, time) = (self.progress.steps, self.progress.time);
         self.phases.start("output");
         (outputs.fields).gather(self.model, &self.assembler.penalties, state, time)?;
+        for (pair, sunk) in self.model.pairs.iter().zip(&outputs.fields.sunk) {
+            if *sunk > 0 {
+                let surface = &self.model.surfaces[pair.surface];
+                self.warn(format!(
+                    "contact `{}`: {sunk} point(s) passed through surface `{}` at step {step}, deeper than its `depth` \
+                     {}, and are not in contact: take smaller steps or a larger `depth`",
+                    pair.name,
+                    surface.name,
+                    number(surface.depth)
+                ));
+            }
+        }
         let row = history::row(&history::Record {
             model: self.model,
             step,
@@ -259,6 +295,7 @@ impl<'a, 'm> March<'a, 'm> {
             cuts,
             converged,
             residual: self.workspace.residual(),
+            u: &state.u,
             fields: &outputs.fields,
         });
         outputs.table.push(&row)?;

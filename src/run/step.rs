@@ -9,7 +9,8 @@
 //!
 //! What fails all three is cut.
 use super::march::Progress;
-use crate::assembly::Assembler;
+use crate::assembly::{Assembler, Fault};
+use crate::contact::rigid::behind;
 use crate::model::{Model, penalty};
 use crate::output::Phases;
 use crate::scene;
@@ -27,6 +28,8 @@ const RAISES: usize = 4;
 /// The attempts at one step.
 pub(super) struct Attempts<'a, 'm> {
     pub model: &'m Model,
+    /// The last accepted state.
+    pub committed: &'a State,
     pub assembler: &'a mut Assembler<'m>,
     pub solver: &'a mut DirectSolver,
     pub workspace: &'a mut Workspace,
@@ -45,14 +48,13 @@ impl Attempts<'_, '_> {
         step: u32,
         end: f64,
         dt: f64,
-        committed: &State,
         before: Option<&(State, f64)>,
         trial: &mut State,
     ) -> Result<Converged, StepFailure> {
         let penalties = self.assembler.penalties.clone();
         let touching = !self.model.pairs.is_empty();
         if let Some((state, size)) = before {
-            committed.extrapolate(state, dt / size, trial);
+            self.committed.extrapolate(state, dt / size, trial);
             match self.converge(step, end, trial, Patience::Short) {
                 Err(failure) if failure != StepFailure::Interrupted => {
                     self.again(step, "the last accepted state", &failure, &penalties);
@@ -60,7 +62,7 @@ impl Attempts<'_, '_> {
                 other => return other,
             }
         }
-        trial.copy_from(committed);
+        trial.copy_from(self.committed);
         let patience = if touching {
             Patience::Short
         } else {
@@ -72,7 +74,7 @@ impl Attempts<'_, '_> {
             }
             other => return other,
         }
-        trial.copy_from(committed);
+        trial.copy_from(self.committed);
         let result = self.softened(step, end, trial, &penalties);
         if result.is_err() {
             self.assembler.penalties.copy_from_slice(&penalties);
@@ -109,7 +111,8 @@ impl Attempts<'_, '_> {
         });
     }
 
-    /// Newton's method, and where an automatic penalty lets a point sink in too far, a stiffer one.
+    /// Newton's method, and where an automatic penalty lets a point sink in too far, a stiffer one. A state in which a
+    /// point fell through the surface is none, however well in equilibrium: contact was lost on the way.
     fn converge(
         &mut self,
         step: u32,
@@ -118,15 +121,56 @@ impl Attempts<'_, '_> {
         patience: Patience,
     ) -> Result<Converged, StepFailure> {
         let mut iterations = 0;
+        let mut raised = Vec::new();
         for _ in 0..RAISES {
             let mut converged = self.newton(step, end, trial, patience)?;
+            self.none_sunk(end, trial)?;
             iterations += converged.iterations;
             converged.iterations = iterations;
-            if !self.stiffen(step, &converged) {
+            if !self.stiffen(step, &converged, &mut raised) {
+                // Told only now: a failed attempt takes its penalties back.
+                for text in raised {
+                    self.observer.event(&Event::Warning { text: text.clone() });
+                    self.progress.warnings.push(text);
+                }
                 return Ok(converged);
             }
         }
         Err(StepFailure::PenetrationStays)
+    }
+
+    /// Fails where a point that was in contact in the last accepted state lies below the surface, deeper than its
+    /// depth.
+    fn none_sunk(&self, end: f64, trial: &State) -> Result<(), StepFailure> {
+        let mut first = 0;
+        for pair in &self.model.pairs {
+            let surface = &self.model.surfaces[pair.surface];
+            let master = surface.at(end).map_err(Fault::from)?;
+            let range = first..first + pair.points.len();
+            first = range.end;
+            let now = &trial.points[range.clone()];
+            let opened = (pair
+                .points
+                .iter()
+                .zip(now)
+                .zip(&self.committed.points[range]))
+            .filter(|((_, now), before)| before.closed && !now.closed);
+            let sunk = opened.filter(|((p, now), _)| {
+                let x = self.model.point_position(p, &trial.u);
+                let foot = master.foot(&x, now.hint, f64::INFINITY);
+                foot.is_some_and(|f| behind(&f, master.depth))
+            });
+            let points = sunk.count();
+            if points > 0 {
+                return Err(StepFailure::Sunk {
+                    pair: pair.name.clone(),
+                    surface: surface.name.clone(),
+                    points,
+                    depth: master.depth,
+                });
+            }
+        }
+        Ok(())
     }
 
     fn newton(
@@ -152,8 +196,8 @@ impl Attempts<'_, '_> {
         result
     }
 
-    /// Raises the automatic penalties of pairs that penetrate too deep; whether there were any.
-    fn stiffen(&mut self, step: u32, converged: &Converged) -> bool {
+    /// Raises the automatic penalties of pairs that penetrate too deep, and says so in `told`; whether there were any.
+    fn stiffen(&mut self, step: u32, converged: &Converged, told: &mut Vec<String>) -> bool {
         let mut raised = false;
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let allowed = penalty::TOLERATED * pair.element_size;
@@ -164,13 +208,11 @@ impl Attempts<'_, '_> {
             let eps = self.assembler.penalties[i] * 2.0 * deepest / allowed;
             self.assembler.penalties[i] = eps;
             raised = true;
-            let text = format!(
+            told.push(format!(
                 "contact `{}`: penetration {deepest:.3e} above {allowed:.3e} (1 % of an element) at step {step}: \
                  automatic penalty raised to {eps:.6e}",
                 pair.name
-            );
-            self.observer.event(&Event::Warning { text: text.clone() });
-            self.progress.warnings.push(text);
+            ));
         }
         raised
     }

@@ -36,6 +36,16 @@ pub enum StepFailure {
         "the penetration stays above 1 % of an element although the automatic penalty was raised"
     )]
     PenetrationStays,
+    #[error(
+        "contact `{pair}`: {points} point(s) that were in contact sank deeper than the `depth` {depth:.6e} of surface \
+         `{surface}`: the penalty is too soft for it, or the step too large"
+    )]
+    Sunk {
+        pair: String,
+        surface: String,
+        points: usize,
+        depth: f64,
+    },
     #[error("interrupted")]
     Interrupted,
 }
@@ -241,14 +251,11 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
         }
         loop {
             self.apply(trial, s);
-            let closed = self.workspace.base.points.clone();
+            // Changes of status count from where the iteration began, whatever was tried in between.
+            trial.points.copy_from_slice(&self.workspace.base.points);
             match self.linearize(trial, time, false) {
                 Ok(totals) => return Ok((totals, s)),
-                Err(fault) if s > SMALLEST => {
-                    let _ = fault;
-                    trial.points.copy_from_slice(&closed);
-                    s *= 0.5;
-                }
+                Err(_) if s > SMALLEST => s *= 0.5,
                 Err(fault) => return Err(fault.into()),
             }
         }

@@ -2,6 +2,7 @@
 mod common;
 mod convergence;
 mod cost;
+mod lost;
 mod parametrisation;
 mod rollback;
 #[path = "../verification/support.rs"]
@@ -9,4 +10,5 @@ mod rollback;
 mod support;
 mod tangents;
 mod threads;
+mod two_surfaces;
 mod units;
