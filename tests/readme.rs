@@ -4,7 +4,11 @@ use covact::output::column_table;
 #[test]
 fn readme_lists_the_columns_of_the_history() {
     let readme = include_str!("../README.md");
-    assert!(readme.contains(&column_table()), "put this into README.md:\n{}", column_table());
+    assert!(
+        readme.contains(&column_table()),
+        "put this into README.md:\n{}",
+        column_table()
+    );
 }
 
 #[test]
@@ -14,9 +18,16 @@ fn readme_lists_the_shipped_scenes() {
     let mut scenes = 0;
     for entry in std::fs::read_dir(folder).expect("scenes") {
         let path = entry.expect("entry").path();
-        let stem = path.file_stem().and_then(|s| s.to_str()).expect("name").to_owned();
+        let stem = path
+            .file_stem()
+            .and_then(|s| s.to_str())
+            .expect("name")
+            .to_owned();
         if stem != "schema" {
-            assert!(readme.contains(&format!("`{stem}`")), "README does not list {stem}");
+            assert!(
+                readme.contains(&format!("`{stem}`")),
+                "README does not list {stem}"
+            );
             scenes += 1;
         }
     }
@@ -31,5 +42,10 @@ fn the_scene_in_the_readme_is_well_formed() {
     let scene = covact::scene::parse(&readme[start..end], "README.md").expect("a scene");
     let problems = covact::scene::check(&scene);
     // The CAD file it names does not lie beside README.
-    assert!(problems.iter().all(|p| p.pointer == "/surfaces/punch/cad/file"), "{problems:?}");
+    assert!(
+        problems
+            .iter()
+            .all(|p| p.pointer == "/surfaces/punch/cad/file"),
+        "{problems:?}"
+    );
 }
