@@ -3,7 +3,8 @@
 
 use rayon::prelude::*;
 
-use super::convex::{Axes, Convex, axes};
+use super::convex::{Axes, Convex, Tangents, axes, tangents};
+use super::local::Local;
 use super::piece::{Piece, Pieces, split};
 use super::set::Grid;
 use super::tree::Tree;
@@ -12,6 +13,9 @@ use crate::surface::Vec3;
 
 /// Control polygons of a cell turn by about this much at most (radians), unless there would be more than [`MOST`].
 const TURN: f64 = 0.4;
+/// Their legs differ by about this factor at most, unless there would be more than [`MOST_STRETCH`] cells.
+const STRETCH: f64 = 1.6;
+const MOST_STRETCH: f64 = 4.0;
 /// Most cells of one span in each direction.
 const MOST: usize = 8;
 
@@ -27,6 +31,12 @@ pub(super) fn parts(bezier: &BezierPiece) -> [usize; 2] {
         let mut most = 0.0f64;
         for line in 0..lines {
             let mut sum = 0.0;
+            let legs = (1..count).map(|k| (point(at(line, k)) - point(at(line, k - 1))).norm());
+            let (short, long) = legs.fold((f64::INFINITY, 0.0f64), |s, l| (s.0.min(l), s.1.max(l)));
+            if short > 0.0 {
+                let parts = (long / short).ln() / STRETCH.ln();
+                most = most.max(parts.min(MOST_STRETCH) * TURN);
+            }
             for k in 2..count {
                 let [a, b, c] = [k - 2, k - 1, k].map(|k| point(at(line, k)));
                 let (u, v) = (b - a, c - b);
@@ -91,10 +101,12 @@ pub(super) fn cut(
 pub(super) struct Cell {
     /// The cells around it up to the next crease or edge: `[direction][first, end]`, numbers within the patch.
     pub block: [[u32; 2]; 2],
-    /// Proof for the block.
-    pub around: Convex,
-    /// Proof for the cell alone.
-    pub own: Convex,
+    /// Proof for the block, and the block's widths in the parameters.
+    around: Convex,
+    around_width: [f64; 2],
+    /// Proof for the cell alone, and its widths.
+    own: Convex,
+    own_width: [f64; 2],
     /// Lower bound of the distance between the cell and everything outside of the block.
     pub clear: f64,
     /// Box along the axes of the cell.
@@ -180,6 +192,21 @@ impl Cell {
             })
     }
 
+    /// Whether a stationary point of this cell is proved to be the nearest point of the block.
+    #[inline]
+    pub fn settles_block(&self, q: &Vec3, s: &Local) -> bool {
+        s.converged
+            && self
+                .around
+                .holds(&(q - s.jet.rho), held(s, &self.around_width))
+    }
+
+    /// Whether a stationary point of this cell is proved to be the nearest point of the cell.
+    #[inline]
+    pub fn settles_itself(&self, q: &Vec3, s: &Local) -> bool {
+        s.converged && self.own.holds(&(q - s.jet.rho), held(s, &self.own_width))
+    }
+
     /// Where to look for the foot of `q` (parameters 0 to 1 of the cell, outside of it by half of its width at most).
     #[inline]
     pub fn seed(&self, q: &Vec3) -> [f64; 2] {
@@ -189,15 +216,33 @@ impl Cell {
     }
 }
 
+/// What active bounds add to the forms of [`Convex::holds`].
+#[inline]
+fn held(s: &Local, width: &[f64; 2]) -> [f64; 2] {
+    [0, 1].map(|k| {
+        if s.active[k] {
+            2.0 * s.gradient[k].abs() / width[k]
+        } else {
+            0.0
+        }
+    })
+}
+
 /// All cells, in the order of the pieces.
 pub(super) fn cells(pieces: &Pieces, grids: &[Grid], tree: &Tree) -> Vec<Cell> {
-    (0..pieces.list.len())
+    let tangents: Vec<Tangents> = pieces
+        .list
+        .par_iter()
+        .map(|piece| tangents(pieces.net(piece), piece.degree))
+        .collect();
+    (0..pieces.list.len() as u32)
         .into_par_iter()
-        .map(|number| cell(pieces, grids, tree, &pieces.list[number]))
+        .map(|number| cell(pieces, grids, tree, &tangents, number))
         .collect()
 }
 
-fn cell(pieces: &Pieces, grids: &[Grid], tree: &Tree, piece: &Piece) -> Cell {
+fn cell(pieces: &Pieces, grids: &[Grid], tree: &Tree, tangents: &[Tangents], number: u32) -> Cell {
+    let piece = &pieces.list[number as usize];
     let grid = &grids[piece.patch as usize];
     let net = pieces.net(piece);
     let block = [0, 1].map(|k| {
@@ -215,6 +260,15 @@ fn cell(pieces: &Pieces, grids: &[Grid], tree: &Tree, piece: &Piece) -> Cell {
         block,
         around: Convex::NEVER,
         own: Convex::NEVER,
+        around_width: [0, 1].map(|k| {
+            let [low, high] = [block[k][0], block[k][1] - 1].map(|c| {
+                let mut place = piece.cell;
+                place[k] = c;
+                pieces.list[grid.piece(place) as usize].domain[k]
+            });
+            high[1] - low[0]
+        }),
+        own_width: piece.domain.map(|[a, b]| b - a),
         clear: 0.0,
         seed: [Vec3::zeros(); 2],
         slab,
@@ -222,11 +276,10 @@ fn cell(pieces: &Pieces, grids: &[Grid], tree: &Tree, piece: &Piece) -> Cell {
     let Some(axes) = found else {
         return out;
     };
-    out.own = Convex::new(pieces, &axes, std::iter::once(piece));
-    let members = (block[1][0]..block[1][1]).flat_map(|j| {
-        (block[0][0]..block[0][1]).map(move |i| &pieces.list[grid.piece([i, j]) as usize])
-    });
-    out.around = Convex::new(pieces, &axes, members);
+    out.own = Convex::new(pieces, tangents, &axes, std::iter::once(number));
+    let members = (block[1][0]..block[1][1])
+        .flat_map(|j| (block[0][0]..block[0][1]).map(move |i| grid.piece([i, j])));
+    out.around = Convex::new(pieces, tangents, &axes, members);
     out.seed = seed_vectors(net, piece.degree, &axes);
     let mut clear2 = f64::INFINITY;
     tree.scan(

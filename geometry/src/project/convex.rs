@@ -6,7 +6,7 @@
 //! `|q - y|^2 - |q - x|^2 = |y - x|^2 - 2 d.(y - x)`.
 //!
 //! The second term is at most `D.Q.D`, `Q_ij = max d.rho_ij` over the rectangle, because `d.rho_i D_i <= 0` at a
-//! stationary point with active bounds. The first is at least `(1 - e)^2 D.G.D`, where `G` is the metric of mean
+//! stationary point with active bounds (and far below it where they hold it hard). The first is at least `(1 - e)^2 D.G.D`, where `G` is the metric of mean
 //! tangents in a plane and `e` says how far the tangents, seen in that plane, are off the mean. Where the difference
 //! of both forms is positive, nothing in the rectangle is nearer. `G` and the range of `rho_ij` are known beforehand,
 //! so the proof costs less than an evaluation; it holds on the side where the surface bends away however far the
@@ -113,7 +113,7 @@ impl Derivatives {
 
     /// Of a piece: its control nets' derivatives hold those of numerator and weight, the quotient rule in ranges the
     /// rest.
-    fn of(piece: &Piece, net: &[[f64; 4]], axes: &Axes) -> Derivatives {
+    fn of(piece: &Piece, net: &[[f64; 4]], tangents: &Tangents, axes: &Axes) -> Derivatives {
         let [low, high] = hull(net);
         let middle = (low + high) * 0.5;
         let mut turned = [[0.0; 4]; WIDTH * WIDTH];
@@ -134,7 +134,16 @@ impl Derivatives {
         let width = [0, 1].map(|k| piece.domain[k][1] - piece.domain[k][0]);
         let mut out = Derivatives::NONE;
         for k in 0..3 {
-            let first = [0, 1].map(|i| nets[i][k].minus(place[k].times(w[i])).over(w0));
+            let first = [0, 1].map(|i| {
+                if tangents[i].is_empty() {
+                    return nets[i][k].over(w0);
+                }
+                let mut range = EMPTY;
+                for tangent in &tangents[i] {
+                    range.take(tangent.dot(&axes[k]));
+                }
+                range
+            });
             let second = |slot: usize, i: usize, j: usize| {
                 nets[slot][k]
                     .minus(first[i].times(w[j]))
@@ -151,6 +160,69 @@ impl Derivatives {
         }
         out
     }
+}
+
+/// Vectors whose convex hull holds the tangents `rho_1`, `rho_2` of a rational piece (for parameters from 0 to 1); none
+/// for a polynomial one, whose tangents have control vectors of their own.
+pub(super) type Tangents = [Vec<Vec3>; 2];
+
+/// With numerator `A` and denominator `w`, `rho_i = (A_i w - A w_i) / w^2`; both sides of the fraction are brought to
+/// twice the degrees, where the ratios of their coefficients are such vectors.
+pub(super) fn tangents(net: &[[f64; 4]], degree: [usize; 2]) -> Tangents {
+    if net.iter().all(|p| p[3] == net[0][3]) {
+        return [Vec::new(), Vec::new()];
+    }
+    // About the middle, which keeps the products small.
+    let [low, high] = hull(net);
+    let middle = (low + high) * 0.5;
+    let near = |p: &[f64; 4]| Vec3::new(p[0], p[1], p[2]) - middle * p[3];
+    let [n1, n2] = degree.map(|p| p + 1);
+    let binomials = degree.map(row_of_pascal);
+    [0, 1].map(|dir| {
+        let narrow = row_of_pascal(degree[dir] - 1);
+        let (m1, m2) = (2 * degree[0] + 1, 2 * degree[1] + 1);
+        let mut above = vec![Vec3::zeros(); m1 * m2];
+        let mut below = vec![0.0; m1 * m2];
+        for j in 0..n2 {
+            for i in 0..n1 {
+                let p = &net[i + n1 * j];
+                let f = binomials[0][i] * binomials[1][j];
+                for l in 0..n2 {
+                    for k in 0..n1 {
+                        let q = &net[k + n1 * l];
+                        let g = f * binomials[0][k] * binomials[1][l];
+                        below[i + k + m1 * (j + l)] += g * p[3] * q[3];
+                        let at = [k, l];
+                        if at[dir] == degree[dir] {
+                            continue;
+                        }
+                        let next = &net[if dir == 0 {
+                            k + 1 + n1 * l
+                        } else {
+                            k + n1 * (l + 1)
+                        }];
+                        let derivative = (near(next) - near(q)) * p[3] - near(p) * (next[3] - q[3]);
+                        let other = binomials[1 - dir][at[1 - dir]];
+                        let term = derivative * (f * narrow[at[dir]] * other * degree[dir] as f64);
+                        // Times 1 - t + t, which raises the degree 2 p - 1 in this direction to 2 p.
+                        above[i + k + m1 * (j + l)] += term;
+                        let (a, b) = if dir == 0 { (1, 0) } else { (0, 1) };
+                        above[i + k + a + m1 * (j + l + b)] += term;
+                    }
+                }
+            }
+        }
+        // Both are scaled by the same binomials, which cancel.
+        above.iter().zip(&below).map(|(a, b)| a / *b).collect()
+    })
+}
+
+fn row_of_pascal(n: usize) -> Vec<f64> {
+    let mut row = vec![1.0; n + 1];
+    for k in 1..n {
+        row[k] = row[k - 1] * (n + 1 - k) as f64 / k as f64;
+    }
+    row
 }
 
 /// Ranges of the derivative net of the given orders.
@@ -218,15 +290,18 @@ impl Convex {
         half: [Vec3::new(0.0, 0.0, 0.0); 3],
     };
 
-    /// For a rectangle that consists of the given pieces.
-    pub fn new<'a>(
+    /// For a rectangle that consists of the pieces with the given numbers; `tangents` of all pieces.
+    pub fn new(
         pieces: &Pieces,
+        tangents: &[Tangents],
         axes: &Axes,
-        members: impl Iterator<Item = &'a Piece>,
+        members: impl Iterator<Item = u32>,
     ) -> Convex {
         let mut all = Derivatives::NONE;
-        for piece in members {
-            all.join(&Derivatives::of(piece, pieces.net(piece), axes));
+        for number in members {
+            let piece = &pieces.list[number as usize];
+            let tangents = &tangents[number as usize];
+            all.join(&Derivatives::of(piece, pieces.net(piece), tangents, axes));
         }
         let d = &all.0;
         let tangent = [0, 1].map(|i| [d[i][0].middle(), d[i][1].middle()]);
@@ -256,9 +331,11 @@ impl Convex {
         }
     }
 
-    /// Whether the stationary point with `d = q - rho` is proved to be the nearest of the rectangle.
+    /// Whether the stationary point with `d = q - rho` is proved to be the nearest of the rectangle. `held` are twice the
+    /// slopes `|rho_i . d|` that hold it on active bounds over the widths of the rectangle: on such a bound
+    /// `-2 d.rho_i D_i` is at least that times `D_i^2`.
     #[inline]
-    pub fn holds(&self, d: &Vec3) -> bool {
+    pub fn holds(&self, d: &Vec3, held: [f64; 2]) -> bool {
         let local = Vec3::new(
             self.axes[0].dot(d),
             self.axes[1].dot(d),
@@ -271,7 +348,7 @@ impl Convex {
             (0.999 * self.metric[k] - self.middle[k].dot(&local), spread)
         };
         let (a, b, c) = (free(0), free(1), free(2));
-        let (a, b, c) = (a.0 - a.1, b.0.abs() + b.1, c.0 - c.1);
+        let (a, b, c) = (a.0 - a.1 + held[0], b.0.abs() + b.1, c.0 - c.1 + held[1]);
         a > 0.0 && c > 0.0 && a * c > b * b
     }
 }

@@ -150,6 +150,7 @@ impl PatchSet {
     }
 
     fn descend_from(&self, q: &Vec3, mut s: Local, tolerance: f64) -> Local {
+        s.converged = false;
         let mut escapes = 0;
         for _ in 0..ITERATIONS {
             if self.stationary(&s, tolerance) {
@@ -234,10 +235,23 @@ impl PatchSet {
         best.map(|b| b.1)
     }
 
-    /// Brings a point that is converged roughly to machine precision: iterates within its region, then makes undamped
-    /// Newton steps. The result converges as `converged` says.
+    /// Brings a point to machine precision within its region: undamped Newton steps if it is converged roughly, and where
+    /// it is not or they do not suffice, the safeguarded iteration before them. The result converges as `converged` says.
     pub(super) fn polish(&self, q: &Vec3, start: Local) -> Local {
-        let mut s = self.descend_from(q, start, 1e-12);
+        if start.converged {
+            let s = self.refine(q, start);
+            if self.stationary(&s, 1e-12) {
+                return s;
+            }
+        }
+        let mut s = self.refine(q, self.descend_from(q, start, 1e-12));
+        let tolerance = self.attainable(&s).clamp(1e-12, 1e-9);
+        s.converged = s.converged || self.stationary(&s, tolerance);
+        s
+    }
+
+    /// Undamped Newton steps as far as they help.
+    fn refine(&self, q: &Vec3, mut s: Local) -> Local {
         let mut trial = s;
         for _ in 0..3 {
             let Some(step) = undamped_step(&trial) else {
@@ -258,8 +272,6 @@ impl PatchSet {
                 break;
             }
         }
-        let tolerance = self.attainable(&s).clamp(1e-12, 1e-9);
-        s.converged = s.converged || self.stationary(&s, tolerance);
         s
     }
 }

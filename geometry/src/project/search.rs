@@ -74,10 +74,7 @@ impl<'a> Search<'a> {
         if distance < self.distance || self.best.is_none() && distance <= self.reach {
             self.distance = distance;
             self.best = Some((piece, local));
-            self.settled = local.converged
-                && self.set.cells[piece as usize]
-                    .around
-                    .holds(&(self.q - local.jet.rho));
+            self.settled = self.set.cells[piece as usize].settles_block(&self.q, &local);
         }
     }
 
@@ -173,7 +170,7 @@ impl<'a> Search<'a> {
             let u = cell.seed(&self.q).map(|u| u.clamp(0.05, 0.95));
             self.iterate(id, piece, u)
         });
-        if local.converged && cell.own.holds(&(self.q - local.jet.rho)) {
+        if cell.settles_itself(&self.q, &local) {
             return;
         }
         let known = self.known(piece, &local);
