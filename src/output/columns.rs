@@ -21,7 +21,7 @@ const fn doc(pattern: &'static str, unit: &'static str, meaning: &'static str) -
 
 /// Every column a history may have. Names are stable: columns are added, never renamed.
 pub const COLUMNS: &[ColumnDoc] = &[
-    doc("step", "-", "number of the accepted step; 0 is the start"),
+    doc("step", "-", "number of the accepted step, from 1"),
     doc("time", "time", "time at the end of the step"),
     doc("dt", "time", "length of the step"),
     doc(
@@ -49,21 +49,11 @@ pub const COLUMNS: &[ColumnDoc] = &[
         "force length",
         "moment of that force about the origin of the scene",
     ),
-    doc(
-        "displacement.<name>.<axis>",
-        "length",
-        "translation of a rigid surface; mean displacement of a support's or load's nodes",
-    ),
     doc("energy.internal", "energy", "strain energy of all bodies"),
     doc(
         "energy.contact",
         "energy",
         "energy stored in the contact penalties",
-    ),
-    doc(
-        "energy.external",
-        "energy",
-        "work done by the loads since the start",
     ),
     doc(
         "penetration.max",
@@ -85,7 +75,7 @@ pub const COLUMNS: &[ColumnDoc] = &[
     doc(
         "points.changed",
         "-",
-        "slave points whose status differs from the step before",
+        "most slave points that switched their status in one iteration of the step",
     ),
 ];
 

@@ -651,7 +651,7 @@ impl Default for Output {
     fn default() -> Self {
         Output {
             every: 1,
-            tessellation: 8,
+            tessellation: 16,
         }
     }
 }

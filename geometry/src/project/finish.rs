@@ -12,8 +12,14 @@ const HELD: f64 = 1e-10;
 
 impl PatchSet {
     pub(super) fn finish(&self, q: &Vec3, rough: Local, complete: bool) -> Foot {
+        // The search may have stopped at the border of a piece, which is none of the surface's.
         let region = self.region(rough.region.patch, rough.span);
-        let mut best = self.polish(q, &region, rough.xi, rough.span);
+        let start = if rough.region == region {
+            rough
+        } else {
+            self.state(q, &region, rough.xi, rough.span)
+        };
+        let mut best = self.polish(q, start);
         if best.at != [0, 0] {
             best = self.cross(q, best);
         }
@@ -87,19 +93,23 @@ impl PatchSet {
             let mut nearer: Option<Local> = None;
             let mut consider = |t: Local| {
                 let now = nearer.as_ref().map_or(best.d2, |n| n.d2);
-                if t.d2 < now * (1.0 - 1e-15) {
+                // Equally near but not held by its border is better: next to a pole the distance hardly tells how far
+                // round the foot lies.
+                let free = best.active != [false; 2] && t.active == [false; 2] && t.converged;
+                if t.d2 < now * (1.0 - 1e-15) || free && t.d2 <= now * (1.0 + 1e-15) {
                     nearer = Some(t);
                 }
             };
             for (region, xi, span) in self.beside(&best) {
-                consider(self.polish(q, &region, xi, span));
+                consider(self.polish(q, self.state(q, &region, xi, span)));
             }
             for k in 0..2 {
                 for link in self.links(&best, k) {
                     let start = nearest_on_edge(self, &best.jet.rho, link.patch, link.edge);
                     if (start.jet.rho - best.jet.rho).norm() <= 2.0 * self.tolerance {
                         let region = self.region(link.patch, start.span);
-                        consider(self.polish(q, &region, start.xi, start.span));
+                        let start = self.state(q, &region, start.xi, start.span);
+                        consider(self.polish(q, start));
                     }
                 }
             }

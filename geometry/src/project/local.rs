@@ -104,7 +104,21 @@ impl PatchSet {
     #[inline]
     fn stationary(&self, s: &Local, tolerance: f64) -> bool {
         let floor = 2e-15 / tolerance;
+        let tolerance = if tolerance < 5e-12 {
+            self.attainable(s).clamp(tolerance, 5e-12)
+        } else {
+            tolerance
+        };
         self.residual2(s, floor) <= tolerance * tolerance * s.d2.max(self.size * self.size)
+    }
+
+    /// Tolerance that can be hoped for: next to a pole the turning parameter drowns in rounding, and with it some digits
+    /// of the residual, more the shorter its tangent is.
+    #[inline]
+    fn attainable(&self, s: &Local) -> f64 {
+        let scale = &self.grids[s.region.patch as usize].scale;
+        let one = |k: usize| s.metric[2 * k] / (scale[k] * scale[k]);
+        1e-15 / one(0).min(one(1)).sqrt()
     }
 
     /// Largest `(rho_i . d / |rho_i|)^2` of the free directions, `|rho_i|` no less than `floor` times its bound.
@@ -136,6 +150,7 @@ impl PatchSet {
     }
 
     fn descend_from(&self, q: &Vec3, mut s: Local, tolerance: f64) -> Local {
+        s.converged = false;
         let mut escapes = 0;
         for _ in 0..ITERATIONS {
             if self.stationary(&s, tolerance) {
@@ -220,39 +235,43 @@ impl PatchSet {
         best.map(|b| b.1)
     }
 
-    /// Brings a point that is converged roughly to machine precision: iterates within `region`, then makes two undamped
-    /// Newton steps. The result converges as `converged` says.
-    pub(super) fn polish(
-        &self,
-        q: &Vec3,
-        region: &Region,
-        xi: [f64; 2],
-        span: [usize; 2],
-    ) -> Local {
-        let start = self.state(q, region, xi, span);
-        let mut s = self.descend_from(q, start, 1e-12);
-        for _ in 0..2 {
-            let Some(step) = undamped_step(&s) else {
+    /// Brings a point to machine precision within its region: undamped Newton steps if it is converged roughly, and where
+    /// it is not or they do not suffice, the safeguarded iteration before them. The result converges as `converged` says.
+    pub(super) fn polish(&self, q: &Vec3, start: Local) -> Local {
+        if start.converged {
+            let s = self.refine(q, start);
+            if self.stationary(&s, 1e-12) {
+                return s;
+            }
+        }
+        let mut s = self.refine(q, self.descend_from(q, start, 1e-12));
+        let tolerance = self.attainable(&s).clamp(1e-12, 1e-9);
+        s.converged = s.converged || self.stationary(&s, tolerance);
+        s
+    }
+
+    /// Undamped Newton steps as far as they help.
+    fn refine(&self, q: &Vec3, mut s: Local) -> Local {
+        let mut trial = s;
+        for _ in 0..3 {
+            let Some(step) = undamped_step(&trial) else {
                 break;
             };
-            let next = self.state(q, region, moved(&s, step, 1.0), s.span);
-            // Undamped does not mean blind: close to a pole rounding alone can lead away again.
-            let better = self.residual2(&next, 2e-3) <= self.residual2(&s, 2e-3);
-            if !better && (s.converged || next.d2 > s.d2) {
+            trial = self.state(q, &s.region, moved(&trial, step, 1.0), trial.span);
+            // Undamped does not mean blind: close to a pole rounding alone can lead away again. But there a first step in
+            // the turning parameter may also cost what the second one gains.
+            let better = self.residual2(&trial, 2e-3) <= self.residual2(&s, 2e-3);
+            if better || !s.converged && trial.d2 < s.d2 * (1.0 - 1e-14) {
+                s = Local {
+                    converged: s.converged,
+                    ..trial
+                };
+            }
+            let domain = &s.region.domain;
+            if better && (0..2).all(|k| step[k].abs() <= 1e-8 * (domain[k][1] - domain[k][0])) {
                 break;
             }
-            s = Local {
-                converged: s.converged,
-                ..next
-            };
         }
-        // Next to a pole the turning parameter is lost in rounding, and with it some digits of the residual.
-        let tolerance = if self.near_pole(&s).is_some() {
-            1e-9
-        } else {
-            1e-12
-        };
-        s.converged = s.converged || self.stationary(&s, tolerance);
         s
     }
 }
@@ -261,12 +280,54 @@ fn moved(s: &Local, step: [f64; 2], factor: f64) -> [f64; 2] {
     [s.xi[0] + factor * step[0], s.xi[1] + factor * step[1]]
 }
 
-/// Newton step in the free directions, Gauss-Newton where the Hessian is not positive definite.
+/// Newton step in the free directions; where the Hessian is not positive definite, with the absolute values of its
+/// curvatures (saddles and maxima push away as minima attract), else Gauss-Newton.
 #[inline]
 fn newton_step(s: &Local) -> [f64; 2] {
     solve(s, &s.hessian)
+        .or_else(|| solve(s, &absolute(s)?))
         .or_else(|| solve(s, &s.metric))
         .unwrap_or_else(|| diagonal_step(s))
+}
+
+/// The Hessian with the absolute values of its eigenvalues over the metric, none smaller than 1e-9 of the largest; `None`
+/// where it has none.
+#[cold]
+fn absolute(s: &Local) -> Option<[f64; 3]> {
+    let (f, a) = (&s.hessian, &s.metric);
+    // Orthonormal parameters: rho_1 / l1, then the rest of rho_2.
+    let l1 = a[0].sqrt();
+    let shear = a[1] / l1;
+    let l2 = (a[2] - shear * shear).sqrt();
+    let spanned = l1 > 0.0 && l2 > 1e-8 * a[2].sqrt();
+    if !spanned {
+        return None;
+    }
+    let h11 = f[0] / a[0];
+    let h12 = (f[1] / l1 - h11 * shear) / l2;
+    let h22 = (f[2] - 2.0 * shear * f[1] / l1 + h11 * shear * shear) / (l2 * l2);
+    let (mean, half) = (0.5 * (h11 + h22), 0.5 * (h11 - h22));
+    let radius = half.hypot(h12);
+    let largest = mean.abs() + radius;
+    if largest <= 0.0 || largest.is_nan() {
+        return None;
+    }
+    let [e1, e2] = [mean + radius, mean - radius].map(|e| e.abs().max(1e-9 * largest));
+    // |H| has the same eigenvectors: mean' + (H - mean) radius' / radius.
+    let (new_mean, new_radius) = (0.5 * (e1 + e2), 0.5 * (e1 - e2));
+    let ratio = if radius > 0.0 {
+        new_radius / radius
+    } else {
+        0.0
+    };
+    let (g11, g12, g22) = (
+        new_mean + half * ratio,
+        h12 * ratio,
+        new_mean - half * ratio,
+    );
+    let f12 = (g12 * l2 + g11 * shear) * l1;
+    let f22 = g22 * l2 * l2 + 2.0 * shear * g12 * l2 + g11 * shear * shear;
+    Some([g11 * a[0], f12, f22])
 }
 
 /// Newton step, or `None` where the Hessian is not positive definite.

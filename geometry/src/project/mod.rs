@@ -7,6 +7,8 @@
 //! of closest point projection procedures in contact analysis", CMAME 197 (2008), for the mechanics of faces, edges and
 //! vertices.
 
+mod cells;
+mod convex;
 mod finish;
 mod local;
 mod piece;

@@ -1,14 +1,15 @@
 //! Bezier pieces: control nets with bounds on their points and derivatives.
 
 use crate::basis::WIDTH;
-use crate::bezier::BezierPiece;
 use crate::surface::Vec3;
 
-/// One Bezier piece of a patch as the search uses it.
+/// One Bezier piece of a patch, or a part of one, as the search uses it.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
     pub patch: u32,
     pub span: [usize; 2],
+    /// Place among the pieces of the patch.
+    pub cell: [u32; 2],
     pub domain: [[f64; 2]; 2],
     pub degree: [usize; 2],
     /// Start of its control net in [`Pieces::nets`].
@@ -30,15 +31,25 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    pub fn push(&mut self, patch: u32, bezier: &BezierPiece) {
+    /// Adds a piece: patch, spans, place among the patch's pieces, domain, degrees and control net.
+    pub fn push(
+        &mut self,
+        patch: u32,
+        span: [usize; 2],
+        cell: [u32; 2],
+        domain: [[f64; 2]; 2],
+        degree: [usize; 2],
+        points: &[[f64; 4]],
+    ) {
         let net = self.nets.len();
-        self.nets.extend_from_slice(&bezier.points);
-        let bounds = derivative_bounds(&bezier.points, bezier.degree);
+        self.nets.extend_from_slice(points);
+        let bounds = derivative_bounds(points, degree);
         self.list.push(Piece {
             patch,
-            span: bezier.span,
-            domain: bezier.domain,
-            degree: bezier.degree,
+            span,
+            cell,
+            domain,
+            degree,
             net,
             scale: bounds.scale,
             second: bounds.second,
@@ -162,7 +173,7 @@ fn largest_difference(net: &[[f64; 4]], degree: [usize; 2], orders: [usize; 2]) 
     (vector * factor, weight * factor)
 }
 
-fn difference(a: &[f64; 4], b: &[f64; 4]) -> [f64; 4] {
+pub(super) fn difference(a: &[f64; 4], b: &[f64; 4]) -> [f64; 4] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
 }
 
@@ -217,6 +228,8 @@ pub(super) fn outside_ball(net: &[[f64; 4]], degree: [usize; 2], q: &Vec3, c: f6
         (2, 2) => outside::<2, 2, 3>(net, q, c),
         (3, 3) => outside::<3, 3, 5>(net, q, c),
         (4, 4) => outside::<4, 4, 7>(net, q, c),
+        (5, 5) => outside::<5, 5, 9>(net, q, c),
+        (6, 6) => outside::<6, 6, 11>(net, q, c),
         (n1, n2) if n1 <= 6 && n2 <= 6 => {
             let mut points = [[0.0; 4]; 36];
             outside_wide(net, degree, q, c, &mut points[..n1 * n2])

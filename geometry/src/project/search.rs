@@ -4,6 +4,19 @@ use super::PatchSet;
 use super::local::{Local, Region};
 use super::piece::{Piece, box_distance2, hull, outside_ball, split};
 use crate::surface::Vec3;
+use std::cell::Cell;
+
+thread_local! {
+    /// Room for subdivision, kept from query to query.
+    static ROOM: Cell<Room> = Cell::new(Room::default());
+}
+
+/// Parts that are still to be looked at, with their control nets one after the other.
+#[derive(Default)]
+struct Room {
+    nets: Vec<[f64; 4]>,
+    parts: Vec<Part>,
+}
 
 /// Tolerance of local iterations during the search; the winner is polished afterwards.
 pub(super) const ROUGH: f64 = 1e-10;
@@ -19,6 +32,8 @@ pub(super) struct Search<'a> {
     pub best: Option<(u32, Local)>,
     /// Distance of the best point, or the reach.
     distance: f64,
+    /// Whether nothing in the block of cells around the best point is nearer.
+    settled: bool,
     parts: usize,
     /// False where the number of parts ran out before the proof was complete.
     pub complete: bool,
@@ -47,18 +62,37 @@ impl<'a> Search<'a> {
             reach,
             best: None,
             distance: reach,
+            settled: false,
             parts: 0,
             complete: true,
         }
     }
 
-    /// Takes a point if it is nearer than the best one.
+    /// Takes a point of a piece if it is nearer than the best one.
     pub fn offer(&mut self, piece: u32, local: Local) {
         let distance = local.d2.sqrt();
         if distance < self.distance || self.best.is_none() && distance <= self.reach {
             self.distance = distance;
             self.best = Some((piece, local));
+            self.settled = self.set.cells[piece as usize].settles_block(&self.q, &local);
         }
+    }
+
+    /// Iterates from `xi` in the whole smooth region around a pair of spans.
+    pub fn start(&mut self, patch: u32, span: [usize; 2], xi: [f64; 2]) {
+        let region = self.set.region(patch, span);
+        let local = self.set.descend(&self.q, &region, xi, span, ROUGH);
+        self.offer(self.set.piece_number(patch, local.span, local.xi), local);
+    }
+
+    /// Whether the best point is proved to be the nearest of all: the nearest of its block, and the ball about the query
+    /// that it lies on does not leave the block.
+    #[inline]
+    fn done(&self) -> bool {
+        let Some((best, _)) = self.best else {
+            return false;
+        };
+        self.settled && 2.0 * self.distance < self.set.cells[best as usize].clear
     }
 
     /// Radius of the ball that pieces must be proved to lie outside of: the best distance less a tolerance well above
@@ -85,45 +119,74 @@ impl<'a> Search<'a> {
 
     /// Searches everything that may hold a nearer point than the one offered before, if any.
     pub fn run(&mut self) {
+        if self.done() {
+            return;
+        }
         let set = self.set;
         let q = self.q;
         let limit2 = self.limit2();
         set.tree.visit(&q, limit2, |piece| {
             self.piece(piece);
-            self.limit2()
+            if self.done() { -1.0 } else { self.limit2() }
         });
     }
 
+    /// Whether nothing in a piece is nearer than the best point, by the tests that need no iteration.
+    #[inline]
+    fn excluded(&self, piece: &Piece, id: u32) -> bool {
+        if let Some((best, local)) = &self.best
+            && self.settled
+            && self.set.cells[*best as usize].covers(local.region.patch, piece)
+        {
+            return true;
+        }
+        let c = self.cut();
+        c < 0.0
+            || c.is_finite()
+                && (self.set.cells[id as usize].slab.distance2(&self.q) >= c * c
+                    || outside_ball(self.set.pieces.net(piece), piece.degree, &self.q, c))
+    }
+
     fn piece(&mut self, id: u32) {
-        let piece = &self.set.pieces.list[id as usize];
-        let net = self.set.pieces.net(piece);
-        let own = self.best.filter(|(best, _)| *best == id).map(|b| b.1);
-        let local = match own {
-            Some(local) => local,
-            _ => {
-                let c = self.cut();
-                if c < 0.0 || c.is_finite() && outside_ball(net, piece.degree, &self.q, c) {
+        let set = self.set;
+        let piece = &set.pieces.list[id as usize];
+        let cell = &set.cells[id as usize];
+        let own = |search: &Self| search.best.filter(|(best, _)| *best == id).map(|b| b.1);
+        let mut local = own(self);
+        if local.is_none() || self.settled {
+            if self.excluded(piece, id) {
+                return;
+            }
+            if self.best.is_none() {
+                let u = cell.seed(&self.q);
+                self.start(piece.patch, piece.span, at(piece, u));
+                if self.settled && self.excluded(piece, id) {
                     return;
                 }
-                self.iterate(id, piece, nearest_control_point(net, piece, &self.q))
+                local = own(self);
             }
-        };
+        }
+        let local = local.unwrap_or_else(|| {
+            let u = cell.seed(&self.q).map(|u| u.clamp(0.05, 0.95));
+            self.iterate(id, piece, u)
+        });
+        if cell.settles_itself(&self.q, &local) {
+            return;
+        }
         let known = self.known(piece, &local);
         if covered(piece, &known, &[[0.0, 1.0]; 2]) || self.cut() < 0.0 {
             return;
         }
-        self.subdivide(id, piece, net, known);
+        let mut room = ROOM.take();
+        self.subdivide(id, piece, known, &mut room);
+        ROOM.set(room);
     }
 
     /// Local iteration within a piece from `u` (0 to 1 in each direction).
     fn iterate(&mut self, id: u32, piece: &Piece, u: [f64; 2]) -> Local {
-        let xi = [0, 1].map(|k| {
-            let [a, b] = piece.domain[k];
-            a + u[k] * (b - a)
-        });
         let local = self
             .set
-            .descend(&self.q, &region_of(piece), xi, piece.span, ROUGH);
+            .descend(&self.q, &region_of(piece), at(piece, u), piece.span, ROUGH);
         self.offer(id, local);
         local
     }
@@ -168,14 +231,19 @@ impl<'a> Search<'a> {
     /// Proves or improves by bisection.
     #[cold]
     #[inline(never)]
-    fn subdivide(&mut self, id: u32, piece: &Piece, net: &[[f64; 4]], first: Known) {
+    fn subdivide(&mut self, id: u32, piece: &Piece, first: Known, room: &mut Room) {
+        let net = self.set.pieces.net(piece);
         let size = net.len();
-        let mut nets: Vec<[f64; 4]> = Vec::with_capacity(16 * size);
+        let Room { nets, parts } = room;
+        nets.clear();
+        nets.reserve(64 * size);
         nets.extend_from_slice(net);
-        let mut parts = vec![Part {
+        parts.clear();
+        parts.reserve(64);
+        parts.push(Part {
             range: [[0.0, 1.0]; 2],
             depth: 0,
-        }];
+        });
         let mut known = [first; 4];
         let mut latest = 0;
         while let Some(part) = parts.pop() {
@@ -285,22 +353,11 @@ pub(super) fn region_of(piece: &Piece) -> Region {
     }
 }
 
-/// Parameters (0 to 1) that belong to the nearest control point, pulled off the edges, which may be points in space.
+/// Parameters of the patch for parameters 0 to 1 of a piece.
 #[inline]
-fn nearest_control_point(net: &[[f64; 4]], piece: &Piece, q: &Vec3) -> [f64; 2] {
-    let mut best = (f64::INFINITY, 0);
-    for (k, p) in net.iter().enumerate() {
-        let inv = 1.0 / p[3];
-        let d = [p[0] * inv - q.x, p[1] * inv - q.y, p[2] * inv - q.z];
-        let d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        if d2 < best.0 {
-            best = (d2, k);
-        }
-    }
-    let n1 = piece.degree[0] + 1;
-    let u = [
-        (best.1 % n1) as f64 / piece.degree[0] as f64,
-        (best.1 / n1) as f64 / piece.degree[1] as f64,
-    ];
-    u.map(|u| u.clamp(0.05, 0.95))
+fn at(piece: &Piece, u: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|k| {
+        let [a, b] = piece.domain[k];
+        a + u[k] * (b - a)
+    })
 }

@@ -1,12 +1,13 @@
 //! The set of patches and its search.
 
+use super::cells::{Cell, cells, cut, parts};
 use super::local::Region;
 use super::piece::{Pieces, hull};
 use super::search::Search;
 use super::topology::{self, Topology};
 use super::tree::Tree;
 use super::{Foot, Hint};
-use crate::bezier::bezier_pieces;
+use crate::bezier::{BezierPiece, bezier_pieces};
 use crate::patch::NurbsPatch;
 use crate::surface::Vec3;
 
@@ -40,8 +41,10 @@ pub enum PatchSetError {
 /// Numbers of the pieces of one patch, and where it may break.
 #[derive(Debug, Clone)]
 pub(super) struct Grid {
-    /// Number of the first piece; piece `(i, j)` is `first + i + spans[0] * j`.
+    /// Number of the first piece; see [`piece`](Self::piece).
     pub first: u32,
+    /// For every span, and one past the last: the number of its first piece in this direction.
+    pub cells: [Vec<u32>; 2],
     pub spans: [usize; 2],
     /// Borders of spans.
     pub breaks: [Vec<f64>; 2],
@@ -51,12 +54,85 @@ pub(super) struct Grid {
     pub scale: [f64; 2],
 }
 
+impl Grid {
+    /// Decides in how many cells each span is cut; the number of all pieces.
+    fn cut(&mut self, beziers: &[BezierPiece]) -> usize {
+        let mut count = self.spans.map(|n| vec![1; n]);
+        for bezier in beziers {
+            let wanted = parts(bezier);
+            for k in 0..2 {
+                let count = &mut count[k][bezier.span[k]];
+                *count = wanted[k].max(*count);
+            }
+        }
+        for (cells, count) in self.cells.iter_mut().zip(&count) {
+            let mut sum = 0u32;
+            *cells = vec![0];
+            for &n in count {
+                sum = sum.saturating_add(n as u32);
+                cells.push(sum);
+            }
+        }
+        (self.cells[0][self.spans[0]] as usize)
+            .saturating_mul(self.cells[1][self.spans[1]] as usize)
+    }
+
+    /// Adds the cells of a patch to the pieces, those of xi1 fastest.
+    fn push_pieces(&self, patch: u32, beziers: &[BezierPiece], pieces: &mut Pieces) {
+        let columns = self.cells[0][self.spans[0]] as usize;
+        for row in beziers.chunks(self.spans[0]) {
+            // Whole rows of cells must be complete before the next: collect those of one row of spans.
+            let rows = self.parts(1, row[0].span[1]);
+            let mut nets = vec![None; columns * rows];
+            for bezier in row {
+                let parts = [0, 1].map(|k| self.parts(k, bezier.span[k]));
+                let first = self.cells[0][bezier.span[0]] as usize;
+                cut(bezier, parts, |[i, j], domain, net| {
+                    nets[first + i + columns * j] = Some((bezier, domain, net.to_vec()));
+                });
+            }
+            let start = self.cells[1][row[0].span[1]];
+            for (k, (bezier, domain, net)) in nets.into_iter().flatten().enumerate() {
+                let cell = [(k % columns) as u32, start + (k / columns) as u32];
+                pieces.push(patch, bezier.span, cell, domain, bezier.degree, &net);
+            }
+        }
+    }
+
+    /// Number of cells of a span in direction `dir`.
+    fn parts(&self, dir: usize, span: usize) -> usize {
+        (self.cells[dir][span + 1] - self.cells[dir][span]) as usize
+    }
+
+    /// Number of the piece at a place.
+    #[inline]
+    pub fn piece(&self, [i, j]: [u32; 2]) -> u32 {
+        self.first + i + self.cells[0][self.spans[0]] * j
+    }
+
+    /// First and one past the last of the spans in direction `dir` that are smoothly connected with span `span`.
+    #[inline]
+    pub fn smooth_spans(&self, dir: usize, span: usize) -> [usize; 2] {
+        let kinks = &self.kinks[dir];
+        let mut first = span.min(self.spans[dir] - 1);
+        let mut end = first + 1;
+        while kinks[first] == 0 {
+            first -= 1;
+        }
+        while kinks[end] == 0 {
+            end += 1;
+        }
+        [first, end]
+    }
+}
+
 /// Patches with their tree, their shared edges and their sides. Queries take `&self` and lock nothing.
 #[derive(Debug, Clone)]
 pub struct PatchSet {
     pub(super) patches: Vec<NurbsPatch>,
     pub(super) grids: Vec<Grid>,
     pub(super) pieces: Pieces,
+    pub(super) cells: Vec<Cell>,
     pub(super) tree: Tree,
     pub(super) size: f64,
     pub(super) tolerance: f64,
@@ -87,13 +163,13 @@ impl PatchSet {
         let mut grids = Vec::with_capacity(patches.len());
         for (number, patch) in patches.iter().enumerate() {
             let beziers = bezier_pieces(patch);
-            if pieces.list.len() + beziers.len() >= 1 << 31 {
+            let mut grid = grid(patch, pieces.list.len() as u32);
+            let total = grid.cut(&beziers);
+            if total.saturating_add(pieces.list.len()) >= 1 << 31 {
                 return Err(PatchSetError::TooLarge);
             }
-            grids.push(grid(patch, pieces.list.len() as u32));
-            for bezier in &beziers {
-                pieces.push(number as u32, bezier);
-            }
+            grid.push_pieces(number as u32, &beziers, &mut pieces);
+            grids.push(grid);
             let grid = &mut grids[number];
             for piece in &pieces.list[grid.first as usize..] {
                 for k in 0..2 {
@@ -110,10 +186,12 @@ impl PatchSet {
             return Err(PatchSetError::Size(size));
         }
         let sides = vec![1.0; patches.len()];
+        let cells = cells(&pieces, &grids, &tree);
         let mut set = PatchSet {
             patches,
             grids,
             pieces,
+            cells,
             tree,
             size,
             tolerance: 0.0,
@@ -140,15 +218,15 @@ impl PatchSet {
         if !(q.x.is_finite() && q.y.is_finite() && q.z.is_finite() && reach >= 0.0) {
             return None;
         }
+        if self.tree.distance2(q) > reach * reach {
+            return None;
+        }
         let mut search = Search::new(self, *q, reach);
         if let Some(hint) = hint
             && let Some(patch) = self.patches.get(hint.patch as usize)
             && hint.xi.iter().all(|x| x.is_finite())
         {
-            let span = patch.find_span(hint.xi);
-            let region = self.region(hint.patch, span);
-            let local = self.descend(q, &region, hint.xi, span, super::search::ROUGH);
-            search.offer(self.piece_number(hint.patch, local.span), local);
+            search.start(hint.patch, patch.find_span(hint.xi), hint.xi);
         }
         search.run();
         let complete = search.complete;
@@ -156,11 +234,18 @@ impl PatchSet {
         Some(self.finish(q, local, complete))
     }
 
-    /// Number of the piece of a pair of spans.
+    /// Number of the piece that holds `xi` of a pair of spans.
     #[inline]
-    pub(super) fn piece_number(&self, patch: u32, span: [usize; 2]) -> u32 {
+    pub(super) fn piece_number(&self, patch: u32, span: [usize; 2], xi: [f64; 2]) -> u32 {
         let grid = &self.grids[patch as usize];
-        grid.first + (span[0] + grid.spans[0] * span[1]) as u32
+        let place = [0, 1].map(|k| {
+            let [first, end] = [grid.cells[k][span[k]], grid.cells[k][span[k] + 1]];
+            let [a, b] = [grid.breaks[k][span[k]], grid.breaks[k][span[k] + 1]];
+            let step = (xi[k] - a) / (b - a) * f64::from(end - first);
+            // The cast takes what is negative to zero.
+            first + (step as u32).min(end - first - 1)
+        });
+        grid.piece(place)
     }
 
     /// The region between creases and edges that holds a pair of spans.
@@ -170,15 +255,7 @@ impl PatchSet {
         let mut spans = [[0; 2]; 2];
         let mut domain = [[0.0; 2]; 2];
         for k in 0..2 {
-            let kinks = &grid.kinks[k];
-            let mut first = span[k].min(grid.spans[k] - 1);
-            let mut end = first + 1;
-            while kinks[first] == 0 {
-                first -= 1;
-            }
-            while kinks[end] == 0 {
-                end += 1;
-            }
+            let [first, end] = grid.smooth_spans(k, span[k]);
             spans[k] = [first, end];
             domain[k] = [grid.breaks[k][first], grid.breaks[k][end]];
         }
@@ -215,6 +292,7 @@ fn grid(patch: &NurbsPatch, first: u32) -> Grid {
     }
     Grid {
         first,
+        cells: [Vec::new(), Vec::new()],
         spans,
         breaks,
         kinks,

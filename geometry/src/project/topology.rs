@@ -193,7 +193,7 @@ pub(super) fn nearest_on_edge(set: &PatchSet, q: &Vec3, patch: u32, edge: u8) ->
             }
         }
     }
-    set.polish(q, &region, best.1, best.2)
+    set.polish(q, set.state(q, &region, best.1, best.2))
 }
 
 fn sample(set: &PatchSet, patch: usize, edge: usize) -> Samples {

@@ -77,8 +77,15 @@ impl Tree {
         }
     }
 
-    /// Visits pieces whose box is nearer to `q` than the bound, near boxes first. `limit2` is the squared bound at the
-    /// start; `visit` returns the squared bound from then on.
+    /// Squared distance of the box around everything.
+    #[inline]
+    pub fn distance2(&self, q: &Vec3) -> f64 {
+        let [low, high] = self.bounds();
+        box_distance2(q, &low, &high)
+    }
+
+    /// Visits pieces whose box is nearer than the bound, near boxes first, and of equally near ones those whose middle is
+    /// nearer. `limit2` is the squared bound at the start; `visit` returns the squared bound from then on.
     #[inline]
     pub fn visit(&self, q: &Vec3, mut limit2: f64, mut visit: impl FnMut(u32) -> f64) {
         let Some(root) = self.nodes.first() else {
@@ -96,7 +103,9 @@ impl Tree {
                     let (na, nb) = (&self.nodes[a as usize], &self.nodes[b as usize]);
                     let da = box_distance2(q, &na.low, &na.high);
                     let db = box_distance2(q, &nb.low, &nb.high);
-                    let (near, far) = if da <= db {
+                    let off = |n: &Node| (n.low + n.high - 2.0 * q).norm_squared();
+                    let first = da < db || da == db && off(na) <= off(nb);
+                    let (near, far) = if first {
                         ((a, da), (b, db))
                     } else {
                         ((b, db), (a, da))
@@ -115,6 +124,41 @@ impl Tree {
             }
             top -= 1;
             (node, distance2) = stack[top];
+        }
+    }
+
+    /// Visits pieces whose box is nearer than the bound by another measure than the distance of a point: `measure` gives the
+    /// squared distance of a box, `visit` the squared bound from then on.
+    pub fn scan(
+        &self,
+        measure: impl Fn(&Vec3, &Vec3) -> f64,
+        mut limit2: f64,
+        mut visit: impl FnMut(u32) -> f64,
+    ) {
+        let mut stack = [0u32; STACK];
+        let mut top = usize::from(!self.nodes.is_empty());
+        while top > 0 {
+            top -= 1;
+            let number = stack[top];
+            let node = &self.nodes[number as usize];
+            if measure(&node.low, &node.high) >= limit2 {
+                continue;
+            }
+            if node.next & LEAF != 0 {
+                limit2 = visit(node.next & !LEAF);
+                continue;
+            }
+            let pair = [number + 1, node.next];
+            let [a, b] = pair.map(|k| {
+                let node = &self.nodes[k as usize];
+                measure(&node.low, &node.high)
+            });
+            for next in if a <= b { [pair[1], pair[0]] } else { pair } {
+                if top < STACK {
+                    stack[top] = next;
+                    top += 1;
+                }
+            }
         }
     }
 }

@@ -33,7 +33,7 @@ pub(super) fn check(c: &mut Checker, scene: &Scene) {
             }
         }
     }
-    // The history has columns such as `displacement.<name>.x` for each of these.
+    // The history has columns such as `force.<name>.x` for each of these.
     let mut first: BTreeMap<&String, &str> = BTreeMap::new();
     for (section, names) in &sections {
         if !matches!(*section, "surfaces" | "supports" | "loads") {

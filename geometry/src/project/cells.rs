@@ -1,0 +1,321 @@
+//! Cells: pieces small enough to be nearly flat, each with a block of cells around it for which one test proves that a
+//! stationary point is the nearest one, and with its distance from everything outside of the block.
+
+use rayon::prelude::*;
+
+use super::convex::{Axes, Convex, Tangents, axes, tangents};
+use super::local::Local;
+use super::piece::{Piece, Pieces, split};
+use super::set::Grid;
+use super::tree::Tree;
+use crate::bezier::BezierPiece;
+use crate::surface::Vec3;
+
+/// Control polygons of a cell turn by about this much at most (radians), unless there would be more than [`MOST`].
+const TURN: f64 = 0.4;
+/// Their legs differ by about this factor at most, unless there would be more than [`MOST_STRETCH`] cells.
+const STRETCH: f64 = 1.6;
+const MOST_STRETCH: f64 = 4.0;
+/// Most cells of one span in each direction.
+const MOST: usize = 8;
+
+/// In how many parts a Bezier piece is to be cut in each direction.
+pub(super) fn parts(bezier: &BezierPiece) -> [usize; 2] {
+    let n1 = bezier.degree[0] + 1;
+    let n2 = bezier.degree[1] + 1;
+    let point = |k: usize| {
+        let [x, y, z, w] = bezier.points[k];
+        Vec3::new(x, y, z) / w
+    };
+    let turn = |lines: usize, count: usize, at: &dyn Fn(usize, usize) -> usize| {
+        let mut most = 0.0f64;
+        for line in 0..lines {
+            let mut sum = 0.0;
+            let legs = (1..count).map(|k| (point(at(line, k)) - point(at(line, k - 1))).norm());
+            let (short, long) = legs.fold((f64::INFINITY, 0.0f64), |s, l| (s.0.min(l), s.1.max(l)));
+            if short > 0.0 {
+                let parts = (long / short).ln() / STRETCH.ln();
+                most = most.max(parts.min(MOST_STRETCH) * TURN);
+            }
+            for k in 2..count {
+                let [a, b, c] = [k - 2, k - 1, k].map(|k| point(at(line, k)));
+                let (u, v) = (b - a, c - b);
+                sum += u.cross(&v).norm().atan2(u.dot(&v));
+            }
+            most = most.max(sum);
+        }
+        // NaN ends as one part.
+        ((most / TURN).ceil() as usize).clamp(1, MOST)
+    };
+    [
+        turn(n2, n1, &|line, k| k + n1 * line),
+        turn(n1, n2, &|line, k| line + n1 * k),
+    ]
+}
+
+/// Cuts a Bezier piece into equal parts in each direction and calls `f` with place, domain and net of each, xi1
+/// fastest.
+pub(super) fn cut(
+    bezier: &BezierPiece,
+    parts: [usize; 2],
+    mut f: impl FnMut([usize; 2], [[f64; 2]; 2], &[[f64; 4]]),
+) {
+    let domain = |dir: usize, k: usize| {
+        let [a, b] = bezier.domain[dir];
+        let at = |k: usize| {
+            if k == parts[dir] {
+                b
+            } else {
+                a + (b - a) * (k as f64 / parts[dir] as f64)
+            }
+        };
+        [at(k), at(k + 1)]
+    };
+    let size = bezier.points.len();
+    let mut rest = bezier.points.clone();
+    let mut row = vec![[0.0; 4]; size];
+    let mut row_rest = row.clone();
+    let mut cell = row.clone();
+    // First strips of xi2, then cells.
+    for j in 0..parts[1] {
+        row_rest.copy_from_slice(&rest);
+        if j + 1 < parts[1] {
+            let t = 1.0 / (parts[1] - j) as f64;
+            split(&mut row_rest, &mut row, bezier.degree, 1, t);
+            std::mem::swap(&mut rest, &mut row);
+        }
+        for i in 0..parts[0] {
+            cell.copy_from_slice(&row_rest);
+            if i + 1 < parts[0] {
+                let t = 1.0 / (parts[0] - i) as f64;
+                split(&mut cell, &mut row, bezier.degree, 0, t);
+                std::mem::swap(&mut row_rest, &mut row);
+            }
+            f([i, j], [domain(0, i), domain(1, j)], &cell);
+        }
+    }
+}
+
+/// A cell within its surroundings.
+#[derive(Debug, Clone)]
+pub(super) struct Cell {
+    /// The cells around it up to the next crease or edge: `[direction][first, end]`, numbers within the patch.
+    pub block: [[u32; 2]; 2],
+    /// Proof for the block, and the block's widths in the parameters.
+    around: Convex,
+    around_width: [f64; 2],
+    /// Proof for the cell alone, and its widths.
+    own: Convex,
+    own_width: [f64; 2],
+    /// Lower bound of the distance between the cell and everything outside of the block.
+    pub clear: f64,
+    /// Box along the axes of the cell.
+    pub slab: Slab,
+    /// Parameters (0 to 1) of the cell grow along these vectors, from 1/2 at the middle of the slab.
+    seed: [Vec3; 2],
+}
+
+/// A box along given axes.
+#[derive(Debug, Clone)]
+pub(super) struct Slab {
+    axes: Axes,
+    middle: Vec3,
+    half: Vec3,
+}
+
+impl Slab {
+    fn new(net: &[[f64; 4]], axes: &Axes) -> Slab {
+        let mut low = Vec3::from_element(f64::INFINITY);
+        let mut high = -low;
+        for &[x, y, z, w] in net {
+            let p = along(axes, &(Vec3::new(x, y, z) / w));
+            low = low.inf(&p);
+            high = high.sup(&p);
+        }
+        Slab {
+            axes: *axes,
+            middle: (low + high) * 0.5,
+            half: (high - low) * 0.5,
+        }
+    }
+
+    /// Squared distance of a point.
+    #[inline]
+    pub fn distance2(&self, q: &Vec3) -> f64 {
+        let p = along(&self.axes, q) - self.middle;
+        let mut sum = 0.0;
+        for k in 0..3 {
+            let d = (p[k].abs() - self.half[k]).max(0.0);
+            sum += d * d;
+        }
+        sum
+    }
+
+    /// Lower bound of the squared distance of everything in another box, which has axes along the coordinates.
+    fn box_separation2(&self, low: &Vec3, high: &Vec3) -> f64 {
+        let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
+        let p = along(&self.axes, &middle) - self.middle;
+        let mut sum = 0.0;
+        for k in 0..3 {
+            let reach = self.half[k] + self.axes[k].abs().dot(&half);
+            let d = (p[k].abs() - reach).max(0.0);
+            sum += d * d;
+        }
+        sum
+    }
+
+    /// Lower bound of the squared distance of another control net's hull.
+    fn net_separation2(&self, net: &[[f64; 4]]) -> f64 {
+        let other = Slab::new(net, &self.axes);
+        let mut sum = 0.0;
+        for k in 0..3 {
+            let d = (self.middle[k] - other.middle[k]).abs() - self.half[k] - other.half[k];
+            sum += d.max(0.0) * d.max(0.0);
+        }
+        sum
+    }
+}
+
+#[inline]
+fn along(axes: &Axes, p: &Vec3) -> Vec3 {
+    Vec3::new(axes[0].dot(p), axes[1].dot(p), axes[2].dot(p))
+}
+
+impl Cell {
+    /// Whether a piece belongs to the block around this cell, which is one of patch `patch`.
+    #[inline]
+    pub fn covers(&self, patch: u32, piece: &Piece) -> bool {
+        piece.patch == patch
+            && (0..2).all(|k| {
+                let [first, end] = self.block[k];
+                piece.cell[k] >= first && piece.cell[k] < end
+            })
+    }
+
+    /// Whether a stationary point of this cell is proved to be the nearest point of the block.
+    #[inline]
+    pub fn settles_block(&self, q: &Vec3, s: &Local) -> bool {
+        s.converged
+            && self
+                .around
+                .holds(&(q - s.jet.rho), held(s, &self.around_width))
+    }
+
+    /// Whether a stationary point of this cell is proved to be the nearest point of the cell.
+    #[inline]
+    pub fn settles_itself(&self, q: &Vec3, s: &Local) -> bool {
+        s.converged && self.own.holds(&(q - s.jet.rho), held(s, &self.own_width))
+    }
+
+    /// Where to look for the foot of `q` (parameters 0 to 1 of the cell, outside of it by half of its width at most).
+    #[inline]
+    pub fn seed(&self, q: &Vec3) -> [f64; 2] {
+        let slab = &self.slab;
+        let p = along(&slab.axes, q) - slab.middle;
+        self.seed.map(|s| (0.5 + s.dot(&p)).clamp(-0.5, 1.5))
+    }
+}
+
+/// What active bounds add to the forms of [`Convex::holds`].
+#[inline]
+fn held(s: &Local, width: &[f64; 2]) -> [f64; 2] {
+    [0, 1].map(|k| {
+        if s.active[k] {
+            2.0 * s.gradient[k].abs() / width[k]
+        } else {
+            0.0
+        }
+    })
+}
+
+/// All cells, in the order of the pieces.
+pub(super) fn cells(pieces: &Pieces, grids: &[Grid], tree: &Tree) -> Vec<Cell> {
+    let tangents: Vec<Tangents> = pieces
+        .list
+        .par_iter()
+        .map(|piece| tangents(pieces.net(piece), piece.degree))
+        .collect();
+    (0..pieces.list.len() as u32)
+        .into_par_iter()
+        .map(|number| cell(pieces, grids, tree, &tangents, number))
+        .collect()
+}
+
+fn cell(pieces: &Pieces, grids: &[Grid], tree: &Tree, tangents: &[Tangents], number: u32) -> Cell {
+    let piece = &pieces.list[number as usize];
+    let grid = &grids[piece.patch as usize];
+    let net = pieces.net(piece);
+    let block = [0, 1].map(|k| {
+        let spans = grid.smooth_spans(k, piece.span[k]);
+        let [first, end] = spans.map(|s| grid.cells[k][s]);
+        [
+            piece.cell[k].saturating_sub(1).max(first),
+            (piece.cell[k] + 2).min(end),
+        ]
+    });
+    let found = axes(net, piece.degree);
+    let plain = [Vec3::x(), Vec3::y(), Vec3::z()];
+    let slab = Slab::new(net, found.as_ref().unwrap_or(&plain));
+    let mut out = Cell {
+        block,
+        around: Convex::NEVER,
+        own: Convex::NEVER,
+        around_width: [0, 1].map(|k| {
+            let [low, high] = [block[k][0], block[k][1] - 1].map(|c| {
+                let mut place = piece.cell;
+                place[k] = c;
+                pieces.list[grid.piece(place) as usize].domain[k]
+            });
+            high[1] - low[0]
+        }),
+        own_width: piece.domain.map(|[a, b]| b - a),
+        clear: 0.0,
+        seed: [Vec3::zeros(); 2],
+        slab,
+    };
+    let Some(axes) = found else {
+        return out;
+    };
+    out.own = Convex::new(pieces, tangents, &axes, std::iter::once(number));
+    let members = (block[1][0]..block[1][1])
+        .flat_map(|j| (block[0][0]..block[0][1]).map(move |i| grid.piece([i, j])));
+    out.around = Convex::new(pieces, tangents, &axes, members);
+    out.seed = seed_vectors(net, piece.degree, &axes);
+    let mut clear2 = f64::INFINITY;
+    tree.scan(
+        |low, high| out.slab.box_separation2(low, high),
+        f64::INFINITY,
+        |number| {
+            let other = &pieces.list[number as usize];
+            if !out.covers(piece.patch, other) {
+                clear2 = clear2.min(out.slab.net_separation2(pieces.net(other)));
+            }
+            // Nothing is below zero, so that ends the scan.
+            if clear2 > 0.0 { clear2 } else { -1.0 }
+        },
+    );
+    out.clear = clear2.max(0.0).sqrt();
+    out
+}
+
+/// The vectors that are dual to the mean tangents, along the axes.
+fn seed_vectors(net: &[[f64; 4]], degree: [usize; 2], axes: &Axes) -> [Vec3; 2] {
+    let point = |k: usize| {
+        along(
+            axes,
+            &(Vec3::new(net[k][0], net[k][1], net[k][2]) / net[k][3]),
+        )
+    };
+    let (n1, n) = (degree[0] + 1, net.len());
+    let [a, b, c, d] = [point(0), point(n1 - 1), point(n - n1), point(n - 1)];
+    let one = (b - a + d - c) * 0.5;
+    let two = (c - a + d - b) * 0.5;
+    let det = one.x * two.y - one.y * two.x;
+    if det.abs() <= 1e-12 * one.norm() * two.norm() || det.is_nan() {
+        return [Vec3::zeros(); 2];
+    }
+    [
+        Vec3::new(two.y, -two.x, 0.0) / det,
+        Vec3::new(-one.y, one.x, 0.0) / det,
+    ]
+}

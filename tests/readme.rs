@@ -1,0 +1,51 @@
+//! What README states is what the program does.
+use covact::output::column_table;
+
+#[test]
+fn readme_lists_the_columns_of_the_history() {
+    let readme = include_str!("../README.md");
+    assert!(
+        readme.contains(&column_table()),
+        "put this into README.md:\n{}",
+        column_table()
+    );
+}
+
+#[test]
+fn readme_lists_the_shipped_scenes() {
+    let readme = include_str!("../README.md");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes");
+    let mut scenes = 0;
+    for entry in std::fs::read_dir(folder).expect("scenes") {
+        let path = entry.expect("entry").path();
+        let stem = path
+            .file_stem()
+            .and_then(|s| s.to_str())
+            .expect("name")
+            .to_owned();
+        if stem != "schema" {
+            assert!(
+                readme.contains(&format!("`{stem}`")),
+                "README does not list {stem}"
+            );
+            scenes += 1;
+        }
+    }
+    assert!(scenes >= 4);
+}
+
+#[test]
+fn the_scene_in_the_readme_is_well_formed() {
+    let readme = include_str!("../README.md");
+    let start = readme.find("```json\n").expect("a scene") + 8;
+    let end = start + readme[start..].find("```").expect("its end");
+    let scene = covact::scene::parse(&readme[start..end], "README.md").expect("a scene");
+    let problems = covact::scene::check(&scene);
+    // The CAD file it names does not lie beside README.
+    assert!(
+        problems
+            .iter()
+            .all(|p| p.pointer == "/surfaces/punch/cad/file"),
+        "{problems:?}"
+    );
+}
