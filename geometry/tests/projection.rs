@@ -3,7 +3,7 @@
 mod projection_common;
 
 use covact_geometry::primitives::{cylinder, plane, sphere, sphere_without_poles, torus};
-use covact_geometry::{EdgeKind, Foot, Location, NurbsPatch, PatchSet, Status, Vec3};
+use covact_geometry::{EdgeKind, Foot, Hint, Location, NurbsPatch, PatchSet, Status, Vec3};
 use projection_common::*;
 
 fn set(patches: Vec<NurbsPatch>) -> PatchSet {
@@ -386,4 +386,29 @@ fn warm_and_cold_agree_to_rounding() {
         moved = moved.max((warm.xi[0] - foot.xi[0]).abs());
     }
     assert!(moved > 1e-5);
+}
+
+#[test]
+fn hints_do_not_change_the_distance() {
+    // Far points are held by edges and corners, hints anywhere send the iteration to other ones first.
+    let set = set(vec![bumpy(3, 20, false, 7)]);
+    let mut random = Random(29);
+    let mut different = 0;
+    for k in 0..4000 {
+        let q = random.direction() * (10f64.powf(random.between(0.0, 3.0)) * set.size());
+        let hint = Hint {
+            patch: 0,
+            xi: [random.next(), random.next()],
+        };
+        let (one, other) = (
+            cold(&set, q),
+            set.project(&q, Some(hint), f64::INFINITY).unwrap(),
+        );
+        assert!(
+            (one.distance - other.distance).abs() <= 1e-9 * set.size(),
+            "{k}: {q:?} {hint:?} {one:?} {other:?}"
+        );
+        different += usize::from((one.xi[0] - hint.xi[0]).abs() > 0.1);
+    }
+    assert!(different > 2000);
 }

@@ -192,10 +192,18 @@ impl Cell {
             })
     }
 
-    /// Whether a stationary point of this cell is proved to be the nearest point of the block.
+    /// Whether a stationary point of this cell (which is `piece`) is proved to be the nearest point of the block. Points
+    /// that the cell's own border holds inside of the block are not stationary in the block.
     #[inline]
-    pub fn settles_block(&self, q: &Vec3, s: &Local) -> bool {
-        s.converged
+    pub fn settles_block(&self, piece: &Piece, q: &Vec3, s: &Local) -> bool {
+        let stationary = (0..2).all(|k| {
+            let [first, end] = self.block[k];
+            !s.active[k]
+                || s.at[k] < 0 && piece.cell[k] == first
+                || s.at[k] > 0 && piece.cell[k] + 1 == end
+        });
+        stationary
+            && s.converged
             && self
                 .around
                 .holds(&(q - s.jet.rho), held(s, &self.around_width))

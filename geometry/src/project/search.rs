@@ -74,7 +74,9 @@ impl<'a> Search<'a> {
         if distance < self.distance || self.best.is_none() && distance <= self.reach {
             self.distance = distance;
             self.best = Some((piece, local));
-            self.settled = self.set.cells[piece as usize].settles_block(&self.q, &local);
+            let id = piece as usize;
+            self.settled =
+                self.set.cells[id].settles_block(&self.set.pieces.list[id], &self.q, &local);
         }
     }
 
