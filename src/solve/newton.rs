@@ -354,7 +354,8 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
             .sum();
         let external = self.assembler.external();
         let external = dot(external, external).sqrt();
-        // Rounding moves a position by its own last digit, so positions count, not displacements alone.
+        // Strains are computed from displacements, so these count; a trace of the positions keeps the floor above zero
+        // before anything has moved.
         for (node, x) in self.model.nodes.iter().enumerate() {
             for c in 0..3 {
                 let u = trial.u[3 * node + c];

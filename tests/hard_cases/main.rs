@@ -2,6 +2,7 @@
 mod common;
 mod convergence;
 mod cost;
+mod far;
 mod lost;
 mod parametrisation;
 mod rollback;
