@@ -196,7 +196,7 @@ fn columns_are_documented() {
         "force.punch.x",
         "moment.left edge.z",
         "force.body.set.y",
-        "displacement.punch.z",
+        "gap.min",
         "penetration.max",
         "points.active",
     ] {

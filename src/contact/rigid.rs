@@ -100,11 +100,12 @@ impl RigidMaster<'_> {
         };
         let (patch, xi) = (foot.patch, foot.xi);
         *hint = Some(Hint { patch, xi });
-        if !presses(&foot) {
-            return Ok(None);
-        }
+        // On either side: an uncertain foot must not pass for an open point.
         if foot.status == Status::NotConverged {
             return Err(PointFault::ProjectionNotConverged { patch, xi });
+        }
+        if !presses(&foot) {
+            return Ok(None);
         }
         let xi3 = foot.signed_distance;
         let normal = law.normal(xi3);

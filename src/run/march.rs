@@ -250,7 +250,7 @@ impl<'a, 'm> March<'a, 'm> {
         }
         if converged.negative_pivots > 0 {
             self.warn(format!(
-                "step {step}: the tangent of the converged state has {} negative pivot(s): the equilibrium is unstable",
+                "step {step}: the last tangent of the step has {} negative pivot(s): the equilibrium may be unstable",
                 converged.negative_pivots
             ));
         }
