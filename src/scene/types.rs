@@ -157,7 +157,7 @@ pub enum MeshSource {
     SpherePanel(SpherePanel),
     /// Box of elements with grading along each axis; layers along z.
     Block(Block),
-    /// Mesh file: gmsh `.msh` 4.1 with physical names.
+    /// Mesh file: gmsh `.msh` 4.1 with physical names, or a subset of Abaqus `.inp`.
     File(MeshFile),
 }
 
@@ -203,7 +203,7 @@ pub struct CylinderPanel {
     pub origin: [f64; 3],
 }
 
-/// Panel of a sphere about `origin`: longitude from `longitude[0]` to `[1]`, latitude from `latitude[0]` to `[1]`, both
+/// Panel of a sphere about `origin`, with its poles on the y axis and longitude counted from z towards x: longitude from `longitude[0]` to `[1]`, latitude from `latitude[0]` to `[1]`, both
 /// in degrees. Face and node sets `outer`, `inner`, `longitude_min`, `longitude_max`, `latitude_min`, `latitude_max`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -482,7 +482,8 @@ pub struct Support {
     /// Prescribed components.
     #[serde(default)]
     pub displacement: Option<Components>,
-    /// Acts on the mean of both faces of the shell (the mid-surface), which leaves rotation and thickness free.
+    /// Acts on the mean of both faces of the shell (the mid-surface), which leaves rotation and thickness free: with
+    /// all three components a hinge that holds its place, with one a soft support.
     #[serde(default)]
     pub mid_surface: bool,
 }
