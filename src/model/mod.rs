@@ -9,6 +9,7 @@ pub mod loads;
 pub mod motion;
 pub mod penalty;
 pub mod slave;
+pub mod state;
 
 use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;

@@ -2,12 +2,12 @@
 use super::RunError;
 use crate::contact::rigid::{behind, presses};
 use crate::model::Model;
+use crate::model::state::State;
 use crate::output::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, Results, SurfaceOutput,
     SurfacePiece, SurfaceState,
 };
 use crate::shell::extrapolate;
-use crate::solve::state::State;
 use covact_geometry::Vec3;
 
 /// Contact fields on all nodes, and totals over all slave points.

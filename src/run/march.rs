@@ -2,16 +2,17 @@
 use super::RunError;
 use super::fields::Fields;
 use super::history;
+use super::progress::Progress;
 use super::step::Attempts;
 use crate::assembly::Assembler;
 use crate::model::error::number;
+use crate::model::state::State;
 use crate::model::{Model, penalty};
 use crate::output::{History, Phases, Results, RunStatus};
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::DirectSolver;
 use crate::solve::newton::{Converged, StepFailure, Workspace};
-use crate::solve::state::State;
 use crate::solve::stepping::Stepping;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -19,17 +20,6 @@ use std::sync::atomic::AtomicBool;
 /// Residual relative to the forces up to which an equilibrium that only the round-off floor accepts is taken without a
 /// word.
 const RELIABLE: f64 = 1e-4;
-
-/// What a run has done so far.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Progress {
-    pub warnings: Vec<String>,
-    /// Newton iterations, those of failed attempts included.
-    pub iterations: u64,
-    pub cuts: u32,
-    pub steps: u32,
-    pub time: f64,
-}
 
 /// How a run ended.
 pub(super) struct Ending {

@@ -4,6 +4,7 @@ mod error;
 mod fields;
 mod history;
 mod march;
+mod progress;
 mod step;
 
 pub use check::{
@@ -17,7 +18,8 @@ use crate::output::{Phases, RunStatus, Summary, Versions, cpu_seconds, peak_memo
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{DirectSolver, LinearSolver, SolverOptions};
-use march::{March, Progress};
+use march::March;
+use progress::Progress;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;

@@ -8,16 +8,16 @@
 //!    come out, and each stage starts from nearly the right ones.
 //!
 //! What fails all three is cut.
-use super::march::Progress;
+use super::progress::Progress;
 use crate::assembly::{Assembler, Fault};
 use crate::contact::rigid::behind;
+use crate::model::state::State;
 use crate::model::{Model, penalty};
 use crate::output::Phases;
 use crate::scene;
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::DirectSolver;
 use crate::solve::newton::{Converged, Newton, Patience, StepFailure, Workspace};
-use crate::solve::state::State;
 use std::sync::atomic::AtomicBool;
 
 /// Stages of a softened start, as multiples of the penalty.

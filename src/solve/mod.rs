@@ -3,5 +3,4 @@ pub mod convergence;
 pub mod event;
 pub mod linear;
 pub mod newton;
-pub mod state;
 pub mod stepping;

@@ -6,9 +6,9 @@
 use super::convergence::{Norms, Verdict};
 use super::event::{Event, Observer};
 use super::linear::{LinearError, LinearSolver};
-use super::state::State;
 use crate::assembly::{Assembler, Fault, Totals};
 use crate::model::Model;
+use crate::model::state::State;
 use crate::output::Phases;
 use crate::scene;
 use rayon::prelude::*;

@@ -1,9 +1,9 @@
 //! An effect that is not asked for costs nothing: what a frictionless contact with a rigid surface allocates.
 use crate::common::plate;
 use covact::assembly::Assembler;
+use covact::model::state::{PointState, State};
 use covact::model::{Model, build::build};
 use covact::scene;
-use covact::solve::state::{PointState, State};
 use serde_json::{Value, json};
 
 fn model(scene: &Value) -> Model {

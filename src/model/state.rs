@@ -1,5 +1,5 @@
 //! What a step may change, so that it can be taken back as a whole.
-use crate::model::Model;
+use super::Model;
 use covact_geometry::Hint;
 
 /// State of one slave point on a rigid surface without friction: where the last search ended, and whether the point was

@@ -1,0 +1,12 @@
+//! What a run has done so far.
+
+/// What a run has done so far.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Progress {
+    pub warnings: Vec<String>,
+    /// Newton iterations, those of failed attempts included.
+    pub iterations: u64,
+    pub cuts: u32,
+    pub steps: u32,
+    pub time: f64,
+}
