@@ -76,3 +76,39 @@ impl Motion {
         self.translation.iter().chain(angle)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+
+    #[test]
+    fn placed_then_turned_about_its_centre_then_moved() {
+        let motion = scene::Motion {
+            translation: [
+                scene::Value::Number(0.0),
+                scene::Value::Expression("2*t".to_owned()),
+                scene::Value::Table {
+                    table: vec![[0.0, 0.0], [1.0, -4.0]],
+                },
+            ],
+            rotation: Some(scene::Rotation {
+                center: [1.0, 0.0, 0.0],
+                axis: [0.0, 0.0, 3.0],
+                angle: scene::Value::Expression("90*t".to_owned()),
+            }),
+        };
+        let placement = scene::Placement {
+            axis: [1.0, 0.0, 0.0],
+            angle: 90.0,
+            translation: [1.0, 0.0, 0.0],
+            ..scene::Placement::default()
+        };
+        let motion = Motion::new(&motion, &placement).unwrap();
+        // Placed: (1, 2, 0) -> (1, 0, 2) -> (2, 0, 2). Turned by 90 degrees about (1, 0, .): (1, 1, 2). Moved: (1, 3, -2).
+        for (t, expected) in [(0.0, [2.0, 0.0, 2.0]), (1.0, [1.0, 3.0, -2.0])] {
+            let at = motion.pose(t).unwrap() * Point3::new(1.0, 2.0, 0.0);
+            assert!((at.coords - Vec3::from(expected)).norm() < 1e-14, "{at}");
+        }
+    }
+}
