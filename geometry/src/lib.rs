@@ -5,15 +5,19 @@
 
 pub mod basis;
 pub mod bezier;
+pub mod curve;
 pub mod frame;
 pub mod io;
 pub mod patch;
 pub mod primitives;
 pub mod project;
 pub mod surface;
+pub mod trim;
 
 pub use bezier::{BezierPiece, bezier_pieces};
+pub use curve::NurbsCurve;
 pub use frame::Frame;
 pub use patch::{NurbsPatch, PatchError, PatchShape};
 pub use project::{EdgeKind, Foot, Hint, Location, PatchSet, Status};
-pub use surface::{Jet, Jet3, Vec3};
+pub use surface::{Jet, Jet3, Surface, Vec3};
+pub use trim::{Trim, TrimCurve, TrimLoop};

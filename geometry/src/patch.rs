@@ -8,12 +8,15 @@ mod change;
 mod eval;
 mod extent;
 mod shape;
+mod surface;
 mod truck;
 
 pub use shape::PatchShape;
 
 use crate::basis::{Basis, KnotError};
 use crate::surface::Vec3;
+use crate::trim::Trim;
+use std::sync::Arc;
 
 /// Why a patch could not be made. Directions and indices count from zero.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -75,6 +78,7 @@ pub struct NurbsPatch {
     /// Homogeneous control points (w x, w y, w z, w), xi1 fastest.
     points: Vec<[f64; 4]>,
     rational: bool,
+    trim: Option<Arc<Trim>>,
 }
 
 fn knot_error(direction: usize) -> impl Fn(KnotError) -> PatchError {
@@ -152,7 +156,19 @@ impl NurbsPatch {
             basis,
             points,
             rational,
+            trim: None,
         })
+    }
+
+    /// The part of the domain that belongs to the surface, where that is not all of it.
+    pub fn trim(&self) -> Option<&Trim> {
+        self.trim.as_deref()
+    }
+
+    /// The patch with this trim, or without any.
+    pub fn with_trim(mut self, trim: Option<Trim>) -> Self {
+        self.trim = trim.map(Arc::new);
+        self
     }
 
     /// Polynomial degrees.

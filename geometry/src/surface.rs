@@ -1,6 +1,9 @@
-//! Jets: a surface point with its parametric derivatives.
+//! What a surface gives: jets (a point with its parametric derivatives) and its exact Bezier pieces.
 
 use num_dual::DualNum;
+
+use crate::bezier::BezierPiece;
+use crate::trim::Trim;
 
 /// A point or vector of three-dimensional space.
 pub type Vec3<D = f64> = nalgebra::Vector3<D>;
@@ -23,6 +26,54 @@ pub struct Jet3<D = f64> {
     pub jet: Jet<D>,
     /// Third derivatives in the order 111, 112, 122, 222.
     pub rho_ijk: [Vec3<D>; 4],
+}
+
+/// One surface patch over a rectangle of parameters, as contact and projection see it: a NURBS patch, a bilinear or a
+/// biquadratic facet. Whatever stands above asks for nothing else, so what holds for one holds for all.
+///
+/// Every surface is piecewise (rational) polynomial. *Spans* are the rectangles of its pieces, numbered from zero in
+/// each direction; a facet has one.
+pub trait Surface: Clone + Send + Sync + std::fmt::Debug {
+    /// The rectangle of parameters that belongs to the surface: `[direction][start, end]`.
+    fn domain(&self) -> [[f64; 2]; 2];
+
+    /// Parameter ranges of the spans of direction `dir` (0 or 1), in order.
+    fn spans(&self, dir: usize) -> Vec<[f64; 2]>;
+
+    /// Numbers of the spans that hold `xi`; at the border of two, the one to the right.
+    fn find_span(&self, xi: [f64; 2]) -> [usize; 2];
+
+    /// Jet of the piece of span `span` at `xi`, inside of the span or not: choosing the span gives one-sided
+    /// derivatives where the surface has a kink.
+    fn jet_in_span(&self, span: [usize; 2], xi: [f64; 2]) -> Jet;
+
+    /// Surface point with first and second derivatives.
+    fn jet(&self, xi: [f64; 2]) -> Jet {
+        self.jet_in_span(self.find_span(xi), xi)
+    }
+
+    /// Surface point.
+    fn point(&self, xi: [f64; 2]) -> Vec3 {
+        self.jet(xi).rho
+    }
+
+    /// The same surface with the same parameters in Bezier form: one piece per pair of spans, those of xi1 fastest.
+    fn bezier_pieces(&self) -> Vec<BezierPiece>;
+
+    /// Parameters inside the domain of direction `dir` at which the tangents may jump.
+    fn crease_knots(&self, _dir: usize) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The [`crease_knots`](Self::crease_knots) across which the normal turns by more than `angle` (radians).
+    fn sharp_knots(&self, _dir: usize, _angle: f64) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The part of the domain that belongs to the surface, where that is not all of it.
+    fn trim(&self) -> Option<&Trim> {
+        None
+    }
 }
 
 /// Derivatives of `numerator / weight` from those of both, in the order 0 | 1, 2 | 11, 12, 22: the quotient rule solved

@@ -234,7 +234,7 @@ fn gaps_are_measured_and_bounded() {
     assert_eq!((joined.components().len(), joined.edges().smooth), (1, 1));
     assert!((joined.edges().largest_gap - gap).abs() < 1e-12);
     assert!(matches!(
-        PatchSet::new(Vec::new(), None),
+        PatchSet::<covact_geometry::NurbsPatch>::new(Vec::new(), None),
         Err(PatchSetError::Empty)
     ));
     let patch = plane(Vec3::zeros(), Vec3::z(), [2.0, 2.0]).unwrap();

@@ -20,6 +20,7 @@ impl NurbsPatch {
             basis,
             points: self.points.clone(),
             rational: self.rational,
+            trim: None,
         })
     }
 
@@ -62,6 +63,7 @@ impl NurbsPatch {
             basis,
             points,
             rational: self.rational,
+            trim: None,
         })
     }
 
@@ -77,6 +79,7 @@ impl NurbsPatch {
             basis: [b2, b1],
             points,
             rational: self.rational,
+            trim: None,
         }
     }
 }

@@ -5,12 +5,12 @@ use super::set::PatchSet;
 use super::topology::{Link, nearest_on_edge};
 use super::{EdgeKind, Foot, Location, Status};
 use crate::frame::Frame;
-use crate::surface::Vec3;
+use crate::surface::{Surface, Vec3};
 
 /// A foot that its edge holds by less than this (relative) counts as lying on the face.
 const HELD: f64 = 1e-10;
 
-impl PatchSet {
+impl<S: Surface> PatchSet<S> {
     pub(super) fn finish(&self, q: &Vec3, rough: Local, complete: bool) -> Foot {
         // The search may have stopped at the border of a piece, which is none of the surface's.
         let region = self.region(rough.region.patch, rough.span);
@@ -170,7 +170,7 @@ impl PatchSet {
         let edges = &self.topology.edges[s.region.patch as usize];
         let on = [self.edge_of(s, 0), self.edge_of(s, 1)];
         if let Some(edge) = on.iter().flatten().find(|&&e| edges[e].kind.is_none()) {
-            return Location::Pole { edge: *edge as u8 };
+            return Location::Pole { edge: *edge as u32 };
         }
         // Held from how many directions, and by what.
         let limit = HELD * HELD * s.d2.max(self.size * self.size);
@@ -178,7 +178,7 @@ impl PatchSet {
         let kind = |k: usize| on[k].and_then(|e| edges[e].kind);
         match (kind(0), kind(1)) {
             (Some(a), Some(b)) => {
-                let corner = (u8::from(s.at[0] > 0)) | (u8::from(s.at[1] > 0) << 1);
+                let corner = (u32::from(s.at[0] > 0)) | (u32::from(s.at[1] > 0) << 1);
                 // Along an edge that does not hold it, a corner is a point of the other edge.
                 match (held(0), held(1)) {
                     (false, false) => Location::Face,
@@ -212,12 +212,12 @@ impl PatchSet {
     }
 
     /// What meets at a corner.
-    fn corner_kind(&self, patch: u32, corner: u8) -> EdgeKind {
-        let group = self.topology.corners[patch as usize][usize::from(corner)];
+    fn corner_kind(&self, patch: u32, corner: u32) -> EdgeKind {
+        let group = self.topology.corners[patch as usize][corner as usize];
         let mut worst = EdgeKind::Smooth;
         for &(patch, corner) in &self.topology.corner_groups[group as usize] {
             let edges = &self.topology.edges[patch as usize];
-            for edge in [usize::from(corner & 1), 2 + usize::from(corner >> 1)] {
+            for edge in [(corner & 1) as usize, 2 + (corner >> 1) as usize] {
                 match edges[edge].kind {
                     Some(EdgeKind::Free) => return EdgeKind::Free,
                     Some(EdgeKind::Sharp) => worst = EdgeKind::Sharp,
@@ -266,7 +266,7 @@ impl PatchSet {
             Location::Face => sum = self.face_normal(s) * side,
             Location::Edge { edge, .. } => {
                 sum = self.face_normal(s) * side;
-                for link in &self.topology.edges[patch as usize][usize::from(edge)].links {
+                for link in &self.topology.edges[patch as usize][edge as usize].links {
                     let t = nearest_on_edge(self, &s.jet.rho, link.patch, link.edge);
                     if (t.jet.rho - s.jet.rho).norm() <= 2.0 * self.tolerance {
                         sum += self.face_normal(&t) * self.sides[link.patch as usize];
@@ -274,7 +274,7 @@ impl PatchSet {
                 }
             }
             Location::Corner { corner, .. } => {
-                let group = self.topology.corners[patch as usize][usize::from(corner)];
+                let group = self.topology.corners[patch as usize][corner as usize];
                 for &(patch, corner) in &self.topology.corner_groups[group as usize] {
                     sum += self.corner_normal(patch, corner) * self.sides[patch as usize];
                 }
@@ -286,8 +286,8 @@ impl PatchSet {
                 }
             }
             Location::Pole { edge } => {
-                let group = usize::from(edge % 2);
-                let dir = usize::from(edge / 2);
+                let group = (edge % 2) as usize;
+                let dir = (edge / 2) as usize;
                 let along = 1 - dir;
                 let grid = &self.grids[patch as usize];
                 for span in 0..grid.spans[along] {
@@ -308,7 +308,7 @@ impl PatchSet {
     }
 
     /// Normal of a patch at its corner, times the angle of the patch there.
-    fn corner_normal(&self, patch: u32, corner: u8) -> Vec3 {
+    fn corner_normal(&self, patch: u32, corner: u32) -> Vec3 {
         let grid = &self.grids[patch as usize];
         let end = [corner & 1, corner >> 1].map(|b| b == 1);
         let span = [0, 1].map(|k| if end[k] { grid.spans[k] - 1 } else { 0 });
@@ -324,7 +324,7 @@ impl PatchSet {
 fn edge_location(edge: Option<usize>, kind: EdgeKind) -> Location {
     match (edge, kind) {
         (Some(edge), EdgeKind::Sharp | EdgeKind::Free) => Location::Edge {
-            edge: edge as u8,
+            edge: edge as u32,
             kind,
         },
         _ => Location::Face,

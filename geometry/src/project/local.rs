@@ -1,7 +1,7 @@
 //! Closest point within a smooth region of one patch: safeguarded Newton iteration with active bounds.
 
 use super::PatchSet;
-use crate::surface::{Jet, Vec3};
+use crate::surface::{Jet, Surface, Vec3};
 
 /// Part of a patch between knot lines in which the surface is smooth (or simply one piece of it).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +33,19 @@ pub(super) struct Local {
     /// Whether the bound holds the point: the distance would fall across it.
     pub active: [bool; 2],
     pub converged: bool,
+    /// Where on the trim the point lies, if on its border.
+    pub trim: Option<TrimPlace>,
+}
+
+/// A point of a trim curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct TrimPlace {
+    /// Number of the curve among all curves of the patch's trim, loop after loop.
+    pub curve: u32,
+    /// Parameter of the curve.
+    pub t: f64,
+    /// -1 at the start of the curve, +1 at its end, else 0.
+    pub end: i8,
 }
 
 const ITERATIONS: usize = 40;
@@ -41,7 +54,7 @@ const HALVINGS: usize = 12;
 /// Share of the predicted decrease that a step must reach (Armijo).
 const ARMIJO: f64 = 1e-4;
 
-impl PatchSet {
+impl<S: Surface> PatchSet<S> {
     /// Evaluates at `xi`, which is moved into the region; `span` is where to look for the span first.
     #[inline]
     pub(super) fn state(
@@ -96,6 +109,7 @@ impl PatchSet {
             at,
             active: [held(0), held(1)],
             converged: false,
+            trim: None,
         }
     }
 

@@ -37,17 +37,20 @@ pub enum EdgeKind {
     Free,
 }
 
-/// Where on the set of patches a foot point lies. Edge numbers: 0 is xi1 = min, 1 is xi1 = max, 2 is xi2 = min,
-/// 3 is xi2 = max. Corner numbers: bit 0 set at xi1 = max, bit 1 set at xi2 = max.
+/// Where on the set of patches a foot point lies.
+///
+/// Edge numbers: 0 is xi1 = min, 1 is xi1 = max, 2 is xi2 = min, 3 is xi2 = max; `4 + k` is curve `k` of the patch's trim,
+/// counted over its loops. Corner numbers: below 4 a corner of the domain, bit 0 set at xi1 = max, bit 1 set at
+/// xi2 = max; `4 + k` is the start of trim curve `k`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Location {
     Face,
     Edge {
-        edge: u8,
+        edge: u32,
         kind: EdgeKind,
     },
     Corner {
-        corner: u8,
+        corner: u32,
         kind: EdgeKind,
     },
     /// On a line inside a patch where an inner knot of full multiplicity breaks the tangent; `dir` is the
@@ -57,7 +60,7 @@ pub enum Location {
     },
     /// On an edge that is one point in space.
     Pole {
-        edge: u8,
+        edge: u32,
     },
 }
 

@@ -3,7 +3,7 @@
 use super::set::PatchSet;
 use super::topology::EdgeReport;
 use crate::frame::Frame;
-use crate::surface::Vec3;
+use crate::surface::{Surface, Vec3};
 
 /// Where a principal curvature is extreme.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +44,7 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-impl PatchSet {
+impl<S: Surface> PatchSet<S> {
     /// Length of the diagonal of [`bounds`](Self::bounds).
     pub fn size(&self) -> f64 {
         self.size

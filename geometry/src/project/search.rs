@@ -3,7 +3,7 @@
 use super::PatchSet;
 use super::local::{Local, Region};
 use super::piece::{Piece, box_distance2, hull, outside_ball, split};
-use crate::surface::Vec3;
+use crate::surface::{Surface, Vec3};
 use std::cell::Cell;
 
 thread_local! {
@@ -24,8 +24,8 @@ pub(super) const ROUGH: f64 = 1e-10;
 const MOST_PARTS: usize = 100_000;
 
 /// The nearest point so far.
-pub(super) struct Search<'a> {
-    set: &'a PatchSet,
+pub(super) struct Search<'a, S: Surface> {
+    set: &'a PatchSet<S>,
     q: Vec3,
     /// Points farther away than this are of no interest.
     reach: f64,
@@ -54,8 +54,8 @@ struct Known {
     radius: f64,
 }
 
-impl<'a> Search<'a> {
-    pub fn new(set: &'a PatchSet, q: Vec3, reach: f64) -> Self {
+impl<'a, S: Surface> Search<'a, S> {
+    pub fn new(set: &'a PatchSet<S>, q: Vec3, reach: f64) -> Self {
         Search {
             set,
             q,

@@ -7,9 +7,9 @@ use super::search::Search;
 use super::topology::{self, Topology};
 use super::tree::Tree;
 use super::{Foot, Hint};
-use crate::bezier::{BezierPiece, bezier_pieces};
+use crate::bezier::BezierPiece;
 use crate::patch::NurbsPatch;
-use crate::surface::Vec3;
+use crate::surface::{Surface, Vec3};
 
 /// Normals that turn by more than this (radians) across a joint or a crease make it sharp: one degree, above what CAD
 /// systems leave in joints that are meant to be tangential.
@@ -126,10 +126,10 @@ impl Grid {
     }
 }
 
-/// Patches with their tree, their shared edges and their sides. Queries take `&self` and lock nothing.
+/// Patches of one kind of surface with their tree, their shared edges and their sides. Queries take `&self` and lock nothing.
 #[derive(Debug, Clone)]
-pub struct PatchSet {
-    pub(super) patches: Vec<NurbsPatch>,
+pub struct PatchSet<S: Surface = NurbsPatch> {
+    pub(super) patches: Vec<S>,
     pub(super) grids: Vec<Grid>,
     pub(super) pieces: Pieces,
     pub(super) cells: Vec<Cell>,
@@ -140,7 +140,7 @@ pub struct PatchSet {
     pub(super) sides: Vec<f64>,
 }
 
-impl PatchSet {
+impl<S: Surface> PatchSet<S> {
     /// Joins patches to a set: finds common edges, connected components and a consistent orientation, in which the first
     /// patch of every component keeps its own (`rho_1 x rho_2` points out).
     ///
@@ -150,7 +150,7 @@ impl PatchSet {
     ///
     /// # Errors
     /// No patches, a useless tolerance or size, or a surface with one side only.
-    pub fn new(patches: Vec<NurbsPatch>, tolerance: Option<f64>) -> Result<Self, PatchSetError> {
+    pub fn new(patches: Vec<S>, tolerance: Option<f64>) -> Result<Self, PatchSetError> {
         if patches.is_empty() {
             return Err(PatchSetError::Empty);
         }
@@ -162,7 +162,7 @@ impl PatchSet {
         let mut pieces = Pieces::default();
         let mut grids = Vec::with_capacity(patches.len());
         for (number, patch) in patches.iter().enumerate() {
-            let beziers = bezier_pieces(patch);
+            let beziers = patch.bezier_pieces();
             let mut grid = grid(patch, pieces.list.len() as u32);
             let total = grid.cut(&beziers);
             if total.saturating_add(pieces.list.len()) >= 1 << 31 {
@@ -203,7 +203,7 @@ impl PatchSet {
     }
 
     /// The patches, by number.
-    pub fn patches(&self) -> &[NurbsPatch] {
+    pub fn patches(&self) -> &[S] {
         &self.patches
     }
 
@@ -267,7 +267,7 @@ impl PatchSet {
     }
 }
 
-fn grid(patch: &NurbsPatch, first: u32) -> Grid {
+fn grid<S: Surface>(patch: &S, first: u32) -> Grid {
     let mut spans = [0; 2];
     let mut breaks = [Vec::new(), Vec::new()];
     let mut kinks = [Vec::new(), Vec::new()];

@@ -2,7 +2,7 @@
 
 use super::set::PatchSet;
 use super::{EdgeKind, Foot, Location};
-use crate::surface::Vec3;
+use crate::surface::{Surface, Vec3};
 
 /// How the side of a component was decided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,7 +60,7 @@ const FAR: f64 = 3.0;
 /// ... or than this fraction of the size of the set.
 const NEAR: f64 = 0.05;
 
-impl PatchSet {
+impl<S: Surface> PatchSet<S> {
     /// Side of every patch: +1 where `rho_1 x rho_2` points out of the master, -1 where it points in.
     pub fn sides(&self) -> &[f64] {
         &self.sides

@@ -4,7 +4,7 @@ use super::EdgeKind;
 use super::local::{Local, Region};
 use super::set::{PatchSet, PatchSetError, SHARP_ANGLE};
 use crate::frame::Frame;
-use crate::surface::Vec3;
+use crate::surface::{Surface, Vec3};
 
 /// Points of an edge that are compared with other edges; a contact shorter than one of the intervals may be missed.
 const SAMPLES: usize = 13;
@@ -13,7 +13,7 @@ const SAMPLES: usize = 13;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
     /// Patch and edge number of both sides; edge 0 is xi1 = start, 1 is xi1 = end, 2 is xi2 = start, 3 is xi2 = end.
-    pub edges: [(u32, u8); 2],
+    pub edges: [(u32, u32); 2],
     /// Smooth or sharp.
     pub kind: EdgeKind,
     /// Largest angle between the normals at the points compared (radians).
@@ -28,9 +28,9 @@ pub struct Joint {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartialJoint {
     /// Patch and number of the edge.
-    pub edge: (u32, u8),
+    pub edge: (u32, u32),
     /// Patches and edges that parts of it coincide with.
-    pub others: Vec<(u32, u8)>,
+    pub others: Vec<(u32, u32)>,
     /// Share of the points compared that lie on other edges. Where it is 1 the edge counts as joined, else as free.
     pub share: f64,
 }
@@ -43,11 +43,11 @@ pub struct EdgeReport {
     /// Edges that coincide with others in part.
     pub partial: Vec<PartialJoint>,
     /// Free edges: patch and number.
-    pub free: Vec<(u32, u8)>,
+    pub free: Vec<(u32, u32)>,
     /// Edges that are one point in space.
-    pub poles: Vec<(u32, u8)>,
+    pub poles: Vec<(u32, u32)>,
     /// Edges at which more than two patches meet; the nearest pair is joined and orients the surface.
-    pub branching: Vec<(u32, u8)>,
+    pub branching: Vec<(u32, u32)>,
     /// Joints across which the surface is smooth.
     pub smooth: usize,
     /// Joints at an angle.
@@ -62,7 +62,7 @@ pub struct EdgeReport {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Link {
     pub patch: u32,
-    pub edge: u8,
+    pub edge: u32,
     /// Side of the other patch over the side of this one.
     pub relation: f64,
 }
@@ -79,7 +79,7 @@ pub(super) struct Edge {
 pub(super) struct Topology {
     pub edges: Vec<[Edge; 4]>,
     /// Patches that meet at the same point with a corner: patch and corner number.
-    pub corner_groups: Vec<Vec<(u32, u8)>>,
+    pub corner_groups: Vec<Vec<(u32, u32)>>,
     /// Number of the group of every corner.
     pub corners: Vec<[u32; 4]>,
     /// Patches of every connected component.
@@ -112,7 +112,10 @@ struct Contact {
 }
 
 /// Finds edges, joints, components and sides of a set whose patches and tree are complete.
-pub(super) fn build(set: &mut PatchSet, tolerance: Option<f64>) -> Result<(), PatchSetError> {
+pub(super) fn build<S: Surface>(
+    set: &mut PatchSet<S>,
+    tolerance: Option<f64>,
+) -> Result<(), PatchSetError> {
     let count = set.patches.len();
     let samples: Vec<Samples> = (0..4 * count).map(|k| sample(set, k / 4, k % 4)).collect();
     let pole_limit = 1e-7 * set.size;
@@ -154,9 +157,9 @@ pub(super) fn build(set: &mut PatchSet, tolerance: Option<f64>) -> Result<(), Pa
 }
 
 /// The region that an edge is: one parameter fixed.
-pub(super) fn edge_region(set: &PatchSet, patch: u32, edge: u8) -> Region {
+pub(super) fn edge_region<S: Surface>(set: &PatchSet<S>, patch: u32, edge: u32) -> Region {
     let grid = &set.grids[patch as usize];
-    let (dir, end) = (usize::from(edge / 2), usize::from(edge % 2));
+    let (dir, end) = ((edge / 2) as usize, (edge % 2) as usize);
     let mut domain = [0, 1].map(|k| [grid.breaks[k][0], grid.breaks[k][grid.spans[k]]]);
     domain[dir] = [domain[dir][end]; 2];
     Region {
@@ -167,9 +170,14 @@ pub(super) fn edge_region(set: &PatchSet, patch: u32, edge: u8) -> Region {
 }
 
 /// Nearest point of an edge, from several starts in every span.
-pub(super) fn nearest_on_edge(set: &PatchSet, q: &Vec3, patch: u32, edge: u8) -> Local {
+pub(super) fn nearest_on_edge<S: Surface>(
+    set: &PatchSet<S>,
+    q: &Vec3,
+    patch: u32,
+    edge: u32,
+) -> Local {
     let region = edge_region(set, patch, edge);
-    let along = 1 - usize::from(edge / 2);
+    let along = 1 - (edge / 2) as usize;
     let grid = &set.grids[patch as usize];
     let start_xi = [region.domain[0][0], region.domain[1][0]];
     // The nearest of some points, then one iteration in its span and the neighbours.
@@ -196,8 +204,8 @@ pub(super) fn nearest_on_edge(set: &PatchSet, q: &Vec3, patch: u32, edge: u8) ->
     set.polish(q, set.state(q, &region, best.1, best.2))
 }
 
-fn sample(set: &PatchSet, patch: usize, edge: usize) -> Samples {
-    let region = edge_region(set, patch as u32, edge as u8);
+fn sample<S: Surface>(set: &PatchSet<S>, patch: usize, edge: usize) -> Samples {
+    let region = edge_region(set, patch as u32, edge as u32);
     let along = 1 - edge / 2;
     let mut out = Samples {
         points: [Vec3::zeros(); SAMPLES],
@@ -232,7 +240,12 @@ struct Found {
     joints: Vec<Joint>,
 }
 
-fn pair_edges(set: &PatchSet, samples: &[Samples], pole: &[bool], found: &mut Found) {
+fn pair_edges<S: Surface>(
+    set: &PatchSet<S>,
+    samples: &[Samples],
+    pole: &[bool],
+    found: &mut Found,
+) {
     // Boxes grow by a tenth of the length: more than an arc bulges between samples. Sweep along x so that far edges are never compared.
     let mut order: Vec<usize> = (0..samples.len()).filter(|&k| !pole[k]).collect();
     let grown = |k: usize| {
@@ -268,8 +281,8 @@ fn pair_edges(set: &PatchSet, samples: &[Samples], pole: &[bool], found: &mut Fo
     found.joints = whole;
 }
 
-fn compare(
-    set: &PatchSet,
+fn compare<S: Surface>(
+    set: &PatchSet<S>,
     samples: &[Samples],
     (a, b): (usize, usize),
     found: &mut Found,
@@ -299,7 +312,7 @@ fn compare(
         EdgeKind::Smooth
     };
     let all = |c: &Contact| c.covered.iter().all(|&x| x);
-    let name = |k: usize| ((k / 4) as u32, (k % 4) as u8);
+    let name = |k: usize| ((k / 4) as u32, (k % 4) as u32);
     if all(&ab) && all(&ba) {
         whole.push(Joint {
             edges: [name(a), name(b)],
@@ -327,7 +340,12 @@ fn compare(
 }
 
 /// Which samples of one edge lie on another one.
-fn contact(set: &PatchSet, one: &Samples, other: &Samples, number: usize) -> Contact {
+fn contact<S: Surface>(
+    set: &PatchSet<S>,
+    one: &Samples,
+    other: &Samples,
+    number: usize,
+) -> Contact {
     let mut out = Contact {
         covered: [false; SAMPLES],
         gap: 0.0,
@@ -341,7 +359,7 @@ fn contact(set: &PatchSet, one: &Samples, other: &Samples, number: usize) -> Con
         if super::piece::box_distance2(p, &(other.low - grow), &(other.high + grow)) > 0.0 {
             continue;
         }
-        let local = nearest_on_edge(set, p, (number / 4) as u32, (number % 4) as u8);
+        let local = nearest_on_edge(set, p, (number / 4) as u32, (number % 4) as u32);
         let distance = local.d2.sqrt();
         if distance > set.tolerance {
             continue;
@@ -373,10 +391,10 @@ fn classify(
     mut found: Found,
     report: &mut EdgeReport,
 ) -> Vec<[Edge; 4]> {
-    let name = |k: usize| ((k / 4) as u32, (k % 4) as u8);
+    let name = |k: usize| ((k / 4) as u32, (k % 4) as u32);
     let mut kinds: Vec<Option<EdgeKind>> = vec![None; samples.len()];
     for joint in std::mem::take(&mut found.joints) {
-        let [a, b] = joint.edges.map(|(p, e)| 4 * p as usize + usize::from(e));
+        let [a, b] = joint.edges.map(|(p, e)| 4 * p as usize + e as usize);
         if kinds[a].is_some() || kinds[b].is_some() {
             for k in [a, b] {
                 if !report.branching.contains(&name(k)) {
@@ -495,23 +513,23 @@ fn orient(
 
 /// Corners that meet in space.
 #[allow(clippy::type_complexity)]
-fn corner_groups(set: &PatchSet) -> (Vec<Vec<(u32, u8)>>, Vec<[u32; 4]>) {
-    let point = |patch: usize, corner: u8| {
+fn corner_groups<S: Surface>(set: &PatchSet<S>) -> (Vec<Vec<(u32, u32)>>, Vec<[u32; 4]>) {
+    let point = |patch: usize, corner: u32| {
         let domain = set.patches[patch].domain();
         let xi = [
-            domain[0][usize::from(corner & 1)],
-            domain[1][usize::from(corner >> 1)],
+            domain[0][(corner & 1) as usize],
+            domain[1][(corner >> 1) as usize],
         ];
         set.patches[patch].point(xi)
     };
-    let mut all: Vec<(Vec3, u32, u8)> = (0..set.patches.len())
+    let mut all: Vec<(Vec3, u32, u32)> = (0..set.patches.len())
         .flat_map(|p| (0..4).map(move |c| (p, c)))
         .map(|(p, c)| (point(p, c), p as u32, c))
         .collect();
     all.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then((a.1, a.2).cmp(&(b.1, b.2))));
     let limit = 2.0 * set.tolerance;
     let mut group = vec![u32::MAX; all.len()];
-    let mut groups: Vec<Vec<(u32, u8)>> = Vec::new();
+    let mut groups: Vec<Vec<(u32, u32)>> = Vec::new();
     let mut corners = vec![[0; 4]; set.patches.len()];
     for k in 0..all.len() {
         if group[k] == u32::MAX {
@@ -520,7 +538,7 @@ fn corner_groups(set: &PatchSet) -> (Vec<Vec<(u32, u8)>>, Vec<[u32; 4]>) {
         }
         let own = group[k];
         groups[own as usize].push((all[k].1, all[k].2));
-        corners[all[k].1 as usize][usize::from(all[k].2)] = own;
+        corners[all[k].1 as usize][all[k].2 as usize] = own;
         for later in k + 1..all.len() {
             if all[later].0.x - all[k].0.x > limit {
                 break;
