@@ -306,7 +306,10 @@ pub(super) fn open_gaps<S: Surface>(set: &PatchSet<S>, edges: &[Edge], report: &
         .collect();
     for pair in pairs(set, edges, &free, WIDE * report.tolerance) {
         let [a, b] = pair.edges;
-        if edges[a].links.iter().any(|link| link.edge == b) {
+        // What is joined already is no gap, unless the edges run on beside each other.
+        let joined = edges[a].links.iter().filter(|link| link.edge == b);
+        let joined: f64 = joined.map(|l| edges[a].length_between(l.own)).sum();
+        if joined > 0.0 && pair.contacts[0].length <= joined + 8.0 * pair.tolerance {
             continue;
         }
         let widest = usize::from(pair.contacts[1].gap > pair.contacts[0].gap);
