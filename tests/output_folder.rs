@@ -35,6 +35,7 @@ fn square(name: &str) -> SurfaceOutput {
         patch: 0,
         entity: 0,
         reversed: false,
+        halved: 0,
     };
     SurfaceOutput::new(name, vec![piece], 2).unwrap()
 }

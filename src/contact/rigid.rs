@@ -122,10 +122,17 @@ impl RigidMaster<'_> {
                 edge,
                 kind: EdgeKind::Sharp,
             } => {
-                let along = if edge < 2 { 1 } else { 0 };
-                self.on_line(&foot, along, &d, &normal)?
+                let line = if edge < 4 {
+                    along_side(&foot, 1 - edge as usize / 2)
+                } else {
+                    (self.surface.edge_derivatives(patch, edge, xi))
+                        .ok_or(PointFault::DegenerateFrame { patch, xi })?
+                };
+                self.on_line(&foot, line, &d, &normal)?
             }
-            Location::Crease { dir } => self.on_line(&foot, 1 - dir as usize, &d, &normal)?,
+            Location::Crease { dir } => {
+                self.on_line(&foot, along_side(&foot, 1 - dir as usize), &d, &normal)?
+            }
             _ => self.on_face(&foot, &normal, tangent)?,
         };
         let rotation = Rotation3::from(self.pose.rotation);
@@ -141,12 +148,11 @@ impl RigidMaster<'_> {
     fn on_line(
         &self,
         foot: &Foot,
-        along: usize,
+        [rho_s, rho_ss]: [Vec3; 2],
         d: &Vec3,
         normal: &Normal,
     ) -> Result<(Vec3, Matrix3<f64>), PointFault> {
         let eps = normal.n / foot.signed_distance;
-        let (rho_s, rho_ss) = (foot.jet.rho_i[along], foot.jet.rho_ij[2 * along]);
         // Where another line crosses this one, the foot may be held along it too.
         let held = d.dot(&rho_s).abs() > HELD * self.surface.size() * rho_s.norm();
         let k = if held {
@@ -185,6 +191,11 @@ impl RigidMaster<'_> {
         let k = tangent.face(&frame, xi3, normal);
         Ok((frame.n * normal.n, k))
     }
+}
+
+/// First and second derivatives along a line of parameter `along`.
+fn along_side(foot: &Foot, along: usize) -> [Vec3; 2] {
+    [foot.jet.rho_i[along], foot.jet.rho_ij[2 * along]]
 }
 
 /// Whether a point lies below the surface, deeper than it is searched: not in contact, though not outside either.

@@ -44,6 +44,8 @@ pub struct SurfacePiece {
     /// The outside is against `rho_1 x rho_2`. Such a piece is written with its parameters swapped, so that normals of
     /// the written cells point outside.
     pub reversed: bool,
+    /// How often the piece of a span was halved in both directions to make it: it needs fewer flat facets.
+    pub halved: u32,
 }
 
 /// Point with outward unit normal.
@@ -54,8 +56,12 @@ pub(crate) struct PointNormal {
 }
 
 impl SurfacePiece {
-    /// The pieces of a NURBS patch: one per pair of non-empty spans, the same surface exactly.
+    /// The pieces of a NURBS patch: one per pair of non-empty spans, the same surface exactly. Of a trimmed patch those
+    /// inside; along its trim curves flat pieces with corners on the curves.
     pub fn of_patch(surface: &NurbsPatch, patch: u32, entity: u32, reversed: bool) -> Vec<Self> {
+        if let Some(trim) = surface.trim() {
+            return super::trimmed::pieces(surface, trim, patch, entity, reversed);
+        }
         bezier_pieces(surface)
             .into_iter()
             .map(|piece| SurfacePiece {
@@ -64,6 +70,7 @@ impl SurfacePiece {
                 patch,
                 entity,
                 reversed,
+                halved: 0,
             })
             .collect()
     }

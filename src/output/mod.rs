@@ -21,6 +21,7 @@ mod measure;
 mod results;
 mod summary;
 mod surface;
+mod trimmed;
 mod vtu;
 
 pub use bezier::{BezierError, MAX_DEGREE, SurfacePiece};

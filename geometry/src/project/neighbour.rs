@@ -75,6 +75,16 @@ impl<S: Surface> PatchSet<S> {
         })
     }
 
+    /// First and second derivatives `d rho / d t`, `d^2 rho / d t^2` of the edge's curve in space at the point of edge `edge`
+    /// (numbered as in [`Location`](super::Location)) nearest to the surface point of `xi`, by the curve's own parameter:
+    /// what contact with an edge needs of it. `None` for an edge that does not exist.
+    pub fn edge_derivatives(&self, patch: u32, edge: u32, xi: [f64; 2]) -> Option<[Vec3; 2]> {
+        let surface = self.patches.get(patch as usize)?;
+        let own = &self.topology.edges[self.topology.index(patch, edge)?];
+        let here = nearest_on_edge(self, &surface.point(xi), own);
+        Some([here.d1, here.d2])
+    }
+
     /// Follows a foot: the stationary point that is reached from `hint` downhill, over common edges where it leaves a patch,
     /// without any global search. It is as near as any other point *around* it; whether another part of the surface is
     /// nearer only [`project`](Self::project) tells. `None` where the hint or `q` is no use.

@@ -1,0 +1,124 @@
+//! Pieces of trimmed patches for output: exact where no trim curve passes, small flat ones along the trim curves.
+use super::bezier::SurfacePiece;
+use covact_geometry::trim::Part;
+use covact_geometry::{NurbsPatch, Trim, Vec3, bezier_pieces};
+
+/// How often a piece is halved in both directions before what is left of it at a trim curve becomes flat.
+const HALVINGS: u32 = 5;
+/// Bisections for a point on the border: down to rounding of the drawing.
+const BISECTIONS: usize = 30;
+
+/// Rectangle of parameters: `[direction][start, end]`.
+type Rectangle = [[f64; 2]; 2];
+
+struct Cutter<'a> {
+    surface: &'a NurbsPatch,
+    trim: &'a Trim,
+    patch: u32,
+    entity: u32,
+    reversed: bool,
+    out: Vec<SurfacePiece>,
+}
+
+/// The pieces of a patch with a trim. Along the trim curves they are flat, with corners on the curves: chords of a 32nd
+/// of a span.
+pub(super) fn pieces(
+    surface: &NurbsPatch,
+    trim: &Trim,
+    patch: u32,
+    entity: u32,
+    reversed: bool,
+) -> Vec<SurfacePiece> {
+    let whole = surface.clone().with_trim(None);
+    let mut cutter = Cutter {
+        surface: &whole,
+        trim,
+        patch,
+        entity,
+        reversed,
+        out: Vec::new(),
+    };
+    for piece in bezier_pieces(&whole) {
+        cutter.add(piece.domain, 0);
+    }
+    cutter.out
+}
+
+impl Cutter<'_> {
+    fn add(&mut self, part: Rectangle, halved: u32) {
+        match self.trim.part(part) {
+            Part::Outside => {}
+            Part::Inside => self.exact(part, halved),
+            Part::Cut if halved == HALVINGS => self.flat(part),
+            Part::Cut => {
+                let middle = part.map(|[a, b]| 0.5 * (a + b));
+                for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+                    let half = |k: usize, upper: usize| match upper {
+                        0 => [part[k][0], middle[k]],
+                        _ => [middle[k], part[k][1]],
+                    };
+                    self.add([half(0, i), half(1, j)], halved + 1);
+                }
+            }
+        }
+    }
+
+    fn exact(&mut self, part: Rectangle, halved: u32) {
+        // The part lies in the domain, so this fails only where it is thinner than rounding: nothing to be seen.
+        let Ok(patch) = self.surface.with_domain(part) else {
+            return;
+        };
+        for piece in bezier_pieces(&patch) {
+            self.out.push(SurfacePiece {
+                degree: piece.degree,
+                points: piece.points,
+                patch: self.patch,
+                entity: self.entity,
+                reversed: self.reversed,
+                halved,
+            });
+        }
+    }
+
+    /// What lies inside of a small rectangle: its corners inside and the points where its sides cross the border.
+    fn flat(&mut self, part: Rectangle) {
+        let [[a1, b1], [a2, b2]] = part;
+        let corners = [[a1, a2], [b1, a2], [b1, b2], [a1, b2]];
+        let inside = corners.map(|c| self.trim.contains(c));
+        let mut polygon = Vec::with_capacity(8);
+        for k in 0..4 {
+            let next = (k + 1) % 4;
+            if inside[k] {
+                polygon.push(corners[k]);
+            }
+            if inside[k] != inside[next] {
+                let (mut from, mut to) = (corners[k], corners[next]);
+                for _ in 0..BISECTIONS {
+                    let middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
+                    if self.trim.contains(middle) == inside[k] {
+                        from = middle;
+                    } else {
+                        to = middle;
+                    }
+                }
+                polygon.push(from);
+            }
+        }
+        let points: Vec<Vec3> = polygon.iter().map(|&xi| self.surface.point(xi)).collect();
+        // A fan of quadrilaterals, the last one with a repeated corner where the number of corners is odd.
+        let mut k = 1;
+        while k + 1 < points.len() {
+            let last = if k + 2 < points.len() { k + 2 } else { k + 1 };
+            let quad = [points[0], points[k], points[last], points[k + 1]];
+            self.out.push(SurfacePiece {
+                degree: [1, 1],
+                points: quad.map(|p| [p.x, p.y, p.z, 1.0]).to_vec(),
+                patch: self.patch,
+                entity: self.entity,
+                reversed: self.reversed,
+                halved: HALVINGS,
+            });
+            k += 2;
+        }
+    }
+}
