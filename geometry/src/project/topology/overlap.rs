@@ -6,7 +6,7 @@ use super::super::EdgeKind;
 use super::super::search::region_of;
 use super::super::set::PatchSet;
 use super::Topology;
-use super::edge::{EdgeCurve, edge_point, nearest_on_edge, within};
+use super::edge::{edge_point, nearest_on_edge};
 use super::matching::name;
 use super::report::Overlap;
 use crate::surface::{Surface, Vec3};
@@ -72,12 +72,8 @@ fn inside_of<S: Surface>(
                     .iter()
                     .map(|e| (nearest_on_edge(set, p, e).jet.rho - p).norm())
                     .fold(f64::INFINITY, f64::min);
-                let trimmed_away = edges
-                    .first()
-                    .is_some_and(|e| matches!(e.curve, EdgeCurve::Trim { .. }))
-                    && !topology.polygons(piece.patch, |polygons| {
-                        polygons.iter().filter(|x| within(x, local.xi)).count() % 2 == 1
-                    });
+                let trim = set.patches[piece.patch as usize].trim();
+                let trimmed_away = trim.is_some_and(|trim| !trim.contains(local.xi));
                 if depth > 4.0 * set.tolerance && !trimmed_away {
                     out.push((piece.patch, depth));
                 }
