@@ -1,5 +1,6 @@
 //! NURBS curves of the plane and of space: trim curves, and the curves that CAD files build surfaces from.
 
+mod change;
 mod eval;
 
 pub use eval::CurvePiece;
