@@ -61,7 +61,9 @@ fn inside_of<S: Surface>(
     let limit2 = set.tolerance * set.tolerance;
     let mut out: Vec<(u32, f64)> = Vec::new();
     set.tree.visit(p, limit2, |id| {
-        let piece = &set.pieces.list[id as usize];
+        let Some(piece) = set.pieces.list.get(id as usize) else {
+            return limit2;
+        };
         if piece.patch != own && out.iter().all(|o| o.0 != piece.patch) {
             let region = region_of(piece);
             let middle = piece.domain.map(|[a, b]| 0.5 * (a + b));
