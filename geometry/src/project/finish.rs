@@ -560,6 +560,9 @@ fn departure(at: &EdgePoint, edge: &Edge, end: usize) -> Vec3 {
 /// Whether the Hessian over the metric has an eigenvalue of (nearly) zero in the free directions: `1 - xi3 kappa` of
 /// one of the principal curvatures.
 fn focal(s: &Local) -> bool {
+    if let Some(place) = s.trim {
+        return place.focal;
+    }
     let (f, a) = (&s.hessian, &s.metric);
     let flat = |value: f64, largest: f64| value <= 1e-7 * largest.max(1.0);
     match s.active {
