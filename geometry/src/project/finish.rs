@@ -180,6 +180,7 @@ impl<S: Surface> PatchSet<S> {
             curve: edge.number - 4,
             t,
             end: i8::from(t >= last) - i8::from(t <= start),
+            focal: false,
         })
     }
 
