@@ -163,12 +163,12 @@ fn around_trimmed_faces() {
     let (seen, mean, most) = walk(&set, &count, around(2.4, 300, 0.3));
     eprintln!("cylinder with caps: {mean:.1} evaluations a step, {most} at most");
     assert_eq!(seen, [0, 1, 2]);
-    assert!(mean < 60.0 && most < 400, "{mean} {most}");
+    assert!(mean < 20.0 && most < 60, "{mean} {most}");
     let (set, count) = counted(trimmed_box([1.0, 1.2, 0.9]));
     let (seen, mean, most) = walk(&set, &count, around(2.5, 300, 0.4));
     eprintln!("box: {mean:.1} evaluations a step, {most} at most");
     assert!(seen.len() >= 4, "{seen:?}");
-    assert!(mean < 60.0 && most < 400, "{mean} {most}");
+    assert!(mean < 20.0 && most < 60, "{mean} {most}");
 }
 
 #[test]
