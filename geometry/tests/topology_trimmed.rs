@@ -190,6 +190,13 @@ fn gaps_and_overlaps_are_reported_where_they_are() {
     assert!((gap.gap - 4e-4).abs() < 1e-9 && (gap.at - Vec3::new(-2e-4, 3.0, 0.0)).norm() < 1e-9);
     assert!(joined.edges().open_gaps.is_empty() && joined.edges().overlaps.is_empty());
 
+    // Without a stated tolerance whole edges are joined over 1e-4 of the size.
+    let near = |gap: f64| set(vec![rectangle([-4.0, -gap], [0.0, 3.0]), right()]);
+    assert_eq!(near(4e-4).components().len(), 1);
+    assert!((near(4e-4).edges().largest_gap - 4e-4).abs() < 1e-12);
+    assert_eq!(near(4e-3).components().len(), 2);
+    assert_eq!(near(4e-3).edges().open_gaps.len(), 1);
+
     // Two plates that run over each other by 0.25.
     let over = set(vec![rectangle([-4.0, 0.25], [0.5, 2.5]), right()]);
     let overlaps = &over.edges().overlaps;
@@ -237,9 +244,9 @@ fn order_direction_and_exchange_of_parameters_change_nothing() {
         covact_geometry::primitives::sphere_without_poles(2.0, Vec3::zeros(), Vec3::z()).unwrap();
     let reference = set(six.to_vec());
     let mut turned: Vec<NurbsPatch> = six.to_vec();
-    turned[1] = turned[1].swapped();
+    turned[1] = turned[1].swapped().unwrap();
     turned[3] = turned[3].reversed(0).unwrap();
-    turned[4] = turned[4].reversed(1).unwrap().swapped();
+    turned[4] = turned[4].reversed(1).unwrap().swapped().unwrap();
     turned.rotate_left(2);
     let turned = set(turned);
     for set in [&reference, &turned] {
@@ -254,4 +261,20 @@ fn order_direction_and_exchange_of_parameters_change_nothing() {
     let [a, b] = [&reference, &turned].map(|s| s.project(&q, None, f64::INFINITY).unwrap());
     assert!((a.signed_distance - b.signed_distance).abs() < 1e-13);
     assert!((a.normal - b.normal).norm() < 1e-12);
+}
+
+#[test]
+fn a_punch_of_45_patches() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/punch.igs");
+    let file = covact_geometry::io::read_path(&path).unwrap();
+    let set = set(file.patches.into_iter().map(|p| p.patch).collect());
+    let report = set.edges();
+    // 45 patches have 180 edges: two of each of the 84 joints, and the rim.
+    assert_eq!(
+        (report.smooth, report.sharp, report.free.len()),
+        (84, 0, 12)
+    );
+    assert_eq!((report.borders.len(), report.borders[0].closed), (1, true));
+    assert_eq!((set.components().len(), report.open_gaps.len()), (1, 0));
+    assert!(report.largest_gap < 1e-12 * set.size());
 }

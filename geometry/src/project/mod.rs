@@ -12,7 +12,9 @@ mod convex;
 mod finish;
 mod integrate;
 mod local;
+mod location;
 mod neighbour;
+mod normals;
 mod piece;
 mod report;
 mod search;
@@ -20,6 +22,8 @@ mod set;
 mod sides;
 mod topology;
 mod tree;
+mod trimmed;
+mod trimmed_search;
 
 pub use neighbour::Neighbour;
 pub use report::{CurvatureExtreme, CurvatureRange};
