@@ -143,12 +143,14 @@ pub struct PatchSet<S: Surface = NurbsPatch> {
 }
 
 impl<S: Surface> PatchSet<S> {
-    /// Joins patches to a set: finds common edges, connected components and a consistent orientation, in which the first
-    /// patch of every component keeps its own (`rho_1 x rho_2` points out).
+    /// Joins patches to a set: finds common edges, connected components and a consistent orientation. A component without
+    /// free edges gets the volume that it encloses inside; of any other the first patch keeps its own side (`rho_1 x rho_2`
+    /// points out).
     ///
     /// Edges are joined where they are within `tolerance` (a length) of each other; by default that is 1e-5 of
-    /// [`size`](Self::size), but no more than a hundredth of the shortest edge. [`edges`](Self::edges) tells what was
-    /// joined and the largest gap.
+    /// [`size`](Self::size). For two edges it is no more than 5 % of the shorter one's length, and a hundred times as much
+    /// where both carry the same number of the file. [`edges`](Self::edges) tells what was joined, the largest gap and
+    /// where, and where edges come near each other without being joined.
     ///
     /// # Errors
     /// No patches, a useless tolerance or size, or a surface with one side only.
