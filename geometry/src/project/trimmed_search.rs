@@ -219,15 +219,26 @@ impl<S: Surface> PatchSet<S> {
         }
     }
 
-    /// A polished point, or where that is trimmed away the point that the trim stops it at.
+    /// A polished point, or where that is trimmed away or on the border the point that the trim stops it at.
     #[cold]
     #[inline(never)]
     pub(super) fn stopped_by_trim(&self, q: &Vec3, s: Local) -> Local {
-        if self.trimmed_away(s.region.patch, s.xi) {
-            self.slide_on_trim(q, s.region.patch, s.xi).unwrap_or(s)
-        } else {
-            s
+        let patch = s.region.patch;
+        if self.trimmed_away(patch, s.xi) {
+            return self.slide_on_trim(q, patch, s.xi).unwrap_or(s);
         }
+        // Where the border follows a line at which the region ends anyway, the trim is what holds the point.
+        let held =
+            s.active != [false; 2] && self.trimmed.is_cut(self.piece_number(patch, s.span, s.xi));
+        if held
+            && let Some(trim) = self.patches[patch as usize].trim()
+            && trim.on_border(s.xi, 1e-10)
+            && let Some(t) = self.slide_on_trim(q, patch, s.xi)
+            && t.d2 <= s.d2 * (1.0 + 1e-14) + 1e-28 * self.size * self.size
+        {
+            return t;
+        }
+        s
     }
 
     /// Nearest point of a whole trim curve of a patch; `None` where there is none of that number.
