@@ -240,32 +240,6 @@ impl<S: Surface> PatchSet<S> {
         }
         s
     }
-
-    /// Nearest point of a whole trim curve of a patch; `None` where there is none of that number.
-    pub(super) fn nearest_on_trim_curve(&self, q: &Vec3, patch: u32, curve: u32) -> Option<Local> {
-        let mut best: Option<Local> = None;
-        let leaves = &self.trimmed.leaves;
-        let start = leaves.partition_point(|l| (l.patch, l.curve) < (patch, curve));
-        let own = leaves[start..]
-            .iter()
-            .take_while(|l| (l.patch, l.curve) == (patch, curve));
-        for leaf in own {
-            let [low, high] = hull(self.trimmed.net(leaf));
-            if best.is_some_and(|b| box_distance2(q, &low, &high) >= b.d2) {
-                continue;
-            }
-            for share in [0.0, 0.5, 1.0] {
-                let t = leaf.t[0] + share * (leaf.t[1] - leaf.t[0]);
-                let found = self.descend_curve(q, (patch, curve), leaf.t, t, leaf.span);
-                if let Some(s) = found
-                    && best.is_none_or(|b| s.d2 < b.d2)
-                {
-                    best = Some(s);
-                }
-            }
-        }
-        best
-    }
 }
 
 impl<S: Surface> Search<'_, S> {

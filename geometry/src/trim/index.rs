@@ -170,11 +170,6 @@ impl Index {
 
     /// Whether any piece meets the closed rectangle.
     pub fn meets(&self, low: Point, high: Point) -> bool {
-        self.visit(low, high, |piece| piece.meets(low, high))
-    }
-
-    /// Calls `f` for pieces whose box meets the rectangle until it returns true.
-    pub fn visit(&self, low: Point, high: Point, mut f: impl FnMut(&Monotone) -> bool) -> bool {
         let mut stack = [0u32; STACK];
         let mut top = usize::from(!self.nodes.is_empty());
         while top > 0 {
@@ -185,7 +180,7 @@ impl Index {
                 continue;
             }
             if node.next & LEAF != 0 {
-                if f(&self.pieces[(node.next & !LEAF) as usize]) {
+                if self.pieces[(node.next & !LEAF) as usize].meets(low, high) {
                     return true;
                 }
             } else if top + 2 <= STACK {

@@ -243,16 +243,6 @@ impl Trim {
         &self.index.pieces
     }
 
-    /// Calls `f` for the monotone pieces whose box meets the rectangle until it returns true.
-    pub(crate) fn visit(
-        &self,
-        low: [f64; 2],
-        high: [f64; 2],
-        f: impl FnMut(&Monotone) -> bool,
-    ) -> bool {
-        self.index.visit(low, high, f)
-    }
-
     /// The trim with every point of the parameter plane mapped by `xi -> a xi + b` (a reversed or exchanged direction);
     /// `domain` is the mapped one.
     ///
