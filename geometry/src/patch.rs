@@ -198,8 +198,9 @@ impl NurbsPatch {
         self
     }
 
-    /// The patch with its jets computed by the code for any processor, where otherwise AVX2 and FMA would be used: for
-    /// results that are the same to the last bit on all machines, and to compare both.
+    /// The patch with its jets computed by the code for any processor, where otherwise AVX2 and FMA would be used: to
+    /// compare both, and for the same bits on machines that have them and on those that have not. Patches made from it by
+    /// operations use the fastest code again.
     pub fn with_portable_kernel(mut self) -> Self {
         self.kernel = self.kernel.portable();
         self

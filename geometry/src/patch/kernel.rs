@@ -116,20 +116,19 @@ macro_rules! with_degrees {
 use with_degrees;
 
 impl super::NurbsPatch {
-    /// The jet by the patch's kernel; `None` where there are no tables.
-    #[inline(always)]
-    pub(super) fn fast_jet(&self, span: [usize; 2], xi: [f64; 2]) -> Option<Jet> {
+    /// Jet of the polynomial piece of span `span` at `xi`, inside of the span or not. Choosing the span gives
+    /// one-sided derivatives at knots. Numbers past the last span mean the last span.
+    #[inline]
+    pub fn jet_in_span(&self, span: [usize; 2], xi: [f64; 2]) -> Jet {
         match &self.kernel {
             #[cfg(target_arch = "x86_64")]
             Kernel::Avx2(tables, available) => {
-                let piece = Piece::new(self, tables, span);
-                Some(available.jet(self.degree(), &piece, xi))
+                available.jet(self.degree(), &Piece::new(self, tables, span), xi)
             }
             Kernel::Portable(tables) => {
-                let piece = Piece::new(self, tables, span);
-                Some(portable::jet(self.degree(), &piece, xi))
+                portable::jet(self.degree(), &Piece::new(self, tables, span), xi)
             }
-            Kernel::General => None,
+            Kernel::General => self.general_jet(span, xi),
         }
     }
 }

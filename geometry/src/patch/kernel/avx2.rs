@@ -28,8 +28,8 @@ impl Available {
 
 #[target_feature(enable = "avx2,fma")]
 fn of_degree<const P: usize, const Q: usize>(piece: &Piece, xi: [f64; 2]) -> Jet {
-    let n1 = functions::<P>(piece.rows[0], xi[0]);
-    let n2 = functions::<Q>(piece.rows[1], xi[1]);
+    let n1 = functions::<P, Q, 0>(piece.rows[0], xi[0]);
+    let n2 = functions::<Q, P, 1>(piece.rows[1], xi[1]);
     let mut sum = [_mm256_setzero_pd(); 6];
     for s in 0..=Q {
         let row = &piece.points[s * piece.stride..][..=P];
@@ -82,10 +82,14 @@ fn quotient([a, a1, a2, a11, a12, a22]: [__m256d; 6]) -> [__m256d; 6] {
     ]
 }
 
-/// The functions with first and second derivatives.
+/// The functions of degree `P` with first and second derivatives. The degree of the other direction and the number of this
+/// one give every kernel its own two, which the compiler then takes into it.
 #[target_feature(enable = "avx2,fma")]
 #[inline]
-fn functions<const P: usize>(rows: &[Lanes], t: f64) -> [[f64; 8]; 3] {
+fn functions<const P: usize, const OTHER: usize, const DIR: usize>(
+    rows: &[Lanes],
+    t: f64,
+) -> [[f64; 8]; 3] {
     let rows = &rows[..1 + 3 * P * lanes(P)];
     let b = bernstein::<P>(rows[0].0, t);
     let mut sum = [[_mm256_setzero_pd(); 2]; 3];
