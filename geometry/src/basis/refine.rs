@@ -3,8 +3,7 @@
 //! A control point of a spline in another basis is a value of the spline's blossom at the knots between the ends of that
 //! point's function (L. Ramshaw, "Blossoms are polar forms", 1989). Those values come from the Oslo algorithm (E. Cohen,
 //! T. Lyche and R. Riesenfeld, "Discrete B-splines and subdivision techniques", 1980), which only makes convex
-//! combinations: no accuracy is lost, however unequal the spans are. Unlike truck-geometry's, these operations accept knots that
-//! are not clamped.
+//! combinations: no accuracy is lost, however unequal the spans are. Knots may be clamped or not.
 
 use super::{Basis, KnotError};
 
