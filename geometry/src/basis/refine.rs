@@ -149,12 +149,12 @@ impl Basis {
         row[0] = 1.0;
         for (q, &t) in (1..).zip(arguments) {
             let mut saved = 0.0;
-            for r in 0..q {
+            for (r, entry) in row.iter_mut().enumerate().take(q) {
                 let above = mu + 1 + r as isize;
                 let (low, high) = (knot(above - q as isize), knot(above));
-                let value = row[r];
+                let value = *entry;
                 // Quotients of equal numbers are exactly one, so points that stay are not touched by rounding.
-                row[r] = saved + (high - t) / (high - low) * value;
+                *entry = saved + (high - t) / (high - low) * value;
                 saved = (t - low) / (high - low) * value;
             }
             row[q] = saved;

@@ -1,6 +1,7 @@
 //! The kernel for x86-64 with AVX2 and FMA. The only unsafe code of the crate: calls of functions that need those
 //! instructions, and loads and stores of whole registers.
 #![allow(unsafe_code)]
+#![allow(clippy::needless_range_loop)] // Indices run through several lists at once.
 
 use std::arch::x86_64::*;
 

@@ -1,4 +1,5 @@
 //! The kernel for any processor; four lanes at a time, which compilers turn into whatever vectors there are.
+#![allow(clippy::needless_range_loop)] // Indices run through several lists at once.
 
 use super::{Piece, bernstein, with_degrees};
 use crate::basis::{Lanes, lanes};
