@@ -190,6 +190,13 @@ fn gaps_and_overlaps_are_reported_where_they_are() {
     assert!((gap.gap - 4e-4).abs() < 1e-9 && (gap.at - Vec3::new(-2e-4, 3.0, 0.0)).norm() < 1e-9);
     assert!(joined.edges().open_gaps.is_empty() && joined.edges().overlaps.is_empty());
 
+    // Without a stated tolerance whole edges are joined over 1e-4 of the size.
+    let near = |gap: f64| set(vec![rectangle([-4.0, -gap], [0.0, 3.0]), right()]);
+    assert_eq!(near(4e-4).components().len(), 1);
+    assert!((near(4e-4).edges().largest_gap - 4e-4).abs() < 1e-12);
+    assert_eq!(near(4e-3).components().len(), 2);
+    assert_eq!(near(4e-3).edges().open_gaps.len(), 1);
+
     // Two plates that run over each other by 0.25.
     let over = set(vec![rectangle([-4.0, 0.25], [0.5, 2.5]), right()]);
     let overlaps = &over.edges().overlaps;
@@ -237,9 +244,9 @@ fn order_direction_and_exchange_of_parameters_change_nothing() {
         covact_geometry::primitives::sphere_without_poles(2.0, Vec3::zeros(), Vec3::z()).unwrap();
     let reference = set(six.to_vec());
     let mut turned: Vec<NurbsPatch> = six.to_vec();
-    turned[1] = turned[1].swapped();
+    turned[1] = turned[1].swapped().unwrap();
     turned[3] = turned[3].reversed(0).unwrap();
-    turned[4] = turned[4].reversed(1).unwrap().swapped();
+    turned[4] = turned[4].reversed(1).unwrap().swapped().unwrap();
     turned.rotate_left(2);
     let turned = set(turned);
     for set in [&reference, &turned] {

@@ -148,9 +148,10 @@ impl<S: Surface> PatchSet<S> {
     /// points out).
     ///
     /// Edges are joined where they are within `tolerance` (a length) of each other; by default that is 1e-5 of
-    /// [`size`](Self::size). For two edges it is no more than 5 % of the shorter one's length, and a hundred times as much
-    /// where both carry the same number of the file. [`edges`](Self::edges) tells what was joined, the largest gap and
-    /// where, and where edges come near each other without being joined.
+    /// [`size`](Self::size), and ten times as much where all of an edge coincides with another one. For two edges it is no
+    /// more than 5 % of the shorter one's length, and a hundred times as much where both carry the same number of the
+    /// file. [`edges`](Self::edges) tells what was joined, the largest gap and where, and where edges come near each other
+    /// without being joined.
     ///
     /// # Errors
     /// No patches, a useless tolerance or size, or a surface with one side only.

@@ -67,8 +67,10 @@ pub(super) fn group<S: Surface>(set: &PatchSet<S>, topology: &mut Topology, touc
             let point = samples[end * (samples.len() - 1)].point;
             // No short edge has both ends in the same group, poles apart.
             let lengths = ends.map(|(e, _)| edges[e].length);
+            let links = ends.iter().flat_map(|(e, _)| &edges[*e].links);
+            let reach = links.fold(2.0 * set.tolerance, |reach, link| reach.max(link.reach));
             let shorter = lengths.into_iter().filter(|l| *l > 1e-7 * set.size);
-            let limit = shorter.fold(2.0 * set.tolerance, |limit, l| limit.min(0.2 * l));
+            let limit = shorter.fold(reach, |limit, l| limit.min(0.2 * l));
             all.push((point, limit, patch, corner));
         }
     }

@@ -12,6 +12,8 @@ use crate::surface::{Surface, Vec3};
 /// Edges that the file gives the same number are joined over gaps up to this multiple of the tolerance; pairs without a
 /// common number up to the same gap are reported.
 const WIDE: f64 = 100.0;
+/// Without a stated tolerance, edges that coincide as a whole are joined over gaps up to this multiple of it.
+const LOOSE: f64 = 10.0;
 /// Gaps are no larger than this share of the shorter of two edges.
 const SHORT: f64 = 0.05;
 /// A joint that folds the surface back onto itself by more than this angle (radians) comes last: it is rather a copy of
@@ -24,6 +26,8 @@ pub(super) struct Pair {
     edges: [usize; 2],
     /// The first against the second, the second against the first.
     contacts: [Contact; 2],
+    /// Whether all of the first, of the second is covered; and of both.
+    full: [bool; 2],
     whole: bool,
     same_entity: bool,
     relation: f64,
@@ -41,27 +45,38 @@ pub(super) fn name(edge: &Edge) -> (u32, u32) {
     (edge.patch, edge.number)
 }
 
-/// All pairs of the edges `chosen` that are in contact within `tolerance`.
+/// All pairs of the edges `chosen` that are in contact within `tolerance`; if `loose`, within ten times as much where that
+/// makes all of an edge coincide with another one: a coincidence of that kind is no accident.
 pub(super) fn pairs<S: Surface>(
     set: &PatchSet<S>,
     edges: &[Edge],
     chosen: &[usize],
     tolerance: f64,
+    loose: bool,
 ) -> Vec<Pair> {
-    let candidates = candidates(edges, chosen, tolerance);
-    candidates
-        .into_par_iter()
-        .filter_map(|(a, b)| pair(set, edges, a, b, tolerance))
-        .collect()
+    let wide = if loose { LOOSE * tolerance } else { tolerance };
+    let candidates = candidates(edges, chosen, tolerance, wide);
+    let compare = |(a, b)| {
+        let tight = pair(set, edges, a, b, tolerance);
+        if !loose || tight.as_ref().is_some_and(|p| p.whole) {
+            return tight;
+        }
+        let before = tight.as_ref().map_or([false; 2], |p| p.full);
+        match pair(set, edges, a, b, wide) {
+            Some(p) if p.whole || (0..2).any(|k| p.full[k] && !before[k]) => Some(p),
+            _ => tight,
+        }
+    };
+    candidates.into_par_iter().filter_map(compare).collect()
 }
 
 /// Pairs whose boxes meet, by a sweep along the axis on which the edges are spread most.
-fn candidates(edges: &[Edge], chosen: &[usize], tolerance: f64) -> Vec<(usize, usize)> {
-    let wide = WIDE * tolerance;
+fn candidates(edges: &[Edge], chosen: &[usize], tolerance: f64, wide: f64) -> Vec<(usize, usize)> {
+    let widest = WIDE * tolerance;
     // Only edges with a number look farther than the tolerance.
     let grown = |k: usize| {
         let edge = &edges[k];
-        let grow = if edge.entity != 0 { wide } else { tolerance };
+        let grow = if edge.entity != 0 { widest } else { wide };
         grown_box(edge.bounds, grow)
     };
     let boxes: Vec<_> = chosen.iter().map(|&k| grown(k)).collect();
@@ -139,10 +154,11 @@ fn pair<S: Surface>(
     };
     let relation = -one.sense * other.sense * sense;
     let which = usize::from(relation < 0.0);
-    let full = |k: usize, edge: &Edge| is_full(edge, contacts[k].length, tolerance);
+    let full = [0, 1].map(|k| is_full([one, other][k], contacts[k].length, tolerance));
     Some(Pair {
         edges: [a, b],
-        whole: full(0, one) && full(1, other),
+        full,
+        whole: full[0] && full[1],
         same_entity,
         relation,
         reversed: sense < 0.0,
@@ -304,7 +320,7 @@ pub(super) fn open_gaps<S: Surface>(set: &PatchSet<S>, edges: &[Edge], report: &
     let free: Vec<usize> = (0..edges.len())
         .filter(|&k| edges[k].kind == Some(EdgeKind::Free))
         .collect();
-    for pair in pairs(set, edges, &free, WIDE * report.tolerance) {
+    for pair in pairs(set, edges, &free, WIDE * report.tolerance, false) {
         let [a, b] = pair.edges;
         // What is joined already is no gap, unless the edges run on beside each other.
         let joined = edges[a].links.iter().filter(|link| link.edge == b);

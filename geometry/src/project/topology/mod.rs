@@ -88,7 +88,7 @@ pub(super) fn build<S: Surface>(
     set.tolerance = tolerance.unwrap_or(TOLERANCE * set.size);
     topology.report.tolerance = set.tolerance;
     let chosen: Vec<usize> = (0..edges.len()).filter(|&k| !poles[k]).collect();
-    let pairs = matching::pairs(set, edges, &chosen, set.tolerance);
+    let pairs = matching::pairs(set, edges, &chosen, set.tolerance, tolerance.is_none());
     let touches = matching::link(edges, &poles, pairs, &mut topology.report);
     matching::open_gaps(set, edges, &mut topology.report);
     topology.report.borders = borders::borders(set, edges);
