@@ -3,6 +3,9 @@
 //! A [`NurbsPatch`] gives the surface point with its derivatives (a [`Jet`]), a [`Frame`] turns a jet into normal,
 //! metric, curvature and Christoffel symbols, and a [`PatchSet`] finds the closest point on many patches.
 
+// The one exception is the evaluation kernel for AVX2.
+#![deny(unsafe_code)]
+
 pub mod basis;
 pub mod bezier;
 pub mod curve;

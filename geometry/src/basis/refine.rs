@@ -3,8 +3,7 @@
 //! A control point of a spline in another basis is a value of the spline's blossom at the knots between the ends of that
 //! point's function (L. Ramshaw, "Blossoms are polar forms", 1989). Those values come from the Oslo algorithm (E. Cohen,
 //! T. Lyche and R. Riesenfeld, "Discrete B-splines and subdivision techniques", 1980), which only makes convex
-//! combinations: no accuracy is lost, however unequal the spans are. Unlike truck-geometry's, these operations accept knots that
-//! are not clamped.
+//! combinations: no accuracy is lost, however unequal the spans are. Knots may be clamped or not.
 
 use super::{Basis, KnotError};
 
@@ -150,12 +149,12 @@ impl Basis {
         row[0] = 1.0;
         for (q, &t) in (1..).zip(arguments) {
             let mut saved = 0.0;
-            for r in 0..q {
+            for (r, entry) in row.iter_mut().enumerate().take(q) {
                 let above = mu + 1 + r as isize;
                 let (low, high) = (knot(above - q as isize), knot(above));
-                let value = row[r];
+                let value = *entry;
                 // Quotients of equal numbers are exactly one, so points that stay are not touched by rounding.
-                row[r] = saved + (high - t) / (high - low) * value;
+                *entry = saved + (high - t) / (high - low) * value;
                 saved = (t - low) / (high - low) * value;
             }
             row[q] = saved;

@@ -1,8 +1,9 @@
 //! Operations on knots and degree, none of which moves the surface or changes its parameters.
 //!
-//! They accept whatever a patch may be: knots that are not clamped, creases, a narrowed domain, weights of any size. (Those
-//! of truck-geometry 0.5 are right for clamped knots, after [`to_truck`](NurbsPatch::to_truck); its degree elevation
-//! needs its `optimize` afterwards.)
+//! They accept whatever a patch may be: knots that are not clamped, creases, a narrowed domain, weights of any size.
+//! truck-geometry 0.5 inserts knots just as well (see [`to_truck`](NurbsPatch::to_truck)), but its degree elevation is right
+//! for clamped knots only, needs its `optimize` afterwards, and leaves control points of weight zero where knots are not
+//! clamped.
 
 use super::{NurbsPatch, PatchError, knot_error};
 use crate::basis::{Basis, KnotError, Refined};

@@ -230,14 +230,12 @@ impl<S: Surface> PatchSet<S> {
             let at = nearest_on_edge(self, &s.jet.rho, e);
             ((at.jet.rho - s.jet.rho).norm_squared(), k, at.t)
         });
-        let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
         let limit = 1e-9 * self.size;
-        [
-            nearest
-                .filter(|n| n.0 <= limit * limit)
-                .map(|(_, k, t)| (first + k, t)),
-            None,
-        ]
+        let near = near.filter(|n| n.0 <= limit * limit);
+        // A pole is a pole whatever meets there.
+        let pole = |k: usize| edges[k].kind.is_none();
+        let nearest = near.min_by(|a, b| (pole(b.1).cmp(&pole(a.1))).then(a.0.total_cmp(&b.0)));
+        [nearest.map(|(_, k, t)| (first + k, t)), None]
     }
 
     /// Number of the patch edge that a point lies on in direction `dir`.

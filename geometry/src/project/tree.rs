@@ -29,7 +29,10 @@ impl Tree {
         let mut tree = Tree {
             nodes: Vec::with_capacity(2 * boxes.len()),
         };
-        let shown = |k: &u32| !(boxes[*k as usize][0].x > boxes[*k as usize][1].x);
+        let shown = |k: &u32| {
+            let [low, high] = &boxes[*k as usize];
+            low.x.partial_cmp(&high.x) != Some(std::cmp::Ordering::Greater)
+        };
         let mut order: Vec<u32> = (0..boxes.len() as u32).filter(shown).collect();
         if !order.is_empty() {
             tree.build(boxes, &mut order);

@@ -300,14 +300,14 @@ pub(super) fn split_curve(left: &mut [[f64; 4]], right: &mut [[f64; 4]], t: f64)
     let n = left.len();
     // The last of the shrinking row is final for the right part; the first one for the left part.
     right.copy_from_slice(left);
-    for r in 1..n {
+    for (r, left) in left.iter_mut().enumerate().skip(1) {
         for i in 0..n - r {
             let next = right[i + 1];
             for (x, next) in right[i].iter_mut().zip(next) {
                 *x += t * (next - *x);
             }
         }
-        left[r] = right[0];
+        *left = right[0];
     }
 }
 

@@ -219,41 +219,26 @@ impl<S: Surface> PatchSet<S> {
         }
     }
 
-    /// A polished point, or where that is trimmed away the point that the trim stops it at.
+    /// A polished point, or where that is trimmed away or on the border the point that the trim stops it at.
     #[cold]
     #[inline(never)]
     pub(super) fn stopped_by_trim(&self, q: &Vec3, s: Local) -> Local {
-        if self.trimmed_away(s.region.patch, s.xi) {
-            self.slide_on_trim(q, s.region.patch, s.xi).unwrap_or(s)
-        } else {
-            s
+        let patch = s.region.patch;
+        if self.trimmed_away(patch, s.xi) {
+            return self.slide_on_trim(q, patch, s.xi).unwrap_or(s);
         }
-    }
-
-    /// Nearest point of a whole trim curve of a patch; `None` where there is none of that number.
-    pub(super) fn nearest_on_trim_curve(&self, q: &Vec3, patch: u32, curve: u32) -> Option<Local> {
-        let mut best: Option<Local> = None;
-        let leaves = &self.trimmed.leaves;
-        let start = leaves.partition_point(|l| (l.patch, l.curve) < (patch, curve));
-        let own = leaves[start..]
-            .iter()
-            .take_while(|l| (l.patch, l.curve) == (patch, curve));
-        for leaf in own {
-            let [low, high] = hull(self.trimmed.net(leaf));
-            if best.is_some_and(|b| box_distance2(q, &low, &high) >= b.d2) {
-                continue;
-            }
-            for share in [0.0, 0.5, 1.0] {
-                let t = leaf.t[0] + share * (leaf.t[1] - leaf.t[0]);
-                let found = self.descend_curve(q, (patch, curve), leaf.t, t, leaf.span);
-                if let Some(s) = found
-                    && best.is_none_or(|b| s.d2 < b.d2)
-                {
-                    best = Some(s);
-                }
-            }
+        // Where the border follows a line at which the region ends anyway, the trim is what holds the point.
+        let held =
+            s.active != [false; 2] && self.trimmed.is_cut(self.piece_number(patch, s.span, s.xi));
+        if held
+            && let Some(trim) = self.patches[patch as usize].trim()
+            && trim.on_border(s.xi, 1e-10)
+            && let Some(t) = self.slide_on_trim(q, patch, s.xi)
+            && t.d2 <= s.d2 * (1.0 + 1e-14) + 1e-28 * self.size * self.size
+        {
+            return t;
         }
-        best
+        s
     }
 }
 

@@ -170,11 +170,6 @@ impl Index {
 
     /// Whether any piece meets the closed rectangle.
     pub fn meets(&self, low: Point, high: Point) -> bool {
-        self.visit(low, high, |piece| piece.meets(low, high))
-    }
-
-    /// Calls `f` for pieces whose box meets the rectangle until it returns true.
-    pub fn visit(&self, low: Point, high: Point, mut f: impl FnMut(&Monotone) -> bool) -> bool {
         let mut stack = [0u32; STACK];
         let mut top = usize::from(!self.nodes.is_empty());
         while top > 0 {
@@ -185,7 +180,7 @@ impl Index {
                 continue;
             }
             if node.next & LEAF != 0 {
-                if f(&self.pieces[(node.next & !LEAF) as usize]) {
+                if self.pieces[(node.next & !LEAF) as usize].meets(low, high) {
                     return true;
                 }
             } else if top + 2 <= STACK {
@@ -242,7 +237,11 @@ impl Index {
     }
 }
 
-/// Nearest point of one piece, if nearer than `limit`: halves whose box (that of their ends) is farther away are left out.
+/// Points of the border that are farther away than the nearest by no more than this share may be taken for it.
+const CLOSE: f64 = 1e-3;
+
+/// Nearest point of one piece, if nearer than `limit`: halves whose box (that of their ends) is farther away are left out,
+/// then the best point found moves to the minimum next to it.
 fn nearest_of(piece: &Monotone, xi: Point, scale: [f64; 2], limit: f64) -> Option<BorderPoint> {
     let off = |p: &Point| [0, 1].map(|k| (p[k] - xi[k]) / scale[k]);
     let length = |p: &Point| {
@@ -254,18 +253,19 @@ fn nearest_of(piece: &Monotone, xi: Point, scale: [f64; 2], limit: f64) -> Optio
         let d = [0, 1].map(|k| a[k].min(b[k]).max(-a[k].max(b[k])).max(0.0));
         d[0].hypot(d[1])
     };
-    let mut best: Option<BorderPoint> = None;
+    let mut best: Option<(f64, BorderPoint)> = None;
     let mut limit = limit;
     let mut offer = |s: f64, p: Point, limit: &mut f64| {
         let distance = length(&p);
         if distance < *limit {
             *limit = distance;
-            best = Some(BorderPoint {
+            let point = BorderPoint {
                 curve: piece.curve,
                 t: piece.parameter(s),
                 xi: p,
                 distance,
-            });
+            };
+            best = Some((s, point));
         }
     };
     offer(0.0, piece.from, &mut limit);
@@ -276,8 +276,7 @@ fn nearest_of(piece: &Monotone, xi: Point, scale: [f64; 2], limit: f64) -> Optio
     while top > 0 {
         top -= 1;
         let ([a, b], from, to) = stack[top];
-        // Differences of distances below 1e-12 of the distance are none.
-        if bound(&from, &to) >= limit * (1.0 - 1e-12) || b - a < 1e-14 || steps > 4000 {
+        if bound(&from, &to) >= limit * (1.0 - CLOSE) || b - a < 1e-14 || steps > 1000 {
             continue;
         }
         steps += 1;
@@ -301,5 +300,35 @@ fn nearest_of(piece: &Monotone, xi: Point, scale: [f64; 2], limit: f64) -> Optio
             top += 2;
         }
     }
-    best
+    // From there downhill: Gauss-Newton steps, halved where they lead too far.
+    let (mut s, mut point) = best?;
+    for _ in 0..50 {
+        let (p, d) = piece.tangent(s);
+        let (off, d) = (off(&p), [0, 1].map(|k| d[k] / scale[k]));
+        let mut step = -(off[0] * d[0] + off[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+        let mut moved = false;
+        for _ in 0..20 {
+            let next = (s + step).clamp(0.0, 1.0);
+            if next == s || !next.is_finite() {
+                break;
+            }
+            let p = piece.point(next);
+            let distance = length(&p);
+            if distance < point.distance {
+                (s, moved) = (next, true);
+                point = BorderPoint {
+                    t: piece.parameter(s),
+                    xi: p,
+                    distance,
+                    ..point
+                };
+                break;
+            }
+            step *= 0.5;
+        }
+        if !moved {
+            break;
+        }
+    }
+    Some(point)
 }

@@ -66,6 +66,25 @@ impl Monotone {
         ]
     }
 
+    /// Point and tangent (by `s`) at `s`.
+    pub fn tangent(&self, s: f64) -> (Point, Point) {
+        let n = self.net.len();
+        let mut work = [[0.0; 3]; WIDTH];
+        work[..n].copy_from_slice(&self.net);
+        for r in 1..n - 1 {
+            for i in 0..n - r {
+                let next = work[i + 1];
+                for (x, next) in work[i].iter_mut().zip(next) {
+                    *x += s * (next - *x);
+                }
+            }
+        }
+        let h = [0, 1, 2].map(|c| work[0][c] + s * (work[1][c] - work[0][c]));
+        let d = [0, 1, 2].map(|c| (work[1][c] - work[0][c]) * (n - 1) as f64);
+        let p = [h[0] / h[2], h[1] / h[2]];
+        (p, [0, 1].map(|k| (d[k] - p[k] * d[2]) / h[2]))
+    }
+
     /// Parameter of the whole curve at `s`.
     pub fn parameter(&self, s: f64) -> f64 {
         self.t[0] + s * (self.t[1] - self.t[0])
