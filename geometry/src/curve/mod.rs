@@ -2,6 +2,7 @@
 
 pub mod conic;
 mod eval;
+pub mod fit;
 pub(crate) mod join;
 
 pub use eval::CurvePiece;
