@@ -31,7 +31,7 @@ fn patch(file: &Builder) -> BasePatch {
 
 fn unbounded(file: &Builder) -> Unbounded {
     match read(file).surfaces.last().map(|s| s.surface.clone()) {
-        Some(BaseSurface::Unbounded(surface)) => surface,
+        Some(BaseSurface::Unbounded(surface)) => *surface,
         other => panic!("{other:?}"),
     }
 }
@@ -282,9 +282,8 @@ fn surface_114(breaks: [&[f64]; 2], piece: impl Fn(usize, usize) -> Coefficients
 fn parametric_spline_surfaces() {
     let breaks: [&[f64]; 2] = [&[0.0, 1.0, 1.5], &[2.0, 3.0, 3.5, 5.0]];
     // One bicubic everywhere: no knot is needed twice.
-    let powers = |x: f64, start: f64| {
+    let powers = |start: f64| {
         // x^k = sum_a C(k, a) start^(k - a) s^a, as the coefficient of s^a for each k.
-        let _ = x;
         let mut table = [[0.0; 4]; 4];
         let choose = [
             [1.0, 0.0, 0.0, 0.0],
@@ -305,7 +304,7 @@ fn parametric_spline_surfaces() {
             + if c == 0 && k == 1 { 2.0 } else { 0.0 }
     };
     let expand = |i: usize, j: usize| {
-        let (u, v) = (powers(0.0, breaks[0][i]), powers(0.0, breaks[1][j]));
+        let (u, v) = (powers(breaks[0][i]), powers(breaks[1][j]));
         let mut c = [[[0.0; 4]; 4]; 3];
         for (x, c) in c.iter_mut().enumerate() {
             for k in 0..4 {

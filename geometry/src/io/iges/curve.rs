@@ -56,8 +56,6 @@ pub fn settle<T>(read: Result<T, Stop>) -> Result<Result<T, String>, Fail> {
 pub struct CurvePart {
     /// The entity that it comes from; a composite curve's parts are its members.
     pub entity: u32,
-    /// Its entity type.
-    pub type_number: u32,
     pub curve: NurbsCurve<3>,
     /// From the entity's own parameter to that of `curve`.
     pub map: ParameterMap,
@@ -120,15 +118,6 @@ impl CurveChain {
     /// The parts in the parameter plane of a surface: their x and y.
     pub fn in_plane(&self) -> Vec<NurbsCurve<2>> {
         self.parts.iter().map(|p| p.curve.in_plane()).collect()
-    }
-
-    /// Largest gap between the end of a part and the start of the next.
-    pub fn largest_gap(&self) -> f64 {
-        let gaps = self
-            .parts
-            .windows(2)
-            .map(|p| (p[0].curve.ends()[1] - p[1].curve.ends()[0]).norm());
-        gaps.fold(0.0, f64::max)
     }
 }
 
@@ -270,7 +259,6 @@ impl<'a> Reader<'a, '_> {
         let stretch = map.linear.norm() / scale;
         Ok(CurvePart {
             entity: entry.number,
-            type_number: entry.type_number,
             curve: shape.curve.transformed(&|x| map.apply(x) / scale)?,
             map: shape.map,
             deviation: shape.deviation * stretch,

@@ -21,7 +21,7 @@ fn turn(start: f64, end: f64) -> [f64; 2] {
         from = 0.0;
     }
     let mut sweep = (end - from).rem_euclid(TAU);
-    if sweep < FULL_TURN || sweep > TAU - FULL_TURN {
+    if !(FULL_TURN..=TAU - FULL_TURN).contains(&sweep) {
         sweep = TAU;
     }
     [from, from + sweep]

@@ -104,6 +104,33 @@ impl ParameterMap {
         (!pieces.is_empty()).then_some(Self { pieces, turn: 0.0 })
     }
 
+    /// The map on a part of the file's range.
+    pub(super) fn restricted(&self, file: [f64; 2]) -> Self {
+        let mut pieces = Vec::new();
+        for p in &self.pieces {
+            let part = [p.file[0].max(file[0]), p.file[1].min(file[1])];
+            if part[0] >= part[1] {
+                continue;
+            }
+            let angle = |[a, b]: [f64; 2]| {
+                let share = |t: f64| (t - p.file[0]) / (p.file[1] - p.file[0]);
+                part.map(|t| between([a, b], share(t)))
+            };
+            pieces.push(Piece {
+                file: part,
+                own: part.map(|t| p.forward(t)),
+                angles: p.angles.map(angle),
+            });
+        }
+        if pieces.is_empty() {
+            return self.clone();
+        }
+        Self {
+            pieces,
+            turn: self.turn,
+        }
+    }
+
     /// The same map for a file parameter that is affine in this one: its range becomes `file`, backwards where
     /// `reversed`.
     pub(super) fn with_file_range(&self, file: [f64; 2], reversed: bool) -> Self {
@@ -126,7 +153,8 @@ impl ParameterMap {
                 if reversed {
                     q.file.reverse();
                     q.own.reverse();
-                    q.angles = q.angles.map(|[a, b]| [b, a]);
+                    // The tangent is odd: the same shares from -b to -a.
+                    q.angles = q.angles.map(|[a, b]| [-b, -a]);
                 }
                 q
             })

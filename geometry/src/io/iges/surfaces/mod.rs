@@ -48,7 +48,7 @@ pub enum BaseSurface {
     /// Its patches: one, or several where a spline falls apart at its knots. Never empty.
     Patches(Vec<BasePatch>),
     /// A surface without an end in some direction, to be cut out by what lies on it.
-    Unbounded(Unbounded),
+    Unbounded(Box<Unbounded>),
 }
 
 /// Whether an entity of this type is a surface that [`read`] knows.

@@ -187,7 +187,7 @@ impl Spline {
         };
         let mut parts = Vec::new();
         let mut part = start(0);
-        for k in 1..=last {
+        for (k, &u) in breaks.iter().enumerate().skip(1) {
             let mut multiplicity = degree + 1;
             if k < last {
                 let gap = self.jump(dir, k, 0);
@@ -203,13 +203,12 @@ impl Spline {
                     let name = ["u", "v"][dir];
                     reader.note(&format!(
                         "the pieces on both sides of {name} = {} lie up to {gap:.1e} apart: read as several patches",
-                        breaks[k]
+                        u
                     ));
                 }
             }
             let owner = k.min(last - 1);
-            part.values
-                .extend(std::iter::repeat_n(breaks[k], multiplicity));
+            part.values.extend(std::iter::repeat_n(u, multiplicity));
             part.owner.extend(std::iter::repeat_n(owner, multiplicity));
             if multiplicity > degree {
                 parts.push(std::mem::replace(&mut part, start(owner)));

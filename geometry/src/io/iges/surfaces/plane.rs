@@ -223,7 +223,7 @@ pub fn plane_108(reader: SurfaceReader) -> Found {
         };
         plane.border = Some((reader.pointer(5, what)?.number, kind));
     }
-    Ok((BaseSurface::Unbounded(plane), 10))
+    Ok((BaseSurface::Unbounded(Box::new(plane)), 10))
 }
 
 /// A 190: point, normal and, in form 1, reference direction.
@@ -231,7 +231,7 @@ pub fn plane_190(mut reader: SurfaceReader) -> Found {
     let (origin, triad) = reader.frame(3)?;
     let values = 3 + usize::from(reader.entry.form == 1);
     let plane = reader.unbounded(Kind::Plane, origin, triad);
-    Ok((BaseSurface::Unbounded(plane), values))
+    Ok((BaseSurface::Unbounded(Box::new(plane)), values))
 }
 
 /// A 192: point on the axis, axis, radius and, in form 1, reference direction.
@@ -240,7 +240,7 @@ pub fn cylinder(mut reader: SurfaceReader) -> Found {
     let (origin, triad) = reader.frame(4)?;
     let values = 4 + usize::from(reader.entry.form == 1);
     let cylinder = reader.unbounded(Kind::Cylinder(radius), origin, triad);
-    Ok((BaseSurface::Unbounded(cylinder), values))
+    Ok((BaseSurface::Unbounded(Box::new(cylinder)), values))
 }
 
 /// A 194: point on the axis, axis, radius there, half angle in degrees and, in form 1, reference direction.
@@ -257,5 +257,5 @@ pub fn cone(mut reader: SurfaceReader) -> Found {
     let values = 5 + usize::from(reader.entry.form == 1);
     let slope = angle.to_radians().tan();
     let cone = reader.unbounded(Kind::Cone(radius, slope), origin, triad);
-    Ok((BaseSurface::Unbounded(cone), values))
+    Ok((BaseSurface::Unbounded(Box::new(cone)), values))
 }
