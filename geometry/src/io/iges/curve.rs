@@ -114,11 +114,6 @@ impl CurveChain {
             gap,
         })
     }
-
-    /// The parts in the parameter plane of a surface: their x and y.
-    pub fn in_plane(&self) -> Vec<NurbsCurve<2>> {
-        self.parts.iter().map(|p| p.curve.in_plane()).collect()
-    }
 }
 
 /// Whether an entity of this type is a curve that [`read`] knows.

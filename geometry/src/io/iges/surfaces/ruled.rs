@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 1e-9;
 /// backwards.
 ///
 /// Exact where both curves' NURBS forms run alike with the relative parameter (lines, splines, arcs of the same shares of
-/// their angle), and for form 0 where both also have constant speed (lines and circular arcs). Else the curves are fitted
+/// their angle) and with the same weights, and for form 0 where both also have constant speed (lines and circular arcs). Else the curves are fitted
 /// by splines of the relative parameter or length, to 1e-9 of the surface's size.
 pub fn read(mut reader: SurfaceReader) -> Found {
     let mut rails = [
@@ -45,14 +45,28 @@ pub fn read(mut reader: SurfaceReader) -> Found {
         rail.curve = rail.curve.with_parameters(unit)?;
         rail.map = rail.map.with_file_range(unit, false).with_own_range(unit);
     }
+    // A point is the same at every parameter, and with any weights.
+    for k in 0..2 {
+        let net = rails[k].curve.homogeneous();
+        let [x, y, z, w] = net[0];
+        if net.iter().all(|h| *h == net[0]) {
+            let other = &rails[1 - k];
+            let weights = other.curve.homogeneous().iter().map(|h| h[3]);
+            let points = weights.map(|v| [x, y, z, w].map(|c| c * v / w)).collect();
+            let curve = NurbsCurve::from_homogeneous(other.curve.basis().clone(), points)?;
+            let map = other.map.clone();
+            rails[k].curve = curve;
+            rails[k].map = map;
+        }
+    }
     let by_length = reader.entry.form == 0 && !rails.iter().all(uniform);
-    let alike = rails[0].map.same_shape(&rails[1].map);
+    let alike = rails[0].map.same_shape(&rails[1].map) && same_weights(&rails)?;
     let mut deviation = rails[0].deviation.max(rails[1].deviation);
     let mut map = rails[0].map.clone();
     if by_length || !alike {
         let size = extent(&rails);
         for rail in &mut rails {
-            if !by_length && rail.map.as_affine().is_some() {
+            if !by_length && rail.map.as_affine().is_some() && !is_rational(&rail.curve) {
                 continue;
             }
             let fitted = if by_length {
@@ -108,6 +122,19 @@ fn extent(rails: &[JoinedCurve; 2]) -> f64 {
     (high - low).norm()
 }
 
+fn is_rational(curve: &NurbsCurve<3>) -> bool {
+    let net = curve.homogeneous();
+    net.iter().any(|h| h[3] != net[0][3])
+}
+
+/// Whether the weights of both curves have one ratio all along: only then the points between two of the same parameter
+/// lie where the shares 1 - v and v put them.
+fn same_weights(rails: &[JoinedCurve; 2]) -> Result<bool, CurveError> {
+    let [a, b] = common([&rails[0].curve, &rails[1].curve])?;
+    let mut ratios = a.homogeneous().iter().zip(b.homogeneous());
+    Ok(ratios.all(|(a, b)| (a[3] / b[3] - 1.0).abs() < 1e-13))
+}
+
 /// Whether the curve has the same speed everywhere in the file's parameter, to 1e-10.
 fn uniform(rail: &JoinedCurve) -> bool {
     let basis = rail.curve.basis();
@@ -115,15 +142,14 @@ fn uniform(rail: &JoinedCurve) -> bool {
     for span in 0..basis.span_count() {
         let [a, b] = basis.span_range(span);
         for k in 0..=8 {
-            let t = a + (b - a) * f64::from(k) / 8.0;
-            // From inside of the span, where the map's piece is the span's own.
-            let inside = a + (b - a) * (1e-9 + (1.0 - 2e-9) * f64::from(k) / 8.0);
-            let file = rail.map.to_file(inside);
-            let speed = rail.curve.jet_in_span(span, t).d1.norm() * rail.map.jet(file)[1];
+            // Inside of the span, where the map's piece is the span's own.
+            let t = a + (b - a) * (1e-3 + (1.0 - 2e-3) * f64::from(k) / 8.0);
+            let rise = rail.map.jet(rail.map.to_file(t))[1];
+            let speed = rail.curve.jet_in_span(span, t).d1.norm() * rise;
             (low, high) = (low.min(speed), high.max(speed));
         }
     }
-    high - low <= 1e-7 * high
+    high - low <= 1e-10 * high
 }
 
 /// The curve with the file's relative parameter as its own.
