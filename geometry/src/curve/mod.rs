@@ -1,7 +1,10 @@
 //! NURBS curves of the plane and of space: trim curves, and the curves that CAD files build surfaces from.
 
 mod change;
+pub mod conic;
 mod eval;
+pub mod fit;
+pub(crate) mod join;
 
 pub use eval::CurvePiece;
 

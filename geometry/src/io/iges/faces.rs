@@ -229,14 +229,14 @@ fn free(
     let map = outer.after(&matrix_of(model, entry, notes)?);
     let read = surface::read(model, entry, &map, notes)?;
     *name = name_of(model, entry, read.values)?;
-    Ok(match read.patch {
-        Ok(patch) => {
-            patches.push(CadPatch {
+    Ok(match read.patches {
+        Ok(found) => {
+            patches.extend(found.into_iter().map(|patch| CadPatch {
                 patch,
                 entity: entry.number,
                 type_number: 128,
                 name: name.clone(),
-            });
+            }));
             None
         }
         Err(reason) => Some(reason),
@@ -307,14 +307,14 @@ fn untrimmed(
     if name.is_none() {
         *name = name_of(model, base, read.values)?;
     }
-    Ok(match read.patch {
-        Ok(patch) => {
-            patches.push(CadPatch {
+    Ok(match read.patches {
+        Ok(found) => {
+            patches.extend(found.into_iter().map(|patch| CadPatch {
                 patch,
                 entity: entry.number,
                 type_number: 144,
                 name: name.clone(),
-            });
+            }));
             None
         }
         Err(reason) => Some(format!(

@@ -4,6 +4,13 @@
 //! the file), the `global` section, the `directory`, then entities: `surface` (128), `transform` (124), and `faces`,
 //! which decides what every surface entity becomes.
 
+mod base;
+mod curve;
+mod curve_conic;
+mod curve_map;
+mod curve_offset;
+mod curve_points;
+mod curve_spline;
 mod directory;
 mod faces;
 mod global;
@@ -11,10 +18,16 @@ mod names;
 mod number;
 mod params;
 mod records;
+mod reparametrise;
 mod surface;
+mod surfaces;
 mod transform;
 
+pub use base::{IgesCurve, IgesGeometry, IgesSurface, read_iges_geometry};
+pub use curve_map::ParameterMap;
 pub use names::entity_name;
+pub use reparametrise::Reparametrise;
+pub use surfaces::{BasePatch, BaseSurface, Border, Unbounded};
 
 use super::CadError;
 use super::error::Fail;
@@ -71,11 +84,9 @@ pub fn read_iges(bytes: &[u8], name: &str) -> Result<CadFile, CadError> {
 
 fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
     let mut notes = Vec::new();
-    let sections = records::split(bytes, &mut notes)?;
-    let global = global::read(&sections, &mut notes)?;
-    let entries = directory::read(&sections, &mut notes)?;
+    let model = model_of(bytes, &mut notes)?;
     let mut counts = BTreeMap::new();
-    for entry in &entries {
+    for entry in &model.entries {
         *counts.entry((entry.type_number, entry.form)).or_insert(0) += 1;
     }
     let entities = counts
@@ -87,11 +98,6 @@ fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
             count,
         })
         .collect();
-    let model = Model {
-        sections,
-        global,
-        entries,
-    };
     let (patches, skipped) = faces::read(&model, &mut notes)?;
     Ok(CadFile {
         path: name.to_owned(),
@@ -103,4 +109,25 @@ fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
         skipped,
         notes,
     })
+}
+
+/// Everything below the entities.
+fn model_of<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Result<Model<'a>, Fail> {
+    let sections = records::split(bytes, notes)?;
+    let global = global::read(&sections, notes)?;
+    let entries = directory::read(&sections, notes)?;
+    Ok(Model {
+        sections,
+        global,
+        entries,
+    })
+}
+
+/// The label of an entity, or else the name of its type.
+fn describe_entity(entry: &directory::Entry) -> String {
+    if entry.label.is_empty() {
+        entity_name(entry.type_number, entry.form).to_owned()
+    } else {
+        entry.label.clone()
+    }
 }
