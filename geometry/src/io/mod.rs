@@ -11,10 +11,13 @@ mod report;
 mod unit;
 
 pub use error::CadError;
-pub use iges::{entity_name, read_iges};
+pub use iges::{
+    BasePatch, BaseSurface, Border, IgesCurve, IgesGeometry, IgesSurface, ParameterMap,
+    Reparametrise, Unbounded, entity_name, read_iges, read_iges_geometry,
+};
 pub use json::read_json;
 pub use report::{
-    Border, CadFile, CadFormat, CadPatch, EntityCount, SkipKind, Skipped, Summary, TrimReport,
+    FaceBorder, CadFile, CadFormat, CadPatch, EntityCount, SkipKind, Skipped, Summary, TrimReport,
 };
 pub use unit::LengthUnit;
 

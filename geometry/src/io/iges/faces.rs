@@ -1,7 +1,7 @@
 //! What becomes of every surface entity of a file: patches, or a reason why not.
 
 use super::super::error::Fail;
-use super::super::report::{Border, CadPatch, SkipKind, Skipped, TrimReport};
+use super::super::report::{FaceBorder, CadPatch, SkipKind, Skipped, TrimReport};
 use super::brep::{self, Edges};
 use super::curve;
 use super::directory::Entry;
@@ -28,7 +28,7 @@ pub struct Outcome {
 type Refusal = (SkipKind, String);
 
 /// A patch with what bounds it.
-type Piece = (NurbsPatch, Border);
+type Piece = (NurbsPatch, FaceBorder);
 
 /// Reads all surfaces, in the order of the file.
 pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
@@ -160,10 +160,10 @@ impl Reader<'_, '_> {
         let pieces = match surface {
             BaseSurface::Patches(patches) => {
                 self.approximated(entry, &patches);
-                Ok(patches.into_iter().map(|p| (p.patch, Border::Natural)).collect())
+                Ok(patches.into_iter().map(|p| (p.patch, FaceBorder::Natural)).collect())
             }
             BaseSurface::Unbounded(plane) => match &plane.border {
-                Some((number, border)) if *border == surfaces::UnboundedBorder::Outer => {
+                Some((number, border)) if *border == surfaces::Border::Outer => {
                     self.bordered(entry, *number, &plane, outer)?
                 }
                 _ => {
@@ -257,7 +257,7 @@ impl Reader<'_, '_> {
         self.approximated(base, &patches);
         let pieces = match &patches[..] {
             _ if face.boundaries.is_empty() => {
-                Ok(patches.into_iter().map(|p| (p.patch, Border::Natural)).collect())
+                Ok(patches.into_iter().map(|p| (p.patch, FaceBorder::Natural)).collect())
             }
             [patch] => {
                 let name = (entry.number != base.number).then_some(base);
@@ -303,8 +303,8 @@ impl Reader<'_, '_> {
             Ok(trimmed) => {
                 add(&mut self.out.trims, &tally);
                 let border = match trimmed.patch.trim() {
-                    Some(_) => Border::Trimmed,
-                    None => Border::Rectangle,
+                    Some(_) => FaceBorder::Trimmed,
+                    None => FaceBorder::Rectangle,
                 };
                 Ok((trimmed.patch, border))
             }

@@ -2,7 +2,7 @@
 //! multiplied by their weights.
 
 use super::super::error::Fail;
-use super::super::report::{Border, CadPatch, SkipKind, Skipped};
+use super::super::report::{FaceBorder, CadPatch, SkipKind, Skipped};
 use super::{Content, counts, parse};
 use crate::{NurbsPatch, Vec3};
 use serde::Deserialize;
@@ -162,7 +162,7 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
             type_number: 0,
             base: entity,
             instance: 0,
-            border: Border::Natural,
+            border: FaceBorder::Natural,
             name: face.name,
         });
     }
