@@ -110,7 +110,12 @@ fn check(filter: &str) {
         }
     }
     assert!(seen > 0);
-    assert!(faults.is_empty(), "{} faults\n{}", faults.len(), faults.join("\n"));
+    assert!(
+        faults.is_empty(),
+        "{} faults\n{}",
+        faults.len(),
+        faults.join("\n")
+    );
 }
 
 fn counts(name: &str, file: &CadFile, row: &FileRow, fault: &mut impl FnMut(String)) {
@@ -132,18 +137,29 @@ fn counts(name: &str, file: &CadFile, row: &FileRow, fault: &mut impl FnMut(Stri
         summary.skipped,
     );
     if found != expected {
-        let reasons = file.skipped.iter().map(|s| format!("{}: {}", s.entity, s.reason));
+        let reasons = file
+            .skipped
+            .iter()
+            .map(|s| format!("{}: {}", s.entity, s.reason));
         fault(format!(
             "patches, trimmed, rectangles, skipped {found:?}, not {expected:?}; {:?}; {:?}",
             reasons.collect::<Vec<_>>(),
             file.trims
         ));
     }
-    if file.patches.iter().any(|p| p.trimmed() != (p.border == FaceBorder::Trimmed)) {
+    if file
+        .patches
+        .iter()
+        .any(|p| p.trimmed() != (p.border == FaceBorder::Trimmed))
+    {
         fault("trims and borders disagree".to_owned());
     }
     let longest = file.notes.iter().take(4).collect::<Vec<_>>();
-    println!("{name}: {found:?} {:?} {} notes {longest:?}", file.trims, file.notes.len());
+    println!(
+        "{name}: {found:?} {:?} {} notes {longest:?}",
+        file.trims,
+        file.notes.len()
+    );
 }
 
 /// Areas to 1e-6, boxes to 1e-6 of their diagonal; the kernel widens boxes by its confusion distance of 1e-7.
@@ -153,12 +169,17 @@ fn compare(file: &CadFile, row: &SurfaceRow, fault: &mut impl FnMut(String)) {
         return;
     };
     if (found.type_number, found.base) != (row.type_number, row.base) {
-        fault(format!("{name}: type {}, base {}", found.type_number, found.base));
+        fault(format!(
+            "{name}: type {}, base {}",
+            found.type_number, found.base
+        ));
     }
     let mut near = |what: &str, value: f64, reference: f64| {
         let error = (value / reference - 1.0).abs();
         if error.is_nan() || error > 1e-6 {
-            fault(format!("{name}: {what} {value}, not {reference} ({error:.1e})"));
+            fault(format!(
+                "{name}: {what} {value}, not {reference} ({error:.1e})"
+            ));
         }
     };
     near("area", trimmed_area(&found.patch), row.area);
@@ -181,7 +202,9 @@ fn compare(file: &CadFile, row: &SurfaceRow, fault: &mut impl FnMut(String)) {
         for k in 0..6 {
             let error = (found[k] - reference[k]).abs();
             if error.is_nan() || error > 1e-6 * diagonal + 1.5e-7 {
-                fault(format!("{name}: box {found:?}, not {reference:?} ({error:.1e})"));
+                fault(format!(
+                    "{name}: box {found:?}, not {reference:?} ({error:.1e})"
+                ));
                 break;
             }
         }
@@ -205,7 +228,14 @@ fn hammer() {
 
 #[test]
 fn other_files_of_other_writers() {
-    for name in ["DTMB", "example", "single", "sunglasses", "testfile", "wigley"] {
+    for name in [
+        "DTMB",
+        "example",
+        "single",
+        "sunglasses",
+        "testfile",
+        "wigley",
+    ] {
         check(&format!("real/{name}"));
     }
 }

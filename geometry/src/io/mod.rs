@@ -1,7 +1,7 @@
 //! Readers of CAD files: IGES 5.3 and the JSON formats of Kratos and geomdl.
 //!
-//! [`read_path`] tells the format from the content. What comes back is a [`CadFile`]: the untrimmed NURBS patches, and
-//! an account of everything else the file holds. Nothing is dropped silently: a surface that was not read is
+//! [`read_path`] tells the format from the content. What comes back is a [`CadFile`]: NURBS patches with
+//! their trims, and an account of everything else the file holds. Nothing is dropped silently: a surface that was not read is
 //! [`Skipped`] with its reason, and what was tolerated although the standard does not allow it is in the notes.
 
 mod error;
@@ -17,7 +17,7 @@ pub use iges::{
 };
 pub use json::read_json;
 pub use report::{
-    FaceBorder, CadFile, CadFormat, CadPatch, EntityCount, SkipKind, Skipped, Summary, TrimReport,
+    CadFile, CadFormat, CadPatch, EntityCount, FaceBorder, SkipKind, Skipped, Summary, TrimReport,
 };
 pub use unit::LengthUnit;
 

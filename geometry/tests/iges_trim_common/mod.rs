@@ -57,7 +57,11 @@ pub fn trimmed_area(patch: &NurbsPatch) -> f64 {
     let Some(trim) = patch.trim() else {
         return area(patch);
     };
-    let loops: Vec<f64> = trim.loops().iter().map(|l| inside(patch, l).abs()).collect();
+    let loops: Vec<f64> = trim
+        .loops()
+        .iter()
+        .map(|l| inside(patch, l).abs())
+        .collect();
     2.0 * loops[0] - loops.iter().sum::<f64>()
 }
 
@@ -101,12 +105,23 @@ pub fn extremes(patch: &NurbsPatch) -> [f64; 6] {
     let mut out = [0.0; 6];
     for (slot, value) in out.iter_mut().enumerate() {
         let (k, sign) = (slot % 3, if slot < 3 { -1.0 } else { 1.0 });
-        let best = grid.iter().max_by(|a, b| (sign * a.1[k]).total_cmp(&(sign * b.1[k])));
+        let best = grid
+            .iter()
+            .max_by(|a, b| (sign * a.1[k]).total_cmp(&(sign * b.1[k])));
         let (mut s, x) = *best.unwrap();
         let mut found = sign * x[k];
         let mut h = 1.0 / 16.0;
         while h > 1e-9 {
-            let tries = [[h, 0.0], [-h, 0.0], [0.0, h], [0.0, -h], [h, h], [-h, -h], [h, -h], [-h, h]];
+            let tries = [
+                [h, 0.0],
+                [-h, 0.0],
+                [0.0, h],
+                [0.0, -h],
+                [h, h],
+                [-h, -h],
+                [h, -h],
+                [-h, h],
+            ];
             let better = tries
                 .map(|t| [0, 1].map(|d| (s[d] + t[d]).clamp(0.0, 1.0)))
                 .into_iter()

@@ -2,7 +2,7 @@
 //! multiplied by their weights.
 
 use super::super::error::Fail;
-use super::super::report::{FaceBorder, CadPatch, SkipKind, Skipped};
+use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped};
 use super::{Content, counts, parse};
 use crate::{NurbsPatch, Vec3};
 use serde::Deserialize;
