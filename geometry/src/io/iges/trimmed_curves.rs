@@ -147,8 +147,12 @@ fn given(host: &Host, stretch: &Stretch) -> Result<Given, String> {
         let apart = |a: &[Vec3; 2], b: &[Vec3; 2]| (a[0] - b[0]).norm().max((a[1] - b[1]).norm());
         let along = apart(&own_ends, &ends);
         let against = apart(&own_ends, &[ends[1], ends[0]]);
-        backwards = against < 0.1 * along && (ends[0] - ends[1]).norm() > host.agree;
-        gap = gap.max(along.min(if backwards { against } else { along }));
+        // A closed chain may begin anywhere.
+        let round = |e: &[Vec3; 2]| (e[0] - e[1]).norm() <= host.agree;
+        if !(round(&ends) && round(&own_ends)) {
+            backwards = against < 0.1 * along && !round(&ends);
+            gap = gap.max(if backwards { against } else { along });
+        }
     }
     if backwards {
         own = own
