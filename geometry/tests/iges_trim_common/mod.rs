@@ -72,7 +72,7 @@ fn inside(patch: &NurbsPatch, a_loop: &TrimLoop) -> f64 {
         for span in 0..basis.span_count() {
             let [a, b] = basis.span_range(span);
             // Splines of many spans are short in each; single pieces may wander over many spans of the patch.
-            let n = if basis.span_count() > 8 { 1 } else { 12 };
+            let n = if basis.span_count() > 8 { 2 } else { 16 };
             for k in 0..n {
                 let h = (b - a) / f64::from(n);
                 for (x, w) in GAUSS {
@@ -87,7 +87,7 @@ fn inside(patch: &NurbsPatch, a_loop: &TrimLoop) -> f64 {
     sum
 }
 
-/// Lowest and highest x, y, z of the whole domain: the best of a grid, then a pattern search.
+/// Lowest and highest x, y, z of the whole domain: a pattern search from every local extreme of a grid.
 pub fn extremes(patch: &NurbsPatch) -> [f64; 6] {
     let domain = patch.domain();
     let steps = [0, 1].map(|d| (4 * patch.spans(d).len()).clamp(16, 48));
@@ -95,45 +95,69 @@ pub fn extremes(patch: &NurbsPatch) -> [f64; 6] {
         let xi = [0, 1].map(|d| domain[d][0] + (domain[d][1] - domain[d][0]) * s[d]);
         patch.point(xi)
     };
-    let mut grid = Vec::new();
-    for i in 0..=steps[0] {
-        for j in 0..=steps[1] {
-            let s = [i as f64 / steps[0] as f64, j as f64 / steps[1] as f64];
-            grid.push((s, at(s)));
-        }
-    }
+    let place = |i: usize, j: usize| [i as f64 / steps[0] as f64, j as f64 / steps[1] as f64];
+    let columns = steps[0] + 1;
+    let grid: Vec<_> = (0..=steps[1])
+        .flat_map(|j| (0..columns).map(move |i| (i, j)))
+        .map(|(i, j)| at(place(i, j)))
+        .collect();
     let mut out = [0.0; 6];
     for (slot, value) in out.iter_mut().enumerate() {
         let (k, sign) = (slot % 3, if slot < 3 { -1.0 } else { 1.0 });
-        let best = grid
+        let height = |i: usize, j: usize| sign * grid[i + columns * j][k];
+        let highest = grid
             .iter()
-            .max_by(|a, b| (sign * a.1[k]).total_cmp(&(sign * b.1[k])));
-        let (mut s, x) = *best.unwrap();
-        let mut found = sign * x[k];
-        let mut h = 1.0 / 16.0;
-        while h > 1e-9 {
-            let tries = [
-                [h, 0.0],
-                [-h, 0.0],
-                [0.0, h],
-                [0.0, -h],
-                [h, h],
-                [-h, -h],
-                [h, -h],
-                [-h, h],
-            ];
-            let better = tries
-                .map(|t| [0, 1].map(|d| (s[d] + t[d]).clamp(0.0, 1.0)))
-                .into_iter()
-                .map(|s| (s, sign * at(s)[k]))
-                .max_by(|a, b| a.1.total_cmp(&b.1))
-                .filter(|b| b.1 > found);
-            match better {
-                Some((next, value)) => (s, found) = (next, value),
-                None => h *= 0.5,
+            .map(|x| sign * x[k])
+            .fold(f64::NEG_INFINITY, f64::max);
+        let lowest = grid
+            .iter()
+            .map(|x| sign * x[k])
+            .fold(f64::INFINITY, f64::min);
+        let mut best = highest;
+        for j in 0..=steps[1] {
+            for i in 0..columns {
+                let here = height(i, j);
+                let around = (i.saturating_sub(1)..=(i + 1).min(steps[0])).flat_map(|a| {
+                    (j.saturating_sub(1)..=(j + 1).min(steps[1])).map(move |b| (a, b))
+                });
+                let is_top = around.into_iter().all(|(a, b)| height(a, b) <= here);
+                if is_top && here > highest - 0.1 * (highest - lowest) {
+                    best = best.max(climb(place(i, j), here, &|s| sign * at(s)[k]));
+                    // A ridge of equal heights needs one climb.
+                    if here == highest && best == highest {
+                        break;
+                    }
+                }
             }
         }
-        *value = sign * found;
+        *value = sign * best;
     }
     out
+}
+
+fn climb(mut s: [f64; 2], mut found: f64, at: &dyn Fn([f64; 2]) -> f64) -> f64 {
+    let mut h = 1.0 / 16.0;
+    while h > 1e-9 {
+        let tries = [
+            [h, 0.0],
+            [-h, 0.0],
+            [0.0, h],
+            [0.0, -h],
+            [h, h],
+            [-h, -h],
+            [h, -h],
+            [-h, h],
+        ];
+        let better = tries
+            .map(|t| [0, 1].map(|d| (s[d] + t[d]).clamp(0.0, 1.0)))
+            .into_iter()
+            .map(|s| (s, at(s)))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .filter(|b| b.1 > found);
+        match better {
+            Some((next, value)) => (s, found) = (next, value),
+            None => h *= 0.5,
+        }
+    }
+    found
 }

@@ -13,7 +13,7 @@ const FIT: f64 = 1e-7;
 /// Projected curves may lie this far off the surface, as a share of its size; beyond it they do not belong to it.
 const OFF: f64 = 1e-2;
 /// Curves may leave the domain by this share of it and still be taken.
-const BEYOND: f64 = 1e-4;
+pub const BEYOND: f64 = 1e-3;
 
 /// What the curves of one face did; added to the report of the file if the face is read.
 pub type Tally = TrimReport;
@@ -124,7 +124,7 @@ fn given(host: &Host, stretch: &Stretch) -> Result<Given, String> {
                 beyond
             ));
         }
-        own.push((part.entity, curve));
+        own.push((part.entity, inside(host, curve)));
     }
     let mut gap = 0.0f64;
     let mut backwards = false;
@@ -188,8 +188,34 @@ fn given(host: &Host, stretch: &Stretch) -> Result<Given, String> {
     })
 }
 
+/// A curve that leaves the domain a little, with the control points outside put onto the border, where the surface ends.
+fn inside(host: &Host, curve: NurbsCurve<2>) -> NurbsCurve<2> {
+    let clamp = |x: Xi| {
+        Xi::from_fn(|d, _| match host.closed[d] {
+            true => x[d],
+            false => x[d].clamp(host.domain[d][0], host.domain[d][1]),
+        })
+    };
+    let points = curve.homogeneous().iter();
+    if points
+        .map(|p| Xi::new(p[0] / p[3], p[1] / p[3]))
+        .all(|x| host.beyond(x) <= 1e-9)
+    {
+        return curve;
+    }
+    // Control points far out shape the curve inside; they stay.
+    let near = |x: Xi| {
+        if host.beyond(x) <= BEYOND {
+            clamp(x)
+        } else {
+            x
+        }
+    };
+    curve.transformed(&near).unwrap_or(curve)
+}
+
 /// Box around curves of the file's parameter plane.
-fn bounds(parts: &[Part<2>]) -> [[f64; 2]; 2] {
+pub fn bounds(parts: &[Part<2>]) -> [[f64; 2]; 2] {
     let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     for xi in parts.iter().flat_map(|p| sample(&p.curve, 1)) {
         for d in 0..2 {

@@ -35,7 +35,7 @@ pub fn loops(
             found.push(curves(host, stretch, tally, &mut said).map_err(named)?);
         }
         complaints.extend(said.into_iter().map(named));
-        let chain = chain(host, found).map_err(named)?;
+        let chain = chain_of_area(host, found).map_err(named)?;
         if chain.turns == [0, 0] {
             closed.push(chain.curves);
         } else {
@@ -141,17 +141,46 @@ fn directed(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Vec<Vec<TrimC
     Ok(stretches)
 }
 
-/// One chain of all stretches.
-fn chain(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Chain, String> {
+/// One chain of all stretches. At a pole the turning parameter of the next curve is any: where the chain bounds nothing
+/// (both sides of a seam projected to the same one), it goes on a period away.
+fn chain_of_area(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Chain, String> {
     let stretches = directed(host, stretches)?;
+    let first = chain(host, &stretches, 0.0)?;
+    let whole = host.extent(0) * host.extent(1);
+    if first.turns != [0, 0] || area(&first.curves) > 1e-9 * whole {
+        return Ok(first);
+    }
+    for turns in [1.0, -1.0] {
+        let other = chain(host, &stretches, turns)?;
+        if other.turns == [0, 0] && area(&other.curves) > 1e-9 * whole {
+            return Ok(other);
+        }
+    }
+    Ok(first)
+}
+
+/// The chain that goes on `turns` periods away after the first pole.
+fn chain(host: &Host, stretches: &[Vec<TrimCurve>], turns: f64) -> Result<Chain, String> {
     let mut out: Vec<TrimCurve> = Vec::new();
-    for curve in stretches.into_iter().flatten() {
+    let mut left = turns;
+    let at_pole = |xi: Xi| {
+        let stuck = host.stuck(xi);
+        [0, 1].map(|d| stuck[d] && host.closed[d])
+    };
+    for curve in stretches.iter().flatten() {
+        let curve = curve.clone();
         let Some(last) = out.last().map(end) else {
             out.push(curve);
             continue;
         };
         let from = start(&curve);
-        let by = host.nearest_copy(from, last) - from;
+        let mut by = host.nearest_copy(from, last) - from;
+        let pole = at_pole(last);
+        for d in (0..2).filter(|&d| pole[d]) {
+            // What the file says counts; periods make no difference to the point.
+            by[d] = left * host.extent(d);
+            left = 0.0;
+        }
         let curve = shifted(curve, by).map_err(|e| e.to_string())?;
         bridge(host, &mut out, last, start(&curve))?;
         out.push(curve);
@@ -160,7 +189,11 @@ fn chain(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Chain, String> {
         return Err("has no curves".to_owned());
     };
     // Where the first curve begins, in the copy that the last one reaches.
-    let target = host.nearest_copy(first, last);
+    let mut target = host.nearest_copy(first, last);
+    let pole = at_pole(last);
+    for d in (0..2).filter(|&d| pole[d]) {
+        target[d] = first[d];
+    }
     bridge(host, &mut out, last, target)?;
     let turns = [0, 1].map(|d| ((target[d] - first[d]) / host.extent(d)).round() as i32);
     Ok(Chain { curves: out, turns })
