@@ -335,7 +335,12 @@ impl Reader<'_, '_> {
     /// Says where a surface is not what the entity defines.
     fn approximated(&mut self, entry: &Entry, patches: &[BasePatch]) {
         let deviation = patches.iter().fold(0.0, |d: f64, p| d.max(p.deviation));
-        if deviation > 0.0 {
+        // Rounding is no approximation.
+        let told = patches.iter().any(|p| {
+            let [low, high] = p.patch.bounds();
+            p.deviation > 1e-12 * (high - low).norm()
+        });
+        if told {
             let text = format!("read as a NURBS surface that differs by up to {deviation:.1e}");
             let note = format!("{}: {text}", describe(entry));
             if !self.notes.contains(&note) {
