@@ -93,7 +93,7 @@ fn read_508(
     let mut at = 2;
     for _ in 0..count {
         let kind = params.integer(at, "the type of an edge of a loop (508)")?;
-        let (parameter, next) = parameter_list(model, &params, at + 4, Some(()), notes)?;
+        let (parameter, next) = parameter_list(model, &params, at + 4, true, notes)?;
         match kind {
             0 => {
                 let number = params.count(at + 2, "the number of an edge in its list")?;

@@ -30,6 +30,9 @@ type Refusal = (SkipKind, String);
 /// A patch with what bounds it.
 type Piece = (NurbsPatch, FaceBorder);
 
+/// The patches of one entity.
+type Found = Result<Vec<Piece>, Refusal>;
+
 /// Reads all surfaces, in the order of the file.
 pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
     let mut groups = Groups::read(model, notes)?;
@@ -148,11 +151,7 @@ impl Reader<'_, '_> {
     }
 
     /// A surface that stands alone.
-    fn whole(
-        &mut self,
-        entry: &Entry,
-        outer: &Affine,
-    ) -> Result<(Option<String>, Result<Vec<Piece>, Refusal>), Fail> {
+    fn whole(&mut self, entry: &Entry, outer: &Affine) -> Result<(Option<String>, Found), Fail> {
         let (surface, values) =
             match curve::settle(surfaces::read(self.model, entry, outer, self.notes))? {
                 Ok(read) => read,
@@ -187,7 +186,7 @@ impl Reader<'_, '_> {
         number: u32,
         plane: &surfaces::Unbounded,
         outer: &Affine,
-    ) -> Result<Result<Vec<Piece>, Refusal>, Fail> {
+    ) -> Result<Found, Fail> {
         let index =
             self.model
                 .index(i64::from(number), (entry.line, 1), "the border of a plane")?;
@@ -221,11 +220,7 @@ impl Reader<'_, '_> {
     }
 
     /// A face, with its name and the number of its surface.
-    fn face(
-        &mut self,
-        entry: &Entry,
-        map: &Affine,
-    ) -> Result<(Option<String>, Result<Vec<Piece>, Refusal>, u32), Fail> {
+    fn face(&mut self, entry: &Entry, map: &Affine) -> Result<(Option<String>, Found, u32), Fail> {
         let model = self.model;
         let face = match entry.type_number {
             144 => trimmed::read_144(model, entry, map, self.notes)?,

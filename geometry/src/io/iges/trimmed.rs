@@ -261,7 +261,7 @@ fn read_141(
         if sense == 2 {
             space = reversed(space)?;
         }
-        let (parameter, next) = parameter_list(model, &params, at + 2, None, notes)?;
+        let (parameter, next) = parameter_list(model, &params, at + 2, false, notes)?;
         at = next;
         stretches.push(Stretch {
             parameter,
@@ -278,10 +278,10 @@ pub fn parameter_list(
     model: &Model,
     params: &Params,
     at: usize,
-    flags: Option<()>,
+    flags: bool,
     notes: &mut Vec<String>,
 ) -> Result<(Vec<Part<2>>, usize), Stop> {
-    let step = 1 + usize::from(flags.is_some());
+    let step = 1 + usize::from(flags);
     let count = params.count(at, "a number of curves in the parameter plane")?;
     if count > params.len().saturating_sub(at + 1) / step {
         let expected = format!("{count} pointers to curves in the parameter plane");

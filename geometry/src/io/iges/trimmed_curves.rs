@@ -228,7 +228,7 @@ pub fn bounds(parts: &[Part<2>]) -> [[f64; 2]; 2] {
 /// A curve of the file's parameter plane where the patch's parameters are not a linear map of it.
 fn refitted(host: &Host, file: &NurbsCurve<2>, shift: Xi) -> Result<Fitted, String> {
     let breaks = smooth_breaks(file.basis());
-    let mut path = |t: f64, _: Xi| Ok(host.from_file(file.point(t) + shift));
+    let mut path = |t: f64, _: Xi| Ok(host.of_file(file.point(t) + shift));
     let start = path(breaks[0], Xi::zeros())?;
     fit(host, &breaks, &mut path, start, FIT * host.size)
 }

@@ -99,7 +99,7 @@ impl<'a> Host<'a> {
     }
 
     /// The patch's parameters at those of the file.
-    pub fn from_file(&self, file: Xi) -> Xi {
+    pub fn of_file(&self, file: Xi) -> Xi {
         Xi::from_fn(|d, _| {
             let map = &self.parameters.directions[d];
             let [a, b] = map.file_range();
