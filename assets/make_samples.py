@@ -12,17 +12,17 @@ from occt_iges import write
 from OCP.Bnd import Bnd_Box
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 from OCP.BRepBndLib import BRepBndLib
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_NurbsConvert
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_NurbsConvert
 from OCP.BRepGProp import BRepGProp
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere
-from OCP.BRepPrimAPI import BRepPrimAPI_MakeTorus
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone, BRepPrimAPI_MakePrism, BRepPrimAPI_MakeRevol, BRepPrimAPI_MakeTorus
 from OCP.Geom import Geom_SphericalSurface
-from OCP.GeomAPI import GeomAPI_PointsToBSplineSurface
+from OCP.GeomAPI import GeomAPI_PointsToBSpline, GeomAPI_PointsToBSplineSurface
 from OCP.GeomConvert import GeomConvert
-from OCP.gp import gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt
+from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt, gp_Vec
 from OCP.GProp import GProp_GProps
 from OCP.IGESControl import IGESControl_Reader, IGESControl_Writer
-from OCP.TColgp import TColgp_Array2OfPnt
+from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt
 
 CAD = os.path.join(HERE, "cad")
 
@@ -42,6 +42,15 @@ def shapes():
     yield "bicubic_patch", patch
     yield "trimmed_patch", BRepAlgoAPI_Cut(patch, BRepPrimAPI_MakeCylinder(axis, 2.0, 20.0).Shape()).Shape()
     yield "box", BRepPrimAPI_MakeBox(10.0, 20.0, 30.0).Shape()
+    yield "sphere", sphere
+    yield "cylinder", BRepPrimAPI_MakeCylinder(3.0, 10.0).Shape()
+    yield "cone", BRepPrimAPI_MakeCone(3.0, 1.0, 5.0).Shape()
+    points = TColgp_Array1OfPnt(1, 5)
+    for i in range(5):
+        points.SetValue(i + 1, gp_Pnt(3 + math.sin(i), 0, 2 * i))
+    edge = BRepBuilderAPI_MakeEdge(GeomAPI_PointsToBSpline(points).Curve()).Edge()
+    yield "revolution", BRepPrimAPI_MakeRevol(edge, gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), 1.5 * math.pi).Shape()
+    yield "extrusion", BRepPrimAPI_MakePrism(edge, gp_Vec(0, 5, 0)).Shape()
     yield "torus", BRepPrimAPI_MakeTorus(10.0, 3.0).Shape()
     yield "sphere_nurbs", BRepBuilderAPI_NurbsConvert(sphere, True).Shape()
 

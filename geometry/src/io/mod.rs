@@ -1,7 +1,7 @@
 //! Readers of CAD files: IGES 5.3 and the JSON formats of Kratos and geomdl.
 //!
-//! [`read_path`] tells the format from the content. What comes back is a [`CadFile`]: the untrimmed NURBS patches, and
-//! an account of everything else the file holds. Nothing is dropped silently: a surface that was not read is
+//! [`read_path`] tells the format from the content. What comes back is a [`CadFile`]: NURBS patches with
+//! their trims, and an account of everything else the file holds. Nothing is dropped silently: a surface that was not read is
 //! [`Skipped`] with its reason, and what was tolerated although the standard does not allow it is in the notes.
 
 mod error;
@@ -16,7 +16,9 @@ pub use iges::{
     Reparametrise, Unbounded, entity_name, read_iges, read_iges_geometry,
 };
 pub use json::read_json;
-pub use report::{CadFile, CadFormat, CadPatch, EntityCount, Skipped};
+pub use report::{
+    CadFile, CadFormat, CadPatch, EntityCount, FaceBorder, SkipKind, Skipped, Summary, TrimReport,
+};
 pub use unit::LengthUnit;
 
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Every curve and surface entity of a file by itself, without trims and without what uses it.
 
 use super::super::error::Fail;
-use super::super::report::Skipped;
+use super::super::report::{SkipKind, Skipped};
 use super::super::{CadError, LengthUnit};
 use super::curve::{self, JoinedCurve};
 use super::curve_map::ParameterMap;
@@ -125,6 +125,7 @@ fn all(model: &Model, notes: Vec<String>) -> Result<IgesGeometry, Fail> {
             entity: entry.number,
             type_number: entry.type_number,
             name: describe_entity(entry),
+            kind: SkipKind::Surface,
             reason,
         }));
     }

@@ -148,7 +148,7 @@ impl Unbounded {
         let at = |(r, z): (f64, f64)| self.origin + e1 * r + e3 * z;
         let heights = [ends[0].1, ends[1].1];
         let line = NurbsCurve::line(at(ends[0]), at(ends[1]))?.with_parameters(heights)?;
-        Ok(revolved(&line, self.origin, e3, [0.0, TAU])?.0.swapped())
+        Ok(revolved(&line, self.origin, e3, [0.0, TAU])?.0.swapped()?)
     }
 }
 

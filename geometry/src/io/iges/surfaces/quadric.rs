@@ -60,7 +60,7 @@ fn tube(
     )?;
     let (patch, _) = revolved(&arc, center, e3, [0.0, TAU])?;
     Ok(BasePatch {
-        patch: patch.swapped().transformed(&|x| reader.place(x))?,
+        patch: patch.swapped()?.transformed(&|x| reader.place(x))?,
         parameters: Reparametrise {
             directions: [degrees([0.0, TAU]), degrees(range)],
         },
