@@ -6,6 +6,7 @@
 pub mod basis;
 pub mod bezier;
 pub mod curve;
+pub mod facet;
 pub mod frame;
 pub mod io;
 pub mod patch;
@@ -16,6 +17,7 @@ pub mod trim;
 
 pub use bezier::{BezierPiece, bezier_pieces};
 pub use curve::NurbsCurve;
+pub use facet::{Bilinear, Biquadratic, FacetMesh};
 pub use frame::Frame;
 pub use patch::{NurbsPatch, PatchError, PatchShape};
 pub use project::{EdgeKind, Foot, Hint, Location, PatchSet, Status};

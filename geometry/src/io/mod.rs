@@ -8,12 +8,14 @@ mod error;
 mod iges;
 mod json;
 mod report;
+mod stl;
 mod unit;
 
 pub use error::CadError;
 pub use iges::{entity_name, read_iges};
 pub use json::read_json;
 pub use report::{CadFile, CadFormat, CadPatch, EntityCount, Skipped};
+pub use stl::{Stl, StlError, StlReport, read_stl, read_stl_path};
 pub use unit::LengthUnit;
 
 use std::path::Path;
