@@ -49,12 +49,12 @@ pub(super) fn deviation<S: Surface>(
     largest
 }
 
-/// Distance of `p` from the patch near to `xi`: a few Gauss-Newton steps from there, of which the nearest point counts.
+/// Distance of `p` from the patch near to `xi`: some Gauss-Newton steps from there, of which the nearest point counts.
 /// Whatever is found is a point of the patch, so the distance is never too small.
 fn distance<S: Surface>(patch: &S, p: &Vec3, mut xi: [f64; 2], held: [bool; 2]) -> f64 {
     let domain = patch.domain();
     let mut best = f64::INFINITY;
-    for _ in 0..4 {
+    for _ in 0..10 {
         let jet = patch.jet(xi);
         let d = p - jet.rho;
         let now = d.norm();

@@ -78,8 +78,8 @@ pub fn bilinear_facets<S: Surface>(
 
 /// Biquadratic facets of a set of patches: as [`bilinear_facets`], with nodes in the middles (of the parameters) too.
 ///
-/// The distance from the surface falls with the third power of the facets' size, where the curvature along the
-/// lines does not change (circles) with the fourth, the angle between the normals with the second and third.
+/// The distance from the surface falls with the third power of the facets' size (with the fourth where every middle
+/// node is the middle of a circular arc), the angle between the normals with the second.
 ///
 /// # Errors
 /// As for [`bilinear_facets`].

@@ -211,7 +211,8 @@ fn read_ascii(bytes: &[u8], path: &str) -> Result<Vec<Record>, StlError> {
     words.rest_of_line_after(b"solid")?;
     loop {
         match words.next() {
-            None => return Ok(records),
+            // The end is said, so that half a file is not taken for a whole one.
+            None => return Err(words.fail("\"facet\" or \"endsolid\"", b"")),
             Some(word) if word.eq_ignore_ascii_case(b"endsolid") => {
                 words.skip_line();
                 // Several solids may follow each other.
