@@ -74,7 +74,7 @@ fn as_nurbs<S: Surface>(facet: &S) -> NurbsPatch {
 
 fn jets<S: Surface>(c: &mut Criterion, name: &str, facet: &S) {
     let xi: Vec<[f64; 2]> = (0..1024)
-        .map(|k| spread(k))
+        .map(spread)
         .map(|[a, b, _]| [2.0 * a - 1.0, 2.0 * b - 1.0])
         .collect();
     let patch = as_nurbs(facet);
