@@ -1,7 +1,8 @@
 //! NURBS surfaces from CAD files: exact jets, local frames and closest points.
 //!
 //! A [`NurbsPatch`] gives the surface point with its derivatives (a [`Jet`]), a [`Frame`] turns a jet into normal,
-//! metric, curvature and Christoffel symbols, and a [`PatchSet`] finds the closest point on many patches.
+//! metric, curvature and Christoffel symbols, and a [`PatchSet`] finds the closest point on many patches. Facets
+//! ([`Bilinear`], [`Biquadratic`]) are surfaces as well: cut from patches, read from STL, or the faces of finite elements.
 
 pub mod basis;
 pub mod bezier;

@@ -428,6 +428,11 @@ fn useless_requests() {
     let round = facet_patch(sphere(1.0, Vec3::zeros(), Vec3::z()).unwrap()).unwrap();
     let fine = bilinear_facets(&round, Refinement::Chord(1e-300));
     assert!(matches!(fine, Err(FacetError::TooMany { .. })));
+    let square = |x: f64| plane(Vec3::new(x, 0.0, 0.0), Vec3::z(), [1.0, 1.0]).unwrap();
+    let open = PatchSet::new(vec![square(0.0), square(1.001)], Some(0.01)).unwrap();
+    let gap = bilinear_facets(&open, Refinement::Chord(1e-3)).unwrap_err();
+    assert!(matches!(gap, FacetError::Gap { gap, .. } if (gap - 1e-3).abs() < 1e-12));
+    assert!(bilinear_facets(&open, Refinement::Chord(3e-3)).is_ok());
     let mesh = covact_geometry::FacetMesh {
         nodes: vec![Vec3::zeros(); 3],
         facets: vec![[0, 1, 2, 3]],

@@ -46,6 +46,14 @@ pub enum FacetError {
     /// No facets per span are asked for.
     #[error("a span cannot be cut in no facets at all")]
     Count,
+    /// The patches are farther apart at a joint than facets that share nodes there may be from them.
+    #[error("joints are open by {gap:.3e}, more than half of the chord tolerance {tolerance:.3e}")]
+    Gap {
+        /// Largest gap of all joints.
+        gap: f64,
+        /// The chord tolerance.
+        tolerance: f64,
+    },
     /// A trimmed patch.
     #[error("trimmed patches cannot be faceted: patch {0} has a trim")]
     Trimmed(usize),

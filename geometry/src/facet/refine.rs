@@ -68,7 +68,7 @@ const LIMIT: usize = 4_000_000;
 /// the size.
 ///
 /// # Errors
-/// Trimmed patches, useless numbers, more than four million facets.
+/// Trimmed patches, useless numbers, joints open by more than half of the chord tolerance, more than four million facets.
 pub fn bilinear_facets<S: Surface>(
     set: &PatchSet<S>,
     refinement: Refinement,
@@ -114,6 +114,11 @@ fn facets<S: Surface, const N: usize>(
         Refinement::PerSpan(0) => return Err(FacetError::Count),
         Refinement::PerSpan(n) => (n as usize, None),
         Refinement::Chord(tolerance) if tolerance.is_finite() && tolerance > 0.0 => {
+            // Shared nodes are off one of the two sides by the gap, however fine the facets.
+            let gap = set.edges().largest_gap;
+            if gap > 0.5 * tolerance {
+                return Err(FacetError::Gap { gap, tolerance });
+            }
             (1, Some(tolerance))
         }
         Refinement::Chord(tolerance) => return Err(FacetError::Tolerance(tolerance)),
