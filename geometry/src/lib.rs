@@ -1,7 +1,8 @@
 //! NURBS surfaces from CAD files: exact jets, local frames and closest points.
 //!
 //! A [`NurbsPatch`] gives the surface point with its derivatives (a [`Jet`]), a [`Frame`] turns a jet into normal,
-//! metric, curvature and Christoffel symbols, and a [`PatchSet`] finds the closest point on many patches.
+//! metric, curvature and Christoffel symbols, and a [`PatchSet`] finds the closest point on many patches. Facets
+//! ([`Bilinear`], [`Biquadratic`]) are surfaces as well: cut from patches, read from STL, or the faces of finite elements.
 
 // The one exception is the evaluation kernel for AVX2.
 #![deny(unsafe_code)]
@@ -9,6 +10,7 @@
 pub mod basis;
 pub mod bezier;
 pub mod curve;
+pub mod facet;
 pub mod frame;
 pub mod io;
 pub mod patch;
@@ -19,6 +21,7 @@ pub mod trim;
 
 pub use bezier::{BezierPiece, bezier_pieces};
 pub use curve::NurbsCurve;
+pub use facet::{Bilinear, Biquadratic, FacetMesh};
 pub use frame::Frame;
 pub use patch::{NurbsPatch, PatchError, PatchShape};
 pub use project::{EdgeKind, Foot, Hint, Location, PatchSet, Status};

@@ -5,6 +5,7 @@
 mod build;
 mod check;
 mod error;
+mod facets;
 mod generate;
 mod gmsh;
 mod inp;
@@ -17,6 +18,7 @@ mod topology;
 
 pub use build::build;
 pub use error::{MAX_NODES, MeshError, Position, SetKind};
+pub use facets::MeshFacets;
 pub use generate::{block, cylinder_panel, plate, sphere_panel};
 pub use gmsh::read_gmsh;
 pub use inp::read_inp;

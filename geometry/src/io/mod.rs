@@ -8,6 +8,7 @@ mod error;
 mod iges;
 mod json;
 mod report;
+mod stl;
 mod unit;
 
 pub use error::CadError;
@@ -19,6 +20,7 @@ pub use json::read_json;
 pub use report::{
     CadFile, CadFormat, CadPatch, EntityCount, FaceBorder, SkipKind, Skipped, Summary, TrimReport,
 };
+pub use stl::{Stl, StlError, StlReport, read_stl, read_stl_path};
 pub use unit::LengthUnit;
 
 use std::path::Path;
