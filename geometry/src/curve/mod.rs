@@ -1,6 +1,8 @@
 //! NURBS curves of the plane and of space: trim curves, and the curves that CAD files build surfaces from.
 
+pub mod conic;
 mod eval;
+pub(crate) mod join;
 
 pub use eval::CurvePiece;
 

@@ -13,7 +13,9 @@ mod unit;
 pub use error::CadError;
 pub use iges::{entity_name, read_iges};
 pub use json::read_json;
-pub use report::{CadFile, CadFormat, CadPatch, EntityCount, Skipped};
+pub use report::{
+    Border, CadFile, CadFormat, CadPatch, EntityCount, SkipKind, Skipped, Summary, TrimReport,
+};
 pub use unit::LengthUnit;
 
 use std::path::Path;

@@ -23,10 +23,36 @@ pub struct CadPatch {
     pub patch: NurbsPatch,
     /// IGES: directory sequence number; Kratos: `brep_id` of the face; geomdl: place in the list, from 1.
     pub entity: u32,
-    /// IGES: 128, or 144 for an untrimmed parametric surface over a 128. JSON: 0.
+    /// IGES: type of the entity: 144, 143, 510 for a face, else that of the surface itself. JSON: 0.
     pub type_number: u32,
+    /// IGES: number of the surface that carries the face, `entity` itself where there is no face. JSON: `entity`.
+    pub base: u32,
+    /// IGES: number of the subfigure or solid instance (408, 430) that places this copy of the entity; 0 where it stands
+    /// where it is defined.
+    pub instance: u32,
+    /// What bounds it.
+    pub border: Border,
     /// Name in the file, if it gives one.
     pub name: Option<String>,
+}
+
+impl CadPatch {
+    /// Whether only a part of the patch's domain belongs to the surface.
+    pub fn trimmed(&self) -> bool {
+        self.patch.trim().is_some()
+    }
+}
+
+/// What bounds a surface that was read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Border {
+    /// Nothing but the end of the surface itself: the file gives no boundary curves.
+    Natural,
+    /// Boundary curves that follow lines of constant parameters all round: the patch's domain is that rectangle.
+    Rectangle,
+    /// Boundary curves, which the patch's trim holds.
+    Trimmed,
 }
 
 /// How often an entity type occurs.
@@ -51,8 +77,68 @@ pub struct Skipped {
     pub type_number: u32,
     /// Name in the file, or else the name of the type.
     pub name: String,
+    /// The kind of reason.
+    pub kind: SkipKind,
     /// Why it was not read.
     pub reason: String,
+}
+
+/// Kinds of reasons not to read a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SkipKind {
+    /// Hidden in the CAD system.
+    Blanked,
+    /// Marked as annotation, construction or the like.
+    Purpose,
+    /// A part of an entity that is not a surface.
+    Dependent,
+    /// A part of a subfigure that is placed nowhere.
+    Template,
+    /// An entity of a type that is not read.
+    Unsupported,
+    /// Whole data that gives no surface.
+    Surface,
+    /// Boundary curves that give no trim; the surface would be read without its border.
+    Boundary,
+}
+
+/// How the boundary curves of all faces of a file became curves in the parameter planes of their patches. Lengths are in
+/// the file's unit.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct TrimReport {
+    /// Boundary curves (members of composite curves counted one by one).
+    pub curves: usize,
+    /// Of these: taken from the file's parameter plane without loss.
+    pub exact: usize,
+    /// Of these: refitted, because the patch's parameters are not those of the file.
+    pub refitted: usize,
+    /// Of these: space curves projected onto the surface.
+    pub projected: usize,
+    /// Faces whose curves in the parameter plane disagree with those in space by more than `tolerance`, so that the space
+    /// curves were projected instead.
+    pub rejected: usize,
+    /// Largest distance between a curve in the parameter plane and the same curve in space, of all that were compared.
+    pub largest_gap: f64,
+    /// Largest distance in space of a fitted curve from what it stands for.
+    pub largest_error: f64,
+    /// Distance at which two curves count as the same (the largest of all faces).
+    pub tolerance: f64,
+}
+
+/// Numbers of a file at a glance.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+pub struct Summary {
+    /// Surfaces and faces that became patches.
+    pub patches: usize,
+    /// Of these: with a trim.
+    pub trimmed: usize,
+    /// Of these: whose boundary curves are a rectangle of parameters.
+    pub rectangles: usize,
+    /// Surfaces and faces that were not read.
+    pub skipped: usize,
+    /// These by kind of reason, in the order of [`SkipKind`].
+    pub reasons: Vec<(SkipKind, usize)>,
 }
 
 /// Content of a CAD file.
@@ -72,6 +158,8 @@ pub struct CadFile {
     pub entities: Vec<EntityCount>,
     /// Every surface that was not read.
     pub skipped: Vec<Skipped>,
+    /// What happened to the boundary curves.
+    pub trims: TrimReport,
     /// What was tolerated although the standard does not allow it, and what was changed on reading.
     pub notes: Vec<String>,
 }
@@ -95,6 +183,22 @@ impl CadFile {
 }
 
 impl CadFile {
+    /// How much was read, and how much was not for which kind of reason.
+    pub fn summary(&self) -> Summary {
+        let mut reasons = std::collections::BTreeMap::new();
+        for skipped in &self.skipped {
+            *reasons.entry(skipped.kind).or_insert(0) += 1;
+        }
+        let count = |border| self.patches.iter().filter(|p| p.border == border).count();
+        Summary {
+            patches: self.patches.len(),
+            trimmed: count(Border::Trimmed),
+            rectangles: count(Border::Rectangle),
+            skipped: self.skipped.len(),
+            reasons: reasons.into_iter().collect(),
+        }
+    }
+
     /// Multiplies all lengths by `factor`; the unit is left as it is.
     fn scale(&mut self, factor: f64) -> Result<(), CadError> {
         let scaled = self
@@ -113,6 +217,13 @@ impl CadFile {
             old.patch = new;
         }
         self.resolution = self.resolution.map(|r| r * factor);
+        for length in [
+            &mut self.trims.largest_gap,
+            &mut self.trims.largest_error,
+            &mut self.trims.tolerance,
+        ] {
+            *length *= factor;
+        }
         Ok(())
     }
 }

@@ -4,6 +4,12 @@
 //! the file), the `global` section, the `directory`, then entities: `surface` (128), `transform` (124), and `faces`,
 //! which decides what every surface entity becomes.
 
+mod curve;
+mod curve_conic;
+mod curve_map;
+mod curve_offset;
+mod curve_points;
+mod curve_spline;
 mod directory;
 mod faces;
 mod global;

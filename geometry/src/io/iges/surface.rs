@@ -141,7 +141,7 @@ pub fn read(
 
 /// Knots that rounding has set apart: differences up to 1e-9 of the whole range, of either sign, are closed. Writers
 /// print as few as 9 digits; a span of that size has no extent in space but spoils derivatives.
-fn merge_close(knots: &mut [f64]) -> usize {
+pub fn merge_close(knots: &mut [f64]) -> usize {
     let range = knots.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b))
         - knots.iter().fold(f64::INFINITY, |a, &b| a.min(b));
     let mut moved = 0;

@@ -2,7 +2,7 @@
 //! multiplied by their weights.
 
 use super::super::error::Fail;
-use super::super::report::{CadPatch, Skipped};
+use super::super::report::{Border, CadPatch, SkipKind, Skipped};
 use super::{Content, counts, parse};
 use crate::{NurbsPatch, Vec3};
 use serde::Deserialize;
@@ -121,6 +121,7 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
             entity: u32::try_from(i).unwrap_or(u32::MAX),
             type_number: 0,
             name: kind.kind.clone(),
+            kind: SkipKind::Unsupported,
             reason: format!("a {}, only surfaces are read", kind.kind),
         });
         return Ok(Content {
@@ -141,6 +142,7 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
                 entity,
                 type_number: 0,
                 name: surface.name.unwrap_or_else(|| "surface".to_owned()),
+                kind: SkipKind::Unsupported,
                 reason: format!(
                     "trimmed ({} trim curves); trimmed surfaces are not read",
                     surface.trims
@@ -152,6 +154,9 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
             patch: surface.patch,
             entity,
             type_number: 0,
+            base: entity,
+            instance: 0,
+            border: Border::Natural,
             name: surface.name,
         });
     }

@@ -2,7 +2,7 @@
 //! multiplied by their weights.
 
 use super::super::error::Fail;
-use super::super::report::{CadPatch, Skipped};
+use super::super::report::{Border, CadPatch, SkipKind, Skipped};
 use super::{Content, counts, parse};
 use crate::{NurbsPatch, Vec3};
 use serde::Deserialize;
@@ -146,6 +146,7 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
                 entity,
                 type_number: 0,
                 name,
+                kind: SkipKind::Unsupported,
                 reason,
             });
             continue;
@@ -159,6 +160,9 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
             patch: face.surface.patch,
             entity,
             type_number: 0,
+            base: entity,
+            instance: 0,
+            border: Border::Natural,
             name: face.name,
         });
     }

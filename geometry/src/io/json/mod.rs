@@ -6,7 +6,7 @@ mod geomdl;
 mod kratos;
 
 use super::error::Fail;
-use super::report::{CadFile, CadFormat, CadPatch, EntityCount, Skipped};
+use super::report::{CadFile, CadFormat, CadPatch, EntityCount, Skipped, TrimReport};
 use super::{CadError, LengthUnit};
 use serde::de::{DeserializeOwned, IgnoredAny};
 use std::collections::BTreeMap;
@@ -53,6 +53,7 @@ pub fn read_json(bytes: &[u8], name: &str) -> Result<CadFile, CadError> {
         patches: content.patches,
         entities: content.entities,
         skipped: content.skipped,
+        trims: TrimReport::default(),
         notes: content.notes,
     })
 }
