@@ -1,4 +1,4 @@
-//! Readers of CAD files: IGES 5.3 and the JSON formats of Kratos and geomdl.
+//! Readers of CAD files: IGES 5.3 and JSON of Kratos, geomdl and our own ([`write_json`]).
 //!
 //! [`read_path`] tells the format from the content. What comes back is a [`CadFile`]: the untrimmed NURBS patches, and
 //! an account of everything else the file holds. Nothing is dropped silently: a surface that was not read is
@@ -12,7 +12,7 @@ mod unit;
 
 pub use error::CadError;
 pub use iges::{entity_name, read_iges};
-pub use json::read_json;
+pub use json::{read_json, write_json};
 pub use report::{
     Border, CadFile, CadFormat, CadPatch, EntityCount, SkipKind, Skipped, Summary, TrimReport,
 };
