@@ -10,7 +10,9 @@
 mod cells;
 mod convex;
 mod finish;
+mod integrate;
 mod local;
+mod neighbour;
 mod piece;
 mod report;
 mod search;
@@ -19,10 +21,11 @@ mod sides;
 mod topology;
 mod tree;
 
+pub use neighbour::Neighbour;
 pub use report::{CurvatureExtreme, CurvatureRange};
 pub use set::{PatchSet, PatchSetError};
 pub use sides::{ComponentSide, SideError, SideOutcome};
-pub use topology::{EdgeReport, Joint, PartialJoint};
+pub use topology::{Border, EdgeReport, Gap, Joint, Overlap, PartialJoint};
 
 use crate::surface::{Jet, Vec3};
 
