@@ -4,6 +4,7 @@
 mod geomdl;
 mod kratos;
 mod native;
+mod trims;
 
 pub use native::write_json;
 
@@ -44,8 +45,7 @@ pub fn read_json(bytes: &[u8], name: &str) -> Result<CadFile, CadError> {
             (CadFormat::Covact, native::read(bytes)?)
         } else {
             let names: Vec<_> = keys.keys().take(10).map(String::as_str).collect();
-            let expected =
-                "the key \"breps\" (Kratos), \"shape\" (geomdl) or \"covact_geometry\"";
+            let expected = "the key \"breps\" (Kratos), \"shape\" (geomdl) or \"covact_geometry\"";
             let near = keys
                 .keys()
                 .find_map(|k| Some((k, nearest(k, &["breps", "shape", native::KEY])?)));

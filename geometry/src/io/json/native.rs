@@ -118,7 +118,9 @@ impl TryFrom<RawTrimCurve> for TrimCurve {
 
     fn try_from(raw: RawTrimCurve) -> Result<Self, CurveError> {
         let points = raw.points.iter().map(|&[x, y, w]| [x, y, 0.0, w]).collect();
-        let space = raw.space.map(|c| curve(c.degree, c.knots, c.domain, c.points));
+        let space = raw
+            .space
+            .map(|c| curve(c.degree, c.knots, c.domain, c.points));
         Ok(TrimCurve {
             parameter: curve(raw.degree, raw.knots, raw.domain, points)?,
             space: space.transpose()?,
@@ -186,7 +188,11 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
         None => None,
         Some(name) => Some(LengthUnit::from_name(&name).ok_or_else(|| {
             let known = LengthUnit::names();
-            Fail::new((1, 1), format!("a unit of {}", known.join(", ")), format!("`{name}`"))
+            Fail::new(
+                (1, 1),
+                format!("a unit of {}", known.join(", ")),
+                format!("`{name}`"),
+            )
         })?),
     };
     Ok(Content {
@@ -210,7 +216,12 @@ fn raw(patch: &CadPatch) -> RawPatch {
         degree: c.parameter.degree(),
         knots: c.parameter.basis().knots().to_vec(),
         domain: Some(c.parameter.domain()),
-        points: c.parameter.homogeneous().iter().map(|p| [p[0], p[1], p[3]]).collect(),
+        points: c
+            .parameter
+            .homogeneous()
+            .iter()
+            .map(|p| [p[0], p[1], p[3]])
+            .collect(),
         space: c.space.as_ref().map(space),
         entity: c.entity,
     };
@@ -226,7 +237,10 @@ fn raw(patch: &CadPatch) -> RawPatch {
         domain: Some(Surface::domain(p)),
         points: p.homogeneous().to_vec(),
         trim: p.trim().map_or(Vec::new(), |t| {
-            t.loops().iter().map(|l| l.curves.iter().map(curve).collect()).collect()
+            t.loops()
+                .iter()
+                .map(|l| l.curves.iter().map(curve).collect())
+                .collect()
         }),
     }
 }
