@@ -151,39 +151,6 @@ impl<const D: usize> NurbsCurve<D> {
         Self::from_homogeneous(basis, self.points.clone())
     }
 
-    /// The curve run through backwards on the same domain, `t -> start + end - t`.
-    ///
-    /// # Errors
-    /// Knots that rounding makes unusable.
-    pub fn reversed(&self) -> Result<Self, CurveError> {
-        let [a, b] = self.domain();
-        let mirror = |t: f64| {
-            let x = a + (b - t);
-            // Rounding must not put a knot on the other side of an end.
-            if t == a {
-                b
-            } else if t == b {
-                a
-            } else if t > b {
-                x.min(a)
-            } else if t < a {
-                x.max(b)
-            } else {
-                x.clamp(a, b)
-            }
-        };
-        let knots = self
-            .basis
-            .knots()
-            .iter()
-            .rev()
-            .map(|&t| mirror(t))
-            .collect();
-        let basis = Basis::new(self.degree(), knots, self.basis.count())?.with_domain([a, b])?;
-        let points = self.points.iter().rev().copied().collect();
-        Self::from_homogeneous(basis, points)
-    }
-
     /// The curve with every control point mapped, weights kept: the mapped curve where the map is affine.
     ///
     /// # Errors

@@ -193,26 +193,6 @@ impl<const D: usize> NurbsCurve<D> {
         Self::from_homogeneous(basis, self.points.iter().rev().copied().collect())
     }
 
-    /// The curve with every point mapped by `x -> a x + b`, weights kept.
-    ///
-    /// # Errors
-    /// Points that are not finite any more.
-    pub fn mapped(
-        &self,
-        a: &nalgebra::SMatrix<f64, D, D>,
-        b: &SVector<f64, D>,
-    ) -> Result<Self, CurveError> {
-        let points = self.points.iter().map(|p| {
-            let x = a * SVector::<f64, D>::from_fn(|i, _| p[i]) + b * p[3];
-            let mut out = [0.0, 0.0, 0.0, p[3]];
-            for (out, x) in out.iter_mut().zip(x.iter()) {
-                *out = *x;
-            }
-            out
-        });
-        Self::from_homogeneous(self.basis.clone(), points.collect())
-    }
-
     /// First and last point.
     pub fn ends(&self) -> [SVector<f64, D>; 2] {
         self.domain().map(|t| self.point(t))

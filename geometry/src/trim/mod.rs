@@ -266,7 +266,10 @@ impl Trim {
             for curve in &mut a_loop.curves {
                 curve.parameter = curve
                     .parameter
-                    .mapped(a, b)
+                    .mapped(|[x, y, z, w]| {
+                        let p = a * Vector2::new(x, y) + b * w;
+                        [p.x, p.y, z, w]
+                    })
                     .map_err(|_| TrimError::Move(number))?;
             }
         }

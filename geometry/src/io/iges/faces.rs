@@ -1,392 +1,376 @@
-//! What becomes of every surface entity of a file: read, or skipped for a reason.
+//! What becomes of every surface entity of a file: patches, or a reason why not.
 
 use super::super::error::Fail;
-use super::super::report::{CadPatch, Skipped};
+use super::super::report::{Border, CadPatch, SkipKind, Skipped, TrimReport};
+use super::brep::{self, Edges};
+use super::curve;
 use super::directory::Entry;
+use super::groups::{Groups, Placement, members, refusal};
+use super::names::entity_name;
+use super::surfaces::{self, BasePatch, BaseSurface};
 use super::transform::{Affine, matrix_of};
-use super::{Model, entity_name, surface};
+use super::trimmed::{self, Boundary, Face, Stretch, describe};
+use super::trimmed_curves::{Tally, add};
+use super::trimmed_host::Host;
+use super::trimmed_loops::{GAP, loops};
+use super::{Model, params::Params};
+use crate::{NurbsPatch, Vec3};
 
-type Outcome = (Vec<CadPatch>, Vec<Skipped>);
-
-/// Who uses an entity, by its index in the directory.
-#[derive(Default, Clone)]
-struct Usage {
-    /// The face (143, 144, 510) or offset surface (140) that it carries; that entity is reported in its place.
-    face: Option<usize>,
-    /// The subfigure definition (308) that it belongs to.
-    subfigure: Option<usize>,
-    /// The group (402) that it belongs to. Groups only collect.
-    group: Option<usize>,
+/// All surfaces of a file.
+#[derive(Default)]
+pub struct Outcome {
+    pub patches: Vec<CadPatch>,
+    pub skipped: Vec<Skipped>,
+    pub trims: TrimReport,
 }
 
-/// Reads all surfaces.
+/// A reason to skip a surface.
+type Refusal = (SkipKind, String);
+
+/// A patch with what bounds it.
+type Piece = (NurbsPatch, Border);
+
+/// Reads all surfaces, in the order of the file.
 pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
-    let usage = usage(model)?;
-    let mut patches = Vec::new();
-    let mut skipped = Vec::new();
+    let mut groups = Groups::read(model, notes)?;
+    let mut reader = Reader {
+        model,
+        edges: Edges::default(),
+        out: Outcome::default(),
+        notes,
+    };
     for (index, entry) in model.entries.iter().enumerate() {
-        let used = &usage[index];
-        let carried = used.face.is_some();
-        if !is_surface(entry.type_number) || carried {
+        if !is_surface(entry.type_number) || groups.usage[index].face.is_some() {
             continue;
         }
-        let mut reason = refusal(entry, used, model);
-        let mut name = None;
-        if reason.is_none() {
-            let outer = group_matrix(model, &usage, index, notes)?;
-            match entry.type_number {
-                128 => reason = free(model, entry, &outer, &mut name, &mut patches, notes)?,
-                144 => reason = untrimmed(model, entry, &outer, &mut name, &mut patches, notes)?,
-                _ => reason = Some(unsupported(model, entry)?),
-            }
-        }
-        if let Some(reason) = reason {
-            let name = match name {
-                Some(name) => Some(name),
-                None => own_name(entry),
-            };
-            skipped.push(Skipped {
-                entity: entry.number,
-                type_number: entry.type_number,
-                name: name.unwrap_or_else(|| entity_name(entry.type_number, entry.form).to_owned()),
-                reason,
-            });
-        }
+        let placed = groups.placements(model, index, reader.notes)?;
+        let refused = refusal(model, &groups, index, &placed);
+        reader.entity(entry, &placed, refused)?;
     }
-    Ok((patches, skipped))
+    Ok(reader.out)
 }
 
 /// Entities that are a surface, or a solid whose boundary would be one.
 fn is_surface(type_number: u32) -> bool {
-    matches!(
-        type_number,
-        108 | 114 | 118 | 120 | 122 | 128 | 140 | 143 | 144 | 190 | 192 | 194 | 196 | 198 | 510
-    ) || is_solid(type_number)
+    surfaces::is_base(type_number) || is_face(type_number) || is_solid(type_number)
 }
 
-/// Solid primitives, and instances of solids.
+/// Entities that are a part of a surface.
+pub fn is_face(type_number: u32) -> bool {
+    matches!(type_number, 143 | 144 | 510)
+}
+
+/// Solid primitives and what is made of them, and arrays of subfigures.
 fn is_solid(type_number: u32) -> bool {
     matches!(
         type_number,
-        150 | 152 | 154 | 156 | 158 | 160 | 162 | 164 | 168 | 430
+        150 | 152 | 154 | 156 | 158 | 160 | 162 | 164 | 168 | 412 | 414
     )
 }
 
-/// Who uses whom: the pointers of faces, subfigure definitions and groups.
-fn usage(model: &Model) -> Result<Vec<Usage>, Fail> {
-    let mut usage = vec![Usage::default(); model.entries.len()];
-    for (parent, entry) in model.entries.iter().enumerate() {
-        let (at, what) = match entry.type_number {
-            144 => (1, "the surface of a trimmed surface (144)"),
-            510 => (1, "the surface of a face (510)"),
-            143 => (2, "the surface of a bounded surface (143)"),
-            140 => (5, "the surface of an offset surface (140)"),
-            308 => {
-                let params = model.params(entry)?;
-                for (child, _) in members(model, &params, 3, "a member of a subfigure (308)")? {
-                    usage[child].subfigure.get_or_insert(parent);
-                }
-                continue;
-            }
-            402 if matches!(entry.form, 1 | 7 | 14 | 15) => {
-                let params = model.params(entry)?;
-                for (child, _) in members(model, &params, 1, "a member of a group (402)")? {
-                    usage[child].group.get_or_insert(parent);
-                }
-                continue;
-            }
-            _ => continue,
+struct Reader<'a, 'n> {
+    model: &'a Model<'a>,
+    edges: Edges,
+    out: Outcome,
+    notes: &'n mut Vec<String>,
+}
+
+impl Reader<'_, '_> {
+    /// One surface entity in all its copies.
+    fn entity(
+        &mut self,
+        entry: &Entry,
+        placed: &[Placement],
+        refused: Option<Refusal>,
+    ) -> Result<(), Fail> {
+        let (name, refused) = match refused {
+            Some(refused) => (None, Some(refused)),
+            None => self.copies(entry, placed)?,
         };
-        let params = model.params(entry)?;
-        let child = model.index(params.integer(at, what)?, params.place_of(at), what)?;
-        // The base of an offset surface may be a surface of its own.
-        if entry.type_number != 140 || model.entries[child].status.physically_dependent() {
-            usage[child].face.get_or_insert(parent);
+        if let Some((kind, reason)) = refused {
+            let name = name.or_else(|| own_name(entry));
+            self.out.skipped.push(Skipped {
+                entity: entry.number,
+                type_number: entry.type_number,
+                name: name.unwrap_or_else(|| entity_name(entry.type_number, entry.form).to_owned()),
+                kind,
+                reason,
+            });
         }
-        if child == parent {
-            let found = format!("entity {} itself", entry.number);
-            return Err(Fail::new(params.place_of(at), what, found));
-        }
+        Ok(())
     }
-    no_cycles(model, &usage, |u| u.face, "surfaces that carry each other")?;
-    no_cycles(model, &usage, |u| u.subfigure, "subfigures in one another")?;
-    no_cycles(model, &usage, |u| u.group, "groups in one another")?;
-    Ok(usage)
-}
 
-/// The entities in a list `count, pointer, pointer, ...` whose count is value `at`.
-fn members(
-    model: &Model,
-    params: &super::params::Params,
-    at: usize,
-    what: &str,
-) -> Result<Vec<(usize, usize)>, Fail> {
-    let count = params.count(at, "a number of members")?;
-    if count > params.len().saturating_sub(at + 1) {
-        return Err(params.fail(params.len(), format!("{count} pointers: {what}")));
-    }
-    let mut list = Vec::with_capacity(count);
-    for i in at + 1..=at + count {
-        let pointer = params.integer(i, what)?;
-        // A member that was deleted leaves a zero.
-        if pointer != 0 {
-            list.push((model.index(pointer, params.place_of(i), what)?, i));
+    /// Reads every copy; the entity's name, and the first reason why a copy could not be read.
+    fn copies(
+        &mut self,
+        entry: &Entry,
+        placed: &[Placement],
+    ) -> Result<(Option<String>, Option<Refusal>), Fail> {
+        if is_solid(entry.type_number) {
+            let reason = match entry.type_number {
+                412 | 414 => "arrays of subfigures are not read",
+                _ => "solids given by primitives are not read",
+            };
+            return Ok((None, Some((SkipKind::Unsupported, reason.to_owned()))));
         }
+        let (mut name, mut refused) = (None, None);
+        for copy in placed.iter().filter(|p| p.hidden_in == 0) {
+            let map = copy.map.after(&matrix_of(self.model, entry, self.notes)?);
+            let (found, pieces, base) = match is_face(entry.type_number) {
+                true => self.face(entry, &map)?,
+                false => {
+                    let (found, pieces) = self.whole(entry, &copy.map)?;
+                    (found, pieces, entry.number)
+                }
+            };
+            name = found;
+            match pieces {
+                Ok(pieces) => self.out.patches.extend(pieces.into_iter().map(|(patch, border)| {
+                    CadPatch {
+                        patch,
+                        entity: entry.number,
+                        type_number: entry.type_number,
+                        base,
+                        instance: copy.instance,
+                        border,
+                        name: name.clone(),
+                    }
+                })),
+                Err(reason) => {
+                    refused.get_or_insert(reason);
+                    // The copies differ in place only.
+                    break;
+                }
+            }
+        }
+        Ok((name, refused))
     }
-    Ok(list)
-}
 
-/// Every chain of parents must end.
-fn no_cycles(
-    model: &Model,
-    usage: &[Usage],
-    parent: impl Fn(&Usage) -> Option<usize>,
-    what: &str,
-) -> Result<(), Fail> {
-    // 0: not seen, 1: on the chain being followed, 2: known to end.
-    let mut state = vec![0u8; usage.len()];
-    for start in 0..usage.len() {
-        let mut chain = Vec::new();
-        let mut current = Some(start);
-        while let Some(index) = current.filter(|&i| state[i] != 2) {
-            if state[index] == 1 {
-                let entry = &model.entries[index];
-                let found = format!("{what}: entity {} leads back to itself", entry.number);
-                return Err(Fail::new(
-                    (entry.line, 1),
-                    "pointers without a cycle",
-                    found,
+    /// A surface that stands alone.
+    fn whole(
+        &mut self,
+        entry: &Entry,
+        outer: &Affine,
+    ) -> Result<(Option<String>, Result<Vec<Piece>, Refusal>), Fail> {
+        let (surface, values) = match curve::settle(surfaces::read(self.model, entry, outer, self.notes))? {
+            Ok(read) => read,
+            Err(reason) => return Ok((own_name(entry), Err((SkipKind::Surface, reason)))),
+        };
+        let name = self.name_of(entry, values)?;
+        let pieces = match surface {
+            BaseSurface::Patches(patches) => {
+                self.approximated(entry, &patches);
+                Ok(patches.into_iter().map(|p| (p.patch, Border::Natural)).collect())
+            }
+            BaseSurface::Unbounded(plane) => match &plane.border {
+                Some((number, border)) if *border == surfaces::UnboundedBorder::Outer => {
+                    self.bordered(entry, *number, &plane, outer)?
+                }
+                _ => {
+                    let reason = "has no end, and no face says which part of it is meant";
+                    Err((SkipKind::Unsupported, reason.to_owned()))
+                }
+            },
+        };
+        Ok((name, pieces))
+    }
+
+    /// A plane (108) that its own closed curve bounds.
+    fn bordered(
+        &mut self,
+        entry: &Entry,
+        number: u32,
+        plane: &surfaces::Unbounded,
+        outer: &Affine,
+    ) -> Result<Result<Vec<Piece>, Refusal>, Fail> {
+        let index = self.model.index(i64::from(number), (entry.line, 1), "the border of a plane")?;
+        let curve = &self.model.entries[index];
+        let map = outer.after(&matrix_of(self.model, entry, self.notes)?);
+        let read = trimmed::space_parts(self.model, curve, &map, self.notes);
+        let space = match curve::settle(read)? {
+            Ok(space) => space,
+            Err(reason) => return Ok(Err((SkipKind::Boundary, reason))),
+        };
+        let boundary = Boundary {
+            name: describe(curve),
+            stretches: vec![Stretch {
+                space,
+                ..Stretch::default()
+            }],
+        };
+        let face = Face {
+            base: 0,
+            boundaries: vec![boundary],
+            outer: true,
+            values: 0,
+            fault: None,
+        };
+        Ok(match plane.sized(&points(&face)) {
+            Ok(base) => self.bounded(entry, &base, &face, None).map(|piece| vec![piece]),
+            Err(reason) => Err((SkipKind::Surface, reason)),
+        })
+    }
+
+    /// A face, with its name and the number of its surface.
+    fn face(
+        &mut self,
+        entry: &Entry,
+        map: &Affine,
+    ) -> Result<(Option<String>, Result<Vec<Piece>, Refusal>, u32), Fail> {
+        let model = self.model;
+        let face = match entry.type_number {
+            144 => trimmed::read_144(model, entry, map, self.notes)?,
+            143 => trimmed::read_143(model, entry, map, self.notes)?,
+            _ => brep::read_510(model, entry, map, &mut self.edges, self.notes)?,
+        };
+        let base = &model.entries[face.base];
+        let mut name = match self.name_of(entry, face.values)? {
+            Some(name) => Some(name),
+            None => own_name(base),
+        };
+        let refused = |kind, reason: String| Err((kind, reason));
+        if let Some(reason) = &face.fault {
+            return Ok((name, refused(SkipKind::Boundary, reason.clone()), base.number));
+        }
+        let on = |reason: String| format!("{}: {reason}", describe(base));
+        if !surfaces::is_base(base.type_number) {
+            let reason = format!("lies on {}, which is not read", describe(base));
+            return Ok((name, refused(SkipKind::Unsupported, reason), base.number));
+        }
+        let read = curve::settle(surfaces::read(model, base, map, self.notes))?;
+        let (surface, values) = match read {
+            Ok(read) => read,
+            Err(reason) => return Ok((name, refused(SkipKind::Surface, on(reason)), base.number)),
+        };
+        if name.is_none() {
+            name = self.name_of(base, values)?;
+        }
+        let patches = match surface {
+            BaseSurface::Patches(patches) => patches,
+            BaseSurface::Unbounded(unbounded) => match unbounded.sized(&points(&face)) {
+                Ok(patch) => vec![patch],
+                Err(reason) => {
+                    return Ok((name, refused(SkipKind::Boundary, on(reason)), base.number));
+                }
+            },
+        };
+        self.approximated(base, &patches);
+        let pieces = match &patches[..] {
+            _ if face.boundaries.is_empty() => {
+                Ok(patches.into_iter().map(|p| (p.patch, Border::Natural)).collect())
+            }
+            [patch] => {
+                let name = (entry.number != base.number).then_some(base);
+                self.bounded(entry, patch, &face, name).map(|piece| vec![piece])
+            }
+            _ => {
+                let reason = on(format!(
+                    "falls into {} patches, across which its boundary is not followed",
+                    patches.len()
                 ));
+                refused(SkipKind::Boundary, reason)
             }
-            state[index] = 1;
-            chain.push(index);
-            current = parent(&usage[index]);
-        }
-        for index in chain {
-            state[index] = 2;
-        }
-    }
-    Ok(())
-}
-
-/// Reasons in status and membership not to read a surface.
-fn refusal(entry: &Entry, used: &Usage, model: &Model) -> Option<String> {
-    if let Some(parent) = used.subfigure {
-        return Some(format!(
-            "belongs to subfigure definition {} (308); instances of subfigures are not read",
-            model.entries[parent].number
-        ));
-    }
-    if entry.status.blanked {
-        return Some("blanked (hidden) in the file".to_owned());
-    }
-    let purpose = match entry.status.purpose {
-        1 => "annotation",
-        2 => "part of a definition",
-        4 => "a logical reference",
-        5 => "in parameter space",
-        6 => "construction geometry",
-        _ => {
-            // The faces of a shell, and all members of a group, belong to what is not a surface itself.
-            let alone = used.group.is_none() && !matches!(entry.type_number, 143 | 144 | 510);
-            return (alone && entry.status.physically_dependent()).then(|| {
-                "physically dependent on an entity that is not read as a surface".to_owned()
-            });
-        }
-    };
-    Some(format!("marked as {purpose}, not as geometry"))
-}
-
-/// Matrices of the groups that an entity depends on physically. (A group that only refers to it does not move it.)
-fn group_matrix(
-    model: &Model,
-    usage: &[Usage],
-    index: usize,
-    notes: &mut Vec<String>,
-) -> Result<Affine, Fail> {
-    let mut total = Affine::identity();
-    let mut current = index;
-    // `no_cycles` has made sure that this ends.
-    while let Some(group) = usage[current].group {
-        if !model.entries[current].status.physically_dependent() {
-            break;
-        }
-        total = matrix_of(model, &model.entries[group], notes)?.after(&total);
-        current = group;
-    }
-    Ok(total)
-}
-
-/// A 128 that stands alone.
-fn free(
-    model: &Model,
-    entry: &Entry,
-    outer: &Affine,
-    name: &mut Option<String>,
-    patches: &mut Vec<CadPatch>,
-    notes: &mut Vec<String>,
-) -> Result<Option<String>, Fail> {
-    let map = outer.after(&matrix_of(model, entry, notes)?);
-    let read = surface::read(model, entry, &map, notes)?;
-    *name = name_of(model, entry, read.values)?;
-    Ok(match read.patch {
-        Ok(patch) => {
-            patches.push(CadPatch {
-                patch,
-                entity: entry.number,
-                type_number: 128,
-                name: name.clone(),
-            });
-            None
-        }
-        Err(reason) => Some(reason),
-    })
-}
-
-/// A 144: read if it has no boundary curves and lies on a 128.
-fn untrimmed(
-    model: &Model,
-    entry: &Entry,
-    outer: &Affine,
-    name: &mut Option<String>,
-    patches: &mut Vec<CadPatch>,
-    notes: &mut Vec<String>,
-) -> Result<Option<String>, Fail> {
-    let params = model.params(entry)?;
-    let what = "the surface of a trimmed surface (144)";
-    let base = model.entry(params.integer(1, what)?, params.place_of(1), what)?;
-    let flag = params.integer(2, "the flag N1 of the outer boundary")?;
-    if !(0..=1).contains(&flag) {
-        return Err(params.fail(2, "0 or 1 for the flag N1 of the outer boundary"));
-    }
-    let holes = params.count(3, "the number N2 of inner boundaries")?;
-    if holes > params.len().saturating_sub(4) {
-        return Err(params.fail(
-            params.len(),
-            format!("{holes} pointers to inner boundaries"),
-        ));
-    }
-    // The pointer to the outer boundary is there even if N1 = 0, unless it ends the record.
-    *name = match name_of(model, entry, 5 + holes)? {
-        Some(name) => Some(name),
-        None => own_name(base),
-    };
-    for (i, what) in (4..5 + holes).zip(std::iter::once("outer").chain(std::iter::repeat("inner")))
-    {
-        let pointer = if i < params.len() {
-            params.integer(i, "a boundary curve")?
-        } else {
-            0
         };
-        if pointer != 0 || what == "inner" || flag == 1 {
-            model.index(
-                pointer,
-                params.place_of(i),
-                &format!("the {what} boundary curve"),
-            )?;
+        Ok((name, pieces, base.number))
+    }
+
+    /// A patch with the boundaries of a face.
+    fn bounded(
+        &mut self,
+        entry: &Entry,
+        base: &BasePatch,
+        face: &Face,
+        surface: Option<&Entry>,
+    ) -> Result<Piece, Refusal> {
+        let global = &self.model.global;
+        let resolution = global.resolution.map_or(0.0, |r| r / global.scale);
+        let host = Host::new(&base.patch, &base.parameters, resolution);
+        let mut tally = Tally {
+            tolerance: host.agree,
+            ..Tally::default()
+        };
+        let mut said = Vec::new();
+        // A B-rep's loops do not say which of them is the outer one.
+        let sort = entry.type_number != 144;
+        let made = loops(&host, &face.boundaries, sort, &mut tally, &mut said);
+        let trimmed = made.and_then(|loops| {
+            let trimmed = base.patch.trimmed_by(loops, face.outer, GAP);
+            trimmed.map_err(|e| e.to_string())
+        });
+        let note = |text: &str| format!("{}: {text}", describe(entry));
+        self.notes.extend(said.iter().map(|text| note(text)));
+        match trimmed {
+            Ok(trimmed) => {
+                add(&mut self.out.trims, &tally);
+                let border = match trimmed.patch.trim() {
+                    Some(_) => Border::Trimmed,
+                    None => Border::Rectangle,
+                };
+                Ok((trimmed.patch, border))
+            }
+            Err(reason) => {
+                let on = surface.map_or(String::new(), |s| format!(" on {}", describe(s)));
+                Err((SkipKind::Boundary, format!("{reason}{on}")))
+            }
         }
     }
-    if flag == 1 || holes > 0 {
-        return Ok(Some(format!(
-            "trimmed (N1 = {flag}, {holes} inner boundaries) on entity {} ({}); trimmed surfaces are not read",
-            base.number,
-            describe(base)
-        )));
-    }
-    if base.type_number != 128 {
-        return Ok(Some(format!(
-            "lies on entity {} ({}), which is not read",
-            base.number,
-            describe(base)
-        )));
-    }
-    let map = outer
-        .after(&matrix_of(model, entry, notes)?)
-        .after(&matrix_of(model, base, notes)?);
-    let read = surface::read(model, base, &map, notes)?;
-    if name.is_none() {
-        *name = name_of(model, base, read.values)?;
-    }
-    Ok(match read.patch {
-        Ok(patch) => {
-            patches.push(CadPatch {
-                patch,
-                entity: entry.number,
-                type_number: 144,
-                name: name.clone(),
-            });
-            None
+
+    /// Says where a surface is not what the entity defines.
+    fn approximated(&mut self, entry: &Entry, patches: &[BasePatch]) {
+        let deviation = patches.iter().fold(0.0, |d: f64, p| d.max(p.deviation));
+        if deviation > 0.0 {
+            let text = format!("read as a NURBS surface that differs by up to {deviation:.1e}");
+            let note = format!("{}: {text}", describe(entry));
+            if !self.notes.contains(&note) {
+                self.notes.push(note);
+            }
         }
-        Err(reason) => Some(format!(
-            "entity {} ({}): {reason}",
-            base.number,
-            describe(base)
-        )),
-    })
+    }
+
+    /// Name of an entity: its property 406 form 15 if there is one, or else its label. After an entity's own `values`
+    /// values stand two lists of pointers, each with its length in front: associativities, then properties.
+    fn name_of(&self, entry: &Entry, values: usize) -> Result<Option<String>, Fail> {
+        let model = self.model;
+        let params = model.params(entry)?;
+        if let Some(name) = property_name(model, &params, values)? {
+            return Ok(Some(name));
+        }
+        Ok(own_name(entry))
+    }
 }
 
-/// Why a surface of another type is not read.
-fn unsupported(model: &Model, entry: &Entry) -> Result<String, Fail> {
-    let at = match entry.type_number {
-        143 => 2,
-        140 => 5,
-        510 => 1,
-        other if is_solid(other) => {
-            return Ok("solids given by primitives are not read".to_owned());
+/// The name among the properties that follow an entity's own values.
+fn property_name(model: &Model, params: &Params, values: usize) -> Result<Option<String>, Fail> {
+    if params.len() <= values {
+        return Ok(None);
+    }
+    let skip = params.count(values, "a number of associativity pointers")?;
+    let at = values.saturating_add(skip).saturating_add(1);
+    if params.len() <= at {
+        return Ok(None);
+    }
+    for index in members(model, params, at, "a property")? {
+        let property = &model.entries[index];
+        if property.type_number == 406 && property.form == 15 {
+            let params = model.params(property)?;
+            if let Some(name) = params.string(2, "a name")? {
+                return Ok(Some(name.trim().to_owned()));
+            }
         }
-        _ => return Ok("surfaces of this type are not read".to_owned()),
-    };
-    let params = model.params(entry)?;
-    let base = model.entry(
-        params.integer(at, "a surface")?,
-        params.place_of(at),
-        "a surface",
-    )?;
-    let (number, kind) = (base.number, describe(base));
-    Ok(match entry.type_number {
-        510 => {
-            let loops = params.count(2, "the number of loops of a face (510)")?;
-            format!(
-                "face of a B-rep with {loops} loops on entity {number} ({kind}); trimmed faces are not read"
-            )
-        }
-        143 => {
-            format!("bounded surface on entity {number} ({kind}); trimmed surfaces are not read")
-        }
-        _ => format!("offset of entity {number} ({kind}); offset surfaces are not read"),
-    })
+    }
+    Ok(None)
 }
 
-fn describe(entry: &Entry) -> String {
-    format!(
-        "{} {}",
-        entry.type_number,
-        entity_name(entry.type_number, entry.form)
-    )
+/// Points between which a face's space curves run.
+fn points(face: &Face) -> Vec<Vec3> {
+    let parts = face.boundaries.iter().flat_map(|b| &b.stretches);
+    let curves = parts.flat_map(|s| &s.space).map(|p| &p.curve);
+    curves
+        .flat_map(|c| c.homogeneous())
+        .map(|p| Vec3::new(p[0], p[1], p[2]) / p[3])
+        .collect()
 }
 
 fn own_name(entry: &Entry) -> Option<String> {
     (!entry.label.is_empty()).then(|| entry.label.clone())
-}
-
-/// Name of an entity: its property 406 form 15 if there is one, or else its label. After an entity's own `values`
-/// values stand two lists of pointers, each with its length in front: associativities, then properties.
-fn name_of(model: &Model, entry: &Entry, values: usize) -> Result<Option<String>, Fail> {
-    let params = model.params(entry)?;
-    if params.len() > values {
-        let skip = params.count(values, "a number of associativity pointers")?;
-        let at = values.saturating_add(skip).saturating_add(1);
-        if params.len() > at {
-            for (index, _) in members(model, &params, at, "a property")? {
-                let property = &model.entries[index];
-                if property.type_number == 406 && property.form == 15 {
-                    let params = model.params(property)?;
-                    if let Some(name) = params.string(2, "a name")? {
-                        return Ok(Some(name.trim().to_owned()));
-                    }
-                }
-            }
-        }
-    }
-    Ok(own_name(entry))
 }

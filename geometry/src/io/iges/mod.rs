@@ -1,9 +1,13 @@
 //! IGES 5.3 files (ANS US PRO/IPO-100-1996), fixed-length ASCII form.
 //!
 //! The layers, one file each: 80-column `records` in their sections, `params` (free-format values with their places in
-//! the file), the `global` section, the `directory`, then entities: `surface` (128), `transform` (124), and `faces`,
-//! which decides what every surface entity becomes.
+//! the file), the `global` section, the `directory`, then entities: `transform` (124), `curve*` and `surfaces` (what they
+//! are as NURBS), `trimmed` and `brep` (faces as the file describes them), `groups` (who holds whom, and where copies
+//! stand), and `faces`, which decides what every surface entity becomes. Boundaries become loops of curves in the
+//! parameter plane in `trimmed_loops`, curve by curve in `trimmed_curves`, which projects onto a `trimmed_host` and fits
+//! by `trimmed_fit`.
 
+mod brep;
 mod curve;
 mod curve_conic;
 mod curve_map;
@@ -13,12 +17,18 @@ mod curve_spline;
 mod directory;
 mod faces;
 mod global;
+mod groups;
 mod names;
 mod number;
 mod params;
 mod records;
 mod surface;
 mod transform;
+mod trimmed;
+mod trimmed_curves;
+mod trimmed_fit;
+mod trimmed_host;
+mod trimmed_loops;
 
 pub use names::entity_name;
 
@@ -66,8 +76,9 @@ impl<'a> Model<'a> {
 
 /// Reads an IGES file. `name` stands for the file in messages.
 ///
-/// Entity 128 is read, free-standing or in a 144 without boundary curves, with the transformation matrices (124) of both.
-/// All other surfaces (trimmed ones included) are listed as skipped.
+/// Surfaces are read where they stand alone or carry a face (144, 143, 510), with the boundaries of the face as the
+/// patch's trim, and with all matrices (124), groups (402), subfigures (308, 408), shells and solids (514, 186, 430) around
+/// them. What is not read is listed as skipped, and no face is ever read without its boundaries.
 ///
 /// # Errors
 /// [`CadError::Content`] with the place of the damage. A sound file that holds no surface is no error.
@@ -98,15 +109,16 @@ fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
         global,
         entries,
     };
-    let (patches, skipped) = faces::read(&model, &mut notes)?;
+    let read = faces::read(&model, &mut notes)?;
     Ok(CadFile {
         path: name.to_owned(),
         format: CadFormat::Iges,
         unit: model.global.unit.clone(),
         resolution: model.global.resolution.map(|r| r / model.global.scale),
-        patches,
+        patches: read.patches,
         entities,
-        skipped,
+        skipped: read.skipped,
+        trims: read.trims,
         notes,
     })
 }

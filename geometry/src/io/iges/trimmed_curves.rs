@@ -1,0 +1,335 @@
+//! Boundary curves of a face in the parameter plane of its patch: those that the file gives there, if they agree with those
+//! in space, else the space curves projected.
+
+use super::super::report::TrimReport;
+use super::trimmed::{Part, Stretch};
+use super::trimmed_fit::{Fitted, fit, smooth_breaks};
+use super::trimmed_host::{Host, Xi};
+use crate::trim::TrimCurve;
+use crate::{NurbsCurve, Vec3};
+
+/// Fitted curves keep to what they stand for within this share of the size of the surface.
+const FIT: f64 = 1e-7;
+/// Projected curves may lie this far off the surface, as a share of its size; beyond it they do not belong to it.
+const OFF: f64 = 1e-2;
+/// Curves may leave the domain by this share of it and still be taken.
+const BEYOND: f64 = 1e-4;
+
+/// What the curves of one face did; added to the report of the file if the face is read.
+pub type Tally = TrimReport;
+
+pub fn add(total: &mut TrimReport, face: &Tally) {
+    total.curves += face.curves;
+    total.exact += face.exact;
+    total.refitted += face.refitted;
+    total.projected += face.projected;
+    total.rejected += face.rejected;
+    total.largest_gap = total.largest_gap.max(face.largest_gap);
+    total.largest_error = total.largest_error.max(face.largest_error);
+    total.tolerance = total.tolerance.max(face.tolerance);
+}
+
+/// A stretch in the parameter plane of the patch.
+pub fn curves(
+    host: &Host,
+    stretch: &Stretch,
+    tally: &mut Tally,
+    complaints: &mut Vec<String>,
+) -> Result<Vec<TrimCurve>, String> {
+    let given = match stretch.parameter.is_empty() {
+        true => Err("there are none".to_owned()),
+        false => given(host, stretch),
+    };
+    match given {
+        Ok(given) if given.gap <= host.agree || stretch.space.is_empty() => {
+            Ok(given.take(tally))
+        }
+        Ok(given) => {
+            // The space curves count where they lie nearer to the surface than to the other ones.
+            let mut fresh = Tally::default();
+            match projected(host, stretch, &mut fresh) {
+                Ok(curves) if fresh.largest_gap < 0.5 * given.gap => {
+                    complaints.push(format!(
+                        "its curves in the parameter plane lie up to {:.1e} from those in space, which were projected",
+                        given.gap
+                    ));
+                    fresh.rejected = 1;
+                    add(tally, &fresh);
+                    Ok(curves)
+                }
+                _ => {
+                    complaints.push(format!(
+                        "its curves in the parameter plane lie up to {:.1e} from those in space, which lie no nearer \
+                         to the surface",
+                        given.gap
+                    ));
+                    Ok(given.take(tally))
+                }
+            }
+        }
+        Err(reason) if stretch.space.is_empty() => Err(reason),
+        Err(reason) => {
+            if !stretch.parameter.is_empty() {
+                complaints.push(format!(
+                    "its curves in the parameter plane are of no use ({reason}); those in space were projected"
+                ));
+                tally.rejected += 1;
+            }
+            projected(host, stretch, tally)
+        }
+    }
+}
+
+/// Curves from the file's parameter plane.
+struct Given {
+    curves: Vec<TrimCurve>,
+    exact: usize,
+    error: f64,
+    /// Largest distance from the curves in space.
+    gap: f64,
+}
+
+impl Given {
+    fn take(self, tally: &mut Tally) -> Vec<TrimCurve> {
+        let n = self.curves.len();
+        tally.curves += n;
+        tally.exact += self.exact;
+        tally.refitted += n - self.exact;
+        tally.largest_error = tally.largest_error.max(self.error);
+        tally.largest_gap = tally.largest_gap.max(self.gap);
+        self.curves
+    }
+}
+
+fn given(host: &Host, stretch: &Stretch) -> Result<Given, String> {
+    let (mut exact, mut error) = (0, 0.0f64);
+    let mut own = Vec::with_capacity(stretch.parameter.len());
+    let shift = host.turns(bounds(&stretch.parameter));
+    for part in &stretch.parameter {
+        let curve = match host.exact(&part.curve, shift) {
+            Some(curve) => {
+                exact += 1;
+                curve
+            }
+            None => {
+                let fitted = refitted(host, &part.curve, shift)?;
+                error = error.max(fitted.error);
+                fitted.curve
+            }
+        };
+        let beyond = sample(&curve, 2)
+            .map(|xi| host.beyond(xi))
+            .fold(0.0, f64::max);
+        if beyond.is_nan() || beyond > BEYOND {
+            return Err(format!(
+                "they leave the domain of the surface by {:.1e} of it",
+                beyond
+            ));
+        }
+        own.push((part.entity, curve));
+    }
+    let mut gap = 0.0f64;
+    let mut backwards = false;
+    if !stretch.space.is_empty() {
+        let chain = Chain::new(&stretch.space);
+        for (_, curve) in &own {
+            for xi in sample(curve, 1) {
+                let off = chain.distance(&host.point(xi));
+                gap = if off.is_nan() { f64::INFINITY } else { gap.max(off) };
+            }
+        }
+        // Ends tell the direction, and whether one of the two is shorter than the other.
+        let ends = chain.ends();
+        let (first, last) = (&own[0].1, &own[own.len() - 1].1);
+        let own_ends = [host.point(first.ends()[0]), host.point(last.ends()[1])];
+        let apart = |a: &[Vec3; 2], b: &[Vec3; 2]| (a[0] - b[0]).norm().max((a[1] - b[1]).norm());
+        let along = apart(&own_ends, &ends);
+        let against = apart(&own_ends, &[ends[1], ends[0]]);
+        backwards = against < 0.1 * along && (ends[0] - ends[1]).norm() > host.agree;
+        gap = gap.max(along.min(if backwards { against } else { along }));
+    }
+    if backwards {
+        own = own
+            .into_iter()
+            .rev()
+            .map(|(entity, curve)| Ok((entity, curve.reversed()?)))
+            .collect::<Result<_, crate::curve::CurveError>>()
+            .map_err(|e| e.to_string())?;
+    }
+    let paired = own.len() == stretch.space.len();
+    let curves = own.into_iter().enumerate().map(|(k, (entity, parameter))| {
+        let space = stretch.space.get(k).filter(|_| paired);
+        TrimCurve {
+            entity: match (stretch.edge, space) {
+                (0, Some(space)) => space.entity,
+                (0, None) => entity,
+                (edge, _) => edge,
+            },
+            space: space.map(|s| s.curve.clone()).filter(|space| {
+                // Members in another order, or of other lengths: no pair.
+                let ends = parameter.ends().map(|xi| host.point(xi));
+                let other = space.ends();
+                (0..2).all(|i| (ends[i] - other[i]).norm() <= host.agree.max(2.0 * gap))
+            }),
+            parameter,
+        }
+    });
+    Ok(Given {
+        curves: curves.collect(),
+        exact,
+        error,
+        gap,
+    })
+}
+
+/// Box around curves of the file's parameter plane.
+fn bounds(parts: &[Part<2>]) -> [[f64; 2]; 2] {
+    let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+    for xi in parts.iter().flat_map(|p| sample(&p.curve, 1)) {
+        for d in 0..2 {
+            bounds[d] = [bounds[d][0].min(xi[d]), bounds[d][1].max(xi[d])];
+        }
+    }
+    bounds
+}
+
+/// A curve of the file's parameter plane where the patch's parameters are not a linear map of it.
+fn refitted(host: &Host, file: &NurbsCurve<2>, shift: Xi) -> Result<Fitted, String> {
+    let breaks = smooth_breaks(file.basis());
+    let mut path = |t: f64, _: Xi| Ok(host.from_file(file.point(t) + shift));
+    let start = path(breaks[0], Xi::zeros())?;
+    fit(host, &breaks, &mut path, start, FIT * host.size)
+}
+
+/// Space curves projected onto the surface, one for one.
+fn projected(host: &Host, stretch: &Stretch, tally: &mut Tally) -> Result<Vec<TrimCurve>, String> {
+    let mut curves = Vec::with_capacity(stretch.space.len());
+    let mut near = Xi::from_fn(|d, _| 0.5 * (host.domain[d][0] + host.domain[d][1]));
+    for part in &stretch.space {
+        let (fitted, off) = match host.exact_projection(&part.curve) {
+            Some(curve) => {
+                let off = sample_space(&part.curve)
+                    .map(|(t, x)| (host.patch.point(curve.point(t).into()) - x).norm())
+                    .fold(0.0, f64::max);
+                (Fitted { curve, error: 0.0 }, off)
+            }
+            None => project(host, &part.curve, near)?,
+        };
+        if off.is_nan() || off > OFF * host.size {
+            return Err(format!(
+                "curve {} lies up to {off:.1e} off the surface, of which it should bound a part",
+                part.entity
+            ));
+        }
+        near = fitted.curve.ends()[1];
+        tally.curves += 1;
+        tally.projected += 1;
+        tally.largest_error = tally.largest_error.max(fitted.error);
+        tally.largest_gap = tally.largest_gap.max(off);
+        curves.push(TrimCurve {
+            parameter: fitted.curve,
+            space: Some(part.curve.clone()),
+            entity: if stretch.edge == 0 { part.entity } else { stretch.edge },
+        });
+    }
+    Ok(curves)
+}
+
+/// A space curve on the surface, and how far it lies off it.
+fn project(host: &Host, space: &NurbsCurve<3>, near: Xi) -> Result<(Fitted, f64), String> {
+    let [a, b] = space.domain();
+    let mut off = 0.0f64;
+    let mut path = |t: f64, near: Xi| {
+        let (mut xi, distance) = host.foot(&space.point(t), near)?;
+        off = off.max(distance);
+        let stuck = host.stuck(xi);
+        if stuck != [false; 2] {
+            // At a pole the turning parameter is what it tends to on the way there.
+            let h = if t + 2e-3 * (b - a) <= b { 1e-3 } else { -1e-3 } * (b - a);
+            let x1 = host.foot(&space.point(t + h), near)?.0;
+            let x2 = host.foot(&space.point(t + 2.0 * h), x1)?.0;
+            for d in (0..2).filter(|&d| stuck[d]) {
+                xi[d] = 2.0 * x1[d] - x2[d];
+            }
+        }
+        Ok(xi)
+    };
+    let breaks = smooth_breaks(space.basis());
+    // A start on the seam belongs to the side on which the curve goes on.
+    let inner = path(a + (b - a) * 1e-3, near)?;
+    let fitted = fit(host, &breaks, &mut path, inner, FIT * host.size)?;
+    Ok((fitted, off))
+}
+
+/// Points of a curve of the plane: `density` times degree plus one in each span.
+fn sample(curve: &NurbsCurve<2>, density: usize) -> impl Iterator<Item = Xi> + '_ {
+    parameters(curve.basis(), density).map(|t| curve.point(t))
+}
+
+fn sample_space(curve: &NurbsCurve<3>) -> impl Iterator<Item = (f64, Vec3)> + '_ {
+    parameters(curve.basis(), 2).map(|t| (t, curve.point(t)))
+}
+
+fn parameters(basis: &crate::basis::Basis, density: usize) -> impl Iterator<Item = f64> + '_ {
+    let n = density * (basis.degree() + 1);
+    let end = basis.domain()[1];
+    (0..basis.span_count())
+        .flat_map(move |span| {
+            let [a, b] = basis.span_range(span);
+            (0..n).map(move |k| a + (b - a) * (k as f64 / n as f64))
+        })
+        .chain([end])
+}
+
+/// Space curves one after the other, for distances to them.
+struct Chain<'a> {
+    parts: &'a [Part<3>],
+    /// Part, parameter and point.
+    samples: Vec<(usize, f64, Vec3)>,
+}
+
+impl<'a> Chain<'a> {
+    fn new(parts: &'a [Part<3>]) -> Self {
+        let samples = parts
+            .iter()
+            .enumerate()
+            .flat_map(|(k, part)| sample_space(&part.curve).map(move |(t, x)| (k, t, x)))
+            .collect();
+        Self { parts, samples }
+    }
+
+    fn ends(&self) -> [Vec3; 2] {
+        let last = self.parts.len() - 1;
+        [self.parts[0].curve.ends()[0], self.parts[last].curve.ends()[1]]
+    }
+
+    /// Distance of `q` from the nearest curve: Newton's method from the nearest sample, with one beside it.
+    fn distance(&self, q: &Vec3) -> f64 {
+        let nearest = |s: &&(usize, f64, Vec3)| (s.2 - q).norm_squared();
+        let Some(&(k, mut t, x)) = self
+            .samples
+            .iter()
+            .min_by(|a, b| nearest(a).total_cmp(&nearest(b)))
+        else {
+            return f64::INFINITY;
+        };
+        let curve = &self.parts[k].curve;
+        let [a, b] = curve.domain();
+        let mut best = (x - q).norm();
+        for _ in 0..12 {
+            let jet = curve.jet(t);
+            let d = jet.point - q;
+            let slope = jet.d1.dot(&d);
+            let full = jet.d1.norm_squared() + jet.d2.dot(&d);
+            // Gauss-Newton where the curve bends away from the point.
+            let bend = if full > 0.0 { full } else { jet.d1.norm_squared() };
+            let next = (t - slope / bend).clamp(a, b);
+            if !next.is_finite() || next == t {
+                break;
+            }
+            t = next;
+            best = best.min((curve.point(t) - q).norm());
+        }
+        best
+    }
+}

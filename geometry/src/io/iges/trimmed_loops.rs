@@ -1,0 +1,345 @@
+//! Closed loops of parameter curves from the boundaries of a face: curves moved by periods to follow each other, poles
+//! bridged, loops that go round a closed surface joined to one another or to its border.
+
+use super::trimmed::Boundary;
+use super::trimmed_curves::{Tally, curves};
+use super::trimmed_host::{Host, Xi};
+use crate::NurbsCurve;
+use crate::curve::CurveError;
+use crate::trim::{TrimCurve, TrimLoop};
+
+/// Gaps between curves up to this share of the domain are closed by moving ends.
+pub const GAP: f64 = 1e-3;
+
+/// A chain of curves, and how many periods it ends from where it began.
+struct Chain {
+    curves: Vec<TrimCurve>,
+    turns: [i32; 2],
+}
+
+/// The loops of a face. `outer_first` orders them so that the first is the one that bounds most.
+pub fn loops(
+    host: &Host,
+    boundaries: &[Boundary],
+    outer_first: bool,
+    tally: &mut Tally,
+    complaints: &mut Vec<String>,
+) -> Result<Vec<TrimLoop>, String> {
+    let mut closed = Vec::new();
+    let mut winding = Vec::new();
+    for boundary in boundaries {
+        let named = |reason: String| format!("{}: {reason}", boundary.name);
+        let mut found = Vec::new();
+        let mut said = Vec::new();
+        for stretch in &boundary.stretches {
+            found.push(curves(host, stretch, tally, &mut said).map_err(named)?);
+        }
+        complaints.extend(said.into_iter().map(named));
+        let chain = chain(host, found).map_err(named)?;
+        if chain.turns == [0, 0] {
+            closed.push(chain.curves);
+        } else {
+            winding.push(chain);
+        }
+    }
+    if !winding.is_empty() {
+        closed.insert(0, joined(host, winding)?);
+    }
+    if outer_first {
+        let area = |curves: &Vec<TrimCurve>| area(curves);
+        if let Some(first) = (0..closed.len()).max_by(|&a, &b| area(&closed[a]).total_cmp(&area(&closed[b]))) {
+            closed.swap(0, first);
+        }
+    }
+    Ok(closed.into_iter().map(|curves| TrimLoop { curves }).collect())
+}
+
+fn line(from: Xi, to: Xi) -> Result<TrimCurve, String> {
+    Ok(TrimCurve {
+        parameter: NurbsCurve::line(from, to).map_err(|e| e.to_string())?,
+        space: None,
+        entity: 0,
+    })
+}
+
+fn start(curve: &TrimCurve) -> Xi {
+    curve.parameter.ends()[0]
+}
+
+fn end(curve: &TrimCurve) -> Xi {
+    curve.parameter.ends()[1]
+}
+
+fn shifted(curve: TrimCurve, by: Xi) -> Result<TrimCurve, CurveError> {
+    if by == Xi::zeros() {
+        return Ok(curve);
+    }
+    Ok(TrimCurve {
+        parameter: curve.parameter.transformed(&|x| x + by)?,
+        ..curve
+    })
+}
+
+fn reversed(curve: &TrimCurve) -> Result<TrimCurve, CurveError> {
+    Ok(TrimCurve {
+        parameter: curve.parameter.reversed()?,
+        space: curve.space.as_ref().map(NurbsCurve::reversed).transpose()?,
+        entity: curve.entity,
+    })
+}
+
+/// Whether the stretches follow each other in space, and round to the first.
+fn follows(host: &Host, stretches: &[Vec<TrimCurve>]) -> bool {
+    let n = stretches.len();
+    (0..n).all(|k| {
+        let (Some(last), Some(first)) = (stretches[k].last(), stretches[(k + 1) % n].first()) else {
+            return true;
+        };
+        (host.point(end(last)) - host.point(start(first))).norm() <= joint(host)
+    })
+}
+
+/// Ends of curves this near to each other in space are one point.
+fn joint(host: &Host) -> f64 {
+    10.0 * host.agree
+}
+
+/// Turns stretches round where their flags do not make them follow each other.
+fn directed(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Vec<Vec<TrimCurve>>, String> {
+    if follows(host, &stretches) {
+        return Ok(stretches);
+    }
+    let turn = |s: &Vec<TrimCurve>| -> Result<Vec<TrimCurve>, String> {
+        let turned = s.iter().rev().map(reversed).collect::<Result<_, _>>();
+        turned.map_err(|e: CurveError| e.to_string())
+    };
+    for first in [stretches[0].clone(), turn(&stretches[0])?] {
+        let mut out = vec![first];
+        for next in &stretches[1..] {
+            let last = out[out.len() - 1].last().map(|c| host.point(end(c)));
+            let (Some(last), Some(a), Some(b)) = (last, next.first(), next.last()) else {
+                out.push(next.clone());
+                continue;
+            };
+            let to = |xi: Xi| (host.point(xi) - last).norm();
+            match to(start(a)) <= to(end(b)) {
+                true => out.push(next.clone()),
+                false => out.push(turn(next)?),
+            }
+        }
+        if follows(host, &out) {
+            return Ok(out);
+        }
+    }
+    // Left as it is; the gap is named where the chain is made.
+    Ok(stretches)
+}
+
+/// One chain of all stretches.
+fn chain(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Chain, String> {
+    let stretches = directed(host, stretches)?;
+    let mut out: Vec<TrimCurve> = Vec::new();
+    for curve in stretches.into_iter().flatten() {
+        let Some(last) = out.last().map(end) else {
+            out.push(curve);
+            continue;
+        };
+        let from = start(&curve);
+        let by = host.nearest_copy(from, last) - from;
+        let curve = shifted(curve, by).map_err(|e| e.to_string())?;
+        bridge(host, &mut out, last, start(&curve))?;
+        out.push(curve);
+    }
+    let (Some(first), Some(last)) = (out.first().map(start), out.last().map(end)) else {
+        return Err("has no curves".to_owned());
+    };
+    // Where the first curve begins, in the copy that the last one reaches.
+    let target = host.nearest_copy(first, last);
+    bridge(host, &mut out, last, target)?;
+    let turns = [0, 1].map(|d| ((target[d] - first[d]) / host.extent(d)).round() as i32);
+    Ok(Chain { curves: out, turns })
+}
+
+/// Adds a straight line from `from` to `to` where they are one point in space (a pole) but not in the parameter plane.
+fn bridge(host: &Host, out: &mut Vec<TrimCurve>, from: Xi, to: Xi) -> Result<(), String> {
+    let share = (0..2)
+        .map(|d| (to[d] - from[d]).abs() / host.extent(d))
+        .fold(0.0, f64::max);
+    if share <= 1e-9 {
+        return Ok(());
+    }
+    let start = host.point(from);
+    let away = (1..=8)
+        .map(|k| (host.point(from.lerp(&to, f64::from(k) / 8.0)) - start).norm())
+        .fold(0.0, f64::max);
+    if away.is_nan() || away > joint(host) {
+        return Err(format!(
+            "is open: a gap of {away:.1e} in space, {share:.1e} of the domain of the surface"
+        ));
+    }
+    // Small gaps are closed where the trim is made, without a curve of their own.
+    if share > GAP {
+        out.push(line(from, to)?);
+    }
+    Ok(())
+}
+
+/// Area that a loop bounds in the parameter plane, by a polygon.
+fn area(curves: &[TrimCurve]) -> f64 {
+    let mut polygon = Vec::new();
+    for curve in curves {
+        let basis = curve.parameter.basis();
+        let n = 4 * basis.degree();
+        for span in 0..basis.span_count() {
+            let [a, b] = basis.span_range(span);
+            polygon.extend((0..n).map(|k| curve.parameter.point(a + (b - a) * (k as f64 / n as f64))));
+        }
+    }
+    let Some(&origin) = polygon.first() else {
+        return 0.0;
+    };
+    let next = polygon.iter().skip(1).chain(polygon.first());
+    let twice: f64 = polygon
+        .iter()
+        .zip(next)
+        .map(|(p, q)| (p - origin).perp(&(q - origin)))
+        .sum();
+    0.5 * twice.abs()
+}
+
+/// Loops that go round a closed surface bound it together: two are joined by two lines across, one is joined to the border
+/// on its left (boundaries run so that the face lies to their left).
+fn joined(host: &Host, mut winding: Vec<Chain>) -> Result<Vec<TrimCurve>, String> {
+    let round = |chain: &Chain| (0..2).find(|&d| chain.turns[d].abs() == 1 && chain.turns[1 - d] == 0);
+    let cannot = || "loops go round the closed surface in a way that bounds no part of it".to_owned();
+    let first = winding.remove(0);
+    let dir = round(&first).ok_or_else(cannot)?;
+    let turn = first.turns[dir];
+    let mut period = Xi::zeros();
+    period[dir] = host.extent(dir) * f64::from(turn);
+    let from = start(&first.curves[0]);
+    let mut out = first.curves;
+    match (winding.pop(), winding.is_empty()) {
+        (None, _) => {
+            // To the left of increasing xi1 lies increasing xi2, to the left of increasing xi2 decreasing xi1.
+            let upper = (turn > 0) == (dir == 0);
+            let mut border = from;
+            border[1 - dir] = host.domain[1 - dir][usize::from(upper)];
+            if host.closed[1 - dir] {
+                return Err(cannot());
+            }
+            out.push(line(from + period, border + period)?);
+            out.push(line(border + period, border)?);
+            out.push(line(border, from)?);
+        }
+        (Some(second), true) => {
+            if round(&second) != Some(dir) {
+                return Err(cannot());
+            }
+            let mut curves = match second.turns[dir] == -turn {
+                true => second.curves,
+                false => second
+                    .curves
+                    .iter()
+                    .rev()
+                    .map(reversed)
+                    .collect::<Result<_, _>>()
+                    .map_err(|e: CurveError| e.to_string())?,
+            };
+            curves = from_where(host, curves, dir, from[dir]).map_err(|e| e.to_string())?;
+            // Starts where the first loop ends, and runs back by a period.
+            let begin = start(&curves[0]);
+            let mut by = host.nearest_copy(begin, from + period) - begin;
+            by[1 - dir] = if host.closed[1 - dir] { by[1 - dir] } else { 0.0 };
+            let curves = curves
+                .into_iter()
+                .map(|c| shifted(c, by))
+                .collect::<Result<Vec<_>, _>>()
+                .map_err(|e| e.to_string())?;
+            out.push(line(from + period, start(&curves[0]))?);
+            let last = end(&curves[curves.len() - 1]);
+            out.extend(curves);
+            out.push(line(last, from)?);
+        }
+        _ => return Err(cannot()),
+    }
+    Ok(out)
+}
+
+/// The curves of a loop that goes round, begun where parameter `dir` is a whole number of periods from `value`.
+fn from_where(
+    host: &Host,
+    curves: Vec<TrimCurve>,
+    dir: usize,
+    value: f64,
+) -> Result<Vec<TrimCurve>, CurveError> {
+    let period = host.extent(dir);
+    let turns = |x: f64| (x - value) / period;
+    let near = |x: f64| (turns(x) - turns(x).round()).abs() < 1e-9;
+    for (k, curve) in curves.iter().enumerate() {
+        let [a, b] = curve.parameter.domain();
+        let at = |t: f64| turns(curve.parameter.point(t)[dir]);
+        let (from, to) = (at(a), at(b));
+        if near(start(curve)[dir]) {
+            return Ok(rotated(host, curves, k, None));
+        }
+        let target = if to > from { from.ceil() } else { from.floor() };
+        if (target - from) * (target - to) >= 0.0 {
+            continue;
+        }
+        let (mut low, mut high) = (a, b);
+        for _ in 0..100 {
+            let t = 0.5 * (low + high);
+            if (at(t) < target) == (from < target) {
+                low = t;
+            } else {
+                high = t;
+            }
+        }
+        if low <= a || high >= b {
+            continue;
+        }
+        let part = |domain| -> Result<TrimCurve, CurveError> {
+            Ok(TrimCurve {
+                parameter: curve.parameter.with_domain(domain)?,
+                space: None,
+                entity: curve.entity,
+            })
+        };
+        let halves = [part([a, low])?, part([low, b])?];
+        return Ok(rotated(host, curves, k, Some(halves)));
+    }
+    Ok(curves)
+}
+
+/// The loop begun at curve `k`, or at the second half of that curve.
+fn rotated(
+    host: &Host,
+    mut curves: Vec<TrimCurve>,
+    k: usize,
+    halves: Option<[TrimCurve; 2]>,
+) -> Vec<TrimCurve> {
+    let mut k = k;
+    if let Some([first, second]) = halves {
+        curves[k] = first;
+        curves.insert(k + 1, second);
+        k += 1;
+    }
+    curves.rotate_left(k);
+    // What stood in front of it now follows, a period on.
+    let mut out: Vec<TrimCurve> = Vec::with_capacity(curves.len());
+    for curve in curves {
+        let moved = out.last().map(end).map(|last| {
+            let from = start(&curve);
+            host.nearest_copy(from, last) - from
+        });
+        match moved {
+            Some(by) => match shifted(curve.clone(), by) {
+                Ok(curve) => out.push(curve),
+                Err(_) => out.push(curve),
+            },
+            None => out.push(curve),
+        }
+    }
+    out
+}
