@@ -2,7 +2,7 @@
 //! multiplied by their weights.
 
 use super::super::error::Fail;
-use super::super::report::{Border, CadPatch, SkipKind, Skipped};
+use super::super::report::{CadPatch, SkipKind, Skipped};
 use super::trims::{Part, trimmed};
 use super::{Content, counts, parse};
 use crate::curve::NurbsCurve;
