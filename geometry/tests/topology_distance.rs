@@ -9,7 +9,9 @@ use covact_geometry::primitives::{cylinder, sphere};
 use covact_geometry::{NurbsPatch, PatchSet, Vec3};
 use nalgebra::Isometry3;
 use projection_common::{Random, check_foot, queries};
-use topology_common::box_distance;
+use topology_common::{
+    box_distance, cylinder_distance, disc, face, polygon, ring, trimmed, trimmed_box,
+};
 
 /// Compares `set` with the exact distance at random points of a box `reach` about the middle, half of them near the
 /// surface (moved from a foot along a random direction). The sign must never be wrong.
@@ -167,4 +169,86 @@ fn untrimmed_box() {
     }
     let set = PatchSet::new(patches, None).unwrap();
     compare("box", &set, 2.5, |q| box_distance(half, q));
+}
+
+#[test]
+fn box_of_trimmed_planes() {
+    let half = [1.0, 2.0, 0.5];
+    let set = PatchSet::new(trimmed_box(half), None).unwrap();
+    compare("trimmed box", &set, 2.5, |q| box_distance(half, q));
+}
+
+#[test]
+fn cylinder_with_trimmed_caps() {
+    let (radius, half) = (1.5, 1.0);
+    let tube = cylinder(radius, 2.0 * half, Vec3::zeros(), Vec3::z()).unwrap();
+    // One rim is a single curve, the other three.
+    let caps = [
+        disc(radius, half, &[0.7]),
+        disc(radius, -half, &[0.1, 0.15, 3.0]),
+    ];
+    for patches in [
+        vec![caps[0].clone(), tube.clone(), caps[1].clone()],
+        vec![tube.swapped(), caps[1].clone(), caps[0].clone()],
+    ] {
+        let set = PatchSet::new(patches, None).unwrap();
+        compare("cylinder", &set, 2.5, |q| {
+            cylinder_distance(radius, half, q)
+        });
+    }
+}
+
+#[test]
+fn sphere_of_two_half_shells() {
+    let ball = sphere(2.0, Vec3::zeros(), Vec3::z()).unwrap();
+    let half = |from: f64| {
+        let (a, b, h) = (from, from + 2.0 * FRAC_PI_2, FRAC_PI_2);
+        trimmed(
+            ball.clone(),
+            vec![polygon(&[[a, -h], [b, -h], [b, h], [a, h]])],
+        )
+    };
+    let set = PatchSet::new(vec![half(0.0), half(2.0 * FRAC_PI_2)], None).unwrap();
+    compare("half-shells", &set, 2.5, |q| q.norm() - 2.0);
+}
+
+/// Square prism of half width 2 and half height 1 with a round hole of radius 1 along z: two plates with holes, four
+/// rectangles, the wall of the hole.
+#[test]
+fn block_with_a_hole() {
+    let e = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let square = || polygon(&[[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]]);
+    let plate =
+        |z: f64, cuts: &[f64]| face([0.0, 0.0, z], e[0], e[1], 3.0, &[square(), ring(1.0, cuts)]);
+    let mut patches = vec![
+        plate(1.0, &[0.4]),
+        plate(-1.0, &[1.0, 2.0, 5.0]),
+        cylinder(1.0, 2.0, Vec3::zeros(), Vec3::z()).unwrap(),
+    ];
+    for axis in 0..2 {
+        for end in [-2.0, 2.0] {
+            let (mut low, mut high) = ([-2.0, -2.0, -1.0], [2.0, 2.0, 1.0]);
+            low[axis] = end;
+            high[axis] = end;
+            patches.push(rectangle(low, high, end > 0.0));
+        }
+    }
+    let set = PatchSet::new(patches, None).unwrap();
+    assert!(set.edges().free.is_empty(), "{:?}", set.edges().free);
+    let volume = 2.0 * (16.0 - 2.0 * FRAC_PI_2);
+    assert!((set.volumes()[0].unwrap() / volume - 1.0).abs() < 1e-6);
+    compare("block with a hole", &set, 2.6, |q| {
+        let outer = box_distance([2.0, 2.0, 1.0], q);
+        let hole = q.x.hypot(q.y) - 1.0;
+        let beyond = (q.z.abs() - 1.0).max(0.0);
+        if outer <= 0.0 && hole >= 0.0 {
+            // In the material: the nearest wall.
+            outer.max(-hole)
+        } else if hole < 0.0 {
+            // In or above the hole: its wall or rim.
+            (-hole).hypot(beyond)
+        } else {
+            outer
+        }
+    });
 }

@@ -255,3 +255,19 @@ fn order_direction_and_exchange_of_parameters_change_nothing() {
     assert!((a.signed_distance - b.signed_distance).abs() < 1e-13);
     assert!((a.normal - b.normal).norm() < 1e-12);
 }
+
+#[test]
+fn a_punch_of_45_patches() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/punch.igs");
+    let file = covact_geometry::io::read_path(&path).unwrap();
+    let set = set(file.patches.into_iter().map(|p| p.patch).collect());
+    let report = set.edges();
+    // 45 patches have 180 edges: two of each of the 84 joints, and the rim.
+    assert_eq!(
+        (report.smooth, report.sharp, report.free.len()),
+        (84, 0, 12)
+    );
+    assert_eq!((report.borders.len(), report.borders[0].closed), (1, true));
+    assert_eq!((set.components().len(), report.open_gaps.len()), (1, 0));
+    assert!(report.largest_gap < 1e-12 * set.size());
+}

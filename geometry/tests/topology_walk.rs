@@ -144,6 +144,30 @@ fn a_circle_around_a_seam_and_many_strips() {
 }
 
 #[test]
+fn around_trimmed_faces() {
+    use topology_common::{disc, trimmed_box};
+    // Over a cylinder and its caps, along a loop that leaves the caps over their rims.
+    let tube = cylinder(1.5, 2.0, Vec3::zeros(), Vec3::z()).unwrap();
+    let caps = [disc(1.5, 1.0, &[0.7]), disc(1.5, -1.0, &[0.1, 0.15, 3.0])];
+    let (set, count) = counted(vec![caps[0].clone(), tube, caps[1].clone()]);
+    let around = |radius: f64, steps: usize, tilt: f64| {
+        (0..=steps).map(move |k| {
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / steps as f64 + 0.1).sin_cos();
+            Vec3::new(radius * cos, tilt * radius * cos, 0.8 * radius * sin)
+        })
+    };
+    let (seen, mean, most) = walk(&set, &count, around(2.4, 300, 0.3));
+    eprintln!("cylinder with caps: {mean:.1} evaluations a step, {most} at most");
+    assert_eq!(seen, [0, 1, 2]);
+    assert!(mean < 60.0 && most < 400, "{mean} {most}");
+    let (set, count) = counted(trimmed_box([1.0, 1.2, 0.9]));
+    let (seen, mean, most) = walk(&set, &count, around(2.5, 300, 0.4));
+    eprintln!("box: {mean:.1} evaluations a step, {most} at most");
+    assert!(seen.len() >= 4, "{seen:?}");
+    assert!(mean < 60.0 && most < 400, "{mean} {most}");
+}
+
+#[test]
 fn vectors_are_carried_over_smooth_and_sharp_edges() {
     // Over the smooth joints of the sphere the vector itself stays.
     let six = sphere_without_poles(2.0, Vec3::zeros(), Vec3::z()).unwrap();

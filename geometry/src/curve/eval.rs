@@ -19,7 +19,11 @@ impl<const D: usize> NurbsCurve<D> {
     /// the domain continue the nearest polynomial.
     pub fn jet(&self, t: f64) -> CurveJet<D> {
         let t = self.basis.snap(t);
-        let span = self.basis.find_span(t);
+        self.jet_in_span(self.basis.find_span(t), t)
+    }
+
+    /// [`jet`](Self::jet) of the polynomial piece of span `span`, wherever `t` lies: at a knot this chooses the side.
+    pub fn jet_in_span(&self, span: usize, t: f64) -> CurveJet<D> {
         let mut n = [[0.0; WIDTH]; 3];
         self.basis.evaluate(span, t, &mut n);
         let first = self.basis.first_function(span);

@@ -3,6 +3,7 @@
 mod change;
 pub mod conic;
 mod eval;
+pub mod fit;
 pub(crate) mod join;
 
 pub use eval::CurvePiece;

@@ -1,7 +1,7 @@
 //! Readers of CAD files: IGES 5.3 and JSON of Kratos, geomdl and our own ([`write_json`]).
 //!
-//! [`read_path`] tells the format from the content. What comes back is a [`CadFile`]: the untrimmed NURBS patches, and
-//! an account of everything else the file holds. Nothing is dropped silently: a surface that was not read is
+//! [`read_path`] tells the format from the content. What comes back is a [`CadFile`]: NURBS patches with
+//! their trims, and an account of everything else the file holds. Nothing is dropped silently: a surface that was not read is
 //! [`Skipped`] with its reason, and what was tolerated although the standard does not allow it is in the notes.
 
 mod error;
@@ -11,10 +11,13 @@ mod report;
 mod unit;
 
 pub use error::CadError;
-pub use iges::{entity_name, read_iges};
-pub use json::{read_json, write_json};
+pub use iges::{
+    BasePatch, BaseSurface, Border, IgesCurve, IgesGeometry, IgesSurface, ParameterMap,
+    Reparametrise, Unbounded, entity_name, read_iges, read_iges_geometry,
+};
+pub use json::read_json;
 pub use report::{
-    Border, CadFile, CadFormat, CadPatch, EntityCount, SkipKind, Skipped, Summary, TrimReport,
+    CadFile, CadFormat, CadPatch, EntityCount, FaceBorder, SkipKind, Skipped, Summary, TrimReport,
 };
 pub use unit::LengthUnit;
 

@@ -33,7 +33,7 @@ pub struct CadPatch {
     /// where it is defined.
     pub instance: u32,
     /// What bounds it.
-    pub border: Border,
+    pub border: FaceBorder,
     /// Name in the file, if it gives one.
     pub name: Option<String>,
 }
@@ -48,7 +48,7 @@ impl CadPatch {
 /// What bounds a surface that was read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Border {
+pub enum FaceBorder {
     /// Nothing but the end of the surface itself: the file gives no boundary curves.
     Natural,
     /// Boundary curves that follow lines of constant parameters all round: the patch's domain is that rectangle.
@@ -194,8 +194,8 @@ impl CadFile {
         let count = |border| self.patches.iter().filter(|p| p.border == border).count();
         Summary {
             patches: self.patches.len(),
-            trimmed: count(Border::Trimmed),
-            rectangles: count(Border::Rectangle),
+            trimmed: count(FaceBorder::Trimmed),
+            rectangles: count(FaceBorder::Rectangle),
             skipped: self.skipped.len(),
             reasons: reasons.into_iter().collect(),
         }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::local::{Local, Region};
+use super::local::{Local, Region, TrimPlace};
 use super::set::{PatchSet, SHARP_ANGLE};
 use super::topology::{
     Edge, EdgeCurve, EdgePoint, Link, corner_at, edge_point, edges_at, nearest_on_edge,
@@ -31,7 +31,7 @@ impl<S: Surface> PatchSet<S> {
     ) -> Foot {
         // The search may have stopped at the border of a piece, which is none of the surface's.
         let region = self.region(rough.region.patch, rough.span);
-        let start = if rough.region == region {
+        let start = if rough.trim.is_some() || rough.region == region {
             rough
         } else {
             self.state(q, &region, rough.xi, rough.span)
@@ -117,6 +117,10 @@ impl<S: Surface> PatchSet<S> {
                     nearer = Some(t);
                 }
             };
+            if best.trim.is_some() {
+                let region = self.region(best.region.patch, best.span);
+                consider(self.polish(q, self.state(q, &region, best.xi, best.span)));
+            }
             for (region, xi, span) in self.beside(&best) {
                 consider(self.polish(q, self.state(q, &region, xi, span)));
             }
@@ -124,8 +128,16 @@ impl<S: Surface> PatchSet<S> {
                 for (link, start) in self.behind(edge, t, &best.jet.rho) {
                     let patch = self.topology.edges[link.edge].patch;
                     let region = self.region(patch, start.span);
-                    let start = self.state(q, &region, start.xi, start.span);
-                    consider(self.polish(q, start));
+                    let entry = self.state(q, &region, start.xi, start.span);
+                    let inside = self.polish(q, entry);
+                    consider(inside);
+                    // What the trim stopped may have gone far astray: along the edge is safe.
+                    if let (Some(place), true) =
+                        (self.place(link.edge, start.t), inside.trim.is_some())
+                    {
+                        let trim = Some(place);
+                        consider(self.polish(q, Local { trim, ..entry }));
+                    }
                 }
             }
             match nearer {
@@ -158,6 +170,18 @@ impl<S: Surface> PatchSet<S> {
                 }
                 Some((self.region(patch, span), xi, span))
             })
+    }
+
+    /// A parameter of a trim curve as a place on the trim.
+    fn place(&self, edge: usize, t: f64) -> Option<TrimPlace> {
+        let edge = &self.topology.edges[edge];
+        let [start, last] = edge.interval;
+        matches!(edge.curve, EdgeCurve::Trim { .. }).then(|| TrimPlace {
+            curve: edge.number - 4,
+            t,
+            end: i8::from(t >= last) - i8::from(t <= start),
+            focal: false,
+        })
     }
 
     /// The points on the other side of an edge at its parameter `t`, which is the space point `rho`.
@@ -537,6 +561,9 @@ fn departure(at: &EdgePoint, edge: &Edge, end: usize) -> Vec3 {
 /// Whether the Hessian over the metric has an eigenvalue of (nearly) zero in the free directions: `1 - xi3 kappa` of
 /// one of the principal curvatures.
 fn focal(s: &Local) -> bool {
+    if let Some(place) = s.trim {
+        return place.focal;
+    }
     let (f, a) = (&s.hessian, &s.metric);
     let flat = |value: f64, largest: f64| value <= 1e-7 * largest.max(1.0);
     match s.active {

@@ -12,6 +12,9 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
+/// Spans of a trimmed patch are cut so that the primitive has at least about this many intervals.
+const INTERVALS: usize = 6;
+
 /// Integrates `f dxi1 dxi2` over the part of the domain that belongs to the surface: 4 x 4 Gauss points per Bezier piece of
 /// an untrimmed patch. On a trimmed patch the divergence theorem of the parameter plane turns it into an integral along
 /// the trim curves of the primitive of `f` in xi1, each by Gauss points in the intervals of the curves' polylines and in
@@ -52,6 +55,12 @@ pub(super) fn over<S: Surface, const N: usize>(
     });
     let start = 0.5 * (low + high);
     let breaks = &set.grids[patch as usize].breaks[0];
+    let degree = set.pieces.list[set.grids[patch as usize].first as usize].degree[0];
+    let parts = if degree > 1 {
+        INTERVALS.div_ceil(breaks.len())
+    } else {
+        1
+    };
     for edge in edges {
         for pair in edge.samples.windows(2) {
             let [a, b] = [pair[0].t, pair[1].t];
@@ -71,9 +80,12 @@ pub(super) fn over<S: Surface, const N: usize>(
                     if e <= s {
                         continue;
                     }
-                    for (x, w) in GAUSS {
-                        let xi = [s + (e - s) * x, at.xi[1]];
-                        add(outer * sign * w * (e - s), f(&surface.jet(xi)));
+                    let h = (e - s) / parts as f64;
+                    for part in 0..parts {
+                        for (x, w) in GAUSS {
+                            let xi = [s + h * (part as f64 + x), at.xi[1]];
+                            add(outer * sign * w * h, f(&surface.jet(xi)));
+                        }
                     }
                 }
             }

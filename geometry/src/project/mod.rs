@@ -20,6 +20,8 @@ mod set;
 mod sides;
 mod topology;
 mod tree;
+mod trimmed;
+mod trimmed_search;
 
 pub use neighbour::Neighbour;
 pub use report::{CurvatureExtreme, CurvatureRange};

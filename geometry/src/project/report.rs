@@ -54,7 +54,7 @@ impl<S: Surface> PatchSet<S> {
     }
 
     /// Most convex and most concave principal curvature with the present sides, sampled at 5 x 5 points of every Bezier
-    /// piece (corners and edges included): between the points it may be more extreme.
+    /// piece (corners and edges included) that belong to the surface: between the points it may be more extreme.
     pub fn curvature_range(&self) -> CurvatureRange {
         let mut range = CurvatureRange {
             convex: None,
@@ -72,6 +72,9 @@ impl<S: Surface> PatchSet<S> {
                     let step = if dir == 0 { k % 5 } else { k / 5 };
                     a + (b - a) * step as f64 / 4.0
                 });
+                if patch.trim().is_some_and(|trim| !trim.contains(xi)) {
+                    continue;
+                }
                 let jet = patch.jet_in_span(piece.span, xi);
                 let Some(frame) = Frame::new(&jet, self.sides[piece.patch as usize]) else {
                     range.skipped += 1;

@@ -102,7 +102,10 @@ fn read_508(
                 let forward = params.integer(at + 3, "the orientation flag of an edge")? != 0;
                 let curve = &model.entries[edge.curve];
                 let mut space = space_parts(model, curve, outer, notes).map_err(|stop| {
-                    in_edge(stop, &format!("edge {number} of {}", describe(&model.entries[list])))
+                    in_edge(
+                        stop,
+                        &format!("edge {number} of {}", describe(&model.entries[list])),
+                    )
                 })?;
                 if !forward {
                     space = reversed(space)?;

@@ -142,6 +142,8 @@ pub fn is_curve(type_number: u32) -> bool {
 pub enum Space {
     /// Lengths of model space: divided by the model space scale.
     Model,
+    /// The coordinates of the entity that the curve helps to define, which has matrices of its own.
+    Entity,
     /// Parameters of a surface: taken as they are.
     Parameters,
 }
@@ -167,6 +169,15 @@ pub fn read_parameters(
     notes: &mut Vec<String>,
 ) -> Result<CurveChain, Stop> {
     read_in(model, entry, &Affine::identity(), Space::Parameters, notes)
+}
+
+/// Reads a curve that another entity is made of, in the coordinates of that entity.
+pub fn read_unscaled(
+    model: &Model,
+    entry: &Entry,
+    notes: &mut Vec<String>,
+) -> Result<CurveChain, Stop> {
+    read_in(model, entry, &Affine::identity(), Space::Entity, notes)
 }
 
 fn read_in(
@@ -210,7 +221,7 @@ impl<'a> Reader<'a, '_> {
     /// The smallest length that counts, in the entity's own coordinates; lengths below it are gaps to be closed.
     pub fn resolution(&self) -> f64 {
         match self.space {
-            Space::Model => self.model.global.resolution.unwrap_or(0.0),
+            Space::Model | Space::Entity => self.model.global.resolution.unwrap_or(0.0),
             Space::Parameters => 0.0,
         }
     }
@@ -254,7 +265,7 @@ impl<'a> Reader<'a, '_> {
     pub fn placed(&self, entry: &Entry, shape: Shape, map: &Affine) -> Result<CurvePart, Stop> {
         let scale = match self.space {
             Space::Model => self.model.global.scale,
-            Space::Parameters => 1.0,
+            Space::Entity | Space::Parameters => 1.0,
         };
         let stretch = map.linear.norm() / scale;
         Ok(CurvePart {
@@ -294,7 +305,7 @@ impl<'a> Reader<'a, '_> {
 
     /// Reads a base curve without any placement but its own.
     pub fn base(&mut self, entry: &Entry) -> Result<Vec<CurvePart>, Stop> {
-        let space = std::mem::replace(&mut self.space, Space::Parameters);
+        let space = std::mem::replace(&mut self.space, Space::Entity);
         let read = self.read(entry, &Affine::identity());
         self.space = space;
         read.map_err(|stop| in_member(stop, entry))

@@ -2,6 +2,8 @@
 //! angle), and trims and other entities refer to that one; a rational form runs through the same points at other
 //! parameters.
 
+use std::f64::consts::TAU;
+
 /// One piece of a [`ParameterMap`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Piece {
@@ -20,6 +22,8 @@ struct Piece {
 pub struct ParameterMap {
     /// Never empty.
     pieces: Vec<Piece>,
+    /// A full turn where the file's parameter is an angle, so that whole turns make no difference; else 0.
+    turn: f64,
 }
 
 impl ParameterMap {
@@ -31,6 +35,7 @@ impl ParameterMap {
                 own,
                 angles: None,
             }],
+            turn: 0.0,
         }
     }
 
@@ -52,6 +57,7 @@ impl ParameterMap {
         });
         Self {
             pieces: pieces.collect(),
+            turn: TAU,
         }
     }
 
@@ -63,6 +69,7 @@ impl ParameterMap {
                 own: range,
                 angles: Some(range),
             }],
+            turn: 0.0,
         }
     }
 
@@ -73,21 +80,28 @@ impl ParameterMap {
         mut file: f64,
         mut own: f64,
     ) -> Option<Self> {
-        let mut pieces = Vec::new();
+        let mut pieces: Vec<Piece> = Vec::new();
         for map in maps {
             let (range, target) = (map.file_range(), map.own_range());
             let (df, d) = (file - range[0], own - target[0]);
             for p in &map.pieces {
-                pieces.push(Piece {
+                let next = Piece {
                     file: p.file.map(|t| t + df),
                     own: p.own.map(|t| t + d),
                     angles: p.angles,
-                });
+                };
+                match pieces.last_mut() {
+                    Some(last) if Piece::goes_on(last, &next) => {
+                        last.file[1] = next.file[1];
+                        last.own[1] = next.own[1];
+                    }
+                    _ => pieces.push(next),
+                }
             }
             file += range[1] - range[0];
             own += target[1] - target[0];
         }
-        (!pieces.is_empty()).then_some(Self { pieces })
+        (!pieces.is_empty()).then_some(Self { pieces, turn: 0.0 })
     }
 
     /// The same map for a file parameter that is affine in this one: its range becomes `file`, backwards where
@@ -120,7 +134,10 @@ impl ParameterMap {
         if reversed {
             pieces.reverse();
         }
-        Self { pieces }
+        Self {
+            pieces,
+            turn: self.turn * ((file[1] - file[0]) / (b - a)).abs(),
+        }
     }
 
     /// The same map onto a NURBS parameter that is affine in this one's and has the range `own`, descending where that
@@ -140,7 +157,21 @@ impl ParameterMap {
         });
         Self {
             pieces: pieces.collect(),
+            turn: self.turn,
         }
+    }
+
+    /// The whole turns (in the file's unit of angles; zero where the parameter is no angle) that bring the middle of `range` nearest to
+    /// the middle of [`file_range`](Self::file_range). Writers disagree where an arc's angle begins: the standard says in
+    /// [0, 2 pi), many files mean a negative one.
+    pub fn turns(&self, range: [f64; 2]) -> f64 {
+        if self.turn == 0.0 {
+            return 0.0;
+        }
+        let [a, b] = self.file_range();
+        let distance = 0.5 * (a + b) - 0.5 * (range[0] + range[1]);
+        let turns = (distance / self.turn).round() * self.turn;
+        if turns.is_finite() { turns } else { 0.0 }
     }
 
     /// Range of the file's parameter.
@@ -215,6 +246,12 @@ impl ParameterMap {
         self.pieces[k.min(self.pieces.len() - 1)].forward(file)
     }
 
+    /// [`to_own`](Self::to_own) with its first and second derivatives; at a break those of the piece before it.
+    pub fn jet(&self, file: f64) -> [f64; 3] {
+        let k = self.pieces.partition_point(|p| p.file[1] < file);
+        self.pieces[k.min(self.pieces.len() - 1)].jet(file)
+    }
+
     /// The file's parameter at that of the NURBS form, the inverse of [`to_own`](Self::to_own).
     pub fn to_file(&self, own: f64) -> f64 {
         let [a, b] = self.own_range();
@@ -228,6 +265,13 @@ impl ParameterMap {
 }
 
 impl Piece {
+    /// Whether `next` is affine and so steep as this affine piece before it.
+    fn goes_on(&self, next: &Self) -> bool {
+        let slope = |p: &Self| (p.own[1] - p.own[0]) / (p.file[1] - p.file[0]);
+        let (a, b) = (slope(self), slope(next));
+        self.angles.is_none() && next.angles.is_none() && (a - b).abs() <= 1e-15 * a.abs()
+    }
+
     fn forward(&self, t: f64) -> f64 {
         let s = (t - self.file[0]) / (self.file[1] - self.file[0]);
         let share = match self.angles {
@@ -235,6 +279,29 @@ impl Piece {
             None => s,
         };
         between(self.own, share)
+    }
+
+    fn jet(&self, t: f64) -> [f64; 3] {
+        let length = self.file[1] - self.file[0];
+        let s = (t - self.file[0]) / length;
+        let [share, d1, d2] = match self.angles {
+            Some([a, b]) => {
+                let share = tangent_share([a, b], s);
+                let x = (0.5 * (a + (b - a) * s.clamp(0.0, 1.0))).tan();
+                let rise = (0.5 * b).tan() - (0.5 * a).tan();
+                // d tan(x / 2) / dx = (1 + tan^2) / 2, and once more.
+                let d1 = 0.5 * (1.0 + x * x) * (b - a) / rise;
+                let bend = 0.5 * x * (1.0 + x * x) * (b - a) * (b - a) / rise;
+                [share, d1, if (0.0..=1.0).contains(&s) { bend } else { 0.0 }]
+            }
+            None => [s, 1.0, 0.0],
+        };
+        let width = self.own[1] - self.own[0];
+        [
+            between(self.own, share),
+            width * d1 / length,
+            width * d2 / (length * length),
+        ]
     }
 
     fn back(&self, t: f64) -> f64 {

@@ -1,7 +1,7 @@
 //! What becomes of every surface entity of a file: patches, or a reason why not.
 
 use super::super::error::Fail;
-use super::super::report::{Border, CadPatch, SkipKind, Skipped, TrimReport};
+use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped, TrimReport};
 use super::brep::{self, Edges};
 use super::curve;
 use super::directory::Entry;
@@ -28,7 +28,7 @@ pub struct Outcome {
 type Refusal = (SkipKind, String);
 
 /// A patch with what bounds it.
-type Piece = (NurbsPatch, Border);
+type Piece = (NurbsPatch, FaceBorder);
 
 /// Reads all surfaces, in the order of the file.
 pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
@@ -125,8 +125,10 @@ impl Reader<'_, '_> {
             };
             name = found;
             match pieces {
-                Ok(pieces) => self.out.patches.extend(pieces.into_iter().map(|(patch, border)| {
-                    CadPatch {
+                Ok(pieces) => self
+                    .out
+                    .patches
+                    .extend(pieces.into_iter().map(|(patch, border)| CadPatch {
                         patch,
                         entity: entry.number,
                         type_number: entry.type_number,
@@ -134,8 +136,7 @@ impl Reader<'_, '_> {
                         instance: copy.instance,
                         border,
                         name: name.clone(),
-                    }
-                })),
+                    })),
                 Err(reason) => {
                     refused.get_or_insert(reason);
                     // The copies differ in place only.
@@ -152,18 +153,22 @@ impl Reader<'_, '_> {
         entry: &Entry,
         outer: &Affine,
     ) -> Result<(Option<String>, Result<Vec<Piece>, Refusal>), Fail> {
-        let (surface, values) = match curve::settle(surfaces::read(self.model, entry, outer, self.notes))? {
-            Ok(read) => read,
-            Err(reason) => return Ok((own_name(entry), Err((SkipKind::Surface, reason)))),
-        };
+        let (surface, values) =
+            match curve::settle(surfaces::read(self.model, entry, outer, self.notes))? {
+                Ok(read) => read,
+                Err(reason) => return Ok((own_name(entry), Err((SkipKind::Surface, reason)))),
+            };
         let name = self.name_of(entry, values)?;
         let pieces = match surface {
             BaseSurface::Patches(patches) => {
                 self.approximated(entry, &patches);
-                Ok(patches.into_iter().map(|p| (p.patch, Border::Natural)).collect())
+                Ok(patches
+                    .into_iter()
+                    .map(|p| (p.patch, FaceBorder::Natural))
+                    .collect())
             }
             BaseSurface::Unbounded(plane) => match &plane.border {
-                Some((number, border)) if *border == surfaces::UnboundedBorder::Outer => {
+                Some((number, border)) if *border == surfaces::Border::Outer => {
                     self.bordered(entry, *number, &plane, outer)?
                 }
                 _ => {
@@ -183,7 +188,9 @@ impl Reader<'_, '_> {
         plane: &surfaces::Unbounded,
         outer: &Affine,
     ) -> Result<Result<Vec<Piece>, Refusal>, Fail> {
-        let index = self.model.index(i64::from(number), (entry.line, 1), "the border of a plane")?;
+        let index =
+            self.model
+                .index(i64::from(number), (entry.line, 1), "the border of a plane")?;
         let curve = &self.model.entries[index];
         let map = outer.after(&matrix_of(self.model, entry, self.notes)?);
         let read = trimmed::space_parts(self.model, curve, &map, self.notes);
@@ -206,7 +213,9 @@ impl Reader<'_, '_> {
             fault: None,
         };
         Ok(match plane.sized(&points(&face)) {
-            Ok(base) => self.bounded(entry, &base, &face, None).map(|piece| vec![piece]),
+            Ok(base) => self
+                .bounded(entry, &base, &face, None)
+                .map(|piece| vec![piece]),
             Err(reason) => Err((SkipKind::Surface, reason)),
         })
     }
@@ -230,7 +239,11 @@ impl Reader<'_, '_> {
         };
         let refused = |kind, reason: String| Err((kind, reason));
         if let Some(reason) = &face.fault {
-            return Ok((name, refused(SkipKind::Boundary, reason.clone()), base.number));
+            return Ok((
+                name,
+                refused(SkipKind::Boundary, reason.clone()),
+                base.number,
+            ));
         }
         let on = |reason: String| format!("{}: {reason}", describe(base));
         if !surfaces::is_base(base.type_number) {
@@ -256,12 +269,14 @@ impl Reader<'_, '_> {
         };
         self.approximated(base, &patches);
         let pieces = match &patches[..] {
-            _ if face.boundaries.is_empty() => {
-                Ok(patches.into_iter().map(|p| (p.patch, Border::Natural)).collect())
-            }
+            _ if face.boundaries.is_empty() => Ok(patches
+                .into_iter()
+                .map(|p| (p.patch, FaceBorder::Natural))
+                .collect()),
             [patch] => {
                 let name = (entry.number != base.number).then_some(base);
-                self.bounded(entry, patch, &face, name).map(|piece| vec![piece])
+                self.bounded(entry, patch, &face, name)
+                    .map(|piece| vec![piece])
             }
             _ => {
                 let reason = on(format!(
@@ -303,8 +318,8 @@ impl Reader<'_, '_> {
             Ok(trimmed) => {
                 add(&mut self.out.trims, &tally);
                 let border = match trimmed.patch.trim() {
-                    Some(_) => Border::Trimmed,
-                    None => Border::Rectangle,
+                    Some(_) => FaceBorder::Trimmed,
+                    None => FaceBorder::Rectangle,
                 };
                 Ok((trimmed.patch, border))
             }

@@ -58,7 +58,12 @@ impl Groups {
         for (index, entry) in model.entries.iter().enumerate() {
             groups.uses_of(model, index, entry, notes)?;
         }
-        no_cycles(model, &groups.usage, |u| u.face, "surfaces that carry each other")?;
+        no_cycles(
+            model,
+            &groups.usage,
+            |u| u.face,
+            "surfaces that carry each other",
+        )?;
         no_cycles(model, &groups.usage, |u| u.parent, "groups in one another")?;
         Ok(groups)
     }
@@ -95,13 +100,19 @@ impl Groups {
                     shift: Vec3::new(shift[0], shift[1], shift[2]),
                 };
                 let map = matrix_of(model, entry, notes)?.after(&own);
-                self.instances.entry(target).or_default().push((parent, map));
+                self.instances
+                    .entry(target)
+                    .or_default()
+                    .push((parent, map));
                 return Ok(());
             }
             430 => {
                 let target = pointer(model, &params()?, 1, "the solid of a solid instance (430)")?;
                 let map = matrix_of(model, entry, notes)?;
-                self.instances.entry(target).or_default().push((parent, map));
+                self.instances
+                    .entry(target)
+                    .or_default()
+                    .push((parent, map));
                 return Ok(());
             }
             _ => {
@@ -350,7 +361,10 @@ pub fn refusal(
     if let Some(copy) = placed.iter().find(|p| p.hidden_in != 0)
         && placed.iter().all(|p| p.hidden_in != 0)
     {
-        let reason = format!("belongs to entity {}, which is blanked (hidden)", copy.hidden_in);
+        let reason = format!(
+            "belongs to entity {}, which is blanked (hidden)",
+            copy.hidden_in
+        );
         return Some((SkipKind::Blanked, reason));
     }
     None

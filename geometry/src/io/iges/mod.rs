@@ -7,6 +7,7 @@
 //! parameter plane in `trimmed_loops`, curve by curve in `trimmed_curves`, which projects onto a `trimmed_host` and fits
 //! by `trimmed_fit`.
 
+mod base;
 mod brep;
 mod curve;
 mod curve_conic;
@@ -22,7 +23,9 @@ mod names;
 mod number;
 mod params;
 mod records;
+mod reparametrise;
 mod surface;
+mod surfaces;
 mod transform;
 mod trimmed;
 mod trimmed_curves;
@@ -30,7 +33,11 @@ mod trimmed_fit;
 mod trimmed_host;
 mod trimmed_loops;
 
+pub use base::{IgesCurve, IgesGeometry, IgesSurface, read_iges_geometry};
+pub use curve_map::ParameterMap;
 pub use names::entity_name;
+pub use reparametrise::Reparametrise;
+pub use surfaces::{BasePatch, BaseSurface, Border, Unbounded};
 
 use super::CadError;
 use super::error::Fail;
@@ -88,11 +95,9 @@ pub fn read_iges(bytes: &[u8], name: &str) -> Result<CadFile, CadError> {
 
 fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
     let mut notes = Vec::new();
-    let sections = records::split(bytes, &mut notes)?;
-    let global = global::read(&sections, &mut notes)?;
-    let entries = directory::read(&sections, &mut notes)?;
+    let model = model_of(bytes, &mut notes)?;
     let mut counts = BTreeMap::new();
-    for entry in &entries {
+    for entry in &model.entries {
         *counts.entry((entry.type_number, entry.form)).or_insert(0) += 1;
     }
     let entities = counts
@@ -104,11 +109,6 @@ fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
             count,
         })
         .collect();
-    let model = Model {
-        sections,
-        global,
-        entries,
-    };
     let read = faces::read(&model, &mut notes)?;
     Ok(CadFile {
         path: name.to_owned(),
@@ -121,4 +121,25 @@ fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
         trims: read.trims,
         notes,
     })
+}
+
+/// Everything below the entities.
+fn model_of<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Result<Model<'a>, Fail> {
+    let sections = records::split(bytes, notes)?;
+    let global = global::read(&sections, notes)?;
+    let entries = directory::read(&sections, notes)?;
+    Ok(Model {
+        sections,
+        global,
+        entries,
+    })
+}
+
+/// The label of an entity, or else the name of its type.
+fn describe_entity(entry: &directory::Entry) -> String {
+    if entry.label.is_empty() {
+        entity_name(entry.type_number, entry.form).to_owned()
+    } else {
+        entry.label.clone()
+    }
 }

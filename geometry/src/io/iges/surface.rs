@@ -2,14 +2,17 @@
 
 use super::super::error::Fail;
 use super::Model;
+use super::curve_spline::pieces;
 use super::directory::Entry;
 use super::params::Params;
 use super::transform::Affine;
-use crate::{NurbsPatch, Vec3};
+use crate::{NurbsPatch, PatchError, Vec3};
 
-/// A surface, or why it is none; and how many values its own data took (pointers to properties follow).
+/// The patches of a surface, or why there is none; and how many values its own data took (pointers to properties
+/// follow). There are several where a knot inside is repeated more often than the degree, so that the surface is in
+/// pieces; those of the first direction run fastest.
 pub struct Surface {
-    pub patch: Result<NurbsPatch, String>,
+    pub patches: Result<Vec<NurbsPatch>, String>,
     pub values: usize,
 }
 
@@ -124,19 +127,109 @@ pub fn read(
         }
     }
     let weights = rational.then_some(&weights[..]);
-    let patch = match NurbsPatch::new(degree, knots, counts, &net, weights) {
-        Ok(patch) => restrict(patch, &range, &mut note)?,
+    let whole = match in_pieces(degree, &knots, counts, &net, weights) {
+        Ok(pieces) => pieces,
         Err(e) => {
             return Ok(Surface {
-                patch: Err(e.to_string()),
+                patches: Err(e.to_string()),
                 values,
             });
         }
     };
-    if let Ok(patch) = &patch {
+    if whole.len() > 1 {
+        note(format!(
+            "knots repeated more often than the degree: read as {} patches",
+            whole.len()
+        ));
+    }
+    let full = [0, 1].map(|d| [knots[d][degree[d]], knots[d][counts[d]]]);
+    let domain = match allowed_range(full, &range, &mut note) {
+        Ok(domain) => domain,
+        Err(reason) => {
+            return Ok(Surface {
+                patches: Err(reason),
+                values,
+            });
+        }
+    };
+    let single = whole.len() == 1;
+    let mut patches = Vec::with_capacity(whole.len());
+    for patch in whole {
+        match cut(patch, domain) {
+            Some(Ok(patch)) => patches.push(patch),
+            // Outside of the range.
+            None => {}
+            Some(Err(e)) => {
+                return Ok(Surface {
+                    patches: Err(e.to_string()),
+                    values,
+                });
+            }
+        }
+    }
+    if let ([patch], true) = (&patches[..], single) {
         check_closed(patch, header.closed, model.global.resolution, &mut note);
     }
-    Ok(Surface { patch, values })
+    Ok(Surface {
+        patches: Ok(patches),
+        values,
+    })
+}
+
+/// The patches into which a net falls at knots that are repeated `degree + 1` times or more.
+fn in_pieces(
+    degree: [usize; 2],
+    knots: &[Vec<f64>; 2],
+    counts: [usize; 2],
+    net: &[Vec3],
+    weights: Option<&[f64]>,
+) -> Result<Vec<NurbsPatch>, PatchError> {
+    let ranges = [0, 1].map(|d| {
+        if degree[d] == 0 || knots[d].len() != counts[d] + degree[d] + 1 {
+            std::iter::once(0..counts[d]).collect()
+        } else {
+            pieces(degree[d], &knots[d], counts[d])
+        }
+    });
+    if ranges.iter().all(|r| r.len() == 1) {
+        let patch = NurbsPatch::new(degree, knots.clone(), counts, net, weights)?;
+        return Ok(vec![patch]);
+    }
+    let mut patches = Vec::new();
+    for rows in &ranges[1] {
+        for columns in &ranges[0] {
+            let part = [columns, rows];
+            let own = [0, 1].map(|d| knots[d][part[d].start..part[d].end + degree[d] + 1].to_vec());
+            let indices = || {
+                rows.clone()
+                    .flat_map(|j| columns.clone().map(move |i| i + counts[0] * j))
+            };
+            let points: Vec<Vec3> = indices().map(|k| net[k]).collect();
+            let weights: Option<Vec<f64>> = weights.map(|w| indices().map(|k| w[k]).collect());
+            let sizes = [columns.len(), rows.len()];
+            patches.push(NurbsPatch::new(
+                degree,
+                own,
+                sizes,
+                &points,
+                weights.as_deref(),
+            )?);
+        }
+    }
+    Ok(patches)
+}
+
+/// The part of a patch inside of `domain`, `None` where there is none.
+fn cut(patch: NurbsPatch, domain: [[f64; 2]; 2]) -> Option<Result<NurbsPatch, PatchError>> {
+    let own = patch.domain();
+    let part = [0, 1].map(|d| [own[d][0].max(domain[d][0]), own[d][1].min(domain[d][1])]);
+    if part.iter().any(|[a, b]| a >= b) {
+        None
+    } else if part == own {
+        Some(Ok(patch))
+    } else {
+        Some(patch.with_domain(part))
+    }
 }
 
 /// Knots that rounding has set apart: differences up to 1e-9 of the whole range, of either sign, are closed. Writers
@@ -155,13 +248,12 @@ pub fn merge_close(knots: &mut [f64]) -> usize {
     moved
 }
 
-/// Cuts the patch at the parameter range U0, U1, V0, V1 of the file.
-fn restrict(
-    patch: NurbsPatch,
+/// The part of the knots' range that the parameter range U0, U1, V0, V1 of the file leaves.
+fn allowed_range(
+    full: [[f64; 2]; 2],
     range: &[f64],
     note: &mut impl FnMut(String),
-) -> Result<Result<NurbsPatch, String>, Fail> {
-    let full = patch.domain();
+) -> Result<[[f64; 2]; 2], String> {
     let mut domain = full;
     for d in 0..2 {
         let [start, end] = full[d];
@@ -176,14 +268,14 @@ fn restrict(
             continue;
         }
         if from > to {
-            return Ok(Err(format!(
+            return Err(format!(
                 "the parameter range {name}0 = {from}, {name}1 = {to} runs backwards"
-            )));
+            ));
         }
         if to <= start || from >= end {
-            return Ok(Err(format!(
+            return Err(format!(
                 "the parameter range {name} = {from} to {to} lies outside of the knots' range {start} to {end}"
-            )));
+            ));
         }
         if from < start - slack || to > end + slack {
             note(format!(
@@ -204,11 +296,7 @@ fn restrict(
         }
         domain[d] = [from, to];
     }
-    Ok(if domain == full {
-        Ok(patch)
-    } else {
-        patch.with_domain(domain).map_err(|e| e.to_string())
-    })
+    Ok(domain)
 }
 
 /// Notes a direction that is flagged closed while its two edges lie apart.

@@ -25,6 +25,15 @@ impl Affine {
         self.linear * point + self.shift
     }
 
+    /// The map back, if there is one.
+    pub fn inverse(&self) -> Option<Self> {
+        let linear = self.linear.try_inverse()?;
+        Some(Self {
+            linear,
+            shift: -(linear * self.shift),
+        })
+    }
+
     /// First `self`, then `outer`.
     fn then(&self, outer: &Self) -> Self {
         Self {

@@ -83,7 +83,11 @@ pub fn read_144(
         values: 5 + holes,
         fault: None,
     };
-    let wanted = if flag == 1 { 4..5 + holes } else { 5..5 + holes };
+    let wanted = if flag == 1 {
+        4..5 + holes
+    } else {
+        5..5 + holes
+    };
     for i in wanted {
         let what = if i == 4 { "outer" } else { "inner" };
         let index = pointer(model, &params, i, &format!("the {what} boundary curve"))?;
@@ -201,7 +205,12 @@ pub fn read_143(
 ) -> Result<Face, Fail> {
     let params = model.params(entry)?;
     let base = pointer(model, &params, 2, "the surface of a bounded surface (143)")?;
-    let list = members(model, &params, 3, "a boundary (141) of a bounded surface (143)")?;
+    let list = members(
+        model,
+        &params,
+        3,
+        "a boundary (141) of a bounded surface (143)",
+    )?;
     let mut face = Face {
         base,
         boundaries: Vec::new(),

@@ -41,9 +41,7 @@ pub fn curves(
         false => given(host, stretch),
     };
     match given {
-        Ok(given) if given.gap <= host.agree || stretch.space.is_empty() => {
-            Ok(given.take(tally))
-        }
+        Ok(given) if given.gap <= host.agree || stretch.space.is_empty() => Ok(given.take(tally)),
         Ok(given) => {
             // The space curves count where they lie nearer to the surface than to the other ones.
             let mut fresh = Tally::default();
@@ -135,7 +133,11 @@ fn given(host: &Host, stretch: &Stretch) -> Result<Given, String> {
         for (_, curve) in &own {
             for xi in sample(curve, 1) {
                 let off = chain.distance(&host.point(xi));
-                gap = if off.is_nan() { f64::INFINITY } else { gap.max(off) };
+                gap = if off.is_nan() {
+                    f64::INFINITY
+                } else {
+                    gap.max(off)
+                };
             }
         }
         // Ends tell the direction, and whether one of the two is shorter than the other.
@@ -229,7 +231,11 @@ fn projected(host: &Host, stretch: &Stretch, tally: &mut Tally) -> Result<Vec<Tr
         curves.push(TrimCurve {
             parameter: fitted.curve,
             space: Some(part.curve.clone()),
-            entity: if stretch.edge == 0 { part.entity } else { stretch.edge },
+            entity: if stretch.edge == 0 {
+                part.entity
+            } else {
+                stretch.edge
+            },
         });
     }
     Ok(curves)
@@ -300,7 +306,10 @@ impl<'a> Chain<'a> {
 
     fn ends(&self) -> [Vec3; 2] {
         let last = self.parts.len() - 1;
-        [self.parts[0].curve.ends()[0], self.parts[last].curve.ends()[1]]
+        [
+            self.parts[0].curve.ends()[0],
+            self.parts[last].curve.ends()[1],
+        ]
     }
 
     /// Distance of `q` from the nearest curve: Newton's method from the nearest sample, with one beside it.
@@ -322,7 +331,11 @@ impl<'a> Chain<'a> {
             let slope = jet.d1.dot(&d);
             let full = jet.d1.norm_squared() + jet.d2.dot(&d);
             // Gauss-Newton where the curve bends away from the point.
-            let bend = if full > 0.0 { full } else { jet.d1.norm_squared() };
+            let bend = if full > 0.0 {
+                full
+            } else {
+                jet.d1.norm_squared()
+            };
             let next = (t - slope / bend).clamp(a, b);
             if !next.is_finite() || next == t {
                 break;

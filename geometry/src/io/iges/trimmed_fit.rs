@@ -77,7 +77,13 @@ fn smooth(
         nodes.push((t, last));
     }
     if let Some((ends, error)) = line(host, &nodes, tolerance) {
-        out.push(b, ends[0], ends[0].lerp(&ends[1], 1.0 / 3.0), ends[0].lerp(&ends[1], 2.0 / 3.0), ends[1]);
+        out.push(
+            b,
+            ends[0],
+            ends[0].lerp(&ends[1], 1.0 / 3.0),
+            ends[0].lerp(&ends[1], 2.0 / 3.0),
+            ends[1],
+        );
         out.error = out.error.max(error);
         return Ok(ends[1]);
     }
@@ -106,7 +112,10 @@ fn line(host: &Host, nodes: &[(f64, Xi)], tolerance: f64) -> Option<([Xi; 2], f6
             along.windows(2).all(|w| w[1] <= w[0]),
         );
         // Parameters of one line do not spread over the domain, even where that costs nothing (at a pole).
-        let spread = nodes.iter().map(|n| (n.1[d] - value).abs()).fold(0.0, f64::max);
+        let spread = nodes
+            .iter()
+            .map(|n| (n.1[d] - value).abs())
+            .fold(0.0, f64::max);
         if !(up || down) || spread > 1e-3 * host.extent(d) || error(value) > tolerance {
             return None;
         }
@@ -159,7 +168,11 @@ fn halve(
             middle = on;
         }
         let error = (host.point(x) - host.point(on)).norm();
-        worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
+        worst = if error.is_nan() {
+            f64::INFINITY
+        } else {
+            worst.max(error)
+        };
     }
     if worst <= tolerance || depth == DEPTH {
         out.push(b, p[0], p[1], p[2], p[3]);
@@ -167,8 +180,22 @@ fn halve(
         return Ok(());
     }
     let m = 0.5 * (a + b);
-    halve(host, [(a, start), (m, middle)], path, tolerance, depth + 1, out)?;
-    halve(host, [(m, middle), (b, end)], path, tolerance, depth + 1, out)
+    halve(
+        host,
+        [(a, start), (m, middle)],
+        path,
+        tolerance,
+        depth + 1,
+        out,
+    )?;
+    halve(
+        host,
+        [(m, middle), (b, end)],
+        path,
+        tolerance,
+        depth + 1,
+        out,
+    )
 }
 
 impl Pieces {

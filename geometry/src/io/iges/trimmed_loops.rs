@@ -47,11 +47,16 @@ pub fn loops(
     }
     if outer_first {
         let area = |curves: &Vec<TrimCurve>| area(curves);
-        if let Some(first) = (0..closed.len()).max_by(|&a, &b| area(&closed[a]).total_cmp(&area(&closed[b]))) {
+        if let Some(first) =
+            (0..closed.len()).max_by(|&a, &b| area(&closed[a]).total_cmp(&area(&closed[b])))
+        {
             closed.swap(0, first);
         }
     }
-    Ok(closed.into_iter().map(|curves| TrimLoop { curves }).collect())
+    Ok(closed
+        .into_iter()
+        .map(|curves| TrimLoop { curves })
+        .collect())
 }
 
 fn line(from: Xi, to: Xi) -> Result<TrimCurve, String> {
@@ -92,7 +97,8 @@ fn reversed(curve: &TrimCurve) -> Result<TrimCurve, CurveError> {
 fn follows(host: &Host, stretches: &[Vec<TrimCurve>]) -> bool {
     let n = stretches.len();
     (0..n).all(|k| {
-        let (Some(last), Some(first)) = (stretches[k].last(), stretches[(k + 1) % n].first()) else {
+        let (Some(last), Some(first)) = (stretches[k].last(), stretches[(k + 1) % n].first())
+        else {
             return true;
         };
         (host.point(end(last)) - host.point(start(first))).norm() <= joint(host)
@@ -192,7 +198,8 @@ fn area(curves: &[TrimCurve]) -> f64 {
         let n = 4 * basis.degree();
         for span in 0..basis.span_count() {
             let [a, b] = basis.span_range(span);
-            polygon.extend((0..n).map(|k| curve.parameter.point(a + (b - a) * (k as f64 / n as f64))));
+            polygon
+                .extend((0..n).map(|k| curve.parameter.point(a + (b - a) * (k as f64 / n as f64))));
         }
     }
     let Some(&origin) = polygon.first() else {
@@ -210,8 +217,10 @@ fn area(curves: &[TrimCurve]) -> f64 {
 /// Loops that go round a closed surface bound it together: two are joined by two lines across, one is joined to the border
 /// on its left (boundaries run so that the face lies to their left).
 fn joined(host: &Host, mut winding: Vec<Chain>) -> Result<Vec<TrimCurve>, String> {
-    let round = |chain: &Chain| (0..2).find(|&d| chain.turns[d].abs() == 1 && chain.turns[1 - d] == 0);
-    let cannot = || "loops go round the closed surface in a way that bounds no part of it".to_owned();
+    let round =
+        |chain: &Chain| (0..2).find(|&d| chain.turns[d].abs() == 1 && chain.turns[1 - d] == 0);
+    let cannot =
+        || "loops go round the closed surface in a way that bounds no part of it".to_owned();
     let first = winding.remove(0);
     let dir = round(&first).ok_or_else(cannot)?;
     let turn = first.turns[dir];
@@ -250,7 +259,11 @@ fn joined(host: &Host, mut winding: Vec<Chain>) -> Result<Vec<TrimCurve>, String
             // Starts where the first loop ends, and runs back by a period.
             let begin = start(&curves[0]);
             let mut by = host.nearest_copy(begin, from + period) - begin;
-            by[1 - dir] = if host.closed[1 - dir] { by[1 - dir] } else { 0.0 };
+            by[1 - dir] = if host.closed[1 - dir] {
+                by[1 - dir]
+            } else {
+                0.0
+            };
             let curves = curves
                 .into_iter()
                 .map(|c| shifted(c, by))

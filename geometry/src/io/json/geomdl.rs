@@ -2,8 +2,7 @@
 //! multiplied by their weights.
 
 use super::super::error::Fail;
-use super::super::report::{CadPatch, SkipKind, Skipped};
-use super::trims::{Part, trimmed};
+use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped};
 use super::{Content, counts, parse};
 use crate::curve::NurbsCurve;
 use crate::{NurbsPatch, Vec3};
@@ -264,7 +263,7 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
             type_number: 0,
             base: entity,
             instance: 0,
-            border,
+            border: FaceBorder::Natural,
             name: surface.name,
         });
     }

@@ -259,7 +259,7 @@ fn senses(edges: &[Edge], first: &[usize]) -> Vec<f64> {
 }
 
 /// Whether a point lies in a polygon (even-odd rule).
-pub(super) fn within(polygon: &[[f64; 2]], p: [f64; 2]) -> bool {
+fn within(polygon: &[[f64; 2]], p: [f64; 2]) -> bool {
     let mut inside = false;
     let mut before = polygon[polygon.len() - 1];
     for &now in polygon {

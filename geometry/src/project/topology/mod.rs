@@ -59,20 +59,6 @@ impl Topology {
         let local = number.checked_sub(start)? as usize;
         (local < edges.len()).then(|| self.first[patch as usize] + local)
     }
-
-    /// Calls `use_them` with the loops of a trimmed patch as polygons of the parameter plane.
-    fn polygons<T>(&self, patch: u32, use_them: impl FnOnce(&[Vec<[f64; 2]>]) -> T) -> T {
-        let mut polygons: Vec<Vec<[f64; 2]>> = Vec::new();
-        for edge in self.of(patch) {
-            if !matches!(edge.curve, EdgeCurve::Trim { curve, .. } if curve > 0) {
-                polygons.push(Vec::new());
-            }
-            if let Some(last) = polygons.last_mut() {
-                last.extend(edge.samples[..edge.samples.len() - 1].iter().map(|s| s.xi));
-            }
-        }
-        use_them(&polygons)
-    }
 }
 
 /// Finds edges, joints, components and sides of a set whose patches and tree are complete.

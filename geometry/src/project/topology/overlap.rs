@@ -6,7 +6,7 @@ use super::super::EdgeKind;
 use super::super::search::region_of;
 use super::super::set::PatchSet;
 use super::Topology;
-use super::edge::{EdgeCurve, edge_point, nearest_on_edge, within};
+use super::edge::{edge_point, nearest_on_edge};
 use super::matching::name;
 use super::report::Overlap;
 use crate::surface::{Surface, Vec3};
@@ -61,7 +61,9 @@ fn inside_of<S: Surface>(
     let limit2 = set.tolerance * set.tolerance;
     let mut out: Vec<(u32, f64)> = Vec::new();
     set.tree.visit(p, limit2, |id| {
-        let piece = &set.pieces.list[id as usize];
+        let Some(piece) = set.pieces.list.get(id as usize) else {
+            return limit2;
+        };
         if piece.patch != own && out.iter().all(|o| o.0 != piece.patch) {
             let region = region_of(piece);
             let middle = piece.domain.map(|[a, b]| 0.5 * (a + b));
@@ -72,12 +74,8 @@ fn inside_of<S: Surface>(
                     .iter()
                     .map(|e| (nearest_on_edge(set, p, e).jet.rho - p).norm())
                     .fold(f64::INFINITY, f64::min);
-                let trimmed_away = edges
-                    .first()
-                    .is_some_and(|e| matches!(e.curve, EdgeCurve::Trim { .. }))
-                    && !topology.polygons(piece.patch, |polygons| {
-                        polygons.iter().filter(|x| within(x, local.xi)).count() % 2 == 1
-                    });
+                let trim = set.patches[piece.patch as usize].trim();
+                let trimmed_away = trim.is_some_and(|trim| !trim.contains(local.xi));
                 if depth > 4.0 * set.tolerance && !trimmed_away {
                     out.push((piece.patch, depth));
                 }
