@@ -2,7 +2,8 @@
 //! trims are known, `trimmed.geomdl.json` written by geomdl 5.3.1 itself.
 
 use covact_geometry::io::{
-    Border, CadFile, CadFormat, CadPatch, LengthUnit, TrimReport, read_json, read_path, write_json,
+    CadFile, CadFormat, CadPatch, FaceBorder, LengthUnit, TrimReport, read_json, read_path,
+    write_json,
 };
 use covact_geometry::{NurbsCurve, NurbsPatch, Trim, TrimCurve, TrimLoop};
 use nalgebra::{Vector2, Vector3};
@@ -32,7 +33,7 @@ fn kratos_loops_directions_active_ranges_and_edges() {
     assert!(file.notes.is_empty(), "{:?}", file.notes);
     let [hole, triangle] = [0, 1].map(|k| &file.patches[k]);
     assert_eq!([hole.entity, triangle.entity], [2, 3]);
-    assert_eq!([hole.border, triangle.border], [Border::Trimmed; 2]);
+    assert_eq!([hole.border, triangle.border], [FaceBorder::Trimmed; 2]);
     for (xi, inside) in [
         ([0.5, 0.5], false),
         ([0.5, 0.74], false),
@@ -67,9 +68,9 @@ fn geomdl_splines_polygons_and_containers() {
         "{:?}",
         file.skipped
     );
-    assert_eq!(file.patches[1].border, Border::Natural);
+    assert_eq!(file.patches[1].border, FaceBorder::Natural);
     let patch = &file.patches[0].patch;
-    assert_eq!(file.patches[0].border, Border::Trimmed);
+    assert_eq!(file.patches[0].border, FaceBorder::Trimmed);
     for (xi, inside) in [
         ([0.5, 0.5], false),
         ([0.7, 0.7], true),
@@ -223,10 +224,10 @@ fn awkward() -> CadFile {
             part(
                 patch.with_trim(Some(trim)),
                 5,
-                Border::Trimmed,
+                FaceBorder::Trimmed,
                 Some("na\"me\n\u{e9}"),
             ),
-            part(plain, 9, Border::Rectangle, None),
+            part(plain, 9, FaceBorder::Rectangle, None),
         ],
         entities: Vec::new(),
         skipped: Vec::new(),
@@ -357,7 +358,7 @@ fn random_numbers_keep_every_bit() {
             type_number: 0,
             base: k,
             instance: 0,
-            border: Border::Natural,
+            border: FaceBorder::Natural,
             name: None,
         }
     });

@@ -15,7 +15,7 @@ pub use iges::{
     BasePatch, BaseSurface, Border, IgesCurve, IgesGeometry, IgesSurface, ParameterMap,
     Reparametrise, Unbounded, entity_name, read_iges, read_iges_geometry,
 };
-pub use json::read_json;
+pub use json::{read_json, write_json};
 pub use report::{
     CadFile, CadFormat, CadPatch, EntityCount, FaceBorder, SkipKind, Skipped, Summary, TrimReport,
 };

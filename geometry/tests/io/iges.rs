@@ -222,7 +222,9 @@ fn faces_trimmed_and_untrimmed() {
         let skipped = &file.skipped[0];
         assert_eq!((skipped.entity, skipped.type_number), (1, 144));
         assert!(
-            skipped.reason.contains("neither a curve in the parameter plane nor one in space"),
+            skipped
+                .reason
+                .contains("neither a curve in the parameter plane nor one in space"),
             "{}",
             skipped.reason
         );

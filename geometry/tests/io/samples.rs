@@ -176,7 +176,12 @@ pub fn others() -> Option<PathBuf> {
     // Either that folder itself, or one that has it beside others.
     let found = std::env::var_os("COVACT_CAD_SAMPLES")
         .map(PathBuf::from)
-        .map(|dir| [dir.join("real"), dir].into_iter().find(|d| d.is_dir()).unwrap_or_default());
+        .map(|dir| {
+            [dir.join("real"), dir]
+                .into_iter()
+                .find(|d| d.is_dir())
+                .unwrap_or_default()
+        });
     if found.is_none() {
         println!("skipped: COVACT_CAD_SAMPLES does not name a directory of CAD files");
     }

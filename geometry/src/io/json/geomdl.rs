@@ -2,7 +2,8 @@
 //! multiplied by their weights.
 
 use super::super::error::Fail;
-use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped};
+use super::super::report::{CadPatch, SkipKind, Skipped};
+use super::trims::{Part, trimmed};
 use super::{Content, counts, parse};
 use crate::curve::NurbsCurve;
 use crate::{NurbsPatch, Vec3};
@@ -263,7 +264,7 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
             type_number: 0,
             base: entity,
             instance: 0,
-            border: FaceBorder::Natural,
+            border,
             name: surface.name,
         });
     }

@@ -3,6 +3,7 @@
 
 use super::super::error::Fail;
 use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped};
+use super::trims::{Part, trimmed};
 use super::{Content, counts, parse};
 use crate::curve::NurbsCurve;
 use crate::{NurbsPatch, Vec3};
@@ -225,7 +226,7 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
         let entity = face.brep_id.unwrap_or(position);
         // Untrimmed faces carry a loop along their own border.
         let read = match face.surface.is_trimmed {
-            Some(false) => Ok((face.surface.patch, Border::Natural, Vec::new())),
+            Some(false) => Ok((face.surface.patch, FaceBorder::Natural, Vec::new())),
             Some(true) if face.boundary_loops.is_empty() => {
                 Err("is_trimmed is true, but there are no boundary loops".to_owned())
             }
@@ -259,7 +260,7 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
             type_number: 0,
             base: entity,
             instance: 0,
-            border: FaceBorder::Natural,
+            border,
             name: face.name,
         });
     }
@@ -271,7 +272,7 @@ fn trim(
     patch: &NurbsPatch,
     loops: Vec<Loop>,
     edge: impl Fn(u32) -> u32,
-) -> Result<(NurbsPatch, Border, Vec<String>), String> {
+) -> Result<(NurbsPatch, FaceBorder, Vec<String>), String> {
     let mut sorted = [Vec::new(), Vec::new()];
     for (number, a_loop) in loops.into_iter().enumerate() {
         let inner = match a_loop.loop_type.as_deref() {

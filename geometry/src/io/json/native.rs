@@ -13,7 +13,7 @@
 //! what they allow.
 
 use super::super::error::Fail;
-use super::super::report::{Border, CadFile, CadPatch};
+use super::super::report::{CadFile, CadPatch, FaceBorder};
 use super::{Content, LengthUnit, counts, parse};
 use crate::basis::Basis;
 use crate::curve::{CurveError, NurbsCurve};
@@ -164,9 +164,9 @@ impl TryFrom<RawPatch> for Patch {
             base: raw.base.unwrap_or(raw.entity),
             instance: raw.instance,
             border: match (&trim, raw.rectangle) {
-                (Some(_), _) => Border::Trimmed,
-                (None, true) => Border::Rectangle,
-                (None, false) => Border::Natural,
+                (Some(_), _) => FaceBorder::Trimmed,
+                (None, true) => FaceBorder::Rectangle,
+                (None, false) => FaceBorder::Natural,
             },
             name: raw.name,
             patch: patch.with_trim(trim),
@@ -231,7 +231,7 @@ fn raw(patch: &CadPatch) -> RawPatch {
         base: Some(patch.base),
         instance: patch.instance,
         name: patch.name.clone(),
-        rectangle: patch.border == Border::Rectangle,
+        rectangle: patch.border == FaceBorder::Rectangle,
         degree: p.degree(),
         knots: [p.knots(0).to_vec(), p.knots(1).to_vec()],
         domain: Some(Surface::domain(p)),

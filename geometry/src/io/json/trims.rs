@@ -3,7 +3,7 @@
 use super::GAP;
 use crate::NurbsPatch;
 use crate::curve::NurbsCurve;
-use crate::io::report::Border;
+use crate::io::report::FaceBorder;
 use crate::trim::{TrimCurve, TrimLoop, TrimNoteKind};
 
 /// A boundary curve and whether its loop runs through it backwards.
@@ -19,7 +19,7 @@ pub fn trimmed(
     patch: &NurbsPatch,
     loops: Vec<Vec<Part>>,
     has_outer: bool,
-) -> Result<(NurbsPatch, Border, Vec<String>), String> {
+) -> Result<(NurbsPatch, FaceBorder, Vec<String>), String> {
     let mut notes = Vec::new();
     let mut list = Vec::with_capacity(loops.len());
     for (number, parts) in loops.into_iter().enumerate() {
@@ -79,9 +79,9 @@ pub fn trimmed(
         notes.push(format!("trim loop {n}: {text}"));
     }
     let border = match (trimmed.patch.trim().is_some(), rectangle || has_outer) {
-        (true, _) => Border::Trimmed,
-        (false, true) => Border::Rectangle,
-        (false, false) => Border::Natural,
+        (true, _) => FaceBorder::Trimmed,
+        (false, true) => FaceBorder::Rectangle,
+        (false, false) => FaceBorder::Natural,
     };
     Ok((trimmed.patch, border, notes))
 }
