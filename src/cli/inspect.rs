@@ -6,6 +6,7 @@ use covact_geometry::project::{CurvatureExtreme, CurvatureRange};
 use covact_geometry::{NurbsPatch, PatchSet, Vec3};
 use serde::Serialize;
 use std::fmt::Write;
+use std::path::Path;
 
 /// What is in a CAD file. Lengths are in the unit of the file.
 #[derive(Debug, Serialize)]
@@ -123,21 +124,22 @@ pub(super) fn inspect(args: &InspectArgs) -> u8 {
 }
 
 fn failed(args: &InspectArgs, error: &CadError) -> u8 {
+    let (text, code) = fault(&args.file, error);
+    report::error(&text);
+    code
+}
+
+/// What to say when a CAD file cannot be read, and the exit code.
+pub(super) fn fault(path: &Path, error: &CadError) -> (String, u8) {
     match error {
         CadError::Read { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
-            let near = nearest_file(&args.file)
-                .map_or(String::new(), |n| format!("; did you mean `{n}`?"));
-            report::error(&format!("there is no file `{}`{near}", args.file.display()));
-            exit::SCENE
+            let near =
+                nearest_file(path).map_or(String::new(), |n| format!("; did you mean `{n}`?"));
+            let text = format!("there is no file `{}`{near}", path.display());
+            (text, exit::SCENE)
         }
-        CadError::Read { .. } => {
-            report::error(&error.to_string());
-            exit::IO
-        }
-        _ => {
-            report::error(&error.to_string());
-            exit::SCENE
-        }
+        CadError::Read { .. } => (error.to_string(), exit::IO),
+        _ => (error.to_string(), exit::SCENE),
     }
 }
 

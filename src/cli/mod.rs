@@ -3,6 +3,7 @@ mod check;
 mod inspect;
 mod new;
 mod progress;
+mod project;
 mod report;
 mod run;
 
@@ -46,6 +47,8 @@ enum Command {
     Check(CheckArgs),
     /// Show what is in a CAD file
     Inspect(InspectArgs),
+    /// Closest points of a CAD file to the points of a list
+    Project(ProjectArgs),
     /// Print the JSON schema of scenes
     Schema,
     /// Write a scene to start from
@@ -89,6 +92,31 @@ struct InspectArgs {
 }
 
 #[derive(Debug, Args)]
+struct ProjectArgs {
+    /// CAD file, as for `covact inspect`
+    file: PathBuf,
+    /// Text file with `x y z` in every line, separated by blanks or commas; what follows a # is a comment; - reads
+    /// the standard input
+    points: PathBuf,
+    /// Table to write (CSV); - is the standard output
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    out: PathBuf,
+    /// Write one JSON object per point and line instead
+    #[arg(long)]
+    json: bool,
+    /// Look no farther than this length
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    reach: Option<f64>,
+    /// Length unit of the points and of what is written (mm, m, in, ...), to which the CAD file is converted; else that
+    /// of the CAD file
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<String>,
+    /// Threads; 0: what the machine has
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
+}
+
+#[derive(Debug, Args)]
 struct NewArgs {
     /// Name of the scene; `NAME.json` is written
     name: String,
@@ -110,6 +138,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Inspect(args) => inspect::inspect(&args),
+        Command::Project(args) => project::project(&args),
         Command::Schema => print(&crate::scene::schema()),
         Command::New(args) => new::new(&args),
     });

@@ -57,6 +57,65 @@ pub fn write_whole_with<S: Sink>(
     })
 }
 
+/// A file that takes its name when it is complete: what is written goes into a temporary file beside it, which
+/// [`commit`](Self::commit) renames and dropping removes. For contents that are not in memory at once.
+#[derive(Debug)]
+pub struct AtomicFile {
+    /// None after it was renamed.
+    file: Option<io::BufWriter<File>>,
+    temporary: PathBuf,
+    target: PathBuf,
+}
+
+impl AtomicFile {
+    /// Opens the temporary file. Targets are refused as by [`write_whole`].
+    pub fn create(path: &Path) -> Result<Self, OutputError> {
+        let target = resolve(path)?;
+        let temporary = temporary_name(&target);
+        let file = OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(&temporary)
+            .map_err(|e| OutputError::io("write", path, e))?;
+        Ok(AtomicFile {
+            file: Some(io::BufWriter::with_capacity(1 << 16, file)),
+            temporary,
+            target,
+        })
+    }
+
+    /// Appends bytes.
+    pub fn write(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
+        let file = self.file.as_mut().map(|file| file.write_all(bytes));
+        file.unwrap_or(Ok(()))
+            .map_err(|e| OutputError::io("write", &self.target, e))
+    }
+
+    /// Gives the file its name, after everything has reached the disk.
+    pub fn commit(mut self) -> Result<(), OutputError> {
+        let Some(file) = self.file.take() else {
+            return Ok(());
+        };
+        let written = file
+            .into_inner()
+            .map_err(io::IntoInnerError::into_error)
+            .and_then(|file| file.sync_all())
+            .and_then(|()| fs::rename(&self.temporary, &self.target));
+        written.map_err(|source| {
+            let _ = fs::remove_file(&self.temporary);
+            OutputError::io("write", &self.target, source)
+        })
+    }
+}
+
+impl Drop for AtomicFile {
+    fn drop(&mut self) {
+        if self.file.take().is_some() {
+            let _ = fs::remove_file(&self.temporary);
+        }
+    }
+}
+
 /// Makes a folder and its parents; an existing folder is fine.
 pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     fs::create_dir_all(path).map_err(|e| OutputError::io("create the folder", path, e))

@@ -5,6 +5,7 @@ mod bad_text;
 mod check;
 mod inspect;
 mod output;
+mod project;
 mod run;
 mod schema;
 mod support;

@@ -1,4 +1,4 @@
-//! Readers of CAD files: IGES 5.3 and the JSON formats of Kratos and geomdl.
+//! Readers of CAD files: IGES 5.3 and JSON of Kratos, geomdl and our own ([`write_json`]).
 //!
 //! [`read_path`] tells the format from the content. What comes back is a [`CadFile`]: NURBS patches with
 //! their trims, and an account of everything else the file holds. Nothing is dropped silently: a surface that was not read is
@@ -16,7 +16,7 @@ pub use iges::{
     BasePatch, BaseSurface, Border, IgesCurve, IgesGeometry, IgesSurface, ParameterMap,
     Reparametrise, Unbounded, entity_name, read_iges, read_iges_geometry,
 };
-pub use json::read_json;
+pub use json::{read_json, write_json};
 pub use report::{
     CadFile, CadFormat, CadPatch, EntityCount, FaceBorder, SkipKind, Skipped, Summary, TrimReport,
 };

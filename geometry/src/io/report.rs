@@ -14,6 +14,8 @@ pub enum CadFormat {
     Kratos,
     /// JSON of the Python package geomdl (NURBS-Python).
     Geomdl,
+    /// The lossless JSON of [`write_json`](super::write_json).
+    Covact,
 }
 
 /// A surface that was read.

@@ -65,6 +65,11 @@ impl LengthUnit {
         })
     }
 
+    /// Symbols of all units.
+    pub fn names() -> [&'static str; 11] {
+        UNITS.map(|u| u.0)
+    }
+
     /// The unit of a file that states none.
     pub fn unspecified() -> Self {
         Self {

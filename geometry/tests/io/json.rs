@@ -25,7 +25,7 @@ fn kratos_runs_through_the_first_direction_first() {
     assert!(
         file.skipped[0]
             .reason
-            .starts_with("trimmed (1 boundary loops)")
+            .starts_with("its boundary gives no trim: trim loop 0 has no curves")
     );
 }
 
@@ -91,7 +91,7 @@ fn errors_have_a_place() {
             geomdl,
             "\"shape\"",
             "\"form\"",
-            "f.json:1:1: expected the key \"breps\" (Kratos) or \"shape\" (geomdl), found the keys [form]",
+            "f.json:1:1: expected the key \"breps\" (Kratos), \"shape\" (geomdl) or \"covact_geometry\", found the keys [form]",
         ),
         (
             geomdl,
@@ -116,12 +116,12 @@ fn what_is_no_surface_is_named() {
     .unwrap();
     assert_eq!((file.patches.len(), file.skipped.len()), (0, 1));
     assert_eq!(file.skipped[0].reason, "a curve, only surfaces are read");
-    let trims = "\"size_u\": 3, \"trims\": {\"count\": 1, \"data\": [{}]}";
+    let trims = "\"size_u\": 3, \"trims\": {\"count\": 1, \"data\": [{\"type\": \"container\", \"data\": []}]}";
     let file = change("cad/ruled.geomdl.json", "\"size_u\": 3", trims).unwrap();
     assert!(
         file.skipped[0]
             .reason
-            .starts_with("trimmed (1 trim curves)")
+            .starts_with("its trim curves give no trim: trim loop 0 has no curves")
     );
     let error = change("cad/ruled.geomdl.json", "\"shape\"", "\"shape\"")
         .unwrap()

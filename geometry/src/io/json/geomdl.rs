@@ -2,9 +2,12 @@
 //! multiplied by their weights.
 
 use super::super::error::Fail;
-use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped};
+use super::super::report::{CadPatch, SkipKind, Skipped};
+use super::trims::{Part, trimmed};
 use super::{Content, counts, parse};
+use crate::curve::NurbsCurve;
 use crate::{NurbsPatch, Vec3};
+use nalgebra::Vector2;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
@@ -34,7 +37,7 @@ struct Shape {
 #[serde(try_from = "RawSurface")]
 struct Surface {
     name: Option<String>,
-    trims: usize,
+    trims: Vec<TrimShape>,
     patch: NurbsPatch,
 }
 
@@ -61,7 +64,97 @@ struct ControlPoints {
 #[derive(Deserialize)]
 struct Trims {
     #[serde(default)]
-    data: Vec<IgnoredAny>,
+    data: Vec<TrimShape>,
+}
+
+/// A closed trim curve: one NURBS curve, a polygon, or a chain of both.
+#[derive(Deserialize)]
+#[serde(try_from = "RawTrim")]
+struct TrimShape {
+    curves: Vec<NurbsCurve<2>>,
+    /// What geomdl calls reversed: all outside of the curve is cut away, else all inside of it.
+    outer: bool,
+}
+
+#[derive(Deserialize)]
+struct RawTrim {
+    #[serde(rename = "type")]
+    kind: String,
+    reversed: Option<Sense>,
+    rational: Option<bool>,
+    degree: Option<usize>,
+    knotvector: Option<Vec<f64>>,
+    control_points: Option<ControlPoints>,
+    points: Option<Vec<Vec<f64>>>,
+    data: Option<Vec<TrimShape>>,
+}
+
+/// geomdl writes 0 and 1.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Sense {
+    Number(i64),
+    Truth(bool),
+}
+
+impl TryFrom<RawTrim> for TrimShape {
+    type Error = String;
+
+    fn try_from(raw: RawTrim) -> Result<Self, String> {
+        let plane = |points: Vec<Vec<f64>>| {
+            points
+                .iter()
+                .enumerate()
+                .map(|(i, x)| match x[..] {
+                    [x, y] | [x, y, _] => Ok(Vector2::new(x, y)),
+                    _ => Err(format!(
+                        "point {} of a trim curve with {} numbers, expected [u, v]",
+                        i + 1,
+                        x.len()
+                    )),
+                })
+                .collect::<Result<Vec<_>, _>>()
+        };
+        let missing = |key: &str| format!("a trim of type {} without `{key}`", raw.kind);
+        let expected = |e| format!("{e}, expected a NURBS curve");
+        let curves = match raw.kind.as_str() {
+            "spline" => {
+                let net = raw
+                    .control_points
+                    .ok_or_else(|| missing("control_points"))?;
+                let points = plane(net.points)?;
+                let weights = net.weights.filter(|_| raw.rational != Some(false));
+                let degree = raw.degree.ok_or_else(|| missing("degree"))?;
+                let knots = raw.knotvector.ok_or_else(|| missing("knotvector"))?;
+                vec![
+                    NurbsCurve::new(degree, knots, &points, weights.as_deref())
+                        .map_err(expected)?,
+                ]
+            }
+            "freeform" => {
+                let mut points = plane(raw.points.ok_or_else(|| missing("points"))?)?;
+                points.dedup();
+                // A line through n points: knots 0, 0, 1, 2, ..., n - 1, n - 1.
+                let last = points.len().saturating_sub(1) as f64;
+                let inner = (0..points.len()).map(|k| k as f64);
+                let knots = [0.0].into_iter().chain(inner).chain([last]).collect();
+                vec![NurbsCurve::new(1, knots, &points, None).map_err(expected)?]
+            }
+            "container" => {
+                let parts = raw.data.ok_or_else(|| missing("data"))?;
+                parts.into_iter().flat_map(|part| part.curves).collect()
+            }
+            other => {
+                return Err(format!(
+                    "a trim of type \"{other}\", expected \"spline\", \"freeform\" or \"container\""
+                ));
+            }
+        };
+        Ok(Self {
+            curves,
+            outer: matches!(raw.reversed, Some(Sense::Number(1..) | Sense::Truth(true))),
+        })
+    }
 }
 
 impl TryFrom<RawSurface> for Surface {
@@ -107,7 +200,7 @@ impl TryFrom<RawSurface> for Surface {
         .map_err(|e| format!("{e}, expected a NURBS surface"))?;
         Ok(Self {
             name: raw.name,
-            trims: raw.trims.map_or(0, |t| t.data.len()),
+            trims: raw.trims.map_or(Vec::new(), |t| t.data),
             patch,
         })
     }
@@ -137,26 +230,41 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
     };
     for (i, surface) in file.shape.data.into_iter().enumerate() {
         let entity = u32::try_from(i + 1).unwrap_or(u32::MAX);
-        if surface.trims > 0 {
-            content.skipped.push(Skipped {
-                entity,
-                type_number: 0,
-                name: surface.name.unwrap_or_else(|| "surface".to_owned()),
-                kind: SkipKind::Unsupported,
-                reason: format!(
-                    "trimmed ({} trim curves); trimmed surfaces are not read",
-                    surface.trims
-                ),
-            });
-            continue;
-        }
+        let loops = |outer: bool| {
+            let trims = surface.trims.iter().filter(move |t| t.outer == outer);
+            trims.map(|trim| {
+                let part = |curve: &NurbsCurve<2>| Part {
+                    curve: curve.clone(),
+                    backwards: false,
+                    entity: 0,
+                };
+                trim.curves.iter().map(part).collect::<Vec<_>>()
+            })
+        };
+        let has_outer = surface.trims.iter().any(|t| t.outer);
+        let all = loops(true).chain(loops(false)).collect();
+        let (patch, border, notes) = match trimmed(&surface.patch, all, has_outer) {
+            Ok(read) => read,
+            Err(reason) => {
+                content.skipped.push(Skipped {
+                    entity,
+                    type_number: 0,
+                    name: surface.name.unwrap_or_else(|| "surface".to_owned()),
+                    kind: SkipKind::Boundary,
+                    reason: format!("its trim curves give no trim: {reason}"),
+                });
+                continue;
+            }
+        };
+        let notes = notes.into_iter().map(|n| format!("surface {entity}: {n}"));
+        content.notes.extend(notes);
         content.patches.push(CadPatch {
-            patch: surface.patch,
+            patch,
             entity,
             type_number: 0,
             base: entity,
             instance: 0,
-            border: FaceBorder::Natural,
+            border,
             name: surface.name,
         });
     }
