@@ -7,6 +7,7 @@
 //! of closest point projection procedures in contact analysis", CMAME 197 (2008), for the mechanics of faces, edges and
 //! vertices.
 
+mod batch;
 mod cells;
 mod convex;
 mod finish;
@@ -19,6 +20,7 @@ mod sides;
 mod topology;
 mod tree;
 
+pub use batch::BatchError;
 pub use report::{CurvatureExtreme, CurvatureRange};
 pub use set::{PatchSet, PatchSetError};
 pub use sides::{ComponentSide, SideError, SideOutcome};
