@@ -2,7 +2,7 @@
 //! (farther away than known by more than 1e-9 of the size, or none), then microseconds per query on one thread, the
 //! best of several passes.
 //!
-//! `COVACT_BENCH_RIVALS=0` leaves the others out.
+//! `COVACT_BENCH_RIVALS=0` leaves the others out; an argument keeps the sets whose name contains it.
 
 #[path = "../tests/projection_common/mod.rs"]
 mod projection_common;
@@ -58,7 +58,18 @@ fn line(name: &str, code: &str, wrong: f64, micros: f64) {
     println!("{name:<22} {code:<14} {wrong:>8.2} {micros:>12.3}");
 }
 
+/// Whether a set is asked for.
+fn wanted(name: &str) -> bool {
+    std::env::args()
+        .skip(1)
+        .filter(|a| !a.starts_with('-'))
+        .all(|a| name.contains(&a))
+}
+
 fn ours(name: &str, set: &PatchSet, truths: &[(Vec3, f64)], hints: Option<&[Hint]>, reach: f64) {
+    if !wanted(name) {
+        return;
+    }
     let hint = |k: usize| hints.map(|h| h[k]);
     let mut k = 0;
     let share = {
@@ -81,7 +92,10 @@ fn ours(name: &str, set: &PatchSet, truths: &[(Vec3, f64)], hints: Option<&[Hint
 fn rivals(name: &str, set: &PatchSet, truths: &[(Vec3, f64)]) {
     use monstertruck_geometry::prelude as monster;
     use truck_geometry::prelude as truck;
-    if std::env::var("COVACT_BENCH_RIVALS").is_ok_and(|v| v == "0") || set.patches().len() > 10 {
+    if !wanted(name)
+        || std::env::var("COVACT_BENCH_RIVALS").is_ok_and(|v| v == "0")
+        || set.patches().len() > 10
+    {
         return;
     }
     let few = &truths[..FEW.min(truths.len())];
@@ -161,41 +175,57 @@ fn hints(set: &PatchSet, truths: &[(Vec3, f64)]) -> Vec<Hint> {
 }
 
 fn main() {
-    println!("{:<22} {:<14} {:>8} {:>12}", "set", "code", "wrong %", "us/query");
-    let near = sets::near(COUNT, 3, 20, false);
-    both(&near);
-    let hint = hints(&near.set, &near.truths);
+    println!(
+        "{:<22} {:<14} {:>8} {:>12}",
+        "set", "code", "wrong %", "us/query"
+    );
     let all = f64::INFINITY;
-    ours("near, warm", &near.set, &near.truths, Some(&hint), all);
-    let close = sets::above(&near.set, COUNT, 0.01, 3);
-    let hint = hints(&near.set, &close);
-    ours("contact, warm", &near.set, &close, Some(&hint), all);
-    let open: Vec<(Vec3, f64)> = close
-        .iter()
-        .map(|(q, _)| (q + Vec3::z() * 0.7, f64::INFINITY))
-        .collect();
-    ours("contact, open", &near.set, &open, None, 0.05);
-    for set in [
-        sets::edge_and_corner(COUNT),
-        sets::far(COUNT),
-        sets::focal(COUNT, false),
-        sets::sphere_near(COUNT, false),
-        sets::sphere_pole(COUNT, false),
-        sets::sphere_centre(200, false),
-        sets::crease(COUNT),
-        sets::sphere_near(COUNT, true),
-    ] {
-        both(&set);
+    if wanted("near") || wanted("near, warm") || wanted("contact, warm") || wanted("contact, open")
+    {
+        let near = sets::near(COUNT, 3, 20, false);
+        both(&near);
+        let hint = hints(&near.set, &near.truths);
+        ours("near, warm", &near.set, &near.truths, Some(&hint), all);
+        let close = sets::above(&near.set, COUNT, 0.01, 3);
+        let hint = hints(&near.set, &close);
+        ours("contact, warm", &near.set, &close, Some(&hint), all);
+        let open: Vec<(Vec3, f64)> = close
+            .iter()
+            .map(|(q, _)| (q + Vec3::z() * 0.7, f64::INFINITY))
+            .collect();
+        ours("contact, open", &near.set, &open, None, 0.05);
     }
-    let six = sets::sphere_near(COUNT, true);
-    let hint = hints(&six.set, &six.truths);
-    ours("six patches, warm", &six.set, &six.truths, Some(&hint), all);
-    let centre = sets::sphere_centre(200, true);
-    ours(centre.name, &centre.set, &centre.truths, None, all);
-    let many = sets::patchwork(COUNT, 32);
-    ours("1024 patches", &many.set, &many.truths, None, all);
-    let hint = hints(&many.set, &many.truths);
-    ours("1024 patches, warm", &many.set, &many.truths, Some(&hint), all);
-    let one = sets::near(COUNT, 3, 67, false);
-    ours("as one patch", &one.set, &one.truths, None, all);
+    let made: [(&str, fn() -> QuerySet); 9] = [
+        ("edge and corner", || sets::edge_and_corner(COUNT)),
+        ("far", || sets::far(COUNT)),
+        ("focal", || sets::focal(COUNT, false)),
+        ("sphere, near", || sets::sphere_near(COUNT, false)),
+        ("sphere, pole", || sets::sphere_pole(COUNT, false)),
+        ("sphere, centre", || sets::sphere_centre(200, false)),
+        ("C0 crease", || sets::crease(COUNT)),
+        ("six patches", || sets::sphere_near(COUNT, true)),
+        ("six patches, centre", || sets::sphere_centre(200, true)),
+    ];
+    for (name, make) in made {
+        if wanted(name) {
+            both(&make());
+        }
+    }
+    if wanted("six patches, warm") {
+        let six = sets::sphere_near(COUNT, true);
+        let hint = hints(&six.set, &six.truths);
+        ours("six patches, warm", &six.set, &six.truths, Some(&hint), all);
+    }
+    if wanted("1024 patches") || wanted("1024 patches, warm") {
+        let many = sets::patchwork(COUNT, 32);
+        ours("1024 patches", &many.set, &many.truths, None, all);
+        let hint = hints(&many.set, &many.truths);
+        ours(
+            "1024 patches, warm",
+            &many.set,
+            &many.truths,
+            Some(&hint),
+            all,
+        );
+    }
 }

@@ -163,7 +163,11 @@ pub fn sphere_near(count: usize, six: bool) -> QuerySet {
 
 /// On the axis and off it by 1e-12 to 0.1 of the distance from the centre.
 pub fn sphere_pole(count: usize, six: bool) -> QuerySet {
-    let name = if six { "six patches, pole" } else { "sphere, pole" };
+    let name = if six {
+        "six patches, pole"
+    } else {
+        "sphere, pole"
+    };
     let mut out = made(name, spherical(six));
     let (centre, radius, axis) = ball();
     let mut random = Random(18);
@@ -212,9 +216,9 @@ pub fn crease(count: usize) -> QuerySet {
     out
 }
 
-/// The near set on the same kind of sheet cut into `n` x `n` patches, each of 2 x 2 spans or so.
+/// The near set with the sheet cut into `n` x `n` patches, wherever its knots are.
 pub fn patchwork(count: usize, n: usize) -> QuerySet {
-    let whole = bumpy(3, 2 * n + 3, false, 7);
+    let whole = bumpy(3, 20, false, 7);
     let cut = |k: usize| k as f64 / n as f64;
     let patches = (0..n * n)
         .map(|k| {
@@ -225,6 +229,7 @@ pub fn patchwork(count: usize, n: usize) -> QuerySet {
         })
         .collect();
     let mut out = made("many patches", patches);
-    out.truths = above(&out.set, count, 0.5, 11);
+    let whole = PatchSet::new(vec![whole], None).unwrap();
+    out.truths = above(&whole, count, 0.5, 11);
     out
 }
