@@ -5,8 +5,10 @@
 //! `q` from the (m-1)-th of level `q - 1`. The divisions by knot differences are done once per span when the basis
 //! is made.
 
+mod refine;
 mod short;
 
+pub(crate) use refine::Refined;
 pub(crate) use short::Short;
 
 use num_dual::DualNum;
@@ -81,6 +83,12 @@ pub enum KnotError {
     TooClose {
         /// Index of the first of both.
         index: usize,
+    },
+    /// A knot that is to be removed is not strictly inside the knots' own domain.
+    #[error("there is no inner knot {value} to remove")]
+    Absent {
+        /// The value asked for.
+        value: f64,
     },
     /// A domain that is empty or not inside the knots' own domain.
     #[error("domain [{}, {}] is empty or not inside [{}, {}]", asked[0], asked[1], own[0], own[1])]

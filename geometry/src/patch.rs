@@ -7,6 +7,7 @@
 mod change;
 mod eval;
 mod extent;
+mod refine;
 mod shape;
 mod surface;
 mod truck;
@@ -59,6 +60,28 @@ pub enum PatchError {
         /// The weight.
         value: f64,
     },
+    /// A trimmed patch cannot be split: its loops would have to be cut. Take [`NurbsPatch::with_domain`] instead, which
+    /// leaves the loops whole.
+    #[error("a trimmed patch cannot be split")]
+    SplitTrimmed,
+    /// A knot without which the surface would be another one.
+    #[error(
+        "direction {direction}: without knot {value} the surface would change by {change:e} of its control points' size"
+    )]
+    KnotNeeded {
+        /// 0 for xi1, 1 for xi2.
+        direction: usize,
+        /// The knot.
+        value: f64,
+        /// Largest change of a homogeneous control point, as a share of the largest.
+        change: f64,
+    },
+    /// A trim whose curves cannot follow a change of the patch.
+    #[error("the trim cannot follow: {0}")]
+    Trim(#[from] crate::trim::TrimError),
+    /// A curve of a trim that cannot follow a change of the patch.
+    #[error("a trim curve cannot follow: {0}")]
+    TrimCurve(#[from] crate::curve::CurveError),
     /// A surface of the truck family whose control net is not a full rectangle.
     #[error("row {row} of the control net has {found} points where the first row has {expected}")]
     RaggedNet {

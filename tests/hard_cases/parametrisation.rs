@@ -70,7 +70,7 @@ fn parametrisation_does_not_change_the_result() {
     let mut counts = vec![reference.summary.newton_iterations];
     for (name, patches) in [
         ("as made", vec![one.clone()]),
-        ("swapped", vec![one.swapped()]),
+        ("swapped", vec![one.swapped().unwrap()]),
         ("reversed 1", vec![one.reversed(0).unwrap()]),
         ("reversed 2", vec![one.reversed(1).unwrap()]),
         ("stretched", vec![stretched(&one)]),

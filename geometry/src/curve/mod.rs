@@ -1,5 +1,6 @@
 //! NURBS curves of the plane and of space: trim curves, and the curves that CAD files build surfaces from.
 
+mod change;
 mod eval;
 
 pub use eval::CurvePiece;
@@ -136,6 +137,58 @@ impl<const D: usize> NurbsCurve<D> {
     /// Homogeneous control points (w x, w y, w z, w).
     pub fn homogeneous(&self) -> &[[f64; 4]] {
         &self.points
+    }
+
+    /// The curve with its end points moved to `ends`, by moving the first and the last control point; `None` where these
+    /// are not the end points (unclamped knots, a domain that is a part of the knots'). A curve changes only in the spans at
+    /// its ends, and nowhere by more than its ends do.
+    pub fn with_ends(&self, ends: [SVector<f64, D>; 2]) -> Option<Self> {
+        let knots = self.basis.knots();
+        let (p, n) = (self.degree(), self.basis.count());
+        let [start, end] = self.domain();
+        let clamped =
+            knots[1] == start && knots[p] == start && knots[n] == end && knots[n + p - 1] == end;
+        if !clamped || !ends.iter().all(|x| x.iter().all(|x| x.is_finite())) {
+            return None;
+        }
+        let mut points = self.points.clone();
+        for (k, x) in [(0, &ends[0]), (n - 1, &ends[1])] {
+            for (c, x) in x.iter().enumerate() {
+                points[k][c] = x * points[k][3];
+            }
+        }
+        Some(Self {
+            basis: self.basis.clone(),
+            points,
+        })
+    }
+
+    /// The same curve run through from its end to its start, on the same domain: `t -> start + end - t`.
+    ///
+    /// # Errors
+    /// None for knots that a curve can have; rounding of the mirrored knots is checked again.
+    pub fn reversed(&self) -> Result<Self, CurveError> {
+        let [a, b] = self.domain();
+        let mirror = |t: f64| {
+            let x = a + (b - t);
+            // The ends of the domain are mapped exactly, and no knot crosses them.
+            match t {
+                t if t == a => b,
+                t if t == b => a,
+                t if t > b => x.min(a),
+                t if t < a => x.max(b),
+                _ => x.clamp(a, b),
+            }
+        };
+        let knots = self
+            .basis
+            .knots()
+            .iter()
+            .rev()
+            .map(|&t| mirror(t))
+            .collect();
+        let basis = Basis::new(self.degree(), knots, self.basis.count())?.with_domain([a, b])?;
+        Self::from_homogeneous(basis, self.points.iter().rev().copied().collect())
     }
 
     /// First and last point.

@@ -8,6 +8,7 @@ use super::local::Local;
 use super::piece::{Piece, Pieces, split};
 use super::set::Grid;
 use super::tree::Tree;
+use super::trimmed::Trimmed;
 use crate::bezier::BezierPiece;
 use crate::surface::Vec3;
 
@@ -237,7 +238,7 @@ fn held(s: &Local, width: &[f64; 2]) -> [f64; 2] {
 }
 
 /// All cells, in the order of the pieces.
-pub(super) fn cells(pieces: &Pieces, grids: &[Grid], tree: &Tree) -> Vec<Cell> {
+pub(super) fn cells(pieces: &Pieces, grids: &[Grid], tree: &Tree, trimmed: &Trimmed) -> Vec<Cell> {
     let tangents: Vec<Tangents> = pieces
         .list
         .par_iter()
@@ -245,11 +246,18 @@ pub(super) fn cells(pieces: &Pieces, grids: &[Grid], tree: &Tree) -> Vec<Cell> {
         .collect();
     (0..pieces.list.len() as u32)
         .into_par_iter()
-        .map(|number| cell(pieces, grids, tree, &tangents, number))
+        .map(|number| cell(pieces, grids, tree, trimmed, &tangents, number))
         .collect()
 }
 
-fn cell(pieces: &Pieces, grids: &[Grid], tree: &Tree, tangents: &[Tangents], number: u32) -> Cell {
+fn cell(
+    pieces: &Pieces,
+    grids: &[Grid],
+    tree: &Tree,
+    trimmed: &Trimmed,
+    tangents: &[Tangents],
+    number: u32,
+) -> Cell {
     let piece = &pieces.list[number as usize];
     let grid = &grids[piece.patch as usize];
     let net = pieces.net(piece);
@@ -261,6 +269,7 @@ fn cell(pieces: &Pieces, grids: &[Grid], tree: &Tree, tangents: &[Tangents], num
             (piece.cell[k] + 2).min(end),
         ]
     });
+    let block = trimmed.block(grid, piece.cell, block);
     let found = axes(net, piece.degree);
     let plain = [Vec3::x(), Vec3::y(), Vec3::z()];
     let slab = Slab::new(net, found.as_ref().unwrap_or(&plain));
@@ -285,17 +294,23 @@ fn cell(pieces: &Pieces, grids: &[Grid], tree: &Tree, tangents: &[Tangents], num
         return out;
     };
     out.own = Convex::new(pieces, tangents, &axes, std::iter::once(number));
+    out.seed = seed_vectors(net, piece.degree, &axes);
+    if !trimmed.is_inside(number) {
+        // Never the middle of a block.
+        return out;
+    }
     let members = (block[1][0]..block[1][1])
         .flat_map(|j| (block[0][0]..block[0][1]).map(move |i| grid.piece([i, j])));
     out.around = Convex::new(pieces, tangents, &axes, members);
-    out.seed = seed_vectors(net, piece.degree, &axes);
     let mut clear2 = f64::INFINITY;
     tree.scan(
         |low, high| out.slab.box_separation2(low, high),
         f64::INFINITY,
         |number| {
-            let other = &pieces.list[number as usize];
-            if !out.covers(piece.patch, other) {
+            // Trim curves lie in cells, which count.
+            if let Some(other) = pieces.list.get(number as usize)
+                && !out.covers(piece.patch, other)
+            {
                 clear2 = clear2.min(out.slab.net_separation2(pieces.net(other)));
             }
             // Nothing is below zero, so that ends the scan.

@@ -47,6 +47,8 @@ pub(super) struct TrimPlace {
     pub t: f64,
     /// -1 at the start of the curve, +1 at its end, else 0.
     pub end: i8,
+    /// Whether the distance hardly changes along the curve near the point.
+    pub focal: bool,
 }
 
 const ITERATIONS: usize = 40;
@@ -269,7 +271,18 @@ impl<S: Surface> PatchSet<S> {
 
     /// Brings a point to machine precision within its region: undamped Newton steps if it is converged roughly, and where
     /// it is not or they do not suffice, the safeguarded iteration before them. The result converges as `converged` says.
+    /// On a trimmed patch a point stops at the trim.
     pub(super) fn polish(&self, q: &Vec3, start: Local) -> Local {
+        if self.patches[start.region.patch as usize].trim().is_none() {
+            self.polish_face(q, start)
+        } else if start.trim.is_some() {
+            self.polish_on_trim(q, start)
+        } else {
+            self.stopped_by_trim(q, self.polish_face(q, start))
+        }
+    }
+
+    fn polish_face(&self, q: &Vec3, start: Local) -> Local {
         if start.converged {
             let s = self.refine(q, start);
             if self.stationary(&s, 1e-12) {

@@ -11,7 +11,9 @@ mod batch;
 mod cells;
 mod convex;
 mod finish;
+mod integrate;
 mod local;
+mod neighbour;
 mod piece;
 mod report;
 mod search;
@@ -19,12 +21,15 @@ mod set;
 mod sides;
 mod topology;
 mod tree;
+mod trimmed;
+mod trimmed_search;
 
 pub use batch::BatchError;
+pub use neighbour::Neighbour;
 pub use report::{CurvatureExtreme, CurvatureRange};
 pub use set::{PatchSet, PatchSetError};
 pub use sides::{ComponentSide, SideError, SideOutcome};
-pub use topology::{EdgeReport, Joint, PartialJoint};
+pub use topology::{Border, EdgeReport, Gap, Joint, Overlap, PartialJoint};
 
 use crate::surface::{Jet, Vec3};
 

@@ -1,5 +1,6 @@
 //! What users and the contact code ask of a set as a whole.
 
+use super::integrate;
 use super::set::PatchSet;
 use super::topology::EdgeReport;
 use crate::frame::Frame;
@@ -36,14 +37,6 @@ pub struct CurvatureRange {
     pub skipped: usize,
 }
 
-/// Points and weights of the Gauss rule with four points on (0, 1).
-const GAUSS: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-];
-
 impl<S: Surface> PatchSet<S> {
     /// Length of the diagonal of [`bounds`](Self::bounds).
     pub fn size(&self) -> f64 {
@@ -61,7 +54,7 @@ impl<S: Surface> PatchSet<S> {
     }
 
     /// Most convex and most concave principal curvature with the present sides, sampled at 5 x 5 points of every Bezier
-    /// piece (corners and edges included): between the points it may be more extreme.
+    /// piece (corners and edges included) that belong to the surface: between the points it may be more extreme.
     pub fn curvature_range(&self) -> CurvatureRange {
         let mut range = CurvatureRange {
             convex: None,
@@ -79,6 +72,9 @@ impl<S: Surface> PatchSet<S> {
                     let step = if dir == 0 { k % 5 } else { k / 5 };
                     a + (b - a) * step as f64 / 4.0
                 });
+                if patch.trim().is_some_and(|trim| !trim.contains(xi)) {
+                    continue;
+                }
                 let jet = patch.jet_in_span(piece.span, xi);
                 let Some(frame) = Frame::new(&jet, self.sides[piece.patch as usize]) else {
                     range.skipped += 1;
@@ -102,22 +98,16 @@ impl<S: Surface> PatchSet<S> {
         range
     }
 
-    /// Area of every patch, by Gauss quadrature with 4 x 4 points per Bezier piece (exact for flat patches of moderate
-    /// degree, else an approximation of that order).
+    /// Area of every patch, of trimmed ones that of the part inside the trim, by Gauss quadrature (exact for flat patches of
+    /// moderate degree, else an approximation: 4 x 4 points per Bezier piece of an untrimmed patch).
     pub fn areas(&self) -> Vec<f64> {
-        let mut areas = vec![0.0; self.patches.len()];
-        for piece in &self.pieces.list {
-            let patch = &self.patches[piece.patch as usize];
-            let [[a1, b1], [a2, b2]] = piece.domain;
-            for (x2, w2) in GAUSS {
-                for (x1, w1) in GAUSS {
-                    let xi = [a1 + (b1 - a1) * x1, a2 + (b2 - a2) * x2];
-                    let [r1, r2] = patch.jet_in_span(piece.span, xi).rho_i;
-                    let weight = w1 * w2 * (b1 - a1) * (b2 - a2);
-                    areas[piece.patch as usize] += weight * r1.cross(&r2).norm();
-                }
-            }
-        }
-        areas
+        (0..self.patches.len() as u32)
+            .map(|patch| {
+                let [area] = integrate::over(self, patch, self.topology.of(patch), |jet| {
+                    [jet.rho_i[0].cross(&jet.rho_i[1]).norm()]
+                });
+                area
+            })
+            .collect()
     }
 }

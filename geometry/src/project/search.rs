@@ -21,12 +21,12 @@ struct Room {
 /// Tolerance of local iterations during the search; the winner is polished afterwards.
 pub(super) const ROUGH: f64 = 1e-10;
 /// Parts into which pieces may be cut within one query before the search gives up proving.
-const MOST_PARTS: usize = 100_000;
+pub(super) const MOST_PARTS: usize = 100_000;
 
 /// The nearest point so far.
 pub(super) struct Search<'a, S: Surface> {
-    set: &'a PatchSet<S>,
-    q: Vec3,
+    pub set: &'a PatchSet<S>,
+    pub q: Vec3,
     /// Points farther away than this are of no interest.
     reach: f64,
     pub best: Option<(u32, Local)>,
@@ -34,7 +34,7 @@ pub(super) struct Search<'a, S: Surface> {
     distance: f64,
     /// Whether nothing in the block of cells around the best point is nearer.
     settled: bool,
-    parts: usize,
+    pub parts: usize,
     /// False where the number of parts ran out before the proof was complete.
     pub complete: bool,
 }
@@ -72,11 +72,16 @@ impl<'a, S: Surface> Search<'a, S> {
     pub fn offer(&mut self, piece: u32, local: Local) {
         let distance = local.d2.sqrt();
         if distance < self.distance || self.best.is_none() && distance <= self.reach {
+            let set = self.set;
+            let inside = local.trim.is_some() || set.trimmed.is_inside(piece);
+            if !inside && set.trimmed_away(local.region.patch, local.xi) {
+                return;
+            }
             self.distance = distance;
             self.best = Some((piece, local));
             let id = piece as usize;
-            self.settled =
-                self.set.cells[id].settles_block(&self.set.pieces.list[id], &self.q, &local);
+            self.settled = local.trim.is_none()
+                && set.cells[id].settles_block(&set.pieces.list[id], &self.q, &local);
         }
     }
 
@@ -84,7 +89,11 @@ impl<'a, S: Surface> Search<'a, S> {
     pub fn start(&mut self, patch: u32, span: [usize; 2], xi: [f64; 2]) {
         let region = self.set.region(patch, span);
         let local = self.set.descend(&self.q, &region, xi, span, ROUGH);
-        self.offer(self.set.piece_number(patch, local.span, local.xi), local);
+        let piece = self.set.piece_number(patch, local.span, local.xi);
+        self.offer(piece, local);
+        if self.best.is_none() && !self.set.trimmed.is_inside(piece) {
+            self.start_on_border(patch, local.xi);
+        }
     }
 
     /// Whether the best point is proved to be the nearest of all: the nearest of its block, and the ball about the query
@@ -100,7 +109,7 @@ impl<'a, S: Surface> Search<'a, S> {
     /// Radius of the ball that pieces must be proved to lie outside of: the best distance less a tolerance well above
     /// rounding and far below any tolerance of the result. Negative where nothing can be better.
     #[inline]
-    fn cut(&self) -> f64 {
+    pub fn cut(&self) -> f64 {
         if self.best.is_some() {
             let tolerance = 1e-11 * self.set.size + 1e-14 * self.distance;
             if self.distance > tolerance {
@@ -135,7 +144,7 @@ impl<'a, S: Surface> Search<'a, S> {
 
     /// Whether nothing in a piece is nearer than the best point, by the tests that need no iteration.
     #[inline]
-    fn excluded(&self, piece: &Piece, id: u32) -> bool {
+    pub fn excluded(&self, piece: &Piece, id: u32) -> bool {
         if let Some((best, local)) = &self.best
             && self.settled
             && self.set.cells[*best as usize].covers(local.region.patch, piece)
@@ -151,6 +160,12 @@ impl<'a, S: Surface> Search<'a, S> {
 
     fn piece(&mut self, id: u32) {
         let set = self.set;
+        if id as usize >= set.pieces.list.len() {
+            return self.curve_leaf(id as usize - set.pieces.list.len());
+        }
+        if set.trimmed.is_cut(id) {
+            return self.cut_cell(id);
+        }
         let piece = &set.pieces.list[id as usize];
         let cell = &set.cells[id as usize];
         let own = |search: &Self| search.best.filter(|(best, _)| *best == id).map(|b| b.1);
@@ -185,7 +200,7 @@ impl<'a, S: Surface> Search<'a, S> {
     }
 
     /// Local iteration within a piece from `u` (0 to 1 in each direction).
-    fn iterate(&mut self, id: u32, piece: &Piece, u: [f64; 2]) -> Local {
+    pub fn iterate(&mut self, id: u32, piece: &Piece, u: [f64; 2]) -> Local {
         let local = self
             .set
             .descend(&self.q, &region_of(piece), at(piece, u), piece.span, ROUGH);
@@ -326,7 +341,7 @@ fn covered(piece: &Piece, known: &Known, range: &[[f64; 2]; 2]) -> bool {
 }
 
 /// Longest control polygon in each direction. Next to a pole the one around it is short, so no cuts are wasted on it.
-fn extents(net: &[[f64; 4]], degree: [usize; 2]) -> [f64; 2] {
+pub(super) fn extents(net: &[[f64; 4]], degree: [usize; 2]) -> [f64; 2] {
     let n1 = degree[0] + 1;
     let point = |k: usize| {
         let [x, y, z, w] = net[k];
@@ -357,7 +372,7 @@ pub(super) fn region_of(piece: &Piece) -> Region {
 
 /// Parameters of the patch for parameters 0 to 1 of a piece.
 #[inline]
-fn at(piece: &Piece, u: [f64; 2]) -> [f64; 2] {
+pub(super) fn at(piece: &Piece, u: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|k| {
         let [a, b] = piece.domain[k];
         a + u[k] * (b - a)

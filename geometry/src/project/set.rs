@@ -2,10 +2,11 @@
 
 use super::cells::{Cell, cells, cut, parts};
 use super::local::Region;
-use super::piece::{Pieces, hull};
+use super::piece::Pieces;
 use super::search::Search;
 use super::topology::{self, Topology};
 use super::tree::Tree;
+use super::trimmed::Trimmed;
 use super::{Foot, Hint};
 use crate::bezier::BezierPiece;
 use crate::patch::NurbsPatch;
@@ -134,6 +135,7 @@ pub struct PatchSet<S: Surface = NurbsPatch> {
     pub(super) pieces: Pieces,
     pub(super) cells: Vec<Cell>,
     pub(super) tree: Tree,
+    pub(super) trimmed: Trimmed,
     pub(super) size: f64,
     pub(super) tolerance: f64,
     pub(super) topology: Topology,
@@ -141,12 +143,14 @@ pub struct PatchSet<S: Surface = NurbsPatch> {
 }
 
 impl<S: Surface> PatchSet<S> {
-    /// Joins patches to a set: finds common edges, connected components and a consistent orientation, in which the first
-    /// patch of every component keeps its own (`rho_1 x rho_2` points out).
+    /// Joins patches to a set: finds common edges, connected components and a consistent orientation. A component without
+    /// free edges gets the volume that it encloses inside; of any other the first patch keeps its own side (`rho_1 x rho_2`
+    /// points out).
     ///
     /// Edges are joined where they are within `tolerance` (a length) of each other; by default that is 1e-5 of
-    /// [`size`](Self::size), but no more than a hundredth of the shortest edge. [`edges`](Self::edges) tells what was
-    /// joined and the largest gap.
+    /// [`size`](Self::size). For two edges it is no more than 5 % of the shorter one's length, and a hundred times as much
+    /// where both carry the same number of the file. [`edges`](Self::edges) tells what was joined, the largest gap and
+    /// where, and where edges come near each other without being joined.
     ///
     /// # Errors
     /// No patches, a useless tolerance or size, or a surface with one side only.
@@ -160,6 +164,7 @@ impl<S: Surface> PatchSet<S> {
             return Err(PatchSetError::Tolerance(tolerance));
         }
         let mut pieces = Pieces::default();
+        let mut trimmed = Trimmed::default();
         let mut grids = Vec::with_capacity(patches.len());
         for (number, patch) in patches.iter().enumerate() {
             let beziers = patch.bezier_pieces();
@@ -170,6 +175,7 @@ impl<S: Surface> PatchSet<S> {
             }
             grid.push_pieces(number as u32, &beziers, &mut pieces);
             grids.push(grid);
+            trimmed.push_patch(patch, &grids[number], &beziers, &pieces);
             let grid = &mut grids[number];
             for piece in &pieces.list[grid.first as usize..] {
                 for k in 0..2 {
@@ -178,7 +184,10 @@ impl<S: Surface> PatchSet<S> {
                 }
             }
         }
-        let boxes: Vec<[Vec3; 2]> = pieces.list.iter().map(|p| hull(pieces.net(p))).collect();
+        let boxes = trimmed.boxes(&pieces);
+        if boxes.len() >= 1 << 31 {
+            return Err(PatchSetError::TooLarge);
+        }
         let tree = Tree::new(&boxes);
         let [low, high] = tree.bounds();
         let size = (high - low).norm();
@@ -186,13 +195,14 @@ impl<S: Surface> PatchSet<S> {
             return Err(PatchSetError::Size(size));
         }
         let sides = vec![1.0; patches.len()];
-        let cells = cells(&pieces, &grids, &tree);
+        let cells = cells(&pieces, &grids, &tree, &trimmed);
         let mut set = PatchSet {
             patches,
             grids,
             pieces,
             cells,
             tree,
+            trimmed,
             size,
             tolerance: 0.0,
             topology: Topology::default(),

@@ -71,6 +71,13 @@ impl<S: Surface> PatchSet<S> {
         &self.topology.components
     }
 
+    /// Volume that every connected component encloses, by quadrature; `None` for one with free edges (or folded onto
+    /// itself, without volume). Closed components start with their normals out of that volume; a cavity inside another
+    /// component is turned over with [`set_component_side`](Self::set_component_side).
+    pub fn volumes(&self) -> &[Option<f64>] {
+        &self.topology.volumes
+    }
+
     /// Gives the first patch of every component the side of its own parametrisation, or the other one if `reversed`; the
     /// rest of the component follows.
     pub fn set_side_as_given(&mut self, reversed: bool) {

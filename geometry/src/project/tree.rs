@@ -23,12 +23,14 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Builds the tree over boxes (lowest and highest corner); the boxes' numbers are what visits get.
+    /// Builds the tree over boxes (lowest and highest corner); the boxes' numbers are what visits get. Boxes whose
+    /// lowest corner is above the highest are left out.
     pub fn new(boxes: &[[Vec3; 2]]) -> Self {
         let mut tree = Tree {
             nodes: Vec::with_capacity(2 * boxes.len()),
         };
-        let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+        let shown = |k: &u32| !(boxes[*k as usize][0].x > boxes[*k as usize][1].x);
+        let mut order: Vec<u32> = (0..boxes.len() as u32).filter(shown).collect();
         if !order.is_empty() {
             tree.build(boxes, &mut order);
         }

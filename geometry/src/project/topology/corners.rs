@@ -1,0 +1,112 @@
+//! Corners that meet in space.
+
+use std::collections::HashSet;
+
+use super::super::set::PatchSet;
+use super::Topology;
+use super::edge::{Edge, EdgeCurve};
+use super::matching::Touch;
+use crate::surface::{Surface, Vec3};
+
+/// What meets at a point.
+#[derive(Debug, Clone, Default)]
+pub(in crate::project) struct CornerGroup {
+    /// Patches with a corner there: patch and corner, counted from zero on its patch.
+    pub corners: Vec<(u32, u32)>,
+    /// Edges that pass through: index and parameter.
+    pub through: Vec<(usize, f64)>,
+}
+
+/// Corner (counted from zero on its patch) at an end of an edge. `edges` are those of the patch.
+pub(in crate::project) fn corner_at(edges: &[Edge], local: usize, end: usize) -> usize {
+    match edges[local].curve {
+        EdgeCurve::Side { dir, end: side } => (side << dir) | (end << (1 - dir)),
+        EdgeCurve::Trim { .. } if end == 0 => local,
+        EdgeCurve::Trim { a_loop, .. } => {
+            let same = |k: usize| matches!(edges[k].curve, EdgeCurve::Trim { a_loop: l, .. } if l == a_loop);
+            if local + 1 < edges.len() && same(local + 1) {
+                local + 1
+            } else {
+                (0..=local).find(|&k| same(k)).unwrap_or(local)
+            }
+        }
+    }
+}
+
+/// The two edges of a corner, counted from zero on the patch, each with the end that lies at the corner: on a trimmed patch
+/// the curve that begins there, then the one that ends there.
+pub(in crate::project) fn edges_at(edges: &[Edge], corner: usize) -> [(usize, usize); 2] {
+    match edges[corner].curve {
+        EdgeCurve::Side { .. } => {
+            let end = [corner & 1, corner >> 1];
+            [(end[0], end[1]), (2 + end[1], end[0])]
+        }
+        EdgeCurve::Trim { a_loop, curve } => {
+            let before = if curve > 0 {
+                corner - 1
+            } else {
+                let same =
+                    |e: &Edge| matches!(e.curve, EdgeCurve::Trim { a_loop: l, .. } if l == a_loop);
+                edges.iter().rposition(same).unwrap_or(corner)
+            };
+            [(corner, 0), (before, 1)]
+        }
+    }
+}
+
+/// Groups the corners of all patches, and adds to the edges which groups lie on them.
+pub(super) fn group<S: Surface>(set: &PatchSet<S>, topology: &mut Topology, touches: &[Touch]) {
+    let count = topology.edges.len();
+    let mut all: Vec<(Vec3, f64, usize, usize)> = Vec::with_capacity(count);
+    for patch in 0..topology.first.len() - 1 {
+        let edges = topology.of(patch as u32);
+        for corner in 0..edges.len() {
+            let ends = edges_at(edges, corner);
+            let (edge, end) = ends[0];
+            let samples = &edges[edge].samples;
+            let point = samples[end * (samples.len() - 1)].point;
+            // No short edge has both ends in the same group, poles apart.
+            let lengths = ends.map(|(e, _)| edges[e].length);
+            let shorter = lengths.into_iter().filter(|l| *l > 1e-7 * set.size);
+            let limit = shorter.fold(2.0 * set.tolerance, |limit, l| limit.min(0.2 * l));
+            all.push((point, limit, patch, corner));
+        }
+    }
+    all.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then((a.2, a.3).cmp(&(b.2, b.3))));
+    let mut group = vec![u32::MAX; all.len()];
+    let mut groups: Vec<CornerGroup> = Vec::new();
+    topology.corners = vec![0; count];
+    for k in 0..all.len() {
+        let (point, limit, patch, corner) = all[k];
+        if group[k] == u32::MAX {
+            group[k] = groups.len() as u32;
+            groups.push(CornerGroup::default());
+        }
+        let own = group[k];
+        groups[own as usize]
+            .corners
+            .push((patch as u32, corner as u32));
+        topology.corners[topology.first[patch] + corner] = own;
+        for later in k + 1..all.len() {
+            let other = &all[later];
+            if other.0.x - point.x > limit {
+                break;
+            }
+            if group[later] == u32::MAX && (other.0 - point).norm() <= limit.min(other.1) {
+                group[later] = own;
+            }
+        }
+    }
+    let mut seen = HashSet::new();
+    for &((edge, end), (on, t)) in touches {
+        let patch = topology.edges[edge].patch;
+        let first = topology.first[patch as usize];
+        let corner = corner_at(topology.of(patch), edge - first, end);
+        let own = topology.corners[first + corner];
+        if seen.insert((own, on)) {
+            groups[own as usize].through.push((on, t));
+            topology.edges[on].vertices.push((t, own));
+        }
+    }
+    topology.groups = groups;
+}
