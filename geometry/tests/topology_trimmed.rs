@@ -237,9 +237,9 @@ fn order_direction_and_exchange_of_parameters_change_nothing() {
         covact_geometry::primitives::sphere_without_poles(2.0, Vec3::zeros(), Vec3::z()).unwrap();
     let reference = set(six.to_vec());
     let mut turned: Vec<NurbsPatch> = six.to_vec();
-    turned[1] = turned[1].swapped();
+    turned[1] = turned[1].swapped().unwrap();
     turned[3] = turned[3].reversed(0).unwrap();
-    turned[4] = turned[4].reversed(1).unwrap().swapped();
+    turned[4] = turned[4].reversed(1).unwrap().swapped().unwrap();
     turned.rotate_left(2);
     let turned = set(turned);
     for set in [&reference, &turned] {

@@ -124,7 +124,11 @@ fn a_circle_around_a_seam_and_many_strips() {
         let strip = whole
             .with_domain([[start, start + width], [0.0, 2.0]])
             .unwrap();
-        if k % 3 == 0 { strip.swapped() } else { strip }
+        if k % 3 == 0 {
+            strip.swapped().unwrap()
+        } else {
+            strip
+        }
     });
     let (set, count) = counted(strips.collect());
     assert_eq!((set.edges().smooth, set.edges().free.len()), (40, 80));
@@ -159,12 +163,12 @@ fn around_trimmed_faces() {
     let (seen, mean, most) = walk(&set, &count, around(2.4, 300, 0.3));
     eprintln!("cylinder with caps: {mean:.1} evaluations a step, {most} at most");
     assert_eq!(seen, [0, 1, 2]);
-    assert!(mean < 60.0 && most < 400, "{mean} {most}");
+    assert!(mean < 20.0 && most < 60, "{mean} {most}");
     let (set, count) = counted(trimmed_box([1.0, 1.2, 0.9]));
     let (seen, mean, most) = walk(&set, &count, around(2.5, 300, 0.4));
     eprintln!("box: {mean:.1} evaluations a step, {most} at most");
     assert!(seen.len() >= 4, "{seen:?}");
-    assert!(mean < 60.0 && most < 400, "{mean} {most}");
+    assert!(mean < 20.0 && most < 60, "{mean} {most}");
 }
 
 #[test]
@@ -172,7 +176,7 @@ fn vectors_are_carried_over_smooth_and_sharp_edges() {
     // Over the smooth joints of the sphere the vector itself stays.
     let six = sphere_without_poles(2.0, Vec3::zeros(), Vec3::z()).unwrap();
     let mut six = six.to_vec();
-    six[2] = six[2].swapped();
+    six[2] = six[2].swapped().unwrap();
     let set = PatchSet::new(six, None).unwrap();
     let mut checked = 0;
     for patch in 0..6 {

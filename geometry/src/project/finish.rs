@@ -1,20 +1,13 @@
 //! From the winner of the search to a foot: last Newton steps, location, normal and sign.
 
-use std::f64::consts::PI;
-
 use super::local::{Local, Region, TrimPlace};
-use super::set::{PatchSet, SHARP_ANGLE};
-use super::topology::{
-    Edge, EdgeCurve, EdgePoint, Link, corner_at, edge_point, edges_at, nearest_on_edge,
-};
-use super::{EdgeKind, Foot, Location, Status};
-use crate::frame::Frame;
+use super::set::PatchSet;
+use super::topology::{EdgeCurve, EdgePoint, Link, corner_at, edges_at, nearest_on_edge};
+use super::{Foot, Location, Status};
 use crate::surface::{Surface, Vec3};
 
 /// Most patches that the winner of a search is moved through at the end.
 const HOPS: usize = 4;
-/// A foot that its edge holds by less than this (relative) counts as lying on the face.
-const HELD: f64 = 1e-10;
 
 impl<S: Surface> PatchSet<S> {
     pub(super) fn finish(&self, q: &Vec3, rough: Local, complete: bool) -> Foot {
@@ -149,7 +142,10 @@ impl<S: Surface> PatchSet<S> {
     }
 
     /// Regions of the same patch behind the inner borders that a point lies on, with the point's parameters there.
-    fn beside(&self, s: &Local) -> impl Iterator<Item = (Region, [f64; 2], [usize; 2])> + '_ {
+    pub(super) fn beside(
+        &self,
+        s: &Local,
+    ) -> impl Iterator<Item = (Region, [f64; 2], [usize; 2])> + '_ {
         let patch = s.region.patch;
         let grid = &self.grids[patch as usize];
         let (at, xi, home) = (s.at, s.xi, s.region.spans);
@@ -185,7 +181,7 @@ impl<S: Surface> PatchSet<S> {
     }
 
     /// The points on the other side of an edge at its parameter `t`, which is the space point `rho`.
-    fn behind<'a>(
+    pub(super) fn behind<'a>(
         &'a self,
         edge: usize,
         t: f64,
@@ -200,11 +196,11 @@ impl<S: Surface> PatchSet<S> {
 
     /// Indices and parameters of the edges that a point lies on: of an untrimmed patch one for each direction, of a trimmed
     /// one the trim curve and, at its end, the one that meets it there.
-    fn edges_under(&self, s: &Local) -> [Option<(usize, f64)>; 2] {
+    pub(super) fn edges_under(&self, s: &Local) -> [Option<(usize, f64)>; 2] {
         let patch = s.region.patch;
         let first = self.topology.first[patch as usize];
         let edges = self.topology.of(patch);
-        if !is_trimmed(edges) {
+        if self.patches[patch as usize].trim().is_none() {
             return [0, 1].map(|k| Some((first + self.edge_of(s, k)?, s.xi[1 - k])));
         }
         if let Some(place) = s.trim {
@@ -253,309 +249,6 @@ impl<S: Surface> PatchSet<S> {
             _ => None,
         }
     }
-
-    fn locate(&self, s: &Local) -> Location {
-        let on = self.edges_under(s);
-        if s.at == [0, 0] && on[0].is_none() {
-            return Location::Face;
-        }
-        let edges = &self.topology.edges;
-        let pole = |on: &&(usize, f64)| edges[on.0].kind.is_none();
-        if let Some((edge, _)) = on.iter().flatten().find(pole) {
-            let edge = edges[*edge].number;
-            return Location::Pole { edge };
-        }
-        if is_trimmed(self.topology.of(s.region.patch)) && on[0].is_some() {
-            return self.locate_on_trim(s, on);
-        }
-        // Held from how many directions, and by what.
-        let limit = HELD * HELD * s.d2.max(self.size * self.size);
-        let held = |k: usize| s.gradient[k] * s.gradient[k] > limit * s.metric[2 * k];
-        match on {
-            [Some(a), Some(b)] => {
-                let corner = (u32::from(s.at[0] > 0)) | (u32::from(s.at[1] > 0) << 1);
-                // Along an edge that does not hold it, a corner is a point of the other edge.
-                match (held(0), held(1)) {
-                    (false, false) => Location::Face,
-                    (true, false) => self.edge_location(s, a),
-                    (false, true) => self.edge_location(s, b),
-                    (true, true) => self.corner_location(s.region.patch, corner as usize, corner),
-                }
-            }
-            [Some(a), None] if held(0) => self.edge_location(s, a),
-            [None, Some(b)] if held(1) => self.edge_location(s, b),
-            _ => {
-                let grid = &self.grids[s.region.patch as usize];
-                let crease = |k: usize| {
-                    let border = match s.at[k] {
-                        -1 => s.region.spans[k][0],
-                        1 => s.region.spans[k][1],
-                        _ => return false,
-                    };
-                    on[k].is_none() && held(k) && grid.kinks[k][border] == 2
-                };
-                match (crease(0), crease(1)) {
-                    (true, _) => Location::Crease { dir: 0 },
-                    (_, true) => Location::Crease { dir: 1 },
-                    _ => Location::Face,
-                }
-            }
-        }
-    }
-
-    /// Location of a point on a trim curve. The curve holds it where the distance would fall across it.
-    fn locate_on_trim(&self, s: &Local, on: [Option<(usize, f64)>; 2]) -> Location {
-        let edges = &self.topology.edges;
-        let n = self.face_normal(s);
-        // q - rho without its part along the normal; the gradient is its product with the tangents.
-        let d = match Frame::new(&s.jet, 1.0) {
-            Some(frame) => {
-                let up = frame.rho_up();
-                -(up[0] * s.gradient[0] + up[1] * s.gradient[1])
-            }
-            None => Vec3::zeros(),
-        };
-        let limit = HELD * s.d2.sqrt().max(self.size);
-        if d.norm() <= limit {
-            return Location::Face;
-        }
-        let [Some(one), other] = on else {
-            return Location::Face;
-        };
-        let Some(other) = other else {
-            return self.edge_location(s, one);
-        };
-        // Directions in which the two edges leave the corner.
-        let away = [one, other].map(|(k, t)| {
-            let edge = &edges[k];
-            let at_end = usize::from(t == edge.interval[1]);
-            departure(&edge_point(self, edge, t), edge, at_end)
-        });
-        let turn = away[0].cross(&away[1]).norm().atan2(-away[0].dot(&away[1]));
-        let pulls = [0, 1].map(|k| d.dot(&away[k]).abs() > limit);
-        // Where the border runs on smoothly, or only one edge holds the point, it is a point of an edge.
-        match pulls {
-            _ if turn <= SHARP_ANGLE => self.edge_location(s, one),
-            [false, true] => self.edge_location(s, one),
-            [true, false] => self.edge_location(s, other),
-            _ if n == Vec3::zeros() => self.edge_location(s, one),
-            _ => {
-                let patch = s.region.patch;
-                let of = self.topology.of(patch);
-                let first = self.topology.first[patch as usize];
-                let (k, t) = one;
-                let end = usize::from(t == edges[k].interval[1]);
-                let corner = corner_at(of, k - first, end);
-                self.corner_location(patch, corner, of[corner].number)
-            }
-        }
-    }
-
-    /// Location of a point that an edge holds; where the surface runs on smoothly it lies on the face.
-    fn edge_location(&self, s: &Local, (index, t): (usize, f64)) -> Location {
-        let edge = &self.topology.edges[index];
-        let kind = match edge.kind_at(t) {
-            None => return Location::Pole { edge: edge.number },
-            Some(EdgeKind::Sharp) => self.kind_here(s, index, t),
-            Some(kind) => kind,
-        };
-        match kind {
-            EdgeKind::Smooth => Location::Face,
-            kind => Location::Edge {
-                edge: edge.number,
-                kind,
-            },
-        }
-    }
-
-    /// Smooth or sharp by the normals at the very point: a joint may be sharp in a part of it only.
-    fn kind_here(&self, s: &Local, index: usize, t: f64) -> EdgeKind {
-        let n = self.face_normal(s);
-        for (link, at) in self.behind(index, t, &s.jet.rho) {
-            let patch = self.topology.edges[link.edge].patch;
-            let m = self.normal_near(patch, at.span, at.xi) * link.relation;
-            if m.cross(&n).norm().atan2(m.dot(&n)) > SHARP_ANGLE {
-                return EdgeKind::Sharp;
-            }
-        }
-        EdgeKind::Smooth
-    }
-
-    /// Location at a corner, `corner` counted from zero on the patch.
-    fn corner_location(&self, patch: u32, corner: usize, number: u32) -> Location {
-        match self.corner_kind(patch, corner) {
-            EdgeKind::Smooth => Location::Face,
-            kind => Location::Corner {
-                corner: number,
-                kind,
-            },
-        }
-    }
-
-    /// What meets at a corner.
-    fn corner_kind(&self, patch: u32, corner: usize) -> EdgeKind {
-        let group = self.topology.corners[self.topology.first[patch as usize] + corner];
-        let mut worst = EdgeKind::Smooth;
-        for &(patch, corner) in &self.topology.groups[group as usize].corners {
-            let edges = self.topology.of(patch);
-            for (edge, end) in edges_at(edges, corner as usize) {
-                match edges[edge].kind_at(edges[edge].interval[end]) {
-                    Some(EdgeKind::Free) => return EdgeKind::Free,
-                    Some(EdgeKind::Sharp) => worst = EdgeKind::Sharp,
-                    _ => {}
-                }
-            }
-        }
-        worst
-    }
-
-    /// Unit normal `rho_1 x rho_2` of the patch, from a little inside where the tangents do not span a plane.
-    fn face_normal(&self, s: &Local) -> Vec3 {
-        match Frame::new(&s.jet, 1.0) {
-            Some(frame) => frame.n,
-            None => self.normal_near(s.region.patch, s.span, s.xi),
-        }
-    }
-
-    /// Unit normal of a patch at `xi` or, where it does not exist there, a little towards the middle of the span. Zero
-    /// where the patch has none anywhere near.
-    fn normal_near(&self, patch: u32, span: [usize; 2], xi: [f64; 2]) -> Vec3 {
-        let grid = &self.grids[patch as usize];
-        for step in [0.0, 1e-7, 1e-5, 1e-3, 0.1] {
-            let x = [0, 1].map(|k| {
-                let middle = 0.5 * (grid.breaks[k][span[k]] + grid.breaks[k][span[k] + 1]);
-                xi[k] + step * (middle - xi[k])
-            });
-            let jet = self.patches[patch as usize].jet_in_span(span, x);
-            if let Some(frame) = Frame::new(&jet, 1.0) {
-                return frame.n;
-            }
-        }
-        Vec3::zeros()
-    }
-
-    /// Outward pseudo-normal off the faces: at edges and creases the mean of the faces' normals, at corners weighted with
-    /// the faces' angles (J. A. Baerentzen and H. Aanaes, "Signed distance computation using the angle weighted
-    /// pseudonormal", IEEE TVCG 11, 2005), at poles the mean around the point.
-    #[cold]
-    #[inline(never)]
-    fn pseudo_normal(&self, s: &Local, location: Location) -> Vec3 {
-        let patch = s.region.patch;
-        let side = self.sides[patch as usize];
-        let mut sum = Vec3::zeros();
-        match location {
-            Location::Face => sum = self.face_normal(s) * side,
-            Location::Edge { edge, .. } => {
-                sum = self.face_normal(s) * side;
-                let index = self.topology.index(patch, edge);
-                let on = self.edges_under(s).into_iter().flatten();
-                if let Some((index, t)) = on.into_iter().find(|on| Some(on.0) == index) {
-                    let edge = &self.topology.edges[index];
-                    // Where corners of other patches lie on the edge, their angles count.
-                    let margin = edge.margin(2.0 * self.tolerance);
-                    let vertex = edge.vertices.iter().find(|v| (v.0 - t).abs() <= margin);
-                    if let Some((_, group)) = vertex {
-                        sum = self.group_normal(*group);
-                    } else {
-                        for (link, at) in self.behind(index, t, &s.jet.rho) {
-                            let patch = self.topology.edges[link.edge].patch;
-                            let n = self.normal_near(patch, at.span, at.xi);
-                            sum += n * self.sides[patch as usize];
-                        }
-                    }
-                }
-            }
-            Location::Corner { corner, .. } => {
-                let start = self.topology.of(patch).first().map_or(0, |e| e.number);
-                let corner = corner.saturating_sub(start) as usize;
-                let index = self.topology.first[patch as usize] + corner;
-                sum = self.group_normal(self.topology.corners[index]);
-            }
-            Location::Crease { .. } => {
-                sum = self.face_normal(s) * side;
-                for (_, xi, span) in self.beside(s) {
-                    sum += self.normal_near(patch, span, xi) * side;
-                }
-            }
-            Location::Pole { edge } => {
-                if let Some(index) = self.topology.index(patch, edge) {
-                    let edge = &self.topology.edges[index];
-                    let [a, b] = edge.interval;
-                    for k in 0..4 * edge.samples.len() {
-                        let t = (k as f64 + 0.5) / (4 * edge.samples.len()) as f64;
-                        let at = edge_point(self, edge, a + (b - a) * t);
-                        sum += self.normal_near(patch, at.span, at.xi) * side;
-                    }
-                }
-            }
-        }
-        sum.try_normalize(1e-12)
-            .unwrap_or_else(|| self.face_normal(s) * side)
-    }
-
-    /// Outward normal of a point where corners meet, not normalised.
-    fn group_normal(&self, group: u32) -> Vec3 {
-        let mut sum = Vec3::zeros();
-        let group = &self.topology.groups[group as usize];
-        for &(patch, corner) in &group.corners {
-            sum += self.corner_normal(patch, corner as usize) * self.sides[patch as usize];
-        }
-        for &(index, t) in &group.through {
-            let edge = &self.topology.edges[index];
-            let at = edge_point(self, edge, t);
-            let n = self.normal_near(edge.patch, at.span, at.xi);
-            sum += n * (self.sides[edge.patch as usize] * PI);
-        }
-        sum
-    }
-
-    /// Normal of a patch at its corner, times the angle of the patch there.
-    fn corner_normal(&self, patch: u32, corner: usize) -> Vec3 {
-        let edges = self.topology.of(patch);
-        let ends = edges_at(edges, corner);
-        let at = ends.map(|(k, end)| edge_point(self, &edges[k], edges[k].interval[end]));
-        let n = self.normal_near(patch, at[0].span, at[0].xi);
-        let [a, b] = [0, 1].map(|k| departure(&at[k], &edges[ends[k].0], ends[k].1));
-        // With the surface on the left of the first edge, the angle goes from it counterclockwise to the other.
-        let (first, end) = ends[0];
-        let left = edges[first].sense * if end == 0 { 1.0 } else { -1.0 };
-        let angle = (a.cross(&b).dot(&n) * left).atan2(a.dot(&b));
-        n * if angle < -1e-9 {
-            angle + 2.0 * PI
-        } else {
-            angle.max(0.0)
-        }
-    }
-}
-
-/// Whether edges are trim curves.
-fn is_trimmed(edges: &[Edge]) -> bool {
-    matches!(
-        edges.first(),
-        Some(Edge {
-            curve: EdgeCurve::Trim { .. },
-            ..
-        })
-    )
-}
-
-/// Unit direction in which an edge leaves one of its ends; zero where the edge is a point.
-fn departure(at: &EdgePoint, edge: &Edge, end: usize) -> Vec3 {
-    let along = if end == 0 { at.d1 } else { -at.d1 };
-    let span = edge.interval[1] - edge.interval[0];
-    if along.norm() * span > 1e-6 * edge.length {
-        return along.normalize();
-    }
-    // A tangent of no length: the first chord of the polyline that has some.
-    let samples = &edge.samples;
-    let far = |p: &Vec3| (p - at.jet.rho).norm() > 1e-6 * edge.length;
-    let next = if end == 0 {
-        samples.iter().map(|s| s.point).find(|p| far(p))
-    } else {
-        samples.iter().rev().map(|s| s.point).find(|p| far(p))
-    };
-    next.and_then(|p| (p - at.jet.rho).try_normalize(0.0))
-        .unwrap_or_else(Vec3::zeros)
 }
 
 /// Whether the Hessian over the metric has an eigenvalue of (nearly) zero in the free directions: `1 - xi3 kappa` of
