@@ -7,9 +7,11 @@
 
 mod refine;
 mod short;
+mod table;
 
 pub(crate) use refine::Refined;
 pub(crate) use short::Short;
+pub(crate) use table::{Lanes, TABLE_DEGREE, Table, lanes};
 
 use num_dual::DualNum;
 
@@ -119,7 +121,8 @@ pub struct Basis {
     spans: Vec<Span>,
     /// Reciprocals of the knot differences, `degree * (degree + 1) / 2` per span, level after level.
     inverse: Vec<f64>,
-    /// Equal pieces of the domain, each with the span in which it starts; one entry more than there are pieces.
+    /// Equal pieces of the domain, each with the last span that starts in a piece before it; one entry more than there
+    /// are pieces.
     buckets: Vec<u32>,
     bucket_scale: f64,
 }
@@ -207,18 +210,19 @@ impl Basis {
             }
         }
         let pieces = (2 * spans.len()).next_power_of_two();
+        let bucket_scale = pieces as f64 / (domain[1] - domain[0]);
+        // The number of the piece grows with the parameter, rounding included, so what starts in a piece before lies
+        // below all parameters of this piece.
         let mut buckets = Vec::with_capacity(pieces + 1);
         let mut span = 0;
-        for piece in 0..pieces {
-            let start = domain[0] + (domain[1] - domain[0]) * (piece as f64 / pieces as f64);
-            while span + 1 < spans.len() && spans[span].range[1] <= start {
+        for piece in 0..=pieces {
+            while span + 1 < spans.len()
+                && bucket(spans[span + 1].range[0], domain[0], bucket_scale, pieces) < piece
+            {
                 span += 1;
             }
-            // One span earlier, in case rounding puts a point of that span into this piece.
-            buckets.push(span.saturating_sub(1) as u32);
+            buckets.push(span as u32);
         }
-        buckets.push(spans.len() as u32 - 1);
-        let bucket_scale = pieces as f64 / (domain[1] - domain[0]);
         Ok(Self {
             degree,
             count,
@@ -289,16 +293,23 @@ impl Basis {
     /// at the end of the domain; the nearest one outside of it.
     #[inline]
     pub fn find_span(&self, t: f64) -> usize {
-        let (mut low, mut high) = self.bracket(t);
-        while low < high {
+        let pieces = self.buckets.len() - 1;
+        let piece = bucket(t, self.domain[0], self.bucket_scale, pieces);
+        let (mut low, mut high) = (
+            self.buckets[piece] as usize,
+            self.buckets[piece + 1] as usize,
+        );
+        while high - low > 1 {
             let middle = (low + high) / 2;
-            if self.spans[middle].range[1] <= t {
-                low = middle + 1;
+            if self.spans[middle].range[0] <= t {
+                low = middle;
             } else {
                 high = middle;
             }
         }
-        low
+        // Without a jump, which would be guessed wrong every other time.
+        let after = usize::from(self.spans[high].range[0] <= t);
+        low + (after & (high - low))
     }
 
     /// As [`find_span`](Self::find_span) with `start < t <= end`: at an inner knot the span to its left.
@@ -309,20 +320,6 @@ impl Basis {
         } else {
             span
         }
-    }
-
-    /// First and last span between which the span of `t` lies. The upper one is that of the next piece and one more,
-    /// in case rounding puts a point at the start of the next piece into this one.
-    #[inline]
-    fn bracket(&self, t: f64) -> (usize, usize) {
-        let pieces = self.buckets.len() - 1;
-        // The cast takes NaN and negative values to zero.
-        let piece = (((t - self.domain[0]) * self.bucket_scale) as usize).min(pieces - 1);
-        let last = self.spans.len() - 1;
-        (
-            self.buckets[piece] as usize,
-            (self.buckets[piece + 1] as usize + 2).min(last),
-        )
     }
 
     /// Knots strictly inside the domain that are repeated `degree` times or more: only the value of a spline is
@@ -409,6 +406,13 @@ impl Basis {
             }
         }
     }
+}
+
+/// The piece of the domain in which `t` lies; the nearest one outside.
+#[inline(always)]
+fn bucket(t: f64, start: f64, scale: f64, pieces: usize) -> usize {
+    // The cast takes NaN and negative values to zero.
+    (((t - start) * scale) as u32 as usize).min(pieces - 1)
 }
 
 /// The recursion from level 0 to level `p`. `knots[p - 1]` and `knots[p]` are the ends of the span.

@@ -7,6 +7,7 @@
 mod change;
 mod eval;
 mod extent;
+mod kernel;
 mod refine;
 mod shape;
 mod surface;
@@ -17,6 +18,7 @@ pub use shape::PatchShape;
 use crate::basis::{Basis, KnotError};
 use crate::surface::Vec3;
 use crate::trim::Trim;
+use kernel::Kernel;
 use std::sync::Arc;
 
 /// Why a patch could not be made. Directions and indices count from zero.
@@ -102,6 +104,7 @@ pub struct NurbsPatch {
     points: Vec<[f64; 4]>,
     rational: bool,
     trim: Option<Arc<Trim>>,
+    kernel: Kernel,
 }
 
 fn knot_error(direction: usize) -> impl Fn(KnotError) -> PatchError {
@@ -176,6 +179,7 @@ impl NurbsPatch {
         }
         let rational = points.iter().any(|p| p[3] != points[0][3]);
         Ok(Self {
+            kernel: Kernel::new(&basis),
             basis,
             points,
             rational,
@@ -192,6 +196,18 @@ impl NurbsPatch {
     pub fn with_trim(mut self, trim: Option<Trim>) -> Self {
         self.trim = trim.map(Arc::new);
         self
+    }
+
+    /// The patch with its jets computed by the code for any processor, where otherwise AVX2 and FMA would be used: for
+    /// results that are the same to the last bit on all machines, and to compare both.
+    pub fn with_portable_kernel(mut self) -> Self {
+        self.kernel = self.kernel.portable();
+        self
+    }
+
+    /// Whether the code for any processor computes the jets.
+    pub fn has_portable_kernel(&self) -> bool {
+        self.kernel.is_portable()
     }
 
     /// Polynomial degrees.

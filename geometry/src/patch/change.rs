@@ -17,10 +17,9 @@ impl NurbsPatch {
             b1.with_domain(domain[0]).map_err(knot_error(0))?,
             b2.with_domain(domain[1]).map_err(knot_error(1))?,
         ];
-        Ok(Self {
-            basis,
-            ..self.clone()
-        })
+        let mut patch = Self::from_homogeneous(basis, self.points.clone())?;
+        patch.trim = self.trim.clone();
+        Ok(patch)
     }
 
     /// The patch with every control point mapped, weights kept: the mapped surface where the map is affine, and only

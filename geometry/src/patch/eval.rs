@@ -61,6 +61,14 @@ impl NurbsPatch {
     /// one-sided derivatives at knots. Numbers past the last span mean the last span.
     #[inline]
     pub fn jet_in_span(&self, span: [usize; 2], xi: [f64; 2]) -> Jet {
+        match self.fast_jet(span, xi) {
+            Some(jet) => jet,
+            None => self.general_jet(span, xi),
+        }
+    }
+
+    /// The jet for any degree.
+    fn general_jet(&self, span: [usize; 2], xi: [f64; 2]) -> Jet {
         let mut d = [[0.0; 4]; 6];
         self.derivatives::<3, 6>(span, xi, &mut d);
         let a = |k: usize| Vec3::new(d[k][0], d[k][1], d[k][2]);
