@@ -2,8 +2,9 @@
 
 mod projection_common;
 
-use covact_geometry::primitives::{cylinder, plane, sphere, sphere_without_poles, torus};
+use covact_geometry::primitives::{cylinder, plane, sphere, torus};
 use covact_geometry::{EdgeKind, Foot, Hint, Location, NurbsPatch, PatchSet, Status, Vec3};
+use projection_common::sets::{self, QuerySet, above};
 use projection_common::*;
 
 fn set(patches: Vec<NurbsPatch>) -> PatchSet {
@@ -14,21 +15,8 @@ fn cold(set: &PatchSet, q: Vec3) -> Foot {
     set.project(&q, None, f64::INFINITY).unwrap()
 }
 
-/// Points at a distance along the normal, nearer than both the curvature radius and a small length: the foot is known
-/// to be this near at most, and mostly is.
-fn above(set: &PatchSet, count: usize, most: f64, seed: u64) -> Vec<(Vec3, f64)> {
-    let mut random = Random(seed);
-    let mut out = Vec::new();
-    while out.len() < count {
-        let patch = &set.patches()[(random.next() * set.patches().len() as f64) as usize];
-        let xi = random.xi(patch);
-        let (Some(n), Some(kappa)) = (normal(patch, xi), curvature(patch, xi)) else {
-            continue;
-        };
-        let d = random.between(-1.0, 1.0) * most.min(0.9 / kappa.abs());
-        out.push((patch.point(xi) + n * d, d.abs()));
-    }
-    out
+fn none_wrong(queries: &sets::QuerySet) {
+    assert_eq!(count_wrong(queries.name, &queries.set, &queries.truths), 0);
 }
 
 #[test]
@@ -40,179 +28,61 @@ fn near_bicubic() {
         (5, 9, false),
         (1, 12, false),
     ] {
-        let set = set(vec![bumpy(degree, count, rational, 7)]);
-        let truths = above(&set, queries(300), 0.5, 11);
-        assert_eq!(
-            count_wrong(&format!("near, degree {degree}"), &set, &truths),
-            0
-        );
+        none_wrong(&sets::near(queries(1000), degree, count, rational));
     }
 }
 
 #[test]
 fn near_focal_surface() {
-    // Within 2 % of the centre of curvature; farther ones may be nearer to something else, so the distance along the
-    // normal is an upper bound only and a sample is searched exhaustively.
-    for (rational, count) in [(false, 20), (true, 12)] {
-        let patch = bumpy(3, count, rational, 3);
-        let set = set(vec![patch]);
-        let mut random = Random(5);
-        let mut truths = Vec::new();
-        while truths.len() < queries(300) {
-            let patch = &set.patches()[0];
-            let xi = random.xi(patch);
-            let (Some(n), Some(kappa)) = (normal(patch, xi), curvature(patch, xi)) else {
-                continue;
-            };
-            let d = random.between(0.98, 1.0) / kappa;
-            if d.abs() < 5.0 {
-                let q = patch.point(xi) + n * d;
-                let mut truth = d.abs();
-                if truths.len() % 10 == 0 && truths.len() < 2000 {
-                    truth = truth.min(exhaustive(set.patches(), &q, 4, 20));
-                }
-                truths.push((q, truth));
-            }
-        }
-        assert_eq!(count_wrong("near the focal surface", &set, &truths), 0);
-    }
+    none_wrong(&sets::focal(queries(600), false));
+    none_wrong(&sets::focal(queries(600), true));
 }
 
 #[test]
 fn far_away() {
-    let set = set(vec![bumpy(3, 20, false, 7)]);
-    let mut random = Random(23);
-    let truths: Vec<(Vec3, f64)> = (0..queries(300))
-        .map(|k| {
-            let q = random.direction() * (1000.0 * set.size());
-            let truth = if k % 3 == 0 {
-                exhaustive(set.patches(), &q, 4, 30)
-            } else {
-                f64::INFINITY
-            };
-            // Elsewhere a dense cloud of points gives an upper bound.
-            let truth = if truth.is_finite() {
-                truth
-            } else {
-                exhaustive(set.patches(), &q, 2, 6)
-            };
-            (q, truth)
-        })
-        .collect();
-    assert_eq!(count_wrong("far", &set, &truths), 0);
+    none_wrong(&sets::far(queries(400)));
 }
 
 #[test]
 fn beyond_edges_and_corners() {
-    let set = set(vec![bumpy(3, 20, false, 7)]);
-    let patch = &set.patches()[0];
-    let mut random = Random(31);
-    let mut truths = Vec::new();
-    let mut corners = 0;
-    for k in 0..queries(400) {
-        // A point of an edge, moved within the cone of directions that it is the nearest point for.
-        let edge = k % 4;
-        let (dir, end) = (edge / 2, edge % 2);
-        let along = 1 - dir;
-        let mut xi = random.xi(patch);
-        xi[dir] = end as f64;
-        let corner = random.next() < 0.3;
-        if corner {
-            corners += 1;
-            xi[along] = if random.next() < 0.5 { 0.0 } else { 1.0 };
-        }
-        let jet = patch.jet(xi);
-        let n = normal(patch, xi).unwrap();
-        let out = |k: usize| jet.rho_i[k].normalize() * if xi[k] == 0.0 { -1.0 } else { 1.0 };
-        let mut conormal = out(dir);
-        if corner {
-            conormal = conormal * random.next() + out(along) * random.next();
-        } else {
-            let t = jet.rho_i[along].normalize();
-            conormal -= t * conormal.dot(&t);
-        }
-        let d = (conormal.normalize() + n * random.between(-1.0, 1.0)).normalize()
-            * random.between(0.01, 0.5);
-        let q = jet.rho + d;
-        truths.push((
-            q,
-            exhaustive_if(k % 10 == 0 && k < 2000, &set, &q).min(d.norm()),
-        ));
-    }
-    assert!(corners > 50);
-    assert_eq!(count_wrong("edges and corners", &set, &truths), 0);
+    let QuerySet { set, truths, .. } = sets::edge_and_corner(queries(1000));
+    assert_eq!(count_wrong("edge and corner", &set, &truths), 0);
     // Most of them are held by the free edges.
-    let free = truths
-        .iter()
-        .filter(|(q, _)| {
-            matches!(
-                cold(&set, *q).location,
-                Location::Edge {
-                    kind: EdgeKind::Free,
-                    ..
-                } | Location::Corner {
-                    kind: EdgeKind::Free,
-                    ..
-                }
-            )
-        })
-        .count();
-    assert!(10 * free > 9 * truths.len(), "{free} of {}", truths.len());
-}
-
-fn exhaustive_if(wanted: bool, set: &PatchSet, q: &Vec3) -> f64 {
-    if wanted {
-        exhaustive(set.patches(), q, 4, 20)
-    } else {
-        f64::INFINITY
+    let locations = truths.iter().map(|(q, _)| cold(&set, *q).location);
+    let mut found = [0; 2];
+    for location in locations {
+        match location {
+            Location::Edge {
+                kind: EdgeKind::Free,
+                ..
+            } => found[0] += 1,
+            Location::Corner {
+                kind: EdgeKind::Free,
+                ..
+            } => found[1] += 1,
+            _ => {}
+        }
     }
+    let count = truths.len();
+    assert!(
+        10 * (found[0] + found[1]) > 9 * count && 5 * found[1] > count,
+        "{found:?}"
+    );
 }
 
 #[test]
 fn spheres() {
-    let centre = Vec3::new(0.3, -0.2, 0.5);
-    let one = sphere(2.0, centre, Vec3::new(0.2, 0.3, 0.9)).unwrap();
-    let six = sphere_without_poles(2.0, centre, Vec3::new(0.2, 0.3, 0.9)).unwrap();
-    let axis = Vec3::new(0.2, 0.3, 0.9).normalize();
-    for (name, patches) in [("one patch", vec![one]), ("six patches", six.to_vec())] {
-        let set = set(patches);
-        let mut random = Random(17);
-        let mut near = Vec::new();
-        let mut pole = Vec::new();
-        for k in 0..queries(500) {
-            let r = random.between(0.1, 4.0);
-            near.push((centre + random.direction() * r, (r - 2.0f64).abs()));
-            let tilt = random.direction() * 10f64.powf(random.between(-12.0, -1.0));
-            let end = if k % 2 == 0 { axis } else { -axis };
-            let tilt = if k % 10 == 0 { Vec3::zeros() } else { tilt };
-            let offset = (end + tilt) * random.between(1.0, 3.0);
-            pole.push((centre + offset, (offset.norm() - 2.0).abs()));
-        }
+    for six in [false, true] {
+        let near = sets::sphere_near(queries(1000), six);
+        none_wrong(&near);
+        none_wrong(&sets::sphere_pole(queries(300), six));
+        let centre = sets::sphere_centre(queries(200), six);
+        none_wrong(&centre);
         assert_eq!(
-            count_wrong(&format!("sphere of {name}, near"), &set, &near),
-            0
+            cold(&centre.set, centre.truths[0].0).status,
+            Status::NonUnique
         );
-        assert_eq!(
-            count_wrong(&format!("sphere of {name}, pole"), &set, &pole),
-            0
-        );
-        let centres: Vec<(Vec3, f64)> = (0..queries(100))
-            .map(|k| {
-                let off = random.direction()
-                    * if k == 0 {
-                        0.0
-                    } else {
-                        10f64.powf(random.between(-16.0, -3.0))
-                    };
-                (centre + off, 2.0 - off.norm())
-            })
-            .collect();
-        assert_eq!(
-            count_wrong(&format!("sphere of {name}, centre"), &set, &centres),
-            0
-        );
-        assert_eq!(cold(&set, centre).status, Status::NonUnique);
-        assert_eq!(cold(&set, near[0].0).status, Status::Unique);
+        assert_eq!(cold(&near.set, near.truths[0].0).status, Status::Unique);
     }
 }
 
@@ -238,24 +108,18 @@ fn torus_cylinder_plane() {
 
 #[test]
 fn crease() {
-    let set = set(vec![creased()]);
-    let mut random = Random(43);
-    let truths: Vec<(Vec3, f64)> = (0..queries(200).min(2000))
-        .map(|_| {
-            let q = Vec3::new(
-                random.between(4.5, 5.5),
-                random.between(0.0, 10.0),
-                random.between(0.5, 3.0),
-            );
-            (q, exhaustive(set.patches(), &q, 4, 16))
-        })
-        .collect();
+    let QuerySet { set, truths, .. } = sets::crease(queries(400));
     assert_eq!(count_wrong("crease", &set, &truths), 0);
     let on_crease = truths
         .iter()
         .filter(|(q, _)| cold(&set, *q).location == (Location::Crease { dir: 0 }))
         .count();
     assert!(on_crease > truths.len() / 5, "{on_crease}");
+}
+
+#[test]
+fn many_patches() {
+    none_wrong(&sets::patchwork(queries(500), 10));
 }
 
 /// Surface of a `.surf` file: degrees and counts, knots of both directions, then x y z w per control point, xi2
@@ -348,7 +212,7 @@ fn several_patches() {
     patches.push(sphere(1.0, Vec3::new(4.7, 4.7, 0.0), Vec3::z()).unwrap());
     let five = set(patches);
     assert_eq!(five.components().len(), 2);
-    let truths: Vec<(Vec3, f64)> = (0..queries(300).min(2000))
+    let truths: Vec<(Vec3, f64)> = (0..queries(300))
         .map(|_| {
             let q = Vec3::new(
                 random.between(0.0, 10.0),
@@ -411,4 +275,39 @@ fn hints_do_not_change_the_distance() {
         different += usize::from((one.xi[0] - hint.xi[0]).abs() > 0.1);
     }
     assert!(different > 2000);
+}
+
+#[test]
+fn batches_do_not_depend_on_the_number_of_threads() {
+    let QuerySet { set, truths, .. } = sets::near(1000, 3, 12, true);
+    let points: Vec<Vec3> = truths.iter().map(|t| t.0).collect();
+    let singly: Vec<Option<Foot>> = points.iter().map(|q| Some(cold(&set, *q))).collect();
+    let hints: Vec<Option<Hint>> = singly.iter().map(|f| f.map(|f| f.hint())).collect();
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        let mut out = vec![None; points.len()];
+        let all = f64::INFINITY;
+        pool.install(|| set.project_batch(&points, &[], all, &mut out))
+            .unwrap();
+        assert_eq!(out, singly);
+        out.fill(None);
+        pool.install(|| set.project_batch(&points, &hints, all, &mut out))
+            .unwrap();
+        for (k, (foot, q)) in out.iter().zip(&points).enumerate() {
+            assert_eq!(*foot, set.project(q, hints[k], all));
+        }
+        // Out of reach is no answer.
+        pool.install(|| set.project_batch(&points, &[], 1e-6, &mut out))
+            .unwrap();
+        assert!(out.iter().filter(|f| f.is_none()).count() > 900);
+    }
+    let mut short = vec![None; 3];
+    assert!(set.project_batch(&points, &[], 1.0, &mut short).is_err());
+    assert!(
+        set.project_batch(&points[..3], &hints[..2], 1.0, &mut short)
+            .is_err()
+    );
 }

@@ -7,6 +7,7 @@
 //! of closest point projection procedures in contact analysis", CMAME 197 (2008), for the mechanics of faces, edges and
 //! vertices.
 
+mod batch;
 mod cells;
 mod convex;
 mod finish;
@@ -25,6 +26,7 @@ mod tree;
 mod trimmed;
 mod trimmed_search;
 
+pub use batch::BatchError;
 pub use neighbour::Neighbour;
 pub use report::{CurvatureExtreme, CurvatureRange};
 pub use set::{PatchSet, PatchSetError};

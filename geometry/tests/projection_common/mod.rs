@@ -1,6 +1,8 @@
 //! Shared by the tests of closest points: random numbers, sample surfaces, an exhaustive search.
 #![allow(dead_code)]
 
+pub mod sets;
+
 use covact_geometry::{Foot, NurbsPatch, PatchSet, Vec3};
 
 /// Number of queries of a test: a few hundred by default, more with the variable `COVACT_QUERIES`.
