@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::super::EdgeKind;
 use super::super::set::{PatchSet, SHARP_ANGLE};
 use super::contact::{Contact, contact};
-use super::edge::{Edge, Link, subtract};
+use super::edge::{Edge, Link, nearest_on_edge, subtract};
 use super::report::{EdgeReport, Gap, Joint, PartialJoint};
 use crate::surface::{Surface, Vec3};
 
@@ -56,9 +56,19 @@ pub(super) fn pairs<S: Surface>(
 ) -> Vec<Pair> {
     let wide = if loose { LOOSE * tolerance } else { tolerance };
     let candidates = candidates(edges, chosen, tolerance, wide);
-    let compare = |(a, b)| {
+    let compare = |(a, b): (usize, usize)| {
         let tight = pair(set, edges, a, b, tolerance);
         if !loose || tight.as_ref().is_some_and(|p| p.whole) {
+            return tight;
+        }
+        // An edge that coincides as a whole has both ends near the other one.
+        let near =
+            |p: &Vec3, edge: &Edge| (nearest_on_edge(set, p, edge).jet.rho - p).norm() <= wide;
+        let ends_near = |one: &Edge, other: &Edge| {
+            let last = one.samples.len() - 1;
+            near(&one.samples[0].point, other) && near(&one.samples[last].point, other)
+        };
+        if !ends_near(&edges[a], &edges[b]) && !ends_near(&edges[b], &edges[a]) {
             return tight;
         }
         let before = tight.as_ref().map_or([false; 2], |p| p.full);
