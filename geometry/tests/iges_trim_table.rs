@@ -18,7 +18,37 @@ struct Table {
 struct FileRow {
     entities: BTreeMap<String, usize>,
     surfaces: Vec<SurfaceRow>,
+    /// Lengths of the kernel over ours: it takes another unit from a file whose global section is damaged.
+    #[serde(default = "one")]
+    scale: f64,
 }
+
+fn one() -> f64 {
+    1.0
+}
+
+/// Faces whose curves in the parameter plane and in space lie apart in the file, so that the area between them is open: file,
+/// entity, and the relative difference of areas that this makes here. The kernel follows the former; where they lie apart
+/// by more than the tolerance of the reader, it follows the latter. In hammer.iges boundaries leave the range of their surface by
+/// up to 1e-3 of it: the kernel continues the surface, the reader ends it.
+const APART: &[(&str, u32, f64)] = &[
+    ("real/DTMB-5415_bulbous_bow.iges", 1, 3e-5),
+    ("real/bearing.iges", 4117, 3e-6),
+    ("real/bearing.iges", 4479, 1e-5),
+    ("real/bearing.iges", 5361, 3e-4),
+    ("real/hammer.iges", 289, 1e-4),
+    ("real/hammer.iges", 341, 5e-4),
+    ("real/hammer.iges", 451, 1e-4),
+    ("real/hammer.iges", 477, 5e-4),
+    ("real/hammer.iges", 517, 1e-5),
+    ("real/hammer.iges", 547, 1e-5),
+    ("real/hammer.iges", 569, 2e-4),
+    ("real/hammer.iges", 599, 1e-4),
+    ("real/hammer.iges", 741, 1e-5),
+    ("real/hammer.iges", 787, 1e-5),
+    ("real/hammer.iges", 923, 1e-3),
+    ("real/hammer.iges", 1285, 5e-4),
+];
 
 /// A face or free surface, in millimetres.
 #[derive(serde::Deserialize)]
@@ -60,8 +90,8 @@ const TRIMS: &[(&str, usize, usize)] = &[
     ("made_here/trimmed_patch_faces.igs", 1, 0),
     ("real/DTMB-5415_bulbous_bow.iges", 1, 0),
     ("real/bearing.iges", 56, 157),
-    ("real/example_45_faces.iges", 45, 0),
-    ("real/hammer.iges", 45, 0),
+    ("real/example_45_faces.iges", 31, 14),
+    ("real/hammer.iges", 25, 20),
     ("real/single_rounded_cube.iges", 2, 5),
     ("real/sunglasses_lens.igs", 0, 0),
     ("real/testfile.igs", 0, 0),
@@ -106,7 +136,7 @@ fn check(filter: &str) {
         let mut fault = |text: String| faults.push(format!("{name}: {text}"));
         counts(&name, &file, &row, &mut fault);
         for surface in &row.surfaces {
-            compare(&file, surface, &mut fault);
+            compare(&name, &file, surface, row.scale, &mut fault);
         }
     }
     assert!(seen > 0);
@@ -163,7 +193,14 @@ fn counts(name: &str, file: &CadFile, row: &FileRow, fault: &mut impl FnMut(Stri
 }
 
 /// Areas to 1e-6, boxes to 1e-6 of their diagonal; the kernel widens boxes by its confusion distance of 1e-7.
-fn compare(file: &CadFile, row: &SurfaceRow, fault: &mut impl FnMut(String)) {
+fn compare(
+    file_name: &str,
+    file: &CadFile,
+    row: &SurfaceRow,
+    scale: f64,
+    fault: &mut impl FnMut(String),
+) {
+    let apart = APART.iter().find(|a| (a.0, a.1) == (file_name, row.entity));
     let name = format!("entity {} ({})", row.entity, row.type_number);
     let Some(found) = file.patches.iter().find(|p| p.entity == row.entity) else {
         return;
@@ -174,39 +211,44 @@ fn compare(file: &CadFile, row: &SurfaceRow, fault: &mut impl FnMut(String)) {
             found.type_number, found.base
         ));
     }
-    let mut near = |what: &str, value: f64, reference: f64| {
+    let mut near = |what: &str, value: f64, reference: f64, tolerance: f64| {
+        let reference = reference / (scale * scale);
         let error = (value / reference - 1.0).abs();
-        if error.is_nan() || error > 1e-6 {
+        if error.is_nan() || error > tolerance {
             fault(format!(
                 "{name}: {what} {value}, not {reference} ({error:.1e})"
             ));
         }
     };
-    near("area", trimmed_area(&found.patch), row.area);
+    near(
+        "area",
+        trimmed_area(&found.patch),
+        row.area,
+        apart.map_or(1e-6, |a| a.2),
+    );
     // The kernel's surfaces have all of their knots' range.
     let full = [0, 1].map(|d| {
         let basis = found.patch.basis(d);
         [basis.knots()[basis.degree()], basis.knots()[basis.count()]]
     });
-    let whole = match found.border {
-        FaceBorder::Trimmed => found
-            .patch
-            .clone()
-            .with_trim(None)
-            .with_domain(full)
-            .unwrap(),
-        _ => found.patch.clone(),
-    };
-    if let Some(reference) = row.base_area
-        && found.border != FaceBorder::Rectangle
-    {
-        near("area of the whole surface", area(&whole), reference);
-    }
-    let reference = match found.border {
-        FaceBorder::Trimmed => row.base_box,
-        _ => Some(row.bounds),
+    let base = row.base_area.zip(row.base_box);
+    let (whole, reference) = match base {
+        Some((area_of_base, bounds)) => {
+            let patch = found.patch.clone().with_trim(None).with_domain(full);
+            let patch = patch.unwrap();
+            near(
+                "area of the whole surface",
+                area(&patch),
+                area_of_base,
+                1e-6,
+            );
+            (patch, Some(bounds))
+        }
+        None if found.border == FaceBorder::Trimmed => (found.patch.clone(), None),
+        None => (found.patch.clone(), Some(row.bounds)),
     };
     if let Some(reference) = reference {
+        let reference = reference.map(|x| x / scale);
         let diagonal = (0..3)
             .map(|k| (reference[k + 3] - reference[k]).powi(2))
             .sum::<f64>()

@@ -73,10 +73,35 @@ fn inside(patch: &NurbsPatch, a_loop: &TrimLoop) -> f64 {
             let [a, b] = basis.span_range(span);
             // Splines of many spans are short in each; single pieces may wander over many spans of the patch.
             let n = if basis.span_count() > 8 { 2 } else { 16 };
-            for k in 0..n {
-                let h = (b - a) / f64::from(n);
+            let mut cuts: Vec<f64> = (0..=n)
+                .map(|k| a + (b - a) * f64::from(k) / f64::from(n))
+                .collect();
+            // The density has kinks at the patch's knots.
+            let at = |t: f64| curve.parameter.point(t).y;
+            for knot in patch.spans(1).iter().map(|s| s[0]) {
+                for k in 0..cuts.len() - 1 {
+                    let (mut low, mut high) = (cuts[k], cuts[k + 1]);
+                    let below = at(low) < knot;
+                    if below == (at(high) < knot) {
+                        continue;
+                    }
+                    for _ in 0..50 {
+                        let t = 0.5 * (low + high);
+                        if (at(t) < knot) == below {
+                            low = t;
+                        } else {
+                            high = t;
+                        }
+                    }
+                    cuts.push(low);
+                    cuts.sort_by(f64::total_cmp);
+                    break;
+                }
+            }
+            for pair in cuts.windows(2) {
+                let h = pair[1] - pair[0];
                 for (x, w) in GAUSS {
-                    let jet = curve.parameter.jet(a + h * (f64::from(k) + x));
+                    let jet = curve.parameter.jet(pair[0] + h * x);
                     if jet.d1.y != 0.0 {
                         sum += w * h * jet.d1.y * strip(patch, jet.point.x, jet.point.y);
                     }

@@ -188,28 +188,28 @@ fn given(host: &Host, stretch: &Stretch) -> Result<Given, String> {
     })
 }
 
-/// A curve that leaves the domain a little, with the control points outside put onto the border, where the surface ends.
+/// A curve that leaves the domain a little, with the control points outside put onto the border, where the surface ends. In a
+/// direction in which the surface is closed only a curve that is nowhere farther out is changed: it runs along the seam.
 fn inside(host: &Host, curve: NurbsCurve<2>) -> NurbsCurve<2> {
-    let clamp = |x: Xi| {
-        Xi::from_fn(|d, _| match host.closed[d] {
-            true => x[d],
-            false => x[d].clamp(host.domain[d][0], host.domain[d][1]),
-        })
-    };
     let points = curve.homogeneous().iter();
-    if points
-        .map(|p| Xi::new(p[0] / p[3], p[1] / p[3]))
-        .all(|x| host.beyond(x) <= 1e-9)
-    {
+    let points: Vec<Xi> = points.map(|p| Xi::new(p[0] / p[3], p[1] / p[3])).collect();
+    let out = |x: &Xi, d: usize| {
+        let [a, b] = host.domain[d];
+        (a - x[d]).max(x[d] - b) / (b - a)
+    };
+    let worst = [0, 1].map(|d| points.iter().map(|x| out(x, d)).fold(0.0, f64::max));
+    if worst[0] <= 1e-9 && worst[1] <= 1e-9 {
         return curve;
     }
-    // Control points far out shape the curve inside; they stay.
     let near = |x: Xi| {
-        if host.beyond(x) <= BEYOND {
-            clamp(x)
-        } else {
-            x
-        }
+        Xi::from_fn(|d, _| {
+            // Control points far out shape the curve inside; they stay.
+            let limit = if host.closed[d] { worst[d] } else { out(&x, d) };
+            match limit <= BEYOND {
+                true => x[d].clamp(host.domain[d][0], host.domain[d][1]),
+                false => x[d],
+            }
+        })
     };
     curve.transformed(&near).unwrap_or(curve)
 }
@@ -259,7 +259,7 @@ fn projected(host: &Host, stretch: &Stretch, tally: &mut Tally) -> Result<Vec<Tr
         tally.largest_error = tally.largest_error.max(fitted.error);
         tally.largest_gap = tally.largest_gap.max(off);
         curves.push(TrimCurve {
-            parameter: fitted.curve,
+            parameter: inside(host, fitted.curve),
             space: Some(part.curve.clone()),
             entity: if stretch.edge == 0 {
                 part.entity
