@@ -1,5 +1,7 @@
 //! The command line. Nothing else in the library prints.
+mod cad;
 mod check;
+mod convert;
 mod inspect;
 mod new;
 mod progress;
@@ -49,6 +51,8 @@ enum Command {
     Inspect(InspectArgs),
     /// Closest points of a CAD file to the points of a list
     Project(ProjectArgs),
+    /// Write the surfaces of a CAD file, with their trims, as JSON that loses nothing
+    Convert(ConvertArgs),
     /// Print the JSON schema of scenes
     Schema,
     /// Write a scene to start from
@@ -84,7 +88,7 @@ struct CheckArgs {
 
 #[derive(Debug, Args)]
 struct InspectArgs {
-    /// IGES file, or JSON of Kratos or geomdl
+    /// IGES file, JSON of Kratos, geomdl or `covact convert`, or STL
     file: PathBuf,
     /// Print the findings as JSON
     #[arg(long)]
@@ -93,7 +97,7 @@ struct InspectArgs {
 
 #[derive(Debug, Args)]
 struct ProjectArgs {
-    /// CAD file, as for `covact inspect`
+    /// IGES file, or JSON of Kratos, geomdl or `covact convert`
     file: PathBuf,
     /// Text file with `x y z` in every line, separated by blanks or commas; what follows a # is a comment; - reads
     /// the standard input
@@ -114,6 +118,18 @@ struct ProjectArgs {
     /// Threads; 0: what the machine has
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
+}
+
+#[derive(Debug, Args)]
+struct ConvertArgs {
+    /// IGES file, or JSON of Kratos or geomdl
+    file: PathBuf,
+    /// File to write; - is the standard output
+    #[arg(short, long, value_name = "FILE")]
+    out: PathBuf,
+    /// Length unit to convert to (mm, m, in, ...); else that of the CAD file, and every number stays as it is
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<String>,
 }
 
 #[derive(Debug, Args)]
@@ -139,6 +155,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::check(&args),
         Command::Inspect(args) => inspect::inspect(&args),
         Command::Project(args) => project::project(&args),
+        Command::Convert(args) => convert::convert(&args),
         Command::Schema => print(&crate::scene::schema()),
         Command::New(args) => new::new(&args),
     });

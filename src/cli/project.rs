@@ -2,12 +2,12 @@
 mod points;
 mod rows;
 
-use super::{ProjectArgs, exit, inspect, report};
+use super::cad::{self, Stop};
+use super::{ProjectArgs, exit, report};
 use crate::output::atomic::AtomicFile;
-use crate::output::{OutputError, peak_memory_mb};
-use crate::scene::{nearest, nearest_file};
-use covact_geometry::io::{CadFile, LengthUnit, read_path};
-use covact_geometry::{Foot, PatchSet, Vec3};
+use crate::output::peak_memory_mb;
+use crate::scene::nearest_file;
+use covact_geometry::{Foot, PatchSet};
 use points::{Points, PointsError};
 use rayon::prelude::*;
 use rows::{HEADER, Tally, rows};
@@ -18,19 +18,8 @@ use std::time::{Duration, Instant};
 
 /// Points in memory at a time.
 const BLOCK: usize = 1 << 14;
-/// Points that one thread projects in a row.
+/// Rows that one thread writes at a time.
 const CHUNK: usize = 256;
-/// Surfaces that are named one by one when they were not read.
-const NAMED: usize = 20;
-
-/// Why the command ends early: what to say and the exit code.
-struct Stop(String, u8);
-
-impl From<OutputError> for Stop {
-    fn from(e: OutputError) -> Self {
-        Stop(e.to_string(), exit::IO)
-    }
-}
 
 /// Where rows go.
 enum Target {
@@ -60,8 +49,9 @@ impl Target {
 #[derive(Default)]
 struct Account {
     tally: Tally,
-    /// Time spent in projections, of all threads together.
+    /// Time spent in projections.
     projecting: Duration,
+    threads: usize,
 }
 
 pub(super) fn project(args: &ProjectArgs) -> u8 {
@@ -92,7 +82,7 @@ fn run(args: &ProjectArgs) -> Result<Account, Stop> {
         .num_threads(args.threads)
         .build()
         .map_err(|e| Stop(format!("cannot start the threads: {e}"), exit::IO))?;
-    let file = cad(args)?;
+    let file = cad::read(&args.file, args.unit.as_deref())?;
     let entities: Vec<u32> = file.patches.iter().map(|p| p.entity).collect();
     let patches = file.patches.into_iter().map(|p| p.patch).collect();
     let set = PatchSet::new(patches, None)
@@ -106,11 +96,19 @@ fn run(args: &ProjectArgs) -> Result<Account, Stop> {
         name if name == "-" => Target::Stdout(io::stdout()),
         _ => Target::File(AtomicFile::create(&args.out)?),
     };
-    let mut account = Account::default();
+    if let Target::File(file) = &target {
+        leave_nothing_behind(file.temporary(), &args.out);
+    }
+    let mut account = Account {
+        threads: pool.current_num_threads(),
+        ..Account::default()
+    };
     if !args.json && !target.write(HEADER)? {
         return Ok(account);
     }
+    let reach = args.reach.unwrap_or(f64::INFINITY);
     let mut block = Vec::with_capacity(BLOCK);
+    let mut feet: Vec<Option<Foot>> = Vec::with_capacity(BLOCK);
     loop {
         points
             .read(&mut block, BLOCK)
@@ -118,20 +116,18 @@ fn run(args: &ProjectArgs) -> Result<Account, Stop> {
         if block.is_empty() {
             break;
         }
-        let reach = args.reach.unwrap_or(f64::INFINITY);
-        let chunk = |chunk: &[Vec3]| {
-            let start = Instant::now();
-            let feet: Vec<Option<Foot>> =
-                chunk.iter().map(|q| set.project(q, None, reach)).collect();
-            let time = start.elapsed();
-            rows(&feet, &entities, args.json).map(|(text, tally)| (text, tally, time))
-        };
-        let done: Vec<_> = pool.install(|| block.par_chunks(CHUNK).map(chunk).collect());
+        let start = Instant::now();
+        feet.clear();
+        feet.resize(block.len(), None);
+        pool.install(|| set.project_batch(&block, &[], reach, &mut feet))
+            .map_err(|e| Stop(e.to_string(), exit::BUG))?;
+        account.projecting += start.elapsed();
+        let chunk = |feet: &[Option<Foot>]| rows(feet, &entities, args.json);
+        let done: Vec<_> = pool.install(|| feet.par_chunks(CHUNK).map(chunk).collect());
         for part in done {
-            let (text, tally, time) =
+            let (text, tally) =
                 part.map_err(|e| Stop(format!("cannot write a row as JSON: {e}"), exit::BUG))?;
             account.tally.add(&tally);
-            account.projecting += time;
             if !target.write(&text)? {
                 return Ok(account);
             }
@@ -150,53 +146,19 @@ fn run(args: &ProjectArgs) -> Result<Account, Stop> {
     Ok(account)
 }
 
-/// Reads the CAD file in the unit asked for and tells what it does not give.
-fn cad(args: &ProjectArgs) -> Result<CadFile, Stop> {
-    let unit = match &args.unit {
-        None => None,
-        Some(name) => Some(LengthUnit::from_name(name).ok_or_else(|| {
-            let known = LengthUnit::names();
-            let near =
-                nearest(name, known).map_or(String::new(), |n| format!("; did you mean `{n}`?"));
-            let text = format!(
-                "--unit: expected one of {}, found `{name}`{near}",
-                known.join(", ")
-            );
-            Stop(text, exit::USAGE)
-        })?),
-    };
-    let mut file = read_path(&args.file).map_err(|e| {
-        let (text, code) = inspect::fault(&args.file, &e);
-        Stop(text, code)
-    })?;
-    for s in file.skipped.iter().take(NAMED) {
+/// Ctrl-C ends the program where it is (it may wait for points that never come) and removes the half of a table.
+fn leave_nothing_behind(temporary: &Path, out: &Path) {
+    let (temporary, out) = (temporary.to_path_buf(), out.display().to_string());
+    let handler = ctrlc::set_handler(move || {
+        let _ = std::fs::remove_file(&temporary);
+        report::error(&format!("interrupted; `{out}` was not written"));
+        std::process::exit(exit::NOT_CONVERGED.into());
+    });
+    if let Err(e) = handler {
         report::warning(&format!(
-            "{}: entity {}, {}, is left out: {}",
-            file.path, s.entity, s.name, s.reason
+            "interrupting will leave a temporary file behind: {e}"
         ));
     }
-    if let more @ 1.. = file.skipped.len().saturating_sub(NAMED) {
-        report::warning(&format!(
-            "{}: {more} more surfaces are left out; `covact inspect` names them",
-            file.path
-        ));
-    }
-    if file.patches.is_empty() {
-        let text = format!("{}: expected at least one surface, found none", file.path);
-        return Err(Stop(text, exit::SCENE));
-    }
-    if let Some(unit) = unit {
-        if file.unit.to_metre.is_none() {
-            report::warning(&format!(
-                "{} states no length unit; its numbers are taken as {}",
-                file.path, unit.name
-            ));
-        } else {
-            file.convert_to(&unit)
-                .map_err(|e| Stop(e.to_string(), exit::SCENE))?;
-        }
-    }
-    Ok(file)
 }
 
 fn open(path: &Path) -> Result<File, Stop> {
@@ -228,8 +190,10 @@ fn summary(args: &ProjectArgs, account: &Account, wall: Duration) {
     let each = match n {
         0 => String::new(),
         n => format!(
-            ", {:.2} us per projection and thread, {:.2} us per point in all",
+            ", {:.2} us per point for the projection ({} thread{}), {:.2} us with reading and writing",
             account.projecting.as_secs_f64() * 1e6 / n as f64,
+            account.threads,
+            if account.threads == 1 { "" } else { "s" },
             wall.as_secs_f64() * 1e6 / n as f64
         ),
     };

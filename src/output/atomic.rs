@@ -84,6 +84,11 @@ impl AtomicFile {
         })
     }
 
+    /// Where the bytes are until the file has its name; who ends the process at once has to remove it.
+    pub fn temporary(&self) -> &Path {
+        &self.temporary
+    }
+
     /// Appends bytes.
     pub fn write(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
         let file = self.file.as_mut().map(|file| file.write_all(bytes));

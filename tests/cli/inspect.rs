@@ -1,4 +1,9 @@
 //! `covact inspect`.
+use crate::support::{covact, stderr, stdout};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::path::Path;
 use std::process::{Command, Output};
 
 /// A quarter of a cylinder of radius 2 and length 3, as geomdl writes it.
@@ -60,7 +65,7 @@ fn findings_as_text_and_as_data() {
     assert_eq!(radius.len(), 1, "{curvature}");
     assert!((radius[0] - 2.0).abs() < 1e-12, "{curvature}");
     let area = found["surface"]["area"].as_f64().unwrap();
-    assert!((area - 3.0 * std::f64::consts::PI).abs() < 1e-4, "{area}");
+    assert!((area - 3.0 * PI).abs() < 1e-4, "{area}");
     assert_eq!(found["surface"]["free_edges"], 4);
 }
 
@@ -75,10 +80,225 @@ fn files_that_cannot_be_read() {
     let (code, _, error) = inspect("tool.igs", "ISO-10303-21;\n", &["tool.igs"]);
     assert_eq!(code, Some(3));
     assert!(
-        error.contains("tool.igs: expected an IGES file") && error.contains("found a STEP file"),
+        error.contains("tool.igs: expected an IGES file")
+            && error.contains("found a STEP file; save the model as IGES"),
         "{error}"
     );
     let (code, _, error) = inspect("tool.json", "{\"shape\": ", &["tool.json"]);
     assert_eq!(code, Some(3));
     assert!(error.starts_with("error: tool.json:1:"), "{error}");
+}
+
+/// The findings of an asset, as data.
+fn asset(name: &str) -> Value {
+    let path = format!("{}/assets/{name}", env!("CARGO_MANIFEST_DIR"));
+    let output = covact(Path::new("."), &["inspect", &path, "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    serde_json::from_str(&stdout(&output)).unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    let list = value.as_array().unwrap().iter();
+    list.flat_map(|x| match x.as_f64() {
+        Some(x) => vec![x],
+        None => numbers(x),
+    })
+    .collect()
+}
+
+/// Entities, and area and box of every face, against Open CASCADE (`geometry/tests/data/cad_reference.py`).
+#[test]
+fn assets_agree_with_an_independent_kernel() {
+    let table = include_str!("../../geometry/tests/data/cad_table.json");
+    let table: Value = serde_json::from_str(table).unwrap();
+    let mut faults = Vec::new();
+    let mut faces = 0;
+    for (name, row) in table["files"].as_object().unwrap() {
+        let Some(own) = name.strip_prefix("made_here/") else {
+            continue;
+        };
+        let found = asset(&format!("cad/{own}"));
+        let entities: BTreeMap<String, u64> = (found["entities"].as_array().unwrap().iter())
+            .map(|e| {
+                let kind = format!("{}.{}", e["type_number"], e["form"]);
+                (kind, e["count"].as_u64().unwrap())
+            })
+            .collect();
+        let expected: BTreeMap<String, u64> =
+            serde_json::from_value(row["entities"].clone()).unwrap();
+        assert_eq!(entities, expected, "{name}");
+        assert_eq!(found["summary"]["skipped"], 0, "{name}");
+        let rows = row["surfaces"].as_array().unwrap();
+        assert_eq!(found["summary"]["patches"], rows.len(), "{name}");
+        for row in rows {
+            faces += 1;
+            let patch = (found["patches"].as_array().unwrap().iter())
+                .find(|p| p["entity"] == row["entity"])
+                .unwrap();
+            let what = format!("{name}, entity {}", row["entity"]);
+            let (area, expected) = (patch["area"].as_f64().unwrap(), &row["area"]);
+            let error = (area / expected.as_f64().unwrap() - 1.0).abs();
+            if error > 1e-6 {
+                faults.push(format!("{what}: area {area}, not {expected}: {error:.1e}"));
+            }
+            let (bounds, expected) = (numbers(&patch["bounds"]), numbers(&row["box"]));
+            let diagonal = (0..3)
+                .map(|k| (expected[k + 3] - expected[k]).powi(2))
+                .sum::<f64>()
+                .sqrt();
+            let error = (0..6).map(|k| (bounds[k] - expected[k]).abs());
+            let error = error.fold(0.0, f64::max);
+            // The kernel widens boxes by its confusion distance of 1e-7.
+            if error > 1e-6 * diagonal + 1.5e-7 {
+                faults.push(format!(
+                    "{what}: box {bounds:?}, not {expected:?}: {error:.1e}"
+                ));
+            }
+        }
+    }
+    assert!(faces >= 40, "{faces}");
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// What hangs together, what is closed and what it encloses.
+#[test]
+fn edges_parts_and_volumes() {
+    let boxed = asset("cad/box_faces.igs");
+    let surface = &boxed["surface"];
+    assert_eq!(boxed["summary"]["rectangles"], 6);
+    assert_eq!(
+        [
+            &surface["shared_edges"],
+            &surface["sharp_edges"],
+            &surface["free_edges"]
+        ],
+        [12, 12, 0]
+    );
+    assert!(surface["largest_gap"].as_f64().unwrap() < 1e-9);
+    assert_eq!(numbers(&surface["largest_gap_at"]["at"]).len(), 3);
+    let parts = surface["parts"].as_array().unwrap();
+    assert_eq!((parts.len(), &parts[0]["closed"]), (1, &Value::Bool(true)));
+    // 10 x 20 x 30.
+    assert!((parts[0]["volume"].as_f64().unwrap() - 6000.0).abs() < 1e-8);
+
+    let ball = asset("sphere.igs");
+    let volume = ball["surface"]["parts"][0]["volume"].as_f64().unwrap();
+    assert!(
+        (volume / (4.0 / 3.0 * PI * 125.0) - 1.0).abs() < 1e-5,
+        "{volume}"
+    );
+
+    // A sheet with a round hole: two closed rims.
+    let sheet = asset("cad/trimmed_patch_faces.igs");
+    assert_eq!(sheet["summary"]["trimmed"], 1);
+    assert_eq!(sheet["patches"][0]["border"], "trimmed");
+    assert!(sheet["trims"]["curves"].as_u64().unwrap() > 0);
+    let rims = sheet["surface"]["borders"].as_array().unwrap();
+    assert_eq!(rims.len(), 2, "{rims:?}");
+    assert!(rims.iter().all(|r| r["closed"] == true));
+    assert_eq!(sheet["surface"]["parts"][0]["volume"], Value::Null);
+}
+
+/// A plate, and beside it another one that is a little too far away.
+const APART: &str = r#"{"covact_geometry": 1, "unit": "mm", "resolution": null, "patches": [
+{"entity": 7, "degree": [1, 1], "knots": [[0, 0, 1, 1], [0, 0, 1, 1]],
+ "points": [[0, 0, 0, 1], [10, 0, 0, 1], [0, 10, 0, 1], [10, 10, 0, 1]]},
+{"entity": 8, "degree": [1, 1], "knots": [[0, 0, 1, 1], [0, 0, 1, 1]],
+ "points": [[10.002, 0, 0, 1], [20, 0, 0, 1], [10.002, 10, 0, 1], [20, 10, 0, 1]]}
+]}"#;
+
+#[test]
+fn gaps_are_named_with_their_places() {
+    let (code, text, error) = inspect("apart.json", APART, &["apart.json"]);
+    assert_eq!((code, error.as_str()), (Some(0), ""));
+    for part in [
+        "Covact file, unit mm",
+        "  open gap   2.000e-3 at (10.001000, ",
+        "between entity 7 side 1 and entity 8 side 0",
+        "  free rim   closed of length 40.000000: entity 7 side ",
+        "  part       1 patch, area 100.000000, open",
+    ] {
+        assert!(text.contains(part), "no {part} in\n{text}");
+    }
+    let (_, text, _) = inspect("apart.json", APART, &["apart.json", "--json"]);
+    let found: Value = serde_json::from_str(&text).unwrap();
+    let gap = &found["surface"]["open_gaps"][0];
+    assert!((gap["gap"].as_f64().unwrap() - 0.002).abs() < 1e-12);
+    let edges = &gap["edges"];
+    assert_eq!([&edges[0]["entity"], &edges[1]["entity"]], [7, 8]);
+    assert_eq!(found["surface"]["parts"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn skipped_surfaces_are_counted_by_reason() {
+    let bad = QUARTER.replace(
+        "\"rational\": true",
+        r#""rational": true, "trims": {"data": [{"type": "freeform", "points": [[0, 0], [0.5, 0.5], [0.5, 0]]}]}"#,
+    );
+    let (code, text, error) = inspect("bad.json", &bad, &["bad.json"]);
+    assert_eq!(
+        (code, error.as_str()),
+        (Some(0), "warning: 1 surface was not read\n")
+    );
+    assert!(
+        text.contains("skipped: 1 (1 with boundary curves that give no trim)\n  entity 1, surface: its trim curves"),
+        "{text}"
+    );
+    let (_, text, _) = inspect("bad.json", &bad, &["bad.json", "--json"]);
+    let found: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(found["summary"]["skipped_by_kind"]["boundary"], 1);
+    assert_eq!(found["surface"], Value::Null);
+}
+
+/// A tetrahedron with corners at the origin and at 1 on the axes; the last face is left out where it is open.
+fn tetrahedron(faces: usize) -> String {
+    let x = ["0 0 0", "1 0 0", "0 1 0", "0 0 1"];
+    let mut text = "solid tetrahedron\n".to_string();
+    for [a, b, c] in &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]][..faces] {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for k in [a, b, c] {
+            text += &format!("vertex {}\n", x[*k]);
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid tetrahedron\n"
+}
+
+#[test]
+fn triangles_of_stl_files() {
+    let (code, text, error) = inspect("t.stl", &tetrahedron(4), &["t.stl", "--json"]);
+    assert_eq!((code, error.as_str()), (Some(0), ""));
+    let found: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(found["format"], "stl");
+    assert_eq!(
+        [&found["triangles"], &found["nodes"], &found["free_edges"]],
+        [4, 4, 0]
+    );
+    assert!((found["volume"].as_f64().unwrap() - 1.0 / 6.0).abs() < 1e-15);
+    let area = 1.5 + 0.75f64.sqrt();
+    assert!((found["area"].as_f64().unwrap() - area).abs() < 1e-14);
+    let (_, text, _) = inspect("t.stl", &tetrahedron(3), &["t.stl"]);
+    for part in [
+        "t.stl: Stl file (ascii), states no unit",
+        "triangles  3, 0 of them without area",
+        "nodes      4 of 9 vertices",
+        "edges      3 free",
+        "  open",
+    ] {
+        assert!(text.contains(part), "no {part} in\n{text}");
+    }
+    let broken = tetrahedron(4).replace("vertex 0 0 1", "vertex 0 0 one");
+    let (code, _, error) = inspect("t.stl", &broken, &["t.stl"]);
+    assert_eq!(code, Some(3));
+    assert!(error.starts_with("error: t.stl:"), "{error}");
+    // Not a list of surfaces to project onto.
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.stl"), tetrahedron(4)).unwrap();
+    let output = covact(folder.path(), &["project", "t.stl", "-"]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(
+        stderr(&output).contains("found an STL file"),
+        "{}",
+        stderr(&output)
+    );
 }

@@ -3,6 +3,7 @@ mod bad_files;
 mod bad_model;
 mod bad_text;
 mod check;
+mod convert;
 mod inspect;
 mod output;
 mod project;

@@ -49,7 +49,7 @@ fn rows_as_csv_and_as_json() {
     let told = stderr(&output);
     assert!(
         told.starts_with("6 points: 4 unique, 1 non-unique, 0 not converged, 1 beyond reach, ")
-            && told.contains(" us per projection")
+            && told.contains(" us per point for the projection (1 thread), ")
             && told.ends_with("; lengths in the unit of the CAD file\n"),
         "{told}"
     );
@@ -270,6 +270,35 @@ fn threads_change_nothing_and_the_order_is_kept() {
             );
         }
     }
+}
+
+/// The program waits for points on its standard input when the signal comes.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_no_file() {
+    let folder = folder("");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_covact"))
+        .current_dir(folder.path())
+        .args(["project", "quarter.json", "-", "-o", "out.csv"])
+        .stdin(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut input = child.stdin.take().unwrap();
+    std::io::Write::write_all(&mut input, many(40_000).as_bytes()).unwrap();
+    // The pipe holds less than a megabyte: most points are read by now, so the temporary file is there.
+    assert_eq!(files(folder.path()).len(), 3);
+    let pid = child.id().to_string();
+    let killed = Command::new("kill").args(["-INT", &pid]).status().unwrap();
+    assert!(killed.success());
+    let output = child.wait_with_output().unwrap();
+    drop(input);
+    assert_eq!(output.status.code(), Some(4), "{}", stderr(&output));
+    assert_eq!(
+        stderr(&output),
+        "error: interrupted; `out.csv` was not written\n"
+    );
+    assert_eq!(files(folder.path()), ["points.txt", "quarter.json"]);
 }
 
 /// Points come through a pipe, so neither they nor the rows (13 MB for the larger run) can be held without being seen.
