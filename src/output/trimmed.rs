@@ -122,3 +122,70 @@ impl Cutter<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use covact_geometry::{NurbsCurve, TrimCurve, TrimLoop};
+    use nalgebra::Vector2;
+
+    /// A square of side 2 with a round hole: the pieces have its area but for the chords along the circle.
+    #[test]
+    fn pieces_of_a_plate_with_a_hole() {
+        let knots = || vec![0.0, 0.0, 1.0, 1.0];
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
+        let points = corners.map(|[x, y]| Vec3::new(x, y, 0.5));
+        let plate = NurbsPatch::new([1, 1], [knots(), knots()], [2, 2], &points, None).unwrap();
+        // Radius 0.6 in space is 0.3 of the parameters.
+        let arc = |k: u32| {
+            let turn = |a: f64| {
+                let (sin, cos) = (std::f64::consts::FRAC_PI_2 * (f64::from(k) + a)).sin_cos();
+                Vector2::new(cos, sin)
+            };
+            let (a, b) = (turn(0.0), turn(1.0));
+            let at = |v: Vector2<f64>| v * 0.3 + Vector2::new(0.5, 0.5);
+            let w = 0.5f64.sqrt();
+            let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+            let points = [at(a), at(a + b), at(b)];
+            NurbsCurve::<2>::new(2, knots, &points, Some(&[1.0, w, 1.0])).unwrap()
+        };
+        let curves = (0..4).map(|k| TrimCurve {
+            parameter: arc(k),
+            space: None,
+            entity: 0,
+        });
+        let hole = TrimLoop {
+            curves: curves.collect(),
+        };
+        let trimmed = plate.trimmed_by(vec![hole], false, 1e-9).unwrap().patch;
+        let pieces = SurfacePiece::of_patch(&trimmed, 0, 0, false);
+        let mut area = 0.0;
+        for piece in &pieces {
+            piece.check().unwrap();
+            let [x, y] = [0, 1].map(|k| {
+                let c = |n: usize| piece.points[n][k] / piece.points[n][3];
+                [c(0), c(1), c(3), c(2)]
+            });
+            // Every piece is flat with straight sides: its corners around.
+            let twice: f64 = (0..4)
+                .map(|k| x[k] * y[(k + 1) % 4] - x[(k + 1) % 4] * y[k])
+                .sum();
+            assert!(twice > -1e-12, "{piece:?}");
+            area += 0.5 * twice;
+        }
+        let exact = 4.0 - std::f64::consts::PI * 0.36;
+        // Chords of at most 2/32 sqrt(2) over the circle: sagitta h^2 / (8 r), two thirds of it lost along 2 pi r.
+        let h: f64 = 2.0 / 32.0 * 2f64.sqrt();
+        let allowed = 2.0 / 3.0 * h * h / 8.0 * std::f64::consts::TAU;
+        assert!((area - exact).abs() < allowed, "{area} {exact}");
+        assert!(
+            pieces.iter().any(|p| p.halved < HALVINGS),
+            "large pieces inside"
+        );
+        for piece in &pieces {
+            for p in &piece.points {
+                assert!(p[0].hypot(p[1]) > 0.6 * p[3] - h * h, "{p:?} in the hole");
+            }
+        }
+    }
+}

@@ -11,5 +11,6 @@ mod rollback;
 mod support;
 mod tangents;
 mod threads;
+mod trimmed;
 mod two_surfaces;
 mod units;
