@@ -22,8 +22,9 @@ fn run(args: &ConvertArgs) -> Result<u8, Stop> {
     write_whole(&args.out, text.as_bytes())?;
     let count = file.summary();
     report::stderr(&format!(
-        "{} patches ({} trimmed), unit {}, in {}\n",
+        "{} patch{} ({} trimmed), unit {}, in {}\n",
         count.patches,
+        if count.patches == 1 { "" } else { "es" },
         count.trimmed,
         file.unit.name,
         args.out.display()

@@ -23,7 +23,6 @@ fn what_is_converted_is_the_same_to_the_last_bit() {
     for (name, trimmed) in [
         ("punch.igs", 0),
         ("cad/cone_faces.igs", 2),
-        ("cad/cylinder_brep.igs", 2),
         ("cad/trimmed_patch_faces.igs", 1),
         ("cad/torus_brep.igs", 0),
         ("cad/quarter_cylinder.cad.json", 0),
@@ -39,14 +38,10 @@ fn what_is_converted_is_the_same_to_the_last_bit() {
             read_path(&from).unwrap(),
             read_path(&folder.path().join("out.json")).unwrap(),
         );
-        assert_eq!(
-            told,
-            format!(
-                "{} patches ({trimmed} trimmed), unit {}, in out.json\n",
-                old.patches.len(),
-                old.unit.name
-            )
-        );
+        let end = format!("({trimmed} trimmed), unit {}, in out.json\n", old.unit.name);
+        assert!(told.ends_with(&end), "{told}");
+        // A warning for each surface that is left out.
+        assert_eq!(told.lines().count(), 1 + old.skipped.len(), "{told}");
         for (old, new) in old.patches.iter().zip(&new.patches) {
             // Compares trims, too. A patch of floats equals another where all bits do, up to the sign of zero.
             assert_eq!(old.patch, new.patch, "{name}, entity {}", old.entity);

@@ -117,7 +117,8 @@ fn all(out: &mut String, s: &Surface) {
     );
     let _ = writeln!(
         out,
-        "  edges      {} shared ({} smooth, {} sharp), {} shared in part, {} free, {} poles; tolerance {:.3e}",
+        "  edges      {} shared ({} smooth, {} sharp), {} shared in part, {} free, {} poles; tolerance {:.3e}, ten times \
+         as much for whole edges",
         s.shared_edges,
         s.smooth_edges,
         s.sharp_edges,
