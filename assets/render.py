@@ -163,7 +163,7 @@ def draw_surface(plotter, grid, args):
                      specular_power=20, ambient=0.2)
     for patch in np.unique(surface.cell_data["patch"]):
         part = surface.extract_cells(surface.cell_data["patch"] == patch).extract_surface(algorithm="dataset_surface")
-        border = part.clean().extract_feature_edges(
+        border = part.clean(tolerance=1e-7).extract_feature_edges(
             boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False)
         if border.n_cells:
             plotter.add_mesh(border, color="#4a525e", line_width=4, opacity=min(1.0, 2 * args.opacity))

@@ -35,7 +35,7 @@ fn square(name: &str) -> SurfaceOutput {
         patch: 0,
         entity: 0,
         reversed: false,
-        halved: 0,
+        divisions: None,
     };
     SurfaceOutput::new(name, vec![piece], 2).unwrap()
 }

@@ -79,7 +79,7 @@ fn quarter_cylinder(reversed: bool) -> SurfacePiece {
         patch: 3,
         entity: 17,
         reversed,
-        halved: 0,
+        divisions: None,
     }
 }
 
@@ -335,7 +335,7 @@ fn the_normal_at_a_pole_is_that_of_the_sphere() {
         patch: 0,
         entity: 0,
         reversed: true,
-        halved: 0,
+        divisions: None,
     };
     let surface = SurfaceOutput::new("ball", vec![piece], 6).unwrap();
     let grid = read(&surface.to_tessellated_vtu(&Isometry3::identity()).unwrap());
@@ -403,7 +403,7 @@ fn pieces_that_vtk_cannot_hold_are_named() {
         patch: 0,
         entity: 0,
         reversed: false,
-        halved: 0,
+        divisions: None,
     };
     let pieces = vec![
         flat([1, 1]),

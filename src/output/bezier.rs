@@ -44,8 +44,8 @@ pub struct SurfacePiece {
     /// The outside is against `rho_1 x rho_2`. Such a piece is written with its parameters swapped, so that normals of
     /// the written cells point outside.
     pub reversed: bool,
-    /// How often the piece of a span was halved in both directions to make it: it needs fewer flat facets.
-    pub halved: u32,
+    /// Quadrilaterals a side in the flat copy; `None`: as many as are asked for.
+    pub divisions: Option<u32>,
 }
 
 /// Point with outward unit normal.
@@ -70,7 +70,7 @@ impl SurfacePiece {
                 patch,
                 entity,
                 reversed,
-                halved: 0,
+                divisions: None,
             })
             .collect()
     }

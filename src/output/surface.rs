@@ -37,8 +37,8 @@ struct Flat {
 }
 
 impl SurfaceOutput {
-    /// Prepares the surface `name` in its reference position; the piece of every span is divided into
-    /// `tessellation` x `tessellation` quadrilaterals (at least 1 x 1) for the flat copy.
+    /// Prepares the surface `name` in its reference position; every piece is divided into `tessellation` x
+    /// `tessellation` quadrilaterals (at least 1 x 1) for the flat copy, unless it says how many it needs.
     ///
     /// # Errors
     /// [`OutputError::Piece`] when a piece has the wrong number of points or a weight that is not positive.
@@ -63,7 +63,7 @@ impl SurfaceOutput {
             } else {
                 exact.push(&piece);
             }
-            flat.push(&piece, (n >> piece.halved).max(1));
+            flat.push(&piece, piece.divisions.map_or(n, |d| d.max(1) as usize));
         }
         Ok(SurfaceOutput {
             name: name.to_string(),

@@ -3,8 +3,10 @@ use super::bezier::SurfacePiece;
 use covact_geometry::trim::Part;
 use covact_geometry::{NurbsPatch, Trim, Vec3, bezier_pieces};
 
-/// How often a piece is halved in both directions before what is left of it at a trim curve becomes flat.
-const HALVINGS: u32 = 5;
+/// Cells a side into which a whole trimmed patch is cut at least, where its spans are not finer.
+const CELLS: usize = 64;
+/// Fewest and most times that the piece of a span is halved in both directions on the way to these cells.
+const HALVINGS: std::ops::RangeInclusive<u32> = 2..=5;
 /// Bisections for a point on the border: down to rounding of the drawing.
 const BISECTIONS: usize = 30;
 
@@ -17,11 +19,13 @@ struct Cutter<'a> {
     patch: u32,
     entity: u32,
     reversed: bool,
+    /// Halvings that lead to a cell.
+    halvings: u32,
     out: Vec<SurfacePiece>,
 }
 
-/// The pieces of a patch with a trim. Along the trim curves they are flat, with corners on the curves: chords of a 32nd
-/// of a span.
+/// The pieces of a patch with a trim. Along the trim curves they are flat cells, 4 to 32 to a side of a span, with corners
+/// on the curves. In the flat copy all of the patch is cut in such cells, so that there are no gaps between its pieces.
 pub(super) fn pieces(
     surface: &NurbsPatch,
     trim: &Trim,
@@ -30,12 +34,15 @@ pub(super) fn pieces(
     reversed: bool,
 ) -> Vec<SurfacePiece> {
     let whole = surface.clone().with_trim(None);
+    let spans = whole.spans(0).len().max(whole.spans(1).len());
+    let wanted = CELLS.div_ceil(spans).next_power_of_two().ilog2();
     let mut cutter = Cutter {
         surface: &whole,
         trim,
         patch,
         entity,
         reversed,
+        halvings: wanted.clamp(*HALVINGS.start(), *HALVINGS.end()),
         out: Vec::new(),
     };
     for piece in bezier_pieces(&whole) {
@@ -49,7 +56,7 @@ impl Cutter<'_> {
         match self.trim.part(part) {
             Part::Outside => {}
             Part::Inside => self.exact(part, halved),
-            Part::Cut if halved == HALVINGS => self.flat(part),
+            Part::Cut if halved == self.halvings => self.flat(part),
             Part::Cut => {
                 let middle = part.map(|[a, b]| 0.5 * (a + b));
                 for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
@@ -75,7 +82,7 @@ impl Cutter<'_> {
                 patch: self.patch,
                 entity: self.entity,
                 reversed: self.reversed,
-                halved,
+                divisions: Some(1 << (self.halvings - halved)),
             });
         }
     }
@@ -116,7 +123,7 @@ impl Cutter<'_> {
                 patch: self.patch,
                 entity: self.entity,
                 reversed: self.reversed,
-                halved: HALVINGS,
+                divisions: Some(1),
             });
             k += 2;
         }
@@ -179,7 +186,7 @@ mod tests {
         let allowed = 2.0 / 3.0 * h * h / 8.0 * std::f64::consts::TAU;
         assert!((area - exact).abs() < allowed, "{area} {exact}");
         assert!(
-            pieces.iter().any(|p| p.halved < HALVINGS),
+            pieces.iter().any(|p| p.divisions > Some(4)),
             "large pieces inside"
         );
         for piece in &pieces {
