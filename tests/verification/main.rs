@@ -1,4 +1,5 @@
 //! Verification against closed forms and published results, named by their source.
+mod die;
 mod hertz;
 mod loads;
 mod plate_under_ball;
