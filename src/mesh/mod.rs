@@ -36,6 +36,9 @@ use std::collections::BTreeMap;
 pub enum ElementKind {
     /// 8-node solid-shell, linear.
     H8,
+    /// 18-node solid-shell, biquadratic in the plane and linear through the thickness. Nodes are numbered
+    /// `i + 3 j + 9 k`, i along r, j along s, k along t.
+    Q18,
 }
 
 impl ElementKind {
@@ -43,6 +46,7 @@ impl ElementKind {
     pub const fn nodes(self) -> usize {
         match self {
             ElementKind::H8 => 8,
+            ElementKind::Q18 => 18,
         }
     }
 }

@@ -5,8 +5,8 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ShellError {
     /// The mesh holds another kind of element.
-    #[error("the mesh holds {found} elements, not H8")]
-    Kind { found: String },
+    #[error("the mesh holds {found} elements, not {wanted}")]
+    Kind { wanted: &'static str, found: String },
     /// An element names a node that the mesh does not have.
     #[error("element {element} refers to node {node}, but the mesh has {nodes} nodes")]
     Node {
@@ -15,8 +15,8 @@ pub enum ShellError {
         nodes: usize,
     },
     /// The connectivity is not a whole number of elements.
-    #[error("{entries} node numbers are not a whole number of 8-node elements")]
-    Connectivity { entries: usize },
+    #[error("{entries} node numbers are not a whole number of {nodes}-node elements")]
+    Connectivity { entries: usize, nodes: usize },
     /// Elements whose Jacobian is not positive at a Gauss point.
     #[error(
         "element {element} is inverted or flat: Jacobian determinant {jacobian:e} ({count} such element(s) in all)"

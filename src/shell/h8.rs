@@ -102,6 +102,7 @@ impl H8Block {
     pub fn new(mesh: &Mesh, formulation: Formulation, law: Law) -> Result<H8Block, ShellError> {
         if mesh.kind != ElementKind::H8 {
             return Err(ShellError::Kind {
+                wanted: "H8",
                 found: format!("{:?}", mesh.kind),
             });
         }
@@ -112,6 +113,7 @@ impl H8Block {
         if !rest.is_empty() {
             return Err(ShellError::Connectivity {
                 entries: mesh.connectivity.len(),
+                nodes: 8,
             });
         }
         let mut reference = Vec::with_capacity(chunks.len());
@@ -355,7 +357,7 @@ fn residual<L: MaterialLaw, const NE: usize>(
 }
 
 /// Solves with packed factors unit lower, diagonal.
-fn solve(packed: &[f64], x: &mut [f64]) {
+pub(super) fn solve(packed: &[f64], x: &mut [f64]) {
     let n = x.len();
     let row = |m: usize| &packed[m * (m + 1) / 2..][..=m];
     for m in 0..n {

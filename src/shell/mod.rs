@@ -19,6 +19,7 @@ pub mod face;
 mod h8;
 mod kinematics;
 pub mod material;
+mod q18;
 pub mod quadrature;
 mod reference;
 mod stress;
@@ -30,6 +31,7 @@ pub use error::{ElementFault, FaultCause, ShellError};
 pub use face::{Quad, tributary_areas};
 pub use h8::{Formulation, H8Block, H8System};
 pub use material::{Law, MaterialLaw, Metric, NeoHooke, Response, StVenantKirchhoff};
+pub use q18::{Q18Block, Q18System};
 pub use quadrature::{Rule, gauss, lobatto};
 pub use stress::extrapolate;
 

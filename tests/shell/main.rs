@@ -4,4 +4,5 @@ mod incompressible;
 mod large_rotation;
 mod obstacle;
 mod patch;
+mod quadratic;
 mod support;

@@ -1,13 +1,14 @@
 //! A small serial solver for single-body problems, independent of the program's own.
 use covact::mesh::{ElementKind, Mesh};
 use covact::scene::{Elastic, Material};
-use covact::shell::{Formulation, H8Block, H8System, Law};
+use covact::shell::{Formulation, H8Block, H8System, Law, Q18Block, Q18System};
 use covact_geometry::Vec3;
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use std::collections::BTreeMap;
 
-/// Structured mesh: `geometry(a, b, c)` with a, b in [0, 1] and c in [-1, 1] along r, s and t.
+/// Structured mesh: `geometry(a, b, c)` with a, b in [0, 1] and c in [-1, 1] along r, s and t. `nx` and `ny` count
+/// intervals of nodes: as many as elements for H8, two per element for Q18.
 pub struct Grid {
     pub mesh: Mesh,
     pub nx: usize,
@@ -15,24 +16,43 @@ pub struct Grid {
 }
 
 pub fn grid(nx: usize, ny: usize, geometry: impl Fn(f64, f64, f64) -> [f64; 3]) -> Grid {
+    grid_of(ElementKind::H8, nx, ny, geometry)
+}
+
+/// `nx` x `ny` elements of a kind.
+pub fn grid_of(
+    kind: ElementKind,
+    nx: usize,
+    ny: usize,
+    geometry: impl Fn(f64, f64, f64) -> [f64; 3],
+) -> Grid {
+    let p = match kind {
+        ElementKind::H8 => 1,
+        ElementKind::Q18 => 2,
+    };
+    let (lines_x, lines_y) = (p * nx, p * ny);
     let mut nodes = vec![];
     for k in 0..2 {
-        for j in 0..=ny {
-            for i in 0..=nx {
-                let (a, b) = (i as f64 / nx as f64, j as f64 / ny as f64);
+        for j in 0..=lines_y {
+            for i in 0..=lines_x {
+                let (a, b) = (i as f64 / lines_x as f64, j as f64 / lines_y as f64);
                 nodes.push(Vec3::from(geometry(a, b, 2.0 * k as f64 - 1.0)));
             }
         }
     }
     let mut grid = Grid {
-        mesh: plain(nodes, vec![]),
-        nx,
-        ny,
+        mesh: Mesh {
+            kind,
+            ..plain(nodes, vec![])
+        },
+        nx: lines_x,
+        ny: lines_y,
     };
     for j in 0..ny {
         for i in 0..nx {
-            for a in 0..8 {
-                let node = grid.node(i + (a & 1), j + ((a >> 1) & 1), a >> 2);
+            for a in 0..kind.nodes() {
+                let (di, dj, dk) = (a % (p + 1), a / (p + 1) % (p + 1), a / (p + 1) / (p + 1));
+                let node = grid.node(p * i + di, p * j + dj, dk);
                 grid.mesh.connectivity.push(node as u32);
             }
         }
@@ -80,11 +100,65 @@ pub fn st_venant(e: f64, nu: f64) -> Law {
     Law::new(&Material::StVenantKirchhoff(Elastic { e, nu })).unwrap()
 }
 
+/// Elements of either kind.
+pub enum Block {
+    H8(H8Block),
+    Q18(Q18Block),
+}
+
 /// One body with its state.
 pub struct Model {
-    pub block: H8Block,
+    pub block: Block,
     pub state: Vec<f64>,
     pub dofs: usize,
+}
+
+impl Block {
+    fn elements(&self) -> usize {
+        match self {
+            Block::H8(b) => b.elements(),
+            Block::Q18(b) => b.elements(),
+        }
+    }
+
+    fn state_len(&self) -> usize {
+        match self {
+            Block::H8(b) => b.state_len(),
+            Block::Q18(_) => Q18Block::STATE_LEN,
+        }
+    }
+
+    fn alpha_len(&self) -> usize {
+        match self {
+            Block::H8(b) => b.alpha_len(),
+            Block::Q18(_) => Q18Block::ALPHA_LEN,
+        }
+    }
+
+    fn nodes_of(&self, e: usize) -> Vec<u32> {
+        match self {
+            Block::H8(b) => b.nodes_of(e).to_vec(),
+            Block::Q18(b) => b.nodes_of(e).to_vec(),
+        }
+    }
+
+    /// Forces and tangent by columns.
+    fn evaluate(&self, e: usize, u: &[Vec3], state: &mut [f64]) -> (Vec<f64>, Vec<f64>) {
+        match self {
+            Block::H8(b) => {
+                let mut out = H8System::default();
+                b.evaluate(e, u.try_into().unwrap(), state, &mut out)
+                    .unwrap();
+                (out.f.to_vec(), out.k.to_vec())
+            }
+            Block::Q18(b) => {
+                let mut out = Q18System::default();
+                b.evaluate(e, u.try_into().unwrap(), state, &mut out)
+                    .unwrap();
+                (out.f.to_vec(), out.k.to_vec())
+            }
+        }
+    }
 }
 
 /// Zero displacements on these dofs.
@@ -94,7 +168,17 @@ pub fn zeros(dofs: impl IntoIterator<Item = usize>) -> BTreeMap<usize, f64> {
 
 impl Model {
     pub fn new(mesh: &Mesh, formulation: Formulation, law: Law) -> Model {
-        let block = H8Block::new(mesh, formulation, law).unwrap();
+        Model::of(
+            Block::H8(H8Block::new(mesh, formulation, law).unwrap()),
+            mesh,
+        )
+    }
+
+    pub fn q18(mesh: &Mesh, law: Law) -> Model {
+        Model::of(Block::Q18(Q18Block::new(mesh, law).unwrap()), mesh)
+    }
+
+    fn of(block: Block, mesh: &Mesh) -> Model {
         let state = vec![0.0; block.state_len() * block.elements()];
         Model {
             block,
@@ -103,27 +187,26 @@ impl Model {
         }
     }
 
-    fn local(&self, e: usize, u: &[f64]) -> [Vec3; 8] {
-        self.block
-            .nodes_of(e)
-            .map(|n| Vec3::from_column_slice(&u[3 * n as usize..3 * n as usize + 3]))
+    fn local(&self, e: usize, u: &[f64]) -> Vec<Vec3> {
+        (self.block.nodes_of(e).iter())
+            .map(|&n| Vec3::from_column_slice(&u[3 * n as usize..3 * n as usize + 3]))
+            .collect()
     }
 
     /// Internal forces and tangent triplets.
     pub fn assemble(&mut self, u: &[f64]) -> (Vec<f64>, Vec<(usize, usize, f64)>) {
         let (mut f, mut k) = (vec![0.0; self.dofs], vec![]);
-        let mut out = H8System::default();
         let n = self.block.state_len();
         for e in 0..self.block.elements() {
             let local = self.local(e, u);
-            self.block
-                .evaluate(e, &local, &mut self.state[n * e..n * (e + 1)], &mut out)
-                .unwrap();
+            let state = &mut self.state[n * e..n * (e + 1)];
+            let (fe, ke) = self.block.evaluate(e, &local, state);
             let nodes = self.block.nodes_of(e);
             let dof = |r: usize| 3 * nodes[r / 3] as usize + r % 3;
-            for c in 0..24 {
-                f[dof(c)] += out.f[c];
-                k.extend((0..24).map(|r| (dof(r), dof(c), out.k[24 * c + r])));
+            for (c, fc) in fe.iter().enumerate() {
+                f[dof(c)] += fc;
+                let column = &ke[fe.len() * c..fe.len() * (c + 1)];
+                k.extend(column.iter().enumerate().map(|(r, v)| (dof(r), dof(c), *v)));
             }
         }
         (f, k)
@@ -135,7 +218,10 @@ impl Model {
             let local = self.local(e, du);
             let state = &mut self.state[n * e..n * (e + 1)];
             let alpha: Vec<f64> = state[..self.block.alpha_len()].to_vec();
-            self.block.update_alpha(state, &local, 1.0, &alpha);
+            match &self.block {
+                Block::H8(b) => b.update_alpha(state, local[..].try_into().unwrap(), 1.0, &alpha),
+                Block::Q18(b) => b.update_alpha(state, local[..].try_into().unwrap(), 1.0, &alpha),
+            }
         }
     }
 
