@@ -1,7 +1,8 @@
 //! Integrals over patches.
 
 use super::PatchSet;
-use super::topology::{Edge, EdgeCurve, edge_point};
+use super::topology::{Edge, EdgeCurve};
+use crate::NurbsCurve;
 use crate::surface::{Jet, Surface};
 
 /// Points and weights of the Gauss rule with four points on (0, 1).
@@ -17,8 +18,8 @@ const INTERVALS: usize = 6;
 
 /// Integrates `f dxi1 dxi2` over the part of the domain that belongs to the surface: 4 x 4 Gauss points per Bezier piece of
 /// an untrimmed patch. On a trimmed patch the divergence theorem of the parameter plane turns it into an integral along
-/// the trim curves of the primitive of `f` in xi1, each by Gauss points in the intervals of the curves' polylines and in
-/// the spans of the surface.
+/// the trim curves of the primitive of `f` in xi1, each by Gauss points in the spans of the surface: the intervals of the
+/// curves' polylines are cut where they cross its knot lines.
 pub(super) fn over<S: Surface, const N: usize>(
     set: &PatchSet<S>,
     patch: u32,
@@ -54,26 +55,40 @@ pub(super) fn over<S: Surface, const N: usize>(
         (a.min(x), b.max(x))
     });
     let start = 0.5 * (low + high);
-    let breaks = &set.grids[patch as usize].breaks[0];
-    let degree = set.pieces.list[set.grids[patch as usize].first as usize].degree[0];
+    let grid = &set.grids[patch as usize];
+    let breaks = &grid.breaks[0];
+    let degree = set.pieces.list[grid.first as usize].degree[0];
     let parts = if degree > 1 {
         INTERVALS.div_ceil(breaks.len())
     } else {
         1
     };
+    let mut cuts = Vec::new();
     for edge in edges {
+        let Some(curve) = edge_curve(set, edge) else {
+            continue;
+        };
+        cuts.clear();
         for pair in edge.samples.windows(2) {
-            let [a, b] = [pair[0].t, pair[1].t];
+            cuts.push(pair[0].t);
+            let first = cuts.len();
+            for (dir, breaks) in grid.breaks.iter().enumerate() {
+                crossings(curve, dir, breaks, [pair[0].t, pair[1].t], &mut cuts);
+            }
+            cuts[first..].sort_by(f64::total_cmp);
+        }
+        cuts.extend(edge.samples.last().map(|s| s.t));
+        for pair in cuts.windows(2) {
+            let [a, b] = [pair[0], pair[1]];
             for (x, w) in GAUSS {
-                let t = a + (b - a) * x;
-                let at = edge_point(set, edge, t);
-                let slope = edge_slope(set, edge, t);
-                let outer = edge.sense * w * (b - a) * slope;
+                let jet = curve.jet(a + (b - a) * x);
+                let at = [jet.point.x, jet.point.y];
+                let outer = edge.sense * w * (b - a) * jet.d1.y;
                 // From the start to the curve, span by span.
-                let (from, to, sign) = if at.xi[0] >= start {
-                    (start, at.xi[0], 1.0)
+                let (from, to, sign) = if at[0] >= start {
+                    (start, at[0], 1.0)
                 } else {
-                    (at.xi[0], start, -1.0)
+                    (at[0], start, -1.0)
                 };
                 for span in breaks.windows(2) {
                     let (s, e) = (span[0].max(from), span[1].min(to));
@@ -83,7 +98,7 @@ pub(super) fn over<S: Surface, const N: usize>(
                     let h = (e - s) / parts as f64;
                     for part in 0..parts {
                         for (x, w) in GAUSS {
-                            let xi = [s + h * (part as f64 + x), at.xi[1]];
+                            let xi = [s + h * (part as f64 + x), at[1]];
                             add(outer * sign * w * h, f(&surface.jet(xi)));
                         }
                     }
@@ -94,12 +109,38 @@ pub(super) fn over<S: Surface, const N: usize>(
     sum
 }
 
-/// dxi2/dt of a trim curve.
-fn edge_slope<S: Surface>(set: &PatchSet<S>, edge: &Edge, t: f64) -> f64 {
+/// The curve of an edge of a trimmed patch.
+fn edge_curve<'s, S: Surface>(set: &'s PatchSet<S>, edge: &Edge) -> Option<&'s NurbsCurve<2>> {
     let EdgeCurve::Trim { a_loop, curve } = edge.curve else {
-        return 0.0;
+        return None;
     };
-    let trim = set.patches[edge.patch as usize].trim();
-    let curve = trim.and_then(|trim| trim.loops().get(a_loop)?.curves.get(curve));
-    curve.map_or(0.0, |curve| curve.parameter.jet(t).d1.y)
+    let trim = set.patches[edge.patch as usize].trim()?;
+    Some(&trim.loops().get(a_loop)?.curves.get(curve)?.parameter)
+}
+
+/// Adds where a part of a curve crosses knot lines, one place for each line between its ends.
+fn crossings(
+    curve: &NurbsCurve<2>,
+    dir: usize,
+    breaks: &[f64],
+    [a, b]: [f64; 2],
+    out: &mut Vec<f64>,
+) {
+    let at = |t: f64| curve.jet(t).point[dir];
+    let (x, y) = (at(a), at(b));
+    let from = breaks.partition_point(|&k| k <= x.min(y));
+    let to = breaks.partition_point(|&k| k < x.max(y));
+    for &knot in breaks.get(from..to).unwrap_or(&[]) {
+        let [mut low, mut high] = if x < y { [a, b] } else { [b, a] };
+        // A billionth of the part is near enough: the integrand has no more than a kink there.
+        for _ in 0..30 {
+            let middle = 0.5 * (low + high);
+            if at(middle) < knot {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        out.push(0.5 * (low + high));
+    }
 }
