@@ -1,6 +1,6 @@
 //! Fields of a deformable body.
 use super::OutputError;
-use super::vtu::{Array, Field, Grid, Place};
+use super::vtu::{Array, DEGREES, Field, Grid, Place};
 use crate::mesh::{ElementKind, Mesh};
 use covact_geometry::Vec3;
 use vtkio::model::CellType;
@@ -110,6 +110,9 @@ impl BodyFields<'_> {
             Array::new("element", 1, numbers),
             Array::new("body", 1, vec![id; elements]),
         ];
+        if self.mesh.kind == ElementKind::Q18 {
+            cell_data.push(Array::new(DEGREES, 3, [2.0, 2.0, 1.0].repeat(elements)));
+        }
         for field in &self.fields {
             let (into, count) = match field.place {
                 Place::Point => (&mut point_data, nodes),

@@ -83,7 +83,7 @@ pub(crate) struct Grid {
     pub vectors: Option<&'static str>,
     /// Name of the point data that shading uses.
     pub normals: Option<&'static str>,
-    /// The grid has rational Bezier cells: point data [`WEIGHTS`] and cell data [`DEGREES`].
+    /// The grid has rational Bezier cells, with point data [`WEIGHTS`] beside the cell data [`DEGREES`].
     pub rational: bool,
 }
 
@@ -149,6 +149,8 @@ struct TagPatch {
     /// Attribute `Name="..."` as it stands in the tag, and the attributes to add after it.
     arrays: Vec<(String, String)>,
     rational: bool,
+    /// The cells state their degrees.
+    degrees: bool,
 }
 
 impl TagPatch {
@@ -168,6 +170,7 @@ impl TagPatch {
         TagPatch {
             arrays,
             rational: grid.rational,
+            degrees: grid.cell_data.iter().any(|a| a.name == DEGREES),
         }
     }
 
@@ -203,7 +206,7 @@ impl TagPatch {
             }
         } else if self.rational && tag.starts_with("<PointData") {
             tag.insert_str("<PointData".len(), &format!(" {WEIGHTS}=\"{WEIGHTS}\""));
-        } else if self.rational && tag.starts_with("<CellData") {
+        } else if self.degrees && tag.starts_with("<CellData") {
             tag.insert_str("<CellData".len(), &format!(" {DEGREES}=\"{DEGREES}\""));
         }
         tag
