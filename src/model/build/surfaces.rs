@@ -129,7 +129,7 @@ impl Builder<'_> {
                     ),
                 )
                 .help(
-                    "write them as untrimmed NURBS surfaces (entity 128), name the entities to use in `entities`, \
+                    "export them as trimmed NURBS surfaces (144 on 128), name the entities to use in `entities`, \
                      or set `allow_skipped` to go on without them",
                 ));
             }
