@@ -80,7 +80,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             "<text x=\"28\" y=\"{y}\" fill=\"currentColor\">{name}</text>"
         )?;
     }
-    print!("{svg}</svg>\n");
+    println!("{svg}</svg>");
     Ok(())
 }
 

@@ -12,7 +12,7 @@ use super::transform::Affine;
 use super::trimmed::{
     Boundary, Face, Part, Stretch, describe, parameter_list, reversed, space_parts,
 };
-use std::collections::HashMap;
+use std::collections::{HashMap, hash_map};
 
 /// Edges that were read, by list, number in the list, and place of the copy: neighbours share them.
 #[derive(Default)]
@@ -150,12 +150,12 @@ impl Edges {
         list: usize,
         number: usize,
     ) -> Result<Edge, Stop> {
-        if !self.lists.contains_key(&list) {
+        if let hash_map::Entry::Vacant(slot) = self.lists.entry(list) {
             let entry = &model.entries[list];
             if entry.type_number != 504 {
                 return Err(params.fail(at, "a pointer to an edge list (504)").into());
             }
-            self.lists.insert(list, read_504(model, entry)?);
+            slot.insert(read_504(model, entry)?);
         }
         let edges = &self.lists[&list];
         let edge = number.checked_sub(1).and_then(|k| edges.get(k)).copied();
