@@ -3,7 +3,7 @@
 //! repository are looked for in the folder that the environment variable COVACT_CAD_SAMPLES names.
 
 use covact_geometry::io::{LengthUnit, read_path};
-use covact_geometry::{PatchSet, Status, Vec3};
+use covact_geometry::{EdgeKind, Location, PatchSet, Status, Vec3};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -61,7 +61,7 @@ fn check(filter: &str, allowed: f64) {
         let set = PatchSet::new(patches, None).unwrap();
         let mut fault = |text: String| faults.push(format!("{name}: {text}"));
         statuses(&set, &mut fault);
-        let (mut worst, mut inside) = (0.0f64, 0);
+        let (mut worst, mut inside, mut rim) = (0.0f64, 0, 0);
         for &[x, y, z, distance, side] in &row.points {
             let q = Vec3::new(x, y, z) / scale;
             let foot = set.project(&q, None, f64::INFINITY).unwrap();
@@ -82,7 +82,19 @@ fn check(filter: &str, allowed: f64) {
                 ));
             }
             inside += usize::from(side < 0.0);
-            if side != 0.0 && foot.signed_distance * side <= 0.0 {
+            // bearing.iges lacks a face: beside the hole, both sides are one.
+            let open = matches!(
+                foot.location,
+                Location::Edge {
+                    kind: EdgeKind::Free,
+                    ..
+                } | Location::Corner {
+                    kind: EdgeKind::Free,
+                    ..
+                }
+            );
+            rim += usize::from(open && side != 0.0);
+            if !open && side != 0.0 && foot.signed_distance * side <= 0.0 {
                 fault(format!(
                     "{} signed distance {}, side {side}",
                     at(),
@@ -90,7 +102,12 @@ fn check(filter: &str, allowed: f64) {
                 ));
             }
         }
-        println!("{name}: distances to {worst:.1e} of the size, {inside} points inside");
+        println!(
+            "{name}: distances to {worst:.1e} of the size, {inside} points inside, {rim} beside a hole"
+        );
+        if rim > if name == "real/bearing.iges" { 13 } else { 0 } {
+            faults.push(format!("{name}: {rim} points lie beside holes"));
+        }
     }
     assert!(seen > 0);
     assert!(
