@@ -1,6 +1,8 @@
 //! Faces with boundaries in small IGES files written by hand, with areas known in closed form.
 
+#[allow(dead_code)]
 mod iges_trim_common;
+#[allow(dead_code)]
 #[path = "io/support.rs"]
 mod support;
 

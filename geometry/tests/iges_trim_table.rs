@@ -27,27 +27,22 @@ fn one() -> f64 {
     1.0
 }
 
-/// Faces whose curves in the parameter plane and in space lie apart in the file, so that the area between them is open: file,
-/// entity, and the relative difference of areas that this makes here. The kernel follows the former; where they lie apart
-/// by more than the tolerance of the reader, it follows the latter. In hammer.iges boundaries leave the range of their surface by
-/// up to 1e-3 of it: the kernel continues the surface, the reader ends it.
+/// Faces whose curves in the parameter plane and in space contradict each other: file, entity, and the relative difference of
+/// the two areas (measured here, by reading the file once without the pointers to either of them). In between lies what a
+/// reader may answer. Of all others with such a gap both
+/// kernels take the curves in the parameter plane.
 const APART: &[(&str, u32, f64)] = &[
-    ("real/DTMB-5415_bulbous_bow.iges", 1, 3e-5),
-    ("real/bearing.iges", 4117, 3e-6),
-    ("real/bearing.iges", 4479, 1e-5),
-    ("real/bearing.iges", 5361, 3e-4),
-    ("real/hammer.iges", 289, 1e-4),
-    ("real/hammer.iges", 341, 5e-4),
-    ("real/hammer.iges", 451, 1e-4),
-    ("real/hammer.iges", 477, 5e-4),
-    ("real/hammer.iges", 517, 1e-5),
-    ("real/hammer.iges", 547, 1e-5),
-    ("real/hammer.iges", 569, 2e-4),
-    ("real/hammer.iges", 599, 1e-4),
-    ("real/hammer.iges", 741, 1e-5),
-    ("real/hammer.iges", 787, 1e-5),
-    ("real/hammer.iges", 923, 1e-3),
-    ("real/hammer.iges", 1285, 5e-4),
+    ("real/bearing.iges", 4117, 6.5e-6),
+    ("real/bearing.iges", 4479, 1.87e-5),
+    ("real/bearing.iges", 5361, 1.41e-4),
+    ("real/hammer.iges", 547, 7.93e-5),
+];
+
+/// Faces whose boundary leaves their surface by more than rounding, so that the surface goes on beyond its knots; the whole
+/// surface is not compared.
+const CONTINUED: &[(&str, &[u32])] = &[
+    ("real/bearing.iges", &[5199, 5617]),
+    ("real/hammer.iges", &[341, 477, 923, 1285]),
 ];
 
 /// A face or free surface, in millimetres.
@@ -91,7 +86,7 @@ const TRIMS: &[(&str, usize, usize)] = &[
     ("real/DTMB-5415_bulbous_bow.iges", 1, 0),
     ("real/bearing.iges", 56, 157),
     ("real/example_45_faces.iges", 31, 14),
-    ("real/hammer.iges", 25, 20),
+    ("real/hammer.iges", 23, 22),
     ("real/single_rounded_cube.iges", 2, 5),
     ("real/sunglasses_lens.igs", 0, 0),
     ("real/testfile.igs", 0, 0),
@@ -211,6 +206,21 @@ fn compare(
             found.type_number, found.base
         ));
     }
+    let continued = CONTINUED
+        .iter()
+        .any(|c| c.0 == file_name && c.1.contains(&row.entity));
+    let text = "its boundary leaves the surface";
+    let start = format!("entity {} ", row.entity);
+    if continued
+        != file
+            .notes
+            .iter()
+            .any(|n| n.starts_with(&start) && n.contains(text))
+    {
+        fault(format!(
+            "{name}: notes that its boundary leaves the surface, {continued} expected"
+        ));
+    }
     let mut near = |what: &str, value: f64, reference: f64, tolerance: f64| {
         let reference = reference / (scale * scale);
         let error = (value / reference - 1.0).abs();
@@ -231,7 +241,7 @@ fn compare(
         let basis = found.patch.basis(d);
         [basis.knots()[basis.degree()], basis.knots()[basis.count()]]
     });
-    let base = row.base_area.zip(row.base_box);
+    let base = row.base_area.zip(row.base_box).filter(|_| !continued);
     let (whole, reference) = match base {
         Some((area_of_base, bounds)) => {
             let patch = found.patch.clone().with_trim(None).with_domain(full);

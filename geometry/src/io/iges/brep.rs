@@ -9,9 +9,7 @@ use super::directory::Entry;
 use super::groups::pointer;
 use super::params::Params;
 use super::transform::Affine;
-use super::trimmed::{
-    Boundary, Face, Part, Stretch, describe, parameter_list, reversed, space_parts,
-};
+use super::trimmed::{Boundary, Face, Stretch, describe, parameter_list, reversed, space_parts};
 use std::collections::{HashMap, hash_map};
 
 /// Edges that were read, by list, number in the list, and place of the copy: neighbours share them.
@@ -113,6 +111,7 @@ fn read_508(
                 stretches.push(Stretch {
                     parameter,
                     space,
+                    space_first: false,
                     edge: curve.number,
                 });
             }
@@ -120,8 +119,7 @@ fn read_508(
             1 if parameter.is_empty() => {}
             1 => stretches.push(Stretch {
                 parameter,
-                space: Vec::<Part<3>>::new(),
-                edge: 0,
+                ..Stretch::default()
             }),
             _ => {
                 let expected = "0 for an edge or 1 for a vertex";

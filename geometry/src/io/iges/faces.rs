@@ -10,7 +10,8 @@ use super::names::entity_name;
 use super::surfaces::{self, BasePatch, BaseSurface};
 use super::transform::{Affine, matrix_of};
 use super::trimmed::{self, Boundary, Face, Stretch, describe};
-use super::trimmed_curves::{BEYOND, Tally, add, bounds};
+use super::trimmed_curves::{Tally, add};
+use super::trimmed_extent::grown;
 use super::trimmed_host::Host;
 use super::trimmed_loops::{GAP, loops};
 use super::{Model, params::Params};
@@ -295,7 +296,7 @@ impl Reader<'_, '_> {
         let global = &self.model.global;
         let resolution = global.resolution.map_or(0.0, |r| r / global.scale);
         let grown = grown(base, face, resolution);
-        let patch = grown.as_ref().unwrap_or(&base.patch);
+        let patch = grown.as_ref().map_or(&base.patch, |g| &g.patch);
         let host = Host::new(patch, &base.parameters, resolution);
         let mut tally = Tally {
             tolerance: host.agree,
@@ -311,6 +312,13 @@ impl Reader<'_, '_> {
         });
         let note = |text: &str| format!("{}: {text}", describe(entry));
         self.notes.extend(said.iter().map(|text| note(text)));
+        if let Some(grown) = grown.filter(|g| g.continued > 0.0) {
+            let share = grown.continued;
+            let text = format!(
+                "its boundary leaves the surface, which was continued by {share:.1e} of its range"
+            );
+            self.notes.push(note(&text));
+        }
         match trimmed {
             Ok(trimmed) => {
                 add(&mut self.out.trims, &tally);
@@ -376,36 +384,6 @@ fn property_name(model: &Model, params: &Params, values: usize) -> Result<Option
         }
     }
     Ok(None)
-}
-
-/// The surface on a slightly larger part of its knots' range, where the file's parameter range cuts it a little short of
-/// the boundaries on it.
-fn grown(base: &BasePatch, face: &Face, resolution: f64) -> Option<NurbsPatch> {
-    if !base.parameters.is_identity() {
-        return None;
-    }
-    let closed = Host::new(&base.patch, &base.parameters, resolution).closed;
-    let domain = base.patch.domain();
-    let mut wanted = domain;
-    let stretches = face.boundaries.iter().flat_map(|b| &b.stretches);
-    for stretch in stretches.filter(|s| !s.parameter.is_empty()) {
-        let bounds = bounds(&stretch.parameter);
-        for d in (0..2).filter(|&d| !closed[d]) {
-            let slack = BEYOND * (domain[d][1] - domain[d][0]);
-            let basis = base.patch.basis(d);
-            let (p, n, knots) = (basis.degree(), basis.count(), basis.knots());
-            if bounds[d][0] >= domain[d][0] - slack {
-                wanted[d][0] = wanted[d][0].min(bounds[d][0]).max(knots[p]);
-            }
-            if bounds[d][1] <= domain[d][1] + slack {
-                wanted[d][1] = wanted[d][1].max(bounds[d][1]).min(knots[n]);
-            }
-        }
-    }
-    match wanted == domain {
-        true => None,
-        false => base.patch.with_domain(wanted).ok(),
-    }
 }
 
 /// Points between which a face's space curves run.

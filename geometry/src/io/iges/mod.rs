@@ -29,6 +29,7 @@ mod surfaces;
 mod transform;
 mod trimmed;
 mod trimmed_curves;
+mod trimmed_extent;
 mod trimmed_fit;
 mod trimmed_host;
 mod trimmed_loops;

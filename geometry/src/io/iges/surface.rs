@@ -143,7 +143,7 @@ pub fn read(
         ));
     }
     let full = [0, 1].map(|d| [knots[d][degree[d]], knots[d][counts[d]]]);
-    let domain = match allowed_range(full, &range, &mut note) {
+    let domain = match allowed_range(full, &knots, &range, &mut note) {
         Ok(domain) => domain,
         Err(reason) => {
             return Ok(Surface {
@@ -251,6 +251,7 @@ pub fn merge_close(knots: &mut [f64]) -> usize {
 /// The part of the knots' range that the parameter range U0, U1, V0, V1 of the file leaves.
 fn allowed_range(
     full: [[f64; 2]; 2],
+    knots: &[Vec<f64>; 2],
     range: &[f64],
     note: &mut impl FnMut(String),
 ) -> Result<[[f64; 2]; 2], String> {
@@ -288,6 +289,15 @@ fn allowed_range(
         }
         if (to - end).abs() <= slack || to > end {
             to = end;
+        }
+        // A cut beside a knot, by rounding, would leave a span of no extent.
+        for cut in [&mut from, &mut to] {
+            if let Some(&knot) = knots[d]
+                .iter()
+                .find(|&&t| (t - *cut).abs() <= 1e-9 * (end - start))
+            {
+                *cut = knot;
+            }
         }
         if from > start || to < end {
             note(format!(

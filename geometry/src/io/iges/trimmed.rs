@@ -23,6 +23,8 @@ pub struct Stretch {
     /// In the file's parameters of the surface.
     pub parameter: Vec<Part<2>>,
     pub space: Vec<Part<3>>,
+    /// The file prefers the curves in space (PREF) where both are given and disagree.
+    pub space_first: bool,
     /// Number of the edge in the edge list that neighbours share, as an entity number; 0 where there is none.
     pub edge: u32,
 }
@@ -125,6 +127,11 @@ fn read_142(
         ));
     }
     let mut stretch = Stretch::default();
+    if params.len() > 5 {
+        // 1: the parameter plane, 2: space, 3: both alike, 0: it does not say.
+        stretch.space_first =
+            params.integer(5, "the preference PREF of a curve on a surface")? == 2;
+    }
     let bptr = params.integer(3, "the curve BPTR in the parameter plane")?;
     if bptr != 0 {
         let b = pointer(model, &params, 3, "the curve BPTR in the parameter plane")?;
@@ -244,6 +251,8 @@ fn read_141(
     }
     let params = model.params(entry)?;
     let map = outer.after(&matrix_of(model, entry, notes)?);
+    // 1: space, 2: the parameter plane, 3: both alike, 0: it does not say.
+    let space_first = params.integer(2, "the preference PREF of a boundary (141)")? == 1;
     let count = params.count(4, "the number of curves of a boundary (141)")?;
     if count > params.len().saturating_sub(5) / 3 {
         let expected = format!("{count} curves with sense and parameter curves");
@@ -266,6 +275,7 @@ fn read_141(
         stretches.push(Stretch {
             parameter,
             space,
+            space_first,
             edge: model.entries[curve].number,
         });
     }

@@ -12,8 +12,13 @@ use crate::{NurbsCurve, Vec3};
 const FIT: f64 = 1e-7;
 /// Projected curves may lie this far off the surface, as a share of its size; beyond it they do not belong to it.
 const OFF: f64 = 1e-2;
+/// Curves in the parameter plane that lie farther than this from those in space, as a share of the size, are not meant.
+const WRONG: f64 = 1e-3;
 /// Curves may leave the domain by this share of it and still be taken.
 pub const BEYOND: f64 = 1e-3;
+
+/// Curves beyond the border by less than this share of the domain are on it.
+pub const NOISE: f64 = 1e-9;
 
 /// What the curves of one face did; added to the report of the file if the face is read.
 pub type Tally = TrimReport;
@@ -43,27 +48,25 @@ pub fn curves(
     match given {
         Ok(given) if given.gap <= host.agree || stretch.space.is_empty() => Ok(given.take(tally)),
         Ok(given) => {
-            // The space curves count where they lie nearer to the surface than to the other ones.
-            let mut fresh = Tally::default();
-            match projected(host, stretch, &mut fresh) {
-                Ok(curves) if fresh.largest_gap < 0.5 * given.gap => {
+            let gap = given.gap;
+            // Space curves count where the file says so, or where the others cannot be meant, if they do lie on the surface.
+            if stretch.space_first || gap > WRONG * host.size {
+                let mut fresh = Tally::default();
+                if let Ok(curves) = projected(host, stretch, &mut fresh)
+                    && fresh.largest_gap < 0.5 * gap
+                {
                     complaints.push(format!(
-                        "its curves in the parameter plane lie up to {:.1e} from those in space, which were projected",
-                        given.gap
+                        "its curves in the parameter plane lie up to {gap:.1e} from those in space, which were projected"
                     ));
                     fresh.rejected = 1;
                     add(tally, &fresh);
-                    Ok(curves)
-                }
-                _ => {
-                    complaints.push(format!(
-                        "its curves in the parameter plane lie up to {:.1e} from those in space, which lie no nearer \
-                         to the surface",
-                        given.gap
-                    ));
-                    Ok(given.take(tally))
+                    return Ok(curves);
                 }
             }
+            complaints.push(format!(
+                "its curves in the parameter plane lie up to {gap:.1e} from those in space; the former bound it"
+            ));
+            Ok(given.take(tally))
         }
         Err(reason) if stretch.space.is_empty() => Err(reason),
         Err(reason) => {
@@ -198,31 +201,93 @@ fn inside(host: &Host, curve: NurbsCurve<2>) -> NurbsCurve<2> {
         (a - x[d]).max(x[d] - b) / (b - a)
     };
     let worst = [0, 1].map(|d| points.iter().map(|x| out(x, d)).fold(0.0, f64::max));
-    if worst[0] <= 1e-9 && worst[1] <= 1e-9 {
+    if worst[0] <= NOISE && worst[1] <= NOISE {
         return curve;
     }
-    let near = |x: Xi| {
-        Xi::from_fn(|d, _| {
-            // Control points far out shape the curve inside; they stay.
-            let limit = if host.closed[d] { worst[d] } else { out(&x, d) };
-            match limit <= BEYOND {
+    // Control points may lie outside of a curve that does not leave the domain; those far out shape it inside and stay.
+    let overshoot = |curve: &NurbsCurve<2>| {
+        let [u, v] = bounds_of(std::iter::once(curve));
+        [0, 1].map(|d| out(&Xi::new(u[0], v[0]), d).max(out(&Xi::new(u[1], v[1]), d)))
+    };
+    let mut curve = curve;
+    let mut reach = overshoot(&curve).map(|own| if own > NOISE { 4.0 * own } else { 0.0 });
+    for d in (0..2).filter(|&d| host.closed[d]) {
+        reach[d] = if worst[d] <= BEYOND { BEYOND } else { 0.0 };
+    }
+    loop {
+        let near = |x: Xi| {
+            Xi::from_fn(|d, _| match out(&x, d) <= reach[d].min(BEYOND) {
                 true => x[d].clamp(host.domain[d][0], host.domain[d][1]),
                 false => x[d],
+            })
+        };
+        let Ok(next) = curve.transformed(&near) else {
+            return curve;
+        };
+        curve = next;
+        let left = overshoot(&curve);
+        let mut again = false;
+        for d in 0..2 {
+            if !host.closed[d] && left[d] > 1e-7 && reach[d] < BEYOND {
+                reach[d] = 4.0 * reach[d].max(left[d]);
+                again = true;
             }
-        })
-    };
-    curve.transformed(&near).unwrap_or(curve)
+        }
+        if !again {
+            return curve;
+        }
+    }
 }
 
 /// Box around curves of the file's parameter plane.
 pub fn bounds(parts: &[Part<2>]) -> [[f64; 2]; 2] {
+    bounds_of(parts.iter().map(|p| &p.curve))
+}
+
+/// Box around curves.
+pub fn bounds_of<'a>(curves: impl Iterator<Item = &'a NurbsCurve<2>>) -> [[f64; 2]; 2] {
     let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-    for xi in parts.iter().flat_map(|p| sample(&p.curve, 1)) {
+    for curve in curves {
+        let ts: Vec<f64> = parameters(curve.basis(), 2).collect();
+        let points: Vec<Xi> = ts.iter().map(|&t| curve.point(t)).collect();
         for d in 0..2 {
-            bounds[d] = [bounds[d][0].min(xi[d]), bounds[d][1].max(xi[d])];
+            let order = |a: &usize, b: &usize| points[*a][d].total_cmp(&points[*b][d]);
+            let (low, high) = ((0..ts.len()).min_by(order), (0..ts.len()).max_by(order));
+            let (Some(low), Some(high)) = (low, high) else {
+                continue;
+            };
+            let around = |k: usize| {
+                [
+                    ts[k.saturating_sub(1)],
+                    ts[k],
+                    ts[(k + 1).min(ts.len() - 1)],
+                ]
+            };
+            bounds[d][0] = bounds[d][0].min(extreme(curve, d, around(low), f64::min));
+            bounds[d][1] = bounds[d][1].max(extreme(curve, d, around(high), f64::max));
         }
     }
     bounds
+}
+
+/// The extreme coordinate `d` of a curve near the second of three parameters: Newton's method for a stationary point.
+fn extreme(
+    curve: &NurbsCurve<2>,
+    d: usize,
+    [a, mut t, b]: [f64; 3],
+    better: impl Fn(f64, f64) -> f64,
+) -> f64 {
+    let mut best = curve.point(t)[d];
+    for _ in 0..6 {
+        let jet = curve.jet(t);
+        best = better(best, jet.point[d]);
+        let next = (t - jet.d1[d] / jet.d2[d]).clamp(a, b);
+        if !next.is_finite() || next == t {
+            break;
+        }
+        t = next;
+    }
+    better(best, curve.point(t)[d])
 }
 
 /// A curve of the file's parameter plane where the patch's parameters are not a linear map of it.
