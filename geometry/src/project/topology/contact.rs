@@ -29,11 +29,53 @@ pub(super) struct Contact {
     pub ends: Vec<(usize, f64)>,
 }
 
+impl Contact {
+    const NONE: Contact = Contact {
+        covered: Vec::new(),
+        length: 0.0,
+        gap: 0.0,
+        gap_at: Vec3::new(0.0, 0.0, 0.0),
+        sense: 0.0,
+        angles: [0.0; 2],
+        ends: Vec::new(),
+    };
+}
+
+/// Whether two edges are proved to be in contact over no more than four tolerances, from their directions and ends alone:
+/// nowhere do they run along each other; or they run alike, and seen along their common direction, in which both only
+/// advance, one ends where the other begins.
+pub(super) fn apart(one: &Edge, other: &Edge, tolerance: f64) -> bool {
+    let (a, b) = (one.axis, other.axis);
+    let between = a.cross(&b).norm().atan2(a.dot(&b).abs());
+    // A hundredth of a radian is left for how angles are sampled.
+    if between - one.cone - other.cone > PARALLEL.acos() + 0.01 {
+        return true;
+    }
+    let along = if a.dot(&b) < 0.0 { a - b } else { a + b };
+    let Some(along) = along.try_normalize(0.0) else {
+        return false;
+    };
+    // No tangent is farther off than this, so lengths are at most 5/2 of what is seen of them.
+    let widest = 0.5 * between + one.cone.max(other.cone);
+    if widest.is_nan() || widest > 0.4f64.acos() {
+        return false;
+    }
+    let range = |edge: &Edge| {
+        let ends = [0, edge.samples.len() - 1].map(|k| edge.samples[k].point.dot(&along));
+        [ends[0].min(ends[1]), ends[0].max(ends[1])]
+    };
+    let (one, other) = (range(one), range(other));
+    let common = one[1].min(other[1]) - one[0].max(other[0]);
+    2.5 * (common + tolerance) < 3.9 * tolerance
+}
+
 /// A compared point.
 #[derive(Clone, Copy)]
 struct Probe {
     t: f64,
     point: EdgePoint,
+    /// Nearest point of the other edge, if it was looked for.
+    at: Option<EdgePoint>,
     /// Within the tolerance of the other edge.
     on: bool,
     /// The edges run along each other here, as far as their tangents can tell.
@@ -49,15 +91,7 @@ pub(super) fn contact<S: Surface>(
     other: &Edge,
     tolerance: f64,
 ) -> Contact {
-    let mut out = Contact {
-        covered: Vec::new(),
-        length: 0.0,
-        gap: 0.0,
-        gap_at: Vec3::zeros(),
-        sense: 0.0,
-        angles: [0.0; 2],
-        ends: Vec::new(),
-    };
+    let mut out = Contact::NONE;
     let grow = Vec3::from_element(tolerance);
     let [low, high] = other.bounds;
     let (low, high) = (low - grow, high + grow);
@@ -85,7 +119,7 @@ pub(super) fn contact<S: Surface>(
     };
     let mut before: Option<Probe> = None;
     for pair in one.samples.windows(2) {
-        let [near, far] = chord_box(&pair[0].point, &pair[1].point);
+        let [near, far] = chord_box(&pair[0].point, &pair[1].point, one.bulge);
         let apart = (0..3).any(|k| near[k] > high[k] || far[k] < low[k]);
         if apart {
             before = None;
@@ -124,6 +158,7 @@ impl<S: Surface> Compare<'_, S> {
         let mut probe = Probe {
             t,
             point,
+            at: None,
             on: false,
             parallel: false,
         };
@@ -135,6 +170,7 @@ impl<S: Surface> Compare<'_, S> {
         probe.on = (at.jet.rho - p).norm() <= self.tolerance;
         let product = point.d1.dot(&at.d1);
         probe.parallel = product.abs() >= PARALLEL * point.d1.norm() * at.d1.norm();
+        probe.at = Some(at);
         probe
     }
 
@@ -161,7 +197,9 @@ impl<S: Surface> Compare<'_, S> {
     /// Gap, sense and angle at a point in contact.
     fn measure(&mut self, probe: &Probe) {
         let p = probe.point.jet.rho;
-        let at = nearest_on_edge(self.set, &p, self.other);
+        let Some(at) = probe.at else {
+            return;
+        };
         let gap = (at.jet.rho - p).norm();
         if gap >= self.out.gap {
             (self.out.gap, self.out.gap_at) = (gap, 0.5 * (p + at.jet.rho));

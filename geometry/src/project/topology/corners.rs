@@ -2,7 +2,9 @@
 
 use std::collections::HashSet;
 
+use super::super::piece::box_distance2;
 use super::super::set::PatchSet;
+use super::super::tree::Tree;
 use super::Topology;
 use super::edge::{Edge, EdgeCurve};
 use super::matching::Touch;
@@ -22,15 +24,19 @@ pub(in crate::project) fn corner_at(edges: &[Edge], local: usize, end: usize) ->
     match edges[local].curve {
         EdgeCurve::Side { dir, end: side } => (side << dir) | (end << (1 - dir)),
         EdgeCurve::Trim { .. } if end == 0 => local,
-        EdgeCurve::Trim { a_loop, .. } => {
-            let same = |k: usize| matches!(edges[k].curve, EdgeCurve::Trim { a_loop: l, .. } if l == a_loop);
-            if local + 1 < edges.len() && same(local + 1) {
+        EdgeCurve::Trim { a_loop, curve } => {
+            if local + 1 < loop_end(edges, a_loop) {
                 local + 1
             } else {
-                (0..=local).find(|&k| same(k)).unwrap_or(local)
+                local - curve.min(local)
             }
         }
     }
+}
+
+/// One past the last curve of a loop; curves are sorted by loop.
+fn loop_end(edges: &[Edge], a_loop: usize) -> usize {
+    edges.partition_point(|e| matches!(e.curve, EdgeCurve::Trim { a_loop: l, .. } if l <= a_loop))
 }
 
 /// The two edges of a corner, counted from zero on the patch, each with the end that lies at the corner: on a trimmed patch
@@ -45,9 +51,7 @@ pub(in crate::project) fn edges_at(edges: &[Edge], corner: usize) -> [(usize, us
             let before = if curve > 0 {
                 corner - 1
             } else {
-                let same =
-                    |e: &Edge| matches!(e.curve, EdgeCurve::Trim { a_loop: l, .. } if l == a_loop);
-                edges.iter().rposition(same).unwrap_or(corner)
+                loop_end(edges, a_loop).max(1) - 1
             };
             [(corner, 0), (before, 1)]
         }
@@ -75,6 +79,8 @@ pub(super) fn group<S: Surface>(set: &PatchSet<S>, topology: &mut Topology, touc
         }
     }
     all.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then((a.2, a.3).cmp(&(b.2, b.3))));
+    let boxes: Vec<[Vec3; 2]> = all.iter().map(|c| [c.0; 2]).collect();
+    let tree = Tree::new(&boxes);
     let mut group = vec![u32::MAX; all.len()];
     let mut groups: Vec<CornerGroup> = Vec::new();
     topology.corners = vec![0; count];
@@ -89,15 +95,18 @@ pub(super) fn group<S: Surface>(set: &PatchSet<S>, topology: &mut Topology, touc
             .corners
             .push((patch as u32, corner as u32));
         topology.corners[topology.first[patch] + corner] = own;
-        for later in k + 1..all.len() {
-            let other = &all[later];
-            if other.0.x - point.x > limit {
-                break;
-            }
-            if group[later] == u32::MAX && (other.0 - point).norm() <= limit.min(other.1) {
+        let measure = |low: &Vec3, high: &Vec3| box_distance2(&point, low, high);
+        let limit2 = limit * limit * (1.0 + 1e-12) + f64::MIN_POSITIVE;
+        tree.scan(measure, limit2, |later| {
+            let (later, other) = (later as usize, &all[later as usize]);
+            if later > k
+                && group[later] == u32::MAX
+                && (other.0 - point).norm() <= limit.min(other.1)
+            {
                 group[later] = own;
             }
-        }
+            limit2
+        });
     }
     let mut seen = HashSet::new();
     for &((edge, end), (on, t)) in touches {

@@ -60,6 +60,11 @@ pub(in crate::project) struct Edge {
     pub samples: Vec<Sample>,
     /// A box that holds it.
     pub bounds: [Vec3; 2],
+    /// Share of its length by which the box of a chord must grow to hold the arc; 0 for a straight edge.
+    pub bulge: f64,
+    /// Unit vector from end to end, zero where the ends meet, and the largest angle of a tangent with it.
+    pub axis: Vec3,
+    pub cone: f64,
     pub length: f64,
     /// `None` for a pole. Partly joined edges are free here; see [`kind_at`](Self::kind_at).
     pub kind: Option<EdgeKind>,
@@ -166,6 +171,9 @@ pub(super) fn edges_of<S: Surface>(set: &PatchSet<S>, patch: u32) -> Vec<Edge> {
         entity,
         samples: Vec::new(),
         bounds: [Vec3::zeros(); 2],
+        bulge: BULGE,
+        axis: Vec3::zeros(),
+        cone: std::f64::consts::PI,
         length: 0.0,
         kind: None,
         links: Vec::new(),
@@ -229,6 +237,7 @@ fn senses(edges: &[Edge], first: &[usize]) -> Vec<f64> {
         })
         .collect();
     let next = |polygon: &[[f64; 2]], k: usize| polygon[(k + 1) % polygon.len()];
+    let boxes: Vec<[[f64; 2]; 2]> = polygons.iter().map(|p| bounds_of(p)).collect();
     polygons
         .iter()
         .enumerate()
@@ -244,9 +253,15 @@ fn senses(edges: &[Edge], first: &[usize]) -> Vec<f64> {
                 .iter()
                 .enumerate()
                 .filter(|(other, polygon)| {
+                    let (mine, theirs) = (&boxes[number], &boxes[*other]);
+                    let apart =
+                        (0..2).any(|k| mine[0][k] > theirs[1][k] || mine[1][k] < theirs[0][k]);
+                    if *other == number || apart {
+                        return false;
+                    }
                     // Loops may touch, so the vertices vote.
                     let inside = own.iter().filter(|p| within(polygon, **p)).count();
-                    *other != number && 2 * inside > own.len()
+                    2 * inside > own.len()
                 })
                 .count();
             if (area > 0.0) == (around % 2 == 0) {
@@ -256,6 +271,18 @@ fn senses(edges: &[Edge], first: &[usize]) -> Vec<f64> {
             }
         })
         .collect()
+}
+
+/// Lowest and highest corner of a polygon.
+fn bounds_of(polygon: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let mut out = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for p in polygon {
+        for k in 0..2 {
+            out[0][k] = out[0][k].min(p[k]);
+            out[1][k] = out[1][k].max(p[k]);
+        }
+    }
+    out
 }
 
 /// Whether a point lies in a polygon (even-odd rule).
@@ -374,16 +401,16 @@ fn sample<S: Surface>(set: &PatchSet<S>, edge: &mut Edge, breaks: &[f64], parts:
             last = next;
         }
     }
+    directions(edge, &points);
     let mut low = Vec3::from_element(f64::INFINITY);
     let mut high = -low;
     let mut length = 0.0;
     for pair in points.windows(2) {
         let (a, b) = (pair[0].jet.rho, pair[1].jet.rho);
-        let chord = (b - a).norm();
-        let grow = Vec3::from_element(BULGE * chord);
-        low = low.inf(&(a.inf(&b) - grow));
-        high = high.sup(&(a.sup(&b) + grow));
-        length += chord;
+        let [l, h] = chord_box(&a, &b, edge.bulge);
+        low = low.inf(&l);
+        high = high.sup(&h);
+        length += (b - a).norm();
     }
     edge.samples = points
         .iter()
@@ -395,6 +422,34 @@ fn sample<S: Surface>(set: &PatchSet<S>, edge: &mut Edge, breaks: &[f64], parts:
         .collect();
     edge.bounds = [low, high];
     edge.length = length;
+}
+
+/// Bulge, axis and cone of an edge from the points of its polyline. Tangents are taken to turn between two points by no
+/// more than they do anywhere from one point to the next.
+fn directions(edge: &mut Edge, points: &[EdgePoint]) {
+    let angle = |a: &Vec3, b: &Vec3| a.cross(b).norm().atan2(a.dot(b));
+    let mut turn = 0.0f64;
+    for pair in points.windows(2) {
+        let chord = pair[1].jet.rho - pair[0].jet.rho;
+        let parts = [(&pair[0].d1, &chord), (&chord, &pair[1].d1)];
+        // A tangent of no length has no direction: nothing is known.
+        if pair.iter().any(|p| p.d1.norm_squared() == 0.0) {
+            return;
+        }
+        turn = parts
+            .iter()
+            .fold(turn, |turn, (a, b)| turn.max(angle(a, b)));
+        turn = turn.max(angle(&pair[0].d1, &pair[1].d1));
+    }
+    edge.bulge = BULGE.min(BULGE / TURN * turn);
+    let run = points[points.len() - 1].jet.rho - points[0].jet.rho;
+    if let Some(axis) = run.try_normalize(0.0)
+        && turn <= 2.0 * TURN
+    {
+        edge.axis = axis;
+        let widest = points.iter().map(|p| angle(&p.d1, &axis));
+        edge.cone = turn + widest.fold(0.0, f64::max);
+    }
 }
 
 fn bisect<S: Surface>(
@@ -417,8 +472,8 @@ fn bisect<S: Surface>(
 }
 
 /// Box of a chord and its arc.
-pub(super) fn chord_box(a: &Vec3, b: &Vec3) -> [Vec3; 2] {
-    let grow = Vec3::from_element(BULGE * (b - a).norm());
+pub(super) fn chord_box(a: &Vec3, b: &Vec3, bulge: f64) -> [Vec3; 2] {
+    let grow = Vec3::from_element(bulge * (b - a).norm());
     [a.inf(b) - grow, a.sup(b) + grow]
 }
 

@@ -4,7 +4,8 @@ use rayon::prelude::*;
 
 use super::super::EdgeKind;
 use super::super::set::{PatchSet, SHARP_ANGLE};
-use super::contact::{Contact, contact};
+use super::super::tree::Tree;
+use super::contact::{Contact, apart, contact};
 use super::edge::{Edge, Link, nearest_on_edge, subtract};
 use super::report::{EdgeReport, Gap, Joint, PartialJoint};
 use crate::surface::{Surface, Vec3};
@@ -58,6 +59,10 @@ pub(super) fn pairs<S: Surface>(
     let candidates = candidates(edges, chosen, tolerance, wide);
     let compare = |(a, b): (usize, usize)| {
         let tight = pair(set, edges, a, b, tolerance);
+        let shorter = edges[a].length.min(edges[b].length);
+        if apart(&edges[a], &edges[b], wide.min(SHORT * shorter)) {
+            return tight;
+        }
         if !loose || tight.as_ref().is_some_and(|p| p.whole) {
             return tight;
         }
@@ -80,50 +85,44 @@ pub(super) fn pairs<S: Surface>(
     candidates.into_par_iter().filter_map(compare).collect()
 }
 
-/// Pairs whose boxes meet, by a sweep along the axis on which the edges are spread most.
+/// Pairs whose boxes meet: those of edges with the same number of the file, which may be joined over wide gaps, and all
+/// others over narrow ones. A tree over the boxes finds them wherever the edges lie.
 fn candidates(edges: &[Edge], chosen: &[usize], tolerance: f64, wide: f64) -> Vec<(usize, usize)> {
-    let widest = WIDE * tolerance;
-    // Only edges with a number look farther than the tolerance.
-    let grown = |k: usize| {
-        let edge = &edges[k];
-        let grow = if edge.entity != 0 { widest } else { wide };
-        grown_box(edge.bounds, grow)
+    let boxes: Vec<_> = (chosen.iter())
+        .map(|&k| grown_box(edges[k].bounds, wide))
+        .collect();
+    let meet = |a: &[Vec3; 2], low: &Vec3, high: &Vec3| {
+        (0..3).all(|k| a[0][k] <= high[k] && low[k] <= a[1][k])
     };
-    let boxes: Vec<_> = chosen.iter().map(|&k| grown(k)).collect();
-    let spread = |axis: usize| {
-        let n = boxes.len().max(1) as f64;
-        let middle = |b: &[Vec3; 2]| b[0][axis] + b[1][axis];
-        let mean = boxes.iter().map(middle).sum::<f64>() / n;
-        boxes
-            .iter()
-            .map(|b| (middle(b) - mean).powi(2))
-            .sum::<f64>()
-    };
-    let spreads = [0, 1, 2].map(spread);
-    let axis = (0..3)
-        .max_by(|&a, &b| spreads[a].total_cmp(&spreads[b]))
-        .unwrap_or(0);
-    let mut order: Vec<usize> = (0..chosen.len()).collect();
-    order.sort_by(|&a, &b| {
-        boxes[a][0][axis]
-            .total_cmp(&boxes[b][0][axis])
-            .then(a.cmp(&b))
-    });
-    let mut out = Vec::new();
-    for (place, &first) in order.iter().enumerate() {
-        let one = &boxes[first];
-        for &second in &order[place + 1..] {
-            let other = &boxes[second];
-            if other[0][axis] > one[1][axis] {
-                break;
-            }
-            if (0..3).all(|k| one[0][k] <= other[1][k] && other[0][k] <= one[1][k]) {
+    let tree = Tree::new(&boxes);
+    let found = boxes.par_iter().enumerate().flat_map_iter(|(first, own)| {
+        let mut out = Vec::new();
+        let measure = |low: &Vec3, high: &Vec3| f64::from(u8::from(!meet(own, low, high)));
+        tree.scan(measure, 1.0, |second| {
+            let second = second as usize;
+            if second > first {
                 let (a, b) = (chosen[first], chosen[second]);
                 out.push((a.min(b), a.max(b)));
             }
+            1.0
+        });
+        out
+    });
+    let mut out: Vec<(usize, usize)> = found.collect();
+    let mut numbered: Vec<usize> = (chosen.iter().copied())
+        .filter(|&k| edges[k].entity != 0)
+        .collect();
+    numbered.sort_by_key(|&k| (edges[k].entity, k));
+    for group in numbered.chunk_by(|&a, &b| edges[a].entity == edges[b].entity) {
+        for (place, &a) in group.iter().enumerate() {
+            let own = grown_box(edges[a].bounds, 2.0 * WIDE * tolerance);
+            let others = group[place + 1..].iter();
+            let near = others.filter(|&&b| meet(&own, &edges[b].bounds[0], &edges[b].bounds[1]));
+            out.extend(near.map(|&b| (a.min(b), a.max(b))));
         }
     }
     out.sort_unstable();
+    out.dedup();
     out
 }
 
@@ -148,6 +147,9 @@ fn pair<S: Surface>(
         tolerance
     };
     let tolerance = allowed.min(SHORT * shorter);
+    if apart(one, other, tolerance) {
+        return None;
+    }
     let contacts = [
         contact(set, one, other, tolerance),
         contact(set, other, one, tolerance),

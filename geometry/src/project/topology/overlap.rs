@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::super::EdgeKind;
+use super::super::piece::box_distance2;
 use super::super::search::region_of;
 use super::super::set::PatchSet;
 use super::Topology;
@@ -68,15 +69,14 @@ fn inside_of<S: Surface>(
             let region = region_of(piece);
             let middle = piece.domain.map(|[a, b]| 0.5 * (a + b));
             let local = set.descend(p, &region, middle, piece.span, 1e-10);
-            if local.d2 <= limit2 {
-                let edges = topology.of(piece.patch);
-                let depth = edges
-                    .iter()
-                    .map(|e| (nearest_on_edge(set, p, e).jet.rho - p).norm())
-                    .fold(f64::INFINITY, f64::min);
-                let trim = set.patches[piece.patch as usize].trim();
-                let trimmed_away = trim.is_some_and(|trim| !trim.contains(local.xi));
-                if depth > 4.0 * set.tolerance && !trimmed_away {
+            if local.d2 <= limit2 && !set.trimmed_away(piece.patch, local.xi) {
+                let mut depth = f64::INFINITY;
+                for e in topology.of(piece.patch) {
+                    if box_distance2(p, &e.bounds[0], &e.bounds[1]) < depth * depth {
+                        depth = depth.min((nearest_on_edge(set, p, e).jet.rho - p).norm());
+                    }
+                }
+                if depth > 4.0 * set.tolerance {
                     out.push((piece.patch, depth));
                 }
             }
