@@ -195,7 +195,8 @@ fn main() {
             .collect();
         ours("contact, open", &near.set, &open, None, 0.05);
     }
-    let made: [(&str, fn() -> QuerySet); 9] = [
+    type Made = (&'static str, fn() -> QuerySet);
+    let made: [Made; 9] = [
         ("edge and corner", || sets::edge_and_corner(COUNT)),
         ("far", || sets::far(COUNT)),
         ("focal", || sets::focal(COUNT, false)),

@@ -149,7 +149,8 @@ fn awkward() -> CadFile {
     let numbers = [
         -0.0,
         tiny,
-        -2.2250738585072011e-308,
+        // The largest subnormal number.
+        -f64::from_bits(0x000f_ffff_ffff_ffff),
         0.1 + 0.2,
         1.0 / 3.0,
         f64::MIN_POSITIVE,

@@ -120,7 +120,7 @@ pub fn focal(count: usize, rational: bool) -> QuerySet {
             let q = patch.point(xi) + n * d;
             let mut truth = d.abs();
             let k = out.truths.len();
-            if k % 10 == 0 && k < 2000 {
+            if k.is_multiple_of(10) && k < 2000 {
                 truth = truth.min(exhaustive(out.set.patches(), &q, 4, 20));
             }
             out.truths.push((q, truth));
