@@ -194,11 +194,11 @@ impl Index {
 
     /// The point of the loops that is nearest to `xi`, directions divided by `scale`, if it is nearer than `reach`.
     pub fn nearest(&self, xi: Point, scale: [f64; 2], reach: f64) -> Option<BorderPoint> {
-        let mut best: Option<BorderPoint> = None;
+        let mut best: Option<(&Monotone, f64, BorderPoint)> = None;
         let mut limit = reach;
         let far = |low: &Point, high: &Point| {
             let d = [0, 1].map(|k| (low[k] - xi[k]).max(xi[k] - high[k]).max(0.0) / scale[k]);
-            d[0].hypot(d[1])
+            (d[0] * d[0] + d[1] * d[1]).sqrt()
         };
         let mut stack = [(0u32, 0.0f64); STACK];
         let mut top = usize::from(!self.nodes.is_empty());
@@ -211,9 +211,9 @@ impl Index {
             let node = &self.nodes[number as usize];
             if node.next & LEAF != 0 {
                 let piece = &self.pieces[(node.next & !LEAF) as usize];
-                if let Some(found) = nearest_of(piece, xi, scale, limit) {
+                if let Some((s, found)) = nearest_of(piece, xi, scale, limit) {
                     limit = found.distance;
-                    best = Some(found);
+                    best = Some((piece, s, found));
                 }
                 continue;
             }
@@ -233,25 +233,31 @@ impl Index {
                 }
             }
         }
-        best
+        let (piece, s, point) = best?;
+        Some(downhill(piece, xi, scale, s, point))
     }
 }
 
 /// Points of the border that are farther away than the nearest by no more than this share may be taken for it.
 const CLOSE: f64 = 1e-3;
 
-/// Nearest point of one piece, if nearer than `limit`: halves whose box (that of their ends) is farther away are left out,
-/// then the best point found moves to the minimum next to it.
-fn nearest_of(piece: &Monotone, xi: Point, scale: [f64; 2], limit: f64) -> Option<BorderPoint> {
+/// Nearest point of one piece with its place there, if nearer than `limit`: halves whose box (that of their ends) is
+/// farther away are left out.
+fn nearest_of(
+    piece: &Monotone,
+    xi: Point,
+    scale: [f64; 2],
+    limit: f64,
+) -> Option<(f64, BorderPoint)> {
     let off = |p: &Point| [0, 1].map(|k| (p[k] - xi[k]) / scale[k]);
     let length = |p: &Point| {
         let [a, b] = off(p);
-        a.hypot(b)
+        (a * a + b * b).sqrt()
     };
     let bound = |a: &Point, b: &Point| {
         let (a, b) = (off(a), off(b));
         let d = [0, 1].map(|k| a[k].min(b[k]).max(-a[k].max(b[k])).max(0.0));
-        d[0].hypot(d[1])
+        (d[0] * d[0] + d[1] * d[1]).sqrt()
     };
     let mut best: Option<(f64, BorderPoint)> = None;
     let mut limit = limit;
@@ -300,12 +306,22 @@ fn nearest_of(piece: &Monotone, xi: Point, scale: [f64; 2], limit: f64) -> Optio
             top += 2;
         }
     }
-    // From there downhill: Gauss-Newton steps, halved where they lead too far.
-    let (mut s, mut point) = best?;
+    best
+}
+
+/// The minimum next to a point of a piece: Gauss-Newton steps, halved where they lead too far.
+fn downhill(
+    piece: &Monotone,
+    xi: Point,
+    scale: [f64; 2],
+    mut s: f64,
+    mut point: BorderPoint,
+) -> BorderPoint {
+    let off = |p: &Point| [0, 1].map(|k| (p[k] - xi[k]) / scale[k]);
     for _ in 0..50 {
         let (p, d) = piece.tangent(s);
-        let (off, d) = (off(&p), [0, 1].map(|k| d[k] / scale[k]));
-        let mut step = -(off[0] * d[0] + off[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+        let (d0, d) = (off(&p), [0, 1].map(|k| d[k] / scale[k]));
+        let mut step = -(d0[0] * d[0] + d0[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]);
         let mut moved = false;
         for _ in 0..20 {
             let next = (s + step).clamp(0.0, 1.0);
@@ -313,7 +329,8 @@ fn nearest_of(piece: &Monotone, xi: Point, scale: [f64; 2], limit: f64) -> Optio
                 break;
             }
             let p = piece.point(next);
-            let distance = length(&p);
+            let [a, b] = off(&p);
+            let distance = (a * a + b * b).sqrt();
             if distance < point.distance {
                 (s, moved) = (next, true);
                 point = BorderPoint {
@@ -330,5 +347,5 @@ fn nearest_of(piece: &Monotone, xi: Point, scale: [f64; 2], limit: f64) -> Optio
             break;
         }
     }
-    Some(point)
+    point
 }

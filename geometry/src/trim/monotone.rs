@@ -46,18 +46,12 @@ impl Monotone {
 
     /// Point at `s` (0 to 1).
     pub fn point(&self, s: f64) -> Point {
-        let n = self.net.len();
-        let mut work = [[0.0; 3]; WIDTH];
-        work[..n].copy_from_slice(&self.net);
-        for r in 1..n {
-            for i in 0..n - r {
-                let next = work[i + 1];
-                for (x, next) in work[i].iter_mut().zip(next) {
-                    *x += s * (next - *x);
-                }
-            }
-        }
-        let [x, y, w] = work[0];
+        let [x, y, w] = match self.net.len() {
+            2 => de_casteljau::<2>(&self.net, s),
+            3 => de_casteljau::<3>(&self.net, s),
+            4 => de_casteljau::<4>(&self.net, s),
+            _ => de_casteljau::<WIDTH>(&self.net, s),
+        };
         // Rounding must not take a point out of the box.
         let [low, high] = self.bounds();
         [
@@ -184,6 +178,23 @@ impl Monotone {
         };
         !(passes(left, beside_left, over) || passes(right, beside_right, under))
     }
+}
+
+/// Homogeneous point of a net of no more than `ROOM` control points.
+#[inline]
+fn de_casteljau<const ROOM: usize>(net: &[[f64; 3]], s: f64) -> [f64; 3] {
+    let n = net.len().min(ROOM);
+    let mut work = [[0.0; 3]; ROOM];
+    work[..n].copy_from_slice(&net[..n]);
+    for r in 1..n {
+        for i in 0..n - r {
+            let next = work[i + 1];
+            for (x, next) in work[i].iter_mut().zip(next) {
+                *x += s * (next - *x);
+            }
+        }
+    }
+    work[0]
 }
 
 /// Cuts a rational Bezier piece (w x, w y, w) over the parameters `t` into monotone pieces.

@@ -179,7 +179,12 @@ pub(super) fn edges_of<S: Surface>(set: &PatchSet<S>, patch: u32) -> Vec<Edge> {
         links: Vec::new(),
         vertices: Vec::new(),
     };
-    let degree = set.pieces.list[grid.first as usize].degree;
+    let piece = &set.pieces.list[grid.first as usize];
+    let degree = piece.degree;
+    let polynomial = {
+        let net = set.pieces.net(piece);
+        net.iter().all(|p| p[3] == net[0][3])
+    };
     let mut edges = Vec::new();
     match surface.trim() {
         None => {
@@ -191,7 +196,10 @@ pub(super) fn edges_of<S: Surface>(set: &PatchSet<S>, patch: u32) -> Vec<Edge> {
                 let sense = if dir == end { -1.0 } else { 1.0 };
                 let curve = EdgeCurve::Side { dir, end };
                 let mut edge = blank(number as u32, curve, interval, sense, 0);
-                sample(set, &mut edge, breaks, degree[along] + 1);
+                // A straight line is known by its ends.
+                let straight = degree[along] == 1 && breaks.len() == 2 && polynomial;
+                let parts = if straight { 1 } else { degree[along] + 1 };
+                sample(set, &mut edge, breaks, parts);
                 edges.push(edge);
             }
         }

@@ -233,6 +233,10 @@ pub(super) fn link(
         let kind = kind_of(pair.angle);
         for k in 0..2 {
             let (own, other) = (pair.edges[k], pair.edges[1 - k]);
+            // As many as there are: a set of facets has hundreds of thousands of edges with one link each.
+            edges[own]
+                .links
+                .reserve_exact(pair.contacts[k].covered.len());
             for &part in &pair.contacts[k].covered {
                 edges[own].links.push(Link {
                     edge: other,

@@ -27,7 +27,7 @@ pub(super) fn overlaps<S: Surface>(set: &PatchSet<S>, topology: &Topology) -> Ve
         let mut found: BTreeMap<u32, (usize, f64, Vec3)> = BTreeMap::new();
         for [a, b] in edge.free_parts() {
             let inner = edge.samples.iter().filter(|s| s.t > a && s.t < b).count();
-            let n = (2 * (inner + 1)).min(POINTS);
+            let n = (2 * (inner + 1)).clamp(4, POINTS);
             for k in 0..n {
                 let t = a + (b - a) * (k as f64 + 0.5) / n as f64;
                 let p = edge_point(set, edge, t).jet.rho;
