@@ -51,9 +51,9 @@ pub fn grown(base: &BasePatch, face: &Face, resolution: f64) -> Option<Grown> {
     }
     let mut patch = base.patch.clone();
     let mut continued = 0.0f64;
-    for d in 0..2 {
+    for (d, ends) in wanted.into_iter().enumerate() {
         let own = patch.basis(d).own_domain();
-        for (end, to) in wanted[d].into_iter().enumerate() {
+        for (end, to) in ends.into_iter().enumerate() {
             let beyond = if end == 0 { own[0] - to } else { to - own[1] };
             if beyond > 0.0 {
                 patch = longer(&patch, d, end, to)?;
@@ -108,8 +108,9 @@ fn blossom(segment: &mut [[f64; 4]], knots: &[f64], k: usize, arguments: &[f64])
         for j in (r..=p).rev() {
             let i = k - p + j;
             let share = (u - knots[i]) / (knots[i + p + 1 - r] - knots[i]);
-            for c in 0..4 {
-                segment[j][c] = (1.0 - share) * segment[j - 1][c] + share * segment[j][c];
+            let before = segment[j - 1];
+            for (x, from) in segment[j].iter_mut().zip(before) {
+                *x = (1.0 - share) * from + share * *x;
             }
         }
     }
