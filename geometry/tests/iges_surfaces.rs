@@ -465,8 +465,8 @@ fn analytic_surfaces() {
     assert!(off < 1e-14 * 2.0, "{off:.1e}");
     file.form(198, 1, &format!("{},{},5.,1.5,{}", p[0], p[1], p[2]));
     let off = worst(&patch(&file), |u, v| {
-        let v = v.to_radians();
-        circle(f, 5.0 + 1.5 * v.cos(), u, 1.5 * v.sin())
+        let u = u.to_radians();
+        circle(f, 5.0 + 1.5 * u.cos(), 360.0 - v, 1.5 * u.sin())
     });
     assert!(off < 1e-14 * 2.0, "{off:.1e}");
 }

@@ -10,7 +10,8 @@ use super::groups::pointer;
 use super::params::Params;
 use super::transform::Affine;
 use super::trimmed::{Boundary, Face, Stretch, describe, parameter_list, reversed, space_parts};
-use std::collections::{HashMap, hash_map};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry as Slot;
 
 /// Edges that were read, by list, number in the list, and place of the copy: neighbours share them.
 #[derive(Default)]
@@ -148,14 +149,16 @@ impl Edges {
         list: usize,
         number: usize,
     ) -> Result<Edge, Stop> {
-        if let hash_map::Entry::Vacant(slot) = self.lists.entry(list) {
-            let entry = &model.entries[list];
-            if entry.type_number != 504 {
-                return Err(params.fail(at, "a pointer to an edge list (504)").into());
+        let edges = match self.lists.entry(list) {
+            Slot::Occupied(slot) => slot.into_mut(),
+            Slot::Vacant(slot) => {
+                let entry = &model.entries[list];
+                if entry.type_number != 504 {
+                    return Err(params.fail(at, "a pointer to an edge list (504)").into());
+                }
+                slot.insert(read_504(model, entry)?)
             }
-            slot.insert(read_504(model, entry)?);
-        }
-        let edges = &self.lists[&list];
+        };
         let edge = number.checked_sub(1).and_then(|k| edges.get(k)).copied();
         edge.ok_or_else(|| {
             let expected = format!("the number of an edge, 1 to {}", edges.len());

@@ -51,9 +51,9 @@ pub fn grown(base: &BasePatch, face: &Face, resolution: f64) -> Option<Grown> {
     }
     let mut patch = base.patch.clone();
     let mut continued = 0.0f64;
-    for (d, ends) in wanted.iter().enumerate() {
+    for (d, ends) in wanted.into_iter().enumerate() {
         let own = patch.basis(d).own_domain();
-        for (end, &to) in ends.iter().enumerate() {
+        for (end, to) in ends.into_iter().enumerate() {
             let beyond = if end == 0 { own[0] - to } else { to - own[1] };
             if beyond > 0.0 {
                 patch = longer(&patch, d, end, to)?;
@@ -109,8 +109,8 @@ fn blossom(segment: &mut [[f64; 4]], knots: &[f64], k: usize, arguments: &[f64])
             let i = k - p + j;
             let share = (u - knots[i]) / (knots[i + p + 1 - r] - knots[i]);
             let before = segment[j - 1];
-            for (x, before) in segment[j].iter_mut().zip(before) {
-                *x = (1.0 - share) * before + share * *x;
+            for (x, from) in segment[j].iter_mut().zip(before) {
+                *x = (1.0 - share) * from + share * *x;
             }
         }
     }

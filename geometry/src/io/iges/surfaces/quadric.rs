@@ -28,8 +28,9 @@ pub fn sphere(mut reader: SurfaceReader) -> Found {
     Ok((BaseSurface::Patches(vec![base]), values))
 }
 
-/// A 198: center, axis, both radii and, in form 1, reference direction. Parameters of the file: the angle about the axis
-/// from the reference direction, and the angle about the tube from the outer equator towards the axis, in degrees.
+/// A 198: center, axis, both radii and, in form 1, reference direction. Parameters of the file: the angle about the tube from
+/// the outer equator towards the axis, and the angle about the axis, from 360 at the reference direction down to 0 (as Open
+/// CASCADE writes and reads them), in degrees.
 pub fn torus(mut reader: SurfaceReader) -> Found {
     let major = reader.length(3, "the major radius")?;
     let minor = reader.length(4, "the minor radius")?;
@@ -38,7 +39,9 @@ pub fn torus(mut reader: SurfaceReader) -> Found {
     if minor >= major {
         reader.note("the tube of the torus is thicker than its hole: the surface meets itself");
     }
-    let base = tube(&reader, center, triad, [major, minor], [0.0, TAU])?;
+    let mut base = tube(&reader, center, triad, [major, minor], [0.0, TAU])?;
+    // A full turn in equal arcs backwards has the same map from angles to parameters.
+    base.patch = base.patch.swapped()?.reversed(1)?;
     Ok((BaseSurface::Patches(vec![base]), values))
 }
 
