@@ -29,15 +29,25 @@ fn one() -> f64 {
 
 /// Faces whose curves in the parameter plane and in space lie apart in the file, so that the area between them is open: file,
 /// entity, and the relative difference of areas that this makes here. The kernel follows the former; where they lie apart
-/// by more than the tolerance of the reader, it follows the latter.
+/// by more than the tolerance of the reader, it follows the latter. In hammer.iges boundaries leave the range of their surface by
+/// up to 1e-3 of it: the kernel continues the surface, the reader ends it.
 const APART: &[(&str, u32, f64)] = &[
     ("real/DTMB-5415_bulbous_bow.iges", 1, 3e-5),
     ("real/bearing.iges", 4117, 3e-6),
     ("real/bearing.iges", 4479, 1e-5),
     ("real/bearing.iges", 5361, 3e-4),
+    ("real/hammer.iges", 289, 1e-4),
+    ("real/hammer.iges", 341, 5e-4),
+    ("real/hammer.iges", 451, 1e-4),
+    ("real/hammer.iges", 477, 5e-4),
     ("real/hammer.iges", 517, 1e-5),
     ("real/hammer.iges", 547, 1e-5),
+    ("real/hammer.iges", 569, 2e-4),
+    ("real/hammer.iges", 599, 1e-4),
+    ("real/hammer.iges", 741, 1e-5),
     ("real/hammer.iges", 787, 1e-5),
+    ("real/hammer.iges", 923, 1e-3),
+    ("real/hammer.iges", 1285, 5e-4),
 ];
 
 /// A face or free surface, in millimetres.
@@ -81,7 +91,7 @@ const TRIMS: &[(&str, usize, usize)] = &[
     ("real/DTMB-5415_bulbous_bow.iges", 1, 0),
     ("real/bearing.iges", 56, 157),
     ("real/example_45_faces.iges", 31, 14),
-    ("real/hammer.iges", 45, 0),
+    ("real/hammer.iges", 25, 20),
     ("real/single_rounded_cube.iges", 2, 5),
     ("real/sunglasses_lens.igs", 0, 0),
     ("real/testfile.igs", 0, 0),
@@ -204,7 +214,7 @@ fn compare(
     let mut near = |what: &str, value: f64, reference: f64, tolerance: f64| {
         let reference = reference / (scale * scale);
         let error = (value / reference - 1.0).abs();
-        if error.is_nan() || error > 1e-6 {
+        if error.is_nan() || error > tolerance {
             fault(format!(
                 "{name}: {what} {value}, not {reference} ({error:.1e})"
             ));
