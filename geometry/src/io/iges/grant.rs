@@ -77,10 +77,14 @@ impl Grant {
         self.memory(points.saturating_mul(TRIM_POINT))
     }
 
+    /// Takes the memory of a cubic piece of a fitted boundary curve.
+    pub fn piece(&self) -> Result<(), String> {
+        self.memory(3 * TRIM_POINT)
+    }
+
     fn memory(&self, bytes: usize) -> Result<(), String> {
         self.take(&self.bytes, bytes as u64).ok_or_else(|| {
-            "with it the file would take more memory than one of this length is granted: it uses the same curves too often"
-                .to_owned()
+            "with it the file would take more memory than one of this length is granted".to_owned()
         })
     }
 

@@ -176,6 +176,7 @@ fn halve(
                 "a border curve cannot be followed on the surface: {worst:.1e} remain (allowed {tolerance:.1e})"
             ));
         }
+        host.grant.piece()?;
         out.push(b, p[0], p[1], p[2], p[3]);
         out.error = out.error.max(worst);
         return Ok(());
