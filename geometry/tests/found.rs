@@ -197,27 +197,6 @@ fn boundary_in_many_places() {
     shared("places", &file, 300);
 }
 
-/// 250 ruled surfaces, tabulated cylinders and surfaces of revolution of the same polyline of 3000 points.
-#[test]
-fn polyline_of_many_surfaces() {
-    let points: Vec<String> = (0..3000).map(|k| format!("{k},{},1", k % 7)).collect();
-    let points = format!("2,3000,{}", points.join(","));
-    let kinds: [(u32, &dyn Fn(u32, u32) -> String); 3] = [
-        (118, &|curve, _| format!("{curve},{curve},0,0")),
-        (122, &|curve, _| format!("{curve},0.,0.,9.")),
-        (120, &|curve, axis| format!("{axis},{curve},0.,3.")),
-    ];
-    for (kind, values) in kinds {
-        let mut file = Builder::new();
-        let curve = file.form(106, 12, &points);
-        let axis = file.add(110, "0.,0.,0.,1.,0.,0.");
-        for _ in 0..250 {
-            file.add(kind, &values(curve, axis));
-        }
-        shared(&kind.to_string(), &file, 250);
-    }
-}
-
 /// 300 faces with the same loop of 1500 edges, which follow each other and come back to where they began.
 #[test]
 fn loop_of_many_faces() {
