@@ -411,8 +411,7 @@ impl Merger {
         let mut found = None;
         let mut place = [0; 3];
         if self.tolerance > 0.0 {
-            // Casts saturate: a tolerance too small for the coordinates merges less, never more, than it says.
-            place = [x.x, x.y, x.z].map(|x| (x / self.tolerance).floor() as i64);
+            place = [x.x, x.y, x.z].map(|x| interval(x / self.tolerance));
             for k in 0..27i64 {
                 let step = [k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1];
                 let key: [i64; 3] = std::array::from_fn(|i| place[i].saturating_add(step[i]));
@@ -439,6 +438,18 @@ impl Merger {
         self.exact.insert(bits, node);
         node
     }
+}
+
+/// Number of the unit interval that holds `x`. Where numbers lie farther apart than that, each has one of its own; an order
+/// by size is kept, so that neighbours have neighbouring numbers.
+fn interval(x: f64) -> i64 {
+    const WHOLE: f64 = (1i64 << 53) as f64;
+    if x.abs() < WHOLE {
+        return x.floor() as i64;
+    }
+    let past = (x.abs().to_bits() - WHOLE.to_bits()) as i64;
+    let number = (1i64 << 53) + past;
+    if x > 0.0 { number } else { -number }
 }
 
 impl Stl {

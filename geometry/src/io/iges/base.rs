@@ -5,6 +5,7 @@ use super::super::report::{SkipKind, Skipped};
 use super::super::{CadError, LengthUnit};
 use super::curve::{self, JoinedCurve};
 use super::curve_map::ParameterMap;
+use super::grant::Grant;
 use super::surfaces::{self, BaseSurface};
 use super::transform::Affine;
 use super::{Model, describe_entity, model_of};
@@ -74,15 +75,20 @@ fn all(model: &Model, notes: Vec<String>) -> Result<IgesGeometry, Fail> {
         notes,
     };
     let outer = Affine::identity();
+    let grant = Grant::of(model);
     for entry in &model.entries {
         let notes = &mut found.notes;
-        let skipped = if curve::is_curve(entry.type_number) {
+        let skipped = if let Err(reason) = grant.open() {
+            let wanted = curve::is_curve(entry.type_number) || surfaces::is_base(entry.type_number);
+            wanted.then_some(reason)
+        } else if curve::is_curve(entry.type_number) {
             let chain = match entry.status.purpose {
                 5 => curve::read_parameters(model, entry, notes),
                 _ => curve::read(model, entry, &outer, notes),
             };
             let joined = curve::settle(chain)?.and_then(|chain| {
                 let joined = chain.joined().map_err(|e| e.to_string())?;
+                grant.curve(&joined.curve)?;
                 Ok((joined, chain))
             });
             match joined {
@@ -107,8 +113,15 @@ fn all(model: &Model, notes: Vec<String>) -> Result<IgesGeometry, Fail> {
                 Err(reason) => Some(reason),
             }
         } else if surfaces::is_base(entry.type_number) {
-            match curve::settle(surfaces::read(model, entry, &outer, notes))? {
-                Ok((surface, _)) => {
+            let surface = curve::settle(surfaces::read(model, entry, &outer, notes))?;
+            let granted = surface.and_then(|(surface, _)| {
+                if let BaseSurface::Patches(patches) = &surface {
+                    patches.iter().try_for_each(|p| grant.patch(&p.patch))?;
+                }
+                Ok(surface)
+            });
+            match granted {
+                Ok(surface) => {
                     found.surfaces.push(IgesSurface {
                         entity: entry.number,
                         type_number: entry.type_number,

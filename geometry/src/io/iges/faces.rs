@@ -5,6 +5,7 @@ use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped, TrimReport};
 use super::brep::{self, Edges};
 use super::curve;
 use super::directory::Entry;
+use super::grant::Grant;
 use super::groups::{Groups, Placement, members, refusal};
 use super::names::entity_name;
 use super::surfaces::{self, BasePatch, BaseSurface};
@@ -41,6 +42,7 @@ pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
         model,
         edges: Edges::default(),
         out: Outcome::default(),
+        grant: Grant::of(model),
         notes,
     };
     for (index, entry) in model.entries.iter().enumerate() {
@@ -76,6 +78,7 @@ struct Reader<'a, 'n> {
     model: &'a Model<'a>,
     edges: Edges,
     out: Outcome,
+    grant: Grant,
     notes: &'n mut Vec<String>,
 }
 
@@ -110,6 +113,9 @@ impl Reader<'_, '_> {
         entry: &Entry,
         placed: &[Placement],
     ) -> Result<(Option<String>, Option<Refusal>), Fail> {
+        if let Err(reason) = self.grant.open() {
+            return Ok((None, Some((SkipKind::Surface, reason))));
+        }
         if is_solid(entry.type_number) {
             let reason = match entry.type_number {
                 412 | 414 => "arrays of subfigures are not read",
@@ -128,6 +134,11 @@ impl Reader<'_, '_> {
                 }
             };
             name = found;
+            let pieces = pieces.and_then(|pieces| {
+                let granted = pieces.iter().try_for_each(|(p, _)| self.grant.patch(p));
+                granted.map_err(|reason| (SkipKind::Surface, reason))?;
+                Ok(pieces)
+            });
             match pieces {
                 Ok(pieces) => self
                     .out
@@ -295,9 +306,9 @@ impl Reader<'_, '_> {
     ) -> Result<Piece, Refusal> {
         let global = &self.model.global;
         let resolution = global.resolution.map_or(0.0, |r| r / global.scale);
-        let grown = grown(base, face, resolution);
+        let grown = grown(base, face, resolution, &self.grant);
         let patch = grown.as_ref().map_or(&base.patch, |g| &g.patch);
-        let host = Host::new(patch, &base.parameters, resolution);
+        let host = Host::new(patch, &base.parameters, resolution, &self.grant);
         let mut tally = Tally {
             tolerance: host.agree,
             ..Tally::default()
@@ -305,7 +316,10 @@ impl Reader<'_, '_> {
         let mut said = Vec::new();
         // A B-rep's loops do not say which of them is the outer one.
         let sort = entry.type_number != 144;
-        let made = loops(&host, &face.boundaries, sort, &mut tally, &mut said);
+        let [curves, points] = extent(face);
+        let granted = self.grant.boundary(curves, points);
+        let made =
+            granted.and_then(|()| loops(&host, &face.boundaries, sort, &mut tally, &mut said));
         let trimmed = made.and_then(|loops| {
             let trimmed = patch.trimmed_by(loops, face.outer, GAP);
             trimmed.map_err(|e| e.to_string())
@@ -384,6 +398,19 @@ fn property_name(model: &Model, params: &Params, values: usize) -> Result<Option
         }
     }
     Ok(None)
+}
+
+/// Boundary curves of a face and their control points, in both planes.
+fn extent(face: &Face) -> [usize; 2] {
+    let mut extent = [0, 0];
+    for stretch in face.boundaries.iter().flat_map(|b| &b.stretches) {
+        extent[0] += stretch.parameter.len().max(stretch.space.len());
+        let plane = stretch.parameter.iter();
+        extent[1] += plane.map(|p| p.curve.homogeneous().len()).sum::<usize>();
+        let space = stretch.space.iter();
+        extent[1] += space.map(|p| p.curve.homogeneous().len()).sum::<usize>();
+    }
+    extent
 }
 
 /// Points between which a face's space curves run.

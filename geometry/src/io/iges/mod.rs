@@ -18,6 +18,7 @@ mod curve_spline;
 mod directory;
 mod faces;
 mod global;
+mod grant;
 mod groups;
 mod names;
 mod number;

@@ -293,7 +293,10 @@ fn extreme(
 /// A curve of the file's parameter plane where the patch's parameters are not a linear map of it.
 fn refitted(host: &Host, file: &NurbsCurve<2>, shift: Xi) -> Result<Fitted, String> {
     let breaks = smooth_breaks(file.basis());
-    let mut path = |t: f64, _: Xi| Ok(host.of_file(file.point(t) + shift));
+    let mut path = |t: f64, _: Xi| {
+        host.grant.work(1)?;
+        Ok(host.of_file(file.point(t) + shift))
+    };
     let start = path(breaks[0], Xi::zeros())?;
     fit(host, &breaks, &mut path, start, FIT * host.size)
 }
@@ -310,14 +313,9 @@ fn projected(host: &Host, stretch: &Stretch, tally: &mut Tally) -> Result<Vec<Tr
                     .fold(0.0, f64::max);
                 (Fitted { curve, error: 0.0 }, off)
             }
-            None => project(host, &part.curve, near)?,
+            None => project(host, part, near)?,
         };
-        if off.is_nan() || off > OFF * host.size {
-            return Err(format!(
-                "curve {} lies up to {off:.1e} off the surface, of which it should bound a part",
-                part.entity
-            ));
-        }
+        belongs(host, part, off)?;
         near = fitted.curve.ends()[1];
         tally.curves += 1;
         tally.projected += 1;
@@ -336,12 +334,26 @@ fn projected(host: &Host, stretch: &Stretch, tally: &mut Tally) -> Result<Vec<Tr
     Ok(curves)
 }
 
+/// An error where a curve with a point this far off the surface cannot be on it.
+fn belongs(host: &Host, part: &Part<3>, off: f64) -> Result<(), String> {
+    if off <= OFF * host.size {
+        return Ok(());
+    }
+    Err(format!(
+        "curve {} lies {off:.1e} or more off the surface, of which it should bound a part",
+        part.entity
+    ))
+}
+
 /// A space curve on the surface, and how far it lies off it.
-fn project(host: &Host, space: &NurbsCurve<3>, near: Xi) -> Result<(Fitted, f64), String> {
+fn project(host: &Host, part: &Part<3>, near: Xi) -> Result<(Fitted, f64), String> {
+    let space = &part.curve;
     let [a, b] = space.domain();
     let mut off = 0.0f64;
     let mut path = |t: f64, near: Xi| {
         let (mut xi, distance) = host.foot(&space.point(t), near)?;
+        // Said at once: what is off the surface takes pieces without end to follow.
+        belongs(host, part, distance)?;
         off = off.max(distance);
         let stuck = host.stuck(xi);
         if stuck != [false; 2] {

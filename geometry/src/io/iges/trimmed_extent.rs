@@ -1,5 +1,6 @@
 //! The part of a surface that a face needs: files cut surfaces, or even end them, a little short of the boundaries on them.
 
+use super::grant::Grant;
 use super::surfaces::BasePatch;
 use super::trimmed::Face;
 use super::trimmed_curves::{BEYOND, NOISE, bounds, bounds_of};
@@ -16,11 +17,11 @@ pub struct Grown {
 /// The surface on a slightly larger domain, where boundaries leave it by up to a share of 1e-3. Beyond its knots the
 /// polynomials of the last spans go on: boundaries are where the neighbours' are, and without this the face would end short
 /// of them.
-pub fn grown(base: &BasePatch, face: &Face, resolution: f64) -> Option<Grown> {
+pub fn grown(base: &BasePatch, face: &Face, resolution: f64, grant: &Grant) -> Option<Grown> {
     if !base.parameters.is_identity() {
         return None;
     }
-    let host = Host::new(&base.patch, &base.parameters, resolution);
+    let host = Host::new(&base.patch, &base.parameters, resolution, grant);
     let domain = host.domain;
     let mut wanted = domain;
     for stretch in face.boundaries.iter().flat_map(|b| &b.stretches) {

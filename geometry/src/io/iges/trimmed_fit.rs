@@ -48,11 +48,6 @@ pub fn fit(
         near = smooth(host, [pair[0], pair[1]], path, near, tolerance, &mut out)?;
     }
     let error = out.error;
-    if error > 100.0 * tolerance {
-        return Err(format!(
-            "a border curve cannot be followed on the surface: {error:.1e} remain (allowed {tolerance:.1e})"
-        ));
-    }
     let curve = out.curve().map_err(|e| e.to_string())?;
     Ok(Fitted { curve, error })
 }
@@ -175,6 +170,13 @@ fn halve(
         };
     }
     if worst <= tolerance || depth == DEPTH {
+        // Said at the first piece: the others would each be halved as often.
+        if worst > 100.0 * tolerance {
+            return Err(format!(
+                "a border curve cannot be followed on the surface: {worst:.1e} remain (allowed {tolerance:.1e})"
+            ));
+        }
+        host.grant.piece()?;
         out.push(b, p[0], p[1], p[2], p[3]);
         out.error = out.error.max(worst);
         return Ok(());

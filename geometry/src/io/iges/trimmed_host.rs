@@ -1,5 +1,6 @@
 //! The surface under a face: its points at the file's parameters, and the parameters of points on it.
 
+use super::grant::{FOOT, Grant};
 use super::reparametrise::Reparametrise;
 use crate::basis::MAX_DEGREE;
 use crate::{NurbsCurve, NurbsPatch, PatchSet, Vec3};
@@ -25,10 +26,16 @@ pub struct Host<'a> {
     /// A parallelogram: its origin, and the rows that take `x - origin` to shares of the domain.
     flat: Option<(Vec3, [Vec3; 2])>,
     set: OnceCell<Option<PatchSet>>,
+    pub grant: &'a Grant,
 }
 
 impl<'a> Host<'a> {
-    pub fn new(patch: &'a NurbsPatch, parameters: &'a Reparametrise, resolution: f64) -> Self {
+    pub fn new(
+        patch: &'a NurbsPatch,
+        parameters: &'a Reparametrise,
+        resolution: f64,
+        grant: &'a Grant,
+    ) -> Self {
         let [low, high] = patch.bounds();
         let size = (high - low).norm();
         let agree = (1e-5 * size).max(10.0 * resolution).min(1e-3 * size);
@@ -42,6 +49,7 @@ impl<'a> Host<'a> {
             agree,
             flat: flat(patch, size),
             set: OnceCell::new(),
+            grant,
         }
     }
 
@@ -139,7 +147,13 @@ impl<'a> Host<'a> {
 
     /// The foot of `q` on the surface, as near to the parameters `near` as periods allow, and its distance.
     pub fn foot(&self, q: &Vec3, near: Xi) -> Result<(Xi, f64), String> {
+        self.grant.work(FOOT)?;
         let set = self.set.get_or_init(|| {
+            // A surface of which the coordinates hold hardly a digit is all one place: everything is nearest.
+            let [low, high] = self.patch.bounds();
+            if self.size <= 1e-10 * low.amax().max(high.amax()) {
+                return None;
+            }
             let patch = self.patch.clone().with_trim(None);
             PatchSet::new(vec![patch], None).ok()
         });

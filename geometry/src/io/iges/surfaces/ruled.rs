@@ -311,21 +311,16 @@ fn common(curves: [&NurbsCurve<3>; 2]) -> Result<[NurbsCurve<3>; 2], CurveError>
     ];
     // Knots that differ by rounding only are one and the same.
     let mut own = raised.each_ref().map(|c| inner_knots(c.basis()));
-    let near = |t: f64, s: f64| (t - s).abs() <= 1e-12;
+    let others = raised[0].basis().knots();
+    let twin = |t: f64| {
+        let first = others.partition_point(|&s| s < t - 1e-12);
+        let found = others.get(first).filter(|&&s| s <= t + 1e-12);
+        found.copied().unwrap_or(t)
+    };
     for knot in &mut own[1] {
-        if let Some(twin) = raised[0].basis().knots().iter().find(|&&s| near(knot.0, s)) {
-            knot.0 = *twin;
-        }
+        knot.0 = twin(knot.0);
     }
-    let knots: Vec<f64> = raised[1]
-        .basis()
-        .knots()
-        .iter()
-        .map(|&t| {
-            let mut twins = raised[0].basis().knots().iter();
-            *twins.find(|&&s| near(t, s)).unwrap_or(&t)
-        })
-        .collect();
+    let knots: Vec<f64> = raised[1].basis().knots().iter().map(|&t| twin(t)).collect();
     let basis = Basis::new(degree, knots, raised[1].basis().count())?;
     raised[1] = NurbsCurve::from_homogeneous(basis, raised[1].homogeneous().to_vec())?;
     Ok([
