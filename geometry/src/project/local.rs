@@ -266,15 +266,14 @@ impl<S: Surface> PatchSet<S> {
         now
     }
 
-    /// Whether no bound holds a point by a slope of more than 1e-12 of the size; on a pole there is none in the direction that
-    /// turns about it.
-    pub(super) fn hardly_held(&self, s: &Local) -> bool {
+    /// Whether the slopes of the distance are below 1e-12 of the size in both directions, those that bounds hold included.
+    /// Never next to a pole, where rounding hides the slope of the direction that turns about it.
+    pub(super) fn flat(&self, s: &Local) -> bool {
         let scale = &self.grids[s.region.patch as usize].scale;
         let limit = 1e-12 * self.size;
         (0..2).all(|k| {
-            !s.active[k]
-                || s.gradient[k] * s.gradient[k] <= limit * limit * s.metric[2 * k]
-                || s.metric[2 * k] <= 1e-16 * scale[k] * scale[k]
+            s.metric[2 * k] > 1e-12 * scale[k] * scale[k]
+                && s.gradient[k] * s.gradient[k] <= limit * limit * s.metric[2 * k]
         })
     }
 

@@ -166,8 +166,8 @@ impl<'a, S: Surface> Search<'a, S> {
                     || outside_ball(self.set.pieces.net(piece), piece.degree, &self.q, c))
     }
 
-    /// Whether the best point is as near as the sphere that a patch lies on, up to rounding. Points that a border of their
-    /// region holds do not count: next to a pole only the slope tells them from the nearest one.
+    /// Whether the best point is as near as the sphere that a patch lies on, up to rounding, and stationary: next to a pole
+    /// only the slope tells the nearest point from others.
     #[inline]
     fn behind_sphere(&self, patch: u32) -> bool {
         let set = self.set;
@@ -175,7 +175,7 @@ impl<'a, S: Surface> Search<'a, S> {
             return false;
         };
         sphere.distance(&self.q) + 1e-14 * (set.size + self.distance) >= self.distance
-            && set.hardly_held(best)
+            && set.flat(best)
     }
 
     fn piece(&mut self, id: u32) {
