@@ -8,7 +8,7 @@ use num_dual::DualNum;
 use crate::surface::{Jet, Vec3};
 
 /// A frame is refused where `|rho_1 x rho_2|` is below this fraction of the larger squared tangent.
-const DEGENERATE: f64 = 1e-12;
+pub(crate) const DEGENERATE: f64 = 1e-12;
 
 /// The local frame of a surface point: everything the covariant contact formulas ask of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -12,7 +12,7 @@
 //! so the proof costs less than an evaluation; it holds on the side where the surface bends away however far the
 //! point is, and on the other side up to about the radius of curvature.
 
-use super::piece::{Piece, Pieces, difference, hull};
+use super::piece::{Piece, Pieces, difference, hull, row_of_pascal};
 use crate::basis::WIDTH;
 use crate::surface::Vec3;
 
@@ -215,14 +215,6 @@ pub(super) fn tangents(net: &[[f64; 4]], degree: [usize; 2]) -> Tangents {
         // Both are scaled by the same binomials, which cancel.
         above.iter().zip(&below).map(|(a, b)| a / *b).collect()
     })
-}
-
-fn row_of_pascal(n: usize) -> Vec<f64> {
-    let mut row = vec![1.0; n + 1];
-    for k in 1..n {
-        row[k] = row[k - 1] * (n + 1 - k) as f64 / k as f64;
-    }
-    row
 }
 
 /// Ranges of the derivative net of the given orders.

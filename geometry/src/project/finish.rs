@@ -24,12 +24,11 @@ impl<S: Surface> PatchSet<S> {
     ) -> Foot {
         // The search may have stopped at the border of a piece, which is none of the surface's.
         let region = self.region(rough.region.patch, rough.span);
-        let start = if rough.trim.is_some() || rough.region == region {
-            rough
+        let mut best = if rough.trim.is_some() || rough.region == region {
+            self.polish(q, rough)
         } else {
-            self.state(q, &region, rough.xi, rough.span)
+            self.polish(q, self.state(q, &region, rough.xi, rough.span))
         };
-        let mut best = self.polish(q, start);
         if best.at != [0, 0] || best.trim.is_some() {
             best = self.cross(q, best, hops);
         }

@@ -38,6 +38,32 @@ pub(super) struct Local {
     pub trim: Option<TrimPlace>,
 }
 
+impl Local {
+    /// Nowhere yet.
+    #[inline]
+    fn in_region(region: &Region) -> Local {
+        let zero = Vec3::new(0.0, 0.0, 0.0);
+        Local {
+            region: *region,
+            xi: [0.0; 2],
+            span: [0; 2],
+            jet: Jet {
+                rho: zero,
+                rho_i: [zero; 2],
+                rho_ij: [zero; 3],
+            },
+            d2: f64::INFINITY,
+            gradient: [0.0; 2],
+            hessian: [0.0; 3],
+            metric: [0.0; 3],
+            at: [0; 2],
+            active: [false; 2],
+            converged: false,
+            trim: None,
+        }
+    }
+}
+
 /// A point of a trim curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct TrimPlace {
@@ -60,13 +86,15 @@ const ARMIJO: f64 = 1e-4;
 impl<S: Surface> PatchSet<S> {
     /// Evaluates at `xi`, which is moved into the region; `span` is where to look for the span first.
     #[inline]
-    pub(super) fn state(
-        &self,
-        q: &Vec3,
-        region: &Region,
-        xi: [f64; 2],
-        mut span: [usize; 2],
-    ) -> Local {
+    pub(super) fn state(&self, q: &Vec3, region: &Region, xi: [f64; 2], span: [usize; 2]) -> Local {
+        let mut s = Local::in_region(region);
+        self.evaluate(q, xi, span, &mut s);
+        s
+    }
+
+    /// [`state`](Self::state) in place, within the region of `s`.
+    fn evaluate(&self, q: &Vec3, xi: [f64; 2], mut span: [usize; 2], s: &mut Local) {
+        let region = &s.region;
         let grid = &self.grids[region.patch as usize];
         let mut x = xi;
         let mut at = [0; 2];
@@ -87,33 +115,26 @@ impl<S: Surface> PatchSet<S> {
                 span[k] -= 1;
             }
         }
-        let jet = self.patches[region.patch as usize].jet_in_span(span, x);
-        let d = q - jet.rho;
-        let [r1, r2] = &jet.rho_i;
+        s.jet = self.patches[region.patch as usize].jet_in_span(span, x);
+        let d = q - s.jet.rho;
+        let [r1, r2] = &s.jet.rho_i;
         let gradient = [-r1.dot(&d), -r2.dot(&d)];
         let metric = [r1.dot(r1), r1.dot(r2), r2.dot(r2)];
-        let hessian = [
-            metric[0] - jet.rho_ij[0].dot(&d),
-            metric[1] - jet.rho_ij[1].dot(&d),
-            metric[2] - jet.rho_ij[2].dot(&d),
-        ];
-        let fixed = |k: usize| region.domain[k][0] == region.domain[k][1];
-        let held =
-            |k: usize| fixed(k) || at[k] < 0 && gradient[k] > 0.0 || at[k] > 0 && gradient[k] < 0.0;
-        Local {
-            region: *region,
-            xi: x,
-            span,
-            jet,
-            d2: d.norm_squared(),
-            gradient,
-            hessian,
-            metric,
-            at,
-            active: [held(0), held(1)],
-            converged: false,
-            trim: None,
-        }
+        s.hessian = [0, 1, 2].map(|k| metric[k] - s.jet.rho_ij[k].dot(&d));
+        let held = |k: usize| {
+            let [low, high] = s.region.domain[k];
+            at[k] != 0
+                && (low == high || at[k] < 0 && gradient[k] > 0.0 || at[k] > 0 && gradient[k] < 0.0)
+        };
+        s.active = [held(0), held(1)];
+        s.xi = x;
+        s.span = span;
+        s.d2 = d.norm_squared();
+        s.gradient = gradient;
+        s.metric = metric;
+        s.at = at;
+        s.converged = false;
+        s.trim = None;
     }
 
     /// Whether `|rho_i . d| <= tolerance |rho_i| max(|d|, size)` in every direction that is free, or below the rounding
@@ -138,7 +159,6 @@ impl<S: Surface> PatchSet<S> {
         slope <= 0.0
             && slope * slope <= gain * gain * s.d2
             && self.residual2(s, 2e-3) <= 1e-12 * s.d2.max(self.size * self.size)
-            && undamped_step(s).is_some()
     }
 
     /// Tolerance that can be hoped for: next to a pole the turning parameter drowns in rounding, and with it some digits
@@ -175,63 +195,86 @@ impl<S: Surface> PatchSet<S> {
         span: [usize; 2],
         tolerance: f64,
     ) -> Local {
-        self.descend_from(q, self.state(q, region, xi, span), tolerance)
+        let mut pair = [Local::in_region(region); 2];
+        self.evaluate(q, xi, span, &mut pair[0]);
+        let last = self.iterate(q, &mut pair, tolerance);
+        pair[last]
     }
 
-    fn descend_from(&self, q: &Vec3, mut s: Local, tolerance: f64) -> Local {
-        s.converged = false;
+    fn descend_from(&self, q: &Vec3, s: Local, tolerance: f64) -> Local {
+        let mut pair = [s; 2];
+        pair[0].converged = false;
+        let last = self.iterate(q, &mut pair, tolerance);
+        pair[last]
+    }
+
+    /// Iterates from the first of two points, with room for the next one in the second; which of them is the last one.
+    fn iterate(&self, q: &Vec3, pair: &mut [Local; 2], tolerance: f64) -> usize {
+        let mut now = 0;
         let mut escapes = 0;
         let rough = tolerance >= ROUGH;
         for _ in 0..ITERATIONS {
-            if self.stationary(&s, tolerance) {
+            let [a, b] = &mut *pair;
+            let (s, next) = if now == 0 { (a, b) } else { (b, a) };
+            if self.stationary(s, tolerance) {
                 s.converged = true;
                 if escapes < 2
                     && (s.active[0] || s.active[1])
-                    && let Some(out) = self.escape_pole(q, &s, tolerance)
+                    && let Some(out) = self.escape_pole(q, s, tolerance)
                 {
                     escapes += 1;
-                    s = out;
+                    *s = out;
                 } else {
-                    break;
+                    return now;
                 }
             }
-            let mut step = bounded(&s, newton_step(&s));
+            let newton = undamped_step(s);
+            let mut step = bounded(s, newton.unwrap_or_else(|| damped_step(s)));
             let mut slope = s.gradient[0] * step[0] + s.gradient[1] * step[1];
-            if rough && self.nothing_to_gain(&s, slope) {
+            if rough && newton.is_some() && self.nothing_to_gain(s, slope) {
                 s.converged = true;
-                break;
+                return now;
             }
             if slope >= 0.0 || !slope.is_finite() {
-                step = bounded(&s, diagonal_step(&s));
+                step = bounded(s, diagonal_step(s));
                 slope = s.gradient[0] * step[0] + s.gradient[1] * step[1];
             }
-            // Below this the distances that are compared differ by rounding only.
-            let noise = 1e-14 * (s.d2 + s.jet.rho.norm_squared());
-            let mut next = self.state(q, &s.region, moved(&s, step, 1.0), s.span);
+            self.evaluate(q, moved(s, step, 1.0), s.span, next);
             let mut factor = 1.0;
             let mut tries = 0;
-            loop {
-                let accepted = next.d2 <= s.d2 + 2.0 * ARMIJO * factor * slope
-                    || next.d2 <= s.d2 + noise
-                        && self.residual2(&next, 2e-3) <= self.residual2(&s, 2e-3);
-                if accepted {
-                    break;
-                }
+            // Below the noise the distances that are compared differ by rounding only.
+            let accepted = |next: &Local, factor: f64| {
+                next.d2 <= s.d2 + 2.0 * ARMIJO * factor * slope
+                    || next.d2 <= s.d2 + 1e-14 * (s.d2 + s.jet.rho.norm_squared())
+                        && self.residual2(next, 2e-3) <= self.residual2(s, 2e-3)
+            };
+            while !accepted(next, factor) {
                 tries += 1;
                 if tries > HALVINGS {
-                    return s;
+                    return now;
                 }
                 factor *= 0.5;
-                next = self.state(q, &s.region, moved(&s, step, factor), s.span);
+                self.evaluate(q, moved(s, step, factor), s.span, next);
             }
             if next.xi == s.xi {
                 // No representable progress.
-                s.converged = self.stationary(&s, tolerance.max(1e-9));
-                break;
+                s.converged = self.stationary(s, tolerance.max(1e-9));
+                return now;
             }
-            s = next;
+            now = 1 - now;
         }
-        s
+        now
+    }
+
+    /// Whether the slopes of the distance are below 1e-12 of the size in both directions, those that bounds hold included.
+    /// Never next to a pole, where rounding hides the slope of the direction that turns about it.
+    pub(super) fn flat(&self, s: &Local) -> bool {
+        let scale = &self.grids[s.region.patch as usize].scale;
+        let limit = 1e-12 * self.size;
+        (0..2).all(|k| {
+            s.metric[2 * k] > 1e-12 * scale[k] * scale[k]
+                && s.gradient[k] * s.gradient[k] <= limit * limit * s.metric[2 * k]
+        })
     }
 
     /// Whether a point lies on a pole or within about 1e-8 of the patch's width of it, and in which direction the parameter
@@ -272,32 +315,35 @@ impl<S: Surface> PatchSet<S> {
     /// Brings a point to machine precision within its region: undamped Newton steps if it is converged roughly, and where
     /// it is not or they do not suffice, the safeguarded iteration before them. The result converges as `converged` says.
     /// On a trimmed patch a point stops at the trim.
-    pub(super) fn polish(&self, q: &Vec3, start: Local) -> Local {
-        if self.patches[start.region.patch as usize].trim().is_none() {
-            self.polish_face(q, start)
-        } else if start.trim.is_some() {
-            self.polish_on_trim(q, start)
+    pub(super) fn polish(&self, q: &Vec3, mut s: Local) -> Local {
+        if self.patches[s.region.patch as usize].trim().is_none() {
+            self.polish_face(q, &mut s);
+            s
+        } else if s.trim.is_some() {
+            self.polish_on_trim(q, s)
         } else {
-            self.stopped_by_trim(q, self.polish_face(q, start))
+            self.polish_face(q, &mut s);
+            self.stopped_by_trim(q, s)
         }
     }
 
-    fn polish_face(&self, q: &Vec3, start: Local) -> Local {
+    fn polish_face(&self, q: &Vec3, s: &mut Local) {
+        let start = *s;
         if start.converged {
-            let s = self.refine(q, start);
-            if self.stationary(&s, 1e-12) {
-                return s;
+            self.refine(q, s);
+            if self.stationary(s, 1e-12) {
+                return;
             }
         }
-        let mut s = self.refine(q, self.descend_from(q, start, 1e-12));
-        let tolerance = self.attainable(&s).clamp(1e-12, 1e-9);
-        s.converged = s.converged || self.stationary(&s, tolerance);
-        s
+        *s = self.descend_from(q, start, 1e-12);
+        self.refine(q, s);
+        let tolerance = self.attainable(s).clamp(1e-12, 1e-9);
+        s.converged = s.converged || self.stationary(s, tolerance);
     }
 
     /// Undamped Newton steps as far as they help.
-    fn refine(&self, q: &Vec3, mut s: Local) -> Local {
-        let mut trial = s;
+    pub(super) fn refine(&self, q: &Vec3, s: &mut Local) {
+        let mut trial = *s;
         for _ in 0..3 {
             let Some(step) = undamped_step(&trial) else {
                 break;
@@ -308,21 +354,19 @@ impl<S: Surface> PatchSet<S> {
             if tiny(0) && tiny(1) {
                 break;
             }
-            trial = self.state(q, &s.region, moved(&trial, step, 1.0), trial.span);
+            self.evaluate(q, moved(&trial, step, 1.0), trial.span, &mut trial);
             // Undamped does not mean blind: close to a pole rounding alone can lead away again. But there a first step in
             // the turning parameter may also cost what the second one gains.
-            let better = self.residual2(&trial, 2e-3) <= self.residual2(&s, 2e-3);
+            let better = self.residual2(&trial, 2e-3) <= self.residual2(s, 2e-3);
             if better || !s.converged && trial.d2 < s.d2 * (1.0 - 1e-14) {
-                s = Local {
-                    converged: s.converged,
-                    ..trial
-                };
+                let converged = s.converged;
+                *s = trial;
+                s.converged = converged;
             }
             if better && (0..2).all(|k| step[k].abs() <= 1e-8 * (domain[k][1] - domain[k][0])) {
                 break;
             }
         }
-        s
     }
 }
 
@@ -330,12 +374,12 @@ fn moved(s: &Local, step: [f64; 2], factor: f64) -> [f64; 2] {
     [s.xi[0] + factor * step[0], s.xi[1] + factor * step[1]]
 }
 
-/// Newton step in the free directions; where the Hessian is not positive definite, with the absolute values of its
-/// curvatures (saddles and maxima push away as minima attract), else Gauss-Newton.
-#[inline]
-fn newton_step(s: &Local) -> [f64; 2] {
-    solve(s, &s.hessian)
-        .or_else(|| solve(s, &absolute(s)?))
+/// Step where the Hessian is not positive definite: with the absolute values of its curvatures (saddles and maxima push
+/// away as minima attract), else Gauss-Newton.
+#[cold]
+fn damped_step(s: &Local) -> [f64; 2] {
+    absolute(s)
+        .and_then(|f| solve(s, &f))
         .or_else(|| solve(s, &s.metric))
         .unwrap_or_else(|| diagonal_step(s))
 }
@@ -381,6 +425,7 @@ fn absolute(s: &Local) -> Option<[f64; 3]> {
 }
 
 /// Newton step, or `None` where the Hessian is not positive definite.
+#[inline]
 fn undamped_step(s: &Local) -> Option<[f64; 2]> {
     solve(s, &s.hessian)
 }

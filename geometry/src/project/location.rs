@@ -14,6 +14,9 @@ const HELD: f64 = 1e-10;
 impl<S: Surface> PatchSet<S> {
     /// Location of a finished point.
     pub(super) fn locate(&self, s: &Local) -> Location {
+        if s.at == [0, 0] && s.trim.is_none() {
+            return Location::Face;
+        }
         let on = self.edges_under(s);
         if s.at == [0, 0] && on[0].is_none() {
             return Location::Face;

@@ -7,6 +7,7 @@
 //! of closest point projection procedures in contact analysis", CMAME 197 (2008), for the mechanics of faces, edges and
 //! vertices.
 
+mod ball;
 mod batch;
 mod cells;
 mod convex;
@@ -18,6 +19,7 @@ mod neighbour;
 mod normals;
 mod piece;
 mod report;
+mod round;
 mod search;
 mod set;
 mod sides;

@@ -6,16 +6,13 @@ use super::Location;
 use super::local::Local;
 use super::set::PatchSet;
 use super::topology::{Edge, EdgePoint, edge_point, edges_at};
-use crate::frame::Frame;
-use crate::surface::{Surface, Vec3};
+use crate::frame::DEGENERATE;
+use crate::surface::{Jet, Surface, Vec3};
 
 impl<S: Surface> PatchSet<S> {
     /// Unit normal `rho_1 x rho_2` of the patch, from a little inside where the tangents do not span a plane.
     pub(super) fn face_normal(&self, s: &Local) -> Vec3 {
-        match Frame::new(&s.jet, 1.0) {
-            Some(frame) => frame.n,
-            None => self.normal_near(s.region.patch, s.span, s.xi),
-        }
+        unit_normal(&s.jet).unwrap_or_else(|| self.normal_near(s.region.patch, s.span, s.xi))
     }
 
     /// Unit normal of a patch at `xi` or, where it does not exist there, a little towards the middle of the span. Zero
@@ -28,8 +25,8 @@ impl<S: Surface> PatchSet<S> {
                 xi[k] + step * (middle - xi[k])
             });
             let jet = self.patches[patch as usize].jet_in_span(span, x);
-            if let Some(frame) = Frame::new(&jet, 1.0) {
-                return frame.n;
+            if let Some(n) = unit_normal(&jet) {
+                return n;
             }
         }
         Vec3::zeros()
@@ -128,6 +125,17 @@ impl<S: Surface> PatchSet<S> {
             angle.max(0.0)
         }
     }
+}
+
+/// The normal alone of [`Frame::new`](crate::Frame::new), where that gives a frame.
+#[inline]
+fn unit_normal(jet: &Jet) -> Option<Vec3> {
+    let [r1, r2] = &jet.rho_i;
+    let cross = r1.cross(r2);
+    let area = cross.norm_squared().sqrt();
+    let largest = r1.norm_squared().max(r2.norm_squared());
+    (area > DEGENERATE * largest && area.is_finite() && largest.is_finite())
+        .then(|| cross * area.recip())
 }
 
 /// Unit direction in which an edge leaves one of its ends; zero where the edge is a point.

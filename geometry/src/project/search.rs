@@ -1,8 +1,9 @@
 //! Global search: tree descent, local iteration, and proofs that nothing nearer was missed.
 
 use super::PatchSet;
+use super::ball::outside_ball;
 use super::local::{Local, Region};
-use super::piece::{Piece, box_distance2, hull, outside_ball, split};
+use super::piece::{Piece, box_distance2, hull, split};
 use crate::surface::{Surface, Vec3};
 use std::cell::Cell;
 
@@ -32,6 +33,8 @@ pub(super) struct Search<'a, S: Surface> {
     pub best: Option<(u32, Local)>,
     /// Distance of the best point, or the reach.
     distance: f64,
+    /// See [`cut`](Self::cut).
+    cut: f64,
     /// Whether nothing in the block of cells around the best point is nearer.
     settled: bool,
     pub parts: usize,
@@ -62,6 +65,7 @@ impl<'a, S: Surface> Search<'a, S> {
             reach,
             best: None,
             distance: reach,
+            cut: reach,
             settled: false,
             parts: 0,
             complete: true,
@@ -69,7 +73,7 @@ impl<'a, S: Surface> Search<'a, S> {
     }
 
     /// Takes a point of a piece if it is nearer than the best one.
-    pub fn offer(&mut self, piece: u32, local: Local) {
+    pub fn offer(&mut self, piece: u32, local: &Local) {
         let distance = local.d2.sqrt();
         if distance < self.distance || self.best.is_none() && distance <= self.reach {
             let set = self.set;
@@ -78,19 +82,29 @@ impl<'a, S: Surface> Search<'a, S> {
                 return;
             }
             self.distance = distance;
-            self.best = Some((piece, local));
+            let tolerance = 1e-11 * set.size + 1e-14 * distance;
+            self.cut = if distance > tolerance {
+                distance - tolerance
+            } else {
+                -1.0
+            };
+            self.best = Some((piece, *local));
             let id = piece as usize;
             self.settled = local.trim.is_none()
-                && set.cells[id].settles_block(&set.pieces.list[id], &self.q, &local);
+                && set.cells[id].settles_block(&set.pieces.list[id], &self.q, local);
         }
     }
 
     /// Iterates from `xi` in the whole smooth region around a pair of spans.
     pub fn start(&mut self, patch: u32, span: [usize; 2], xi: [f64; 2]) {
         let region = self.set.region(patch, span);
-        let local = self.set.descend(&self.q, &region, xi, span, ROUGH);
+        let mut local = self.set.descend(&self.q, &region, xi, span, ROUGH);
+        if local.converged && self.set.spheres[patch as usize].is_some() {
+            // Spheres are compared up to rounding.
+            self.set.refine(&self.q, &mut local);
+        }
         let piece = self.set.piece_number(patch, local.span, local.xi);
-        self.offer(piece, local);
+        self.offer(piece, &local);
         if self.best.is_none() && !self.set.trimmed.is_inside(piece) {
             self.start_on_border(patch, local.xi);
         }
@@ -110,16 +124,7 @@ impl<'a, S: Surface> Search<'a, S> {
     /// rounding and far below any tolerance of the result. Negative where nothing can be better.
     #[inline]
     pub fn cut(&self) -> f64 {
-        if self.best.is_some() {
-            let tolerance = 1e-11 * self.set.size + 1e-14 * self.distance;
-            if self.distance > tolerance {
-                self.distance - tolerance
-            } else {
-                -1.0
-            }
-        } else {
-            self.reach
-        }
+        self.cut
     }
 
     #[inline]
@@ -145,6 +150,9 @@ impl<'a, S: Surface> Search<'a, S> {
     /// Whether nothing in a piece is nearer than the best point, by the tests that need no iteration.
     #[inline]
     pub fn excluded(&self, piece: &Piece, id: u32) -> bool {
+        if self.behind_sphere(piece.patch) {
+            return true;
+        }
         if let Some((best, local)) = &self.best
             && self.settled
             && self.set.cells[*best as usize].covers(local.region.patch, piece)
@@ -158,6 +166,18 @@ impl<'a, S: Surface> Search<'a, S> {
                     || outside_ball(self.set.pieces.net(piece), piece.degree, &self.q, c))
     }
 
+    /// Whether the best point is as near as the sphere that a patch lies on, up to rounding, and stationary: next to a pole
+    /// only the slope tells the nearest point from others.
+    #[inline]
+    fn behind_sphere(&self, patch: u32) -> bool {
+        let set = self.set;
+        let (Some(sphere), Some((_, best))) = (&set.spheres[patch as usize], &self.best) else {
+            return false;
+        };
+        sphere.distance(&self.q) + 1e-14 * (set.size + self.distance) >= self.distance
+            && set.flat(best)
+    }
+
     fn piece(&mut self, id: u32) {
         let set = self.set;
         if id as usize >= set.pieces.list.len() {
@@ -167,10 +187,12 @@ impl<'a, S: Surface> Search<'a, S> {
             return self.cut_cell(id);
         }
         let piece = &set.pieces.list[id as usize];
+        if self.behind_sphere(piece.patch) {
+            return;
+        }
         let cell = &set.cells[id as usize];
-        let own = |search: &Self| search.best.filter(|(best, _)| *best == id).map(|b| b.1);
-        let mut local = own(self);
-        if local.is_none() || self.settled {
+        let own = |search: &Self| search.best.as_ref().is_some_and(|best| best.0 == id);
+        if self.settled || !own(self) {
             if self.excluded(piece, id) {
                 return;
             }
@@ -180,13 +202,15 @@ impl<'a, S: Surface> Search<'a, S> {
                 if self.settled && self.excluded(piece, id) {
                     return;
                 }
-                local = own(self);
             }
         }
-        let local = local.unwrap_or_else(|| {
-            let u = cell.seed(&self.q).map(|u| u.clamp(0.05, 0.95));
-            self.iterate(id, piece, u)
-        });
+        let local = match &self.best {
+            Some((best, local)) if *best == id => *local,
+            _ => {
+                let u = cell.seed(&self.q).map(|u| u.clamp(0.05, 0.95));
+                self.iterate(id, piece, u)
+            }
+        };
         if cell.settles_itself(&self.q, &local) {
             return;
         }
@@ -201,10 +225,14 @@ impl<'a, S: Surface> Search<'a, S> {
 
     /// Local iteration within a piece from `u` (0 to 1 in each direction).
     pub fn iterate(&mut self, id: u32, piece: &Piece, u: [f64; 2]) -> Local {
-        let local = self
+        let region = region_of(piece);
+        let mut local = self
             .set
-            .descend(&self.q, &region_of(piece), at(piece, u), piece.span, ROUGH);
-        self.offer(id, local);
+            .descend(&self.q, &region, at(piece, u), piece.span, ROUGH);
+        if local.converged && self.set.spheres[piece.patch as usize].is_some() {
+            self.set.refine(&self.q, &mut local);
+        }
+        self.offer(id, &local);
         local
     }
 
@@ -266,7 +294,7 @@ impl<'a, S: Surface> Search<'a, S> {
         while let Some(part) = parts.pop() {
             let start = parts.len() * size;
             let c = self.cut();
-            if c < 0.0 {
+            if c < 0.0 || self.behind_sphere(piece.patch) {
                 return;
             }
             if known.iter().any(|k| covered(piece, k, &part.range)) {

@@ -3,6 +3,7 @@
 use super::cells::{Cell, cells, cut, parts};
 use super::local::Region;
 use super::piece::Pieces;
+use super::round::Sphere;
 use super::search::Search;
 use super::topology::{self, Topology};
 use super::tree::Tree;
@@ -51,6 +52,8 @@ pub(super) struct Grid {
     pub breaks: [Vec<f64>; 2],
     /// For every border of spans: 0 smooth, 1 tangents may differ in length, 2 the surface has a crease or ends.
     pub kinks: [Vec<u8>; 2],
+    /// For every span: first and one past the last of the spans that it is smoothly connected with.
+    smooth: [Vec<[usize; 2]>; 2],
     /// Bounds on `|rho_i|`.
     pub scale: [f64; 2],
 }
@@ -105,6 +108,12 @@ impl Grid {
         (self.cells[dir][span + 1] - self.cells[dir][span]) as usize
     }
 
+    /// Number of all pieces.
+    fn count(&self) -> usize {
+        let [columns, rows] = [0, 1].map(|k| self.cells[k][self.spans[k]] as usize);
+        columns * rows
+    }
+
     /// Number of the piece at a place.
     #[inline]
     pub fn piece(&self, [i, j]: [u32; 2]) -> u32 {
@@ -114,17 +123,21 @@ impl Grid {
     /// First and one past the last of the spans in direction `dir` that are smoothly connected with span `span`.
     #[inline]
     pub fn smooth_spans(&self, dir: usize, span: usize) -> [usize; 2] {
-        let kinks = &self.kinks[dir];
-        let mut first = span.min(self.spans[dir] - 1);
-        let mut end = first + 1;
-        while kinks[first] == 0 {
-            first -= 1;
-        }
-        while kinks[end] == 0 {
-            end += 1;
-        }
-        [first, end]
+        self.smooth[dir][span.min(self.spans[dir] - 1)]
     }
+}
+
+/// For every span the first and one past the last of those that no kink parts it from.
+fn smooth(kinks: &[u8]) -> Vec<[usize; 2]> {
+    let mut out: Vec<[usize; 2]> = Vec::with_capacity(kinks.len());
+    let mut first = 0;
+    for end in 1..kinks.len() {
+        if kinks[end] != 0 || end + 1 == kinks.len() {
+            out.extend((first..end).map(|_| [first, end]));
+            first = end;
+        }
+    }
+    out
 }
 
 /// Patches of one kind of surface with their tree, their shared edges and their sides. Queries take `&self` and lock nothing.
@@ -134,6 +147,8 @@ pub struct PatchSet<S: Surface = NurbsPatch> {
     pub(super) grids: Vec<Grid>,
     pub(super) pieces: Pieces,
     pub(super) cells: Vec<Cell>,
+    /// For every patch the sphere that it lies on, if any.
+    pub(super) spheres: Vec<Option<Sphere>>,
     pub(super) tree: Tree,
     pub(super) trimmed: Trimmed,
     pub(super) size: f64,
@@ -197,11 +212,17 @@ impl<S: Surface> PatchSet<S> {
         }
         let sides = vec![1.0; patches.len()];
         let cells = cells(&pieces, &grids, &tree, &trimmed);
+        let spheres = patches.iter().zip(&grids).map(|(patch, grid)| {
+            let own = &pieces.list[grid.first as usize..][..grid.count()];
+            Sphere::of(patch, &pieces, own, size)
+        });
+        let spheres = spheres.collect();
         let mut set = PatchSet {
             patches,
             grids,
             pieces,
             cells,
+            spheres,
             tree,
             trimmed,
             size,
@@ -306,6 +327,7 @@ fn grid<S: Surface>(patch: &S, first: u32) -> Grid {
         cells: [Vec::new(), Vec::new()],
         spans,
         breaks,
+        smooth: [smooth(&kinks[0]), smooth(&kinks[1])],
         kinks,
         scale: [0.0; 2],
     }

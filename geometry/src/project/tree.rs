@@ -3,13 +3,49 @@
 use super::piece::box_distance2;
 use crate::surface::Vec3;
 
-/// A box with either two children or one piece.
+/// Two children: their boxes side by side, so that both distances take the same instructions.
 #[derive(Debug, Clone)]
 struct Node {
-    low: Vec3,
-    high: Vec3,
-    /// The second child (the first one follows its parent), or the piece with [`LEAF`] set.
-    next: u32,
+    /// `[axis][child]`.
+    low: [[f64; 2]; 3],
+    high: [[f64; 2]; 3],
+    /// A node, or a piece with [`LEAF`] set.
+    child: [u32; 2],
+}
+
+impl Node {
+    /// Squared distances of a point from both boxes.
+    #[inline]
+    fn distance2(&self, q: &Vec3) -> [f64; 2] {
+        let mut sum = [0.0; 2];
+        for k in 0..3 {
+            for (child, sum) in sum.iter_mut().enumerate() {
+                let below = self.low[k][child] - q[k];
+                let above = q[k] - self.high[k][child];
+                let d = larger(larger(below, above), 0.0);
+                *sum += d * d;
+            }
+        }
+        sum
+    }
+
+    /// Squared distances of twice the boxes' middles from twice a point.
+    fn off(&self, q: &Vec3) -> [f64; 2] {
+        [0, 1].map(|child| {
+            let one = |k: usize| self.low[k][child] + self.high[k][child] - 2.0 * q[k];
+            one(0) * one(0) + one(1) * one(1) + one(2) * one(2)
+        })
+    }
+
+    fn bounds(&self, child: usize) -> [Vec3; 2] {
+        [&self.low, &self.high].map(|b| Vec3::new(b[0][child], b[1][child], b[2][child]))
+    }
+}
+
+/// The larger of two numbers that are not NaN: one instruction.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 const LEAF: u32 = 1 << 31;
@@ -20,6 +56,8 @@ const STACK: usize = 64;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
+    /// Box around everything and where the tree starts; `None` without boxes.
+    root: Option<([Vec3; 2], u32)>,
 }
 
 impl Tree {
@@ -27,7 +65,8 @@ impl Tree {
     /// lowest corner is above the highest are left out.
     pub fn new(boxes: &[[Vec3; 2]]) -> Self {
         let mut tree = Tree {
-            nodes: Vec::with_capacity(2 * boxes.len()),
+            nodes: Vec::with_capacity(boxes.len()),
+            root: None,
         };
         let shown = |k: &u32| {
             let [low, high] = &boxes[*k as usize];
@@ -35,12 +74,16 @@ impl Tree {
         };
         let mut order: Vec<u32> = (0..boxes.len() as u32).filter(shown).collect();
         if !order.is_empty() {
-            tree.build(boxes, &mut order);
+            tree.root = Some(tree.build(boxes, &mut order));
         }
         tree
     }
 
-    fn build(&mut self, boxes: &[[Vec3; 2]], order: &mut [u32]) {
+    /// Box and number of a subtree.
+    fn build(&mut self, boxes: &[[Vec3; 2]], order: &mut [u32]) -> ([Vec3; 2], u32) {
+        if let [piece] = *order {
+            return (boxes[piece as usize], piece | LEAF);
+        }
         let mut low = Vec3::from_element(f64::INFINITY);
         let mut high = -low;
         let mut centre_low = low;
@@ -53,15 +96,11 @@ impl Tree {
             centre_high = centre_high.sup(&(l + h));
         }
         let node = self.nodes.len();
-        if let [piece] = *order {
-            self.nodes.push(Node {
-                low,
-                high,
-                next: piece | LEAF,
-            });
-            return;
-        }
-        self.nodes.push(Node { low, high, next: 0 });
+        self.nodes.push(Node {
+            low: [[0.0; 2]; 3],
+            high: [[0.0; 2]; 3],
+            child: [0; 2],
+        });
         let axis = (centre_high - centre_low).imax();
         let middle = order.len() / 2;
         order.select_nth_unstable_by(middle, |&a, &b| {
@@ -69,15 +108,22 @@ impl Tree {
             centre(a).total_cmp(&centre(b)).then(a.cmp(&b))
         });
         let (first, second) = order.split_at_mut(middle);
-        self.build(boxes, first);
-        self.nodes[node].next = self.nodes.len() as u32;
-        self.build(boxes, second);
+        for (child, half) in [first, second].into_iter().enumerate() {
+            let ([low, high], number) = self.build(boxes, half);
+            let node = &mut self.nodes[node];
+            for k in 0..3 {
+                node.low[k][child] = low[k];
+                node.high[k][child] = high[k];
+            }
+            node.child[child] = number;
+        }
+        ([low, high], node as u32)
     }
 
     /// Lowest and highest corner of everything.
     pub fn bounds(&self) -> [Vec3; 2] {
-        match self.nodes.first() {
-            Some(root) => [root.low, root.high],
+        match &self.root {
+            Some((bounds, _)) => *bounds,
             None => [Vec3::zeros(), Vec3::zeros()],
         }
     }
@@ -93,42 +139,47 @@ impl Tree {
     /// nearer. `limit2` is the squared bound at the start; `visit` returns the squared bound from then on.
     #[inline]
     pub fn visit(&self, q: &Vec3, mut limit2: f64, mut visit: impl FnMut(u32) -> f64) {
-        let Some(root) = self.nodes.first() else {
+        let Some(([low, high], root)) = &self.root else {
             return;
         };
-        let mut stack = [(0u32, 0.0f64); STACK];
+        let mut stack = ([0u32; STACK], [0.0f64; STACK]);
         let mut top = 0;
-        let mut node = 0u32;
-        let mut distance2 = box_distance2(q, &root.low, &root.high);
+        let mut number = *root;
+        let mut distance2 = box_distance2(q, low, high);
         loop {
             if distance2 <= limit2 {
-                let next = self.nodes[node as usize].next;
-                if next & LEAF == 0 {
-                    let (a, b) = (node + 1, next);
-                    let (na, nb) = (&self.nodes[a as usize], &self.nodes[b as usize]);
-                    let da = box_distance2(q, &na.low, &na.high);
-                    let db = box_distance2(q, &nb.low, &nb.high);
-                    let off = |n: &Node| (n.low + n.high - 2.0 * q).norm_squared();
-                    let first = da < db || da == db && off(na) <= off(nb);
-                    let (near, far) = if first {
-                        ((a, da), (b, db))
+                if number & LEAF == 0 {
+                    let node = &self.nodes[number as usize];
+                    let d = node.distance2(q);
+                    let near = if d[0] == d[1] {
+                        let off = node.off(q);
+                        usize::from(off[1] < off[0])
                     } else {
-                        ((b, db), (a, da))
+                        usize::from(d[1] < d[0])
                     };
-                    if far.1 <= limit2 && top < STACK {
-                        stack[top] = far;
+                    let far = 1 - near;
+                    if d[far] <= limit2 && top < STACK {
+                        stack.0[top] = node.child[far];
+                        stack.1[top] = d[far];
                         top += 1;
                     }
-                    (node, distance2) = near;
+                    number = node.child[near];
+                    distance2 = d[near];
                     continue;
                 }
-                limit2 = visit(next & !LEAF);
+                limit2 = visit(number & !LEAF);
             }
-            if top == 0 {
-                return;
+            loop {
+                if top == 0 {
+                    return;
+                }
+                top -= 1;
+                if stack.1[top] <= limit2 {
+                    break;
+                }
             }
-            top -= 1;
-            (node, distance2) = stack[top];
+            number = stack.0[top];
+            distance2 = stack.1[top];
         }
     }
 
@@ -140,27 +191,30 @@ impl Tree {
         mut limit2: f64,
         mut visit: impl FnMut(u32) -> f64,
     ) {
-        let mut stack = [0u32; STACK];
-        let mut top = usize::from(!self.nodes.is_empty());
+        let Some(([low, high], root)) = &self.root else {
+            return;
+        };
+        let mut stack = [(*root, measure(low, high)); STACK];
+        let mut top = 1;
         while top > 0 {
             top -= 1;
-            let number = stack[top];
+            let (number, distance2) = stack[top];
+            if distance2 >= limit2 {
+                continue;
+            }
+            if number & LEAF != 0 {
+                limit2 = visit(number & !LEAF);
+                continue;
+            }
             let node = &self.nodes[number as usize];
-            if measure(&node.low, &node.high) >= limit2 {
-                continue;
-            }
-            if node.next & LEAF != 0 {
-                limit2 = visit(node.next & !LEAF);
-                continue;
-            }
-            let pair = [number + 1, node.next];
-            let [a, b] = pair.map(|k| {
-                let node = &self.nodes[k as usize];
-                measure(&node.low, &node.high)
+            let d = [0, 1].map(|child| {
+                let [low, high] = node.bounds(child);
+                measure(&low, &high)
             });
-            for next in if a <= b { [pair[1], pair[0]] } else { pair } {
+            let near = usize::from(d[0] > d[1]);
+            for child in [1 - near, near] {
                 if top < STACK {
-                    stack[top] = next;
+                    stack[top] = (node.child[child], d[child]);
                     top += 1;
                 }
             }

@@ -9,8 +9,9 @@
 use std::cell::Cell;
 
 use super::PatchSet;
+use super::ball::outside_ball;
 use super::local::{Local, Region, TrimPlace};
-use super::piece::{Piece, box_distance2, hull, outside_ball, split};
+use super::piece::{Piece, box_distance2, hull, split};
 use super::search::{MOST_PARTS, ROUGH, Search, at, extents, region_of};
 use super::trimmed::{CurveLeaf, curve_outside_ball, split_curve};
 use crate::surface::{Surface, Vec3};
@@ -250,7 +251,7 @@ impl<S: Surface> Search<'_, S> {
             && let Some(place) = local.trim
             && let Some(leaf) = self.set.trimmed.leaf_at(patch, place.curve, place.t)
         {
-            self.offer((self.set.pieces.list.len() + leaf) as u32, local);
+            self.offer((self.set.pieces.list.len() + leaf) as u32, &local);
         }
     }
 
@@ -313,7 +314,7 @@ impl<S: Surface> Search<'_, S> {
             let found = set.descend_curve(&self.q, key, range, t, leaf.span);
             let mut cut = 0.5;
             if let Some(local) = found {
-                self.offer(id, local);
+                self.offer(id, &local);
                 if let Some(place) = local.trim {
                     let s = (place.t - range[0]) / (range[1] - range[0]);
                     // Beside a stationary point the distance only grows, and bounds are sharp.
@@ -417,7 +418,7 @@ impl<S: Surface> Search<'_, S> {
                 Verdict::Empty => continue,
                 Verdict::Convex => {
                     let found = set.descend(&self.q, &region, middle, piece.span, ROUGH);
-                    self.offer(id, found);
+                    self.offer(id, &found);
                     if found.converged {
                         continue;
                     }
