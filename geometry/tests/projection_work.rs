@@ -74,7 +74,7 @@ fn evaluations_are_few_and_bounded() {
         (sets::near(n, 3, 20, false), 20.0, 500),
         (sets::edge_and_corner(n), 20.0, 500),
         (sets::far(n), 20.0, 500),
-        (sets::focal(n, false), 200.0, 2000),
+        (sets::focal(n, false), 200.0, 10000),
         (sets::sphere_near(n, false), 100.0, 2000),
         (sets::sphere_pole(n, false), 1000.0, 10000),
         (sets::sphere_centre(n, false), 1000.0, 10000),

@@ -186,7 +186,7 @@ mod tests {
         let allowed = 2.0 / 3.0 * h * h / 8.0 * std::f64::consts::TAU;
         assert!((area - exact).abs() < allowed, "{area} {exact}");
         assert!(
-            pieces.iter().any(|p| p.divisions > Some(4)),
+            pieces.iter().any(|p| p.divisions >= Some(4)),
             "large pieces inside"
         );
         for piece in &pieces {

@@ -56,6 +56,18 @@ impl Sphere {
         })
     }
 
+    /// Whether `q` lies within 1e-8 of the radius from the centre.
+    #[inline]
+    pub fn has_near_centre(&self, q: &Vec3) -> bool {
+        (q - self.centre).norm_squared() <= 1e-16 * self.radius * self.radius
+    }
+
+    /// The point of the sphere in the direction of `q` from the centre, in any direction where `q` is the centre.
+    pub fn beyond(&self, q: &Vec3) -> Vec3 {
+        let direction = (q - self.centre).try_normalize(0.0);
+        self.centre + direction.unwrap_or_else(Vec3::x) * self.radius
+    }
+
     /// Lower bound of the distance between `q` and the patch.
     #[inline]
     pub fn distance(&self, q: &Vec3) -> f64 {

@@ -40,6 +40,8 @@ pub(super) struct Search<'a, S: Surface> {
     pub parts: usize,
     /// False where the number of parts ran out before the proof was complete.
     pub complete: bool,
+    /// Whether a start from a sphere's centre was made.
+    centred: bool,
 }
 
 /// Part of a piece.
@@ -69,6 +71,7 @@ impl<'a, S: Surface> Search<'a, S> {
             settled: false,
             parts: 0,
             complete: true,
+            centred: false,
         }
     }
 
@@ -174,14 +177,36 @@ impl<'a, S: Surface> Search<'a, S> {
         let (Some(sphere), Some((_, best))) = (&set.spheres[patch as usize], &self.best) else {
             return false;
         };
-        sphere.distance(&self.q) + 1e-14 * (set.size + self.distance) >= self.distance
-            && set.flat(best)
+        let bound = sphere.distance(&self.q);
+        // At the centre all points are as near, and which of them is taken means nothing.
+        sphere.has_near_centre(&self.q) && bound >= self.cut()
+            || bound + 1e-14 * (set.size + self.distance) >= self.distance && set.flat(best)
+    }
+
+    /// Next to the centre of a sphere distances differ by less than bounds over pieces tell: starts at the point nearest to
+    /// `target`, the point of the sphere in the direction of the query, which is the nearest to the query too.
+    #[cold]
+    #[inline(never)]
+    fn start_from_centre(&mut self, target: Vec3) {
+        self.centred = true;
+        let mut other = Search::new(self.set, target, f64::INFINITY);
+        other.centred = true;
+        other.run();
+        if let Some((_, local)) = other.best {
+            self.start(local.region.patch, local.span, local.xi);
+        }
     }
 
     fn piece(&mut self, id: u32) {
         let set = self.set;
         if id as usize >= set.pieces.list.len() {
             return self.curve_leaf(id as usize - set.pieces.list.len());
+        }
+        if !self.centred
+            && let Some(sphere) = &set.spheres[set.pieces.list[id as usize].patch as usize]
+            && sphere.has_near_centre(&self.q)
+        {
+            self.start_from_centre(sphere.beyond(&self.q));
         }
         if set.trimmed.is_cut(id) {
             return self.cut_cell(id);
