@@ -72,21 +72,22 @@ impl Gather {
 }
 
 impl Mesh {
-    /// Node positions of element `e`.
+    /// Positions of the corners of element `e`.
     pub fn element_positions(&self, e: usize) -> [Vec3; 8] {
         let nodes = self.element(e);
-        std::array::from_fn(|a| self.nodes[nodes[a] as usize])
+        self.kind.corners().map(|a| self.nodes[nodes[a] as usize])
     }
 
-    /// Mean position of the nodes of element `e`.
+    /// Mean position of the corners of element `e`.
     pub fn element_center(&self, e: usize) -> Vec3 {
         self.element_positions(e).iter().sum::<Vec3>() / 8.0
     }
 
-    /// Nodes of a face, u fastest, so that u x v points outward.
+    /// Corners of a face, u fastest, so that u x v points outward.
     pub fn face_nodes(&self, face: Face) -> [u32; 4] {
         let nodes = self.element(face.element as usize);
-        H8_FACES[face.face as usize].map(|a| nodes[a as usize])
+        let corners = self.kind.corners();
+        H8_FACES[face.face as usize].map(|a| nodes[corners[a as usize]])
     }
 
     /// Area of a face (of its bilinear surface, by 2 x 2 Gauss points: exact for flat faces) and the outward unit

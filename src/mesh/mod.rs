@@ -49,6 +49,14 @@ impl ElementKind {
             ElementKind::Q18 => 18,
         }
     }
+
+    /// Places of the eight corners among the nodes of an element, in the order `i + 2 j + 4 k`.
+    pub const fn corners(self) -> [usize; 8] {
+        match self {
+            ElementKind::H8 => [0, 1, 2, 3, 4, 5, 6, 7],
+            ElementKind::Q18 => [0, 2, 6, 8, 9, 11, 15, 17],
+        }
+    }
 }
 
 /// One face of one element. Local faces: 0 is r = -1, 1 is r = +1, 2 is s = -1, 3 is s = +1, 4 is t = -1 (bottom),

@@ -1,6 +1,6 @@
 //! Bilinear quadrilaterals: the faces of H8 elements, over which loads and contact integrate.
 use super::quadrature::{GAUSS_3, Rule};
-use crate::mesh::{Face, H8_FACES, Mesh};
+use crate::mesh::{ElementKind, Face, H8_FACES, Mesh};
 use covact_geometry::Vec3;
 
 /// Signs of the four corners, u fastest: (-,-), (+,-), (-,+), (+,+).
@@ -19,8 +19,12 @@ pub fn shape_derivatives(u: f64, v: f64) -> [[f64; 4]; 2] {
     ]
 }
 
-/// Mesh nodes of a face of an H8 mesh, ordered so that u x v points outward; `None` if the mesh has no such face.
+/// Mesh nodes of a face of an H8 mesh, ordered so that u x v points outward; `None` if the mesh has no such face, or faces of
+/// more than four nodes.
 pub fn face_nodes(mesh: &Mesh, face: Face) -> Option<[u32; 4]> {
+    if mesh.kind != ElementKind::H8 {
+        return None;
+    }
     let local = H8_FACES.get(face.face as usize)?;
     let n = mesh.kind.nodes();
     let nodes = mesh
@@ -113,7 +117,6 @@ pub fn tributary_areas(mesh: &Mesh, faces: &[Face]) -> Vec<(u32, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::ElementKind;
 
     /// Unit cube: outward normals, unit areas, and a quarter of the area at every corner of a face.
     #[test]

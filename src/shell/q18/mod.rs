@@ -34,6 +34,7 @@ pub struct Q18System {
     pub energy: f64,
     /// Negative pivots in the stiffness D of the enhanced strains.
     pub negative_pivots: u8,
+    work: Box<tangent::Work>,
 }
 
 impl Default for Q18System {
@@ -43,6 +44,7 @@ impl Default for Q18System {
             k: Box::new([0.0; DOFS * DOFS]),
             energy: 0.0,
             negative_pivots: 0,
+            work: Box::new(tangent::Work::new()),
         }
     }
 }

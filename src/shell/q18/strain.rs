@@ -63,6 +63,7 @@ impl<const N: usize> Linear for [f64; N] {
 }
 
 /// Compatible strains: at the tying points, and in the plane at the Gauss points.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Compatible<T> {
     pub samples: [T; SAMPLES],
     pub plane: [[T; 3]; POINTS],

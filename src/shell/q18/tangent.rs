@@ -21,13 +21,31 @@ pub(super) const ROWS: usize = 2 * MODES;
 /// Start of the factors of D in the state.
 pub(super) const FACTORS: usize = ROWS + DOFS * MODES;
 
+/// Room that an evaluation needs, kept from element to element.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Work {
+    rows: Compatible<Row>,
+    /// Upper triangle of the tangent by columns.
+    k: [Row; DOFS],
+}
+
+impl Work {
+    pub fn new() -> Work {
+        Work {
+            rows: Compatible {
+                samples: [[0.0; DOFS]; SAMPLES],
+                plane: [[[0.0; DOFS]; 3]; POINTS],
+            },
+            k: [[0.0; DOFS]; DOFS],
+        }
+    }
+}
+
 /// Rows of the compatible strains at the present positions.
-fn rows(now: &[V<f64>; 18]) -> Box<Compatible<Row>> {
+fn rows(now: &[V<f64>; 18], out: &mut Compatible<Row>) {
     let tables = &**TABLES;
-    let mut out = Box::new(Compatible {
-        samples: [[0.0; DOFS]; SAMPLES],
-        plane: [[[0.0; DOFS]; 3]; POINTS],
-    });
+    out.samples.as_flattened_mut().fill(0.0);
+    out.plane.as_flattened_mut().as_flattened_mut().fill(0.0);
     let one = |n: &[f64; 18], g: &V<f64>, row: &mut Row| {
         for x in 0..3 {
             for b in 0..18 {
@@ -52,7 +70,6 @@ fn rows(now: &[V<f64>; 18]) -> Box<Compatible<Row>> {
         one(n0, &g1, &mut row[2]);
         one(n1, &g0, &mut row[2]);
     }
-    out
 }
 
 /// Second variation of the strains, weighted with the forces on them: the same for every axis.
@@ -97,10 +114,12 @@ pub(super) fn evaluate<L: MaterialLaw>(
     let mut alpha = [0.0; MODES];
     alpha.copy_from_slice(&state[..MODES]);
     let strain = strains(re, &du, &alpha);
-    let b = assumed(re, &*rows(&now));
+    let Work { rows: from, k } = &mut *out.work;
+    rows(&now, from);
+    let b = assumed(re, from);
 
     out.energy = 0.0;
-    let mut k = vec![[0.0; DOFS]; DOFS];
+    k.as_flattened_mut().fill(0.0);
     let mut f: Row = [0.0; DOFS];
     let mut l = [[0.0; DOFS]; MODES];
     let mut d = [[0.0; MODES]; MODES];
@@ -194,7 +213,7 @@ pub(super) fn evaluate<L: MaterialLaw>(
         }
     }
     to_nodes(&f, &mut out.f);
-    tangent_to_nodes(&k, &mut out.k);
+    tangent_to_nodes(k, &mut out.k);
     Ok(())
 }
 

@@ -185,3 +185,25 @@ fn rigid_rotation_is_free() {
     let largest = system.f.iter().fold(0.0f64, |m, f| m.max(f.abs()));
     assert!(largest < 1e-13 * stiffness, "{largest} {stiffness}");
 }
+
+/// What a mesh measures by corners (positions, faces) takes those of the quadratic element.
+#[test]
+fn corners_of_the_mesh_are_those_of_the_element() {
+    let x = nodes();
+    let mesh = Mesh {
+        kind: ElementKind::Q18,
+        nodes: x.to_vec(),
+        connectivity: (0..18).collect(),
+        node_sets: Default::default(),
+        face_sets: Default::default(),
+    };
+    let corners = [0, 2, 6, 8, 9, 11, 15, 17];
+    assert_eq!(mesh.element_positions(0), corners.map(|a: usize| x[a]));
+    let top = crate::mesh::Face {
+        element: 0,
+        face: 5,
+    };
+    assert_eq!(mesh.face_nodes(top), [9, 11, 15, 17]);
+    // The bilinear face is none of this element's.
+    assert_eq!(crate::shell::face::face_nodes(&mesh, top), None);
+}
