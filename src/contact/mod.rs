@@ -1,7 +1,9 @@
 //! The covariant core of contact: slave points, kernel, laws. It knows nothing of shells or files.
 pub mod corner;
+pub mod fault;
 pub mod kernel;
 pub mod law;
+pub mod meeting;
 pub mod point;
 pub mod points;
 pub mod published;
