@@ -57,6 +57,23 @@ impl Meeting {
         }
     }
 
+    /// The geometry for a traction that does not vanish with the distance (an averaged gap, a multiplier). On an edge or a
+    /// vertex nearer than `small` (length) the direction of the distance is lost, and the tangent with it; there the
+    /// pseudo-normal stands in for it.
+    pub fn steady(&self, small: f64) -> PointGeometry {
+        match self.geometry {
+            PointGeometry::Edge { xi3, .. } | PointGeometry::Vertex { xi3, .. }
+                if xi3.abs() < small =>
+            {
+                PointGeometry::Pole {
+                    normal: self.normal,
+                    xi3,
+                }
+            }
+            geometry => geometry,
+        }
+    }
+
     /// Residual and tangent under a law; `None` where the point is open.
     #[inline]
     pub fn respond<L: NormalLaw, T: FaceTangent>(
