@@ -1,3 +1,10 @@
 //! Tangents of contact against dual numbers.
+mod averaged;
+mod balance;
+mod cases;
+mod edges;
 mod normal;
+mod pairs;
+mod spin;
 mod support;
+mod surface;
