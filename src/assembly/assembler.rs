@@ -6,6 +6,7 @@ use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 use crate::contact::law::{NormalLaw, Penalty};
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
+use crate::model::loads::{follower_force, follower_stiffness};
 use crate::model::state::{PointState, State};
 use crate::model::{Model, PairModel};
 use crate::scene::{Tangent, ValueError};
@@ -130,7 +131,7 @@ impl<'m> Assembler<'m> {
         for (_, load) in &model.follower_loads {
             let mut maps = Vec::new();
             for nodes in &load.faces {
-                pattern.element_map(nodes, &mut maps)?;
+                pattern.element_map(nodes.nodes(), &mut maps)?;
             }
             follower_maps.push(maps);
         }
@@ -327,6 +328,7 @@ impl<'m> Assembler<'m> {
                 }
             }
             let mut deepest = 0.0f64;
+            let mut ke = [0.0; 729];
             let mut at = 0;
             let maps = &self.point_maps[index];
             for (i, p) in pair.points.iter().enumerate() {
@@ -363,7 +365,6 @@ impl<'m> Assembler<'m> {
                     }
                 }
                 if TANGENT {
-                    let mut ke = [0.0; 144];
                     let size = 3 * count;
                     let k = touch.tangent * p.area;
                     for (b, wb) in p.shape[..count].iter().enumerate() {
@@ -403,30 +404,44 @@ impl<'m> Assembler<'m> {
         residual: &mut [f64],
         rhs: &mut [f64],
     ) -> Result<(), Fault> {
+        let (mut x, mut f, mut k) = ([Vec3::zeros(); 9], [0.0; 27], [0.0; 729]);
         self.external.fill(0.0);
         for (_, load) in &self.model.dead_loads {
             load.add(time, &mut self.external)?;
         }
         for (index, (_, load)) in self.model.follower_loads.iter().enumerate() {
             let p = load.value.eval(time)?;
-            for (i, nodes) in load.faces.iter().enumerate() {
-                let x = nodes.map(|n| self.model.position(n as usize, &state.u));
-                let f = crate::model::loads::follower_force(&x, p);
+            let mut at = 0;
+            for face in &load.faces {
+                let nodes = face.nodes();
+                for (x, &n) in x.iter_mut().zip(nodes) {
+                    *x = self.model.position(n as usize, &state.u);
+                }
+                follower_force(&x, face.count, p, &mut f);
                 for (k, &n) in nodes.iter().enumerate() {
                     (0..3).for_each(|c| self.external[3 * n as usize + c] += f[3 * k + c]);
                 }
                 if TANGENT {
                     // The system is symmetric: what is unsymmetric lives on the border of the loaded area only.
-                    let k = crate::model::loads::follower_stiffness(&x, p);
-                    let mut k = (k + k.transpose()) * -0.5;
-                    let map = &self.follower_maps[index][10 * i..10 * (i + 1)];
+                    follower_stiffness(&x, face.count, p, &mut k);
+                    let size = 3 * nodes.len();
+                    for column in 0..size {
+                        for row in 0..=column {
+                            let [upper, lower] = [column * size + row, row * size + column];
+                            k[upper] = -0.5 * (k[upper] + k[lower]);
+                            k[lower] = k[upper];
+                        }
+                    }
+                    let pairs = nodes.len() * (nodes.len() + 1) / 2;
+                    let map = &self.follower_maps[index][at..at + pairs];
+                    at += pairs;
                     put(
                         &mut self.matrix,
                         self.dofs,
                         &mut self.work,
                         nodes,
                         map,
-                        k.as_mut_slice(),
+                        &mut k[..size * size],
                         increments,
                         rhs,
                     );
