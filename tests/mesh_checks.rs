@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// 4 x 3 elements of 1 x 1 x 0.2 in two layers of 0.1, mid-surface at z = 0.
 fn sheet() -> Mesh {
-    plate(&sheet_plate()).unwrap()
+    plate(&sheet_plate(), ElementKind::H8).unwrap()
 }
 
 fn sheet_plate() -> Plate {

@@ -534,7 +534,7 @@ fn plate_of(size: [f64; 2], thickness: f64) -> Mesh {
         origin: [0.0; 3],
         spacing: Default::default(),
     };
-    covact::mesh::plate(&plate).unwrap()
+    covact::mesh::plate(&plate, ElementKind::H8).unwrap()
 }
 
 /// The thickness found must not depend on how each element is numbered.

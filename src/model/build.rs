@@ -134,8 +134,8 @@ impl<'s> Builder<'s> {
     fn bodies(&mut self) -> Result<(), ModelError> {
         for (name, body) in &self.scene.bodies {
             let at = || format!("/bodies/{name}/mesh");
-            let (mut mesh, report) =
-                mesh::build(&body.mesh, self.dir).map_err(|e| mesh_error(name, &body.mesh, e))?;
+            let (mut mesh, report) = mesh::build(&body.mesh, mesh::ElementKind::H8, self.dir)
+                .map_err(|e| mesh_error(name, &body.mesh, e))?;
             for (set, selection) in &body.sets {
                 mesh.add_set(set, selection)
                     .at(|| format!("/bodies/{name}/sets/{set}"))
