@@ -1,5 +1,7 @@
 //! Generated meshes against closed forms: volumes, areas, sets, topology, spacing; and refused input.
-use covact::mesh::{Face, Mesh, MeshError, block, cylinder_panel, plate, positions, sphere_panel};
+use covact::mesh::{
+    ElementKind, Face, Mesh, MeshError, block, cylinder_panel, plate, positions, sphere_panel,
+};
 use covact::scene::{Block, CylinderPanel, Plate, Spacing, SpherePanel};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
