@@ -5,3 +5,4 @@ pub mod law;
 pub mod points;
 pub mod published;
 pub mod rigid;
+pub mod scatter;

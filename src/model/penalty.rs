@@ -2,8 +2,8 @@
 use crate::mesh::{Face, Mesh};
 use crate::scene::{Elastic, Material};
 
-/// Penalty as a multiple of `E / s`, `s` being the smaller of the slave faces' edge length and the thickness of the
-/// elements below them. A pressure of a fifth of Young's modulus then sinks in by 1 % of `s`; a stiffer value would
+/// Penalty as a multiple of `E / s`, `s` being the smaller of the faces' edge length and the thickness of the elements
+/// below them; of two deformable sides the softer one counts. A pressure of a fifth of Young's modulus then sinks in by 1 % of `s`; a stiffer value would
 /// only cost digits in the factorization.
 pub const FACTOR: f64 = 20.0;
 
@@ -19,28 +19,28 @@ pub fn modulus(material: &Material) -> f64 {
     }
 }
 
-/// Sizes of the slave's elements.
+/// Sizes of the elements under some faces.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SlaveSize {
+pub struct FaceSize {
     /// Mean edge length of the faces (square root of the mean area).
     pub edge: f64,
     /// Mean depth of the elements below the faces: volume by area.
     pub depth: f64,
 }
 
-/// Measures the elements under the slave faces.
-pub fn slave_size(mesh: &Mesh, faces: &[Face]) -> SlaveSize {
+/// Measures the elements under some faces.
+pub fn face_size(mesh: &Mesh, faces: &[Face]) -> FaceSize {
     let area: f64 = faces.iter().map(|&f| mesh.face_area_normal(f).0).sum();
     let volume: f64 = (faces.iter())
         .map(|f| mesh.element_volume(f.element as usize))
         .sum();
-    SlaveSize {
+    FaceSize {
         edge: (area / faces.len().max(1) as f64).sqrt(),
         depth: volume / area,
     }
 }
 
 /// The automatic penalty (force / length^3); scales with the units of the scene as it should.
-pub fn automatic(material: &Material, size: &SlaveSize) -> f64 {
+pub fn automatic(material: &Material, size: &FaceSize) -> f64 {
     FACTOR * modulus(material) / size.edge.min(size.depth)
 }
