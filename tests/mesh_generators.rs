@@ -94,7 +94,7 @@ fn sets_are_complete(mesh: &Mesh, names: &[&str]) {
 fn enclosed_by_flat_faces(mesh: &Mesh) -> f64 {
     let third = |face: Face| {
         let (area, normal) = mesh.face_area_normal(face);
-        mesh.nodes[mesh.face_nodes(face)[0] as usize].dot(&normal) * area / 3.0
+        mesh.nodes[mesh.face_corners(face)[0] as usize].dot(&normal) * area / 3.0
     };
     mesh.outer_faces().into_iter().map(third).sum()
 }
@@ -168,7 +168,7 @@ fn cylinder_converges_to_its_volume_and_areas() {
         );
         for &face in mesh.face_set("outer").unwrap() {
             let center = mesh
-                .face_nodes(face)
+                .face_corners(face)
                 .iter()
                 .map(|&n| mesh.nodes[n as usize])
                 .sum::<covact_geometry::Vec3>()
@@ -219,7 +219,7 @@ fn sphere_converges_to_its_volume_and_areas() {
         ];
         sets_are_complete(&mesh, &names);
         for &face in mesh.face_set("inner").unwrap() {
-            let node = mesh.nodes[mesh.face_nodes(face)[0] as usize].normalize();
+            let node = mesh.nodes[mesh.face_corners(face)[0] as usize].normalize();
             assert!(mesh.face_area_normal(face).1.dot(&node) < -0.9);
         }
         for &node in mesh.node_set("outer").unwrap() {
@@ -241,7 +241,7 @@ fn full_turn_is_closed() {
         let faces = mesh.outer_faces();
         let mut edges = BTreeSet::new();
         for &face in &faces {
-            let n = mesh.face_nodes(face);
+            let n = mesh.face_corners(face);
             for (a, b) in [(0, 1), (1, 3), (3, 2), (2, 0)] {
                 edges.insert((n[a].min(n[b]), n[a].max(n[b])));
             }

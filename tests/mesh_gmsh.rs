@@ -494,7 +494,7 @@ fn shuffled(mesh: &Mesh, surface: Option<(&str, &str)>) -> String {
     let (e, f) = (mesh.elements(), faces.len());
     text += &format!("$EndNodes\n$Elements\n2 {0} 1 {0}\n2 4 3 {f}\n", e + f);
     for (i, &face) in faces.iter().enumerate() {
-        let q = mesh.face_nodes(face).map(|n| n + 1);
+        let q = mesh.face_corners(face).map(|n| n + 1);
         text += &format!("{} {} {} {} {}\n", e + i + 1, q[0], q[1], q[3], q[2]);
     }
     text += &format!("3 1 5 {e}\n");

@@ -2,6 +2,7 @@
 pub mod corner;
 pub mod kernel;
 pub mod law;
+pub mod moving;
 pub mod point;
 pub mod points;
 pub mod published;

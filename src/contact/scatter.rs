@@ -52,7 +52,8 @@ pub fn assemble_point(
         let w = row(j);
         put(
             s + j,
-            &[0, 1, 2].map(|a: usize| blocks[a][0] * w[0] + blocks[a][1] * w[1] + blocks[a][2] * w[2]),
+            &[0, 1, 2]
+                .map(|a: usize| blocks[a][0] * w[0] + blocks[a][1] * w[1] + blocks[a][2] * w[2]),
         );
     }
 }

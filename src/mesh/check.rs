@@ -127,7 +127,7 @@ impl Mesh {
         let table = FaceTable::new(self);
         for group in table.groups() {
             let same_side = || {
-                let [a, b] = [group[0].1, group[1].1].map(|f| self.face_nodes(f));
+                let [a, b] = [group[0].1, group[1].1].map(|f| self.face_corners(f));
                 !is_opposite(a, b)
             };
             if group.len() > 2 || (group.len() == 2 && same_side()) {

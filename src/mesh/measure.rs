@@ -1,5 +1,7 @@
 //! Lengths, areas, volumes and shape quality of elements.
-use super::{Face, H8_FACES, Mesh};
+use super::{Face, Mesh};
+use crate::shell::Quad;
+use crate::shell::quadrature::{GAUSS_2, GAUSS_3};
 use covact_geometry::Vec3;
 
 /// Smallest, mean and largest value.
@@ -83,28 +85,17 @@ impl Mesh {
         self.element_positions(e).iter().sum::<Vec3>() / 8.0
     }
 
-    /// Corners of a face, u fastest, so that u x v points outward.
-    pub fn face_nodes(&self, face: Face) -> [u32; 4] {
-        let nodes = self.element(face.element as usize);
-        let corners = self.kind.corners();
-        H8_FACES[face.face as usize].map(|a| nodes[corners[a as usize]])
-    }
-
-    /// Area of a face (of its bilinear surface, by 2 x 2 Gauss points: exact for flat faces) and the outward unit
-    /// normal at its centre (zero for a face without area).
+    /// Area of a face (by 2 x 2 Gauss points: exact for flat bilinear faces; 3 x 3 for quadratic ones) and the outward
+    /// unit normal at its centre (zero for a face without area).
     pub fn face_area_normal(&self, face: Face) -> (f64, Vec3) {
-        let x = self.face_nodes(face).map(|n| self.nodes[n as usize]);
-        let tangents = |u: f64, v: f64| {
-            let du = ((x[1] - x[0]) * (1.0 - v) + (x[3] - x[2]) * (1.0 + v)) * 0.25;
-            let dv = ((x[2] - x[0]) * (1.0 - u) + (x[3] - x[1]) * (1.0 + u)) * 0.25;
-            du.cross(&dv)
+        let quad = Quad::new(&self.face_nodes(face), |n| self.nodes[n as usize]);
+        let rule = if quad.count == [2, 2] {
+            GAUSS_2
+        } else {
+            GAUSS_3
         };
-        let g = 1.0 / 3f64.sqrt();
-        let area = [(-g, -g), (g, -g), (-g, g), (g, g)]
-            .iter()
-            .map(|&(u, v)| tangents(u, v).norm())
-            .sum();
-        let normal = tangents(0.0, 0.0).try_normalize(0.0);
+        let area = quad.weights_with(&rule).iter().sum();
+        let normal = quad.area_vector(0.0, 0.0).try_normalize(0.0);
         (area, normal.unwrap_or_else(Vec3::zeros))
     }
 

@@ -5,6 +5,7 @@
 mod build;
 mod check;
 mod error;
+mod face;
 mod facets;
 mod generate;
 mod gmsh;
@@ -18,6 +19,7 @@ mod topology;
 
 pub use build::build;
 pub use error::{MAX_NODES, MeshError, Position, SetKind};
+pub use face::FaceNodes;
 pub use facets::MeshFacets;
 pub use generate::{block, cylinder_panel, plate, sphere_panel};
 pub use gmsh::read_gmsh;

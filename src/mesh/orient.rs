@@ -213,14 +213,14 @@ impl Choice<'_> {
         }
         // A side face: the neighbour's top is its other face at the edge that both faces have in common.
         let mesh = self.mesh;
-        let ours = mesh.face_nodes(Face {
+        let ours = mesh.face_corners(Face {
             element: e,
             face: top,
         });
-        let shared = mesh.face_nodes(next);
+        let shared = mesh.face_corners(next);
         let edge: [bool; 4] = shared.map(|n| ours.contains(&n));
         let other = (0..6u8).filter(|f| f >> 1 != next.face >> 1).find(|&f| {
-            let nodes = mesh.face_nodes(Face {
+            let nodes = mesh.face_corners(Face {
                 element: next.element,
                 face: f,
             });

@@ -161,7 +161,7 @@ fn match_surfaces(
                     inner += 1;
                     let same = rows
                         .iter()
-                        .find(|row| goes_around(mesh.face_nodes(row.1), quad));
+                        .find(|row| goes_around(mesh.face_corners(row.1), quad));
                     faces.push(same.unwrap_or(&rows[0]).1);
                 }
             }

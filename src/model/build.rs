@@ -238,7 +238,7 @@ impl<'s> Builder<'s> {
                 if load.follower {
                     let value = pressure.compile(&TIME).at(|| pointer("pressure"))?;
                     let faces = (faces.iter())
-                        .map(|&f| mesh.face_nodes(f).map(|n| n + first))
+                        .map(|&f| mesh.face_nodes(f).shifted(first))
                         .collect();
                     follower.push((name.clone(), FollowerPressure { faces, value }));
                 } else {

@@ -130,9 +130,7 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
         if gap.behind > 0 {
             let help = match &pair.master {
                 Master::Rigid(_) => "move the surface with `placement`, or choose the other `side`",
-                Master::Body(_) => {
-                    "move one of the bodies, or take the faces that face each other"
-                }
+                Master::Body(_) => "move one of the bodies, or take the faces that face each other",
             };
             warnings.push(format!(
                 "contact `{}`: {} point(s) start behind {master}, deeper than its `depth` {}, and are not in contact: \

@@ -2,7 +2,7 @@
 use super::{Model, PairModel};
 use crate::contact::rigid::{self, RigidMaster};
 use crate::scene::ValueError;
-use covact_geometry::{Hint, MovingFacets, MovingFoot, MovingPlace, EdgeKind, Vec3};
+use covact_geometry::{EdgeKind, Hint, MovingFacets, MovingFoot, MovingPlace, Vec3};
 
 /// What the slave points of a pair meet. Chosen once, when the model is built.
 #[derive(Debug)]
@@ -148,7 +148,13 @@ impl MasterNow<'_> {
     }
 
     /// The closest point of the master to slave point `point` at `x`; none where nothing is found.
-    pub fn see(&self, _pair: &PairModel, _point: usize, x: &Vec3, hint: Option<Hint>) -> Option<Seen> {
+    pub fn see(
+        &self,
+        _pair: &PairModel,
+        _point: usize,
+        x: &Vec3,
+        hint: Option<Hint>,
+    ) -> Option<Seen> {
         match self {
             MasterNow::Rigid(master) => {
                 let foot = master.foot(x, hint, f64::INFINITY)?;

@@ -251,12 +251,7 @@ impl<'a, 'm> March<'a, 'm> {
         });
     }
 
-    fn gather(
-        &mut self,
-        outputs: &mut Outputs,
-        state: &State,
-        time: f64,
-    ) -> Result<(), RunError> {
+    fn gather(&mut self, outputs: &mut Outputs, state: &State, time: f64) -> Result<(), RunError> {
         let assembler = &mut *self.assembler;
         let masters = &mut assembler.masters;
         (outputs.fields).gather(self.model, &assembler.penalties, masters, state, time)

@@ -185,7 +185,10 @@ impl MovingFacets {
         let others = self.topology.at_edge(facet, edge).iter();
         others.filter(move |o| **o != own).map(move |&other| {
             let reversed = self.topology.reversed(own, other);
-            (other.0, on_edge(other.1 as usize, if reversed { -s } else { s }))
+            (
+                other.0,
+                on_edge(other.1 as usize, if reversed { -s } else { s }),
+            )
         })
     }
 }
@@ -236,7 +239,11 @@ impl<'a, const M: usize, const L: usize> Search<'a, M, L> {
 
     #[inline]
     fn limit2(&self) -> f64 {
-        if self.cut < 0.0 { -1.0 } else { self.cut * self.cut }
+        if self.cut < 0.0 {
+            -1.0
+        } else {
+            self.cut * self.cut
+        }
     }
 
     /// Whether a net is proved to hold nothing nearer.
@@ -350,7 +357,10 @@ fn seed<const M: usize>(net: &[[f64; 4]], q: &Vec3) -> [f64; 2] {
     let one = (c[1] - c[0] + c[3] - c[2]) * 0.25;
     let two = (c[2] - c[0] + c[3] - c[1]) * 0.25;
     let d = q - middle;
-    let (a, b) = ([one.dot(&one), one.dot(&two), two.dot(&two)], [one.dot(&d), two.dot(&d)]);
+    let (a, b) = (
+        [one.dot(&one), one.dot(&two), two.dot(&two)],
+        [one.dot(&d), two.dot(&d)],
+    );
     let det = a[0] * a[2] - a[1] * a[1];
     if det.is_nan() || det <= 1e-12 * a[0] * a[2] {
         return [0.0; 2];

@@ -77,7 +77,8 @@ impl Couplings {
 
     /// All couplings, cell by cell.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, u32)> + '_ {
-        (self.facets.iter().enumerate()).flat_map(|(cell, f)| f.iter().map(move |c| (cell, c.facet)))
+        (self.facets.iter().enumerate())
+            .flat_map(|(cell, f)| f.iter().map(move |c| (cell, c.facet)))
     }
 
     /// Sets the couplings to those of `near` (points with the facets at their feet) and of the facets around. What was

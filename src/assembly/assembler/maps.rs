@@ -77,7 +77,7 @@ impl Maps {
         for (_, load) in &model.follower_loads {
             let mut maps = Vec::new();
             for nodes in &load.faces {
-                pattern.element_map(nodes, &mut maps)?;
+                pattern.element_map(nodes.nodes(), &mut maps)?;
             }
             followers.push(maps);
         }

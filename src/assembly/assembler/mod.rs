@@ -127,10 +127,7 @@ impl<'m> Assembler<'m> {
         let pattern = Arc::new(maps::pattern(model, dofs, &couplings)?);
         let maps = Maps::new(model, dofs, &pattern)?;
         let rigid = model.pairs.iter().filter(|p| p.rigid_master().is_some());
-        let most = rigid
-            .map(|p| p.points.len())
-            .max()
-            .unwrap_or(0);
+        let most = rigid.map(|p| p.points.len()).max().unwrap_or(0);
         let n = 3 * model.nodes.len();
         Ok(Assembler {
             model,

@@ -13,7 +13,7 @@ use crate::contact::scatter::assemble_point;
 use crate::model::state::{PointState, State};
 use crate::model::{Model, PairModel};
 use crate::scene::Tangent;
-use covact_geometry::{MovingFacets, ShapeRows, Vec3};
+use covact_geometry::{ShapeRows, Vec3};
 use rayon::prelude::*;
 
 /// Points whose matrices are formed before they are summed.
@@ -229,7 +229,11 @@ impl Assembler<'_> {
                         assemble_point(&touch.tangent, slave, rows, p.area, &mut ke[..size * size]);
                     }
                 });
-            for ((&i, rows), ke) in chunk.iter().zip(rows.iter()).zip(matrices.chunks_mut(*stride)) {
+            for ((&i, rows), ke) in chunk
+                .iter()
+                .zip(rows.iter())
+                .zip(matrices.chunks_mut(*stride))
+            {
                 let Some(touch) = touch(i) else { continue };
                 let p = &pair.points[i as usize];
                 deepest = deepest.max(-touch.xi3);

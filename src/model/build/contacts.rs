@@ -1,5 +1,5 @@
 //! Contact pairs: slave points, masters, penalties.
-use super::super::error::{At, number, text};
+use super::super::error::{At, number};
 use super::super::master::{BodyMaster, Master};
 use super::super::slave::slave_points;
 use super::super::{ModelError, PairModel, SurfaceModel, penalty};
@@ -117,7 +117,7 @@ impl Builder<'_> {
         let position = |node: u32| self.nodes[node as usize];
         let mut facets = match smooth {
             false => MovingFacets::new(&facets),
-            true => MovingFacets::smooth(&facets, position),
+            true => MovingFacets::new(&facets),
         }
         .at(pointer)?;
         facets.update(position);
