@@ -53,8 +53,14 @@ pub fn done(scene: &Value) -> Outcome {
 pub fn pressures(outcome: &Outcome, body: &str) -> [f64; 2] {
     let file = outcome.body(body, outcome.summary.steps);
     let (p, status) = (file.field("contact_pressure"), file.field("contact_status"));
-    let on = p.iter().zip(status).filter(|(_, s)| **s == 2.0).map(|(p, _)| *p);
-    on.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| [a.min(p), b.max(p)])
+    let on = p
+        .iter()
+        .zip(status)
+        .filter(|(_, s)| **s == 2.0)
+        .map(|(p, _)| *p);
+    on.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| {
+        [a.min(p), b.max(p)]
+    })
 }
 
 /// Nominal pressure of the patch test: St. Venant-Kirchhoff columns under a stretch `s` bear `E s (s^2 - 1) / 2`, and
@@ -63,7 +69,10 @@ pub fn exact() -> f64 {
     let mut p = 9900.0;
     for _ in 0..50 {
         let s = 1.0 - (DELTA - p / EPS);
-        let (f, df) = (p + 0.5 * E * s * (s * s - 1.0), 1.0 + 0.5 * E * (3.0 * s * s - 1.0) / EPS);
+        let (f, df) = (
+            p + 0.5 * E * s * (s * s - 1.0),
+            1.0 + 0.5 * E * (3.0 * s * s - 1.0) / EPS,
+        );
         p -= f / df;
     }
     p

@@ -15,8 +15,30 @@ fn matching_meshes_pass_the_patch_test() {
         let outcome = done(&patch(3, 3, points.clone()));
         let [low, high] = pressures(&outcome, "upper");
         println!("{points}: {low} {high} {p}");
-        assert!((low - p).abs() < 1e-9 * p && (high - p).abs() < 1e-9 * p, "{points}");
+        assert!(
+            (low - p).abs() < 1e-9 * p && (high - p).abs() < 1e-9 * p,
+            "{points}"
+        );
         let force = outcome.column("force.ground.z")[0];
         assert!((force - p).abs() < 1e-9 * p, "{force}");
     }
+}
+
+/// On meshes that do not match, the Gauss points of the slave see the kinks of the master's shape functions, and the
+/// pressure is uniform only as far as they integrate them: the error falls with the number of points.
+#[test]
+fn the_error_of_meshes_that_do_not_match_falls_with_the_gauss_points() {
+    let p = exact();
+    let errors = [2u32, 3, 5, 10].map(|n| {
+        let outcome = done(&patch(3, 2, json!({ "gauss": n })));
+        let [low, high] = pressures(&outcome, "upper");
+        let error = (high - p).max(p - low) / p;
+        let force = outcome.column("force.ground.z")[0];
+        println!(
+            "{n} points: pressure off by {error:.3e}, force by {:.3e}",
+            force / p - 1.0
+        );
+        error
+    });
+    println!("{errors:?} {E}");
 }
