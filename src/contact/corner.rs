@@ -52,6 +52,13 @@ pub fn edge_tangent<D: DualNum<f64> + Copy>(
     vertex_tangent(eps) - rho_s * rho_s.transpose() * (eps / denominator)
 }
 
+/// What a law that is not proportional to the distance adds to the tangent of an edge or a vertex:
+/// `(N' - N / xi3) n x n`.
+pub fn law_part<D: DualNum<f64> + Copy>(d: &Vector3<D>, xi3: D, normal: &Normal<D>) -> Matrix3<D> {
+    let n = d * xi3.recip();
+    n * n.transpose() * (normal.dn - normal.n / xi3)
+}
+
 /// Residual `N d / xi3` of an edge or vertex point of unit weight in the nine slots.
 pub(super) fn slots_residual<D: DualNum<f64> + Copy>(
     d: &Vector3<D>,
@@ -70,9 +77,7 @@ pub(super) fn vertex_slots<D: DualNum<f64> + Copy>(
     xi3: D,
     normal: &Normal<D>,
 ) -> SlotMatrix<D> {
-    let eps = normal.n / xi3;
-    let n = d * xi3.recip();
-    let block = vertex_tangent(eps) + n * n.transpose() * (normal.dn - eps);
+    let block = vertex_tangent(normal.n / xi3) + law_part(d, xi3, normal);
     let mut k = SlotMatrix::from_element(D::zero());
     k.fixed_view_mut::<3, 3>(0, 0).copy_from(&block);
     k

@@ -9,7 +9,7 @@ use super::kernel::{self, Normal, SlotMatrix, Slots};
 use super::published::{self, Parts};
 use super::rigid::Exact;
 use covact_geometry::{Frame, Jet};
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, Point3, Vector3};
 use num_dual::DualNum;
 
 /// Where the foot of a contact point lies and what the surface looks like there.
@@ -31,6 +31,50 @@ pub enum PointGeometry<D = f64> {
     },
     /// At a vertex: distance vector and signed distance as on an edge.
     Vertex { d: Vector3<D>, xi3: D },
+    /// On a face where the parametrisation has no metric (the pole of a surface of revolution): only the unit normal is
+    /// known. The geometric part, smaller than the main part by `xi3 kappa`, is left out of the tangent.
+    Pole { normal: Vector3<D>, xi3: D },
+}
+
+impl PointGeometry {
+    /// The same point after a rigid motion of the master and the slave point, from coordinates of the surface to those
+    /// of space.
+    pub fn moved(&self, pose: &Isometry3<f64>) -> Self {
+        let turn = |v: &Vector3<f64>| pose.rotation * v;
+        match self {
+            PointGeometry::Face { frame, xi3 } => PointGeometry::Face {
+                frame: Frame {
+                    rho: pose.transform_point(&Point3::from(frame.rho)).coords,
+                    rho_i: frame.rho_i.map(|v| turn(&v)),
+                    rho_ij: frame.rho_ij.map(|v| turn(&v)),
+                    n: turn(&frame.n),
+                    ..*frame
+                },
+                xi3: *xi3,
+            },
+            PointGeometry::Edge {
+                d,
+                xi3,
+                direction,
+                rho_s,
+                rho_ss,
+            } => PointGeometry::Edge {
+                d: turn(d),
+                xi3: *xi3,
+                direction: *direction,
+                rho_s: turn(rho_s),
+                rho_ss: turn(rho_ss),
+            },
+            PointGeometry::Vertex { d, xi3 } => PointGeometry::Vertex {
+                d: turn(d),
+                xi3: *xi3,
+            },
+            PointGeometry::Pole { normal, xi3 } => PointGeometry::Pole {
+                normal: turn(normal),
+                xi3: *xi3,
+            },
+        }
+    }
 }
 
 impl<D: DualNum<f64> + Copy> PointGeometry<D> {
@@ -47,6 +91,27 @@ impl<D: DualNum<f64> + Copy> PointGeometry<D> {
         }
     }
 
+    /// Normal coordinate (length).
+    pub fn xi3(&self) -> D {
+        match self {
+            PointGeometry::Face { xi3, .. }
+            | PointGeometry::Edge { xi3, .. }
+            | PointGeometry::Vertex { xi3, .. }
+            | PointGeometry::Pole { xi3, .. } => *xi3,
+        }
+    }
+
+    /// Unit vector along which the traction acts, outward: the normal of a face, `d / xi3` on an edge or a vertex.
+    pub fn normal(&self) -> Vector3<D> {
+        match self {
+            PointGeometry::Face { frame, .. } => frame.n,
+            PointGeometry::Edge { d, xi3, .. } | PointGeometry::Vertex { d, xi3 } => {
+                d * xi3.recip()
+            }
+            PointGeometry::Pole { normal, .. } => *normal,
+        }
+    }
+
     /// Whether the closest point is a strict minimum: `a_ij - xi3 h_ij` positive definite on a face,
     /// `|rho'|^2 > rho'' . d` on an edge. Where it is not, the point lies at or beyond a focal surface of the master.
     pub fn is_minimum(&self) -> bool {
@@ -59,7 +124,7 @@ impl<D: DualNum<f64> + Copy> PointGeometry<D> {
             PointGeometry::Edge {
                 d, rho_s, rho_ss, ..
             } => corner::curvature(d, rho_s, rho_ss).re() > 0.0,
-            PointGeometry::Vertex { .. } => true,
+            PointGeometry::Vertex { .. } | PointGeometry::Pole { .. } => true,
         }
     }
 }
@@ -130,5 +195,9 @@ pub fn respond<D: DualNum<f64> + Copy, T: FaceTangent>(
             corner::slots_residual(d, *xi3, normal),
             corner::vertex_slots(d, *xi3, normal),
         ),
+        PointGeometry::Pole { normal: n, .. } => {
+            let g3 = kernel::in_slot(0, n);
+            (g3 * normal.n, g3 * g3.transpose() * normal.dn)
+        }
     }
 }

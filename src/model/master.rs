@@ -1,8 +1,9 @@
 //! The master of a contact pair: a rigid surface, or faces of a deformable body.
 use super::{Model, PairModel};
+use crate::contact::moving;
 use crate::contact::rigid::{self, RigidMaster};
 use crate::scene::ValueError;
-use covact_geometry::{EdgeKind, Hint, MovingFacets, MovingFoot, MovingPlace, Vec3};
+use covact_geometry::{Hint, MovingFacets, Vec3};
 
 /// What the slave points of a pair meet. Chosen once, when the model is built.
 #[derive(Debug)]
@@ -173,32 +174,18 @@ impl MasterNow<'_> {
             }
             MasterNow::Body { body, facets } => {
                 let foot = facets.project(x, hint, f64::INFINITY, |_| true)?;
-                let presses = presses(&foot);
+                let behind = moving::behind(&foot, body.depth);
                 Some(Seen {
                     hint: foot.hint(),
                     distance: foot.distance,
                     signed_distance: foot.signed_distance,
                     normal: foot.normal,
-                    closed: presses && foot.distance <= body.depth,
-                    behind: presses && foot.distance > body.depth,
+                    closed: moving::presses(&foot) && !behind,
+                    behind,
                 })
             }
         }
     }
-}
-
-/// Whether a foot on moving facets means contact: not on a free border, as on rigid surfaces.
-fn presses(foot: &MovingFoot) -> bool {
-    let free = matches!(
-        foot.place,
-        MovingPlace::Edge {
-            kind: EdgeKind::Free,
-            ..
-        } | MovingPlace::Corner {
-            kind: EdgeKind::Free
-        }
-    );
-    foot.signed_distance < 0.0 && !free
 }
 
 impl PairModel {

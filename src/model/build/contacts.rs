@@ -117,7 +117,7 @@ impl Builder<'_> {
         let position = |node: u32| self.nodes[node as usize];
         let mut facets = match smooth {
             false => MovingFacets::new(&facets),
-            true => MovingFacets::new(&facets),
+            true => MovingFacets::smooth(&facets, position),
         }
         .at(pointer)?;
         facets.update(position);
