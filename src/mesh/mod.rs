@@ -30,6 +30,7 @@ pub use sets::Selected;
 pub use spacing::positions;
 pub use topology::ThicknessColumns;
 
+use crate::scene::Element;
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
 
@@ -41,6 +42,15 @@ pub enum ElementKind {
     /// 18-node solid-shell, biquadratic in the plane and linear through the thickness. Nodes are numbered
     /// `i + 3 j + 9 k`, i along r, j along s, k along t.
     Q18,
+}
+
+impl From<Element> for ElementKind {
+    fn from(element: Element) -> ElementKind {
+        match element {
+            Element::H8 | Element::H8Displacement => ElementKind::H8,
+            Element::Q18 => ElementKind::Q18,
+        }
+    }
 }
 
 impl ElementKind {

@@ -28,7 +28,9 @@ pub(super) fn pattern(
     };
     for body in &model.bodies {
         for e in 0..body.block.elements() {
-            add(&body.element_nodes(e));
+            plain.clear();
+            plain.extend(body.element_nodes(e));
+            add(&plain);
         }
     }
     for (pair, couplings) in model.pairs.iter().zip(couplings) {
@@ -48,13 +50,15 @@ pub(super) fn pattern(
 impl Maps {
     pub fn new(model: &Model, dofs: &DofMap, pattern: &Pattern) -> Result<Self, PatternError> {
         let (mut elements, mut kinds) = (Vec::new(), Vec::new());
+        let (mut nodes, mut extended) = (Vec::new(), Vec::new());
         for body in &model.bodies {
             for e in 0..body.block.elements() {
-                let nodes = body.element_nodes(e);
+                nodes.clear();
+                nodes.extend(body.element_nodes(e));
                 pattern.element_map(&nodes, &mut elements)?;
-                let mut extended = Vec::new();
+                extended.clear();
                 dofs.extend_nodes(&nodes, &mut extended);
-                kinds.push(if extended.len() > 8 {
+                kinds.push(if extended.len() > nodes.len() {
                     Kind::Tied
                 } else if dofs.constrains(&nodes) {
                     Kind::Prescribed

@@ -16,16 +16,14 @@ use crate::model::Model;
 use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::scene::ValueError;
-use crate::shell::{ElementFault, H8System};
+use crate::shell::ElementFault;
 use couplings::Couplings;
 use covact_geometry::Vec3;
 use maps::Maps;
 use moving::Meetings;
 
+use elements::Systems;
 use std::sync::Arc;
-
-/// Elements evaluated before their matrices are summed.
-const CHUNK: usize = 128;
 
 /// What kept the model from being evaluated at a trial state. The step is cut.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -100,7 +98,7 @@ pub struct Assembler<'m> {
     /// Per pair: per point, where its blocks go.
     point_maps: Vec<Vec<u32>>,
     follower_maps: Vec<Vec<u32>>,
-    systems: Vec<H8System>,
+    systems: Systems,
     touches: Vec<Result<Option<Touch>, PointFault>>,
     /// The surfaces of masters that are bodies, at the last state evaluated.
     pub masters: Masters,
@@ -117,8 +115,6 @@ pub struct Assembler<'m> {
     /// Penalty per pair; an automatic one may be raised in the course of a run.
     pub penalties: Vec<f64>,
 }
-
-const PAIRS: usize = 36;
 
 impl<'m> Assembler<'m> {
     /// Builds the pattern of the model under its constraints.
@@ -137,7 +133,7 @@ impl<'m> Assembler<'m> {
             kinds: maps.kinds,
             point_maps: maps.points,
             follower_maps: maps.followers,
-            systems: vec![H8System::default(); CHUNK],
+            systems: Systems::new(model),
             touches: vec![Ok(None); most],
             masters: Masters::new(model),
             couplings,
@@ -209,21 +205,7 @@ impl<'m> Assembler<'m> {
         self.meet(state)?;
         residual.fill(0.0);
         let mut totals = Totals::default();
-        let mut first = 0;
-        for body in &self.model.bodies {
-            let len = body.block.state_len();
-            let mut f = [0.0; 24];
-            for e in 0..body.block.elements() {
-                let at = first + e * len;
-                let x = body.displacements(e, &state.u);
-                let energy = (body.block)
-                    .residual(e, &x, &state.elements[at..at + len], &mut f)
-                    .map_err(|fault| element_fault(&body.name, fault))?;
-                totals.internal_energy += energy;
-                add_nodes(residual, &body.element_nodes(e), &f);
-            }
-            first += len * body.block.elements();
-        }
+        self.element_forces(state, residual, &mut totals)?;
         self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
         self.loads::<false>(state, time, None, residual, &mut [])?;
         Ok(totals)
@@ -258,12 +240,5 @@ fn element_fault(body: &str, fault: ElementFault) -> Fault {
     Fault::Element {
         body: body.to_owned(),
         fault,
-    }
-}
-
-fn add_nodes(out: &mut [f64], nodes: &[u32; 8], f: &[f64; 24]) {
-    for (k, &n) in nodes.iter().enumerate() {
-        let at = 3 * n as usize;
-        (0..3).for_each(|c| out[at + c] += f[3 * k + c]);
     }
 }
