@@ -10,4 +10,5 @@ pub mod point;
 pub mod points;
 pub mod published;
 pub mod rigid;
+pub mod scatter;
 pub mod spin;

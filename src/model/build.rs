@@ -1,4 +1,5 @@
 //! Scene to model.
+mod contacts;
 mod supports;
 mod surfaces;
 mod values;
@@ -7,10 +8,10 @@ use super::error::{At, number, text};
 use super::loads::{DeadLoad, FollowerPressure, load_points};
 use super::motion::pose;
 use super::slave::slave_points;
-use super::{BodyModel, Model, ModelError, PairModel, SurfaceModel, penalty};
+use super::{BodyModel, Model, ModelError};
 use crate::mesh::{self, Face, Mesh};
 use crate::scene::{
-    self, LoadedScene, MeshSource, POSITION_AND_TIME, Penalty, Scene, TIME, TimeFunction, Value,
+    self, LoadedScene, MeshSource, POSITION_AND_TIME, Scene, TIME, TimeFunction, Value,
 };
 use crate::shell::{Block, Law};
 use covact_geometry::Vec3;
@@ -208,68 +209,6 @@ impl<'s> Builder<'s> {
             _ => mesh.node_set(set).at(|| pointer.to_owned())?.to_vec(),
         };
         Ok((index, local.into_iter().map(|n| n + first).collect()))
-    }
-
-    fn contacts(&mut self) -> Result<(Vec<PairModel>, Vec<SurfaceModel>), ModelError> {
-        let mut surfaces = Vec::new();
-        let mut labels = Vec::new();
-        let mut surface_index = BTreeMap::new();
-        for (name, surface) in &self.scene.surfaces {
-            surface_index.insert(name.as_str(), surfaces.len());
-            let (model, named) = self.surface(name, surface)?;
-            surfaces.push(model);
-            labels.push(named);
-        }
-        let mut pairs = Vec::new();
-        for (name, contact) in &self.scene.contacts {
-            let pointer = |field: &str| format!("/contacts/{name}/{field}");
-            let (body, faces) = self.faces(&contact.slave, &pointer("slave"))?;
-            let surface = *(surface_index.get(contact.master.as_str())).ok_or_else(|| {
-                text(
-                    pointer("master"),
-                    format!("there is no surface `{}`", contact.master),
-                )
-            })?;
-            let model = &self.bodies[body];
-            let points = slave_points(&model.mesh, &faces, contact.points, model.first_node)
-                .at(|| pointer("points"))?;
-            let size = penalty::slave_size(&model.mesh, &faces);
-            let material = &self.scene.bodies[&model.name].material;
-            let automatic = penalty::automatic(&self.scene.materials[material], &size);
-            let (eps_n, is_automatic) = match contact.penalty {
-                Penalty::Auto => (automatic, true),
-                Penalty::Value(v) => (v, false),
-                Penalty::Scaled(f) => (f * automatic, false),
-            };
-            let (value, auto) = (number(eps_n), number(automatic));
-            let how = match contact.penalty {
-                Penalty::Auto => "chosen from the stiffness of the slave's elements".to_owned(),
-                Penalty::Value(_) => format!(
-                    "as given ({} of the automatic {auto})",
-                    number(eps_n / automatic)
-                ),
-                Penalty::Scaled(f) => format!("{} of the automatic {auto}", number(f)),
-            };
-            self.notes.push(format!(
-                "contact `{name}`: penalty {value} (pressure per penetration), {how}"
-            ));
-            pairs.push(PairModel {
-                name: name.clone(),
-                body,
-                surface,
-                points,
-                eps_n,
-                automatic: is_automatic,
-                tangent: contact.tangent,
-                element_size: size.edge,
-            });
-        }
-        for (index, (name, surface)) in self.scene.surfaces.iter().enumerate() {
-            let own: Vec<&PairModel> = pairs.iter().filter(|p| p.surface == index).collect();
-            let model = (&mut surfaces[index], labels[index].as_slice());
-            self.orient(name, surface, model, &own)?;
-        }
-        Ok((pairs, surfaces))
     }
 
     #[allow(clippy::type_complexity)]

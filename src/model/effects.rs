@@ -1,6 +1,6 @@
 //! The effects a scene calls for, by name: what the run then does, and nothing else.
 use super::Model;
-use crate::scene::{Element, Material, Points, Scene, Tangent};
+use crate::scene::{Element, MasterSurface, Material, Points, Scene, Tangent};
 use std::collections::BTreeSet;
 
 /// Names of the effects that are on, sorted.
@@ -24,7 +24,14 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
     }
     for contact in scene.contacts.values() {
         add("contact.normal.penalty");
-        add("contact.master.rigid");
+        if scene.surfaces.contains_key(&contact.master) {
+            add("contact.master.rigid");
+        } else {
+            add("contact.master.deformable");
+        }
+        if contact.master_surface == Some(MasterSurface::Smooth) {
+            add("contact.master.smooth");
+        }
         add(match contact.points {
             Points::Nodes => "contact.points.nodes",
             Points::Gauss(_) => "contact.points.gauss",

@@ -4,6 +4,7 @@ use crate::mesh::MeshError;
 use crate::scene::ValueError;
 use crate::shell::ShellError;
 use crate::shell::quadrature::QuadratureError;
+use covact_geometry::MovingError;
 use covact_geometry::io::CadError;
 use covact_geometry::project::{PatchSetError, SideError};
 
@@ -37,6 +38,8 @@ pub enum Cause {
     Cad(#[from] CadError),
     #[error(transparent)]
     Patches(#[from] PatchSetError),
+    #[error(transparent)]
+    Facets(#[from] MovingError),
     #[error(transparent)]
     Side(#[from] SideError),
     #[error(transparent)]

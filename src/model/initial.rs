@@ -1,7 +1,7 @@
 //! How the contact pairs stand before anything moves.
 use super::error::{number, text};
+use super::master::Master;
 use super::{Model, ModelError};
-use crate::contact::rigid::{behind, presses};
 use covact_geometry::Vec3;
 
 /// Initial gaps of a pair.
@@ -22,7 +22,8 @@ pub struct InitialGap {
 /// Distances of all points of pair `index` at time 0, wherever they are.
 pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError> {
     let pair = &model.pairs[index];
-    let master = (model.surfaces[pair.surface].at(0.0))
+    // Surfaces of bodies are kept at their undeformed positions in the model.
+    let master = (pair.master.at(model, 0.0))
         .map_err(|e| text(format!("/contacts/{}/master", pair.name), e.to_string()))?;
     let zero = vec![0.0; 3 * model.nodes.len()];
     let mut gap = InitialGap {
@@ -34,29 +35,20 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
     };
     let mut hint = None;
     let mut nearest = None;
-    for p in &pair.points {
+    for (i, p) in pair.points.iter().enumerate() {
         let x = model.point_position(p, &zero);
-        let Some(foot) = master.foot(&x, hint, f64::INFINITY) else {
+        let Some(seen) = master.see(pair, i, &x, hint) else {
             continue;
         };
-        hint = Some(covact_geometry::Hint {
-            patch: foot.patch,
-            xi: foot.xi,
-        });
-        let behind = behind(&foot, master.depth);
-        let counts = presses(&foot) && !behind;
-        let distance = if foot.signed_distance < 0.0 && !counts {
-            foot.distance
-        } else {
-            foot.signed_distance
-        };
+        hint = Some(seen.hint);
+        let distance = seen.gap();
         if distance < gap.smallest {
             gap.smallest = distance;
-            nearest = Some((p.nodes[0], x, master.pose.rotation * foot.normal));
+            nearest = Some((p.nodes[0], x, seen.normal));
         }
         gap.largest = gap.largest.max(distance);
-        gap.touching += usize::from(counts);
-        gap.behind += usize::from(behind);
+        gap.touching += usize::from(seen.closed);
+        gap.behind += usize::from(seen.behind);
     }
     if let Some((node, x, n)) = nearest {
         gap.turned_away = turned_away(model, pair.body, node, &x, &n);
@@ -84,7 +76,7 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
     let mut warnings = Vec::new();
     let mut notes = Vec::new();
     for (index, pair) in model.pairs.iter().enumerate() {
-        let surface = &model.surfaces[pair.surface];
+        let master = pair.master_words(model);
         let gap = initial_gap(model, index)?;
         notes.push(format!(
             "contact `{}`: initial gaps from {} to {} at {} points, {} of them in contact",
@@ -96,18 +88,29 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
         ));
         let limit = 0.5 * pair.element_size;
         if gap.smallest < -limit {
+            let (pointer, start, help) = match &pair.master {
+                Master::Rigid(surface) => (
+                    format!("/surfaces/{}", model.surfaces[*surface].name),
+                    format!("{master} starts"),
+                    "move it back with `placement`, or choose the other `side`",
+                ),
+                Master::Body(_) => (
+                    format!("/contacts/{}/master", pair.name),
+                    format!("{master} start"),
+                    "move one of the bodies, or take the faces that face each other",
+                ),
+            };
             return Err(text(
-                format!("/surfaces/{}", surface.name),
+                pointer,
                 format!(
-                    "surface `{}` starts {} deep inside body `{}` (contact `{}`), more than half an element, {}",
-                    surface.name,
+                    "{start} {} deep inside body `{}` (contact `{}`), more than half an element, {}",
                     number(-gap.smallest),
                     model.bodies[pair.body].name,
                     pair.name,
                     number(limit)
                 ),
             )
-            .help("move it back with `placement`, or choose the other `side`"));
+            .help(help));
         }
         if gap.smallest < -1e-9 * pair.element_size {
             warnings.push(format!(
@@ -119,21 +122,28 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
         }
         if gap.turned_away {
             warnings.push(format!(
-                "contact `{}`: body `{}` lies between its slave faces and surface `{}`: are the faces on the other side \
-                 of the body meant?",
-                pair.name, model.bodies[pair.body].name, surface.name
+                "contact `{}`: body `{}` lies between its slave faces and {master}: are the faces on the other side of \
+                 the body meant?",
+                pair.name, model.bodies[pair.body].name
             ));
         }
         if gap.behind > 0 {
+            let help = match &pair.master {
+                Master::Rigid(_) => "move the surface with `placement`, or choose the other `side`",
+                Master::Body(_) => "move one of the bodies, or take the faces that face each other",
+            };
             warnings.push(format!(
-                "contact `{}`: {} point(s) start behind surface `{}`, deeper than its `depth` {}, and are not in \
-                 contact: move the surface with `placement`, or choose the other `side`",
+                "contact `{}`: {} point(s) start behind {master}, deeper than its `depth` {}, and are not in contact: \
+                 {help}",
                 pair.name,
                 gap.behind,
-                surface.name,
-                number(surface.depth)
+                number(pair.master.depth(model))
             ));
         }
+        let Master::Rigid(surface) = &pair.master else {
+            continue;
+        };
+        let surface = &model.surfaces[*surface];
         let spacing = point_spacing(model, index);
         if let Some(radius) = (surface.set.curvature_range().convex).map(|c| c.radius())
             && spacing > 0.5 * radius

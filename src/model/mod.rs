@@ -6,6 +6,7 @@ pub mod error;
 pub mod free_motion;
 pub mod initial;
 pub mod loads;
+pub mod master;
 pub mod motion;
 pub mod penalty;
 pub mod slave;
@@ -20,6 +21,7 @@ use crate::shell::{Block, ElementBlock};
 use constraints::{MeanPrescribed, Prescribed};
 use covact_geometry::{PatchSet, Vec3};
 use loads::{DeadLoad, FollowerPressure};
+use master::Master;
 use motion::Motion;
 
 pub use error::ModelError;
@@ -77,7 +79,7 @@ pub struct SurfaceModel {
 pub struct PairModel {
     pub name: String,
     pub body: usize,
-    pub surface: usize,
+    pub master: Master,
     pub points: Vec<SlavePoint>,
     /// Penalty (force / length^3).
     pub eps_n: f64,

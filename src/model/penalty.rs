@@ -2,8 +2,8 @@
 use crate::mesh::{ElementKind, Face, Mesh};
 use crate::scene::{Elastic, Material};
 
-/// Penalty as a multiple of `E / s`, `s` being the smaller of the slave faces' edge length and the thickness of the
-/// elements below them. A pressure of a fifth of Young's modulus then sinks in by 1 % of `s`; a stiffer value would
+/// Penalty as a multiple of `E / s`, `s` being the smaller of the faces' edge length and the thickness of the elements
+/// below them; of two deformable sides the softer one counts. A pressure of a fifth of Young's modulus then sinks in by 1 % of `s`; a stiffer value would
 /// only cost digits in the factorization.
 pub const FACTOR: f64 = 20.0;
 
@@ -19,9 +19,9 @@ pub fn modulus(material: &Material) -> f64 {
     }
 }
 
-/// Sizes of the slave's elements.
+/// Sizes of the elements under some faces.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SlaveSize {
+pub struct FaceSize {
     /// Mean distance of nodes along the edges of the faces: their mean length (square root of the mean area), half of it for
     /// quadratic elements.
     pub edge: f64,
@@ -29,8 +29,8 @@ pub struct SlaveSize {
     pub depth: f64,
 }
 
-/// Measures the elements under the slave faces.
-pub fn slave_size(mesh: &Mesh, faces: &[Face]) -> SlaveSize {
+/// Measures the elements under some faces.
+pub fn face_size(mesh: &Mesh, faces: &[Face]) -> FaceSize {
     let area: f64 = faces.iter().map(|&f| mesh.face_area_normal(f).0).sum();
     let volume: f64 = (faces.iter())
         .map(|f| mesh.element_volume(f.element as usize))
@@ -39,13 +39,13 @@ pub fn slave_size(mesh: &Mesh, faces: &[Face]) -> SlaveSize {
         ElementKind::H8 => 1.0,
         ElementKind::Q18 => 2.0,
     };
-    SlaveSize {
+    FaceSize {
         edge: (area / faces.len().max(1) as f64).sqrt() / spans,
         depth: volume / area,
     }
 }
 
 /// The automatic penalty (force / length^3); scales with the units of the scene as it should.
-pub fn automatic(material: &Material, size: &SlaveSize) -> f64 {
+pub fn automatic(material: &Material, size: &FaceSize) -> f64 {
     FACTOR * modulus(material) / size.edge.min(size.depth)
 }

@@ -49,6 +49,36 @@ pub const COLUMNS: &[ColumnDoc] = &[
         "force length",
         "moment of that force about the origin of the scene",
     ),
+    doc(
+        "slave.force.<name>.<axis>",
+        "force",
+        "total force on the slave faces of a contact pair whose master is a body",
+    ),
+    doc(
+        "slave.moment.<name>.<axis>",
+        "force length",
+        "moment of that force about the origin of the scene",
+    ),
+    doc(
+        "master.force.<name>.<axis>",
+        "force",
+        "total force on the master faces of such a pair",
+    ),
+    doc(
+        "master.moment.<name>.<axis>",
+        "force length",
+        "moment of that force about the origin of the scene",
+    ),
+    doc(
+        "imbalance.force.<name>",
+        "force",
+        "length of the sum of the forces on both sides of such a pair",
+    ),
+    doc(
+        "imbalance.moment.<name>",
+        "force length",
+        "length of the sum of the moments on both sides of such a pair",
+    ),
     doc("energy.internal", "energy", "strain energy of all bodies"),
     doc(
         "energy.contact",

@@ -66,6 +66,10 @@ pub struct Summary {
     pub steps: u32,
     /// Attempts that failed and were rolled back.
     pub cuts: u32,
+    /// Times the system's structure was set up anew because slave points had come to faces of a body that it did not
+    /// hold yet.
+    #[serde(default)]
+    pub pattern_rebuilds: u32,
     /// Effects that were on, by name.
     pub effects: Vec<String>,
     /// What the user should know, in words.

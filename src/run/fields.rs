@@ -1,6 +1,6 @@
 //! Fields of an accepted state, gathered on nodes for the output.
 use super::RunError;
-use crate::contact::rigid::{behind, presses};
+use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::output::{
@@ -84,9 +84,11 @@ impl Fields {
         &mut self,
         model: &Model,
         penalties: &[f64],
+        masters: &mut Masters,
         state: &State,
         time: f64,
     ) -> Result<(), RunError> {
+        masters.update(model, &state.u);
         self.pressure.fill(0.0);
         self.gap.fill(f64::NAN);
         self.status.fill(NOT_A_SLAVE);
@@ -96,23 +98,18 @@ impl Fields {
         self.sunk.fill(0);
         let mut first = 0;
         for (index, (pair, eps_n)) in model.pairs.iter().zip(penalties).enumerate() {
-            let master = model.surfaces[pair.surface].at(time)?;
+            let master = masters.at(model, index, time)?;
             let states = &state.points[first..first + pair.points.len()];
             let fronts = &mut self.front[first..first + pair.points.len()];
-            for ((p, s), front) in pair.points.iter().zip(states).zip(fronts) {
+            for (i, ((p, s), front)) in pair.points.iter().zip(states).zip(fronts).enumerate() {
                 let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
-                let foot = master.foot(&x, s.hint, f64::INFINITY);
-                let closed =
-                    (foot.as_ref()).is_some_and(|f| presses(f) && f.distance <= master.depth);
-                let sunk = foot.as_ref().is_some_and(|f| behind(f, master.depth));
+                let seen = master.see(pair, i, &x, s.hint);
+                let closed = seen.is_some_and(|s| s.closed);
+                let sunk = seen.is_some_and(|s| s.behind);
                 self.sunk[index] += usize::from(*front && sunk);
-                *front = closed || foot.as_ref().is_some_and(|f| f.signed_distance >= 0.0);
-                let gap = match &foot {
-                    None => f64::NAN,
-                    Some(f) if closed => f.signed_distance,
-                    Some(f) => f.distance,
-                };
+                *front = closed || seen.is_some_and(|s| s.signed_distance >= 0.0);
+                let gap = seen.map_or(f64::NAN, |s| s.gap());
                 let pressure = if closed { -eps_n * gap } else { 0.0 };
                 if gap < self.smallest_gap {
                     self.smallest_gap = gap;

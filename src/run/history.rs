@@ -1,6 +1,6 @@
 //! Rows of `history.csv`.
 use super::fields::Fields;
-use crate::model::Model;
+use crate::model::{Model, PairModel};
 use crate::solve::newton::Converged;
 use covact_geometry::Vec3;
 
@@ -30,6 +30,16 @@ pub fn columns(model: &Model) -> Vec<String> {
     for name in acting {
         for quantity in ["force", "moment"] {
             names.extend(AXES.map(|axis| format!("{quantity}.{name}.{axis}")));
+        }
+    }
+    for pair in deformable(model) {
+        for side in ["slave", "master"] {
+            for quantity in ["force", "moment"] {
+                names.extend(AXES.map(|axis| format!("{side}.{quantity}.{}.{axis}", pair.name)));
+            }
+        }
+        for quantity in ["force", "moment"] {
+            names.push(format!("imbalance.{quantity}.{}", pair.name));
         }
     }
     names.extend(
@@ -67,6 +77,14 @@ pub fn row(r: &Record) -> Vec<f64> {
     for (force, moment) in reactions(r.model, r.residual, r.u) {
         out.extend(force.iter().chain(moment.iter()));
     }
+    for (_, sides) in (r.model.pairs.iter().zip(&totals.pairs)).filter(|(p, _)| is_deformable(p)) {
+        let [slave, master] = [sides.slave, sides.master];
+        for side in [slave, master] {
+            out.extend(side.force.iter().chain(side.moment.iter()));
+        }
+        out.push((slave.force + master.force).norm());
+        out.push((slave.moment + master.moment).norm());
+    }
     out.extend([
         totals.internal_energy,
         totals.contact_energy,
@@ -78,6 +96,15 @@ pub fn row(r: &Record) -> Vec<f64> {
         changed as f64,
     ]);
     out
+}
+
+/// Pairs whose master is a body.
+fn deformable(model: &Model) -> impl Iterator<Item = &PairModel> {
+    model.pairs.iter().filter(|p| is_deformable(p))
+}
+
+fn is_deformable(pair: &PairModel) -> bool {
+    pair.body_master().is_some()
 }
 
 /// Force and moment about the origin that each support exerts on the deformed body.

@@ -31,7 +31,7 @@ pub(super) struct Ending {
 pub(super) struct March<'a, 'm> {
     scene: &'a Scene,
     model: &'m Model,
-    assembler: &'a mut Assembler<'m>,
+    pub assembler: &'a mut Assembler<'m>,
     solver: &'a mut DirectSolver,
     workspace: Workspace,
     pub observer: &'a mut (dyn Observer + Send),
@@ -93,9 +93,7 @@ impl<'a, 'm> March<'a, 'm> {
             self.warn(note);
         }
         let mut committed = State::new(self.model);
-        outputs
-            .fields
-            .gather(self.model, &self.assembler.penalties, &committed, 0.0)?;
+        self.gather(&mut outputs, &committed, 0.0)?;
         self.write(&mut outputs, &committed)?;
         let ending = self.steps(&mut committed, &mut outputs);
         if self.scene.output.every > 0 && outputs.written != Some(self.progress.steps) {
@@ -253,6 +251,12 @@ impl<'a, 'm> March<'a, 'm> {
         });
     }
 
+    fn gather(&mut self, outputs: &mut Outputs, state: &State, time: f64) -> Result<(), RunError> {
+        let assembler = &mut *self.assembler;
+        let masters = &mut assembler.masters;
+        (outputs.fields).gather(self.model, &assembler.penalties, masters, state, time)
+    }
+
     /// The row of an accepted step, and its fields where they are wanted.
     fn record(
         &mut self,
@@ -264,16 +268,15 @@ impl<'a, 'm> March<'a, 'm> {
     ) -> Result<(), RunError> {
         let (step, time) = (self.progress.steps, self.progress.time);
         self.phases.start("output");
-        (outputs.fields).gather(self.model, &self.assembler.penalties, state, time)?;
+        self.gather(outputs, state, time)?;
         for (pair, sunk) in self.model.pairs.iter().zip(&outputs.fields.sunk) {
             if *sunk > 0 {
-                let surface = &self.model.surfaces[pair.surface];
                 self.warn(format!(
-                    "contact `{}`: {sunk} point(s) passed through surface `{}` at step {step}, deeper than its `depth` \
-                     {}, and are not in contact: take smaller steps or a larger `depth`",
+                    "contact `{}`: {sunk} point(s) passed through {} at step {step}, deeper than its `depth` {}, and are \
+                     not in contact: take smaller steps or a larger `depth`",
                     pair.name,
-                    surface.name,
-                    number(surface.depth)
+                    pair.master_words(self.model),
+                    number(pair.master.depth(self.model))
                 ));
             }
         }

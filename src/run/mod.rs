@@ -83,10 +83,11 @@ fn solve(
         threads,
         ..SolverOptions::default()
     });
-    let pattern = assembler.matrix().pattern().clone();
-    solver
-        .analyze(&pattern)
-        .map_err(|e| RunError::internal(&e))?;
+    if let Some(pattern) = assembler.take_new_pattern() {
+        solver
+            .analyze(&pattern)
+            .map_err(|e| RunError::internal(&e))?;
+    }
     phases.stop("analysis");
     let mut march = March::new(
         &loaded.scene,
@@ -109,6 +110,7 @@ fn solve(
         time,
     } = march.progress;
     let phases = march.phases;
+    let pattern_rebuilds = march.assembler.rebuilds();
     let summary = Summary {
         status,
         reason,
@@ -123,6 +125,7 @@ fn solve(
         newton_iterations: iterations,
         steps,
         cuts,
+        pattern_rebuilds,
         effects: model.effects.clone(),
         warnings,
         versions: Versions::default(),

@@ -10,7 +10,6 @@
 //! What fails all three is cut.
 use super::progress::Progress;
 use crate::assembly::{Assembler, Fault};
-use crate::contact::rigid::behind;
 use crate::model::state::State;
 use crate::model::{Model, penalty};
 use crate::output::Phases;
@@ -141,32 +140,30 @@ impl Attempts<'_, '_> {
 
     /// Fails where a point that was in contact in the last accepted state lies below the surface, deeper than its
     /// depth.
-    fn none_sunk(&self, end: f64, trial: &State) -> Result<(), StepFailure> {
+    fn none_sunk(&mut self, end: f64, trial: &State) -> Result<(), StepFailure> {
+        let masters = &mut self.assembler.masters;
+        masters.update(self.model, &trial.u);
         let mut first = 0;
-        for pair in &self.model.pairs {
-            let surface = &self.model.surfaces[pair.surface];
-            let master = surface.at(end).map_err(Fault::from)?;
+        for (index, pair) in self.model.pairs.iter().enumerate() {
+            let master = (masters.at(self.model, index, end)).map_err(Fault::from)?;
             let range = first..first + pair.points.len();
             first = range.end;
             let now = &trial.points[range.clone()];
-            let opened = (pair
-                .points
-                .iter()
-                .zip(now)
-                .zip(&self.committed.points[range]))
-            .filter(|((_, now), before)| before.closed && !now.closed);
-            let sunk = opened.filter(|((p, now), _)| {
+            let opened = (pair.points.iter().zip(now))
+                .zip(&self.committed.points[range])
+                .enumerate()
+                .filter(|(_, ((_, now), before))| before.closed && !now.closed);
+            let sunk = opened.filter(|(i, ((p, now), _))| {
                 let x = self.model.point_position(p, &trial.u);
-                let foot = master.foot(&x, now.hint, f64::INFINITY);
-                foot.is_some_and(|f| behind(&f, master.depth))
+                (master.see(pair, *i, &x, now.hint)).is_some_and(|s| s.behind)
             });
             let points = sunk.count();
             if points > 0 {
                 return Err(StepFailure::Sunk {
                     pair: pair.name.clone(),
-                    surface: surface.name.clone(),
+                    master: pair.master_words(self.model),
                     points,
-                    depth: master.depth,
+                    depth: master.depth(),
                 });
             }
         }

@@ -38,12 +38,13 @@ pub enum StepFailure {
     )]
     PenetrationStays,
     #[error(
-        "contact `{pair}`: {points} point(s) that were in contact sank deeper than the `depth` {depth:.6e} of surface \
-         `{surface}`: the penalty is too soft for it, or the step too large"
+        "contact `{pair}`: {points} point(s) that were in contact sank deeper than the `depth` {depth:.6e} of \
+         {master}: the penalty is too soft for it, or the step too large"
     )]
     Sunk {
         pair: String,
-        surface: String,
+        /// The master, in words.
+        master: String,
         points: usize,
         depth: f64,
     },
@@ -222,6 +223,12 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
     /// Solves for the increment; returns the number of negative pivots.
     fn solve_linear(&mut self, pending: bool) -> Result<usize, StepFailure> {
         let w = &mut *self.workspace;
+        if let Some(pattern) = self.assembler.take_new_pattern() {
+            self.phases.start("analysis");
+            let analyzed = self.solver.analyze(&pattern).map(drop);
+            self.phases.stop("analysis");
+            analyzed?;
+        }
         self.phases.start("factorization");
         let factored = self.solver.factorize(self.assembler.matrix());
         self.phases.stop("factorization");

@@ -2,18 +2,25 @@
 //!
 //! Elements and slave points are evaluated in parallel, a chunk at a time, and summed in order by one thread, so that
 //! the result is the same to the last bit for every number of threads.
+mod couplings;
 mod elements;
 mod loads;
+mod maps;
+mod moving;
 mod rigid;
 
 use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
 use crate::contact::rigid::{PointFault, Touch};
 use crate::model::Model;
+use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::scene::ValueError;
 use crate::shell::ElementFault;
+use couplings::Couplings;
 use covact_geometry::Vec3;
+use maps::Maps;
+use moving::Meetings;
 
 use elements::Systems;
 use std::sync::Arc;
@@ -32,15 +39,25 @@ pub enum Fault {
     },
     #[error(transparent)]
     Value(#[from] ValueError),
+    /// The system has grown too large.
+    #[error(transparent)]
+    Pattern(#[from] PatternError),
 }
 
-/// What a rigid surface does to the bodies.
+/// What acts on one side of a contact: that of a rigid surface on the bodies, or of one body on the other.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SurfaceForce {
-    /// Force of the surface on the bodies.
+    /// Force on the bodies.
     pub force: Vec3,
     /// Moment of that force about the origin.
     pub moment: Vec3,
+}
+
+/// What a contact pair does to its two bodies, summed over the nodes of each.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PairForce {
+    pub slave: SurfaceForce,
+    pub master: SurfaceForce,
 }
 
 /// Totals of one evaluation.
@@ -52,6 +69,8 @@ pub struct Totals {
     pub contact_energy: f64,
     /// Per surface of the model.
     pub surfaces: Vec<SurfaceForce>,
+    /// Per pair; zero where its master is rigid.
+    pub pairs: Vec<PairForce>,
     /// Points in contact.
     pub active: usize,
     /// Points whose status differs from the one in the state when the evaluation began.
@@ -81,6 +100,14 @@ pub struct Assembler<'m> {
     follower_maps: Vec<Vec<u32>>,
     systems: Systems,
     touches: Vec<Result<Option<Touch>, PointFault>>,
+    /// The surfaces of masters that are bodies, at the last state evaluated.
+    pub masters: Masters,
+    /// Per pair whose master is a body: the nodes that the pattern couples, and the points at the last state.
+    couplings: Vec<Option<Couplings>>,
+    meetings: Vec<Meetings>,
+    /// The pattern, until the solver has taken it.
+    new_pattern: Option<Arc<Pattern>>,
+    rebuilds: u32,
     work: ConstrainedScatter,
     /// Dead loads at the present time.
     external: Vec<f64>,
@@ -92,74 +119,42 @@ pub struct Assembler<'m> {
 impl<'m> Assembler<'m> {
     /// Builds the pattern of the model under its constraints.
     pub fn new(model: &'m Model, dofs: &'m DofMap) -> Result<Self, PatternError> {
-        let mut groups: Vec<Vec<u32>> = Vec::new();
-        let mut nodes = Vec::new();
-        for body in &model.bodies {
-            for e in 0..body.block.elements() {
-                nodes.clear();
-                nodes.extend(body.element_nodes(e));
-                let mut group = Vec::with_capacity(nodes.len());
-                dofs.extend_nodes(&nodes, &mut group);
-                groups.push(group);
-            }
-        }
-        let pattern = Pattern::new(model.nodes.len(), groups.iter().map(Vec::as_slice))?;
-        let (mut element_maps, mut kinds) = (Vec::new(), Vec::new());
-        let mut extended = Vec::new();
-        for body in &model.bodies {
-            for e in 0..body.block.elements() {
-                nodes.clear();
-                nodes.extend(body.element_nodes(e));
-                pattern.element_map(&nodes, &mut element_maps)?;
-                extended.clear();
-                dofs.extend_nodes(&nodes, &mut extended);
-                kinds.push(if extended.len() > nodes.len() {
-                    Kind::Tied
-                } else if dofs.constrains(&nodes) {
-                    Kind::Prescribed
-                } else {
-                    Kind::Free
-                });
-            }
-        }
-        let mut point_maps = Vec::new();
-        for pair in &model.pairs {
-            let mut maps = Vec::new();
-            for p in &pair.points {
-                pattern.element_map(&p.nodes[..p.count as usize], &mut maps)?;
-            }
-            point_maps.push(maps);
-        }
-        let mut follower_maps = Vec::new();
-        for (_, load) in &model.follower_loads {
-            let mut maps = Vec::new();
-            for nodes in &load.faces {
-                pattern.element_map(nodes.nodes(), &mut maps)?;
-            }
-            follower_maps.push(maps);
-        }
-        let most = model
-            .pairs
-            .iter()
-            .map(|p| p.points.len())
-            .max()
-            .unwrap_or(0);
+        let couplings = moving::first_couplings(model);
+        let pattern = Arc::new(maps::pattern(model, dofs, &couplings)?);
+        let maps = Maps::new(model, dofs, &pattern)?;
+        let rigid = model.pairs.iter().filter(|p| p.rigid_master().is_some());
+        let most = rigid.map(|p| p.points.len()).max().unwrap_or(0);
         let n = 3 * model.nodes.len();
         Ok(Assembler {
             model,
             dofs,
-            matrix: SystemMatrix::new(Arc::new(pattern)),
-            element_maps,
-            kinds,
-            point_maps,
-            follower_maps,
+            matrix: SystemMatrix::new(pattern.clone()),
+            element_maps: maps.elements,
+            kinds: maps.kinds,
+            point_maps: maps.points,
+            follower_maps: maps.followers,
             systems: Systems::new(model),
             touches: vec![Ok(None); most],
+            masters: Masters::new(model),
+            couplings,
+            meetings: model.pairs.iter().map(Meetings::new).collect(),
+            new_pattern: Some(pattern),
+            rebuilds: 0,
             work: ConstrainedScatter::default(),
             external: vec![0.0; n],
             contact: vec![0.0; n],
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
         })
+    }
+
+    /// The pattern, if it is another than when it was last taken: the solver has to analyse it.
+    pub fn take_new_pattern(&mut self) -> Option<Arc<Pattern>> {
+        self.new_pattern.take()
+    }
+
+    /// Times the pattern was built anew because points touched facets that it did not couple them with.
+    pub fn rebuilds(&self) -> u32 {
+        self.rebuilds
     }
 
     /// The tangent of the last [`Self::linearize`].
@@ -183,6 +178,8 @@ impl<'m> Assembler<'m> {
         residual: &mut [f64],
         rhs: &mut [f64],
     ) -> Result<Totals, Fault> {
+        // First, because it may change the pattern.
+        self.meet(state)?;
         self.matrix.clear();
         residual.fill(0.0);
         rhs.fill(0.0);
@@ -205,6 +202,7 @@ impl<'m> Assembler<'m> {
         time: f64,
         residual: &mut [f64],
     ) -> Result<Totals, Fault> {
+        self.meet(state)?;
         residual.fill(0.0);
         let mut totals = Totals::default();
         self.element_forces(state, residual, &mut totals)?;
@@ -235,7 +233,7 @@ fn put(
     }
     matrix
         .scatter_constrained(nodes, ke, dofs, work)
-        .expect("a face's nodes lie in one element, which the pattern holds");
+        .expect("the pattern holds faces, which lie in elements, and what contact couples");
 }
 
 fn element_fault(body: &str, fault: ElementFault) -> Fault {

@@ -1,8 +1,9 @@
 //! Contact with rigid surfaces: the slave points of a pair are evaluated in parallel and summed in order.
-use super::{Assembler, Fault, SurfaceForce, Totals, put};
+use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
 use crate::contact::law::{NormalLaw, Penalty};
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
+use crate::model::master::Master;
 use crate::model::state::{PointState, State};
 use crate::model::{Model, PairModel};
 use crate::scene::Tangent;
@@ -19,10 +20,17 @@ impl Assembler<'_> {
         totals: &mut Totals,
     ) -> Result<(), Fault> {
         totals.surfaces = vec![SurfaceForce::default(); self.model.surfaces.len()];
+        totals.pairs = vec![PairForce::default(); self.model.pairs.len()];
         self.contact.fill(0.0);
         let mut first = 0;
         for (index, pair) in self.model.pairs.iter().enumerate() {
-            let surface = &self.model.surfaces[pair.surface];
+            let Master::Rigid(number) = pair.master else {
+                let states = &mut state.points[first..first + pair.points.len()];
+                self.moving::<TANGENT>(index, &state.u, states, increments, residual, rhs, totals);
+                first += pair.points.len();
+                continue;
+            };
+            let surface = &self.model.surfaces[number];
             let master = surface.at(time)?;
             let n = pair.points.len();
             let points = &mut state.points[first..first + n];
@@ -79,7 +87,7 @@ impl Assembler<'_> {
                 deepest = deepest.max(-touch.xi3);
                 totals.contact_energy += 0.5 * touch.n * touch.xi3 * p.area;
                 let force = touch.residual * p.area;
-                let on = &mut totals.surfaces[pair.surface];
+                let on = &mut totals.surfaces[number];
                 on.force -= force;
                 on.moment -= self.model.point_position(p, u).cross(&force);
                 for (node, w) in p.terms() {

@@ -4,7 +4,7 @@ mod names;
 mod shapes;
 
 use super::load::LoadedScene;
-use super::problem::Problem;
+use super::problem::{Problem, suggestion};
 use super::types::*;
 use super::value::{POSITION_AND_TIME, TIME};
 use checker::{Checker, path};
@@ -71,13 +71,7 @@ fn check_material(c: &mut Checker, name: &str, material: &Material) {
 
 fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, sets: &Sets) {
     sets.check(c, &format!("{at}/slave"), &contact.slave, true, "contact");
-    c.refers(
-        &format!("{at}/master"),
-        "surface",
-        "surfaces",
-        &contact.master,
-        scene.surfaces.keys(),
-    );
+    check_master(c, at, contact, scene, sets);
     match contact.points {
         Points::Nodes => {}
         Points::Gauss(n) => c.whole(&format!("{at}/points/gauss"), n.into(), 1, 10),
@@ -91,6 +85,55 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
             "the factor of the penalty",
             p,
         ),
+    }
+}
+
+/// The master is a rigid surface or a face set of a body.
+fn check_master(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, sets: &Sets) {
+    let pointer = format!("{at}/master");
+    let rigid = scene.surfaces.contains_key(&contact.master);
+    let body = contact.master.contains('.');
+    match (rigid, body) {
+        (true, true) if sets.knows(&contact.master) => c.add(
+            &pointer,
+            format!(
+                "`{}` is both a rigid surface and a set of a body",
+                contact.master
+            ),
+            Some("rename the surface".into()),
+        ),
+        (false, true) => sets.check(c, &pointer, &contact.master, true, "a master"),
+        (true, _) => {}
+        (false, false) => {
+            let mut help = suggestion(
+                &contact.master,
+                "surfaces",
+                scene.surfaces.keys().map(String::as_str),
+            );
+            help += "; a face set of a body is written `body.set`";
+            let message = format!("there is no surface `{}`", contact.master);
+            c.add(&pointer, message, Some(help));
+        }
+    }
+    if rigid && contact.master_surface.is_some() {
+        c.add(
+            &format!("{at}/master_surface"),
+            format!("the master `{}` is a rigid surface", contact.master),
+            Some("`master_surface` is for masters that are faces of a body".into()),
+        );
+    }
+    if let Some(depth) = contact.depth {
+        c.positive(&format!("{at}/depth"), "the depth", depth);
+        if rigid {
+            c.add(
+                &format!("{at}/depth"),
+                format!("the master `{}` is a rigid surface", contact.master),
+                Some(format!(
+                    "give the `depth` of the surface: `/surfaces/{}/depth`",
+                    contact.master
+                )),
+            );
+        }
     }
 }
 

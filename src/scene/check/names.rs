@@ -146,6 +146,14 @@ impl<'a> Sets<'a> {
         }
     }
 
+    /// Whether `reference` is `body.set` of a known body and a set that it has, as far as sets are known.
+    pub fn knows(&self, reference: &str) -> bool {
+        let Some((body, set)) = reference.split_once('.') else {
+            return false;
+        };
+        (self.bodies.get(body)).is_some_and(|b| b.open || b.sets.contains_key(set))
+    }
+
     /// `reference` is `body.set` of a body and, where that is known, of one of its sets; `user` needs faces.
     pub fn check(&self, c: &mut Checker, at: &str, reference: &str, faces: bool, user: &str) {
         let Some((body, set)) = reference.split_once('.') else {

@@ -8,14 +8,32 @@ use serde::{Deserialize, Serialize};
 pub struct Contact {
     /// Face set of a body, `body.set`.
     pub slave: String,
-    /// Name of a rigid surface.
+    /// Name of a rigid surface, or face set of a deformable body, `body.set`.
     pub master: String,
+    /// What surface the faces of a body make; only for masters that are bodies. Default: `faces`.
+    #[serde(default)]
+    pub master_surface: Option<MasterSurface>,
+    /// A point deeper than this below the faces of a body is not in contact (length); only for masters that are bodies
+    /// (a rigid surface has a depth of its own). Default: the depth of the elements below the faces.
+    #[serde(default)]
+    pub depth: Option<f64>,
     #[serde(default)]
     pub points: Points,
     #[serde(default)]
     pub penalty: Penalty,
     #[serde(default)]
     pub tangent: Tangent,
+}
+
+/// The surface that a deformable body offers to its slaves.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MasterSurface {
+    /// The faces as they are: bilinear or biquadratic, with edges between them.
+    #[default]
+    Faces,
+    /// One smooth surface through the nodes of the faces.
+    Smooth,
 }
 
 /// Where contact is sampled on the slave faces.

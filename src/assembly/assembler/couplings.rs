@@ -1,0 +1,135 @@
+//! Which nodes of the slave and of the master a pair couples in the pattern.
+//!
+//! A slave point couples its nodes with those of the facet that it touches, and the facet changes as the bodies slide.
+//! The pattern therefore holds more than what touches: every point that is in contact or near is coupled with its facet
+//! and the facets around. Only where a point touches a facet outside of that is the pattern built anew.
+use crate::contact::points::SlavePoint;
+use covact_geometry::MovingFacets;
+use std::collections::BTreeSet;
+
+/// No map yet.
+const NONE: u32 = u32::MAX;
+
+/// A facet that a cell is coupled with.
+#[derive(Debug, Clone, Copy)]
+struct Coupled {
+    facet: u32,
+    /// Where its map starts, once it was asked for.
+    map: u32,
+}
+
+/// Cells (slave points with the same nodes) and the facets that they are coupled with.
+#[derive(Debug, Clone)]
+pub(super) struct Couplings {
+    /// Cell of every point.
+    cell_of: Vec<u32>,
+    /// Nodes of the cells.
+    nodes: Vec<u32>,
+    starts: Vec<u32>,
+    /// Facets of every cell, ascending.
+    facets: Vec<Vec<Coupled>>,
+    /// Block maps of the couplings that were asked for.
+    maps: Vec<u32>,
+}
+
+impl Couplings {
+    /// The cells of a pair, coupled with nothing.
+    pub fn new(points: &[SlavePoint]) -> Self {
+        let mut cell_of = Vec::with_capacity(points.len());
+        let mut nodes: Vec<u32> = Vec::new();
+        let mut starts = vec![0u32];
+        let mut last: Option<&[u32]> = None;
+        for p in points {
+            let own = &p.nodes[..p.count as usize];
+            if last != Some(own) {
+                nodes.extend_from_slice(own);
+                starts.push(nodes.len() as u32);
+            }
+            last = Some(own);
+            cell_of.push(starts.len() as u32 - 2);
+        }
+        let cells = starts.len() - 1;
+        Couplings {
+            cell_of,
+            nodes,
+            starts,
+            facets: vec![Vec::new(); cells],
+            maps: Vec::new(),
+        }
+    }
+
+    /// Cell of a slave point.
+    #[inline]
+    pub fn cell(&self, point: usize) -> usize {
+        self.cell_of[point] as usize
+    }
+
+    /// Nodes of a cell.
+    pub fn nodes(&self, cell: usize) -> &[u32] {
+        &self.nodes[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+
+    /// Whether the pattern holds the coupling of a point with a facet.
+    #[inline]
+    pub fn holds(&self, point: usize, facet: u32) -> bool {
+        self.place(self.cell(point), facet).is_some()
+    }
+
+    /// All couplings, cell by cell.
+    pub fn pairs(&self) -> impl Iterator<Item = (usize, u32)> + '_ {
+        (self.facets.iter().enumerate())
+            .flat_map(|(cell, f)| f.iter().map(move |c| (cell, c.facet)))
+    }
+
+    /// Sets the couplings to those of `near` (points with the facets at their feet) and of the facets around. What was
+    /// coupled before stays, so that points that go back and forth do not rebuild the pattern every time, until it
+    /// outnumbers what is needed.
+    pub fn couple(&mut self, facets: &MovingFacets, near: impl Iterator<Item = (usize, u32)>) {
+        let feet: BTreeSet<(usize, u32)> = near.map(|(p, f)| (self.cell(p), f)).collect();
+        let mut wanted = feet.clone();
+        for (cell, facet) in feet {
+            wanted.extend(facets.neighbours(facet).iter().map(|&f| (cell, f)));
+        }
+        let before: usize = self.facets.iter().map(Vec::len).sum();
+        if before <= 2 * wanted.len() {
+            wanted.extend(self.pairs());
+        }
+        self.facets.iter_mut().for_each(Vec::clear);
+        for (cell, facet) in wanted {
+            self.facets[cell].push(Coupled { facet, map: NONE });
+        }
+        self.maps.clear();
+    }
+
+    /// Block map of the coupling of a point with a facet, made by `make` where it is asked for the first time on a
+    /// pattern; `None` if they are not coupled.
+    pub fn map<E>(
+        &mut self,
+        point: usize,
+        facet: u32,
+        make: impl FnOnce(&[u32], &mut Vec<u32>) -> Result<(), E>,
+    ) -> Option<Result<usize, E>> {
+        let cell = self.cell(point);
+        let place = self.place(cell, facet)?;
+        if self.facets[cell][place].map == NONE {
+            let start = self.maps.len();
+            let nodes = &self.nodes[self.starts[cell] as usize..self.starts[cell + 1] as usize];
+            if let Err(e) = make(nodes, &mut self.maps) {
+                return Some(Err(e));
+            }
+            self.facets[cell][place].map = start as u32;
+        }
+        Some(Ok(self.facets[cell][place].map as usize))
+    }
+
+    /// Block maps, from where [`Couplings::map`] says.
+    pub fn maps(&self) -> &[u32] {
+        &self.maps
+    }
+
+    fn place(&self, cell: usize, facet: u32) -> Option<usize> {
+        self.facets[cell]
+            .binary_search_by_key(&facet, |c| c.facet)
+            .ok()
+    }
+}

@@ -1,0 +1,95 @@
+//! The pattern of a model and where the blocks of everything that is assembled go.
+use super::couplings::Couplings;
+use super::{DofMap, Kind, Pattern, PatternError};
+use crate::model::Model;
+
+/// Places of all blocks on one pattern.
+pub(super) struct Maps {
+    pub elements: Vec<u32>,
+    pub kinds: Vec<Kind>,
+    /// Per pair with a rigid master: per point, where its blocks go.
+    pub points: Vec<Vec<u32>>,
+    /// Per follower load: per face, where its blocks go.
+    pub followers: Vec<Vec<u32>>,
+}
+
+/// The pattern of a model under its constraints: elements, and slave points with the facets that they may touch.
+pub(super) fn pattern(
+    model: &Model,
+    dofs: &DofMap,
+    couplings: &[Option<Couplings>],
+) -> Result<Pattern, PatternError> {
+    let mut nodes: Vec<u32> = Vec::new();
+    let mut starts = vec![0];
+    let mut plain = Vec::new();
+    let mut add = |group: &[u32]| {
+        dofs.extend_nodes(group, &mut nodes);
+        starts.push(nodes.len());
+    };
+    for body in &model.bodies {
+        for e in 0..body.block.elements() {
+            plain.clear();
+            plain.extend(body.element_nodes(e));
+            add(&plain);
+        }
+    }
+    for (pair, couplings) in model.pairs.iter().zip(couplings) {
+        if let (Some(master), Some(couplings)) = (pair.body_master(), couplings) {
+            for (cell, facet) in couplings.pairs() {
+                plain.clear();
+                plain.extend_from_slice(couplings.nodes(cell));
+                plain.extend_from_slice(master.facets.nodes(facet));
+                add(&plain);
+            }
+        }
+    }
+    let groups = starts.windows(2).map(|w| &nodes[w[0]..w[1]]);
+    Pattern::new(model.nodes.len(), groups)
+}
+
+impl Maps {
+    pub fn new(model: &Model, dofs: &DofMap, pattern: &Pattern) -> Result<Self, PatternError> {
+        let (mut elements, mut kinds) = (Vec::new(), Vec::new());
+        let (mut nodes, mut extended) = (Vec::new(), Vec::new());
+        for body in &model.bodies {
+            for e in 0..body.block.elements() {
+                nodes.clear();
+                nodes.extend(body.element_nodes(e));
+                pattern.element_map(&nodes, &mut elements)?;
+                extended.clear();
+                dofs.extend_nodes(&nodes, &mut extended);
+                kinds.push(if extended.len() > nodes.len() {
+                    Kind::Tied
+                } else if dofs.constrains(&nodes) {
+                    Kind::Prescribed
+                } else {
+                    Kind::Free
+                });
+            }
+        }
+        let mut points = Vec::new();
+        for pair in &model.pairs {
+            let mut maps = Vec::new();
+            if pair.rigid_master().is_some() {
+                for p in &pair.points {
+                    pattern.element_map(&p.nodes[..p.count as usize], &mut maps)?;
+                }
+            }
+            points.push(maps);
+        }
+        let mut followers = Vec::new();
+        for (_, load) in &model.follower_loads {
+            let mut maps = Vec::new();
+            for nodes in &load.faces {
+                pattern.element_map(nodes.nodes(), &mut maps)?;
+            }
+            followers.push(maps);
+        }
+        Ok(Maps {
+            elements,
+            kinds,
+            points,
+            followers,
+        })
+    }
+}

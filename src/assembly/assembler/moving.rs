@@ -1,0 +1,317 @@
+//! Contact with bodies: the slave points of a pair are evaluated in parallel, their matrices formed in parallel, and all
+//! is summed in order.
+use super::couplings::Couplings;
+use super::{Assembler, Fault, SurfaceForce, Totals, maps, put};
+use crate::contact::kernel::assemble_force;
+use crate::contact::law::{NormalLaw, Penalty};
+use crate::contact::moving::{MovingMaster, MovingTouch};
+use crate::contact::point::FaceTangent;
+use crate::contact::points::SlavePoint;
+use crate::contact::published::Parts;
+use crate::contact::rigid::{Exact, PointFault};
+use crate::contact::scatter::assemble_point;
+use crate::model::state::{PointState, State};
+use crate::model::{Model, PairModel};
+use crate::scene::Tangent;
+use covact_geometry::{ShapeRows, Vec3};
+use rayon::prelude::*;
+
+/// Points whose matrices are formed before they are summed.
+const CHUNK: usize = 64;
+
+/// The slave points of a pair at the state evaluated last, and room for their matrices.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Meetings {
+    touches: Vec<Result<Option<MovingTouch>, PointFault>>,
+    /// Points in contact, ascending.
+    active: Vec<u32>,
+    rows: Vec<ShapeRows>,
+    matrices: Vec<f64>,
+    /// Numbers that the largest matrix has.
+    stride: usize,
+}
+
+impl Meetings {
+    /// Room for a pair; none is needed where the master is rigid.
+    pub fn new(pair: &PairModel) -> Self {
+        let Some(master) = pair.body_master() else {
+            return Meetings::default();
+        };
+        let slave = pair.points.iter().map(|p| p.count as usize).max();
+        let facets = 0..master.facets.len() as u32;
+        let facet = facets.map(|f| master.facets.nodes(f).len()).max();
+        let stride = (3 * (slave.unwrap_or(0) + facet.unwrap_or(0))).pow(2);
+        let most = CHUNK.min(pair.points.len());
+        Meetings {
+            touches: vec![Ok(None); pair.points.len()],
+            active: Vec::with_capacity(pair.points.len()),
+            rows: vec![ShapeRows::default(); most],
+            matrices: vec![0.0; most * stride],
+            stride,
+        }
+    }
+}
+
+/// Couplings of all pairs before anything has moved: points nearer than an element, and those within the depth.
+pub(super) fn first_couplings(model: &Model) -> Vec<Option<Couplings>> {
+    let zero = vec![0.0; 3 * model.nodes.len()];
+    (model.pairs.iter())
+        .map(|pair| {
+            let master = pair.body_master()?;
+            let reach = master.depth.max(pair.element_size);
+            let near = |(i, p): (usize, &SlavePoint)| {
+                let x = model.point_position(p, &zero);
+                let foot = master.facets.project(&x, None, reach, |_| true)?;
+                Some((i, foot.facet))
+            };
+            let mut couplings = Couplings::new(&pair.points);
+            let near: Vec<_> = pair.points.iter().enumerate().filter_map(near).collect();
+            couplings.couple(&master.facets, near.into_iter());
+            Some(couplings)
+        })
+        .collect()
+}
+
+impl Assembler<'_> {
+    /// Evaluates the points of all pairs with bodies as masters, and builds the pattern anew where one of them touches a
+    /// facet that the pattern does not couple it with.
+    pub(super) fn meet(&mut self, state: &mut State) -> Result<(), Fault> {
+        if self.couplings.iter().all(Option::is_none) {
+            return Ok(());
+        }
+        self.masters.update(self.model, &state.u);
+        let mut first = 0;
+        let mut missing = false;
+        for (index, pair) in self.model.pairs.iter().enumerate() {
+            let range = first..first + pair.points.len();
+            first = range.end;
+            let (Some(master), Some(facets), Some(couplings)) = (
+                pair.body_master(),
+                self.masters.facets(index),
+                &self.couplings[index],
+            ) else {
+                continue;
+            };
+            let law = Penalty {
+                eps_n: self.penalties[index],
+            };
+            let batch = Batch {
+                model: self.model,
+                pair,
+                master: MovingMaster {
+                    facets,
+                    depth: master.depth,
+                },
+                law: &law,
+                u: &state.u,
+            };
+            let states = &mut state.points[range];
+            let meetings = &mut self.meetings[index];
+            let touches = &mut meetings.touches;
+            match pair.tangent {
+                Tangent::Exact => batch.evaluate(states, touches, &Exact),
+                Tangent::Published {
+                    rotational,
+                    curvature,
+                } => {
+                    let parts = Parts {
+                        rotational,
+                        curvature,
+                    };
+                    batch.evaluate(states, touches, &parts)
+                }
+            }
+            meetings.active.clear();
+            for (i, touch) in touches.iter().enumerate() {
+                match touch {
+                    Err(fault) => {
+                        let x = self.model.point_position(&pair.points[i], &state.u);
+                        return Err(Fault::Contact {
+                            pair: pair.name.clone(),
+                            point: i,
+                            at: [x.x, x.y, x.z],
+                            fault: *fault,
+                        });
+                    }
+                    Ok(None) => {}
+                    Ok(Some(touch)) => {
+                        meetings.active.push(i as u32);
+                        missing |= !couplings.holds(i, touch.facet);
+                    }
+                }
+            }
+        }
+        if missing {
+            self.couple_anew(state)?;
+        }
+        Ok(())
+    }
+
+    /// Builds the pattern anew for the points that are in contact or near it.
+    fn couple_anew(&mut self, state: &State) -> Result<(), Fault> {
+        let mut first = 0;
+        for (index, pair) in self.model.pairs.iter().enumerate() {
+            let states = &state.points[first..first + pair.points.len()];
+            first += pair.points.len();
+            if let (Some(master), Some(couplings)) =
+                (pair.body_master(), &mut self.couplings[index])
+            {
+                let touches = &self.meetings[index].touches;
+                let near = states.iter().zip(touches).enumerate();
+                let near = near.filter_map(|(i, (state, touch))| match touch {
+                    Ok(Some(touch)) => Some((i, touch.facet)),
+                    _ => state.hint.map(|hint| (i, hint.patch)),
+                });
+                couplings.couple(&master.facets, near);
+            }
+        }
+        let pattern = std::sync::Arc::new(maps::pattern(self.model, self.dofs, &self.couplings)?);
+        let maps = maps::Maps::new(self.model, self.dofs, &pattern)?;
+        self.element_maps = maps.elements;
+        self.kinds = maps.kinds;
+        self.point_maps = maps.points;
+        self.follower_maps = maps.followers;
+        self.matrix = super::SystemMatrix::new(pattern.clone());
+        self.new_pattern = Some(pattern);
+        self.rebuilds += 1;
+        Ok(())
+    }
+
+    /// Sums up a pair that [`Assembler::meet`] has evaluated.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn moving<const TANGENT: bool>(
+        &mut self,
+        index: usize,
+        u: &[f64],
+        states: &mut [PointState],
+        increments: Option<&[f64]>,
+        residual: &mut [f64],
+        rhs: &mut [f64],
+        totals: &mut Totals,
+    ) {
+        let pair = &self.model.pairs[index];
+        let (Some(facets), Some(couplings)) =
+            (self.masters.facets(index), &mut self.couplings[index])
+        else {
+            return;
+        };
+        let Meetings {
+            touches,
+            active,
+            rows,
+            matrices,
+            stride,
+        } = &mut self.meetings[index];
+        let touch = |i: u32| match &touches[i as usize] {
+            Ok(Some(touch)) => Some(touch),
+            _ => None,
+        };
+        for (state, touch) in states.iter_mut().zip(touches.iter()) {
+            let closed = matches!(touch, Ok(Some(_)));
+            totals.changed += usize::from(closed != state.closed);
+            state.closed = closed;
+        }
+        totals.active += active.len();
+        let mut deepest = 0.0f64;
+        let force = &mut totals.pairs[index];
+        for chunk in active.chunks(CHUNK) {
+            (chunk.par_iter())
+                .zip(rows.par_iter_mut())
+                .zip(matrices.par_chunks_mut((*stride).max(1)))
+                .with_min_len(8)
+                .for_each(|((&i, rows), ke)| {
+                    let Some(touch) = touch(i) else { return };
+                    let p = &pair.points[i as usize];
+                    facets.shape(touch.facet, touch.xi, rows);
+                    if TANGENT {
+                        let slave = &p.shape[..p.count as usize];
+                        let size = 3 * (slave.len() + rows.count);
+                        assemble_point(&touch.tangent, slave, rows, p.area, &mut ke[..size * size]);
+                    }
+                });
+            for ((&i, rows), ke) in chunk
+                .iter()
+                .zip(rows.iter())
+                .zip(matrices.chunks_mut(*stride))
+            {
+                let Some(touch) = touch(i) else { continue };
+                let p = &pair.points[i as usize];
+                deepest = deepest.max(-touch.xi3);
+                totals.contact_energy += 0.5 * touch.n * touch.xi3 * p.area;
+                let r = touch.residual * p.area;
+                let mut add = |node: usize, f: &Vec3, side: &mut SurfaceForce| {
+                    side.force -= f;
+                    side.moment -= self.model.position(node, u).cross(f);
+                    for c in 0..3 {
+                        residual[3 * node + c] += f[c];
+                        self.contact[3 * node + c] += f[c];
+                    }
+                };
+                for (node, w) in p.terms() {
+                    add(node, &assemble_force(&r, &[w, 0.0, 0.0]), &mut force.slave);
+                }
+                let nodes = facets.nodes(touch.facet);
+                for (k, &node) in nodes.iter().enumerate() {
+                    let row = [-rows.n[k], rows.n_1[k], rows.n_2[k]];
+                    add(node as usize, &assemble_force(&r, &row), &mut force.master);
+                }
+                if TANGENT {
+                    let slave = p.count as usize;
+                    let n = slave + nodes.len();
+                    let mut all = [0; 9 + covact_geometry::moving::MAX];
+                    all[..slave].copy_from_slice(&p.nodes[..slave]);
+                    all[slave..n].copy_from_slice(nodes);
+                    let pattern = self.matrix.pattern();
+                    let made = couplings.map(i as usize, touch.facet, |_, out| {
+                        pattern.element_map(&all[..n], out)
+                    });
+                    let start = made
+                        .and_then(Result::ok)
+                        .expect("the pattern was built with every facet that is touched");
+                    let map = &couplings.maps()[start..start + n * (n + 1) / 2];
+                    put(
+                        &mut self.matrix,
+                        self.dofs,
+                        &mut self.work,
+                        &all[..n],
+                        map,
+                        &mut ke[..9 * n * n],
+                        increments,
+                        rhs,
+                    );
+                }
+            }
+        }
+        totals.penetration.push(deepest);
+    }
+}
+
+/// The slave points of a pair at one trial state.
+struct Batch<'a, L> {
+    model: &'a Model,
+    pair: &'a PairModel,
+    master: MovingMaster<'a>,
+    law: &'a L,
+    u: &'a [f64],
+}
+
+impl<L: NormalLaw> Batch<'_, L> {
+    /// Evaluates every point; law and tangent are types here, nothing is chosen inside the loop.
+    fn evaluate<T: FaceTangent>(
+        &self,
+        states: &mut [PointState],
+        touches: &mut [Result<Option<MovingTouch>, PointFault>],
+        tangent: &T,
+    ) {
+        (self.pair.points.par_iter())
+            .zip(states.par_iter_mut())
+            .zip(touches.par_iter_mut())
+            .with_min_len(32)
+            .for_each(|((p, s), out)| {
+                let x = self.model.point_position(p, self.u);
+                *out = self
+                    .master
+                    .touch(&x, &mut s.hint, self.law, tangent, |_| true);
+            });
+    }
+}

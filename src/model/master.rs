@@ -1,0 +1,223 @@
+//! The master of a contact pair: a rigid surface, or faces of a deformable body.
+use super::{Model, PairModel};
+use crate::contact::moving;
+use crate::contact::rigid::{self, RigidMaster};
+use crate::scene::ValueError;
+use covact_geometry::{Hint, MovingFacets, Vec3};
+
+/// What the slave points of a pair meet. Chosen once, when the model is built.
+#[derive(Debug)]
+pub enum Master {
+    /// Rigid surface, by its number in the model.
+    Rigid(usize),
+    /// Faces of a body of the model.
+    Body(Box<BodyMaster>),
+}
+
+/// Faces of a deformable body as a contact surface.
+#[derive(Debug)]
+pub struct BodyMaster {
+    /// The faces, `body.set`.
+    pub name: String,
+    /// Number of the body.
+    pub body: usize,
+    /// The surface over nodes of the model, at their undeformed positions.
+    pub facets: MovingFacets,
+    /// The surface is smooth across the edges of the faces.
+    pub smooth: bool,
+    /// Depth below which a point does not count (length).
+    pub depth: f64,
+    /// Mean edge length of the faces.
+    pub element_size: f64,
+}
+
+/// The surfaces of all masters that are bodies, where a state puts them.
+#[derive(Debug)]
+pub struct Masters {
+    facets: Vec<Option<MovingFacets>>,
+}
+
+impl Masters {
+    /// At the undeformed positions.
+    pub fn new(model: &Model) -> Self {
+        let facets = model.pairs.iter().map(|pair| match &pair.master {
+            Master::Rigid(_) => None,
+            Master::Body(body) => Some(body.facets.clone()),
+        });
+        Masters {
+            facets: facets.collect(),
+        }
+    }
+
+    /// Moves every surface with the displacements `u` (three per node).
+    pub fn update(&mut self, model: &Model, u: &[f64]) {
+        for facets in self.facets.iter_mut().flatten() {
+            facets.update(|node| model.position(node as usize, u));
+        }
+    }
+
+    /// The surface of a pair; none where its master is rigid.
+    pub fn facets(&self, pair: usize) -> Option<&MovingFacets> {
+        self.facets[pair].as_ref()
+    }
+
+    /// The master of a pair at `time`; a body's where the last [`Masters::update`] put it.
+    ///
+    /// # Errors
+    /// A motion of a rigid surface without a value at that time.
+    pub fn at<'a>(
+        &'a self,
+        model: &'a Model,
+        pair: usize,
+        time: f64,
+    ) -> Result<MasterNow<'a>, ValueError> {
+        Ok(match (&model.pairs[pair].master, &self.facets[pair]) {
+            (Master::Body(body), Some(facets)) => MasterNow::Body { body, facets },
+            (master, _) => master.at(model, time)?,
+        })
+    }
+}
+
+/// A master at one time.
+pub enum MasterNow<'a> {
+    Rigid(RigidMaster<'a>),
+    Body {
+        body: &'a BodyMaster,
+        facets: &'a MovingFacets,
+    },
+}
+
+/// What a point sees of its master, wherever it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen {
+    /// Where a next search starts.
+    pub hint: Hint,
+    /// Distance to the closest point.
+    pub distance: f64,
+    /// The same, negative below the surface.
+    pub signed_distance: f64,
+    /// Outward unit normal there, in space.
+    pub normal: Vec3,
+    /// In contact: below the surface and no deeper than its depth.
+    pub closed: bool,
+    /// Below the surface and deeper than its depth: not in contact, though not outside either.
+    pub behind: bool,
+}
+
+impl Master {
+    /// Depth below which a point does not count (length).
+    pub fn depth(&self, model: &Model) -> f64 {
+        match self {
+            Master::Rigid(surface) => model.surfaces[*surface].depth,
+            Master::Body(body) => body.depth,
+        }
+    }
+
+    /// The master at `time`, a body's undeformed.
+    ///
+    /// # Errors
+    /// As [`Masters::at`].
+    pub fn at<'a>(&'a self, model: &'a Model, time: f64) -> Result<MasterNow<'a>, ValueError> {
+        Ok(match self {
+            Master::Rigid(surface) => MasterNow::Rigid(model.surfaces[*surface].at(time)?),
+            Master::Body(body) => MasterNow::Body {
+                body,
+                facets: &body.facets,
+            },
+        })
+    }
+}
+
+impl Seen {
+    /// Distance of a point as it is told: negative in contact only.
+    pub fn gap(&self) -> f64 {
+        if self.closed {
+            self.signed_distance
+        } else {
+            self.distance
+        }
+    }
+}
+
+impl MasterNow<'_> {
+    /// Depth below which a point does not count (length).
+    pub fn depth(&self) -> f64 {
+        match self {
+            MasterNow::Rigid(master) => master.depth,
+            MasterNow::Body { body, .. } => body.depth,
+        }
+    }
+
+    /// The closest point of the master to slave point `point` at `x`; none where nothing is found.
+    pub fn see(
+        &self,
+        _pair: &PairModel,
+        _point: usize,
+        x: &Vec3,
+        hint: Option<Hint>,
+    ) -> Option<Seen> {
+        match self {
+            MasterNow::Rigid(master) => {
+                let foot = master.foot(x, hint, f64::INFINITY)?;
+                let behind = rigid::behind(&foot, master.depth);
+                Some(Seen {
+                    hint: Hint {
+                        patch: foot.patch,
+                        xi: foot.xi,
+                    },
+                    distance: foot.distance,
+                    signed_distance: foot.signed_distance,
+                    normal: master.pose.rotation * foot.normal,
+                    closed: rigid::presses(&foot) && !behind,
+                    behind,
+                })
+            }
+            MasterNow::Body { body, facets } => {
+                let foot = facets.project(x, hint, f64::INFINITY, |_| true)?;
+                let behind = moving::behind(&foot, body.depth);
+                Some(Seen {
+                    hint: foot.hint(),
+                    distance: foot.distance,
+                    signed_distance: foot.signed_distance,
+                    normal: foot.normal,
+                    closed: moving::presses(&foot) && !behind,
+                    behind,
+                })
+            }
+        }
+    }
+}
+
+impl PairModel {
+    /// Name of the master: that of the rigid surface, or `body.set`.
+    pub fn master_name<'a>(&'a self, model: &'a Model) -> &'a str {
+        match &self.master {
+            Master::Rigid(surface) => &model.surfaces[*surface].name,
+            Master::Body(body) => &body.name,
+        }
+    }
+
+    /// The master in words: `surface `die`` or `faces `block.top``.
+    pub fn master_words(&self, model: &Model) -> String {
+        match &self.master {
+            Master::Rigid(surface) => format!("surface `{}`", model.surfaces[*surface].name),
+            Master::Body(body) => format!("faces `{}`", body.name),
+        }
+    }
+
+    /// The master where it is faces of a body.
+    pub fn body_master(&self) -> Option<&BodyMaster> {
+        match &self.master {
+            Master::Rigid(_) => None,
+            Master::Body(body) => Some(body),
+        }
+    }
+
+    /// Number of the master in the model where it is a rigid surface.
+    pub fn rigid_master(&self) -> Option<usize> {
+        match self.master {
+            Master::Rigid(surface) => Some(surface),
+            Master::Body(_) => None,
+        }
+    }
+}
