@@ -24,6 +24,11 @@ fn element(n: usize, next: &mut impl FnMut() -> f64) -> Vec<f64> {
     (&b * b.transpose()).as_slice().to_vec()
 }
 
+/// A random element matrix of `n` nodes without any symmetry, column-major.
+fn unsymmetric_element(n: usize, next: &mut impl FnMut() -> f64) -> Vec<f64> {
+    (0..9 * n * n).map(|_| next()).collect()
+}
+
 fn add_dense(full: &mut DMatrix<f64>, nodes: &[u32], ke: &[f64]) {
     let size = 3 * nodes.len();
     let dof = |i: usize| 3 * nodes[i / 3] as usize + i % 3;
@@ -52,14 +57,12 @@ const GROUPS: [&[u32]; 5] = [
     &[5, 9, 5],
 ];
 
-#[test]
-fn scatter_and_products_as_dense() {
-    let pattern = arc(11, &GROUPS);
-    let mut matrix = SystemMatrix::new(Arc::clone(&pattern));
+/// Scatters an element into every group and compares entries and products with those of a dense matrix.
+fn compare_with_dense(mut matrix: SystemMatrix, mut make: impl FnMut(usize) -> Vec<f64>) {
+    let pattern = Arc::clone(matrix.pattern());
     let mut full = DMatrix::zeros(33, 33);
-    let mut next = numbers(1);
     for nodes in GROUPS {
-        let ke = element(nodes.len(), &mut next);
+        let ke = make(nodes.len());
         let mut map = vec![77];
         pattern.element_map(nodes, &mut map).unwrap();
         assert_eq!(map.len(), 1 + nodes.len() * (nodes.len() + 1) / 2);
@@ -67,6 +70,7 @@ fn scatter_and_products_as_dense() {
         add_dense(&mut full, nodes, &ke);
     }
     assert!((dense(&matrix) - &full).amax() < 1e-14 * full.amax());
+    let mut next = numbers(9);
     let x: Vec<f64> = (0..33).map(|_| next()).collect();
     let v = DVector::from_column_slice(&x);
     let mut y = vec![0.0; 33];
@@ -83,8 +87,72 @@ fn scatter_and_products_as_dense() {
     check(&y, full.abs() * DVector::from_element(33, 1.0));
     matrix.diagonal(&mut y);
     check(&y, full.diagonal());
+    assert_eq!(matrix.first_not_finite(), None);
     matrix.clear();
     assert_eq!(dense(&matrix).amax(), 0.0);
+}
+
+#[test]
+fn scatter_and_products_as_dense() {
+    let mut next = numbers(1);
+    let matrix = SystemMatrix::new(arc(11, &GROUPS));
+    assert!(matrix.is_symmetric() && matrix.transposed_values().is_none());
+    compare_with_dense(matrix, |n| element(n, &mut next));
+}
+
+#[test]
+fn unsymmetric_scatter_and_products_as_dense() {
+    let mut next = numbers(7);
+    let matrix = SystemMatrix::unsymmetric(arc(11, &GROUPS));
+    assert!(!matrix.is_symmetric());
+    assert_eq!(
+        matrix.transposed_values().map(<[f64]>::len),
+        Some(matrix.values().len())
+    );
+    compare_with_dense(matrix, |n| unsymmetric_element(n, &mut next));
+}
+
+/// A symmetric system comes out the same in both forms, to the last bit (but for a node that an element names twice,
+/// whose sums have another order).
+#[test]
+fn symmetric_values_in_an_unsymmetric_matrix() {
+    let pattern = arc(11, &GROUPS);
+    let mut plain = SystemMatrix::new(Arc::clone(&pattern));
+    let mut both = SystemMatrix::unsymmetric(Arc::clone(&pattern));
+    let mut next = numbers(4);
+    for nodes in &GROUPS[..4] {
+        let mut ke = element(nodes.len(), &mut next);
+        let size = 3 * nodes.len();
+        for j in 0..size {
+            for i in 0..j {
+                ke[j * size + i] = ke[i * size + j];
+            }
+        }
+        let mut map = Vec::new();
+        pattern.element_map(nodes, &mut map).unwrap();
+        plain.scatter(&map, &ke);
+        both.scatter(&map, &ke);
+    }
+    assert!(plain.values() == both.values());
+    let x: Vec<f64> = (0..33).map(|_| next()).collect();
+    let (mut y, mut z) = (vec![0.0; 33], vec![0.0; 33]);
+    plain.multiply(&x, &mut y);
+    both.multiply(&x, &mut z);
+    assert!(y == z && y.iter().any(|y| *y != 0.0));
+}
+
+#[test]
+fn values_that_are_not_finite_are_found() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut matrix = SystemMatrix::unsymmetric(arc(11, &GROUPS));
+        let at = 9 * matrix.pattern().block(9, 3).unwrap() as usize + 5;
+        matrix.transposed_values_mut().unwrap()[at] = bad;
+        assert_eq!(matrix.first_not_finite(), Some((9, 3)));
+        matrix.clear();
+        assert_eq!(matrix.first_not_finite(), None);
+        matrix.values_mut()[at] = bad;
+        assert_eq!(matrix.first_not_finite(), Some((9, 3)));
+    }
 }
 
 #[test]
@@ -97,11 +165,13 @@ fn many_elements_on_any_number_of_threads() {
     let pattern = Arc::new(Pattern::new(nodes as usize, elements.iter().map(|e| &e[..])).unwrap());
     let (mut maps, mut kes) = (Vec::new(), Vec::new());
     let mut one_by_one = SystemMatrix::new(Arc::clone(&pattern));
+    let mut unsymmetric = SystemMatrix::unsymmetric(Arc::clone(&pattern));
     for e in &elements {
         let at = maps.len();
         pattern.element_map(e, &mut maps).unwrap();
-        let ke = element(4, &mut next);
+        let ke = unsymmetric_element(4, &mut next);
         one_by_one.scatter(&maps[at..], &ke);
+        unsymmetric.scatter(&maps[at..], &ke);
         kes.extend(ke);
     }
     let pool = rayon::ThreadPoolBuilder::new()
@@ -112,6 +182,10 @@ fn many_elements_on_any_number_of_threads() {
         let mut matrix = SystemMatrix::new(Arc::clone(&pattern));
         pool.install(|| matrix.scatter_many(4, &maps, &kes, threads));
         assert!(matrix.values() == one_by_one.values(), "{threads} threads");
+        let mut matrix = SystemMatrix::unsymmetric(Arc::clone(&pattern));
+        pool.install(|| matrix.scatter_many(4, &maps, &kes, threads));
+        assert!(matrix.values() == unsymmetric.values());
+        assert!(matrix.transposed_values() == unsymmetric.transposed_values());
     }
 }
 
