@@ -3,6 +3,7 @@ mod die;
 mod driven;
 mod hertz;
 mod loads;
+mod placed;
 mod plate_under_ball;
 mod punch;
 mod strip_over_cylinder;
