@@ -1,7 +1,9 @@
 //! How the contact pairs stand before anything moves.
 use super::error::{number, text};
 use super::master::Master;
+use super::overclosure::{Deepest, treat};
 use super::{Model, ModelError};
+use crate::scene::{InitialOverclosure, Scene};
 use covact_geometry::Vec3;
 
 /// Initial gaps of a pair.
@@ -11,6 +13,8 @@ pub struct InitialGap {
     pub smallest: f64,
     /// Largest signed distance.
     pub largest: f64,
+    /// Where the point with the smallest distance is.
+    pub place: Vec3,
     /// Points that start in contact.
     pub touching: usize,
     /// Points that start behind the surface, deeper than its search depth: they are not in contact.
@@ -21,14 +25,24 @@ pub struct InitialGap {
 
 /// Distances of all points of pair `index` at time 0, wherever they are.
 pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError> {
+    initial_gaps(model, index, &mut Vec::new())
+}
+
+/// The same with the overclosure of every point, zero or negative, in `overclosures`.
+fn initial_gaps(
+    model: &Model,
+    index: usize,
+    overclosures: &mut Vec<f64>,
+) -> Result<InitialGap, ModelError> {
     let pair = &model.pairs[index];
-    // Surfaces of bodies are kept at their undeformed positions in the model.
-    let master = (pair.master.at(model, 0.0))
-        .map_err(|e| text(format!("/contacts/{}/master", pair.name), e.to_string()))?;
     let zero = vec![0.0; 3 * model.nodes.len()];
+    // Surfaces of bodies are kept at their undeformed positions in the model.
+    let master = (pair.master.at(model, 0.0, &zero))
+        .map_err(|e| text(format!("/contacts/{}/master", pair.name), e.to_string()))?;
     let mut gap = InitialGap {
         smallest: f64::INFINITY,
         largest: f64::NEG_INFINITY,
+        place: Vec3::zeros(),
         touching: 0,
         behind: 0,
         turned_away: false,
@@ -38,16 +52,19 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
     for (i, p) in pair.points.iter().enumerate() {
         let x = model.point_position(p, &zero);
         let Some(seen) = master.see(pair, i, &x, hint) else {
+            overclosures.push(0.0);
             continue;
         };
         hint = Some(seen.hint);
         let distance = seen.gap();
         if distance < gap.smallest {
             gap.smallest = distance;
+            gap.place = x;
             nearest = Some((p.nodes[0], x, seen.normal));
         }
         gap.largest = gap.largest.max(distance);
         gap.touching += usize::from(seen.closed);
+        overclosures.push(if seen.closed { distance } else { 0.0 });
         gap.behind += usize::from(seen.behind);
     }
     if let Some((node, x, n)) = nearest {
@@ -72,12 +89,14 @@ fn turned_away(model: &Model, body: usize, node: u32, x: &Vec3, n: &Vec3) -> boo
 
 /// Refuses tools that start deep inside a body, and warns of small overclosures and of slave points too coarse for the
 /// tool.
-pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
+pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
     let mut warnings = Vec::new();
     let mut notes = Vec::new();
-    for (index, pair) in model.pairs.iter().enumerate() {
+    for index in 0..model.pairs.len() {
+        let mut overclosures = Vec::new();
+        let gap = initial_gaps(model, index, &mut overclosures)?;
+        let pair = &model.pairs[index];
         let master = pair.master_words(model);
-        let gap = initial_gap(model, index)?;
         notes.push(format!(
             "contact `{}`: initial gaps from {} to {} at {} points, {} of them in contact",
             pair.name,
@@ -112,14 +131,6 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
             )
             .help(help));
         }
-        if gap.smallest < -1e-9 * pair.element_size {
-            warnings.push(format!(
-                "contact `{}` starts with an overclosure of {} at {} point(s); the first step resolves it with strain",
-                pair.name,
-                number(-gap.smallest),
-                gap.touching
-            ));
-        }
         if gap.turned_away {
             warnings.push(format!(
                 "contact `{}`: body `{}` lies between its slave faces and {master}: are the faces on the other side of \
@@ -140,29 +151,43 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
                 number(pair.master.depth(model))
             ));
         }
-        let Master::Rigid(surface) = &pair.master else {
-            continue;
-        };
-        let surface = &model.surfaces[*surface];
-        let spacing = point_spacing(model, index);
-        if let Some(radius) = (surface.set.curvature_range().convex).map(|c| c.radius())
-            && spacing > 0.5 * radius
-        {
-            warnings.push(format!(
-                "contact `{}`: its slave points are {} apart, too coarse for the smallest convex radius {} of surface \
-                 `{}`, which will sink in between them: refine the mesh or take more `points` a face (at most {} \
-                 apart)",
-                pair.name,
-                number(spacing),
-                number(radius),
-                surface.name,
-                number(0.5 * radius)
-            ));
+        warnings.extend(too_coarse(model, index));
+        if gap.smallest < -1e-9 * pair.element_size {
+            let choice = (scene.contacts.get(&pair.name))
+                .map_or(InitialOverclosure::Strain, |c| c.initial_overclosure);
+            let deepest = Deepest {
+                xi3: gap.smallest,
+                at: gap.place,
+            };
+            let told = treat(model, index, choice, overclosures, deepest)?;
+            match choice {
+                InitialOverclosure::Strain => warnings.push(told),
+                _ => notes.push(told),
+            }
         }
     }
     model.warnings.extend(warnings);
     model.notes.extend(notes);
     Ok(())
+}
+
+/// Warns of slave points so far apart that a convex part of a rigid surface sinks in between them.
+fn too_coarse(model: &Model, index: usize) -> Option<String> {
+    let pair = &model.pairs[index];
+    let surface = &model.surfaces[pair.rigid_master()?];
+    let spacing = point_spacing(model, index);
+    let radius = surface.set.curvature_range().convex?.radius();
+    (spacing > 0.5 * radius).then(|| {
+        format!(
+            "contact `{}`: its slave points are {} apart, too coarse for the smallest convex radius {} of surface \
+             `{}`, which will sink in between them: refine the mesh or take more `points` a face (at most {} apart)",
+            pair.name,
+            number(spacing),
+            number(radius),
+            surface.name,
+            number(0.5 * radius)
+        )
+    })
 }
 
 /// Mean distance of neighbouring slave points: the square root of the mean tributary area.

@@ -61,7 +61,7 @@ impl Masters {
         self.facets[pair].as_ref()
     }
 
-    /// The master of a pair at `time`; a body's where the last [`Masters::update`] put it.
+    /// The master of a pair at `time` with the displacements `u`; a body's where the last [`Masters::update`] put it.
     ///
     /// # Errors
     /// A motion of a rigid surface without a value at that time.
@@ -70,10 +70,11 @@ impl Masters {
         model: &'a Model,
         pair: usize,
         time: f64,
+        u: &[f64],
     ) -> Result<MasterNow<'a>, ValueError> {
         Ok(match (&model.pairs[pair].master, &self.facets[pair]) {
             (Master::Body(body), Some(facets)) => MasterNow::Body { body, facets },
-            (master, _) => master.at(model, time)?,
+            (master, _) => master.at(model, time, u)?,
         })
     }
 }
@@ -113,13 +114,18 @@ impl Master {
         }
     }
 
-    /// The master at `time`, a body's undeformed.
+    /// The master at `time` with the displacements `u`, a body's undeformed.
     ///
     /// # Errors
     /// As [`Masters::at`].
-    pub fn at<'a>(&'a self, model: &'a Model, time: f64) -> Result<MasterNow<'a>, ValueError> {
+    pub fn at<'a>(
+        &'a self,
+        model: &'a Model,
+        time: f64,
+        u: &[f64],
+    ) -> Result<MasterNow<'a>, ValueError> {
         Ok(match self {
-            Master::Rigid(surface) => MasterNow::Rigid(model.surfaces[*surface].at(time)?),
+            Master::Rigid(surface) => MasterNow::Rigid(model.surfaces[*surface].at(time, u)?),
             Master::Body(body) => MasterNow::Body {
                 body,
                 facets: &body.facets,

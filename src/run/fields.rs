@@ -98,18 +98,25 @@ impl Fields {
         self.sunk.fill(0);
         let mut first = 0;
         for (index, (pair, eps_n)) in model.pairs.iter().zip(penalties).enumerate() {
-            let master = masters.at(model, index, time)?;
+            let master = masters.at(model, index, time, &state.u)?;
             let states = &state.points[first..first + pair.points.len()];
             let fronts = &mut self.front[first..first + pair.points.len()];
+            let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
             for (i, ((p, s), front)) in pair.points.iter().zip(states).zip(fronts).enumerate() {
+                let z0 = offsets.as_ref().map_or(0.0, |o| o.factor * o.z0[i]);
                 let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
                 let seen = master.see(pair, i, &x, s.hint);
-                let closed = seen.is_some_and(|s| s.closed);
+                let below = seen.is_some_and(|s| s.closed);
+                let closed = seen.is_some_and(|s| s.closed && s.signed_distance < z0);
                 let sunk = seen.is_some_and(|s| s.behind);
                 self.sunk[index] += usize::from(*front && sunk);
-                *front = closed || seen.is_some_and(|s| s.signed_distance >= 0.0);
-                let gap = seen.map_or(f64::NAN, |s| s.gap());
+                *front = below || seen.is_some_and(|s| s.signed_distance >= 0.0);
+                let gap = match &seen {
+                    None => f64::NAN,
+                    Some(s) if below => s.signed_distance - z0,
+                    Some(s) => s.distance,
+                };
                 let pressure = if closed { -eps_n * gap } else { 0.0 };
                 if gap < self.smallest_gap {
                     self.smallest_gap = gap;
@@ -180,7 +187,7 @@ impl Fields {
             })
             .collect();
         let poses: Vec<_> = (model.surfaces.iter())
-            .map(|s| s.motion.pose(time).unwrap_or_default())
+            .map(|s| s.pose(time, &state.u).unwrap_or_default())
             .collect();
         let surfaces: Vec<SurfaceState> = (self.surfaces.iter().zip(&poses))
             .map(|(surface, at)| SurfaceState { surface, at })

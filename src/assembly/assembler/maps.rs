@@ -1,6 +1,6 @@
 //! The pattern of a model and where the blocks of everything that is assembled go.
 use super::couplings::Couplings;
-use super::{DofMap, Kind, Pattern, PatternError};
+use super::{DofMap, Kind, Pattern, PatternError, driven};
 use crate::model::Model;
 
 /// Places of all blocks on one pattern.
@@ -13,7 +13,8 @@ pub(super) struct Maps {
     pub followers: Vec<Vec<u32>>,
 }
 
-/// The pattern of a model under its constraints: elements, and slave points with the facets that they may touch.
+/// The pattern of a model under its constraints: elements, slave points with the facets that
+/// they may touch, and driven surfaces with all they may touch.
 pub(super) fn pattern(
     model: &Model,
     dofs: &DofMap,
@@ -43,8 +44,12 @@ pub(super) fn pattern(
             }
         }
     }
+    for group in driven::groups(model) {
+        add(&group);
+    }
     let groups = starts.windows(2).map(|w| &nodes[w[0]..w[1]]);
-    Pattern::new(model.nodes.len(), groups)
+    let border = (model.nodes.len() - model.body_nodes()) as u32;
+    Ok(Pattern::new(model.nodes.len(), groups)?.with_border(border))
 }
 
 impl Maps {

@@ -45,6 +45,7 @@ impl Builder<'_> {
             name: name.to_owned(),
             set,
             motion,
+            driven: None,
             depth,
         };
         Ok((model, source.labels))
