@@ -1,4 +1,5 @@
 //! The covariant core of contact: slave points, kernel, laws. It knows nothing of shells or files.
+pub mod closest;
 pub mod corner;
 pub mod kernel;
 pub mod law;

@@ -1,4 +1,5 @@
 //! Scene to model.
+mod facets;
 mod supports;
 mod surfaces;
 mod values;

@@ -135,7 +135,7 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
             ));
         }
         let spacing = point_spacing(model, index);
-        if let Some(radius) = (surface.set.curvature_range().convex).map(|c| c.radius())
+        if let [Some(radius), _] = surface.radii()
             && spacing > 0.5 * radius
         {
             warnings.push(format!(

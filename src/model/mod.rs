@@ -10,19 +10,19 @@ pub mod motion;
 pub mod penalty;
 pub mod slave;
 pub mod state;
+pub mod surface;
 
 use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;
-use crate::contact::rigid::RigidMaster;
 use crate::mesh::Mesh;
 use crate::scene::{Tangent, TimeFunction, ValueError};
 use crate::shell::H8Block;
 use constraints::{MeanPrescribed, Prescribed};
-use covact_geometry::{PatchSet, Vec3};
+use covact_geometry::Vec3;
 use loads::{DeadLoad, FollowerPressure};
-use motion::Motion;
 
 pub use error::ModelError;
+pub use surface::SurfaceModel;
 
 /// Bodies, rigid surfaces, contact pairs, supports and loads, with all names resolved.
 #[derive(Debug)]
@@ -59,17 +59,6 @@ pub struct BodyModel {
     pub block: H8Block,
     /// Number of the body's first node in the model.
     pub first_node: u32,
-}
-
-/// A rigid surface.
-#[derive(Debug)]
-pub struct SurfaceModel {
-    pub name: String,
-    /// Patches in the scene's length unit and the surface's own coordinates.
-    pub set: PatchSet,
-    pub motion: Motion,
-    /// Depth below which a point does not count (length).
-    pub depth: f64,
 }
 
 /// A contact pair.
@@ -147,17 +136,6 @@ impl BodyModel {
         self.element_nodes(e).map(|n| {
             let at = 3 * n as usize;
             Vec3::new(u[at], u[at + 1], u[at + 2])
-        })
-    }
-}
-
-impl SurfaceModel {
-    /// The surface at its position of time `t`.
-    pub fn at(&self, t: f64) -> Result<RigidMaster<'_>, ValueError> {
-        Ok(RigidMaster {
-            surface: &self.set,
-            pose: self.motion.pose(t)?,
-            depth: self.depth,
         })
     }
 }

@@ -12,6 +12,7 @@
 
 mod bilinear;
 mod biquadratic;
+mod counts;
 mod deviation;
 mod lines;
 mod mesh;
@@ -40,8 +41,8 @@ pub enum FacetError {
         /// Nodes that there are.
         count: usize,
     },
-    /// The chord tolerance is not a positive finite number.
-    #[error("the chord tolerance {0} is not a positive number")]
+    /// The chord tolerance or the size is not a positive finite number.
+    #[error("the chord tolerance or size {0} is not a positive number")]
     Tolerance(f64),
     /// No facets per span are asked for.
     #[error("a span cannot be cut in no facets at all")]

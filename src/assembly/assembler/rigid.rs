@@ -1,11 +1,13 @@
 //! Contact with rigid surfaces: the slave points of a pair are evaluated in parallel and summed in order.
 use super::{Assembler, Fault, SurfaceForce, Totals, put};
+use crate::contact::closest::ClosestPoint;
 use crate::contact::law::{NormalLaw, Penalty};
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
 use crate::model::state::{PointState, State};
 use crate::model::{Model, PairModel};
 use crate::scene::Tangent;
+use crate::with_patches;
 use rayon::prelude::*;
 
 impl Assembler<'_> {
@@ -31,26 +33,20 @@ impl Assembler<'_> {
             let law = Penalty {
                 eps_n: self.penalties[index],
             };
-            let batch = Batch {
-                model: self.model,
-                pair,
-                master: &master,
-                law: &law,
-                u,
-            };
-            match pair.tangent {
-                Tangent::Exact => batch.evaluate(points, touches, &Exact),
-                Tangent::Published {
-                    rotational,
-                    curvature,
-                } => {
-                    let parts = Parts {
-                        rotational,
-                        curvature,
-                    };
-                    batch.evaluate(points, touches, &parts)
-                }
-            }
+            with_patches!(master.surface, patches => {
+                let batch = Batch {
+                    model: self.model,
+                    pair,
+                    master: &RigidMaster {
+                        surface: patches,
+                        pose: master.pose,
+                        depth: master.depth,
+                    },
+                    law: &law,
+                    u,
+                };
+                batch.with_tangent(points, touches)
+            });
             let mut deepest = 0.0f64;
             let mut at = 0;
             let maps = &self.point_maps[index];
@@ -122,16 +118,37 @@ impl Assembler<'_> {
 }
 
 /// The slave points of a pair at one trial state.
-struct Batch<'a, L> {
+struct Batch<'a, P, L> {
     model: &'a Model,
     pair: &'a PairModel,
-    master: &'a RigidMaster<'a>,
+    master: &'a RigidMaster<'a, P>,
     law: &'a L,
     u: &'a [f64],
 }
 
-impl<L: NormalLaw> Batch<'_, L> {
-    /// Evaluates every point; law and tangent are types here, nothing is chosen inside the loop.
+impl<P: ClosestPoint, L: NormalLaw> Batch<'_, P, L> {
+    /// Evaluates every point with the tangent that the pair asks for.
+    fn with_tangent(
+        &self,
+        states: &mut [PointState],
+        touches: &mut [Result<Option<Touch>, PointFault>],
+    ) {
+        match self.pair.tangent {
+            Tangent::Exact => self.evaluate(states, touches, &Exact),
+            Tangent::Published {
+                rotational,
+                curvature,
+            } => {
+                let parts = Parts {
+                    rotational,
+                    curvature,
+                };
+                self.evaluate(states, touches, &parts)
+            }
+        }
+    }
+
+    /// Evaluates every point; surface, law and tangent are types here, nothing is chosen inside the loop.
     fn evaluate<T: RigidTangent>(
         &self,
         states: &mut [PointState],
