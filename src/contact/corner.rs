@@ -1,9 +1,21 @@
 //! Contact where the foot point lies on an edge or a vertex of the master instead of on a face.
 //!
-//! With `d = r_s - rho`, signed distance `s = -|d|` (penetration) and penalty `N = eps s`, the force is `eps d`: smooth
-//! as the distance vanishes, where the direction `d / |d|` alone would not be. The second variation of the distance
-//! (generalised closest point, Konyukhov & Schweizerhof, CMAME 197 (2008)) gives the tangents below without any
-//! division by `s`.
+//! With `d = r_s - rho`, signed distance `xi3 = -|d|` (penetration) and the law's traction `N`, the force is `e d` with
+//! the secant `e = N / xi3`. For a penalty `e` is the penalty itself, and the force is smooth as the distance vanishes,
+//! where the direction `d / |d|` alone would not be. The second variation of the distance (generalised closest point,
+//! Konyukhov & Schweizerhof, CMAME 197 (2008)) gives, in the slots of [`super::kernel`],
+//!
+//! ```text
+//! R = e (d, 0, 0)
+//! K = e ( P - E x E / (|rho'|^2 - rho'' . d) ) + (N' - e) n x n      P = I in slot 0, n = (d, 0, 0) / xi3
+//! E = (rho', t_1 d, t_2 d)       ds = E . slots / (|rho'|^2 - rho'' . d)
+//! ```
+//!
+//! for an edge that runs along `t` in the parameters of its face, `rho' = t_i rho_i`. The slots 1 and 2 of the residual
+//! are zero because `d . rho' = 0` at the foot; their rows in the tangent come from the point of application, which
+//! moves over the master's shape functions by `t_i ds`. A vertex moves with its node: `E = 0`. On a rigid master the
+//! first 3 x 3 block remains.
+use super::kernel::{Normal, SlotMatrix, Slots};
 use nalgebra::{Matrix3, Vector3};
 use num_dual::DualNum;
 
@@ -19,6 +31,15 @@ pub fn vertex_tangent<D: DualNum<f64> + Copy>(eps: D) -> Matrix3<D> {
     Matrix3::new(eps, z, z, z, eps, z, z, z, eps)
 }
 
+/// `|rho'|^2 - rho'' . d`, positive where the closest point of the edge is a strict minimum (length^2).
+pub fn curvature<D: DualNum<f64> + Copy>(
+    d: &Vector3<D>,
+    rho_s: &Vector3<D>,
+    rho_ss: &Vector3<D>,
+) -> D {
+    rho_s.dot(rho_s) - rho_ss.dot(d)
+}
+
 /// Tangent at a rigid edge with derivative `rho'` and second derivative `rho''` along it:
 /// `eps (I - rho' x rho' / (|rho'|^2 - rho'' . d))`.
 pub fn edge_tangent<D: DualNum<f64> + Copy>(
@@ -27,6 +48,56 @@ pub fn edge_tangent<D: DualNum<f64> + Copy>(
     rho_ss: &Vector3<D>,
     eps: D,
 ) -> Matrix3<D> {
-    let denominator = rho_s.dot(rho_s) - rho_ss.dot(d);
+    let denominator = curvature(d, rho_s, rho_ss);
     vertex_tangent(eps) - rho_s * rho_s.transpose() * (eps / denominator)
+}
+
+/// What a law that is not proportional to the distance adds to the tangent of an edge or a vertex:
+/// `(N' - N / xi3) n x n`.
+pub fn law_part<D: DualNum<f64> + Copy>(d: &Vector3<D>, xi3: D, normal: &Normal<D>) -> Matrix3<D> {
+    let n = d * xi3.recip();
+    n * n.transpose() * (normal.dn - normal.n / xi3)
+}
+
+/// Residual `N d / xi3` of an edge or vertex point of unit weight in the nine slots.
+pub(super) fn slots_residual<D: DualNum<f64> + Copy>(
+    d: &Vector3<D>,
+    xi3: D,
+    normal: &Normal<D>,
+) -> Slots<D> {
+    let mut r = Slots::from_element(D::zero());
+    r.fixed_rows_mut::<3>(0)
+        .copy_from(&residual(d, normal.n / xi3));
+    r
+}
+
+/// Tangent at a vertex that moves, in the nine slots.
+pub(super) fn vertex_slots<D: DualNum<f64> + Copy>(
+    d: &Vector3<D>,
+    xi3: D,
+    normal: &Normal<D>,
+) -> SlotMatrix<D> {
+    let block = vertex_tangent(normal.n / xi3) + law_part(d, xi3, normal);
+    let mut k = SlotMatrix::from_element(D::zero());
+    k.fixed_view_mut::<3, 3>(0, 0).copy_from(&block);
+    k
+}
+
+/// Tangent at an edge that moves, in the nine slots.
+pub(super) fn edge_slots<D: DualNum<f64> + Copy>(
+    d: &Vector3<D>,
+    xi3: D,
+    direction: &[D; 2],
+    rho_s: &Vector3<D>,
+    rho_ss: &Vector3<D>,
+    normal: &Normal<D>,
+) -> SlotMatrix<D> {
+    let mut e = Slots::from_element(D::zero());
+    for k in 0..3 {
+        e[k] = rho_s[k];
+        e[3 + k] = d[k] * direction[0];
+        e[6 + k] = d[k] * direction[1];
+    }
+    let scale = normal.n / (xi3 * curvature(d, rho_s, rho_ss));
+    vertex_slots(d, xi3, normal) - e * e.transpose() * scale
 }

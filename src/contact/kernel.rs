@@ -49,7 +49,7 @@ struct Rows<D> {
     q: [Slots<D>; 2],
 }
 
-fn in_slot<D: DualNum<f64> + Copy>(slot: usize, v: &Vector3<D>) -> Slots<D> {
+pub(super) fn in_slot<D: DualNum<f64> + Copy>(slot: usize, v: &Vector3<D>) -> Slots<D> {
     let mut s = Slots::from_element(D::zero());
     for k in 0..3 {
         s[3 * slot + k] = v[k];

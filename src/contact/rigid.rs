@@ -1,8 +1,11 @@
 //! Contact of slave points with a rigid surface: NURBS patches or facets, whatever finds closest points.
 use super::closest::ClosestPoint;
 use super::corner;
+pub use super::fault::{Piece, PointFault};
 use super::kernel::{self, Normal};
 use super::law::NormalLaw;
+use super::meeting::Meeting;
+use super::point::PointGeometry;
 use super::published::{self, Parts};
 use covact_geometry::{EdgeKind, Foot, Frame, Hint, Location, PatchSet, Status, Vec3};
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3};
@@ -40,22 +43,6 @@ pub struct RigidMaster<'a, P = PatchSet> {
     pub pose: Isometry3<f64>,
     /// Points deeper than this below the surface are not in contact (length).
     pub depth: f64,
-}
-
-/// What keeps a point from being evaluated.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum PointFault {
-    #[error("the closest point search did not converge (patch {patch}, xi = [{}, {}])", xi[0], xi[1])]
-    ProjectionNotConverged { patch: u32, xi: [f64; 2] },
-    #[error(
-        "the point lies at or beyond the focal surface of the master (patch {patch}, xi = [{}, {}], xi3 = {xi3:e})",
-        xi[0], xi[1]
-    )]
-    BeyondFocalSurface { patch: u32, xi: [f64; 2], xi3: f64 },
-    #[error("the master has no normal at patch {patch}, xi = [{}, {}]", xi[0], xi[1])]
-    DegenerateFrame { patch: u32, xi: [f64; 2] },
-    #[error("the point's position is not finite")]
-    NotFinite,
 }
 
 /// A foot on an edge or a crease whose distance vector leans along the line by more than this (relative to the size of
@@ -104,94 +91,150 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         *hint = Some(Hint { patch, xi });
         // On either side: an uncertain foot must not pass for an open point.
         if foot.status == Status::NotConverged {
-            return Err(PointFault::ProjectionNotConverged { patch, xi });
+            let piece = Piece::Patch(patch);
+            return Err(PointFault::ProjectionNotConverged { piece, xi });
         }
         if !presses(&foot) {
             return Ok(None);
         }
-        let xi3 = foot.signed_distance;
-        let normal = law.normal(xi3);
-        let d = local - foot.jet.rho;
-        let (residual, k) = match foot.location {
-            Location::Corner {
-                kind: EdgeKind::Sharp,
-                ..
-            } => {
-                let eps = normal.n / xi3;
-                (corner::residual(&d, eps), corner::vertex_tangent(eps))
-            }
-            Location::Edge {
-                edge,
-                kind: EdgeKind::Sharp,
-            } => {
-                let line = if edge < 4 {
-                    along_side(&foot, 1 - edge as usize / 2)
-                } else {
-                    (self.surface.edge_derivatives(patch, edge, xi))
-                        .ok_or(PointFault::DegenerateFrame { patch, xi })?
-                };
-                self.on_line(&foot, line, &d, &normal)?
-            }
-            Location::Crease { dir } => {
-                self.on_line(&foot, along_side(&foot, 1 - dir as usize), &d, &normal)?
-            }
-            _ => self.on_face(&foot, &normal, tangent)?,
-        };
+        let geometry = self.geometry(&foot, &(local - foot.jet.rho))?;
+        if !geometry.is_minimum() {
+            return Err(PointFault::BeyondFocalSurface {
+                piece: Piece::Patch(patch),
+                xi,
+                xi3: foot.signed_distance,
+            });
+        }
+        let normal = law.normal(geometry.xi3());
+        let (residual, k) = respond_rigid(&geometry, &normal, tangent);
         let rotation = Rotation3::from(self.pose.rotation);
         let r = rotation.matrix();
         Ok(Some(Touch {
             residual: r * residual,
             tangent: r * k * r.transpose(),
-            xi3,
+            xi3: geometry.xi3(),
             n: normal.n,
         }))
     }
 
-    fn on_line(
+    /// The closest point within `reach` on either side, for what needs more than [`Self::touch`]: a rigid surface with
+    /// unknown motion, or an averaged gap. `hint` as there.
+    pub fn meet(
         &self,
-        foot: &Foot,
-        [rho_s, rho_ss]: [Vec3; 2],
-        d: &Vec3,
-        normal: &Normal,
-    ) -> Result<(Vec3, Matrix3<f64>), PointFault> {
-        let eps = normal.n / foot.signed_distance;
-        // Where another line crosses this one, the foot may be held along it too.
-        let held = d.dot(&rho_s).abs() > HELD * self.surface.size() * rho_s.norm();
-        let k = if held {
-            corner::vertex_tangent(eps)
-        } else if rho_s.dot(&rho_s) > rho_ss.dot(d) {
-            corner::edge_tangent(d, &rho_s, &rho_ss, eps)
-        } else {
-            return Err(PointFault::BeyondFocalSurface {
-                patch: foot.patch,
-                xi: foot.xi,
-                xi3: foot.signed_distance,
-            });
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        reach: f64,
+    ) -> Result<Option<Meeting>, PointFault> {
+        if !(x.x.is_finite() && x.y.is_finite() && x.z.is_finite()) {
+            return Err(PointFault::NotFinite);
+        }
+        let local = self.pose.inverse_transform_point(&Point3::from(*x)).coords;
+        let Some(foot) = self.surface.project(&local, *hint, reach) else {
+            *hint = None;
+            return Ok(None);
         };
-        Ok((corner::residual(d, eps), k))
+        let (patch, xi) = (foot.patch, foot.xi);
+        *hint = Some(Hint { patch, xi });
+        let piece = Piece::Patch(patch);
+        if foot.status == Status::NotConverged {
+            return Err(PointFault::ProjectionNotConverged { piece, xi });
+        }
+        let geometry = self.geometry(&foot, &(local - foot.jet.rho))?;
+        Ok(Some(Meeting {
+            piece,
+            xi,
+            rho: (self.pose.transform_point(&Point3::from(foot.jet.rho))).coords,
+            geometry: geometry.moved(&self.pose),
+            xi3: foot.signed_distance,
+            normal: self.pose.rotation * foot.normal,
+            free: free(&foot),
+        }))
     }
 
-    fn on_face<T: RigidTangent>(
-        &self,
-        foot: &Foot,
-        normal: &Normal,
-        tangent: &T,
-    ) -> Result<(Vec3, Matrix3<f64>), PointFault> {
+    /// What the surface looks like at a foot, in its own coordinates; `d` is the distance vector.
+    fn geometry(&self, foot: &Foot, d: &Vec3) -> Result<PointGeometry, PointFault> {
         let (patch, xi, xi3) = (foot.patch, foot.xi, foot.signed_distance);
-        if matches!(foot.location, Location::Pole { .. }) {
-            // The parametrisation has no metric here; the normal is known, the curvature part (smaller by
-            // xi3 kappa) is left out of the tangent.
-            let n = foot.normal;
-            return Ok((n * normal.n, n * n.transpose() * normal.dn));
+        let degenerate = PointFault::DegenerateFrame {
+            piece: Piece::Patch(patch),
+            xi,
+        };
+        match foot.location {
+            Location::Corner {
+                kind: EdgeKind::Sharp,
+                ..
+            } => Ok(PointGeometry::Vertex { d: *d, xi3 }),
+            Location::Edge {
+                edge,
+                kind: EdgeKind::Sharp,
+            } => {
+                let line = if edge < 4 {
+                    along_side(foot, 1 - edge as usize / 2)
+                } else {
+                    (self.surface.edge_derivatives(patch, edge, xi)).ok_or(degenerate)?
+                };
+                Ok(self.on_line(foot, line, d))
+            }
+            Location::Crease { dir } => {
+                Ok(self.on_line(foot, along_side(foot, 1 - dir as usize), d))
+            }
+            // The parametrisation has no metric here; the normal is known.
+            Location::Pole { .. } => Ok(PointGeometry::Pole {
+                normal: foot.normal,
+                xi3,
+            }),
+            _ => Ok(PointGeometry::Face {
+                frame: Frame::new(&foot.jet, foot.side).ok_or(degenerate)?,
+                xi3,
+            }),
         }
-        let frame =
-            Frame::new(&foot.jet, foot.side).ok_or(PointFault::DegenerateFrame { patch, xi })?;
-        let [i11, i12, i22] = [0, 1, 2].map(|i| frame.a[i] - xi3 * frame.h[i]);
-        if i11 <= 0.0 || i11 * i22 - i12 * i12 <= 0.0 {
-            return Err(PointFault::BeyondFocalSurface { patch, xi, xi3 });
+    }
+
+    fn on_line(&self, foot: &Foot, [rho_s, rho_ss]: [Vec3; 2], d: &Vec3) -> PointGeometry {
+        let (d, xi3) = (*d, foot.signed_distance);
+        // Where another line crosses this one, the foot may be held along it too.
+        if d.dot(&rho_s).abs() > HELD * self.surface.size() * rho_s.norm() {
+            PointGeometry::Vertex { d, xi3 }
+        } else {
+            PointGeometry::Edge {
+                d,
+                xi3,
+                // On a rigid surface only the line's own tangent counts, whatever its direction in the parameters.
+                direction: [1.0, 0.0],
+                rho_s,
+                rho_ss,
+            }
         }
-        let k = tangent.face(&frame, xi3, normal);
-        Ok((frame.n * normal.n, k))
+    }
+}
+
+/// Residual and tangent of a point on a rigid master: the first 3 x 3 block of [`super::point::respond`], without the
+/// work for the rest.
+fn respond_rigid<T: RigidTangent>(
+    geometry: &PointGeometry,
+    normal: &Normal,
+    tangent: &T,
+) -> (Vec3, Matrix3<f64>) {
+    match geometry {
+        PointGeometry::Face { frame, xi3 } => {
+            (frame.n * normal.n, tangent.face(frame, *xi3, normal))
+        }
+        PointGeometry::Edge {
+            d,
+            xi3,
+            rho_s,
+            rho_ss,
+            ..
+        } => {
+            let eps = normal.n / xi3;
+            let k = corner::edge_tangent(d, rho_s, rho_ss, eps) + corner::law_part(d, *xi3, normal);
+            (corner::residual(d, eps), k)
+        }
+        PointGeometry::Vertex { d, xi3 } => {
+            let eps = normal.n / xi3;
+            let k = corner::vertex_tangent(eps) + corner::law_part(d, *xi3, normal);
+            (corner::residual(d, eps), k)
+        }
+        PointGeometry::Pole { normal: n, .. } => (n * normal.n, n * n.transpose() * normal.dn),
     }
 }
 
@@ -208,7 +251,12 @@ pub fn behind(foot: &Foot, depth: f64) -> bool {
 /// Whether a foot means contact. A foot on a free border is not: the point hangs past the border, beside the surface
 /// or below it, and nothing of the surface stands in its way.
 pub fn presses(foot: &Foot) -> bool {
-    let free = matches!(
+    foot.signed_distance < 0.0 && !free(foot)
+}
+
+/// Whether a foot lies on a free border.
+fn free(foot: &Foot) -> bool {
+    matches!(
         foot.location,
         Location::Edge {
             kind: EdgeKind::Free,
@@ -217,8 +265,7 @@ pub fn presses(foot: &Foot) -> bool {
             kind: EdgeKind::Free,
             ..
         }
-    );
-    foot.signed_distance < 0.0 && !free
+    )
 }
 
 #[cfg(test)]

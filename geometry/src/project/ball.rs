@@ -21,7 +21,7 @@ const fn binomials() -> [[f64; WIDTH]; WIDTH] {
     table
 }
 
-static BINOMIALS: [[f64; WIDTH]; WIDTH] = binomials();
+pub(crate) static BINOMIALS: [[f64; WIDTH]; WIDTH] = binomials();
 
 /// Whether a Bezier piece is proved to lie outside of the open ball of radius `c` about `q`.
 ///
@@ -29,7 +29,7 @@ static BINOMIALS: [[f64; WIDTH]; WIDTH] = binomials();
 /// negative, no point of the piece is nearer than `c` (X.-D. Chen, J.-H. Yong, G. Wang, J.-C. Paul, G. Xu, "Computing the
 /// minimum distance between a point and a NURBS surface", CAD 40, 2008). For a sphere the bound is exact at its centre.
 #[inline]
-pub(super) fn outside_ball(net: &[[f64; 4]], degree: [usize; 2], q: &Vec3, c: f64) -> bool {
+pub(crate) fn outside_ball(net: &[[f64; 4]], degree: [usize; 2], q: &Vec3, c: f64) -> bool {
     // The corners are coefficients, and the likeliest to be negative.
     let [n1, n] = [degree[0] + 1, net.len()];
     let inside = |k: usize| {

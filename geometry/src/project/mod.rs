@@ -7,7 +7,7 @@
 //! of closest point projection procedures in contact analysis", CMAME 197 (2008), for the mechanics of faces, edges and
 //! vertices.
 
-mod ball;
+pub(crate) mod ball;
 mod batch;
 mod cells;
 mod convex;
@@ -17,14 +17,14 @@ mod local;
 mod location;
 mod neighbour;
 mod normals;
-mod piece;
+pub(crate) mod piece;
 mod report;
 mod round;
 mod search;
-mod set;
+pub(crate) mod set;
 mod sides;
 mod topology;
-mod tree;
+pub(crate) mod tree;
 mod trimmed;
 mod trimmed_search;
 

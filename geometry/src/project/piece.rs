@@ -210,7 +210,7 @@ pub(super) fn box_distance2(q: &Vec3, low: &Vec3, high: &Vec3) -> f64 {
 }
 
 /// Cuts a control net at `t` (0 to 1) of direction `dir`: `left` becomes the first part, `right` the second one.
-pub(super) fn split(
+pub(crate) fn split(
     left: &mut [[f64; 4]],
     right: &mut [[f64; 4]],
     degree: [usize; 2],

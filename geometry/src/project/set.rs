@@ -15,7 +15,7 @@ use crate::surface::{Surface, Vec3};
 
 /// Normals that turn by more than this (radians) across a joint or a crease make it sharp: one degree, above what CAD
 /// systems leave in joints that are meant to be tangential.
-pub(super) const SHARP_ANGLE: f64 = std::f64::consts::PI / 180.0;
+pub(crate) const SHARP_ANGLE: f64 = std::f64::consts::PI / 180.0;
 
 /// Why a set of patches could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

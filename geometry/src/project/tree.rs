@@ -54,7 +54,7 @@ const LEAF: u32 = 1 << 31;
 const STACK: usize = 64;
 
 #[derive(Debug, Clone, Default)]
-pub(super) struct Tree {
+pub(crate) struct Tree {
     nodes: Vec<Node>,
     /// Box around everything and where the tree starts; `None` without boxes.
     root: Option<([Vec3; 2], u32)>,
@@ -118,6 +118,44 @@ impl Tree {
             node.child[child] = number;
         }
         ([low, high], node as u32)
+    }
+
+    /// Builds the tree over all boxes, so that it can be [refitted](Self::refit) to others: also those that nothing is in
+    /// now.
+    pub fn with_all(boxes: &[[Vec3; 2]]) -> Self {
+        let shown = |[low, high]: &[Vec3; 2]| low.x <= high.x;
+        let start: Vec<[Vec3; 2]> = (boxes.iter())
+            .map(|b| if shown(b) { *b } else { [Vec3::zeros(); 2] })
+            .collect();
+        let mut tree = Self::new(&start);
+        tree.refit(boxes);
+        tree
+    }
+
+    /// Takes over other boxes with the same numbers; which boxes are joined stays as it is. Allocates nothing.
+    pub fn refit(&mut self, boxes: &[[Vec3; 2]]) {
+        let bounds = |nodes: &[Node], number: u32| {
+            if number & LEAF != 0 {
+                return boxes[(number & !LEAF) as usize];
+            }
+            let node = &nodes[number as usize];
+            let [a, b] = [0, 1].map(|child| node.bounds(child));
+            [a[0].inf(&b[0]), a[1].sup(&b[1])]
+        };
+        // Nodes are numbered before their children.
+        for number in (0..self.nodes.len()).rev() {
+            for child in 0..2 {
+                let [low, high] = bounds(&self.nodes, self.nodes[number].child[child]);
+                let node = &mut self.nodes[number];
+                for k in 0..3 {
+                    node.low[k][child] = low[k];
+                    node.high[k][child] = high[k];
+                }
+            }
+        }
+        if let Some((root, number)) = &mut self.root {
+            *root = bounds(&self.nodes, *number);
+        }
     }
 
     /// Lowest and highest corner of everything.

@@ -1,5 +1,6 @@
 //! Deformable bodies: materials, elements, where meshes come from, sets.
 use super::mesh::*;
+use super::surface::Placement;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -33,7 +34,10 @@ pub struct Body {
     pub material: String,
     #[serde(default)]
     pub element: Element,
-    /// Further node and face sets, selected by geometry.
+    /// Where the mesh is put: first scaled, then rotated about the origin, then moved.
+    #[serde(default)]
+    pub placement: Placement,
+    /// Further node and face sets, selected by geometry, where the mesh is put.
     #[serde(default)]
     pub sets: BTreeMap<String, Selection>,
 }

@@ -125,11 +125,11 @@ pub struct PlaneShape {
     pub size: [f64; 2],
 }
 
-/// Rigid placement of a surface before it moves, with an optional scale.
+/// Rigid placement of a surface before it moves, or of a mesh, with an optional scale.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Placement {
-    /// Multiplies every coordinate of the file (after its units were converted).
+    /// Multiplies every coordinate (of a CAD file after its units were converted).
     pub scale: f64,
     /// Rotation axis through the origin.
     pub axis: [f64; 3],

@@ -1,0 +1,93 @@
+//! Control points as linear combinations of nodes.
+
+use super::ShapeRows;
+use super::net::bernstein;
+use crate::surface::Vec3;
+
+/// The control points of a facet as combinations of its nodes: a sparse matrix by rows. Facets with the same matrix share
+/// one.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Operator {
+    /// Start of each row, and one past the last.
+    starts: Vec<u16>,
+    entries: Vec<(u16, f64)>,
+}
+
+impl Operator {
+    /// Of rows of nodes (by place among the facet's) with factors.
+    pub fn new(rows: impl IntoIterator<Item = Vec<(u16, f64)>>) -> Self {
+        let mut out = Operator {
+            starts: vec![0],
+            entries: Vec::new(),
+        };
+        for row in rows {
+            out.entries.extend(row.into_iter().filter(|e| e.1 != 0.0));
+            out.starts.push(out.entries.len() as u16);
+        }
+        out
+    }
+
+    /// What makes two operators the same: their bits.
+    pub fn key(&self) -> Vec<u64> {
+        let starts = self.starts.iter().map(|&s| u64::from(s));
+        let entries = self.entries.iter();
+        starts
+            .chain(entries.flat_map(|&(k, f)| [u64::from(k), f.to_bits()]))
+            .collect()
+    }
+
+    /// Of a Lagrange facet with `count` (2 or 3) nodes in each direction, for Bezier pieces of the given degree.
+    pub fn lagrange(count: [u8; 2], degree: usize) -> Self {
+        let one = [0, 1].map(|k| lines(count[k], degree));
+        let mut rows = Vec::new();
+        for second in &one[1] {
+            for first in &one[0] {
+                let n = first.len();
+                let row = (0..n * second.len()).map(|k| (k as u16, first[k % n] * second[k / n]));
+                rows.push(row.collect());
+            }
+        }
+        Self::new(rows)
+    }
+
+    /// Control points from the positions of the facet's nodes.
+    #[inline]
+    pub fn apply(&self, places: &[u32], positions: &[Vec3], net: &mut [[f64; 4]]) {
+        for (point, range) in net.iter_mut().zip(self.starts.windows(2)) {
+            let mut sum = Vec3::zeros();
+            for &(k, factor) in &self.entries[range[0] as usize..range[1] as usize] {
+                sum += positions[places[k as usize] as usize] * factor;
+            }
+            *point = [sum.x, sum.y, sum.z, 1.0];
+        }
+    }
+
+    /// Shape functions of the nodes; `out.count` says how many there are.
+    #[inline]
+    pub fn shape<const M: usize>(&self, xi: [f64; 2], out: &mut ShapeRows) {
+        let [u, v] = xi.map(bernstein::<M>);
+        out.n[..out.count].fill(0.0);
+        out.n_1[..out.count].fill(0.0);
+        out.n_2[..out.count].fill(0.0);
+        for (c, range) in self.starts.windows(2).enumerate() {
+            let (i, j) = (c % M, c / M);
+            let b = [u[0][i] * v[0][j], u[1][i] * v[0][j], u[0][i] * v[1][j]];
+            for &(k, factor) in &self.entries[range[0] as usize..range[1] as usize] {
+                let k = k as usize;
+                out.n[k] += factor * b[0];
+                out.n_1[k] += factor * b[1];
+                out.n_2[k] += factor * b[2];
+            }
+        }
+    }
+}
+
+/// Bezier points of a line of 2 or 3 equally spaced nodes, raised to the degree: a row of factors each.
+fn lines(count: u8, degree: usize) -> Vec<Vec<f64>> {
+    let rows: &[&[f64]] = match (count, degree) {
+        (2, 1) => &[&[1.0, 0.0], &[0.0, 1.0]],
+        (2, _) => &[&[1.0, 0.0], &[0.5, 0.5], &[0.0, 1.0]],
+        _ => &[&[1.0, 0.0, 0.0], &[-0.5, 2.0, -0.5], &[0.0, 0.0, 1.0]],
+    };
+    rows.iter().map(|row| row.to_vec()).collect()
+}

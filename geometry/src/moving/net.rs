@@ -1,0 +1,102 @@
+//! Polynomial Bezier nets of `M x M` control points over `[-1, 1]^2`: jets, shape weights, boxes, sub-pieces.
+
+use super::EMPTY_BOX;
+use crate::surface::{Jet, Vec3};
+
+/// Bernstein polynomials of degree `M - 1` at `xi`, with first and second derivatives by `xi`.
+#[inline]
+pub(super) fn bernstein<const M: usize>(xi: f64) -> [[f64; M]; 3] {
+    // Weights that are 0 and 1 at the ends, so that corners are control points to the last digit.
+    let (a, b) = (0.5 * (1.0 - xi), 0.5 * (1.0 + xi));
+    let mut out = [[0.0; M]; 3];
+    let p = (M - 1) as f64;
+    // Degrees P - 2, P - 1 and P, one from the other; differences of lower degrees are derivatives.
+    let mut low = [0.0; M];
+    low[0] = 1.0;
+    for degree in 1..M {
+        if degree + 1 == M {
+            let f = 0.5 * p;
+            for k in 0..M {
+                let before = if k > 0 { low[k - 1] } else { 0.0 };
+                let own = if k < degree { low[k] } else { 0.0 };
+                out[1][k] = f * (before - own);
+            }
+        }
+        if degree + 2 == M {
+            let f = 0.25 * p * (p - 1.0);
+            for k in 0..M {
+                let at = |i: usize| if i < degree { low[i] } else { 0.0 };
+                let mut second = at(k);
+                if k > 0 {
+                    second -= 2.0 * at(k - 1);
+                }
+                if k > 1 {
+                    second += at(k - 2);
+                }
+                out[2][k] = f * second;
+            }
+        }
+        for k in (0..=degree).rev() {
+            let before = if k > 0 { low[k - 1] * b } else { 0.0 };
+            let own = if k < degree { low[k] * a } else { 0.0 };
+            low[k] = before + own;
+        }
+    }
+    out[0] = low;
+    out
+}
+
+/// Point with first and second derivatives.
+#[inline]
+pub(super) fn jet<const M: usize>(net: &[[f64; 4]], xi: [f64; 2]) -> Jet {
+    let [u, v] = xi.map(bernstein::<M>);
+    let mut sums = [[0.0; 3]; 6];
+    for (j, row) in net.chunks_exact(M).enumerate().take(M) {
+        // Value and derivatives along the row.
+        let mut along = [[0.0; 3]; 3];
+        for (i, p) in row.iter().enumerate() {
+            for (along, u) in along.iter_mut().zip(&u) {
+                for k in 0..3 {
+                    along[k] += u[i] * p[k];
+                }
+            }
+        }
+        let orders = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)];
+        for (sum, (a, b)) in sums.iter_mut().zip(orders) {
+            for k in 0..3 {
+                sum[k] += v[b][j] * along[a][k];
+            }
+        }
+    }
+    let [rho, r1, r2, r11, r12, r22] = sums.map(Vec3::from);
+    Jet {
+        rho,
+        rho_i: [r1, r2],
+        rho_ij: [r11, r12, r22],
+    }
+}
+
+/// Box around the control points, which holds the piece; empty where one of them is not finite.
+#[inline]
+pub(super) fn bounds(net: &[[f64; 4]]) -> [Vec3; 2] {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    let mut sum = 0.0;
+    for p in net {
+        for k in 0..3 {
+            low[k] = if p[k] < low[k] { p[k] } else { low[k] };
+            high[k] = if p[k] > high[k] { p[k] } else { high[k] };
+            sum += p[k];
+        }
+    }
+    if f64::is_finite(sum) {
+        [low.into(), high.into()]
+    } else {
+        EMPTY_BOX
+    }
+}
+
+/// The halves of a net: `left` becomes the first, the second is returned in `right`.
+pub(super) fn halve<const M: usize>(left: &mut [[f64; 4]], right: &mut [[f64; 4]], dir: usize) {
+    crate::project::piece::split(left, right, [M - 1; 2], dir, 0.5);
+}

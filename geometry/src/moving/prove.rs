@@ -1,0 +1,113 @@
+//! Whether a facet, or a part of it, is proved to have its closest point where the iteration found one.
+//!
+//! `F = |rho - q|^2` is a polynomial of twice the degree. Its Bernstein coefficients bound it, their first differences its
+//! slopes and their second differences its second derivatives. Where these say that `F` is convex, a stationary point with
+//! active bounds is the nearest one; where `F` only grows in one direction, the nearest point lies on an edge, on which
+//! one asks again.
+
+use crate::project::ball::BINOMIALS;
+use crate::surface::Vec3;
+
+/// What the coefficients say of a rectangle of parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Verdict {
+    /// The squared distance is convex: a stationary point of the rectangle is its nearest.
+    Convex,
+    /// The nearest point lies on this edge (0: low, 1: high end of the direction), along which the squared distance is
+    /// convex.
+    ConvexEdge {
+        dir: usize,
+        end: usize,
+    },
+    Unknown,
+}
+
+/// Judges a net of `M x M` control points; `L = 2 M - 1`.
+#[inline]
+pub(super) fn judge<const M: usize, const L: usize>(net: &[[f64; 4]], q: &Vec3) -> Verdict {
+    let f = coefficients::<M, L>(net, q);
+    let p = (L - 1) as f64;
+    // Second derivatives, up to a common factor: f_uu, f_vv from second differences, f_uv from mixed ones.
+    let (mut uu, mut vv, mut uv) = (f64::INFINITY, f64::INFINITY, 0.0f64);
+    for j in 0..L {
+        for i in 0..L - 2 {
+            uu = uu.min(f[j][i] - 2.0 * f[j][i + 1] + f[j][i + 2]);
+            vv = vv.min(f[i][j] - 2.0 * f[i + 1][j] + f[i + 2][j]);
+        }
+    }
+    for j in 0..L - 1 {
+        for i in 0..L - 1 {
+            uv = uv.max((f[j][i] - f[j][i + 1] - f[j + 1][i] + f[j + 1][i + 1]).abs());
+        }
+    }
+    let (uu, vv, uv) = (p * (p - 1.0) * uu, p * (p - 1.0) * vv, p * p * uv);
+    if uu > 0.0 && vv > 0.0 && uu * vv > uv * uv * (1.0 + 1e-9) {
+        return Verdict::Convex;
+    }
+    // Convex along the edge at the end of direction `dir`, which is a row or a column of coefficients.
+    let edge = |dir: usize, end: usize| {
+        let at = |k: usize| {
+            if dir == 0 {
+                f[k][end * (L - 1)]
+            } else {
+                f[end * (L - 1)][k]
+            }
+        };
+        (0..L - 2).all(|k| at(k) - 2.0 * at(k + 1) + at(k + 2) >= 0.0)
+    };
+    for dir in 0..2 {
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for j in 0..L {
+            for i in 0..L - 1 {
+                let step = if dir == 0 {
+                    f[j][i + 1] - f[j][i]
+                } else {
+                    f[i + 1][j] - f[i][j]
+                };
+                least = least.min(step);
+                most = most.max(step);
+            }
+        }
+        if least >= 0.0 && edge(dir, 0) {
+            return Verdict::ConvexEdge { dir, end: 0 };
+        }
+        if most <= 0.0 && edge(dir, 1) {
+            return Verdict::ConvexEdge { dir, end: 1 };
+        }
+    }
+    Verdict::Unknown
+}
+
+/// Bernstein coefficients of `|rho - q|^2`, `[second direction][first]`.
+#[inline]
+fn coefficients<const M: usize, const L: usize>(net: &[[f64; 4]], q: &Vec3) -> [[f64; L]; L] {
+    let p = M - 1;
+    let mut points = [[[0.0; 3]; M]; M];
+    for (j, row) in points.iter_mut().enumerate() {
+        for (i, out) in row.iter_mut().enumerate() {
+            let c = &net[i + M * j];
+            let factor = BINOMIALS[p][i] * BINOMIALS[p][j];
+            *out = [
+                (c[0] - q.x) * factor,
+                (c[1] - q.y) * factor,
+                (c[2] - q.z) * factor,
+            ];
+        }
+    }
+    let mut out = [[0.0; L]; L];
+    for j in 0..M {
+        for l in 0..M {
+            for (i, a) in points[j].iter().enumerate() {
+                for (k, b) in points[l].iter().enumerate() {
+                    out[j + l][i + k] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+                }
+            }
+        }
+    }
+    for (j, row) in out.iter_mut().enumerate() {
+        for (i, f) in row.iter_mut().enumerate() {
+            *f /= BINOMIALS[2 * p][i] * BINOMIALS[2 * p][j];
+        }
+    }
+    out
+}

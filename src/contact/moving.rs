@@ -1,0 +1,197 @@
+//! Contact of slave points with a surface whose nodes move: the faces of a body.
+use super::fault::{Piece, PointFault};
+use super::kernel::{NodeRow, SlotMatrix, Slots};
+use super::law::NormalLaw;
+use super::meeting::Meeting;
+use super::point::{FaceTangent, PointGeometry};
+use covact_geometry::{
+    EdgeKind, Frame, Hint, Jet, MovingFacets, MovingFoot, MovingPlace, ShapeRows, Status, Vec3,
+};
+
+/// A surface of moving facets at its present position.
+#[derive(Debug, Clone, Copy)]
+pub struct MovingMaster<'a> {
+    pub facets: &'a MovingFacets,
+    /// Points deeper than this below the surface are not in contact (length).
+    pub depth: f64,
+}
+
+/// A foot on an edge or a corner counts as held by it where the distance vector leans by more than this (relative to the
+/// size of the surface) against the facet, or along the edge.
+const HELD: f64 = 1e-10;
+
+/// A point in contact, per unit area and in space coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovingTouch {
+    /// The facet that holds the foot; its nodes and their shape functions are the master's rows.
+    pub facet: u32,
+    /// Parameters of the foot on it.
+    pub xi: [f64; 2],
+    /// Generalised forces in the nine slots of [`super::kernel`] (the slave is pushed by their negative),
+    /// force / length^2.
+    pub residual: Slots,
+    /// Their derivative, force / length^3.
+    pub tangent: SlotMatrix,
+    /// Normal coordinate, negative.
+    pub xi3: f64,
+    /// Normal traction, negative.
+    pub n: f64,
+    /// Outward unit vector that the traction acts along: the normal of a face, the direction of the distance at edges
+    /// and corners.
+    pub normal: Vec3,
+}
+
+impl MovingMaster<'_> {
+    /// Evaluates one slave point; `None` where it is open. Facets that `accept` refuses do not exist for this point.
+    ///
+    /// `hint` is where the search starts, and is set to where it ended.
+    ///
+    /// # Errors
+    /// [`PointFault`] where the point has no reliable closest point.
+    pub fn touch<L: NormalLaw, T: FaceTangent>(
+        &self,
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        law: &L,
+        tangent: &T,
+        accept: impl Fn(u32) -> bool,
+    ) -> Result<Option<MovingTouch>, PointFault> {
+        let Some(foot) = self.search(x, hint, self.depth, accept)? else {
+            return Ok(None);
+        };
+        if !presses(&foot) {
+            return Ok(None);
+        }
+        let meeting = self.at(x, &foot)?;
+        let touch = meeting.respond(law, tangent)?;
+        Ok(touch.map(|t| MovingTouch {
+            facet: foot.facet,
+            xi: foot.xi,
+            residual: t.residual,
+            tangent: t.tangent,
+            xi3: t.xi3,
+            n: t.n,
+            normal: meeting.geometry.normal(),
+        }))
+    }
+
+    /// The closest point within `reach` on either side, for what needs more than [`Self::touch`], such as an averaged
+    /// gap. `hint` and `accept` as there.
+    ///
+    /// # Errors
+    /// [`PointFault`] as for [`Self::touch`].
+    pub fn meet(
+        &self,
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        reach: f64,
+        accept: impl Fn(u32) -> bool,
+    ) -> Result<Option<Meeting>, PointFault> {
+        match self.search(x, hint, reach, accept)? {
+            Some(foot) => self.at(x, &foot).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    fn search(
+        &self,
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        reach: f64,
+        accept: impl Fn(u32) -> bool,
+    ) -> Result<Option<MovingFoot>, PointFault> {
+        if !(x.x.is_finite() && x.y.is_finite() && x.z.is_finite()) {
+            return Err(PointFault::NotFinite);
+        }
+        let foot = self.facets.project(x, *hint, reach, accept);
+        *hint = foot.as_ref().map(MovingFoot::hint);
+        match foot {
+            // On either side: an uncertain foot must not pass for an open point.
+            Some(foot) if foot.status == Status::NotConverged => {
+                Err(PointFault::ProjectionNotConverged {
+                    piece: Piece::Facet(foot.facet),
+                    xi: foot.xi,
+                })
+            }
+            foot => Ok(foot),
+        }
+    }
+
+    fn at(&self, x: &Vec3, foot: &MovingFoot) -> Result<Meeting, PointFault> {
+        Ok(Meeting {
+            piece: Piece::Facet(foot.facet),
+            xi: foot.xi,
+            rho: foot.jet.rho,
+            geometry: self.geometry(x, foot)?,
+            xi3: foot.signed_distance,
+            normal: foot.normal,
+            free: free(foot),
+        })
+    }
+
+    fn geometry(&self, x: &Vec3, foot: &MovingFoot) -> Result<PointGeometry, PointFault> {
+        let (d, xi3) = (x - foot.jet.rho, foot.signed_distance);
+        let leans = |t: &Vec3| d.dot(t).abs() > HELD * self.facets.size() * t.norm();
+        let edge = |direction: [f64; 2]| {
+            let edge = PointGeometry::edge(&foot.jet, direction, d, xi3);
+            match &edge {
+                // Where another edge crosses this one, the foot may be held along it too.
+                PointGeometry::Edge { rho_s, .. } if leans(rho_s) => {
+                    PointGeometry::Vertex { d, xi3 }
+                }
+                _ => edge,
+            }
+        };
+        match foot.place {
+            MovingPlace::Corner { .. } => Ok(PointGeometry::Vertex { d, xi3 }),
+            MovingPlace::Edge { direction, .. } => Ok(edge(direction)),
+            MovingPlace::Face => {
+                // Facets that meet at less than a sharp angle count as one face, yet their common edge may hold the foot;
+                // then the force must act along the distance all the same, or the two sides would not balance in moment.
+                let held = |k: usize| foot.xi[k].abs() == 1.0 && leans(&foot.jet.rho_i[k]);
+                match [held(0), held(1)] {
+                    [true, true] => Ok(PointGeometry::Vertex { d, xi3 }),
+                    [true, false] => Ok(edge([0.0, 1.0])),
+                    [false, true] => Ok(edge([1.0, 0.0])),
+                    [false, false] => self.face(&foot.jet, xi3, foot),
+                }
+            }
+        }
+    }
+
+    fn face(&self, jet: &Jet, xi3: f64, foot: &MovingFoot) -> Result<PointGeometry, PointFault> {
+        let frame = Frame::new(jet, 1.0).ok_or(PointFault::DegenerateFrame {
+            piece: Piece::Facet(foot.facet),
+            xi: foot.xi,
+        })?;
+        Ok(PointGeometry::Face { frame, xi3 })
+    }
+}
+
+/// The slots row of node `k` of a facet, from the facet's shape functions at the foot.
+#[inline]
+pub fn master_row(shape: &ShapeRows, k: usize) -> NodeRow {
+    [-shape.n[k], shape.n_1[k], shape.n_2[k]]
+}
+
+/// Whether a foot means contact: below the surface and not on a free border, past which nothing stands in the way.
+pub fn presses(foot: &MovingFoot) -> bool {
+    foot.signed_distance < 0.0 && !free(foot)
+}
+
+/// Whether a point lies below the surface, deeper than it is searched: not in contact, though not outside either.
+pub fn behind(foot: &MovingFoot, depth: f64) -> bool {
+    presses(foot) && foot.distance > depth
+}
+
+fn free(foot: &MovingFoot) -> bool {
+    matches!(
+        foot.place,
+        MovingPlace::Edge {
+            kind: EdgeKind::Free,
+            ..
+        } | MovingPlace::Corner {
+            kind: EdgeKind::Free
+        }
+    )
+}
