@@ -4,6 +4,7 @@ mod supports;
 mod surfaces;
 mod values;
 
+use super::driven::Driven;
 use super::error::{At, number, text};
 use super::loads::{DeadLoad, FollowerPressure, load_points};
 use super::motion::pose;
@@ -46,8 +47,9 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         warnings: Vec::new(),
     };
     builder.bodies()?;
-    let (pairs, surfaces) = builder.contacts()?;
-    let supports = builder.supports()?;
+    let (pairs, mut surfaces) = builder.contacts()?;
+    let held = builder.drive(&mut surfaces)?;
+    let supports = builder.supports(&held)?;
     let (dead_loads, follower_loads) = builder.loads()?;
     let mut model = Model {
         title: scene.title.clone(),
@@ -78,6 +80,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         return Err(text(format!("/bodies/{}", free.body), message).help(help));
     }
     super::initial::check(&mut model)?;
+    super::driven::start::approach(&mut model, scene)?;
     Ok(model)
 }
 
@@ -88,6 +91,11 @@ fn kinks(model: &Model, end: f64) -> Vec<f64> {
         .chain(model.follower_loads.iter().map(|(_, l)| &l.value))
         .chain(model.prescribed.iter().filter_map(|p| p.value.as_ref()))
         .chain(model.means.iter().filter_map(|p| p.mean.as_ref()))
+        .chain(
+            model
+                .driven()
+                .flat_map(|(_, _, d)| d.loads.iter().flatten()),
+        )
         .flat_map(TimeFunction::breakpoints)
         .filter(|t| *t > 0.0 && *t < end)
         .collect();
@@ -271,6 +279,45 @@ impl<'s> Builder<'s> {
             self.orient(name, surface, model, &own)?;
         }
         Ok((pairs, surfaces))
+    }
+
+    /// Appends the nodes of surfaces driven by force; returns their degrees of freedom that are not free.
+    fn drive(&mut self, surfaces: &mut [SurfaceModel]) -> Result<Vec<u32>, ModelError> {
+        let mut held = Vec::new();
+        for surface in surfaces {
+            let described = &self.scene.surfaces[&surface.name];
+            let Some(free) = &described.motion.free else {
+                continue;
+            };
+            let node = u32::try_from(self.nodes.len()).map_err(|_| {
+                let pointer = format!("/surfaces/{}", surface.name);
+                text(pointer, "too many nodes: more than 2^32")
+            })?;
+            let bounds = surface.set.bounds().map(Into::into);
+            let driven = Driven::new(&surface.name, free, &surface.motion, bounds, node)?;
+            let pointer = || format!("/surfaces/{}/motion", surface.name);
+            let placed = surface.motion.pose(0.0).at(pointer)?;
+            let center = placed * Point3::from(driven.center);
+            self.nodes.extend([center.coords, Vec3::zeros()]);
+            let free = driven.free();
+            held.extend((0..6).filter(|&c| !free[c]).map(|c| driven.dof(c) as u32));
+            let words = driven.words();
+            let about = match free[3..].contains(&true) {
+                true => format!(
+                    "; it turns about ({}, {}, {}), to which moments refer",
+                    number(center.x),
+                    number(center.y),
+                    number(center.z)
+                ),
+                false => String::new(),
+            };
+            (self.notes).push(format!(
+                "surface `{}`: driven by force {words}{about}",
+                surface.name
+            ));
+            surface.driven = Some(driven);
+        }
+        Ok(held)
     }
 
     #[allow(clippy::type_complexity)]

@@ -42,6 +42,9 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
             Tangent::Published { .. } => "contact.tangent.published",
         });
     }
+    if model.driven().next().is_some() {
+        add("surface.driven_by_force");
+    }
     if !model.dead_loads.is_empty() {
         add("load.dead");
     }

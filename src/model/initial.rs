@@ -22,9 +22,9 @@ pub struct InitialGap {
 /// Distances of all points of pair `index` at time 0, wherever they are.
 pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError> {
     let pair = &model.pairs[index];
-    let master = (model.surfaces[pair.surface].at(0.0))
-        .map_err(|e| text(format!("/contacts/{}/master", pair.name), e.to_string()))?;
     let zero = vec![0.0; 3 * model.nodes.len()];
+    let master = (model.surfaces[pair.surface].at(0.0, &zero))
+        .map_err(|e| text(format!("/contacts/{}/master", pair.name), e.to_string()))?;
     let mut gap = InitialGap {
         smallest: f64::INFINITY,
         largest: f64::NEG_INFINITY,

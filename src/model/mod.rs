@@ -1,6 +1,7 @@
 //! The model: what a scene becomes before anything is solved. All choices of effects are made here, once.
 pub mod build;
 pub mod constraints;
+pub mod driven;
 pub mod effects;
 pub mod error;
 pub mod free_motion;
@@ -19,6 +20,7 @@ use crate::scene::{Tangent, TimeFunction, ValueError};
 use crate::shell::H8Block;
 use constraints::{MeanPrescribed, Prescribed};
 use covact_geometry::Vec3;
+use driven::Driven;
 use loads::{DeadLoad, FollowerPressure};
 
 pub use error::ModelError;
@@ -28,7 +30,8 @@ pub use surface::SurfaceModel;
 #[derive(Debug)]
 pub struct Model {
     pub title: String,
-    /// Undeformed positions of all nodes, body after body.
+    /// Undeformed positions of all nodes, body after body, then two for every surface driven by force: its centre, and
+    /// the origin for its rotation.
     pub nodes: Vec<Vec3>,
     pub bodies: Vec<BodyModel>,
     pub surfaces: Vec<SurfaceModel>,
@@ -88,6 +91,16 @@ impl Model {
     #[inline]
     pub fn point_position(&self, p: &SlavePoint, u: &[f64]) -> Vec3 {
         (p.terms()).fold(Vec3::zeros(), |x, (n, w)| x + self.position(n, u) * w)
+    }
+
+    /// Number of nodes that belong to bodies; those of driven surfaces come after them.
+    pub fn body_nodes(&self) -> usize {
+        self.nodes.len() - 2 * self.driven().count()
+    }
+
+    /// Surfaces driven by force, with their numbers.
+    pub fn driven(&self) -> impl Iterator<Item = (usize, &SurfaceModel, &Driven)> {
+        (self.surfaces.iter().enumerate()).filter_map(|(i, s)| Some((i, s, s.driven.as_ref()?)))
     }
 
     /// Number of unknowns.

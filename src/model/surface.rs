@@ -1,4 +1,5 @@
 //! Rigid surfaces: exact patches or facets, their motion and their depth.
+use super::driven::Driven;
 use super::motion::Motion;
 use crate::contact::closest::ClosestPoint;
 use crate::contact::rigid::RigidMaster;
@@ -15,6 +16,8 @@ pub struct SurfaceModel {
     /// How facets stand for an exact surface; none where the patches are used as they are.
     pub facets: Option<FacetModel>,
     pub motion: Motion,
+    /// What forces drive of its motion.
+    pub driven: Option<Driven>,
     /// Depth below which a point does not count (length).
     pub depth: f64,
 }
@@ -117,11 +120,11 @@ impl SurfaceSet {
 }
 
 impl SurfaceModel {
-    /// The surface at its position of time `t`.
-    pub fn at(&self, t: f64) -> Result<RigidMaster<'_, SurfaceSet>, ValueError> {
+    /// The surface at its position of time `t` and, where forces drive it, of the displacements `u` of the system.
+    pub fn at(&self, t: f64, u: &[f64]) -> Result<RigidMaster<'_, SurfaceSet>, ValueError> {
         Ok(RigidMaster {
             surface: &self.set,
-            pose: self.motion.pose(t)?,
+            pose: self.pose(t, u)?,
             depth: self.depth,
         })
     }

@@ -49,6 +49,26 @@ pub const COLUMNS: &[ColumnDoc] = &[
         "force length",
         "moment of that force about the origin of the scene",
     ),
+    doc(
+        "displacement.<name>.<axis>",
+        "length",
+        "free displacement of a surface driven by force, on top of its prescribed motion",
+    ),
+    doc(
+        "rotation.<name>.<axis>",
+        "degree",
+        "rotation vector of its free rotation about its centre",
+    ),
+    doc(
+        "force_balance.<name>.<axis>",
+        "force",
+        "its driving force less the force it exerts: nothing where it is free, what its guide takes elsewhere",
+    ),
+    doc(
+        "moment_balance.<name>.<axis>",
+        "force length",
+        "the same of moments about its present centre",
+    ),
     doc("energy.internal", "energy", "strain energy of all bodies"),
     doc(
         "energy.contact",

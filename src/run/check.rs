@@ -159,7 +159,7 @@ pub fn check(scene: &LoadedScene) -> Result<CheckReport, RunError> {
     Ok(CheckReport {
         title: model.title.clone(),
         unit: scene.units.length.name().to_owned(),
-        nodes: model.nodes.len(),
+        nodes: model.body_nodes(),
         elements: model.bodies.iter().map(|b| b.block.elements()).sum(),
         dofs: model.unknowns(),
         contact_points: model.contact_points(),

@@ -93,7 +93,7 @@ impl Fields {
         self.sunk.fill(0);
         let mut first = 0;
         for (index, (pair, eps_n)) in model.pairs.iter().zip(penalties).enumerate() {
-            let master = model.surfaces[pair.surface].at(time)?;
+            let master = model.surfaces[pair.surface].at(time, &state.u)?;
             let states = &state.points[first..first + pair.points.len()];
             let fronts = &mut self.front[first..first + pair.points.len()];
             for ((p, s), front) in pair.points.iter().zip(states).zip(fronts) {
@@ -180,7 +180,7 @@ impl Fields {
             })
             .collect();
         let poses: Vec<_> = (model.surfaces.iter())
-            .map(|s| s.motion.pose(time).unwrap_or_default())
+            .map(|s| s.pose(time, &state.u).unwrap_or_default())
             .collect();
         let surfaces: Vec<SurfaceState> = (self.surfaces.iter().zip(&poses))
             .map(|(surface, at)| SurfaceState { surface, at })

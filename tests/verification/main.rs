@@ -1,5 +1,6 @@
 //! Verification against closed forms and published results, named by their source.
 mod die;
+mod driven;
 mod hertz;
 mod loads;
 mod placed;

@@ -2,6 +2,7 @@
 //!
 //! Elements and slave points are evaluated in parallel, a chunk at a time, and summed in order by one thread, so that
 //! the result is the same to the last bit for every number of threads.
+mod driven;
 mod elements;
 mod loads;
 mod rigid;
@@ -10,12 +11,16 @@ use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
 use crate::contact::rigid::{PointFault, Touch};
 use crate::model::Model;
+use crate::model::driven::press::PressFault;
 use crate::model::state::State;
 use crate::scene::ValueError;
 use crate::shell::{ElementFault, H8System};
 use covact_geometry::Vec3;
 
+use driven::Border;
 use std::sync::Arc;
+
+pub use driven::Loose;
 
 /// Elements evaluated before their matrices are summed.
 const CHUNK: usize = 128;
@@ -32,6 +37,21 @@ pub enum Fault {
         at: [f64; 3],
         fault: PointFault,
     },
+    /// A surface driven by force touches no slave point.
+    #[error(
+        "surface `{surface}`, which forces drive {free}, has lost all contact: nothing holds it. Forces act on the \
+         surface: check their sign and size over time, the components that are free, and what supports the bodies under it"
+    )]
+    Untouched { surface: String, free: String },
+    /// A surface driven by force moves in a direction in which nothing resists it.
+    #[error(
+        "nothing resists the motion of surface `{surface}` {motion}, and its forces drive it on: take the component out \
+         of `free`, or give its force another direction"
+    )]
+    Unresisted { surface: String, motion: String },
+    /// A surface driven by force could not be placed.
+    #[error(transparent)]
+    Press(#[from] PressFault),
     #[error(transparent)]
     Value(#[from] ValueError),
 }
@@ -62,6 +82,8 @@ pub struct Totals {
     pub penetration: Vec<f64>,
     /// Norm of the contact forces on nodes.
     pub contact_norm: f64,
+    /// Motions of driven surfaces that the contact does not resist, found with the tangent.
+    pub loose: Vec<Loose>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,6 +109,7 @@ pub struct Assembler<'m> {
     /// Dead loads at the present time.
     external: Vec<f64>,
     contact: Vec<f64>,
+    borders: Vec<Border>,
     /// Penalty per pair; an automatic one may be raised in the course of a run.
     pub penalties: Vec<f64>,
 }
@@ -104,7 +127,12 @@ impl<'m> Assembler<'m> {
                 groups.push(group);
             }
         }
-        let pattern = Pattern::new(model.nodes.len(), groups.iter().map(Vec::as_slice))?;
+        groups.extend(driven::groups(model, |nodes, out| {
+            dofs.extend_nodes(nodes, out)
+        }));
+        let border = (model.nodes.len() - model.body_nodes()) as u32;
+        let pattern =
+            Pattern::new(model.nodes.len(), groups.iter().map(Vec::as_slice))?.with_border(border);
         let (mut element_maps, mut kinds) = (Vec::new(), Vec::new());
         for body in &model.bodies {
             for e in 0..body.block.elements() {
@@ -144,6 +172,7 @@ impl<'m> Assembler<'m> {
             .max()
             .unwrap_or(0);
         let n = 3 * model.nodes.len();
+        let borders = Border::all(model, &pattern)?;
         Ok(Assembler {
             model,
             dofs,
@@ -157,6 +186,7 @@ impl<'m> Assembler<'m> {
             work: ConstrainedScatter::default(),
             external: vec![0.0; n],
             contact: vec![0.0; n],
+            borders,
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
         })
     }
@@ -189,6 +219,7 @@ impl<'m> Assembler<'m> {
         self.elements(state, increments, residual, rhs, &mut totals)?;
         self.contacts::<true>(state, time, increments, residual, rhs, &mut totals)?;
         self.loads::<true>(state, time, increments, residual, rhs)?;
+        self.own_blocks(&state.u, time, residual, &mut totals)?;
         for (b, r) in rhs.iter_mut().zip(residual.iter()) {
             *b -= r;
         }

@@ -22,10 +22,11 @@ impl Assembler<'_> {
     ) -> Result<(), Fault> {
         totals.surfaces = vec![SurfaceForce::default(); self.model.surfaces.len()];
         self.contact.fill(0.0);
+        self.clear_borders();
         let mut first = 0;
         for (index, pair) in self.model.pairs.iter().enumerate() {
             let surface = &self.model.surfaces[pair.surface];
-            let master = surface.at(time)?;
+            let master = surface.at(time, &state.u)?;
             let n = pair.points.len();
             let points = &mut state.points[first..first + n];
             let touches = &mut self.touches[..n];
@@ -111,7 +112,11 @@ impl Assembler<'_> {
             }
             totals.penetration.push(deepest);
             first += n;
+            if surface.driven.is_some() {
+                self.carry::<TANGENT>(index, &state.u, time)?;
+            }
         }
+        self.close_borders::<TANGENT>(&state.u, increments, residual, rhs)?;
         totals.contact_norm = self.contact.iter().map(|f| f * f).sum::<f64>().sqrt();
         Ok(())
     }

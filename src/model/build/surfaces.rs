@@ -78,6 +78,7 @@ impl Builder<'_> {
             set,
             facets,
             motion,
+            driven: None,
             depth: surface.depth.unwrap_or(0.1 * size),
         };
         Ok((model, labels))
