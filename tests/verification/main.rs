@@ -1,6 +1,7 @@
 //! Verification against closed forms and published results, named by their source.
 mod die;
 mod driven;
+mod facets;
 mod hertz;
 mod loads;
 mod placed;

@@ -8,7 +8,7 @@
 //! curvature of the surface that it stands for is in the angles between facets.
 //!
 //! A [`FacetMesh`] holds nodes that facets share. It comes from smooth surfaces ([`bilinear_facets`],
-//! [`biquadratic_facets`]), from STL files ([`Stl::facets`](crate::io::Stl::facets)) or from the faces of a finite-element mesh.
+//! [`biquadratic_facets`]; [`smooth_patches`] lays one smooth surface over them), from STL files ([`Stl::facets`](crate::io::Stl::facets)) or from the faces of a finite-element mesh.
 
 mod bilinear;
 mod biquadratic;
@@ -17,10 +17,12 @@ mod deviation;
 mod lines;
 mod mesh;
 mod refine;
+mod smooth;
 
 pub use bilinear::Bilinear;
 pub use biquadratic::Biquadratic;
 pub use mesh::FacetMesh;
+pub use smooth::{distance_from, smooth_patches};
 pub use refine::{
     Crack, FacetOrigin, Faceted, Refinement, bilinear_facets, biquadratic_facets, facet_patch,
 };
@@ -70,6 +72,12 @@ pub enum FacetError {
         /// The tolerance asked for; zero where a number per span was.
         tolerance: f64,
     },
+    /// No smooth surface can be laid over the facets.
+    #[error(transparent)]
+    Smooth(#[from] crate::moving::MovingError),
+    /// A piece of the smooth surface that is no patch.
+    #[error(transparent)]
+    Patch(#[from] crate::patch::PatchError),
     /// A single patch that is no set.
     #[error(transparent)]
     Set(#[from] crate::project::PatchSetError),

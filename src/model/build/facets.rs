@@ -6,7 +6,8 @@ use super::Builder;
 use crate::scene::{self, FacetKind};
 use covact_geometry::PatchSet;
 use covact_geometry::facet::{
-    FacetError, Faceted, Refinement, bilinear_facets, biquadratic_facets,
+    FacetError, Faceted, Refinement, bilinear_facets, biquadratic_facets, distance_from,
+    smooth_patches,
 };
 use covact_geometry::io::{CadError, CadFile, Stl, read_path, read_stl_path};
 
@@ -53,7 +54,11 @@ impl Builder<'_> {
                 (SurfaceSet::Biquadratic(set), Made::of(&made))
             }
             FacetKind::Smooth => {
-                return Err(text(here(), "smooth"));
+                let mut made = bilinear_facets(&exact, refinement).map_err(told)?;
+                let patches = smooth_patches(&made.mesh).map_err(told)?;
+                made.deviation = distance_from(&exact, &patches);
+                let set = PatchSet::new(patches, None).at(here)?;
+                (SurfaceSet::Nurbs(set), Made::of(&made))
             }
         };
         let kind = wanted.kind.name();

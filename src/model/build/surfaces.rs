@@ -285,8 +285,12 @@ impl Builder<'_> {
     ) -> Result<(), ModelError> {
         let pose = (model.motion.pose(0.0)).at(|| format!("/surfaces/{name}/motion"))?;
         let local = |x: Vec3| pose.inverse_transform_point(&x.into()).coords;
+        // Facets lie on either side of the surface that they stand for: points as near as that say nothing.
+        let chord = (model.facets.as_ref()).and_then(|f| f.chord).unwrap_or(0.0);
+        let clear = |x: &Vec3| chord == 0.0 || model.set.project(x, None, 2.0 * chord).is_none();
         let points: Vec<Vec3> = (pairs.iter().flat_map(|pair| pair.points.iter()))
             .map(|p| local((p.terms()).fold(Vec3::zeros(), |x, (n, w)| x + self.nodes[n] * w)))
+            .filter(clear)
             .collect();
         // The elements below the faces tell where the faces themselves do not: faces that lie on the surface have no
         // side, and a few that start with a small overclosure contradict the rest.
