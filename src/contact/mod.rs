@@ -1,6 +1,7 @@
 //! The covariant core of contact: slave points, kernel, laws. It knows nothing of shells or files.
 pub mod averaged;
 pub mod carried;
+pub mod closest;
 pub mod corner;
 pub mod fault;
 pub mod kernel;

@@ -1,4 +1,5 @@
-//! Contact of slave points with a rigid surface of NURBS patches.
+//! Contact of slave points with a rigid surface: NURBS patches or facets, whatever finds closest points.
+use super::closest::ClosestPoint;
 use super::corner;
 pub use super::fault::{Piece, PointFault};
 use super::kernel::{self, Normal};
@@ -35,8 +36,9 @@ impl RigidTangent for Parts {
 
 /// A rigid surface at its present position.
 #[derive(Debug, Clone)]
-pub struct RigidMaster<'a> {
-    pub surface: &'a PatchSet,
+pub struct RigidMaster<'a, P = PatchSet> {
+    /// Patches of one kind, or what stands for a choice among several.
+    pub surface: &'a P,
     /// From the surface's own coordinates to space.
     pub pose: Isometry3<f64>,
     /// Points deeper than this below the surface are not in contact (length).
@@ -62,7 +64,7 @@ pub struct Touch {
     pub n: f64,
 }
 
-impl RigidMaster<'_> {
+impl<P: ClosestPoint> RigidMaster<'_, P> {
     /// Foot of a point of space within `reach`, in the surface's own coordinates.
     pub fn foot(&self, x: &Vec3, hint: Option<Hint>, reach: f64) -> Option<Foot> {
         let local = self.pose.inverse_transform_point(&Point3::from(*x)).coords;

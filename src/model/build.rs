@@ -1,5 +1,6 @@
 //! Scene to model.
 mod contacts;
+mod facets;
 mod supports;
 mod surfaces;
 mod values;

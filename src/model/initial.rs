@@ -176,7 +176,7 @@ fn too_coarse(model: &Model, index: usize) -> Option<String> {
     let pair = &model.pairs[index];
     let surface = &model.surfaces[pair.rigid_master()?];
     let spacing = point_spacing(model, index);
-    let radius = surface.set.curvature_range().convex?.radius();
+    let radius = surface.radii()[0]?;
     (spacing > 0.5 * radius).then(|| {
         format!(
             "contact `{}`: its slave points are {} apart, too coarse for the smallest convex radius {} of surface \

@@ -1,4 +1,5 @@
 //! The master of a contact pair: a rigid surface, or faces of a deformable body.
+use super::surface::SurfaceSet;
 use super::{Model, PairModel};
 use crate::contact::moving;
 use crate::contact::rigid::{self, RigidMaster};
@@ -81,7 +82,7 @@ impl Masters {
 
 /// A master at one time.
 pub enum MasterNow<'a> {
-    Rigid(RigidMaster<'a>),
+    Rigid(RigidMaster<'a, SurfaceSet>),
     Body {
         body: &'a BodyMaster,
         facets: &'a MovingFacets,

@@ -13,22 +13,22 @@ pub mod overclosure;
 pub mod penalty;
 pub mod slave;
 pub mod state;
+pub mod surface;
 
 use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;
-use crate::contact::rigid::RigidMaster;
 use crate::mesh::Mesh;
 use crate::scene::{Tangent, TimeFunction, ValueError};
 use crate::shell::{Block, ElementBlock};
 use constraints::{MeanPrescribed, Prescribed};
-use covact_geometry::{PatchSet, Vec3};
+use covact_geometry::Vec3;
 use driven::Driven;
 use loads::{DeadLoad, FollowerPressure};
 use master::Master;
-use motion::Motion;
 use overclosure::Overclosure;
 
 pub use error::ModelError;
+pub use surface::SurfaceModel;
 
 /// Bodies, rigid surfaces, contact pairs, supports and loads, with all names resolved.
 #[derive(Debug)]
@@ -66,19 +66,6 @@ pub struct BodyModel {
     pub block: Block,
     /// Number of the body's first node in the model.
     pub first_node: u32,
-}
-
-/// A rigid surface.
-#[derive(Debug)]
-pub struct SurfaceModel {
-    pub name: String,
-    /// Patches in the scene's length unit and the surface's own coordinates.
-    pub set: PatchSet,
-    pub motion: Motion,
-    /// What forces drive of its motion.
-    pub driven: Option<Driven>,
-    /// Depth below which a point does not count (length).
-    pub depth: f64,
 }
 
 /// A contact pair.
@@ -179,16 +166,5 @@ impl BodyModel {
     /// Node numbers of an element in the model, for any shape of elements.
     pub fn element_nodes(&self, e: usize) -> impl Iterator<Item = u32> + '_ {
         self.mesh.element(e).iter().map(|n| n + self.first_node)
-    }
-}
-
-impl SurfaceModel {
-    /// The surface at its position of time `t` and, where forces drive it, of the displacements `u` of the system.
-    pub fn at(&self, t: f64, u: &[f64]) -> Result<RigidMaster<'_>, ValueError> {
-        Ok(RigidMaster {
-            surface: &self.set,
-            pose: self.pose(t, u)?,
-            depth: self.depth,
-        })
     }
 }

@@ -97,6 +97,7 @@ mod tests {
                     table: vec![[0.0, 0.0], [1.0, -4.0]],
                 },
             ],
+            free: None,
             rotation: Some(scene::Rotation {
                 center: [1.0, 0.0, 0.0],
                 axis: [0.0, 0.0, 3.0],

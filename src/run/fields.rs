@@ -1,11 +1,12 @@
 //! Fields of an accepted state, gathered on nodes for the output.
 use super::RunError;
+use super::pieces::pieces;
 use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::output::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, Results, SurfaceOutput,
-    SurfacePiece, SurfaceState,
+    SurfaceState,
 };
 use crate::shell::{ElementBlock, with_block};
 use covact_geometry::Vec3;
@@ -39,11 +40,7 @@ impl Fields {
         let mut notes = Vec::new();
         let mut surfaces = Vec::new();
         for surface in &model.surfaces {
-            let mut pieces = Vec::new();
-            for (i, patch) in surface.set.patches().iter().enumerate() {
-                let reversed = surface.set.sides()[i] < 0.0;
-                pieces.extend(SurfacePiece::of_patch(patch, i as u32, i as u32, reversed));
-            }
+            let pieces = pieces(surface, tessellation);
             let output = SurfaceOutput::new(&surface.name, pieces, tessellation)?;
             if !output.left_out().is_empty() {
                 notes.push(format!(

@@ -2,6 +2,7 @@
 mod ball_by_weight;
 mod die;
 mod driven;
+mod facets;
 mod hertz;
 mod loads;
 mod overclosure;

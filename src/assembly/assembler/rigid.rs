@@ -1,5 +1,6 @@
 //! Contact with rigid surfaces: the slave points of a pair are evaluated in parallel and summed in order.
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
+use crate::contact::closest::ClosestPoint;
 use crate::contact::law::{GapOffset, NoOffset, NormalLaw, Penalty};
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
@@ -7,6 +8,7 @@ use crate::model::master::Master;
 use crate::model::state::{PointState, State};
 use crate::model::{Model, PairModel};
 use crate::scene::Tangent;
+use crate::with_patches;
 use rayon::prelude::*;
 
 impl Assembler<'_> {
@@ -40,17 +42,23 @@ impl Assembler<'_> {
             let law = Penalty {
                 eps_n: self.penalties[index],
             };
-            let batch = Batch {
-                model: self.model,
-                pair,
-                master: &master,
-                law: &law,
-                u,
-            };
-            match &pair.overclosure {
-                None => batch.choose(points, touches, &NoOffset),
-                Some(overclosure) => batch.choose(points, touches, &overclosure.offsets(time)),
-            }
+            with_patches!(master.surface, patches => {
+                let batch = Batch {
+                    model: self.model,
+                    pair,
+                    master: &RigidMaster {
+                        surface: patches,
+                        pose: master.pose,
+                        depth: master.depth,
+                    },
+                    law: &law,
+                    u,
+                };
+                match &pair.overclosure {
+                    None => batch.choose(points, touches, &NoOffset),
+                    Some(over) => batch.choose(points, touches, &over.offsets(time)),
+                }
+            });
             let mut deepest = 0.0f64;
             let mut ke = [0.0; 729];
             let mut at = 0;
@@ -126,15 +134,16 @@ impl Assembler<'_> {
 }
 
 /// The slave points of a pair at one trial state.
-struct Batch<'a, L> {
+struct Batch<'a, P, L> {
     model: &'a Model,
     pair: &'a PairModel,
-    master: &'a RigidMaster<'a>,
+    master: &'a RigidMaster<'a, P>,
     law: &'a L,
     u: &'a [f64],
 }
 
-impl<L: NormalLaw + Copy> Batch<'_, L> {
+impl<P: ClosestPoint, L: NormalLaw + Copy> Batch<'_, P, L> {
+    /// Evaluates every point with the tangent that the pair asks for.
     fn choose<O: GapOffset>(
         &self,
         states: &mut [PointState],
@@ -156,7 +165,7 @@ impl<L: NormalLaw + Copy> Batch<'_, L> {
         }
     }
 
-    /// Evaluates every point; law, tangent and offset are types here, nothing is chosen inside the loop.
+    /// Evaluates every point; surface, law, tangent and offset are types here, nothing is chosen inside the loop.
     fn evaluate<T: RigidTangent, O: GapOffset>(
         &self,
         states: &mut [PointState],

@@ -6,6 +6,7 @@ use crate::contact::carried::carried;
 use crate::contact::law::{Penalty, Shifted};
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, behind, presses};
 use crate::model::overclosure::Overclosure;
+use crate::model::surface::SurfaceSet;
 use crate::scene::ValueError;
 use covact_geometry::{Hint, Vec3};
 use nalgebra::{Isometry3, Matrix6, SymmetricEigen, Vector6};
@@ -134,7 +135,12 @@ impl<'m> Presser<'m> {
         (part(0), part(3) / self.driven.lever)
     }
 
-    fn master(&self, prescribed: &Isometry3<f64>, moved: &Vec3, theta: &Vec3) -> RigidMaster<'m> {
+    fn master(
+        &self,
+        prescribed: &Isometry3<f64>,
+        moved: &Vec3,
+        theta: &Vec3,
+    ) -> RigidMaster<'m, SurfaceSet> {
         RigidMaster {
             surface: &self.surface.set,
             pose: self.driven.pose(prescribed, moved, theta),

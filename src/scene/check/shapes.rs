@@ -221,6 +221,9 @@ pub(super) fn check_surface(c: &mut Checker, at: &str, surface: &Surface) {
             c.positive(&format!("{at}/cad/tolerance"), "the tolerance", tolerance);
         }
     }
+    if let Some(facets) = &surface.facets {
+        check_facets(c, &format!("{at}/facets"), facets);
+    }
     if let Some(s) = &surface.sphere {
         c.positive(&format!("{at}/sphere/radius"), "the radius", s.radius);
         c.direction(&format!("{at}/sphere/axis"), "the axis", s.axis);
@@ -312,5 +315,26 @@ fn check_free(c: &mut Checker, at: &str, motion: &Motion, free: &FreeMotion) {
                 help("`rotation`"),
             );
         }
+    }
+}
+
+fn check_facets(c: &mut Checker, at: &str, facets: &Facets) {
+    c.exactly_one(
+        at,
+        "fineness of the facets",
+        &[
+            ("chord", facets.chord.is_some()),
+            ("size", facets.size.is_some()),
+            ("count", facets.count.is_some()),
+        ],
+    );
+    if let Some(chord) = facets.chord {
+        c.positive(&format!("{at}/chord"), "the chord error", chord);
+    }
+    if let Some(size) = facets.size {
+        c.positive(&format!("{at}/size"), "the size of the facets", size);
+    }
+    for (i, count) in facets.count.into_iter().flatten().enumerate() {
+        c.whole(&format!("{at}/count/{i}"), count, 1, 100_000);
     }
 }
