@@ -8,12 +8,14 @@
 //!
 //! - [`H8Block`]: the elements of one body, evaluated one at a time ([`H8System`] receives forces and tangent).
 //! - [`material`]: St. Venant-Kirchhoff and neo-Hooke.
+//! - [`distortion`]: how far an element is from the shape it computes best in.
 //! - [`quadrature`], [`face`]: Gauss and Lobatto rules and the bilinear faces that loads and contact integrate over.
 
 // Index loops show the sums the way they are written on paper, over several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
 mod brick;
+pub mod distortion;
 mod error;
 pub mod face;
 mod h8;

@@ -1,5 +1,6 @@
 //! Verification of the solid-shell elements: patch tests, the linear obstacle course, nearly incompressible material,
 //! and a large-rotation cantilever.
+mod distortion;
 mod incompressible;
 mod large_rotation;
 mod obstacle;
