@@ -131,6 +131,19 @@ fn body<'n>(out: &mut Paragraphs, b: &BodyReport, notes: impl Iterator<Item = &'
             number(b.worst_shape)
         ),
     );
+    if let Some(d) = &b.distortion {
+        let text = match d.share < 1e-6 {
+            true => "none".to_owned(),
+            false => format!(
+                "{} of the limit at worst: element {} at ({}), {}",
+                number(d.share),
+                d.element,
+                d.place.map(number).join(", "),
+                d.cause
+            ),
+        };
+        out.line("distortion", &text);
+    }
     notes.for_each(|n| out.line("note", n));
 }
 

@@ -1,9 +1,11 @@
 //! `covact check`: everything up to the first solve, and nothing of it.
 use super::RunError;
 use crate::mesh::Range;
+use crate::model::error::number;
 use crate::model::initial::{initial_gap, point_spacing};
 use crate::model::{self, BodyModel, Model, SurfaceModel};
 use crate::scene::{Element, LoadedScene, Material, Penalty, Points, Scene, Support};
+use crate::shell::distortion::most_distorted;
 use serde::Serialize;
 
 /// What a scene amounts to. Lengths are in the scene's unit.
@@ -50,6 +52,23 @@ pub struct BodyReport {
     pub thickness: [f64; 2],
     /// Smallest scaled Jacobian of an element: 1 where all corners are right angles, 0 where an element has collapsed.
     pub worst_shape: f64,
+    /// The most distorted element; none: the body has no elements.
+    pub distortion: Option<DistortionReport>,
+}
+
+/// The most distorted element of a body; see [`crate::shell::distortion`].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DistortionReport {
+    /// Over the limit: above 1 the error from distortion may pass 0.5 %.
+    pub share: f64,
+    /// Number of the element, from 0.
+    pub element: u32,
+    /// Its middle.
+    pub place: [f64; 3],
+    /// Which distortion it is, in words.
+    pub cause: &'static str,
+    /// Elements above the limit.
+    pub above: usize,
 }
 
 /// A rigid surface at the start.
@@ -156,6 +175,9 @@ pub fn check(scene: &LoadedScene) -> Result<CheckReport, RunError> {
             .push(pair_report(&scene.scene, &model, index).map_err(|e| RunError::model(scene, e))?);
     }
     let scene = &scene.scene;
+    let bodies: Vec<BodyReport> = model.bodies.iter().map(|b| body_report(scene, b)).collect();
+    let mut warnings = model.warnings.clone();
+    warnings.extend(bodies.iter().filter_map(distorted));
     Ok(CheckReport {
         title: model.title.clone(),
         unit: scene.units.length.name().to_owned(),
@@ -163,7 +185,7 @@ pub fn check(scene: &LoadedScene) -> Result<CheckReport, RunError> {
         elements: model.bodies.iter().map(|b| b.block.elements()).sum(),
         dofs: model.unknowns(),
         contact_points: model.contact_points(),
-        bodies: model.bodies.iter().map(|b| body_report(scene, b)).collect(),
+        bodies,
         surfaces: (model.surfaces.iter())
             .map(|s| surface_report(scene, s))
             .collect(),
@@ -172,8 +194,23 @@ pub fn check(scene: &LoadedScene) -> Result<CheckReport, RunError> {
         loads: loads(scene),
         effects: model.effects.clone(),
         notes: model.notes.clone(),
-        warnings: model.warnings.clone(),
+        warnings,
     })
+}
+
+/// A warning where elements are distorted above the limit.
+fn distorted(body: &BodyReport) -> Option<String> {
+    let worst = body.distortion.as_ref().filter(|d| d.share > 1.0)?;
+    Some(format!(
+        "body `{}`: {} element(s) so distorted that the error may pass 0.5 %; the worst is element {} at ({}), {} times \
+         the limit ({})",
+        body.name,
+        worst.above,
+        worst.element,
+        worst.place.map(number).join(", "),
+        number(worst.share),
+        worst.cause
+    ))
 }
 
 fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
@@ -200,6 +237,13 @@ fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
         edge: range(size.map(|s| s.edge)),
         thickness: range(size.map(|s| s.thickness)),
         worst_shape: size.map_or(0.0, |s| s.shape.min),
+        distortion: most_distorted(&body.mesh).map(|d| DistortionReport {
+            share: d.share,
+            element: d.element,
+            place: d.place.into(),
+            cause: d.distortion.cause(body.mesh.kind),
+            above: d.above,
+        }),
     }
 }
 

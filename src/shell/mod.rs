@@ -9,6 +9,7 @@
 //! - [`H8Block`], [`Q18Block`]: the elements of one body, evaluated one at a time ([`H8System`], [`Q18System`] receive
 //!   forces and tangent); [`Block`] is either.
 //! - [`material`]: St. Venant-Kirchhoff and neo-Hooke.
+//! - [`distortion`]: how far an element is from the shape it computes best in.
 //! - [`quadrature`], [`face`]: Gauss and Lobatto rules and the faces that loads and contact integrate over.
 
 // Index loops show the sums the way they are written on paper, over several arrays at once.
@@ -16,6 +17,7 @@
 
 mod block;
 mod brick;
+pub mod distortion;
 mod error;
 pub mod face;
 mod h8;

@@ -1,6 +1,7 @@
 //! `covact check` of scenes that are right.
 use crate::support::*;
 use serde_json::{Value, json};
+use std::process::Output;
 
 #[test]
 fn everything_a_scene_amounts_to() {
@@ -33,6 +34,7 @@ fn everything_a_scene_amounts_to() {
             "x 0 to 40, y 0 to 40, z -1 to 1\n",
             "edges 10, layers 2 thick\n",
             "1 at worst (1: right-angled, 0: collapsed)\n",
+            "distortion      none\n",
             "surface `ball` (rigid)\n",
             "punch.igs\n",
             "45, all connected\n",
@@ -121,4 +123,68 @@ fn the_same_as_data() {
     assert!(gap[0].as_f64().unwrap().abs() < 1e-12, "{gap:?}");
     assert!((gap[1].as_f64().unwrap() - far).abs() < 1e-10, "{gap:?}");
     assert_eq!(found["bodies"][0]["worst_shape"], 1.0);
+}
+
+/// A plate of 2 x 2 elements from a file, its middle vertex moved along the diagonal by a part of the elements' length.
+fn distorted_plate(folder: &std::path::Path, part: f64) -> Output {
+    let mut text = "*NODE\n".to_owned();
+    for k in 0..2 {
+        for j in 0..3 {
+            for i in 0..3 {
+                let off = if i == 1 && j == 1 { part } else { 0.0 };
+                let (x, y) = (20.0 * (i as f64 + off), 20.0 * (j as f64 + off));
+                text += &format!("{}, {x}, {y}, {}\n", 1 + i + 3 * j + 9 * k, 2 * k - 1);
+            }
+        }
+    }
+    text += "*ELEMENT, TYPE=C3D8, ELSET=all\n";
+    for (e, n) in [1, 2, 4, 5].into_iter().enumerate() {
+        let nodes = [n, n + 1, n + 4, n + 3].map(|n| format!("{n}, {}", n + 9));
+        let (low, high): (Vec<&str>, Vec<&str>) =
+            nodes.iter().map(|n| n.split_once(", ").unwrap()).unzip();
+        text += &format!("{}, {}, {}\n", e + 1, low.join(", "), high.join(", "));
+    }
+    text += "*NSET, NSET=edge\n1, 4, 7, 10, 13, 16\n*SURFACE, NAME=top, TYPE=ELEMENT\nall, S2\n";
+    std::fs::write(folder.join("plate.inp"), text).unwrap();
+    let scene = json!({
+        "covact": 1,
+        "materials": { "steel": { "st_venant_kirchhoff": { "E": 12000, "nu": 0.3 } } },
+        "bodies": { "plate": { "mesh": { "file": { "path": "plate.inp" } }, "material": "steel" } },
+        "supports": { "edge": { "on": "plate.edge", "fixed": true } },
+        "loads": { "weight": { "on": "plate.top", "pressure": 1e-3 } }
+    });
+    std::fs::write(folder.join("scene.json"), scene.to_string()).unwrap();
+    covact(folder, &["check", "scene.json"])
+}
+
+/// The most distorted element is named, and warned of above the limit.
+#[test]
+fn distortion() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = distorted_plate(folder.path(), 0.125);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(stderr(&output), "");
+    // ln(3.5 / 3) of the middle diagonal's stretch at the corner: 0.154 of 0.55.
+    assert_parts(
+        &stdout(&output),
+        &[
+            "distortion      0.28",
+            " of the limit at worst: element 3 at (30.625, 30.625, 0), skewed or tapered in the surface\n",
+            "no warnings\n",
+        ],
+    );
+    let output = distorted_plate(folder.path(), 0.375);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_parts(&stdout(&output), &["1 warning(s)\n"]);
+    assert_parts(
+        &stderr(&output)
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" "),
+        &[
+            "body `plate`: ",
+            "element(s) so distorted",
+            "the worst is element 3",
+        ],
+    );
 }

@@ -4,6 +4,7 @@ mod die;
 mod driven;
 mod facets;
 mod hertz;
+mod hinged_roof;
 mod loads;
 mod overclosure;
 mod placed;
