@@ -282,7 +282,9 @@ impl MovingFacets {
             None => self.tree = Some(Tree::with_all(&self.boxes)),
         }
         let finite = self.boxes.iter().filter(|b| b[0].x <= b[1].x);
-        let [low, high] = finite.fold(EMPTY_BOX, |[low, high], b| [low.inf(&b[0]), high.sup(&b[1])]);
+        let [low, high] = finite.fold(EMPTY_BOX, |[low, high], b| {
+            [low.inf(&b[0]), high.sup(&b[1])]
+        });
         let far = low.amax().max(high.amax());
         self.size = if far.is_finite() {
             // Coordinates far from the origin carry their rounding into every length.

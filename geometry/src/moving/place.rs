@@ -27,9 +27,8 @@ impl MovingFacets {
             return (MovingPlace::Face, own());
         }
         let limit = HELD * HELD * s.d2.max(self.size * self.size);
-        let held = |k: usize| {
-            s.at[k] != 0 && s.gradient[k] * s.gradient[k] > limit * s.metric[2 * k]
-        };
+        let held =
+            |k: usize| s.at[k] != 0 && s.gradient[k] * s.gradient[k] > limit * s.metric[2 * k];
         let edge = |k: usize| 2 * k + usize::from(s.at[k] > 0);
         let point = |k: usize| s.at[k] != 0 && self.topology.is_point(facet, edge(k));
         let corner = usize::from(s.at[0] > 0) | usize::from(s.at[1] > 0) << 1;
@@ -124,7 +123,11 @@ impl MovingFacets {
             let at = |k: usize| {
                 let k = if end == 0 { k } else { M - 1 - k };
                 let fixed = fixed * (M - 1);
-                if dir == 0 { point(k, fixed) } else { point(fixed, k) }
+                if dir == 0 {
+                    point(k, fixed)
+                } else {
+                    point(fixed, k)
+                }
             };
             (1..M).find_map(|k| (at(k) - at(0)).try_normalize(1e-12 * self.size))
         };

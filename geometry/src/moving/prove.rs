@@ -15,7 +15,10 @@ pub(super) enum Verdict {
     Convex,
     /// The nearest point lies on this edge (0: low, 1: high end of the direction), along which the squared distance is
     /// convex.
-    ConvexEdge { dir: usize, end: usize },
+    ConvexEdge {
+        dir: usize,
+        end: usize,
+    },
     Unknown,
 }
 
@@ -43,14 +46,24 @@ pub(super) fn judge<const M: usize, const L: usize>(net: &[[f64; 4]], q: &Vec3) 
     }
     // Convex along the edge at the end of direction `dir`, which is a row or a column of coefficients.
     let edge = |dir: usize, end: usize| {
-        let at = |k: usize| if dir == 0 { f[k][end * (L - 1)] } else { f[end * (L - 1)][k] };
+        let at = |k: usize| {
+            if dir == 0 {
+                f[k][end * (L - 1)]
+            } else {
+                f[end * (L - 1)][k]
+            }
+        };
         (0..L - 2).all(|k| at(k) - 2.0 * at(k + 1) + at(k + 2) >= 0.0)
     };
     for dir in 0..2 {
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for j in 0..L {
             for i in 0..L - 1 {
-                let step = if dir == 0 { f[j][i + 1] - f[j][i] } else { f[i + 1][j] - f[i][j] };
+                let step = if dir == 0 {
+                    f[j][i + 1] - f[j][i]
+                } else {
+                    f[i + 1][j] - f[i][j]
+                };
                 least = least.min(step);
                 most = most.max(step);
             }
@@ -74,22 +87,30 @@ fn coefficients<const M: usize, const L: usize>(net: &[[f64; 4]], q: &Vec3) -> [
         for (i, out) in row.iter_mut().enumerate() {
             let c = &net[i + M * j];
             let factor = BINOMIALS[p][i] * BINOMIALS[p][j];
-            *out = [(c[0] - q.x) * factor, (c[1] - q.y) * factor, (c[2] - q.z) * factor];
+            *out = [
+                (c[0] - q.x) * factor,
+                (c[1] - q.y) * factor,
+                (c[2] - q.z) * factor,
+            ];
         }
     }
     let mut out = [[0.0; L]; L];
     for j in 0..M {
-        for l in 0..M {
+        for l in j..M {
+            // Both orders of a pair of rows are the same.
+            let double = if l == j { 1.0 } else { 2.0 };
             for (i, a) in points[j].iter().enumerate() {
+                let a = a.map(|a| a * double);
                 for (k, b) in points[l].iter().enumerate() {
                     out[j + l][i + k] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
                 }
             }
         }
     }
-    for (j, row) in out.iter_mut().enumerate() {
-        for (i, f) in row.iter_mut().enumerate() {
-            *f /= BINOMIALS[2 * p][i] * BINOMIALS[2 * p][j];
+    let inverse: [f64; L] = std::array::from_fn(|k| 1.0 / BINOMIALS[2 * p][k]);
+    for (row, g) in out.iter_mut().zip(&inverse) {
+        for (f, h) in row.iter_mut().zip(&inverse) {
+            *f *= g * h;
         }
     }
     out

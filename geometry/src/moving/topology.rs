@@ -154,9 +154,8 @@ impl Topology {
     /// Whether the parameters of two facets run in opposite directions along their common edge.
     #[inline]
     pub fn reversed(&self, a: (u32, u8), b: (u32, u8)) -> bool {
-        let start = |(facet, edge): (u32, u8)| {
-            self.corner_of[facet as usize][ENDS[edge as usize][0]]
-        };
+        let start =
+            |(facet, edge): (u32, u8)| self.corner_of[facet as usize][ENDS[edge as usize][0]];
         start(a) != start(b)
     }
 
