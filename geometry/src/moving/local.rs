@@ -167,11 +167,11 @@ impl Problem<'_> {
         let cut = [clamp(0, step[0]), clamp(1, step[1])];
         let stopped = |k: usize| cut[k].abs() < step[k].abs() * (1.0 - 1e-12);
         let mut out = cut;
-        for k in 0..2 {
+        for (k, cut) in cut.into_iter().enumerate() {
             let other = 1 - k;
             let f = s.hessian[2 * other];
             if stopped(k) && !stopped(other) && !s.active[other] && f > 0.0 {
-                out[other] = clamp(other, -(s.gradient[other] + s.hessian[1] * cut[k]) / f);
+                out[other] = clamp(other, -(s.gradient[other] + s.hessian[1] * cut) / f);
             }
         }
         out

@@ -19,15 +19,15 @@ pub(super) fn bernstein<D: DualNum<f64> + Copy, const M: usize>(xi: D) -> [[D; M
     for degree in 1..M {
         if degree + 1 == M {
             let f = D::from(0.5 * p);
-            for k in 0..M {
+            for (k, first) in out[1].iter_mut().enumerate() {
                 let before = if k > 0 { low[k - 1] } else { zero };
                 let own = if k < degree { low[k] } else { zero };
-                out[1][k] = (before - own) * f;
+                *first = (before - own) * f;
             }
         }
         if degree + 2 == M {
             let f = D::from(0.25 * p * (p - 1.0));
-            for k in 0..M {
+            for (k, out) in out[2].iter_mut().enumerate() {
                 let at = |i: usize| if i < degree { low[i] } else { zero };
                 let mut second = at(k);
                 if k > 0 {
@@ -36,7 +36,7 @@ pub(super) fn bernstein<D: DualNum<f64> + Copy, const M: usize>(xi: D) -> [[D; M
                 if k > 1 {
                     second += at(k - 2);
                 }
-                out[2][k] = second * f;
+                *out = second * f;
             }
         }
         for k in (0..=degree).rev() {
