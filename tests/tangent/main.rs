@@ -3,6 +3,7 @@ mod averaged;
 mod balance;
 mod cases;
 mod edges;
+mod faults;
 mod normal;
 mod pairs;
 mod spin;
