@@ -219,8 +219,7 @@ impl Mesh {
 fn extraction(mesh: &Mesh, tangents: &Tangents, facet: u32) -> (Vec<u32>, Operator) {
     let third = 1.0 / 3.0;
     let mut rows: [Combination; 16] = Default::default();
-    for corner in 0..4 {
-        let [edge2, edge1] = EDGES_AT[corner];
+    for (corner, [edge2, edge1]) in EDGES_AT.into_iter().enumerate() {
         let node = mesh.node(facet, corner);
         let own = Combination::of(&[(node, 1.0)]);
         let [along1, along2] = [edge1, edge2].map(|edge| tangents.of(mesh, facet, edge, corner));
