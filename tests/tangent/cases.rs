@@ -208,7 +208,13 @@ impl Case {
         let x = self.all_nodes();
         let n = 3 * x.len();
         let (mut gradient, mut k) = (DVector::zeros(n), DMatrix::zeros(n, n));
-        for dof in 0..n {
+        // Nodes of facets that no point meets have no part in it.
+        let mut takes_part = vec![false; x.len()];
+        takes_part[..self.slave.len()].fill(true);
+        for node in at.iter().flat_map(|p| self.surface.nodes(p.facet)) {
+            takes_part[self.slave.len() + node] = true;
+        }
+        for dof in (0..n).filter(|dof| takes_part[dof / 3]) {
             let seeded: Vec<V<Dual64>> = (x.iter().enumerate())
                 .map(|(i, x)| {
                     V::from_fn(|c, _| Dual64::new(x[c], f64::from(u8::from(3 * i + c == dof))))
@@ -280,6 +286,26 @@ pub fn mesh(
             .collect()
     };
     (nodes, (0..count * count).map(facet).collect())
+}
+
+/// The point at (u, v) in [-1, 1]^2 of a mesh of `count` x `count` facets, and `depth` below it along the mean normal of
+/// the facets there: its foot is that point.
+pub fn below(facets: &MovingFacets, count: u32, u: f64, v: f64, depth: f64) -> V<f64> {
+    let places = |t: f64| {
+        let along = 0.5 * (t + 1.0) * f64::from(count);
+        (0..count)
+            .map(move |i| (i, 2.0 * (along - f64::from(i)) - 1.0))
+            .filter(|(_, xi)| xi.abs() <= 1.0)
+    };
+    let (mut rho, mut normal) = (V::zeros(), V::zeros());
+    for (j, xi2) in places(v) {
+        for (i, xi1) in places(u) {
+            let jet = facets.jet(i + count * j, [xi1, xi2]);
+            rho = jet.rho;
+            normal += jet.rho_i[0].cross(&jet.rho_i[1]).normalize();
+        }
+    }
+    rho - normal.normalize() * depth
 }
 
 /// Facets as they are.

@@ -4,6 +4,7 @@ mod balance;
 mod cases;
 mod driven;
 mod edges;
+mod faults;
 mod normal;
 mod pairs;
 mod spin;
