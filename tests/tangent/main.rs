@@ -1,3 +1,4 @@
-//! Tangents of contact against dual numbers.
+//! Tangents of contact and loads against dual numbers and closed forms.
+mod follower;
 mod normal;
 mod support;

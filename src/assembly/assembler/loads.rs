@@ -1,6 +1,10 @@
 //! Dead loads and follower pressure.
 use super::{Assembler, Fault, put};
 use crate::model::state::State;
+use nalgebra::SMatrix;
+
+/// Matrix of a face with four nodes.
+type FaceMatrix = SMatrix<f64, 12, 12>;
 
 impl Assembler<'_> {
     pub(super) fn loads<const TANGENT: bool>(
@@ -15,6 +19,12 @@ impl Assembler<'_> {
         for (_, load) in &self.model.dead_loads {
             load.add(time, &mut self.external)?;
         }
+        // On the matrix side a load's stiffness counts negative. A symmetric system takes the symmetric part: what is
+        // unsymmetric lives on the border of the loaded area, which is held there.
+        let on_matrix: fn(&FaceMatrix) -> FaceMatrix = match self.matrix.is_symmetric() {
+            true => |k| (k + k.transpose()) * -0.5,
+            false => |k| -k,
+        };
         for (index, (_, load)) in self.model.follower_loads.iter().enumerate() {
             let p = load.value.eval(time)?;
             for (i, nodes) in load.faces.iter().enumerate() {
@@ -24,9 +34,7 @@ impl Assembler<'_> {
                     (0..3).for_each(|c| self.external[3 * n as usize + c] += f[3 * k + c]);
                 }
                 if TANGENT {
-                    // The system is symmetric: what is unsymmetric lives on the border of the loaded area only.
-                    let k = crate::model::loads::follower_stiffness(&x, p);
-                    let mut k = (k + k.transpose()) * -0.5;
+                    let mut k = on_matrix(&crate::model::loads::follower_stiffness(&x, p));
                     let map = &self.follower_maps[index][10 * i..10 * (i + 1)];
                     put(
                         &mut self.matrix,

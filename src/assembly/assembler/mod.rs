@@ -147,7 +147,10 @@ impl<'m> Assembler<'m> {
         Ok(Assembler {
             model,
             dofs,
-            matrix: SystemMatrix::new(Arc::new(pattern)),
+            matrix: match model.symmetric {
+                true => SystemMatrix::new(Arc::new(pattern)),
+                false => SystemMatrix::unsymmetric(Arc::new(pattern)),
+            },
             element_maps,
             kinds,
             point_maps,
