@@ -152,7 +152,7 @@ impl<'m> Assembler<'m> {
         Ok(Assembler {
             model,
             dofs,
-            matrix: SystemMatrix::new(pattern.clone()),
+            matrix: empty(model, &pattern),
             element_maps: maps.elements,
             kinds: maps.kinds,
             point_maps: maps.points,
@@ -266,5 +266,13 @@ fn element_fault(body: &str, fault: ElementFault) -> Fault {
     Fault::Element {
         body: body.to_owned(),
         fault,
+    }
+}
+
+/// An empty matrix on a pattern, symmetric if the model is.
+fn empty(model: &Model, pattern: &Arc<Pattern>) -> SystemMatrix {
+    match model.symmetric {
+        true => SystemMatrix::new(pattern.clone()),
+        false => SystemMatrix::unsymmetric(pattern.clone()),
     }
 }

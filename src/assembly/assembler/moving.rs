@@ -171,7 +171,7 @@ impl Assembler<'_> {
         self.kinds = maps.kinds;
         self.point_maps = maps.points;
         self.follower_maps = maps.followers;
-        self.matrix = super::SystemMatrix::new(pattern.clone());
+        self.matrix = super::empty(self.model, &pattern);
         self.new_pattern = Some(pattern);
         self.rebuilds += 1;
         Ok(())

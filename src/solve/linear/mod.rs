@@ -149,7 +149,7 @@ pub struct SolverOptions {
     pub parallel_min_flops: f64,
     /// A pivot smaller than this times the sum of the magnitudes that it is the rest of is refused: fewer than about
     /// two digits of the solution would be right at 1e-14. Zero accepts everything but an exact zero. [`LuSolver`]
-    /// sets a smaller pivot to this share of its row instead and tests whether the matrix is singular.
+    /// replaces a smaller pivot instead and tests whether the matrix is singular.
     pub pivot_tolerance: f64,
 }
 

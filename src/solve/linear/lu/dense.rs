@@ -6,11 +6,16 @@ use faer::{Accum, MatMut, Par};
 
 /// Columns up to which the plain loops are used.
 const PLAIN: usize = 12;
+/// What replaces a pivot that is too small: the square root of the machine epsilon, so that as many digits of the
+/// matrix survive the large updates that it makes as the replacement itself changes (X. S. Li and J. W. Demmel,
+/// "SuperLU_DIST: a scalable distributed-memory sparse direct solver for unsymmetric linear systems", ACM Trans. Math.
+/// Softw. 29 (2003)); refinement restores the rest.
+const REPLACEMENT: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// What the pivots of a factorization were like.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Pivots {
-    /// Smaller pivots are replaced by this, with their sign.
+    /// Smaller pivots are replaced by [`REPLACEMENT`], with their sign.
     pub threshold: f64,
     pub replaced: usize,
     /// Smallest magnitude before replacement, and its column.
@@ -42,8 +47,7 @@ impl Pivots {
         let mut pivot = pivot;
         if size < self.threshold || size == 0.0 {
             self.replaced += 1;
-            let least = self.threshold.max(f64::MIN_POSITIVE);
-            pivot = if pivot < 0.0 { -least } else { least };
+            pivot = REPLACEMENT.copysign(if pivot < 0.0 { -1.0 } else { 1.0 });
         }
         self.negative ^= pivot < 0.0;
         pivot

@@ -35,7 +35,7 @@ const SOLVABLE: f64 = 1e-3;
 /// A sparse direct solver for matrices with a symmetric structure, unsymmetric ones above all.
 ///
 /// Rows and columns are scaled; rows are exchanged within the diagonal block of a supernode only. A pivot below
-/// [`SolverOptions::pivot_tolerance`] of its row is replaced by that and counted
+/// [`SolverOptions::pivot_tolerance`] of its row is replaced by 1.5e-8 of it and counted
 /// ([`Factorization::perturbed_pivots`]). The matrix is then tested: if refined solutions do not exist, it is singular
 /// and the pivot is named.
 #[derive(Default)]
