@@ -79,8 +79,7 @@ impl Fields {
 
     /// Recovers pressure, gap and status at the nodes of all slave surfaces: averages over the slave points by their
     /// shape functions and areas, `p_I = sum w N_I p / sum w N_I` (where `N_I > 0`). With points at nodes that is the
-    /// point's own
-    /// pressure; as the areas are the modelled ones, it is right on symmetry planes too.
+    /// point's own pressure; as the areas are the modelled ones, it is right on symmetry planes too.
     pub fn gather(
         &mut self,
         model: &Model,

@@ -5,6 +5,7 @@ mod loads;
 mod placed;
 mod plate_under_ball;
 mod punch;
+mod quadratic;
 mod strip_over_cylinder;
 mod support;
 mod supports;
