@@ -1,8 +1,10 @@
 //! Verification of the solid-shell elements: patch tests, the linear obstacle course, nearly incompressible material,
 //! and a large-rotation cantilever.
 mod distortion;
+mod hinged_roof;
 mod incompressible;
 mod large_rotation;
+mod nonlinear;
 mod obstacle;
 mod patch;
 mod quadratic;

@@ -269,6 +269,69 @@ impl Model {
     }
 }
 
+/// `u[second] + sign u[first] = value` for pairs of displacements: a mean that is held (a support on the mid-surface), or
+/// a difference (the turn of a section).
+pub type Ties = BTreeMap<[usize; 2], (f64, f64)>;
+
+impl Model {
+    /// [`Model::newton`] with ties. The second of a pair is eliminated, so that nothing stiff is added.
+    pub fn newton_tied(
+        &mut self,
+        u: &mut [f64],
+        load: &[f64],
+        fixed: &BTreeMap<usize, f64>,
+        ties: &Ties,
+    ) -> usize {
+        let mut of = vec![None; u.len()];
+        for ([first, second], (sign, _)) in ties {
+            of[*second] = Some((*first, *sign));
+        }
+        let mut largest: f64 = 0.0;
+        for iteration in 0..40 {
+            let (f, k) = self.assemble(u);
+            // Nothing but round-off after the first iteration.
+            let missing: BTreeMap<usize, f64> = (ties.iter())
+                .map(|([a, b], (sign, value))| (*b, value - sign * u[*a] - u[*b]))
+                .collect();
+            let mut residual: Vec<f64> = load.iter().zip(&f).map(|(l, f)| l - f).collect();
+            let mut triplets = Vec::with_capacity(k.len());
+            for (r, c, v) in k {
+                let (column, v) = match of[c] {
+                    Some((first, sign)) => {
+                        residual[r] -= v * missing[&c];
+                        (first, -sign * v)
+                    }
+                    None => (c, v),
+                };
+                triplets.push(match of[r] {
+                    Some((first, sign)) => (first, column, -sign * v),
+                    None => (r, column, v),
+                });
+            }
+            let mut held = fixed.clone();
+            for ([first, second], (sign, _)) in ties {
+                residual[*first] -= sign * residual[*second];
+                held.insert(*second, 0.0);
+            }
+            let mut du = solve(&triplets, &residual, &held);
+            let mut energy = 0.0;
+            for (d, r) in du.iter().zip(&residual) {
+                energy += d * r;
+            }
+            for ([first, second], (sign, _)) in ties {
+                du[*second] = missing[second] - sign * du[*first];
+            }
+            largest = largest.max(energy.abs());
+            self.update_alpha(&du);
+            u.iter_mut().zip(&du).for_each(|(u, d)| *u += d);
+            if energy.abs() < 1e-16 * largest {
+                return iteration + 1;
+            }
+        }
+        panic!("no convergence");
+    }
+}
+
 /// Solves with prescribed displacements.
 pub fn solve(k: &[(usize, usize, f64)], load: &[f64], fixed: &BTreeMap<usize, f64>) -> Vec<f64> {
     let mut number = vec![usize::MAX; load.len()];

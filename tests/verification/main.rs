@@ -1,6 +1,7 @@
 //! Verification against closed forms and published results, named by their source.
 mod die;
 mod hertz;
+mod hinged_roof;
 mod loads;
 mod plate_under_ball;
 mod punch;
