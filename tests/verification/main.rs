@@ -3,6 +3,7 @@ mod die;
 mod hertz;
 mod hinged_roof;
 mod loads;
+mod placed;
 mod plate_under_ball;
 mod punch;
 mod strip_over_cylinder;
