@@ -1,7 +1,7 @@
 //! How far an element is from the shape it computes best in, and what that costs.
 //!
-//! Three numbers per element, all zero for a parallelepiped of any proportions and for the regular elements of cylinders
-//! and spheres with directors along the radius:
+//! Three numbers per element, all zero for a parallelepiped of any proportions and for regular elements of cylinders with
+//! directors along the radius (`tilt` of quadratic ones, which are parabolas, third order in their angle):
 //!
 //! - `plane`: largest logarithmic strain, `max |ln(stretch)|`, that takes the middle of the element's mid-surface (of its
 //!   corners) to one of its corners: the variation of the Jacobian in the surface. 0.15, 0.4 and 0.9: a vertex of square
@@ -19,8 +19,10 @@
 //! [`limits`] are the values above which the error passes 0.5 % in one of the families of `tests/shell/distortion.rs`:
 //! states of constant stretching and of constant curvature on patches of 2 x 2 elements (error of displacements over the
 //! largest of them), and the Scordelis-Lo roof on meshes that are right within 0.5 % when regular. Straight-sided
-//! elements of a flat plate pass both patch tests exactly, whatever their `plane`. No limit holds for all problems:
-//! where a regular mesh hardly resolves the bending (the pinched cylinder), its distortion costs several times as much.
+//! elements of a flat plate pass both patch tests exactly, whatever their `plane`. No limit holds for all problems: the
+//! cylinder pinched by point forces, whose bending a regular mesh hardly resolves, loses (rows of vertices moved by 1/8, a
+//! `plane` of 0.15) 1.8 % on 8 x 8 and 0.15 % on 16 x 16 quadratic elements, 3.5 % on 16 x 16 and 0.8 % on 32 x 32
+//! linear ones.
 use crate::mesh::{ElementKind, Mesh};
 use covact_geometry::Vec3;
 

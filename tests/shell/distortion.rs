@@ -15,13 +15,14 @@ const KINDS: [ElementKind; 2] = [ElementKind::H8, ElementKind::Q18];
 /// What the limits stand for.
 const ERROR: f64 = 5e-3;
 
-/// Lagrange functions along a line and their derivatives.
-fn line(kind: ElementKind, x: f64) -> [Vec<f64>; 2] {
+/// Lagrange functions along a line, each with its derivative.
+fn line(kind: ElementKind, x: f64) -> Vec<[f64; 2]> {
     match kind {
-        ElementKind::H8 => [vec![0.5 * (1.0 - x), 0.5 * (1.0 + x)], vec![-0.5, 0.5]],
-        ElementKind::Q18 => [
-            vec![0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)],
-            vec![x - 0.5, -2.0 * x, x + 0.5],
+        ElementKind::H8 => vec![[0.5 * (1.0 - x), -0.5], [0.5 * (1.0 + x), 0.5]],
+        ElementKind::Q18 => vec![
+            [0.5 * x * (x - 1.0), x - 0.5],
+            [1.0 - x * x, -2.0 * x],
+            [0.5 * x * (x + 1.0), x + 0.5],
         ],
     }
 }
@@ -30,15 +31,10 @@ fn line(kind: ElementKind, x: f64) -> [Vec<f64>; 2] {
 fn shape(kind: ElementKind, [r, s, t]: [f64; 3]) -> Vec<[f64; 4]> {
     let (fr, fs, ft) = (line(kind, r), line(kind, s), line(ElementKind::H8, t));
     let mut out = vec![];
-    for k in 0..2 {
-        for j in 0..fs[0].len() {
-            for i in 0..fr[0].len() {
-                out.push([
-                    fr[0][i] * fs[0][j] * ft[0][k],
-                    fr[1][i] * fs[0][j] * ft[0][k],
-                    fr[0][i] * fs[1][j] * ft[0][k],
-                    fr[0][i] * fs[0][j] * ft[1][k],
-                ]);
+    for [c, dc] in &ft {
+        for [b, db] in &fs {
+            for [a, da] in &fr {
+                out.push([a * b * c, da * b * c, a * db * c, a * b * dc]);
             }
         }
     }
