@@ -77,7 +77,9 @@ impl<'a, 'm> March<'a, 'm> {
                 ..Progress::default()
             },
             // A pair whose overclosure counts as touching touches from the start.
-            touched: (model.pairs.iter()).map(|p| p.overclosure.is_some()).collect(),
+            touched: (model.pairs.iter())
+                .map(|p| p.overclosure.is_some())
+                .collect(),
             touching: vec![false; model.pairs.len()],
         }
     }

@@ -19,9 +19,15 @@ fn weight_is_carried_and_the_ball_sinks_as_hertz_has_it_at_first() {
     let mut before = (0.0, -5.0);
     for t in outcome.column("time") {
         let weight = 25.0 * t;
-        assert!((outcome.at("force.ball.z", t) / -weight - 1.0).abs() < 1e-7, "at {t}");
+        assert!(
+            (outcome.at("force.ball.z", t) / -weight - 1.0).abs() < 1e-7,
+            "at {t}"
+        );
         // The floor carries it too.
-        assert!((outcome.at("force.floor.z", t) / weight - 1.0).abs() < 1e-6, "at {t}");
+        assert!(
+            (outcome.at("force.floor.z", t) / weight - 1.0).abs() < 1e-6,
+            "at {t}"
+        );
         let z = outcome.at("displacement.ball.z", t);
         assert!(z < before.1, "at {t}: {z} after {before:?}");
         before = (t, z);
