@@ -1,0 +1,57 @@
+//! What must not change a result.
+use crate::blocks::done;
+use crate::shells::arch_on_plate;
+use serde_json::json;
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let history = |threads: u32| {
+        let mut scene = arch_on_plate(2.0, 3, json!({"gauss": 5}));
+        scene["solution"]["threads"] = json!(threads);
+        let outcome = done(&scene);
+        assert_eq!(outcome.summary.threads, threads as usize);
+        std::fs::read(outcome.folder.path().join("history.csv")).expect("history")
+    };
+    let one = history(1);
+    assert!(one.iter().filter(|b| **b == b'\n').count() > 3);
+    for threads in [2, 3] {
+        assert!(one == history(threads), "{threads} threads differ");
+    }
+}
+
+/// The arch between two plates: which pair comes first is a matter of their names.
+#[test]
+fn the_order_of_the_pairs_changes_nothing() {
+    let force = |first: &str, second: &str| {
+        let mut scene = arch_on_plate(1.0, 2, json!({"gauss": 2}));
+        let press = scene["contacts"]["press"].take();
+        scene["bodies"]["lid"] = json!({"mesh": {"plate": {
+            "size": [9, 4], "thickness": 0.3, "elements": [7, 3], "origin": [0, 0, 0.95]
+        }}, "material": "m"});
+        for (name, on, what) in [
+            ("lid_clamped", "lid.x_max", json!({"fixed": true})),
+            ("lid_x", "lid.x_min", json!({"symmetry": "x"})),
+            ("lid_y", "lid.y_min", json!({"symmetry": "y"})),
+        ] {
+            scene["supports"][name] = what;
+            scene["supports"][name]["on"] = json!(on);
+        }
+        let lid = json!({
+            "slave": "arch.inner", "master": "lid.bottom", "points": {"gauss": 2}
+        });
+        scene["contacts"] = json!({first: press, second: lid});
+        let outcome = done(&scene);
+        let columns = [
+            format!("slave.force.{first}.z"),
+            format!("slave.force.{second}.z"),
+            "energy.internal".to_owned(),
+        ];
+        columns.map(|c| *outcome.column(&c).last().expect("steps"))
+    };
+    let (a, b) = (force("a", "b"), force("z", "b"));
+    println!("{a:?} {b:?}");
+    for (a, b) in a.iter().zip(&b) {
+        assert!(a.abs() > 0.01);
+        assert!((a - b).abs() < 1e-9 * a.abs());
+    }
+}
