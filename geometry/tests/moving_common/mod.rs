@@ -229,3 +229,26 @@ pub fn check_foot(set: &MovingFacets, q: &Vec3, foot: &MovingFoot) {
 pub fn hint(facet: u32, xi: [f64; 2]) -> Option<Hint> {
     Some(Hint { patch: facet, xi })
 }
+
+/// Partition of unity, and that the combination of the nodes is the point with its tangents.
+pub fn check_shape(
+    set: &MovingFacets,
+    facet: u32,
+    xi: [f64; 2],
+    rows: &covact_geometry::ShapeRows,
+    position: impl Fn(u32) -> Vec3,
+) {
+    let nodes = set.nodes(facet);
+    assert_eq!(rows.count, nodes.len());
+    let sum = |n: &[f64]| n[..rows.count].iter().sum::<f64>();
+    assert!((sum(&rows.n) - 1.0).abs() < 1e-14, "{:e}", sum(&rows.n) - 1.0);
+    assert!(sum(&rows.n_1).abs() < 1e-14 && sum(&rows.n_2).abs() < 1e-14);
+    let jet = set.jet(facet, xi);
+    let combine = |n: &[f64]| {
+        let terms = nodes.iter().zip(n);
+        terms.fold(Vec3::zeros(), |s, (&k, n)| s + position(k) * *n)
+    };
+    for (n, v) in [(&rows.n, jet.rho), (&rows.n_1, jet.rho_i[0]), (&rows.n_2, jet.rho_i[1])] {
+        assert!(v.norm() > 0.0 && (combine(n) - v).norm() < 2e-14, "{:e}", (combine(n) - v).norm());
+    }
+}

@@ -21,24 +21,16 @@ pub(super) struct Fit {
 /// nodes of the facets around; a linear function where these do not suffice. `None` where the facets have no plane.
 pub(super) fn fit(mesh: &Mesh, node: u32, sector: &Sector) -> Option<Fit> {
     let origin = *mesh.point(node);
-    let mut normal = Vec3::zeros();
     let mut around: Vec<u32> = Vec::new();
     for &(facet, corner) in &sector.corners {
-        let corner = corner as usize;
-        let off = |c: usize| mesh.point(mesh.node(facet, c)) - origin;
-        let (a, b) = (off(corner ^ 1), off(corner ^ 2));
-        // The sign makes it rho_1 x rho_2 whatever the corner.
-        let sign = if corner == 0 || corner == 3 { 1.0 } else { -1.0 };
-        let cross = a.cross(&b) * sign;
-        let angle = a.cross(&b).norm().atan2(a.dot(&b));
-        normal += cross.try_normalize(0.0).unwrap_or_else(Vec3::zeros) * angle;
-        for c in [corner ^ 1, corner ^ 2, corner ^ 3] {
-            let other = mesh.node(facet, c);
+        for other in 1..4 {
+            let other = mesh.node(facet, corner as usize ^ other);
             if other != node && !around.contains(&other) {
                 around.push(other);
             }
         }
     }
+    let normal = mesh.normal_around(node, sector);
     let normal = normal.try_normalize(1e-9)?;
     let first = around.iter().find_map(|&k| {
         let d = mesh.point(k) - origin;

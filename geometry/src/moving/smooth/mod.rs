@@ -31,12 +31,13 @@ use super::{MovingError, MovingFacets};
 use crate::surface::Vec3;
 use tangents::Tangents;
 
-/// Edges whose facets turn by more than this on the reference positions stay sharp (radians).
-pub const CREASE: f64 = std::f64::consts::FRAC_PI_4;
+/// Edges whose facets turn by more than this on the reference positions stay sharp (radians): 50 degrees, so that eight
+/// facets around a circle are round.
+pub const CREASE: f64 = std::f64::consts::PI / 3.6;
 
 impl MovingFacets {
     /// One smooth surface over the mesh, through its nodes: bicubic, tangent planes at the nodes from fixed weights of the
-    /// neighbours computed on the reference positions. Edges whose facets turn by more than 45 degrees stay sharp.
+    /// neighbours computed on the reference positions. Edges whose facets turn by more than 50 degrees stay sharp.
     ///
     /// Where a direction of a facet has three nodes it is cut at the middle one: a 3 x 3 facet becomes four, numbered one
     /// after the other with xi1 fastest; [`source`](Self::source) tells which facet they come from.

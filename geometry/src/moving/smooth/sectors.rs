@@ -2,6 +2,7 @@
 
 use super::Mesh;
 use crate::moving::topology::{EDGES_AT, ENDS};
+use crate::surface::Vec3;
 
 /// An edge as it leaves a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +43,23 @@ impl Mesh {
                 to,
             })
         })
+    }
+
+    /// Mean normal of the facets of a sector at its node, weighted with their angles; not normalised.
+    pub(super) fn normal_around(&self, node: u32, sector: &Sector) -> Vec3 {
+        let origin = self.point(node);
+        let mut sum = Vec3::zeros();
+        for &(facet, corner) in &sector.corners {
+            let corner = corner as usize;
+            let off = |c: usize| self.point(self.node(facet, c)) - origin;
+            let (a, b) = (off(corner ^ 1), off(corner ^ 2));
+            // The sign makes it rho_1 x rho_2 whatever the corner.
+            let sign = if corner == 0 || corner == 3 { 1.0 } else { -1.0 };
+            let cross = a.cross(&b);
+            let angle = cross.norm().atan2(a.dot(&b));
+            sum += cross.try_normalize(0.0).unwrap_or_else(Vec3::zeros) * (sign * angle);
+        }
+        sum
     }
 
     /// Sectors of a node.

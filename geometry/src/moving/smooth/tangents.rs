@@ -6,6 +6,10 @@ use super::sectors::{Sector, Spoke};
 use super::{CREASE, Combination, Mesh};
 use crate::moving::topology::ENDS;
 
+/// Lines that turn by more than this within the surface at a node (radians, 20 degrees) do not run on through it: the
+/// parabola through three such nodes is a poor curve of the surface, and finer meshes would be no better there.
+const KINK: f64 = std::f64::consts::PI / 9.0;
+
 /// How the tangent of an edge at one of its ends came about.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Rule {
@@ -95,14 +99,14 @@ impl Tangents {
         for sector in sectors.iter().filter(|s| s.hard.is_empty()) {
             if sector.is_regular() {
                 for &own in &sector.soft {
-                    if let Some(other) = opposite(mesh, sector, own) {
+                    let other = opposite(mesh, sector, own);
+                    if let Some(other) = other.filter(|o| turn(mesh, node, sector, own, *o) <= KINK) {
                         let tangent = through(mesh, node, own, other);
                         self.set(node, own, Rule::Central(other), tangent);
                     }
                 }
-            } else {
-                self.planes(mesh, node, sector);
             }
+            self.planes(mesh, node, sector);
         }
     }
 
@@ -148,7 +152,7 @@ impl Tangents {
         if left.is_empty() {
             return;
         }
-        let borders: Vec<Combination> = (sector.hard.iter())
+        let borders: Vec<Combination> = (sector.hard.iter().chain(&sector.soft))
             .filter_map(|s| self.of[s.edge as usize][end(node, s.to)].clone())
             .map(|t| t.1)
             .collect();
@@ -158,7 +162,7 @@ impl Tangents {
             let plane =
                 |a: &Combination, b: &Combination| in_plane(&mesh.points, [a, b], &chord);
             let by_borders = match &borders[..] {
-                [a, b] => plane(a, b),
+                [a, .., b] => plane(a, b),
                 _ => None,
             };
             let by_fit = || {
@@ -216,6 +220,15 @@ fn running_on(mesh: &Mesh, node: u32, sectors: &[Sector]) -> Option<[Spoke; 2]> 
     }
     let [u, v] = [a, b].map(|s| mesh.point(s.to) - mesh.point(node));
     (u.cross(&v).norm().atan2(-u.dot(&v)) <= CREASE).then_some([a, b])
+}
+
+/// Angle by which a line turns at a node within the surface (radians, on the reference positions).
+fn turn(mesh: &Mesh, node: u32, sector: &Sector, own: Spoke, other: Spoke) -> f64 {
+    let normal = mesh.normal_around(node, sector);
+    let [u, v] = [own, other].map(|s| mesh.point(s.to) - mesh.point(node));
+    let length2 = normal.norm_squared().max(f64::MIN_POSITIVE);
+    let [u, v] = [u, v].map(|u| u - normal * (u.dot(&normal) / length2));
+    u.cross(&v).norm().atan2(-u.dot(&v))
 }
 
 /// The edge on the other side of a regular node: the one that shares no facet with it.
