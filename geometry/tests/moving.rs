@@ -2,9 +2,7 @@
 
 mod moving_common;
 
-use covact_geometry::{
-    EdgeKind, MovingError, MovingFacets, MovingPlace, ShapeRows, Status, Vec3,
-};
+use covact_geometry::{EdgeKind, MovingError, MovingFacets, MovingPlace, ShapeRows, Status, Vec3};
 use moving_common::*;
 use num_dual::Dual64;
 
@@ -85,11 +83,19 @@ fn hints_do_not_matter() {
                 for reach in [f64::INFINITY, cold.distance * 1.0001] {
                     let foot = set.project(&q, hint, reach, |_| true).unwrap();
                     let off = (foot.jet.rho - cold.jet.rho).norm();
-                    assert!(off <= 1e-9 * set.size(), "{name}: {hint:?} {off:e} {foot:?} {cold:?}");
-                    assert!((foot.signed_distance - cold.signed_distance).abs() <= 1e-12 * set.size());
+                    assert!(
+                        off <= 1e-9 * set.size(),
+                        "{name}: {hint:?} {off:e} {foot:?} {cold:?}"
+                    );
+                    assert!(
+                        (foot.signed_distance - cold.signed_distance).abs() <= 1e-12 * set.size()
+                    );
                 }
             }
-            assert!(set.project(&q, None, cold.distance * 0.999, |_| true).is_none());
+            assert!(
+                set.project(&q, None, cold.distance * 0.999, |_| true)
+                    .is_none()
+            );
         }
     }
 }
@@ -116,12 +122,19 @@ fn refused_facets_do_not_exist() {
                 assert!(foot.distance <= truth + 1e-9 * set.size(), "{name}");
                 borders += usize::from(matches!(
                     foot.place,
-                    MovingPlace::Edge { kind: EdgeKind::Free, .. }
-                        | MovingPlace::Corner { kind: EdgeKind::Free }
+                    MovingPlace::Edge {
+                        kind: EdgeKind::Free,
+                        ..
+                    } | MovingPlace::Corner {
+                        kind: EdgeKind::Free
+                    }
                 ));
             }
         }
-        assert!(set.project(&Vec3::zeros(), None, f64::INFINITY, |_| false).is_none());
+        assert!(
+            set.project(&Vec3::zeros(), None, f64::INFINITY, |_| false)
+                .is_none()
+        );
     }
     assert!(borders > 50, "{borders}");
 }
@@ -133,7 +146,8 @@ fn winding(set: &MovingFacets, q: &Vec3, steps: usize) -> f64 {
     for facet in 0..set.len() as u32 {
         for k in 0..steps * steps {
             let at = |i: usize, j: usize| {
-                let xi = [k % steps + i, k / steps + j].map(|k| 2.0 * k as f64 / steps as f64 - 1.0);
+                let xi =
+                    [k % steps + i, k / steps + j].map(|k| 2.0 * k as f64 / steps as f64 - 1.0);
                 set.jet(facet, xi).rho - q
             };
             let x = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
@@ -211,25 +225,56 @@ fn places_of_a_box() {
         ([0.5, 0.2, 1.5], MovingPlace::Face, Vec3::z(), 0.5),
         ([0.5, 0.5, 1.5], MovingPlace::Face, Vec3::z(), 0.5),
         ([0.4, 0.45, 0.8], MovingPlace::Face, Vec3::z(), -0.2),
-        ([1.3, 0.3, 1.4], MovingPlace::Edge { direction: [0.0, 1.0], kind: sharp }, edge, 0.5),
-        ([1.2, 1.6, 1.3], MovingPlace::Corner { kind: sharp }, corner, 0.7),
+        (
+            [1.3, 0.3, 1.4],
+            MovingPlace::Edge {
+                direction: [0.0, 1.0],
+                kind: sharp,
+            },
+            edge,
+            0.5,
+        ),
+        (
+            [1.2, 1.6, 1.3],
+            MovingPlace::Corner { kind: sharp },
+            corner,
+            0.7,
+        ),
     ] {
-        let foot = set.project(&q.into(), None, f64::INFINITY, |_| true).unwrap();
+        let foot = set
+            .project(&q.into(), None, f64::INFINITY, |_| true)
+            .unwrap();
         match (foot.place, place) {
-            (MovingPlace::Edge { kind: a, .. }, MovingPlace::Edge { kind: b, .. }) => assert_eq!(a, b),
+            (MovingPlace::Edge { kind: a, .. }, MovingPlace::Edge { kind: b, .. }) => {
+                assert_eq!(a, b)
+            }
             (a, b) => assert_eq!(a, b, "{q:?}"),
         }
-        assert!((foot.normal - normal).norm() < 1e-12, "{q:?} {}", foot.normal);
+        assert!(
+            (foot.normal - normal).norm() < 1e-12,
+            "{q:?} {}",
+            foot.normal
+        );
         assert!((foot.signed_distance - distance).abs() < 1e-12, "{q:?}");
         assert_eq!(foot.status, Status::Unique);
     }
     // Without the far side its border is free.
-    let top = |f: u32| (0..4).all(|c| {
-        let xi = [c & 1, c >> 1].map(|k| 2.0 * f64::from(k) - 1.0);
-        set.jet(f, xi).rho.z == 1.0
-    });
-    let foot = set.project(&Vec3::new(1.3, 0.3, 1.4), None, f64::INFINITY, top).unwrap();
-    assert!(matches!(foot.place, MovingPlace::Edge { kind: EdgeKind::Free, .. }));
+    let top = |f: u32| {
+        (0..4).all(|c| {
+            let xi = [c & 1, c >> 1].map(|k| 2.0 * f64::from(k) - 1.0);
+            set.jet(f, xi).rho.z == 1.0
+        })
+    };
+    let foot = set
+        .project(&Vec3::new(1.3, 0.3, 1.4), None, f64::INFINITY, top)
+        .unwrap();
+    assert!(matches!(
+        foot.place,
+        MovingPlace::Edge {
+            kind: EdgeKind::Free,
+            ..
+        }
+    ));
     assert_eq!(foot.normal, Vec3::z());
     assert!((foot.signed_distance - 0.5).abs() < 1e-12);
 }
@@ -252,7 +297,8 @@ fn refitting_is_as_good_as_building() {
         fresh.update(|k| moved[k as usize]);
         for _ in 0..20 {
             let q = query(&set, &mut random, 0.5);
-            let feet = [&set, &fresh].map(|s| s.project(&q, None, f64::INFINITY, |_| true).unwrap());
+            let feet =
+                [&set, &fresh].map(|s| s.project(&q, None, f64::INFINITY, |_| true).unwrap());
             let off = (feet[0].jet.rho - feet[1].jet.rho).norm();
             assert!(off <= 1e-10 * set.size(), "{name}");
             assert!((feet[0].distance - feet[1].distance).abs() <= 1e-12 * set.size());
@@ -327,8 +373,14 @@ fn odd_facets() {
         }
         _ => Vec3::new(f64::from(k), 3.0, 0.0),
     };
-    for mut set in [MovingFacets::new(&facets).unwrap(), MovingFacets::smooth(&facets, position).unwrap()] {
-        assert!(set.project(&Vec3::zeros(), None, f64::INFINITY, |_| true).is_none());
+    for mut set in [
+        MovingFacets::new(&facets).unwrap(),
+        MovingFacets::smooth(&facets, position).unwrap(),
+    ] {
+        assert!(
+            set.project(&Vec3::zeros(), None, f64::INFINITY, |_| true)
+                .is_none()
+        );
         set.update(position);
         let mut random = Random(6);
         for k in 0..60 {
@@ -337,11 +389,25 @@ fn odd_facets() {
             let truth = exhaustive(&set, &q, |_| true);
             assert!(foot.distance <= truth + 1e-7, "{q:?} {foot:?} {truth}");
         }
-        let tip = set.project(&Vec3::new(0.0, 0.0, 2.0), None, f64::INFINITY, |f| f < 3).unwrap();
-        assert!((tip.distance - 1.6).abs() < 1e-9 && tip.signed_distance > 0.0, "{tip:?}");
-        assert_eq!(set.project(&Vec3::repeat(f64::NAN), None, 1.0, |_| true), None);
+        let tip = set
+            .project(&Vec3::new(0.0, 0.0, 2.0), None, f64::INFINITY, |f| f < 3)
+            .unwrap();
+        assert!(
+            (tip.distance - 1.6).abs() < 1e-9 && tip.signed_distance > 0.0,
+            "{tip:?}"
+        );
+        assert_eq!(
+            set.project(&Vec3::repeat(f64::NAN), None, 1.0, |_| true),
+            None
+        );
         // One node lost: the facets without it are still there.
-        set.update(|k| if k == 4 { Vec3::repeat(f64::INFINITY) } else { position(k) });
+        set.update(|k| {
+            if k == 4 {
+                Vec3::repeat(f64::INFINITY)
+            } else {
+                position(k)
+            }
+        });
         let foot = set.project(&Vec3::new(5.2, 3.1, 0.0), hint(2, [0.0; 2]), 9.0, |_| true);
         assert!((foot.unwrap().distance - 0.1).abs() < 1e-12);
         assert_eq!(set.nodes(99), &[] as &[u32]);
@@ -359,11 +425,18 @@ fn bad_input_is_named() {
     assert_eq!(bad(&[]), MovingError::Empty);
     assert_eq!(
         bad(&[(&[0, 1, 2, 3], [2, 2]), (&[0, 1, 2, 3], [4, 1])]),
-        MovingError::Count { facet: 1, count: [4, 1] }
+        MovingError::Count {
+            facet: 1,
+            count: [4, 1]
+        }
     );
     assert_eq!(
         bad(&[(&[0, 1, 2, 3], [3, 2])]),
-        MovingError::Nodes { facet: 0, count: [3, 2], found: 4 }
+        MovingError::Nodes {
+            facet: 0,
+            count: [3, 2],
+            found: 4
+        }
     );
     // The second facet is numbered the other way round.
     assert_eq!(

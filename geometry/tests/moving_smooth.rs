@@ -55,7 +55,11 @@ fn structured_meshes_have_continuous_normals() {
     let uneven = |t: f64| t + 0.08 * (TAU * t).sin();
     let sheet = Mesh::grid([7, 5], 1, [false; 2], |u, v| {
         let (u, v) = (u.powf(1.3), uneven(v));
-        Vec3::new(3.0 * u + 0.2 * v, 2.0 * v, 0.5 * (4.0 * u).sin() * (3.0 * v).cos())
+        Vec3::new(
+            3.0 * u + 0.2 * v,
+            2.0 * v,
+            0.5 * (4.0 * u).sin() * (3.0 * v).cos(),
+        )
     });
     for (name, mesh) in [("sheet", sheet), ("torus", torus([12, 10], 1))] {
         let mut set = mesh.smooth();
@@ -85,7 +89,10 @@ fn irregular_meshes_have_small_jumps() {
         let mut set = mesh.smooth();
         set.update(|k| mesh.nodes[k as usize]);
         let (gap, angle, count) = jumps(&mesh, &set);
-        eprintln!("ball {n}: {count} edges, normals turn by {:.3} degrees at most", angle.to_degrees());
+        eprintln!(
+            "ball {n}: {count} edges, normals turn by {:.3} degrees at most",
+            angle.to_degrees()
+        );
         assert_eq!(count, 12 * n * n);
         assert!(gap < 1e-14);
         assert!(angle < 0.6 * last, "{n}: {angle}");
@@ -99,7 +106,9 @@ fn ball(n: usize) -> Mesh {
     for x in &mut mesh.nodes {
         let p = *x * 2.0 - Vec3::repeat(1.0);
         // Even angles.
-        *x = p.map(|t| (t * std::f64::consts::FRAC_PI_4).tan()).normalize();
+        *x = p
+            .map(|t| (t * std::f64::consts::FRAC_PI_4).tan())
+            .normalize();
     }
     mesh
 }
@@ -113,7 +122,13 @@ fn planes_are_planes() {
     for mesh in meshes {
         let mut set = mesh.smooth();
         let flat: Vec<Vec3> = (mesh.nodes.iter())
-            .map(|x| Vec3::new(x.x + 0.1 * random.next(), x.y - 0.3 * x.z, 2.0 * x.x - x.y + 0.6 * x.z))
+            .map(|x| {
+                Vec3::new(
+                    x.x + 0.1 * random.next(),
+                    x.y - 0.3 * x.z,
+                    2.0 * x.x - x.y + 0.6 * x.z,
+                )
+            })
             .map(|x| Vec3::new(x.x, x.y, 2.0 * x.x - x.y))
             .collect();
         set.update(|k| flat[k as usize]);
@@ -157,7 +172,12 @@ fn curved_surfaces_converge() {
     let radial = |p: &Vec3| p.x.hypot(p.y) - 1.0;
     let round = |p: &Vec3| p.norm() - 1.0;
     let ring = |p: &Vec3| (p.x.hypot(p.y) - 2.0).hypot(p.z) - 0.7;
-    type Case<'a> = (&'a str, &'a dyn Fn(usize) -> Mesh, &'a dyn Fn(&Vec3) -> f64, f64);
+    type Case<'a> = (
+        &'a str,
+        &'a dyn Fn(usize) -> Mesh,
+        &'a dyn Fn(&Vec3) -> f64,
+        f64,
+    );
     let cases: [Case; 4] = [
         ("cylinder", &cylinder, &radial, 3.9),
         ("quarter of a cylinder", &quarter, &radial, 2.9),
@@ -173,7 +193,10 @@ fn curved_surfaces_converge() {
         });
         let rates = [errors[0] / errors[1], errors[1] / errors[2]].map(f64::log2);
         eprintln!("{name}: errors {errors:?} rates {rates:.2?}");
-        assert!(errors[2] > 1e-9 && rates[1] >= least, "{name}: {errors:?} {rates:?}");
+        assert!(
+            errors[2] > 1e-9 && rates[1] >= least,
+            "{name}: {errors:?} {rates:?}"
+        );
     }
 }
 
@@ -190,7 +213,8 @@ fn sharp_edges_stay() {
         assert!((n.amax() - 1.0).abs() < 1e-12, "{n}");
     }
     // With a larger angle the cube is rounded off.
-    let mut round = MovingFacets::smooth_with(&mesh.list(), |k| mesh.nodes[k as usize], 2.0).unwrap();
+    let mut round =
+        MovingFacets::smooth_with(&mesh.list(), |k| mesh.nodes[k as usize], 2.0).unwrap();
     round.update(|k| mesh.nodes[k as usize]);
     let angle = jumps(&mesh, &round).1;
     assert!(angle < 0.6, "{angle}");
@@ -215,7 +239,15 @@ fn shape_functions() {
     }
     // Regular facets share one operator, so all have the same shape functions.
     let mesh = sheet([6, 6], 1);
-    let set = Mesh { nodes: mesh.nodes.iter().map(|x| Vec3::new(x.x, x.y, 0.0)).collect(), ..mesh }.smooth();
+    let set = Mesh {
+        nodes: mesh
+            .nodes
+            .iter()
+            .map(|x| Vec3::new(x.x, x.y, 0.0))
+            .collect(),
+        ..mesh
+    }
+    .smooth();
     let mut other = ShapeRows::default();
     set.shape(14, [0.3, 0.4], &mut rows);
     set.shape(21, [0.3, 0.4], &mut other);
@@ -229,14 +261,20 @@ fn middle_nodes_cut_facets() {
     let mesh = sheet([3, 2], 2);
     let mut set = mesh.smooth();
     assert_eq!(set.len(), 24);
-    assert_eq!((set.source(3), set.source(4), set.source(23), set.source(24)), (0, 1, 5, u32::MAX));
+    assert_eq!(
+        (set.source(3), set.source(4), set.source(23), set.source(24)),
+        (0, 1, 5, u32::MAX)
+    );
     set.update(|k| mesh.nodes[k as usize]);
     // The same surface as that over the mesh of all nodes: the same facets, numbered otherwise.
     let fine = sheet([6, 4], 1);
     let mut other = fine.smooth();
     other.update(|k| fine.nodes[k as usize]);
     for (source, quarter, facet) in [(0, 3, 7), (4, 1, 15)] {
-        let (a, b) = (set.jet(4 * source + quarter, [0.2, 0.3]), other.jet(facet, [0.2, 0.3]));
+        let (a, b) = (
+            set.jet(4 * source + quarter, [0.2, 0.3]),
+            other.jet(facet, [0.2, 0.3]),
+        );
         assert!((a.rho - b.rho).norm() < 1e-14 && (a.rho_i[0] - b.rho_i[0]).norm() < 1e-13);
     }
 }
@@ -260,16 +298,29 @@ fn poles() {
         })
     };
     let set = cap(6).unwrap();
-    let foot = set.project(&Vec3::new(0.1, 0.05, 1.0), None, f64::INFINITY, |_| true).unwrap();
-    assert!(foot.distance < 0.75 && foot.signed_distance > 0.0, "{foot:?}");
-    assert!(matches!(cap(40).err(), Some(MovingError::Stencil { count: 41, .. })), "{:?}", cap(40).err());
+    let foot = set
+        .project(&Vec3::new(0.1, 0.05, 1.0), None, f64::INFINITY, |_| true)
+        .unwrap();
+    assert!(
+        foot.distance < 0.75 && foot.signed_distance > 0.0,
+        "{foot:?}"
+    );
+    assert!(
+        matches!(cap(40).err(), Some(MovingError::Stencil { count: 41, .. })),
+        "{:?}",
+        cap(40).err()
+    );
 }
 
 #[test]
 fn positions_must_be_finite() {
     let mesh = sheet([2, 2], 1);
     let bad = MovingFacets::smooth(&mesh.list(), |k| {
-        if k == 3 { Vec3::repeat(f64::NAN) } else { mesh.nodes[k as usize] }
+        if k == 3 {
+            Vec3::repeat(f64::NAN)
+        } else {
+            mesh.nodes[k as usize]
+        }
     });
     assert_eq!(bad.err(), Some(MovingError::Position(3)));
 }

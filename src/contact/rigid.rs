@@ -58,6 +58,8 @@ pub struct Touch {
     pub tangent: Matrix3<f64>,
     /// Normal coordinate, negative.
     pub xi3: f64,
+    /// Gap that the law sees, negative: the normal coordinate, less its offset where there is one.
+    pub gap: f64,
     /// Normal traction, negative.
     pub n: f64,
 }
@@ -94,7 +96,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
             let piece = Piece::Patch(patch);
             return Err(PointFault::ProjectionNotConverged { piece, xi });
         }
-        if !presses(&foot) {
+        if !presses(&foot) || !law.closes(foot.signed_distance) {
             return Ok(None);
         }
         let geometry = self.geometry(&foot, &(local - foot.jet.rho))?;
@@ -113,6 +115,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
             residual: r * residual,
             tangent: r * k * r.transpose(),
             xi3: geometry.xi3(),
+            gap: law.gap(geometry.xi3()),
             n: normal.n,
         }))
     }

@@ -12,7 +12,8 @@ use super::slave::slave_points;
 use super::{BodyModel, Model, ModelError, PairModel, SurfaceModel, penalty};
 use crate::mesh::{self, Face, Mesh};
 use crate::scene::{
-    self, LoadedScene, MeshSource, POSITION_AND_TIME, Penalty, Scene, TIME, TimeFunction, Value,
+    self, InitialOverclosure, LoadedScene, MeshSource, POSITION_AND_TIME, Penalty, Scene, TIME,
+    TimeFunction, Value,
 };
 use crate::shell::{H8Block, Law};
 use covact_geometry::Vec3;
@@ -69,7 +70,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         kinks: Vec::new(),
     };
     model.effects = super::effects::effects(scene, &model);
-    model.kinks = kinks(&model, scene.solution.end_time);
+    model.kinks = kinks(scene, &model);
     values::check(scene, &model)?;
     if let Some(free) = super::free_motion::free_motions(&model).first() {
         let message = format!(
@@ -79,13 +80,18 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         let help = "add or extend a support until the body is held; contact and loads do not hold it before it touches";
         return Err(text(format!("/bodies/{}", free.body), message).help(help));
     }
-    super::initial::check(&mut model)?;
+    super::initial::check(&mut model, scene)?;
     super::driven::start::approach(&mut model, scene)?;
     Ok(model)
 }
 
 /// Times inside the run at which something prescribed has a kink.
-fn kinks(model: &Model, end: f64) -> Vec<f64> {
+fn kinks(scene: &Scene, model: &Model) -> Vec<f64> {
+    let end = scene.solution.end_time;
+    let shrunk = (scene.contacts.values()).filter_map(|c| match c.initial_overclosure {
+        InitialOverclosure::Shrink { until } => Some(until),
+        _ => None,
+    });
     let mut times: Vec<f64> = (model.surfaces.iter().flat_map(|s| s.motion.functions()))
         .chain(model.dead_loads.iter().flat_map(|(_, l)| l.functions()))
         .chain(model.follower_loads.iter().map(|(_, l)| &l.value))
@@ -97,6 +103,7 @@ fn kinks(model: &Model, end: f64) -> Vec<f64> {
                 .flat_map(|(_, _, d)| d.loads.iter().flatten()),
         )
         .flat_map(TimeFunction::breakpoints)
+        .chain(shrunk)
         .filter(|t| *t > 0.0 && *t < end)
         .collect();
     times.sort_by(f64::total_cmp);
@@ -271,6 +278,7 @@ impl<'s> Builder<'s> {
                 automatic: is_automatic,
                 tangent: contact.tangent,
                 element_size: size.edge,
+                overclosure: None,
             });
         }
         for (index, (name, surface)) in self.scene.surfaces.iter().enumerate() {

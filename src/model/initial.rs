@@ -1,7 +1,9 @@
 //! How the contact pairs stand before anything moves.
 use super::error::{number, text};
+use super::overclosure::{Deepest, treat};
 use super::{Model, ModelError};
 use crate::contact::rigid::{behind, presses};
+use crate::scene::{InitialOverclosure, Scene};
 use covact_geometry::Vec3;
 
 /// Initial gaps of a pair.
@@ -11,6 +13,8 @@ pub struct InitialGap {
     pub smallest: f64,
     /// Largest signed distance.
     pub largest: f64,
+    /// Where the point with the smallest distance is.
+    pub place: Vec3,
     /// Points that start in contact.
     pub touching: usize,
     /// Points that start behind the surface, deeper than its search depth: they are not in contact.
@@ -21,6 +25,15 @@ pub struct InitialGap {
 
 /// Distances of all points of pair `index` at time 0, wherever they are.
 pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError> {
+    initial_gaps(model, index, &mut Vec::new())
+}
+
+/// The same with the overclosure of every point, zero or negative, in `overclosures`.
+fn initial_gaps(
+    model: &Model,
+    index: usize,
+    overclosures: &mut Vec<f64>,
+) -> Result<InitialGap, ModelError> {
     let pair = &model.pairs[index];
     let zero = vec![0.0; 3 * model.nodes.len()];
     let master = (model.surfaces[pair.surface].at(0.0, &zero))
@@ -28,6 +41,7 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
     let mut gap = InitialGap {
         smallest: f64::INFINITY,
         largest: f64::NEG_INFINITY,
+        place: Vec3::zeros(),
         touching: 0,
         behind: 0,
         turned_away: false,
@@ -37,6 +51,7 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
     for p in &pair.points {
         let x = model.point_position(p, &zero);
         let Some(foot) = master.foot(&x, hint, f64::INFINITY) else {
+            overclosures.push(0.0);
             continue;
         };
         hint = Some(covact_geometry::Hint {
@@ -52,10 +67,12 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
         };
         if distance < gap.smallest {
             gap.smallest = distance;
+            gap.place = x;
             nearest = Some((p.nodes[0], x, master.pose.rotation * foot.normal));
         }
         gap.largest = gap.largest.max(distance);
         gap.touching += usize::from(counts);
+        overclosures.push(if counts { distance } else { 0.0 });
         gap.behind += usize::from(behind);
     }
     if let Some((node, x, n)) = nearest {
@@ -80,12 +97,14 @@ fn turned_away(model: &Model, body: usize, node: u32, x: &Vec3, n: &Vec3) -> boo
 
 /// Refuses tools that start deep inside a body, and warns of small overclosures and of slave points too coarse for the
 /// tool.
-pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
+pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
     let mut warnings = Vec::new();
     let mut notes = Vec::new();
-    for (index, pair) in model.pairs.iter().enumerate() {
+    for index in 0..model.pairs.len() {
+        let mut overclosures = Vec::new();
+        let gap = initial_gaps(model, index, &mut overclosures)?;
+        let pair = &model.pairs[index];
         let surface = &model.surfaces[pair.surface];
-        let gap = initial_gap(model, index)?;
         notes.push(format!(
             "contact `{}`: initial gaps from {} to {} at {} points, {} of them in contact",
             pair.name,
@@ -108,14 +127,6 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
                 ),
             )
             .help("move it back with `placement`, or choose the other `side`"));
-        }
-        if gap.smallest < -1e-9 * pair.element_size {
-            warnings.push(format!(
-                "contact `{}` starts with an overclosure of {} at {} point(s); the first step resolves it with strain",
-                pair.name,
-                number(-gap.smallest),
-                gap.touching
-            ));
         }
         if gap.turned_away {
             warnings.push(format!(
@@ -148,6 +159,19 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
                 surface.name,
                 number(0.5 * radius)
             ));
+        }
+        if gap.smallest < -1e-9 * pair.element_size {
+            let choice = (scene.contacts.get(&pair.name))
+                .map_or(InitialOverclosure::Strain, |c| c.initial_overclosure);
+            let deepest = Deepest {
+                xi3: gap.smallest,
+                at: gap.place,
+            };
+            let told = treat(model, index, choice, overclosures, deepest)?;
+            match choice {
+                InitialOverclosure::Strain => warnings.push(told),
+                _ => notes.push(told),
+            }
         }
     }
     model.warnings.extend(warnings);

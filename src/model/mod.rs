@@ -8,6 +8,7 @@ pub mod free_motion;
 pub mod initial;
 pub mod loads;
 pub mod motion;
+pub mod overclosure;
 pub mod penalty;
 pub mod slave;
 pub mod state;
@@ -22,6 +23,7 @@ use constraints::{MeanPrescribed, Prescribed};
 use covact_geometry::Vec3;
 use driven::Driven;
 use loads::{DeadLoad, FollowerPressure};
+use overclosure::Overclosure;
 
 pub use error::ModelError;
 pub use surface::SurfaceModel;
@@ -78,6 +80,8 @@ pub struct PairModel {
     pub tangent: Tangent,
     /// Mean edge length of the slave faces.
     pub element_size: f64,
+    /// Offsets of the gaps where the scene asks for them.
+    pub overclosure: Option<Overclosure>,
 }
 
 impl Model {

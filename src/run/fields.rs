@@ -96,18 +96,21 @@ impl Fields {
             let master = model.surfaces[pair.surface].at(time, &state.u)?;
             let states = &state.points[first..first + pair.points.len()];
             let fronts = &mut self.front[first..first + pair.points.len()];
-            for ((p, s), front) in pair.points.iter().zip(states).zip(fronts) {
+            let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+            for (i, ((p, s), front)) in pair.points.iter().zip(states).zip(fronts).enumerate() {
+                let z0 = offsets.as_ref().map_or(0.0, |o| o.factor * o.z0[i]);
                 let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
                 let foot = master.foot(&x, s.hint, f64::INFINITY);
-                let closed =
+                let below =
                     (foot.as_ref()).is_some_and(|f| presses(f) && f.distance <= master.depth);
+                let closed = below && foot.as_ref().is_some_and(|f| f.signed_distance < z0);
                 let sunk = foot.as_ref().is_some_and(|f| behind(f, master.depth));
                 self.sunk[index] += usize::from(*front && sunk);
-                *front = closed || foot.as_ref().is_some_and(|f| f.signed_distance >= 0.0);
+                *front = below || foot.as_ref().is_some_and(|f| f.signed_distance >= 0.0);
                 let gap = match &foot {
                     None => f64::NAN,
-                    Some(f) if closed => f.signed_distance,
+                    Some(f) if below => f.signed_distance - z0,
                     Some(f) => f.distance,
                 };
                 let pressure = if closed { -eps_n * gap } else { 0.0 };

@@ -76,7 +76,10 @@ impl<'a, 'm> March<'a, 'm> {
                 warnings: model.warnings.clone(),
                 ..Progress::default()
             },
-            touched: vec![false; model.pairs.len()],
+            // A pair whose overclosure counts as touching touches from the start.
+            touched: (model.pairs.iter())
+                .map(|p| p.overclosure.is_some())
+                .collect(),
             touching: vec![false; model.pairs.len()],
         }
     }

@@ -1,3 +1,4 @@
-//! Tangents of contact against dual numbers.
+//! Tangents of contact against dual numbers and differences.
+mod driven;
 mod normal;
 mod support;

@@ -55,3 +55,263 @@ fn a_ball_pressed_by_its_weight_stands_where_the_same_force_is_met_by_displaceme
     }
     assert!(forced.at("force_balance.ball.z", 1.0).abs() < 1e-7);
 }
+
+/// A rigid plane above a block that cannot move, pressed by the penalty alone: a Winkler foundation of modulus `eps`.
+///
+/// ```text
+///      F  |   M about y
+///   ______v___________     plane
+///   ==================     block, all nodes held; eps per area
+/// ```
+fn foundation(free: Value) -> Value {
+    json!({
+        "covact": 1,
+        "materials": { "stone": { "st_venant_kirchhoff": { "E": 1000, "nu": 0.2 } } },
+        "bodies": { "block": {
+            "mesh": { "block": { "min": [-3, -2, -1], "max": [3, 2, 0], "elements": [6, 4, 1] } },
+            "material": "stone",
+            "sets": { "all": { "nodes_in_box": { "min": [-9, -9, -9], "max": [9, 9, 9] } } }
+        } },
+        "surfaces": { "plane": {
+            "plane": { "center": [0, 0, 0.25], "size": [12, 12] },
+            "side": { "point": [0, 0, -5] },
+            "motion": { "free": free }
+        } },
+        "contacts": { "press": {
+            "slave": "block.top", "master": "plane", "points": { "gauss": 2 }, "penalty": { "value": 50 }
+        } },
+        "supports": { "held": { "on": "block.all", "fixed": true } },
+        "solution": { "step": { "initial": 1, "max": 1 }, "newton": { "tolerance": 1e-12 }, "threads": 1 },
+        "output": { "every": 0 }
+    })
+}
+
+#[test]
+fn a_plane_on_a_winkler_foundation_sinks_and_tilts_as_the_closed_form_says() {
+    // Area 24, second moments 6 * 4^3 / 12 = 32 about x and 4 * 6^3 / 12 = 72 about y; two Gauss points a side
+    // integrate them exactly. Small angles: the closed form is right to their square.
+    let (f, m_x, m_y) = (-6.0, 0.3, 0.5);
+    let outcome = done(&foundation(json!({
+        "center": [0, 0, 0],
+        "force": { "z": f }, "moment": { "x": m_x, "y": m_y }
+    })));
+    let sunk = f / (50.0 * 24.0) - 0.25;
+    let angle = |m: f64, i: f64| (m / (50.0 * i)).to_degrees();
+    for (name, exact) in [
+        ("displacement.plane.z", sunk),
+        ("rotation.plane.x", angle(m_x, 32.0)),
+        ("rotation.plane.y", angle(m_y, 72.0)),
+        ("force.plane.z", f),
+    ] {
+        let value = outcome.at(name, 1.0);
+        assert!(
+            (value / exact - 1.0).abs() < 1e-4,
+            "{name}: {value}, not {exact}"
+        );
+    }
+    for axis in ["x", "y"] {
+        let left = outcome.at(&format!("moment_balance.plane.{axis}"), 1.0);
+        assert!(left.abs() < 1e-9, "moment about {axis}: {left:e}");
+    }
+    // The same load as one force beside the middle: the moments are those of its arm.
+    let beside = done(&foundation(json!({
+        "center": [-m_y / f, m_x / f, 0],
+        "force": { "z": f }, "moment": { "x": 0, "y": 0 }
+    })));
+    for (name, tolerance) in [
+        ("rotation.plane.x", 1e-4),
+        ("rotation.plane.y", 1e-4),
+        ("force.plane.z", 1e-9),
+    ] {
+        let (a, b) = (beside.at(name, 1.0), outcome.at(name, 1.0));
+        assert!((a / b - 1.0).abs() < tolerance, "{name}: {a} {b}");
+    }
+}
+
+/// A block on its foot under a plane that is loaded off its centre.
+fn tilting(motion: Value) -> Value {
+    let mut scene = foundation(json!({}));
+    scene["bodies"]["block"]["mesh"]["block"]["min"] = json!([-3, -2, -4]);
+    scene["bodies"]["block"]["mesh"]["block"]["elements"] = json!([5, 4, 4]);
+    scene["supports"]["held"]["on"] = json!("block.bottom");
+    scene["surfaces"]["plane"]["motion"] = motion;
+    scene["contacts"]["press"]["penalty"] = json!("auto");
+    scene["solution"]["step"] = json!({ "initial": 0.25, "max": 0.25 });
+    scene
+}
+
+#[test]
+fn a_block_loaded_off_its_centre_tilts_its_plane_in_balance() {
+    let (e_x, e_y) = (0.6, -0.3);
+    let outcome = done(&tilting(json!({ "free": {
+        "center": [e_x, e_y, 0.25],
+        "force": { "z": "-1200*t" }, "moment": { "x": 0, "y": 0 }
+    } })));
+    println!("{:?}", outcome.summary);
+    for t in [0.25, 0.5, 1.0] {
+        let f = 1200.0 * t;
+        assert!((outcome.at("force.plane.z", t) / -f - 1.0).abs() < 1e-9);
+        for axis in ["x", "y"] {
+            let left = outcome.at(&format!("moment_balance.plane.{axis}"), t);
+            assert!(
+                left.abs() < 1e-8 * f,
+                "moment about {axis} at {t}: {left:e}"
+            );
+        }
+    }
+    // It leans to where it is pushed: down at positive x, by the right-hand rule about y; down at negative y about x.
+    let (x, y) = (
+        outcome.at("rotation.plane.x", 1.0),
+        outcome.at("rotation.plane.y", 1.0),
+    );
+    assert!(y > 0.5 && x > 0.5, "{x} {y}");
+    // Newton's method is quadratic once the same points stay in contact.
+    let last = residuals(&outcome, outcome.summary.steps);
+    println!("{last:.1e?}");
+    assert!(quadratic(&last), "{last:.1e?}");
+}
+
+/// Relative residuals of the last attempt at a step.
+fn residuals(outcome: &Outcome, step: u32) -> Vec<f64> {
+    use covact::solve::event::Event;
+    let mut out = Vec::new();
+    for event in &outcome.events {
+        match event {
+            Event::Iteration {
+                step: s,
+                iteration,
+                residual,
+                ..
+            } if *s == step => {
+                if *iteration == 0 {
+                    out.clear();
+                }
+                out.push(*residual);
+            }
+            _ => {}
+        }
+    }
+    out
+}
+
+/// Whether some iteration below 1e-2 at least doubles the number of right digits, within a factor of 30 and above
+/// round-off.
+fn quadratic(r: &[f64]) -> bool {
+    r.windows(3).any(|w| {
+        w[0] < 1e-2
+            && w[1] < 1e-2 * w[0]
+            && (w[2] < 30.0 * w[1] * (w[1] / w[0]).powi(1) || w[2] < 1e-11)
+    })
+}
+
+#[test]
+fn a_tilted_plane_by_force_is_the_same_plane_turned_by_as_much() {
+    let forced = done(&tilting(json!({ "free": {
+        "center": [0.6, 0, 0.25],
+        "force": { "z": "-1200*t" }, "moment": { "y": 0 }
+    } })));
+    let (z, y) = (
+        forced.at("displacement.plane.z", 1.0),
+        forced.at("rotation.plane.y", 1.0),
+    );
+    let moved = done(&tilting(json!({
+        "translation": [0, 0, { "table": [[0, -0.25], [1, z]] }],
+        "rotation": { "center": [0.6, 0, 0.25], "axis": [0, 1, 0], "angle": format!("{y}*t") }
+    })));
+    for name in [
+        "force.plane.x",
+        "force.plane.z",
+        "moment.plane.y",
+        "energy.internal",
+        "penetration.max",
+    ] {
+        let (a, b) = (forced.at(name, 1.0), moved.at(name, 1.0));
+        assert!(
+            a.abs() > 0.0 && (a / b - 1.0).abs() < 1e-8,
+            "{name}: {a} {b}"
+        );
+    }
+}
+
+#[test]
+fn a_ball_drawn_over_a_plate_under_its_weight() {
+    // x prescribed, z free; the state does not remember how it was reached, so that the same ball moved by what was
+    // found meets the same forces.
+    let scene = |motion: Value| {
+        let mut scene = plate(8);
+        scene["bodies"]["plate"]["mesh"]["plate"]["origin"] = json!([-25, 0, 0]);
+        scene["supports"]["symmetry_x"] = json!({ "on": "plate.x_min", "fixed": true });
+        scene["surfaces"]["ball"]["motion"] = motion;
+        scene
+    };
+    let drawn = done(&scene(json!({
+        "translation": ["6*t", 0, 0],
+        "free": { "force": { "z": -500 } }
+    })));
+    let z = drawn.at("displacement.ball.z", 1.0);
+    for t in drawn.column("time") {
+        assert!(
+            (drawn.at("force.ball.z", t) / -500.0 - 1.0).abs() < 1e-9,
+            "at {t}"
+        );
+    }
+    let table = json!({ "table": [[0, -1], [1, z]] });
+    let moved = done(&scene(json!({ "translation": ["6*t", 0, table] })));
+    for name in ["force.ball.x", "force.ball.z", "energy.internal"] {
+        let (a, b) = (drawn.at(name, 1.0), moved.at(name, 1.0));
+        assert!(
+            a.abs() > 1.0 && (a / b - 1.0).abs() < 1e-7,
+            "{name}: {a} {b}"
+        );
+    }
+    // The guide takes what pushes the ball back to the middle.
+    let guide = drawn.at("force_balance.ball.x", 1.0);
+    assert!((guide + drawn.at("force.ball.x", 1.0)).abs() < 1e-9 * guide.abs() && guide != 0.0);
+}
+
+#[test]
+fn a_ball_that_may_spin_is_held_and_named() {
+    let mut scene = plate(8);
+    scene["surfaces"]["ball"]["motion"] = json!({ "free": {
+        "center": [0, 0, 26], "force": { "z": "-400*t" }, "moment": { "z": 0 }
+    } });
+    let outcome = done(&scene);
+    let warning = outcome
+        .summary
+        .warnings
+        .iter()
+        .find(|w| w.contains("about z"));
+    let warning = warning.expect("a warning that names the motion");
+    assert!(
+        warning.contains("surface `ball`") && warning.contains("held"),
+        "{warning}"
+    );
+    assert_eq!(outcome.at("rotation.ball.z", 1.0), 0.0);
+}
+
+#[test]
+fn forces_that_nothing_resists_are_named() {
+    let mut scene = plate(8);
+    scene["surfaces"]["ball"]["motion"] = json!({ "free": {
+        "center": [0, 0, 26], "force": { "z": "-400*t" }, "moment": { "z": 5 }
+    } });
+    let spun = solve(&scene);
+    let reason = spun.summary.reason.expect("a reason");
+    assert_eq!(spun.summary.status.name(), "not_converged");
+    assert!(
+        reason.contains("nothing resists the motion of surface `ball` about z"),
+        "{reason}"
+    );
+    // Pulled off again in the second half.
+    let mut scene = plate(8);
+    scene["surfaces"]["ball"]["motion"] = json!({ "free": {
+        "force": { "z": { "table": [[0, 0], [0.5, -400], [1, 400]] } }
+    } });
+    let lifted = solve(&scene);
+    let reason = lifted.summary.reason.expect("a reason");
+    assert!(
+        reason.contains("surface `ball`, which forces drive along z, has lost all contact"),
+        "{reason}"
+    );
+    assert!(lifted.summary.time > 0.7, "{}", lifted.summary.time);
+}

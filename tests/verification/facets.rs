@@ -84,9 +84,19 @@ fn the_force_error_falls_with_the_square_of_the_facets_and_is_their_sagitta() {
         let sagitta = s * s / (8.0 * R) * stiffness / f;
         println!("error {e:.3e}, sagitta {sagitta:.3e}: {:.3}", e / sagitta);
     }
-    println!("{:?}", e.windows(2).map(|e| (e[0]/e[1]).log2()).collect::<Vec<_>>());
+    println!(
+        "{:?}",
+        e.windows(2)
+            .map(|e| (e[0] / e[1]).log2())
+            .collect::<Vec<_>>()
+    );
     for kind in ["biquadratic", "smooth"] {
         let e = errors(kind, &[4, 8, 16], f);
-        println!("{:?}", e.windows(2).map(|e| (e[0]/e[1]).abs().log2()).collect::<Vec<_>>());
+        println!(
+            "{:?}",
+            e.windows(2)
+                .map(|e| (e[0] / e[1]).abs().log2())
+                .collect::<Vec<_>>()
+        );
     }
 }

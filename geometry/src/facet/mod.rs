@@ -22,10 +22,10 @@ mod smooth;
 pub use bilinear::Bilinear;
 pub use biquadratic::Biquadratic;
 pub use mesh::FacetMesh;
-pub use smooth::{distance_from, smooth_patches};
 pub use refine::{
     Crack, FacetOrigin, Faceted, Refinement, bilinear_facets, biquadratic_facets, facet_patch,
 };
+pub use smooth::{distance_from, smooth_patches};
 
 /// Why facets could not be made. Numbers count from zero.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

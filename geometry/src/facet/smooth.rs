@@ -45,7 +45,13 @@ fn bicubic(moving: &MovingFacets, facet: u32) -> Result<NurbsPatch, FacetError> 
         }
     }
     let knots = || vec![-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0];
-    Ok(NurbsPatch::new([3, 3], [knots(), knots()], [4, 4], &points, None)?)
+    Ok(NurbsPatch::new(
+        [3, 3],
+        [knots(), knots()],
+        [4, 4],
+        &points,
+        None,
+    )?)
 }
 
 /// Points of a patch in each direction at which its distance from a surface is measured.

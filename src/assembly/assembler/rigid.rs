@@ -1,7 +1,7 @@
 //! Contact with rigid surfaces: the slave points of a pair are evaluated in parallel and summed in order.
 use super::{Assembler, Fault, SurfaceForce, Totals, put};
 use crate::contact::closest::ClosestPoint;
-use crate::contact::law::{NormalLaw, Penalty};
+use crate::contact::law::{GapOffset, NoOffset, NormalLaw, Penalty};
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
 use crate::model::state::{PointState, State};
@@ -46,7 +46,10 @@ impl Assembler<'_> {
                     law: &law,
                     u,
                 };
-                batch.with_tangent(points, touches)
+                match &pair.overclosure {
+                    None => batch.choose(points, touches, &NoOffset),
+                    Some(overclosure) => batch.choose(points, touches, &overclosure.offsets(time)),
+                }
             });
             let mut deepest = 0.0f64;
             let mut at = 0;
@@ -72,8 +75,8 @@ impl Assembler<'_> {
                 points[i].closed = touch.is_some();
                 let Some(touch) = touch else { continue };
                 totals.active += 1;
-                deepest = deepest.max(-touch.xi3);
-                totals.contact_energy += 0.5 * touch.n * touch.xi3 * p.area;
+                deepest = deepest.max(-touch.gap);
+                totals.contact_energy += 0.5 * touch.n * touch.gap * p.area;
                 let force = touch.residual * p.area;
                 let on = &mut totals.surfaces[pair.surface];
                 on.force -= force;
@@ -131,15 +134,16 @@ struct Batch<'a, P, L> {
     u: &'a [f64],
 }
 
-impl<P: ClosestPoint, L: NormalLaw> Batch<'_, P, L> {
+impl<P: ClosestPoint, L: NormalLaw + Copy> Batch<'_, P, L> {
     /// Evaluates every point with the tangent that the pair asks for.
-    fn with_tangent(
+    fn choose<O: GapOffset>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<Touch>, PointFault>],
+        offset: &O,
     ) {
         match self.pair.tangent {
-            Tangent::Exact => self.evaluate(states, touches, &Exact),
+            Tangent::Exact => self.evaluate(states, touches, &Exact, offset),
             Tangent::Published {
                 rotational,
                 curvature,
@@ -148,25 +152,28 @@ impl<P: ClosestPoint, L: NormalLaw> Batch<'_, P, L> {
                     rotational,
                     curvature,
                 };
-                self.evaluate(states, touches, &parts)
+                self.evaluate(states, touches, &parts, offset)
             }
         }
     }
 
-    /// Evaluates every point; surface, law and tangent are types here, nothing is chosen inside the loop.
-    fn evaluate<T: RigidTangent>(
+    /// Evaluates every point; surface, law, tangent and offset are types here, nothing is chosen inside the loop.
+    fn evaluate<T: RigidTangent, O: GapOffset>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<Touch>, PointFault>],
         tangent: &T,
+        offset: &O,
     ) {
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
+            .enumerate()
             .with_min_len(64)
-            .for_each(|((p, s), out)| {
+            .for_each(|(i, ((p, s), out))| {
                 let x = self.model.point_position(p, self.u);
-                *out = self.master.touch(&x, &mut s.hint, self.law, tangent);
+                let law = offset.law(i, self.law);
+                *out = self.master.touch(&x, &mut s.hint, &law, tangent);
             });
     }
 }

@@ -3,8 +3,9 @@
 use super::turn;
 use super::{Driven, Model, SurfaceModel};
 use crate::contact::carried::carried;
-use crate::contact::law::Penalty;
+use crate::contact::law::{Penalty, Shifted};
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, behind, presses};
+use crate::model::overclosure::Overclosure;
 use crate::model::surface::SurfaceSet;
 use crate::scene::ValueError;
 use covact_geometry::{Hint, Vec3};
@@ -59,12 +60,22 @@ pub struct Presser<'m> {
 struct PairAtRest<'m> {
     name: &'m str,
     law: Penalty,
+    overclosure: Option<&'m Overclosure>,
     points: Vec<PointAtRest>,
+}
+
+impl PairAtRest<'_> {
+    /// Part of the points' offsets that is left at time `t`.
+    fn factor(&self, t: f64) -> f64 {
+        self.overclosure.map_or(0.0, |o| o.factor(t))
+    }
 }
 
 struct PointAtRest {
     x: Vec3,
     area: f64,
+    /// Offset of its gap at the start.
+    z0: f64,
     hint: Option<Hint>,
 }
 
@@ -91,15 +102,18 @@ impl<'m> Presser<'m> {
             }
             size = size.min(pair.element_size);
             let points = (pair.points.iter())
-                .map(|p| PointAtRest {
+                .enumerate()
+                .map(|(i, p)| PointAtRest {
                     x: model.point_position(p, u),
                     area: p.area,
+                    z0: pair.overclosure.as_ref().map_or(0.0, |o| o.z0[i]),
                     hint: None,
                 })
                 .collect();
             pairs.push(PairAtRest {
                 name: &pair.name,
                 law: Penalty { eps_n },
+                overclosure: pair.overclosure.as_ref(),
                 points,
             });
         }
@@ -147,10 +161,13 @@ impl<'m> Presser<'m> {
             active: 0,
         };
         for pair in &mut self.pairs {
-            let law = pair.law;
+            let (law, factor) = (pair.law, pair.factor(t));
             let touches: Vec<_> = (pair.points.par_iter_mut())
                 .with_min_len(64)
-                .map(|p| master.touch(&p.x, &mut p.hint, &law, &Exact))
+                .map(|p| {
+                    let z0 = factor * p.z0;
+                    master.touch(&p.x, &mut p.hint, &Shifted { law, z0 }, &Exact)
+                })
                 .collect();
             for (point, (touch, p)) in touches.into_iter().zip(&pair.points).enumerate() {
                 let touch = touch.map_err(|fault| PressFault::Point {
@@ -163,7 +180,7 @@ impl<'m> Presser<'m> {
                 let (r, k) = (touch.residual * p.area, touch.tangent * p.area);
                 let c = carried(&r, &k, &(p.x - center));
                 out.active += 1;
-                out.energy += 0.5 * touch.n * touch.xi3 * p.area;
+                out.energy += 0.5 * touch.n * touch.gap * p.area;
                 add(&mut out.residual, &-r, &c.spin);
                 add_tangent(&mut out.tangent, &k, &-c.point_spin, &c.spin_spin);
             }
@@ -180,6 +197,7 @@ impl<'m> Presser<'m> {
         let master = self.master(&prescribed, &moved, &theta);
         let (mut nearest, mut below) = (f64::INFINITY, false);
         for pair in &mut self.pairs {
+            let factor = pair.factor(t);
             let found = (pair.points.par_iter_mut())
                 .with_min_len(64)
                 .filter_map(|p| {
@@ -188,10 +206,10 @@ impl<'m> Presser<'m> {
                         patch: foot.patch,
                         xi: foot.xi,
                     });
-                    Some((
-                        foot.distance,
-                        presses(&foot) && !behind(&foot, master.depth),
-                    ))
+                    let (gap, inside) = (foot.signed_distance - factor * p.z0, presses(&foot));
+                    let distance = if inside { gap.max(0.0) } else { foot.distance };
+                    let below = inside && gap < 0.0 && !behind(&foot, master.depth);
+                    Some((distance, below))
                 })
                 .reduce(|| (f64::INFINITY, false), |a, b| (a.0.min(b.0), a.1 || b.1));
             nearest = nearest.min(found.0);

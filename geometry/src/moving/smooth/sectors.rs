@@ -54,7 +54,11 @@ impl Mesh {
             let off = |c: usize| self.point(self.node(facet, c)) - origin;
             let (a, b) = (off(corner ^ 1), off(corner ^ 2));
             // The sign makes it rho_1 x rho_2 whatever the corner.
-            let sign = if corner == 0 || corner == 3 { 1.0 } else { -1.0 };
+            let sign = if corner == 0 || corner == 3 {
+                1.0
+            } else {
+                -1.0
+            };
             let cross = a.cross(&b);
             let angle = cross.norm().atan2(a.dot(&b));
             sum += cross.try_normalize(0.0).unwrap_or_else(Vec3::zeros) * (sign * angle);
@@ -78,7 +82,10 @@ impl Mesh {
                     || soft_edges(a).any(|s| soft_edges(b).any(|t| s.edge == t.edge));
                 if joined && group[a] != group[b] {
                     let (from, to) = (group[a], group[b]);
-                    group.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
+                    group
+                        .iter_mut()
+                        .filter(|g| **g == from)
+                        .for_each(|g| *g = to);
                 }
             }
         }

@@ -93,14 +93,20 @@ impl Tangents {
     fn central(&mut self, mesh: &Mesh, node: u32, sectors: &[Sector]) {
         if let Some([a, b]) = running_on(mesh, node, sectors) {
             for (own, other) in [(a, b), (b, a)] {
-                self.set(node, own, Rule::Central(other), through(mesh, node, own, other));
+                self.set(
+                    node,
+                    own,
+                    Rule::Central(other),
+                    through(mesh, node, own, other),
+                );
             }
         }
         for sector in sectors.iter().filter(|s| s.hard.is_empty()) {
             if sector.is_regular() {
                 for &own in &sector.soft {
                     let other = opposite(mesh, sector, own);
-                    if let Some(other) = other.filter(|o| turn(mesh, node, sector, own, *o) <= KINK) {
+                    if let Some(other) = other.filter(|o| turn(mesh, node, sector, own, *o) <= KINK)
+                    {
                         let tangent = through(mesh, node, own, other);
                         self.set(node, own, Rule::Central(other), tangent);
                     }
@@ -159,8 +165,7 @@ impl Tangents {
         let fit = fit(mesh, node, sector);
         for spoke in left {
             let chord = mesh.point(spoke.to) - mesh.point(node);
-            let plane =
-                |a: &Combination, b: &Combination| in_plane(&mesh.points, [a, b], &chord);
+            let plane = |a: &Combination, b: &Combination| in_plane(&mesh.points, [a, b], &chord);
             let by_borders = match &borders[..] {
                 [a, .., b] => plane(a, b),
                 _ => None,
@@ -215,7 +220,10 @@ fn running_on(mesh: &Mesh, node: u32, sectors: &[Sector]) -> Option<[Spoke; 2]> 
     }
     let [a, b] = *hard.first_chunk::<2>().filter(|_| hard.len() == 2)?;
     // A facet alone between them would have no angle.
-    if sectors.iter().any(|s| !s.hard.is_empty() && s.corners.len() < 2) {
+    if sectors
+        .iter()
+        .any(|s| !s.hard.is_empty() && s.corners.len() < 2)
+    {
         return None;
     }
     let [u, v] = [a, b].map(|s| mesh.point(s.to) - mesh.point(node));

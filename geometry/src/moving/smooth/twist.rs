@@ -106,7 +106,12 @@ fn tensor(mesh: &Mesh, tangents: &Tangents, facet: u32, corner: usize) -> Option
             match tangents.rule(mesh, facet, edge, corner) {
                 Rule::Central(other) => {
                     let ratio = mesh.ratio(other.edge, number);
-                    (&[-1, 0, 1], central(ratio), Some(false), Some((other.to, 0)))
+                    (
+                        &[-1, 0, 1],
+                        central(ratio),
+                        Some(false),
+                        Some((other.to, 0)),
+                    )
                 }
                 Rule::OneSided(next) => {
                     let ratio = mesh.ratio(next.edge, number);
