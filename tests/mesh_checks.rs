@@ -1,6 +1,7 @@
 //! Checks, sets, selections, columns and sizes of meshes.
 use covact::mesh::{
-    Face, Mesh, MeshError, Selected, SetKind, ThicknessColumns, build, cylinder_panel, plate,
+    ElementKind, Face, Mesh, MeshError, Selected, SetKind, ThicknessColumns, build, cylinder_panel,
+    plate,
 };
 use covact::scene::{CylinderPanel, MeshFile, MeshSource, Plate, Selection};
 use covact_geometry::Vec3;
@@ -8,7 +9,7 @@ use std::path::Path;
 
 /// 4 x 3 elements of 1 x 1 x 0.2 in two layers of 0.1, mid-surface at z = 0.
 fn sheet() -> Mesh {
-    plate(&sheet_plate()).unwrap()
+    plate(&sheet_plate(), ElementKind::H8).unwrap()
 }
 
 fn sheet_plate() -> Plate {
@@ -190,15 +191,18 @@ fn columns_that_branch_or_circle_have_no_partner() {
     assert!(opposite.iter().filter(|n| n.is_none()).count() > 20);
 
     // A closed ring whose thickness runs around it.
-    let ring = cylinder_panel(&CylinderPanel {
-        radius: 5.0,
-        thickness: 1.0,
-        angles: [0.0, 360.0],
-        y: [0.0, 1.0],
-        elements: [8, 1],
-        layers: 1,
-        origin: [0.0; 3],
-    });
+    let ring = cylinder_panel(
+        &CylinderPanel {
+            radius: 5.0,
+            thickness: 1.0,
+            angles: [0.0, 360.0],
+            y: [0.0, 1.0],
+            elements: [8, 1],
+            layers: 1,
+            origin: [0.0; 3],
+        },
+        ElementKind::H8,
+    );
     let mut ring = ring.unwrap();
     for e in 0..8 {
         let nodes = ring.element(e).to_vec();
@@ -441,7 +445,12 @@ fn sizes_are_measured() {
 
 #[test]
 fn build_reports_and_refuses() {
-    let (mesh, report) = build(&MeshSource::Plate(sheet_plate()), Path::new(".")).unwrap();
+    let (mesh, report) = build(
+        &MeshSource::Plate(sheet_plate()),
+        ElementKind::H8,
+        Path::new("."),
+    )
+    .unwrap();
     assert_eq!(
         (mesh.elements(), report.components, report.notes.len()),
         (24, 1, 0)
@@ -450,7 +459,7 @@ fn build_reports_and_refuses() {
     let mut far = sheet_plate();
     far.origin[2] = 1e17;
     assert!(matches!(
-        build(&MeshSource::Plate(far), Path::new(".")),
+        build(&MeshSource::Plate(far), ElementKind::H8, Path::new(".")),
         Err(MeshError::Inverted { .. })
     ));
 
@@ -461,7 +470,7 @@ fn build_reports_and_refuses() {
         })
     };
     let error = |source| {
-        build(&source, Path::new("some/where"))
+        build(&source, ElementKind::H8, Path::new("some/where"))
             .unwrap_err()
             .to_string()
     };

@@ -1,5 +1,7 @@
 //! Generated meshes against closed forms: volumes, areas, sets, topology, spacing; and refused input.
-use covact::mesh::{Face, Mesh, MeshError, block, cylinder_panel, plate, positions, sphere_panel};
+use covact::mesh::{
+    ElementKind, Face, Mesh, MeshError, block, cylinder_panel, plate, positions, sphere_panel,
+};
 use covact::scene::{Block, CylinderPanel, Plate, Spacing, SpherePanel};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -94,14 +96,14 @@ fn sets_are_complete(mesh: &Mesh, names: &[&str]) {
 fn enclosed_by_flat_faces(mesh: &Mesh) -> f64 {
     let third = |face: Face| {
         let (area, normal) = mesh.face_area_normal(face);
-        mesh.nodes[mesh.face_nodes(face)[0] as usize].dot(&normal) * area / 3.0
+        mesh.nodes[mesh.face_corners(face)[0] as usize].dot(&normal) * area / 3.0
     };
     mesh.outer_faces().into_iter().map(third).sum()
 }
 
 #[test]
 fn plate_has_its_volume_areas_and_sets() {
-    let mesh = plate(&a_plate()).unwrap();
+    let mesh = plate(&a_plate(), ElementKind::H8).unwrap();
     mesh.check().unwrap();
     assert_eq!((mesh.nodes.len(), mesh.elements()), (5 * 4 * 3, 4 * 3 * 2));
     close(mesh.volume(), 3.0 * 2.0 * 0.1, 1e-13);
@@ -129,7 +131,7 @@ fn plate_has_its_volume_areas_and_sets() {
 
 #[test]
 fn block_has_its_volume_and_both_names_for_z() {
-    let mesh = block(&a_block()).unwrap();
+    let mesh = block(&a_block(), ElementKind::H8).unwrap();
     mesh.check().unwrap();
     close(mesh.volume(), 24.0, 1e-13);
     close(enclosed_by_flat_faces(&mesh), 24.0, 1e-12);
@@ -152,7 +154,7 @@ fn cylinder_converges_to_its_volume_and_areas() {
     let exact = (70f64.to_radians() / 2.0) * (11.0f64.powi(2) - 9.0f64.powi(2)) * 5.0;
     let mut errors = Vec::new();
     for n in [4, 8, 16] {
-        let mesh = cylinder_panel(&a_cylinder(n, [-20.0, 50.0])).unwrap();
+        let mesh = cylinder_panel(&a_cylinder(n, [-20.0, 50.0]), ElementKind::H8).unwrap();
         mesh.check().unwrap();
         let a = 70f64.to_radians() / f64::from(n);
         close(mesh.volume(), exact * a.sin() / a, 1e-12);
@@ -168,7 +170,7 @@ fn cylinder_converges_to_its_volume_and_areas() {
         );
         for &face in mesh.face_set("outer").unwrap() {
             let center = mesh
-                .face_nodes(face)
+                .face_corners(face)
                 .iter()
                 .map(|&n| mesh.nodes[n as usize])
                 .sum::<covact_geometry::Vec3>()
@@ -188,7 +190,7 @@ fn cylinder_converges_to_its_volume_and_areas() {
 fn cylinder_starts_at_z_and_turns_towards_x() {
     let mut panel = a_cylinder(3, [0.0, 90.0]);
     panel.origin = [0.0; 3];
-    let mesh = cylinder_panel(&panel).unwrap();
+    let mesh = cylinder_panel(&panel, ElementKind::H8).unwrap();
     for &n in mesh.node_set("phi_min").unwrap() {
         assert!(mesh.nodes[n as usize].x == 0.0 && mesh.nodes[n as usize].z >= 9.0 - 1e-14);
     }
@@ -206,7 +208,7 @@ fn sphere_converges_to_its_volume_and_areas() {
     let outer = turn * rise * 10.5f64.powi(2);
     let mut errors = Vec::new();
     for n in [8, 16, 32] {
-        let mesh = sphere_panel(&a_sphere(n, [0.0, 90.0])).unwrap();
+        let mesh = sphere_panel(&a_sphere(n, [0.0, 90.0]), ElementKind::H8).unwrap();
         mesh.check().unwrap();
         errors.push([mesh.volume() - volume, area(&mesh, "outer") - outer].map(f64::abs));
         let names = [
@@ -219,7 +221,7 @@ fn sphere_converges_to_its_volume_and_areas() {
         ];
         sets_are_complete(&mesh, &names);
         for &face in mesh.face_set("inner").unwrap() {
-            let node = mesh.nodes[mesh.face_nodes(face)[0] as usize].normalize();
+            let node = mesh.nodes[mesh.face_corners(face)[0] as usize].normalize();
             assert!(mesh.face_area_normal(face).1.dot(&node) < -0.9);
         }
         for &node in mesh.node_set("outer").unwrap() {
@@ -241,14 +243,14 @@ fn full_turn_is_closed() {
         let faces = mesh.outer_faces();
         let mut edges = BTreeSet::new();
         for &face in &faces {
-            let n = mesh.face_nodes(face);
+            let n = mesh.face_corners(face);
             for (a, b) in [(0, 1), (1, 3), (3, 2), (2, 0)] {
                 edges.insert((n[a].min(n[b]), n[a].max(n[b])));
             }
         }
         mesh.nodes_of(&faces).len() as i64 - edges.len() as i64 + faces.len() as i64
     };
-    let tube = cylinder_panel(&a_cylinder(12, [-180.0, 180.0])).unwrap();
+    let tube = cylinder_panel(&a_cylinder(12, [-180.0, 180.0]), ElementKind::H8).unwrap();
     tube.check().unwrap();
     assert_eq!(tube.nodes.len(), 12 * 3 * 3);
     assert_eq!(euler(&tube), 0);
@@ -260,11 +262,11 @@ fn full_turn_is_closed() {
         1e-12,
     );
 
-    let open = cylinder_panel(&a_cylinder(12, [0.0, 359.0])).unwrap();
+    let open = cylinder_panel(&a_cylinder(12, [0.0, 359.0]), ElementKind::H8).unwrap();
     open.check().unwrap();
     assert_eq!(euler(&open), 2);
 
-    let zone = sphere_panel(&a_sphere(9, [0.0, 360.0])).unwrap();
+    let zone = sphere_panel(&a_sphere(9, [0.0, 360.0]), ElementKind::H8).unwrap();
     zone.check().unwrap();
     assert_eq!(euler(&zone), 0);
     sets_are_complete(&zone, &["inner", "outer", "latitude_min", "latitude_max"]);
@@ -274,14 +276,17 @@ fn full_turn_is_closed() {
 #[test]
 fn coarsest_curved_meshes_are_still_valid() {
     for n in [3, 4, 5] {
-        cylinder_panel(&a_cylinder(n, [0.0, 360.0]))
+        cylinder_panel(&a_cylinder(n, [0.0, 360.0]), ElementKind::H8)
             .unwrap()
             .check()
             .unwrap();
         let mut sphere = a_sphere(n, [0.0, 360.0]);
         sphere.latitude = [-80.0, 80.0];
         sphere.elements = [n, 2];
-        sphere_panel(&sphere).unwrap().check().unwrap();
+        sphere_panel(&sphere, ElementKind::H8)
+            .unwrap()
+            .check()
+            .unwrap();
     }
 }
 
@@ -375,7 +380,7 @@ fn absurd_input_is_refused_by_field() {
     let with = |f: &dyn Fn(&mut Plate)| {
         let mut p = a_plate();
         f(&mut p);
-        plate(&p)
+        plate(&p, ElementKind::H8)
     };
     refused(with(&|p| p.elements[1] = 0), &["plate", "elements[1] is 0"]);
     refused(with(&|p| p.layers = 0), &["layers is 0"]);
@@ -392,7 +397,7 @@ fn absurd_input_is_refused_by_field() {
     let with = |f: &dyn Fn(&mut CylinderPanel)| {
         let mut p = a_cylinder(8, [0.0, 90.0]);
         f(&mut p);
-        cylinder_panel(&p)
+        cylinder_panel(&p, ElementKind::H8)
     };
     refused(
         with(&|p| p.thickness = 20.0),
@@ -410,7 +415,7 @@ fn absurd_input_is_refused_by_field() {
     let with = |f: &dyn Fn(&mut SpherePanel)| {
         let mut p = a_sphere(8, [0.0, 90.0]);
         f(&mut p);
-        sphere_panel(&p)
+        sphere_panel(&p, ElementKind::H8)
     };
     refused(
         with(&|p| p.latitude[1] = 90.0),
@@ -425,8 +430,8 @@ fn absurd_input_is_refused_by_field() {
 
     let mut b = a_block();
     b.max[1] = b.min[1];
-    refused(block(&b), &["along y"]);
+    refused(block(&b, ElementKind::H8), &["along y"]);
     b = a_block();
     b.elements = [1 << 31, 1 << 31, 1 << 31];
-    refused(block(&b), &["limit"]);
+    refused(block(&b, ElementKind::H8), &["limit"]);
 }

@@ -1,6 +1,6 @@
 //! Abaqus and CalculiX input files: one written by gmsh 4.15 (`assets/mesh/make.py`), the others by hand.
 use covact::mesh::{
-    Mesh, MeshError, MeshReport, Position, ThicknessRule, build, read_gmsh, read_inp,
+    ElementKind, Mesh, MeshError, MeshReport, Position, ThicknessRule, build, read_gmsh, read_inp,
 };
 use covact::scene::{MeshFile, MeshSource};
 use covact_geometry::Vec3;
@@ -30,8 +30,8 @@ fn gmsh_writes_the_same_plate_as_inp_and_msh() {
             scale: 2.0,
         })
     };
-    let (mesh, report) = build(&source("plate.inp"), &dir).unwrap();
-    let (other, _) = build(&source("plate.msh"), &dir).unwrap();
+    let (mesh, report) = build(&source("plate.inp"), ElementKind::H8, &dir).unwrap();
+    let (other, _) = build(&source("plate.msh"), ElementKind::H8, &dir).unwrap();
     assert_eq!(report.thickness, ThicknessRule::Surface);
     assert_eq!(mesh.connectivity, other.connectivity);
     assert_eq!(

@@ -215,6 +215,7 @@ fn meaning(effect: &str) -> &'static str {
     match effect {
         "large_rotation" => "displacements and rotations of any size",
         "element.h8_solid_shell" => "8-node solid-shell elements that do not lock when thin",
+        "element.q18_solid_shell" => "18-node quadratic solid-shells, for thin and curved sheets",
         "element.h8_displacement" => "plain 8-node bricks, for solids (they lock when thin)",
         "material.st_venant_kirchhoff" => "linear stress-strain law for small strains",
         "material.neo_hooke" => "rubber-like law for large strains",

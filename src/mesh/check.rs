@@ -1,7 +1,7 @@
 //! Is a mesh fit for computing?
-use super::measure::{H8_EDGES, corner};
+use super::measure::H8_EDGES;
 use super::topology::FaceTable;
-use super::{H8_FACES, Mesh, MeshError};
+use super::{ElementKind, H8_FACES, Mesh, MeshError};
 use covact_geometry::Vec3;
 
 /// Scaled Jacobians up to this count as inverted or degenerate: well above round-off, well below any usable shape.
@@ -67,16 +67,20 @@ impl Mesh {
         Ok(())
     }
 
-    fn check_elements(&self) -> Result<(), MeshError> {
+    /// Inverted and degenerate elements.
+    pub(super) fn check_elements(&self) -> Result<(), MeshError> {
         let mut first = None;
         let mut count = 0;
         for e in 0..self.elements() {
-            let x = self.element_positions(e);
-            let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(|a| corner(&x, a));
-            // NaN (from overflow) counts as inverted.
-            if !corners.iter().all(|c| c.1 > MIN_SHAPE) {
+            let mut sound = true;
+            let mut smallest = f64::INFINITY;
+            self.node_shapes(e, |jacobian, shape| {
+                // NaN (from overflow) counts as inverted.
+                sound &= shape > MIN_SHAPE;
+                smallest = smallest.min(jacobian);
+            });
+            if !sound {
                 count += 1;
-                let smallest = corners.iter().map(|c| c.0).fold(f64::INFINITY, f64::min);
                 first.get_or_insert((e, smallest));
             }
         }
@@ -127,7 +131,7 @@ impl Mesh {
         let table = FaceTable::new(self);
         for group in table.groups() {
             let same_side = || {
-                let [a, b] = [group[0].1, group[1].1].map(|f| self.face_nodes(f));
+                let [a, b] = [group[0].1, group[1].1].map(|f| self.face_corners(f));
                 !is_opposite(a, b)
             };
             if group.len() > 2 || (group.len() == 2 && same_side()) {
@@ -136,6 +140,19 @@ impl Mesh {
                     elements: group.iter().map(|row| row.1.element).collect(),
                     position: (nodes.iter().sum::<Vec3>() / 4.0).into(),
                 });
+            }
+            // Quadratic faces have more nodes than the corners they were found by.
+            if self.kind == ElementKind::Q18
+                && let [a, b] = group
+            {
+                let [one, other] = [a.1, b.1].map(|f| self.nodes_of(&[f]));
+                if one != other {
+                    let nodes = a.0.map(|n| self.nodes[n as usize]);
+                    return Err(MeshError::UnlikeFaces {
+                        elements: [a.1.element, b.1.element],
+                        position: (nodes.iter().sum::<Vec3>() / 4.0).into(),
+                    });
+                }
             }
         }
         Ok(())

@@ -150,6 +150,26 @@ pub enum MeshError {
         elements: Vec<u32>,
         position: [f64; 3],
     },
+    /// Two elements share the corners of a face, but not the nodes between them.
+    #[error(
+        "elements {} and {} share the corners of a face at ({:.6}, {:.6}, {:.6}), but not the nodes between them: one of \
+         them has its thickness along that face; name surfaces `top` and `bottom` so that both agree",
+        elements[0], elements[1], position[0], position[1], position[2]
+    )]
+    UnlikeFaces {
+        elements: [u32; 2],
+        position: [f64; 3],
+    },
+    /// A file holds elements of another shape than the scene asks for.
+    #[error("{}: holds {found}, but {wanted}: {help}", path.display())]
+    OtherElements {
+        path: PathBuf,
+        /// The file's elements.
+        found: &'static str,
+        /// What the scene's element needs.
+        wanted: &'static str,
+        help: &'static str,
+    },
     /// No set of this name.
     #[error(
         "no {kind} set `{name}`{}; {}",

@@ -2,7 +2,7 @@
 use super::{Face, Mesh};
 use covact_geometry::FacetMesh;
 
-/// Faces as bilinear facets, with what they are in the mesh.
+/// Faces as bilinear facets over their corners, with what they are in the mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshFacets {
     /// The facets; `rho_1 x rho_2` points out of the body, and neighbours share nodes as the elements do.
@@ -17,12 +17,14 @@ impl Mesh {
     /// Some faces as facets, for a set of patches of its own or as nodes that move with the body. The parameters of a facet
     /// are those of the face.
     pub fn facets(&self, faces: &[Face]) -> MeshFacets {
-        let nodes = self.nodes_of(faces);
+        let mut nodes: Vec<u32> = faces.iter().flat_map(|&f| self.face_corners(f)).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
         let mut place = vec![0; self.nodes.len()];
         for (k, &node) in nodes.iter().enumerate() {
             place[node as usize] = k as u32;
         }
-        let facet = |&face: &Face| self.face_nodes(face).map(|node| place[node as usize]);
+        let facet = |&face: &Face| self.face_corners(face).map(|node| place[node as usize]);
         MeshFacets {
             facets: FacetMesh {
                 nodes: nodes.iter().map(|&n| self.nodes[n as usize]).collect(),

@@ -1,4 +1,6 @@
-//! Structured meshes: a grid of elements r x s x t mapped into space, t being the thickness.
+//! Structured meshes: a grid of elements r x s x t mapped into space, t being the thickness. Counts and spacing are those
+//! of the elements; the nodes in the middle of quadratic ones lie midway along the axis or the angle, so that they are on
+//! the exact cylinder or sphere.
 use super::error::MAX_NODES;
 use super::spacing::positions;
 use super::{ElementKind, Face, Mesh, MeshError};
@@ -10,7 +12,7 @@ use std::collections::BTreeMap;
 const MAX_ANGLE: f64 = 120.0;
 
 /// Mesh of a flat plate: r along x, s along y, thickness along z.
-pub fn plate(plate: &Plate) -> Result<Mesh, MeshError> {
+pub fn plate(plate: &Plate, kind: ElementKind) -> Result<Mesh, MeshError> {
     const WHAT: &str = "plate";
     positive(WHAT, "size[0]", plate.size[0])?;
     positive(WHAT, "size[1]", plate.size[1])?;
@@ -19,12 +21,13 @@ pub fn plate(plate: &Plate) -> Result<Mesh, MeshError> {
     let counts = [plate.elements[0], plate.elements[1], plate.layers];
     let grid = Grid::new(
         WHAT,
+        kind,
         counts,
         ["elements[0]", "elements[1]", "layers"],
         false,
     )?;
-    let x = positions(&plate.spacing[0], plate.size[0], counts[0], "x")?;
-    let y = positions(&plate.spacing[1], plate.size[1], counts[1], "y")?;
+    let x = grid.along(positions(&plate.spacing[0], plate.size[0], counts[0], "x")?);
+    let y = grid.along(positions(&plate.spacing[1], plate.size[1], counts[1], "y")?);
     let z = positions(&Spacing::Uniform, plate.thickness, counts[2], "z")?;
     let o = plate.origin;
     let half = 0.5 * plate.thickness;
@@ -35,7 +38,7 @@ pub fn plate(plate: &Plate) -> Result<Mesh, MeshError> {
 }
 
 /// Mesh of a cylinder panel: r along phi, s along y, thickness outwards. A full turn shares the nodes of its seam.
-pub fn cylinder_panel(panel: &CylinderPanel) -> Result<Mesh, MeshError> {
+pub fn cylinder_panel(panel: &CylinderPanel, kind: ElementKind) -> Result<Mesh, MeshError> {
     const WHAT: &str = "cylinder_panel";
     radii(WHAT, panel.radius, panel.thickness)?;
     finite(WHAT, "origin", &panel.origin)?;
@@ -44,12 +47,13 @@ pub fn cylinder_panel(panel: &CylinderPanel) -> Result<Mesh, MeshError> {
     let counts = [panel.elements[0], panel.elements[1], panel.layers];
     let grid = Grid::new(
         WHAT,
+        kind,
         counts,
         ["elements[0]", "elements[1]", "layers"],
         closed,
     )?;
-    let phi = positions(&Spacing::Uniform, turn, counts[0], "phi")?;
-    let y = positions(&Spacing::Uniform, length, counts[1], "y")?;
+    let phi = grid.along(positions(&Spacing::Uniform, turn, counts[0], "phi")?);
+    let y = grid.along(positions(&Spacing::Uniform, length, counts[1], "y")?);
     let t = positions(
         &Spacing::Uniform,
         panel.thickness,
@@ -69,7 +73,7 @@ pub fn cylinder_panel(panel: &CylinderPanel) -> Result<Mesh, MeshError> {
 /// Mesh of a sphere panel: r along longitude, s along latitude, thickness outwards. The poles are on the y axis and
 /// longitude is the angle phi of a cylinder panel: `x = r cos(lat) sin(lon)`, `y = r sin(lat)`,
 /// `z = r cos(lat) cos(lon)`. A full turn shares the nodes of its seam and has no longitude sets.
-pub fn sphere_panel(panel: &SpherePanel) -> Result<Mesh, MeshError> {
+pub fn sphere_panel(panel: &SpherePanel, kind: ElementKind) -> Result<Mesh, MeshError> {
     const WHAT: &str = "sphere_panel";
     radii(WHAT, panel.radius, panel.thickness)?;
     finite(WHAT, "origin", &panel.origin)?;
@@ -89,12 +93,13 @@ pub fn sphere_panel(panel: &SpherePanel) -> Result<Mesh, MeshError> {
     let counts = [panel.elements[0], panel.elements[1], panel.layers];
     let grid = Grid::new(
         WHAT,
+        kind,
         counts,
         ["elements[0]", "elements[1]", "layers"],
         closed,
     )?;
-    let lon = positions(&Spacing::Uniform, turn, counts[0], "longitude")?;
-    let lat = positions(&Spacing::Uniform, rise, counts[1], "latitude")?;
+    let lon = grid.along(positions(&Spacing::Uniform, turn, counts[0], "longitude")?);
+    let lat = grid.along(positions(&Spacing::Uniform, rise, counts[1], "latitude")?);
     let t = positions(
         &Spacing::Uniform,
         panel.thickness,
@@ -124,7 +129,7 @@ pub fn sphere_panel(panel: &SpherePanel) -> Result<Mesh, MeshError> {
 }
 
 /// Mesh of a box: r, s, t along x, y, z. `bottom` and `top` are further names of `z_min` and `z_max`.
-pub fn block(block: &Block) -> Result<Mesh, MeshError> {
+pub fn block(block: &Block, kind: ElementKind) -> Result<Mesh, MeshError> {
     const WHAT: &str = "block";
     let fields = ["elements[0]", "elements[1]", "elements[2]"];
     let mut size = [0.0; 3];
@@ -135,9 +140,19 @@ pub fn block(block: &Block) -> Result<Mesh, MeshError> {
             [block.min[a], block.max[a]],
         )?;
     }
-    let grid = Grid::new(WHAT, block.elements, fields, false)?;
-    let x = positions(&block.spacing[0], size[0], block.elements[0], "x")?;
-    let y = positions(&block.spacing[1], size[1], block.elements[1], "y")?;
+    let grid = Grid::new(WHAT, kind, block.elements, fields, false)?;
+    let x = grid.along(positions(
+        &block.spacing[0],
+        size[0],
+        block.elements[0],
+        "x",
+    )?);
+    let y = grid.along(positions(
+        &block.spacing[1],
+        size[1],
+        block.elements[1],
+        "y",
+    )?);
     let z = positions(&block.spacing[2], size[2], block.elements[2], "z")?;
     let names = ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"];
     // The far side is taken from `max`, not from min + size, so that it is exact.
@@ -161,6 +176,7 @@ pub fn block(block: &Block) -> Result<Mesh, MeshError> {
 
 /// Counts of elements along r, s, t, with their product known to be in range.
 struct Grid {
+    kind: ElementKind,
     counts: [usize; 3],
     /// The last nodes along r are the first ones.
     closed: bool,
@@ -169,6 +185,7 @@ struct Grid {
 impl Grid {
     fn new(
         what: &'static str,
+        kind: ElementKind,
         counts: [u32; 3],
         fields: [&str; 3],
         closed: bool,
@@ -178,36 +195,61 @@ impl Grid {
                 return Err(invalid(what, field, count, "at least 1 element"));
             }
         }
-        let nodes = counts.iter().map(|&n| u128::from(n) + 1).product::<u128>();
+        let nodes = (counts.iter().zip(order(kind)))
+            .map(|(&n, order)| u128::from(n) * order as u128 + 1)
+            .product::<u128>();
         if nodes > u128::from(MAX_NODES) {
             return Err(MeshError::TooManyNodes { what, nodes });
         }
         Ok(Grid {
+            kind,
             counts: counts.map(|n| n as usize),
             closed,
         })
     }
 
+    /// Positions of all nodes along r or s from those of the corners.
+    fn along(&self, corners: Vec<f64>) -> Vec<f64> {
+        if order(self.kind)[0] == 1 {
+            return corners;
+        }
+        let mut all = Vec::with_capacity(2 * corners.len());
+        for pair in corners.windows(2) {
+            all.extend([pair[0], 0.5 * (pair[0] + pair[1])]);
+        }
+        all.extend(corners.last());
+        all
+    }
+
     /// Builds the mesh; `names` are those of the local faces 0 to 5, `at` gives the position of a grid point.
     fn mesh(&self, names: [&str; 6], at: impl Fn(usize, usize, usize) -> Vec3) -> Mesh {
         let [nr, ns, nt] = self.counts;
-        let row = if self.closed { nr } else { nr + 1 };
-        let number = |i: usize, j: usize, k: usize| (i % row + row * (j + (ns + 1) * k)) as u32;
-        let mut nodes = Vec::with_capacity(row * (ns + 1) * (nt + 1));
-        for k in 0..=nt {
-            for j in 0..=ns {
+        let [or, os, ot] = order(self.kind);
+        // The last grid point along each direction.
+        let [er, es, et] = [nr * or, ns * os, nt * ot];
+        let row = if self.closed { er } else { er + 1 };
+        let number = |i: usize, j: usize, k: usize| (i % row + row * (j + (es + 1) * k)) as u32;
+        let mut nodes = Vec::with_capacity(row * (es + 1) * (et + 1));
+        for k in 0..=et {
+            for j in 0..=es {
                 nodes.extend((0..row).map(|i| at(i, j, k)));
             }
         }
-        let mut connectivity = Vec::with_capacity(8 * nr * ns * nt);
+        let per_element = self.kind.nodes();
+        let mut connectivity = Vec::with_capacity(per_element * nr * ns * nt);
         let mut faces: [Vec<Face>; 6] = Default::default();
         for k in 0..nt {
             for j in 0..ns {
                 for i in 0..nr {
-                    let element = (connectivity.len() / 8) as u32;
-                    connectivity.extend(
-                        (0..8).map(|a| number(i + (a & 1), j + (a >> 1 & 1), k + (a >> 2))),
-                    );
+                    let element = (connectivity.len() / per_element) as u32;
+                    connectivity.extend((0..per_element).map(|a| {
+                        let (a, b, c) = (
+                            a % (or + 1),
+                            a / (or + 1) % (os + 1),
+                            a / ((or + 1) * (os + 1)),
+                        );
+                        number(i * or + a, j * os + b, k * ot + c)
+                    }));
                     let outer = [
                         i == 0 && !self.closed,
                         i + 1 == nr && !self.closed,
@@ -226,7 +268,7 @@ impl Grid {
             }
         }
         let mut mesh = Mesh {
-            kind: ElementKind::H8,
+            kind: self.kind,
             nodes,
             connectivity,
             node_sets: BTreeMap::new(),
@@ -241,6 +283,14 @@ impl Grid {
             mesh.face_sets.insert(name.to_string(), set);
         }
         mesh
+    }
+}
+
+/// Degrees of the elements along r, s and t.
+const fn order(kind: ElementKind) -> [usize; 3] {
+    match kind {
+        ElementKind::H8 => [1, 1, 1],
+        ElementKind::Q18 => [2, 2, 1],
     }
 }
 

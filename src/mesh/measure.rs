@@ -1,5 +1,7 @@
 //! Lengths, areas, volumes and shape quality of elements.
-use super::{Face, H8_FACES, Mesh};
+use super::{ElementKind, Face, Mesh};
+use crate::shell::Quad;
+use crate::shell::quadrature::{GAUSS_2, GAUSS_3};
 use covact_geometry::Vec3;
 
 /// Smallest, mean and largest value.
@@ -78,46 +80,94 @@ impl Mesh {
         self.kind.corners().map(|a| self.nodes[nodes[a] as usize])
     }
 
-    /// Mean position of the corners of element `e`.
+    /// Position of the centre of element `e`, r = s = t = 0.
     pub fn element_center(&self, e: usize) -> Vec3 {
-        self.element_positions(e).iter().sum::<Vec3>() / 8.0
+        match self.kind {
+            ElementKind::H8 => self.element_positions(e).iter().sum::<Vec3>() / 8.0,
+            ElementKind::Q18 => {
+                let nodes = self.element(e);
+                (self.nodes[nodes[4] as usize] + self.nodes[nodes[13] as usize]) * 0.5
+            }
+        }
     }
 
-    /// Corners of a face, u fastest, so that u x v points outward.
-    pub fn face_nodes(&self, face: Face) -> [u32; 4] {
-        let nodes = self.element(face.element as usize);
-        let corners = self.kind.corners();
-        H8_FACES[face.face as usize].map(|a| nodes[corners[a as usize]])
+    /// Hands over the Jacobian determinant and the scaled Jacobian (the determinant of the unit tangents; 0 where a
+    /// tangent has no length) at every node of element `e`.
+    pub(super) fn node_shapes(&self, e: usize, mut found: impl FnMut(f64, f64)) {
+        match self.kind {
+            ElementKind::H8 => {
+                let x = self.element_positions(e);
+                for a in 0..8 {
+                    let edge = |bit: usize| (x[a | 1 << bit] - x[a & !(1 << bit)]) * 0.5;
+                    let (jacobian, scaled) = shape([edge(0), edge(1), edge(2)]);
+                    found(jacobian, scaled);
+                }
+            }
+            ElementKind::Q18 => {
+                let [bottom, top] = self.bottom_and_top(e);
+                for k in 0..9 {
+                    let (r, s) = ((k % 3) as f64 - 1.0, (k / 3) as f64 - 1.0);
+                    let t = (top.nodes[k] - bottom.nodes[k]) * 0.5;
+                    for side in [&bottom, &top] {
+                        let [along_r, along_s] = side.tangents(r, s);
+                        let (jacobian, scaled) = shape([along_r, along_s, t]);
+                        found(jacobian, scaled);
+                    }
+                }
+            }
+        }
     }
 
-    /// Area of a face (of its bilinear surface, by 2 x 2 Gauss points: exact for flat faces) and the outward unit
-    /// normal at its centre (zero for a face without area).
+    /// Bottom and top of element `e` as surfaces of r and s.
+    fn bottom_and_top(&self, e: usize) -> [Quad; 2] {
+        let nodes = self.element(e);
+        let (bottom, top) = nodes.split_at(nodes.len() / 2);
+        [bottom, top].map(|side| {
+            let mut quad = Quad {
+                nodes: [Vec3::zeros(); 9],
+                count: if side.len() == 4 { [2, 2] } else { [3, 3] },
+            };
+            for (x, &n) in quad.nodes.iter_mut().zip(side) {
+                *x = self.nodes[n as usize];
+            }
+            quad
+        })
+    }
+
+    /// Area of a face (by 2 x 2 Gauss points: exact for flat bilinear faces; 3 x 3 for quadratic ones) and the outward
+    /// unit normal at its centre (zero for a face without area).
     pub fn face_area_normal(&self, face: Face) -> (f64, Vec3) {
-        let x = self.face_nodes(face).map(|n| self.nodes[n as usize]);
-        let tangents = |u: f64, v: f64| {
-            let du = ((x[1] - x[0]) * (1.0 - v) + (x[3] - x[2]) * (1.0 + v)) * 0.25;
-            let dv = ((x[2] - x[0]) * (1.0 - u) + (x[3] - x[1]) * (1.0 + u)) * 0.25;
-            du.cross(&dv)
+        let quad = Quad::new(&self.face_nodes(face), |n| self.nodes[n as usize]);
+        let rule = if quad.count == [2, 2] {
+            GAUSS_2
+        } else {
+            GAUSS_3
         };
-        let g = 1.0 / 3f64.sqrt();
-        let area = [(-g, -g), (g, -g), (-g, g), (g, g)]
-            .iter()
-            .map(|&(u, v)| tangents(u, v).norm())
-            .sum();
-        let normal = tangents(0.0, 0.0).try_normalize(0.0);
+        let area = quad.weights_with(&rule).iter().sum();
+        let normal = quad.area_vector(0.0, 0.0).try_normalize(0.0);
         (area, normal.unwrap_or_else(Vec3::zeros))
     }
 
-    /// Volume of element `e` (2 x 2 x 2 Gauss points: exact, the Jacobian is quadratic in each direction).
+    /// Volume of element `e`: exact, by as many Gauss points a direction as there are nodes (the Jacobian has the degrees
+    /// 2 of H8, 5 and 2 of Q18).
     pub fn element_volume(&self, e: usize) -> f64 {
-        let x = self.element_positions(e);
-        let g = 1.0 / 3f64.sqrt();
-        (0..8)
-            .map(|q| {
-                let at = |bit: usize| if q >> bit & 1 == 1 { g } else { -g };
-                jacobian(&x, [at(0), at(1), at(2)])
-            })
-            .sum()
+        let [bottom, top] = self.bottom_and_top(e);
+        let rule = match self.kind {
+            ElementKind::H8 => GAUSS_2,
+            ElementKind::Q18 => GAUSS_3,
+        };
+        let mut volume = 0.0;
+        for (s, ws) in rule.iter() {
+            for (r, wr) in rule.iter() {
+                let [low, high] = [&bottom, &top].map(|q| (q.point(r, s), q.tangents(r, s)));
+                let along_t = (high.0 - low.0) * 0.5;
+                for (t, wt) in GAUSS_2.iter() {
+                    let along = |i: usize| low.1[i] * (0.5 - 0.5 * t) + high.1[i] * (0.5 + 0.5 * t);
+                    volume += wr * ws * wt * along(0).cross(&along(1)).dot(&along_t);
+                }
+            }
+        }
+        volume
     }
 
     /// Volume of the whole mesh.
@@ -153,9 +203,8 @@ impl Mesh {
                     thickness.add(length)
                 }
             }
-            let smallest = (0..8)
-                .map(|a| corner(&x, a).1)
-                .fold(f64::INFINITY, f64::min);
+            let mut smallest = f64::INFINITY;
+            self.node_shapes(e, |_, scaled| smallest = smallest.min(scaled));
             shape.add(smallest);
         }
         Some(ElementSize {
@@ -166,35 +215,14 @@ impl Mesh {
     }
 }
 
-/// Determinant of the derivatives of the trilinear map at `xi` in [-1, 1]^3.
-pub(super) fn jacobian(x: &[Vec3; 8], xi: [f64; 3]) -> f64 {
-    let mut g = [Vec3::zeros(); 3];
-    for (a, xa) in x.iter().enumerate() {
-        let sign = [0, 1, 2].map(|d| if a >> d & 1 == 1 { 1.0 } else { -1.0 });
-        let f = [0, 1, 2].map(|d: usize| 0.5 * (1.0 + sign[d] * xi[d]));
-        g[0] += xa * (0.5 * sign[0] * f[1] * f[2]);
-        g[1] += xa * (0.5 * sign[1] * f[0] * f[2]);
-        g[2] += xa * (0.5 * sign[2] * f[0] * f[1]);
-    }
-    g[0].cross(&g[1]).dot(&g[2])
-}
-
-/// Jacobian determinant and scaled Jacobian at node `a`: both from the three edges that meet there. The scaled one is 0
-/// where an edge has no length.
-pub(super) fn corner(x: &[Vec3; 8], a: usize) -> (f64, f64) {
-    let edge = |bit: usize| {
-        let b = a | 1 << bit;
-        (x[b] - x[b & !(1 << bit)]) * 0.5
-    };
-    let g = [edge(0), edge(1), edge(2)];
+/// Determinant of three tangents and of their unit vectors, 0 where a tangent has no length.
+fn shape(g: [Vec3; 3]) -> (f64, f64) {
     let determinant = g[0].cross(&g[1]).dot(&g[2]);
     let lengths = g[0].norm() * g[1].norm() * g[2].norm();
-    (
-        determinant,
-        if lengths > 0.0 {
-            determinant / lengths
-        } else {
-            0.0
-        },
-    )
+    let scaled = if lengths > 0.0 {
+        determinant / lengths
+    } else {
+        0.0
+    };
+    (determinant, scaled)
 }

@@ -5,6 +5,7 @@
 mod build;
 mod check;
 mod error;
+mod face;
 mod facets;
 mod generate;
 mod gmsh;
@@ -18,6 +19,7 @@ mod topology;
 
 pub use build::build;
 pub use error::{MAX_NODES, MeshError, Position, SetKind};
+pub use face::FaceNodes;
 pub use facets::MeshFacets;
 pub use generate::{block, cylinder_panel, plate, sphere_panel};
 pub use gmsh::read_gmsh;
@@ -28,6 +30,7 @@ pub use sets::Selected;
 pub use spacing::positions;
 pub use topology::ThicknessColumns;
 
+use crate::scene::Element;
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
 
@@ -39,6 +42,15 @@ pub enum ElementKind {
     /// 18-node solid-shell, biquadratic in the plane and linear through the thickness. Nodes are numbered
     /// `i + 3 j + 9 k`, i along r, j along s, k along t.
     Q18,
+}
+
+impl From<Element> for ElementKind {
+    fn from(element: Element) -> ElementKind {
+        match element {
+            Element::H8 | Element::H8Displacement => ElementKind::H8,
+            Element::Q18 => ElementKind::Q18,
+        }
+    }
 }
 
 impl ElementKind {

@@ -30,8 +30,13 @@ struct Choice<'m> {
     conflicts: usize,
 }
 
-/// Rotates the elements so that t is the thickness, and their face sets with them. Returns the weakest rule used.
-pub(super) fn orient(mesh: &mut Mesh, given: &[bool], notes: &mut Vec<String>) -> ThicknessRule {
+/// Rotates the elements so that t is the thickness, and their face sets with them. Returns the weakest rule used, and for
+/// every element the local face that became its top.
+pub(super) fn orient(
+    mesh: &mut Mesh,
+    given: &[bool],
+    notes: &mut Vec<String>,
+) -> (ThicknessRule, Vec<u8>) {
     let mut choice = Choice::new(mesh);
     for (e, given) in given.iter().enumerate() {
         if *given {
@@ -80,7 +85,7 @@ pub(super) fn orient(mesh: &mut Mesh, given: &[bool], notes: &mut Vec<String>) -
     }
     let top: Vec<u8> = choice.top.iter().map(|t| t.unwrap_or(5)).collect();
     rotate(mesh, &top);
-    rule
+    (rule, top)
 }
 
 impl Choice<'_> {
@@ -213,14 +218,14 @@ impl Choice<'_> {
         }
         // A side face: the neighbour's top is its other face at the edge that both faces have in common.
         let mesh = self.mesh;
-        let ours = mesh.face_nodes(Face {
+        let ours = mesh.face_corners(Face {
             element: e,
             face: top,
         });
-        let shared = mesh.face_nodes(next);
+        let shared = mesh.face_corners(next);
         let edge: [bool; 4] = shared.map(|n| ours.contains(&n));
         let other = (0..6u8).filter(|f| f >> 1 != next.face >> 1).find(|&f| {
-            let nodes = mesh.face_nodes(Face {
+            let nodes = mesh.face_corners(Face {
                 element: next.element,
                 face: f,
             });
@@ -254,31 +259,49 @@ fn shortest_direction(mesh: &Mesh, e: usize) -> (f64, u8) {
     (length[0].0 / length[1].0, length[0].1)
 }
 
-/// Renumbers each element locally so that the face `top[e]` becomes t = +1; stays right-handed.
+/// The rotation that makes a local face the top: old local directions along the new r, s and t, and whether t turns over.
+/// It stays right-handed.
+fn rotation(top: u8) -> ([usize; 3], bool) {
+    let axis = usize::from(top >> 1);
+    let (next, after) = ((axis + 1) % 3, (axis + 2) % 3);
+    // (next, after, axis) is a rotation of (0, 1, 2); turning t over swaps the other two.
+    if top & 1 == 1 {
+        ([next, after, axis], false)
+    } else {
+        ([after, next, axis], true)
+    }
+}
+
+/// Nodes of an element of `n` nodes along each direction, renumbered so that its local face `top` becomes t = +1.
+pub(super) fn rotated<'e>(nodes: &'e [u32], n: usize, top: u8) -> impl Iterator<Item = u32> + 'e {
+    let (from, flip) = rotation(top);
+    (0..n * n * n).map(move |a| {
+        let t = a / (n * n);
+        let new = [a % n, a / n % n, if flip { n - 1 - t } else { t }];
+        let mut old = 0;
+        for (direction, place) in from.into_iter().zip(new) {
+            old += place * n.pow(direction as u32);
+        }
+        nodes[old]
+    })
+}
+
+/// Renumbers each element locally so that the face `top[e]` becomes t = +1.
 fn rotate(mesh: &mut Mesh, top: &[u8]) {
     let mut face_map = vec![[0u8, 1, 2, 3, 4, 5]; top.len()];
     for (e, &top) in top.iter().enumerate() {
-        if top == 5 {
-            continue;
-        }
-        let axis = top >> 1;
-        let (next, after) = ((axis + 1) % 3, (axis + 2) % 3);
-        // (next, after, axis) is a rotation of (0, 1, 2); turning t over swaps the other two.
-        let (r, s, flip) = if top & 1 == 1 {
-            (next, after, 0)
-        } else {
-            (after, next, 1)
-        };
         let nodes: Vec<u32> = mesh.element(e).to_vec();
-        for a in 0..8usize {
-            let bit = |i: usize| a >> i & 1;
-            let old = bit(0) << r | bit(1) << s | (bit(2) ^ flip) << axis;
-            mesh.connectivity[8 * e + a] = nodes[old];
+        for (slot, node) in mesh.connectivity[8 * e..8 * e + 8]
+            .iter_mut()
+            .zip(rotated(&nodes, 2, top))
+        {
+            *slot = node;
         }
+        let ([r, s, t], flip) = rotation(top);
         for side in 0..2u8 {
-            face_map[e][usize::from(2 * r + side)] = side;
-            face_map[e][usize::from(2 * s + side)] = 2 + side;
-            face_map[e][usize::from(2 * axis + side)] = 4 + (side ^ flip as u8);
+            face_map[e][2 * r + usize::from(side)] = side;
+            face_map[e][2 * s + usize::from(side)] = 2 + side;
+            face_map[e][2 * t + usize::from(side)] = 4 + (side ^ u8::from(flip));
         }
     }
     for face in mesh.face_sets.values_mut().flatten() {

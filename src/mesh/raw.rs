@@ -1,5 +1,5 @@
 //! What mesh files have in common: hexahedra, faces and sets by name, turned into a checked [`Mesh`].
-use super::orient::orient;
+use super::orient::{orient, rotated};
 use super::topology::FaceTable;
 use super::{ElementKind, ElementSize, Face, Mesh, MeshError};
 use covact_geometry::Vec3;
@@ -40,8 +40,10 @@ pub struct MeshReport {
 pub(super) struct RawMesh {
     pub nodes: Vec<Vec3>,
     pub node_tags: Vec<u64>,
-    /// Hexahedra in tensor order, as indices into `nodes`.
+    /// Corners of the hexahedra in tensor order, as indices into `nodes`.
     pub hexahedra: Vec<[u32; 8]>,
+    /// All nodes of quadratic hexahedra, `i + 3 j + 9 k`, beside their corners; empty where the hexahedra are linear.
+    pub quadratic: Vec<[u32; 27]>,
     pub element_tags: Vec<u64>,
     /// Thickness is local direction 3 by the meaning of the element type; `false`: to be found.
     pub thickness_is_given: Vec<bool>,
@@ -76,8 +78,24 @@ impl RawMesh {
         match_surfaces(&mut mesh, &self.surfaces, &mut notes);
         // A reversed element would mislead the search for its thickness, so it is refused first.
         let tagged = |error| with_tag(error, &self.element_tags);
-        mesh.check().map_err(tagged)?;
-        let thickness = orient(&mut mesh, &self.thickness_is_given, &mut notes);
+        let linear = self.quadratic.is_empty();
+        let checked = if linear {
+            mesh.check()
+        } else {
+            mesh.check_elements()
+        };
+        checked.map_err(tagged)?;
+        let (thickness, top) = orient(&mut mesh, &self.thickness_is_given, &mut notes);
+        if !linear {
+            make_quadratic(
+                &mut mesh,
+                &self.quadratic,
+                &top,
+                &mut self.node_tags,
+                &mut notes,
+            );
+            mesh.check().map_err(tagged)?;
+        }
         for faces in mesh.face_sets.values_mut() {
             faces.sort_unstable();
             faces.dedup();
@@ -98,8 +116,36 @@ impl RawMesh {
 
     /// Files hold nodes of geometry that no hexahedron uses (centres of arcs, edges of other parts): they go.
     fn drop_unused_nodes(&mut self) {
-        let mut number = vec![u32::MAX; self.nodes.len()];
-        for &n in self.hexahedra.iter().flatten() {
+        let used = (self.hexahedra.iter().flatten()).chain(self.quadratic.iter().flatten());
+        let kept = Kept::new(self.nodes.len(), used);
+        if kept.dropped == 0 {
+            return;
+        }
+        self.notes.push(format!(
+            "{} node(s) of the file belong to no hexahedron and were left out",
+            kept.dropped
+        ));
+        kept.retain(&mut self.nodes);
+        kept.retain(&mut self.node_tags);
+        kept.renumber(self.hexahedra.iter_mut().flatten());
+        kept.renumber(self.quadratic.iter_mut().flatten());
+        kept.retain_sets(&mut self.node_sets, "hexahedron", &mut self.notes);
+        // Quadrilaterals off the hexahedra keep a number that no face has.
+        kept.renumber(self.surfaces.values_mut().flatten().flatten());
+    }
+}
+
+/// Which nodes stay, and their new numbers.
+struct Kept {
+    /// `u32::MAX` for nodes that go.
+    number: Vec<u32>,
+    dropped: usize,
+}
+
+impl Kept {
+    fn new<'n>(nodes: usize, used: impl Iterator<Item = &'n u32>) -> Kept {
+        let mut number = vec![u32::MAX; nodes];
+        for &n in used {
             number[n as usize] = 0;
         }
         let mut kept = 0;
@@ -107,37 +153,78 @@ impl RawMesh {
             *slot = kept;
             kept += 1;
         }
-        let dropped = self.nodes.len() - kept as usize;
-        if dropped == 0 {
-            return;
+        Kept {
+            number,
+            dropped: nodes - kept as usize,
         }
-        self.notes.push(format!(
-            "{dropped} node(s) of the file belong to no hexahedron and were left out"
-        ));
-        let keep = |i: usize| number[i] != u32::MAX;
-        let mut i = 0;
-        self.nodes.retain(|_| (keep(i), i += 1).0);
-        i = 0;
-        self.node_tags.retain(|_| (keep(i), i += 1).0);
-        for n in self.hexahedra.iter_mut().flatten() {
-            *n = number[*n as usize];
-        }
-        let notes = &mut self.notes;
-        self.node_sets.retain(|name, set| {
-            set.retain(|&n| keep(n as usize));
-            set.iter_mut().for_each(|n| *n = number[*n as usize]);
+    }
+
+    /// Drops what belongs to nodes that go.
+    fn retain<T>(&self, list: &mut Vec<T>) {
+        let mut number = self.number.iter();
+        list.retain(|_| number.next().is_some_and(|n| *n != u32::MAX));
+    }
+
+    fn renumber<'n>(&self, nodes: impl Iterator<Item = &'n mut u32>) {
+        nodes.for_each(|n| *n = self.number[*n as usize]);
+    }
+
+    /// Sets without the nodes that go; those left empty go too, and a note tells of what they hold no node.
+    fn retain_sets(
+        &self,
+        sets: &mut BTreeMap<String, Vec<u32>>,
+        of: &str,
+        notes: &mut Vec<String>,
+    ) {
+        sets.retain(|name, set| {
+            set.retain(|&n| self.number[n as usize] != u32::MAX);
+            self.renumber(set.iter_mut());
             if set.is_empty() {
-                notes.push(format!(
-                    "`{name}` holds no node of a hexahedron and was left out"
-                ));
+                notes.push(format!("`{name}` holds no node of a {of} and was left out"));
             }
             !set.is_empty()
         });
-        // Quadrilaterals off the hexahedra keep a number that no face has.
-        for n in self.surfaces.values_mut().flatten().flatten() {
-            *n = number[*n as usize];
-        }
     }
+}
+
+/// Turns a mesh of corners, its elements rotated, into one of 18-node elements. The nodes midway through the thickness
+/// go: the element is linear there.
+fn make_quadratic(
+    mesh: &mut Mesh,
+    full: &[[u32; 27]],
+    top: &[u8],
+    tags: &mut Vec<u64>,
+    notes: &mut Vec<String>,
+) {
+    let mut connectivity = Vec::with_capacity(18 * full.len());
+    let mut off = 0.0f64;
+    for (full, &top) in full.iter().zip(top) {
+        let mut nodes = [0; 27];
+        for (slot, node) in nodes.iter_mut().zip(rotated(full, 3, top)) {
+            *slot = node;
+        }
+        for a in 0..9 {
+            let [low, middle, high] = [a, a + 9, a + 18].map(|a| mesh.nodes[nodes[a] as usize]);
+            let thickness = (high - low).norm();
+            off = off.max((middle - (low + high) * 0.5).norm() / thickness);
+        }
+        connectivity.extend_from_slice(&nodes[..9]);
+        connectivity.extend_from_slice(&nodes[18..]);
+    }
+    mesh.kind = ElementKind::Q18;
+    mesh.connectivity = connectivity;
+    let kept = Kept::new(mesh.nodes.len(), mesh.connectivity.iter());
+    notes.push(format!(
+        "elements of 27 nodes became 18-node solid-shells: {} node(s) midway through the thickness were left out (they \
+         lie up to {:.2} % of the thickness off the straight lines between bottom and top)",
+        kept.dropped,
+        100.0 * off
+    ));
+    kept.retain(&mut mesh.nodes);
+    kept.retain(tags);
+    kept.renumber(mesh.connectivity.iter_mut());
+    let of = "bottom or top of an element";
+    kept.retain_sets(&mut mesh.node_sets, of, notes);
 }
 
 /// Turns quadrilaterals into faces of the elements.
@@ -161,7 +248,7 @@ fn match_surfaces(
                     inner += 1;
                     let same = rows
                         .iter()
-                        .find(|row| goes_around(mesh.face_nodes(row.1), quad));
+                        .find(|row| goes_around(mesh.face_corners(row.1), quad));
                     faces.push(same.unwrap_or(&rows[0]).1);
                 }
             }

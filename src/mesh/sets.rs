@@ -100,10 +100,9 @@ impl Mesh {
                     "length units",
                     || boxed("faces_in_box", min, max),
                     |f| {
-                        let nodes = self.face_nodes(f).map(|n| self.nodes[n as usize]);
-                        nodes
-                            .iter()
-                            .map(|x| outside_box(x, min, max))
+                        let nodes = self.face_nodes(f);
+                        (nodes.nodes().iter())
+                            .map(|&n| outside_box(&self.nodes[n as usize], min, max))
                             .fold(0.0, f64::max)
                     },
                 )

@@ -3,7 +3,7 @@ use super::{Face, H8_FACES, Mesh};
 
 /// All faces of a mesh sorted by their nodes, so that the faces that two elements share are neighbours in the table.
 pub(super) struct FaceTable {
-    /// Sorted node numbers of a face, and the face.
+    /// Sorted corners of a face, and the face.
     rows: Vec<([u32; 4], Face)>,
 }
 
@@ -16,19 +16,19 @@ impl FaceTable {
                     element: e as u32,
                     face: face as u8,
                 };
-                rows.push((sorted(mesh.face_nodes(face)), face));
+                rows.push((sorted(mesh.face_corners(face)), face));
             }
         }
         rows.sort_unstable();
         FaceTable { rows }
     }
 
-    /// Groups of faces with the same nodes.
+    /// Groups of faces with the same corners.
     pub(super) fn groups(&self) -> impl Iterator<Item = &[([u32; 4], Face)]> {
         self.rows.chunk_by(|a, b| a.0 == b.0)
     }
 
-    /// Faces with these nodes, in any order.
+    /// Faces with these corners, in any order.
     pub(super) fn find(&self, nodes: [u32; 4]) -> &[([u32; 4], Face)] {
         let key = sorted(nodes);
         let from = self.rows.partition_point(|row| row.0 < key);
@@ -57,7 +57,10 @@ impl Mesh {
 
     /// Nodes of some faces, sorted and without duplicates.
     pub fn nodes_of(&self, faces: &[Face]) -> Vec<u32> {
-        let mut nodes: Vec<u32> = faces.iter().flat_map(|&f| self.face_nodes(f)).collect();
+        let mut nodes = Vec::new();
+        for &face in faces {
+            nodes.extend_from_slice(self.face_nodes(face).nodes());
+        }
         nodes.sort_unstable();
         nodes.dedup();
         nodes
@@ -115,7 +118,7 @@ pub struct ThicknessColumns {
 }
 
 impl ThicknessColumns {
-    /// Links the nodes along the t edges of all elements.
+    /// Links the nodes of all elements that lie above each other (along t).
     pub fn new(mesh: &Mesh) -> ThicknessColumns {
         let mut up = vec![NONE; mesh.nodes.len()];
         let mut down = vec![NONE; mesh.nodes.len()];
@@ -128,9 +131,10 @@ impl ThicknessColumns {
         };
         for e in 0..mesh.elements() {
             let nodes = mesh.element(e);
-            for a in 0..4 {
-                link(&mut up[nodes[a] as usize], nodes[a + 4]);
-                link(&mut down[nodes[a + 4] as usize], nodes[a]);
+            let (below, above) = nodes.split_at(nodes.len() / 2);
+            for (&below, &above) in below.iter().zip(above) {
+                link(&mut up[below as usize], above);
+                link(&mut down[above as usize], below);
             }
         }
         ThicknessColumns { up, down }

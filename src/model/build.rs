@@ -15,7 +15,7 @@ use crate::scene::{
     self, InitialOverclosure, LoadedScene, MeshSource, POSITION_AND_TIME, Penalty, Scene, TIME,
     TimeFunction, Value,
 };
-use crate::shell::{H8Block, Law};
+use crate::shell::{Block, Law};
 use covact_geometry::Vec3;
 use nalgebra::Point3;
 use std::collections::BTreeMap;
@@ -163,8 +163,8 @@ impl<'s> Builder<'s> {
     fn bodies(&mut self) -> Result<(), ModelError> {
         for (name, body) in &self.scene.bodies {
             let at = || format!("/bodies/{name}/mesh");
-            let (mut mesh, report) =
-                mesh::build(&body.mesh, self.dir).map_err(|e| mesh_error(name, &body.mesh, e))?;
+            let (mut mesh, report) = mesh::build(&body.mesh, body.element.into(), self.dir)
+                .map_err(|e| mesh_error(name, &body.mesh, e))?;
             place(&mut mesh, &body.placement);
             for (set, selection) in &body.sets {
                 mesh.add_set(set, selection)
@@ -175,7 +175,7 @@ impl<'s> Builder<'s> {
             (self.notes).extend(report.notes.iter().map(|n| format!("body `{name}`: {n}")));
             let material = self.material(name, &body.material)?;
             let law = Law::new(&material).at(|| format!("/bodies/{name}/material"))?;
-            let block = H8Block::new(&mesh, body.element.into(), law).at(at)?;
+            let block = Block::new(&mesh, body.element, law).at(at)?;
             let first_node = u32::try_from(self.nodes.len())
                 .map_err(|_| text(at(), "too many nodes: more than 2^32"))?;
             self.nodes.extend_from_slice(&mesh.nodes);
@@ -355,7 +355,7 @@ impl<'s> Builder<'s> {
                 if load.follower {
                     let value = pressure.compile(&TIME).at(|| pointer("pressure"))?;
                     let faces = (faces.iter())
-                        .map(|&f| mesh.face_nodes(f).map(|n| n + first))
+                        .map(|&f| mesh.face_nodes(f).shifted(first))
                         .collect();
                     follower.push((name.clone(), FollowerPressure { faces, value }));
                 } else {

@@ -14,6 +14,7 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
         add(match body.element {
             Element::H8 => "element.h8_solid_shell",
             Element::H8Displacement => "element.h8_displacement",
+            Element::Q18 => "element.q18_solid_shell",
         });
         match scene.materials.get(&body.material) {
             Some(Material::StVenantKirchhoff(_)) => add("material.st_venant_kirchhoff"),

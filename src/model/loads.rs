@@ -1,9 +1,10 @@
 //! Loads: nodal forces, dead tractions, dead and follower pressure.
 use crate::mesh::{Face, Mesh};
 use crate::scene::{TimeFunction, ValueError};
-use crate::shell::face::{self, Quad};
+use crate::shell::face::{FaceNodes, Quad, shape, shape_derivatives};
+use crate::shell::quadrature::{GAUSS_2, GAUSS_3, Rule};
 use covact_geometry::Vec3;
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use num_dual::DualNum;
 
 /// A load of constant direction, as weights of one vector value.
@@ -29,8 +30,8 @@ pub enum DeadLoad {
 /// A quadrature point of a loaded face on the undeformed mesh.
 #[derive(Debug, Clone, Copy)]
 pub struct LoadPoint {
-    nodes: [u32; 4],
-    shape: [f64; 4],
+    face: FaceNodes,
+    shape: [f64; 9],
     /// Weight times area (length^2).
     area: f64,
     normal: Vec3,
@@ -40,25 +41,25 @@ pub struct LoadPoint {
 /// Pressure that follows the deformed faces.
 #[derive(Debug, Clone)]
 pub struct FollowerPressure {
-    pub faces: Vec<[u32; 4]>,
+    pub faces: Vec<FaceNodes>,
     pub value: TimeFunction,
 }
 
-/// Two Gauss points a direction integrate a bilinear face's forces exactly for constant values.
+/// As many Gauss points a direction as a face has nodes; they integrate its forces exactly for constant pressure.
 pub fn load_points(mesh: &Mesh, faces: &[Face], offset: u32) -> Vec<LoadPoint> {
     let mut out = Vec::with_capacity(4 * faces.len());
     for &f in faces {
-        let nodes = mesh.face_nodes(f).map(|n| n + offset);
-        let quad = Quad {
-            corners: mesh.face_nodes(f).map(|n| mesh.nodes[n as usize]),
-        };
-        for v in GAUSS_2 {
-            for u in GAUSS_2 {
+        let local = mesh.face_nodes(f);
+        let quad = Quad::new(&local, |n| mesh.nodes[n as usize]);
+        let face = local.shifted(offset);
+        let [along_u, along_v] = face.count.map(rule);
+        for (v, wv) in along_v.iter() {
+            for (u, wu) in along_u.iter() {
                 let area = quad.area_vector(u, v);
                 out.push(LoadPoint {
-                    nodes,
-                    shape: face::shape(u, v),
-                    area: area.norm(),
+                    face,
+                    shape: shape(face.count, u, v),
+                    area: wu * wv * area.norm(),
                     normal: area.normalize(),
                     position: quad.point(u, v),
                 });
@@ -66,6 +67,18 @@ pub fn load_points(mesh: &Mesh, faces: &[Face], offset: u32) -> Vec<LoadPoint> {
         }
     }
     out
+}
+
+/// The Gauss rule for a direction with `count` nodes. With n nodes the forces of a constant pressure are polynomials of
+/// degree 2 (n - 1) + n - 2 at most, which n points integrate exactly.
+fn rule(count: u8) -> &'static Rule {
+    if count == 2 { &GAUSS_2 } else { &GAUSS_3 }
+}
+
+impl LoadPoint {
+    fn terms(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        self.face.nodes().iter().copied().zip(self.shape)
+    }
 }
 
 impl DeadLoad {
@@ -84,13 +97,13 @@ impl DeadLoad {
                 for p in points {
                     let at = |i: usize| value[i].eval_at(&p.position, t);
                     let f = Vec3::new(at(0)?, at(1)?, at(2)?) * p.area;
-                    (0..4).for_each(|k| put(p.nodes[k], f * p.shape[k]));
+                    p.terms().for_each(|(n, w)| put(n, f * w));
                 }
             }
             DeadLoad::Pressure { points, value } => {
                 for p in points {
                     let f = p.normal * (-value.eval_at(&p.position, t)? * p.area);
-                    (0..4).for_each(|k| put(p.nodes[k], f * p.shape[k]));
+                    p.terms().for_each(|(n, w)| put(n, f * w));
                 }
             }
         }
@@ -106,48 +119,92 @@ impl DeadLoad {
     }
 }
 
-/// Nodal forces of a follower pressure `p` on a bilinear face with deformed corners `x`: `-p int N (x_,u x x_,v)`.
-pub fn follower_force<D: DualNum<f64> + Copy>(x: &[Vector3<D>; 4], p: f64) -> SVector<D, 12> {
-    let mut f = SVector::<D, 12>::from_element(D::zero());
-    for_gauss(|n, nu, nv| {
-        let (xu, xv) = (combine(x, nu), combine(x, nv));
-        let area = xu.cross(&xv) * D::from(-p);
-        for k in 0..4 {
+/// Nodal forces of a follower pressure `p` on a face of `count` nodes along u and v, deformed positions `x`:
+/// `-p int N (x_,u x x_,v)`. `f` receives `3 node + axis`.
+pub fn follower_force<D: DualNum<f64> + Copy>(
+    x: &[Vector3<D>; 9],
+    count: [u8; 2],
+    p: f64,
+    f: &mut [D; 27],
+) {
+    f.fill(D::zero());
+    match count {
+        [2, 2] => force::<D, 2, 2>(x, p, f),
+        [3, 2] => force::<D, 3, 2>(x, p, f),
+        [2, 3] => force::<D, 2, 3>(x, p, f),
+        _ => force::<D, 3, 3>(x, p, f),
+    }
+}
+
+/// Derivative of [`follower_force`] with respect to the positions, by columns: `k` receives the `3 n x 3 n` numbers of
+/// the face's n nodes, the rest is left as it is. It is unsymmetric by terms on the border of the loaded area, which
+/// vanish where that border is held.
+pub fn follower_stiffness(x: &[Vec3; 9], count: [u8; 2], p: f64, k: &mut [f64; 729]) {
+    match count {
+        [2, 2] => stiffness::<2, 2>(x, p, k),
+        [3, 2] => stiffness::<3, 2>(x, p, k),
+        [2, 3] => stiffness::<2, 3>(x, p, k),
+        _ => stiffness::<3, 3>(x, p, k),
+    }
+}
+
+#[inline(always)]
+fn force<D: DualNum<f64> + Copy, const NU: usize, const NV: usize>(
+    x: &[Vector3<D>; 9],
+    p: f64,
+    f: &mut [D; 27],
+) {
+    for_gauss::<NU, NV>(|w, n, nu, nv| {
+        let (xu, xv) = (combine::<D>(x, nu), combine::<D>(x, nv));
+        let area = xu.cross(&xv) * D::from(-p * w);
+        for k in 0..NU * NV {
             (0..3).for_each(|c| f[3 * k + c] += area[c] * n[k]);
         }
     });
-    f
 }
 
-/// Derivative of [`follower_force`] with respect to the corners. It is unsymmetric by terms on the border of the
-/// loaded area, which vanish where that border is held.
-pub fn follower_stiffness(x: &[Vec3; 4], p: f64) -> SMatrix<f64, 12, 12> {
-    let mut k = SMatrix::<f64, 12, 12>::zeros();
-    for_gauss(|n, nu, nv| {
-        let (xu, xv) = (combine(x, nu), combine(x, nv));
-        for l in 0..4 {
-            let turn: Matrix3<f64> = (xu.cross_matrix() * nv[l] - xv.cross_matrix() * nu[l]) * -p;
-            for (i, n) in n.iter().enumerate() {
-                let mut block = k.fixed_view_mut::<3, 3>(3 * i, 3 * l);
-                block += turn * *n;
+#[inline(always)]
+fn stiffness<const NU: usize, const NV: usize>(x: &[Vec3; 9], p: f64, k: &mut [f64; 729]) {
+    let size = 3 * NU * NV;
+    k[..size * size].fill(0.0);
+    for_gauss::<NU, NV>(|w, n, nu, nv| {
+        let (xu, xv) = (combine::<f64>(x, nu), combine::<f64>(x, nv));
+        let (xu, xv) = (xu.cross_matrix() * (-p * w), xv.cross_matrix() * (-p * w));
+        for l in 0..NU * NV {
+            let turn: Matrix3<f64> = xu * nv[l] - xv * nu[l];
+            for c in 0..3 {
+                let column = &mut k[(3 * l + c) * size..][..size];
+                for (i, rows) in column.chunks_exact_mut(3).enumerate() {
+                    (0..3).for_each(|r| rows[r] += turn[(r, c)] * n[i]);
+                }
             }
         }
     });
-    k
 }
 
-fn combine<D: DualNum<f64> + Copy>(x: &[Vector3<D>; 4], n: &[f64; 4]) -> Vector3<D> {
-    x[0] * D::from(n[0]) + x[1] * D::from(n[1]) + x[2] * D::from(n[2]) + x[3] * D::from(n[3])
+#[inline(always)]
+fn combine<D: DualNum<f64> + Copy>(x: &[Vector3<D>; 9], n: &[f64]) -> Vector3<D> {
+    let mut sum = x[0] * D::from(n[0]);
+    for (x, n) in x.iter().zip(n).skip(1) {
+        sum += x * D::from(*n);
+    }
+    sum
 }
 
-/// Points of the two-point Gauss rule; its weights are one.
-const GAUSS_2: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
-
-fn for_gauss(mut f: impl FnMut(&[f64; 4], &[f64; 4], &[f64; 4])) {
-    for v in GAUSS_2 {
-        for u in GAUSS_2 {
-            let [nu, nv] = face::shape_derivatives(u, v);
-            f(&face::shape(u, v), &nu, &nv);
+/// Weight, shape functions and derivatives at the Gauss points of a face.
+#[inline(always)]
+fn for_gauss<const NU: usize, const NV: usize>(mut f: impl FnMut(f64, &[f64], &[f64], &[f64])) {
+    let count = [NU as u8, NV as u8];
+    let nodes = NU * NV;
+    for (v, wv) in rule(NV as u8).iter() {
+        for (u, wu) in rule(NU as u8).iter() {
+            let [nu, nv] = shape_derivatives(count, u, v);
+            f(
+                wu * wv,
+                &shape(count, u, v)[..nodes],
+                &nu[..nodes],
+                &nv[..nodes],
+            );
         }
     }
 }
@@ -157,36 +214,84 @@ mod tests {
     use super::*;
     use num_dual::Dual64;
 
-    const X: [[f64; 3]; 4] = [
-        [0.0, 0.1, 0.0],
-        [1.1, 0.0, 0.2],
-        [-0.1, 0.9, 0.1],
-        [1.0, 1.2, -0.3],
-    ];
+    /// A warped quadratic face; faces with fewer nodes take its first ones, in an order that stays a face.
+    fn warped(count: [u8; 2]) -> [Vec3; 9] {
+        let [nu, nv] = count.map(usize::from);
+        std::array::from_fn(|k| {
+            let (u, v) = ((k % nu) as f64, (k / nu) as f64);
+            let bump = 0.1 * (2.3 * k as f64).sin();
+            let inside = if k < nu * nv { 1.0 } else { 0.0 };
+            Vec3::new(u + bump, 0.9 * v - 0.7 * bump, 0.3 * u * v - bump) * inside
+        })
+    }
 
     #[test]
     fn follower_stiffness_against_dual_numbers() {
-        let k = follower_stiffness(&X.map(Vec3::from), 2.5);
-        assert!(k.norm() > 1.0);
-        for dof in 0..12 {
-            let x: [Vector3<Dual64>; 4] = std::array::from_fn(|i| {
-                Vector3::from_fn(|c, _| {
-                    Dual64::new(X[i][c], if 3 * i + c == dof { 1.0 } else { 0.0 })
-                })
-            });
-            let f = follower_force(&x, 2.5);
-            for row in 0..12 {
-                assert!((f[row].eps - k[(row, dof)]).abs() < 1e-14 * k.norm());
+        for count in [[2, 2], [3, 2], [2, 3], [3, 3]] {
+            let x = warped(count);
+            let size = 3 * count[0] as usize * count[1] as usize;
+            let mut k = [0.0; 729];
+            follower_stiffness(&x, count, 2.5, &mut k);
+            let norm = k.iter().map(|k| k * k).sum::<f64>().sqrt();
+            assert!(norm > 1.0);
+            for dof in 0..size {
+                let x: [Vector3<Dual64>; 9] = std::array::from_fn(|i| {
+                    Vector3::from_fn(|c, _| {
+                        Dual64::new(x[i][c], if 3 * i + c == dof { 1.0 } else { 0.0 })
+                    })
+                });
+                let mut f = [Dual64::from(0.0); 27];
+                follower_force(&x, count, 2.5, &mut f);
+                for row in 0..size {
+                    assert!((f[row].eps - k[dof * size + row]).abs() < 1e-14 * norm);
+                }
             }
         }
     }
 
+    /// On a flat square the force is the pressure times the area, shared as the shape functions' integrals.
     #[test]
-    fn follower_pressure_on_a_unit_square_pushes_down() {
-        let x = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [1., 1., 0.]].map(Vec3::from);
-        let f = follower_force(&x, 4.0);
-        for node in 0..4 {
-            assert!((f[3 * node + 2] + 1.0).abs() < 1e-15);
+    fn follower_pressure_on_a_square_pushes_down() {
+        for count in [[2, 2], [3, 2], [2, 3], [3, 3]] {
+            let [nu, nv] = count.map(usize::from);
+            let x: [Vec3; 9] = std::array::from_fn(|k| {
+                let (u, v) = (k % nu, k / nu);
+                Vec3::new(
+                    2.0 * u as f64 / (nu - 1) as f64,
+                    2.0 * v as f64 / (nv - 1) as f64,
+                    0.0,
+                )
+            });
+            let quad = Quad { nodes: x, count };
+            let mut f = [0.0; 27];
+            follower_force(&x, count, 4.0, &mut f);
+            for (k, w) in quad.weights().iter().enumerate() {
+                assert!((f[3 * k + 2] + 4.0 * w).abs() < 1e-14);
+            }
+            assert!((f.iter().sum::<f64>() + 16.0).abs() < 1e-13);
+        }
+    }
+
+    /// The resultant of a pressure on a closed surface vanishes; on a warped face it is the pressure times the area
+    /// vector, which depends on the border only: three points a direction or more give the same.
+    #[test]
+    fn resultant_on_a_warped_face() {
+        for count in [[2, 2], [3, 2], [2, 3], [3, 3]] {
+            let x = warped(count);
+            let quad = Quad { nodes: x, count };
+            let mut f = [0.0; 27];
+            follower_force(&x, count, 1.0, &mut f);
+            let rule = crate::shell::gauss(6).unwrap();
+            let mut area = Vec3::zeros();
+            for (v, wv) in rule.iter() {
+                for (u, wu) in rule.iter() {
+                    area += quad.area_vector(u, v) * (wu * wv);
+                }
+            }
+            for c in 0..3 {
+                let sum: f64 = f.iter().skip(c).step_by(3).sum();
+                assert!((sum + area[c]).abs() < 1e-14 * area.norm());
+            }
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;
 use crate::mesh::Mesh;
 use crate::scene::{Tangent, TimeFunction, ValueError};
-use crate::shell::H8Block;
+use crate::shell::{Block, ElementBlock};
 use constraints::{MeanPrescribed, Prescribed};
 use covact_geometry::Vec3;
 use driven::Driven;
@@ -61,7 +61,7 @@ pub struct Model {
 pub struct BodyModel {
     pub name: String,
     pub mesh: Mesh,
-    pub block: H8Block,
+    pub block: Block,
     /// Number of the body's first node in the model.
     pub first_node: u32,
 }
@@ -141,18 +141,28 @@ impl Model {
 }
 
 impl BodyModel {
-    /// Node numbers of an element in the model.
+    /// Node numbers of an element in the model; `block` holds the body's elements.
     #[inline]
-    pub fn element_nodes(&self, e: usize) -> [u32; 8] {
-        self.block.nodes_of(e).map(|n| n + self.first_node)
+    pub fn nodes_of<const N: usize>(&self, block: &impl ElementBlock<N>, e: usize) -> [u32; N] {
+        block.nodes_of(e).map(|n| n + self.first_node)
     }
 
-    /// Displacements of an element's nodes, from those of the model.
+    /// Displacements of an element's nodes, from those of the model; `block` holds the body's elements.
     #[inline]
-    pub fn displacements(&self, e: usize, u: &[f64]) -> [Vec3; 8] {
-        self.element_nodes(e).map(|n| {
+    pub fn displacements<const N: usize>(
+        &self,
+        block: &impl ElementBlock<N>,
+        e: usize,
+        u: &[f64],
+    ) -> [Vec3; N] {
+        self.nodes_of(block, e).map(|n| {
             let at = 3 * n as usize;
             Vec3::new(u[at], u[at + 1], u[at + 2])
         })
+    }
+
+    /// Node numbers of an element in the model, for any shape of elements.
+    pub fn element_nodes(&self, e: usize) -> impl Iterator<Item = u32> + '_ {
+        self.mesh.element(e).iter().map(|n| n + self.first_node)
     }
 }

@@ -1,5 +1,5 @@
 //! Automatic penalty.
-use crate::mesh::{Face, Mesh};
+use crate::mesh::{ElementKind, Face, Mesh};
 use crate::scene::{Elastic, Material};
 
 /// Penalty as a multiple of `E / s`, `s` being the smaller of the slave faces' edge length and the thickness of the
@@ -22,7 +22,8 @@ pub fn modulus(material: &Material) -> f64 {
 /// Sizes of the slave's elements.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlaveSize {
-    /// Mean edge length of the faces (square root of the mean area).
+    /// Mean distance of nodes along the edges of the faces: their mean length (square root of the mean area), half of it for
+    /// quadratic elements.
     pub edge: f64,
     /// Mean depth of the elements below the faces: volume by area.
     pub depth: f64,
@@ -34,8 +35,12 @@ pub fn slave_size(mesh: &Mesh, faces: &[Face]) -> SlaveSize {
     let volume: f64 = (faces.iter())
         .map(|f| mesh.element_volume(f.element as usize))
         .sum();
+    let spans = match mesh.kind {
+        ElementKind::H8 => 1.0,
+        ElementKind::Q18 => 2.0,
+    };
     SlaveSize {
-        edge: (area / faces.len().max(1) as f64).sqrt(),
+        edge: (area / faces.len().max(1) as f64).sqrt() / spans,
         depth: volume / area,
     }
 }

@@ -2,8 +2,9 @@
 use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
 use crate::scene::Points;
+use crate::shell::face::shape;
 use crate::shell::quadrature::{self, QuadratureError, Rule};
-use crate::shell::{Quad, face, tributary_areas};
+use crate::shell::{Quad, tributary_areas};
 
 /// Samples the faces as the scene asks; node numbers are the mesh's shifted by `offset`.
 ///
@@ -34,16 +35,15 @@ fn sampled(mesh: &Mesh, faces: &[Face], rule: &Rule, offset: u32) -> Vec<SlavePo
     let per_face = rule.points().len().pow(2);
     let mut out = Vec::with_capacity(faces.len() * per_face);
     for &f in faces {
-        let nodes = mesh.face_nodes(f).map(|n| n + offset);
-        let quad = Quad {
-            corners: mesh.face_nodes(f).map(|n| mesh.nodes[n as usize]),
-        };
+        let local = mesh.face_nodes(f);
+        let quad = Quad::new(&local, |n| mesh.nodes[n as usize]);
+        let face = local.shifted(offset);
         for (v, wv) in rule.iter() {
             for (u, wu) in rule.iter() {
                 out.push(SlavePoint {
-                    nodes,
-                    shape: face::shape(u, v),
-                    count: 4,
+                    nodes: face.nodes,
+                    shape: shape(face.count, u, v),
+                    count: face.nodes().len() as u8,
                     area: wu * wv * quad.area_vector(u, v).norm(),
                 });
             }

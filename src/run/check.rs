@@ -183,6 +183,7 @@ fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
     let element = match described.element {
         Element::H8 => "8-node solid-shell",
         Element::H8Displacement => "8-node brick without enhancement",
+        Element::Q18 => "18-node quadratic solid-shell",
     };
     let material = match &scene.materials[&described.material] {
         Material::StVenantKirchhoff(e) => format!("St. Venant-Kirchhoff, E {}, nu {}", e.e, e.nu),

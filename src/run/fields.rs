@@ -2,13 +2,13 @@
 use super::RunError;
 use super::pieces::pieces;
 use crate::contact::rigid::{behind, presses};
-use crate::model::Model;
 use crate::model::state::State;
+use crate::model::{BodyModel, Model};
 use crate::output::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, Results, SurfaceOutput,
     SurfaceState,
 };
-use crate::shell::extrapolate;
+use crate::shell::{ElementBlock, with_block};
 use covact_geometry::Vec3;
 
 /// Contact fields on all nodes, and totals over all slave points.
@@ -197,33 +197,42 @@ fn nodal_stresses(model: &Model, state: &State) -> Vec<Vec<[f64; 6]>> {
     let mut first = 0;
     let mut out = Vec::new();
     for body in &model.bodies {
-        let (len, count) = (body.block.state_len(), body.block.elements());
-        let mut sum = vec![[0.0; 6]; body.mesh.nodes.len()];
-        let mut weight = vec![0.0; body.mesh.nodes.len()];
-        for e in 0..count {
-            let at = first + e * len;
-            let u = body.displacements(e, &state.u);
-            let mut points = [[0.0; 6]; 8];
-            let element = &state.elements[at..at + len];
-            if body.block.stresses(e, &u, element, &mut points).is_err() {
-                continue;
-            }
-            let nodal = extrapolate(&points);
-            let volume = body.block.volume(e);
-            for (k, n) in body.block.nodes_of(e).into_iter().enumerate() {
-                weight[n as usize] += volume;
-                for (s, v) in sum[n as usize].iter_mut().zip(&nodal[k]) {
-                    *s += volume * v;
-                }
-            }
-        }
-        for (s, w) in sum.iter_mut().zip(&weight) {
-            if *w > 0.0 {
-                s.iter_mut().for_each(|v| *v /= w);
-            }
-        }
-        first += len * count;
-        out.push(sum);
+        let len = body.block.state_len() * body.block.elements();
+        let states = &state.elements[first..first + len];
+        first += len;
+        out.push(with_block!(&body.block, block => body_stresses(body, block, states, &state.u)));
     }
     out
+}
+
+fn body_stresses<const N: usize>(
+    body: &BodyModel,
+    block: &impl ElementBlock<N>,
+    states: &[f64],
+    u: &[f64],
+) -> Vec<[f64; 6]> {
+    let len = block.state_len();
+    let mut sum = vec![[0.0; 6]; body.mesh.nodes.len()];
+    let mut weight = vec![0.0; body.mesh.nodes.len()];
+    for e in 0..block.elements() {
+        let u = body.displacements(block, e, u);
+        let mut nodal = [[0.0; 6]; N];
+        let element = &states[e * len..(e + 1) * len];
+        if block.nodal_stresses(e, &u, element, &mut nodal).is_err() {
+            continue;
+        }
+        let volume = block.volume(e);
+        for (n, nodal) in block.nodes_of(e).into_iter().zip(&nodal) {
+            weight[n as usize] += volume;
+            for (s, v) in sum[n as usize].iter_mut().zip(nodal) {
+                *s += volume * v;
+            }
+        }
+    }
+    for (s, w) in sum.iter_mut().zip(&weight) {
+        if *w > 0.0 {
+            s.iter_mut().for_each(|v| *v /= w);
+        }
+    }
+    sum
 }

@@ -1,63 +1,117 @@
-//! Bilinear quadrilaterals: the faces of H8 elements, over which loads and contact integrate.
+//! Faces of elements, over which loads and contact integrate: bilinear quadrilaterals, biquadratic ones, and the sides
+//! of Q18, which are quadratic one way and linear the other.
 use super::quadrature::{GAUSS_3, Rule};
-use crate::mesh::{ElementKind, Face, H8_FACES, Mesh};
+use crate::mesh::{Face, Mesh};
 use covact_geometry::Vec3;
 
-/// Signs of the four corners, u fastest: (-,-), (+,-), (-,+), (+,+).
-const CORNERS: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+pub use crate::mesh::FaceNodes;
 
-/// Bilinear shape functions at (u, v) in [-1, 1]^2, in the node order of [`H8_FACES`].
-pub fn shape(u: f64, v: f64) -> [f64; 4] {
-    CORNERS.map(|(a, b)| 0.25 * (1.0 + a * u) * (1.0 + b * v))
+/// The functions of `count` nodes (2 or 3) at -1, (0,) 1, evaluated at `x`.
+#[inline(always)]
+fn line(count: u8, x: f64) -> [f64; 3] {
+    if count == 2 {
+        [0.5 * (1.0 - x), 0.5 * (1.0 + x), 0.0]
+    } else {
+        [
+            0.5 * x * (x - 1.0),
+            (1.0 - x) * (1.0 + x),
+            0.5 * x * (x + 1.0),
+        ]
+    }
+}
+
+/// Derivatives of [`line`].
+#[inline(always)]
+fn line_derivatives(count: u8, x: f64) -> [f64; 3] {
+    if count == 2 {
+        [-0.5, 0.5, 0.0]
+    } else {
+        [x - 0.5, -2.0 * x, x + 0.5]
+    }
+}
+
+/// Products of functions along u and along v, u fastest.
+#[inline(always)]
+fn product([nu, nv]: [u8; 2], along_u: [f64; 3], along_v: [f64; 3]) -> [f64; 9] {
+    let mut n = [0.0; 9];
+    let mut k = 0;
+    for b in &along_v[..nv as usize] {
+        for a in &along_u[..nu as usize] {
+            n[k] = a * b;
+            k += 1;
+        }
+    }
+    n
+}
+
+/// Shape functions at (u, v) in [-1, 1]^2 of a face with `count` nodes along u and v, in the order of
+/// [`FaceNodes`]; zero past the last node.
+#[inline]
+pub fn shape(count: [u8; 2], u: f64, v: f64) -> [f64; 9] {
+    product(count, line(count[0], u), line(count[1], v))
 }
 
 /// Derivatives of the shape functions along u and v.
-pub fn shape_derivatives(u: f64, v: f64) -> [[f64; 4]; 2] {
+#[inline]
+pub fn shape_derivatives(count: [u8; 2], u: f64, v: f64) -> [[f64; 9]; 2] {
+    let [nu, nv] = count;
     [
-        CORNERS.map(|(a, b)| 0.25 * a * (1.0 + b * v)),
-        CORNERS.map(|(a, b)| 0.25 * b * (1.0 + a * u)),
+        product(count, line_derivatives(nu, u), line(nv, v)),
+        product(count, line(nu, u), line_derivatives(nv, v)),
     ]
 }
 
-/// Mesh nodes of a face of an H8 mesh, ordered so that u x v points outward; `None` if the mesh has no such face, or faces of
-/// more than four nodes.
-pub fn face_nodes(mesh: &Mesh, face: Face) -> Option<[u32; 4]> {
-    if mesh.kind != ElementKind::H8 {
-        return None;
-    }
-    let local = H8_FACES.get(face.face as usize)?;
-    let n = mesh.kind.nodes();
-    let nodes = mesh
-        .connectivity
-        .get(face.element as usize * n..(face.element as usize + 1) * n)?;
-    Some(local.map(|i| nodes[i as usize]))
-}
-
-/// A bilinear quadrilateral given by its four corners.
+/// A face given by the positions of its nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quad {
-    pub corners: [Vec3; 4],
+    /// Positions in the order of [`FaceNodes`]; only the first `count[0] * count[1]` are used.
+    pub nodes: [Vec3; 9],
+    /// Nodes along u and v, 2 or 3.
+    pub count: [u8; 2],
 }
 
 impl Quad {
-    /// The face with corners at the mesh's own nodes; `None` if the mesh has no such face.
-    pub fn of(mesh: &Mesh, face: Face) -> Option<Quad> {
-        let nodes = face_nodes(mesh, face)?;
-        let mut corners = [Vec3::zeros(); 4];
-        for (corner, node) in corners.iter_mut().zip(nodes) {
-            *corner = *mesh.nodes.get(node as usize)?;
+    /// The face with its nodes at the given positions.
+    #[inline]
+    pub fn new(face: &FaceNodes, position: impl Fn(u32) -> Vec3) -> Quad {
+        let mut nodes = [Vec3::zeros(); 9];
+        for (x, &node) in nodes.iter_mut().zip(face.nodes()) {
+            *x = position(node);
         }
-        Some(Quad { corners })
+        Quad {
+            nodes,
+            count: face.count,
+        }
+    }
+
+    /// A bilinear quadrilateral with its corners in the order (-,-), (+,-), (-,+), (+,+).
+    pub fn bilinear(corners: [Vec3; 4]) -> Quad {
+        let mut nodes = [Vec3::zeros(); 9];
+        nodes[..4].copy_from_slice(&corners);
+        Quad {
+            nodes,
+            count: [2, 2],
+        }
+    }
+
+    /// The face of a mesh; `None` if the mesh has no such face.
+    pub fn of(mesh: &Mesh, face: Face) -> Option<Quad> {
+        if !mesh.has_face(face) {
+            return None;
+        }
+        let nodes = mesh.face_nodes(face);
+        let known = |n: &u32| (*n as usize) < mesh.nodes.len();
+        (nodes.nodes().iter().all(known)).then(|| Quad::new(&nodes, |n| mesh.nodes[n as usize]))
     }
 
     /// Point at (u, v).
     pub fn point(&self, u: f64, v: f64) -> Vec3 {
-        combine(&self.corners, &shape(u, v))
+        self.combine(&shape(self.count, u, v))
     }
 
     /// Tangents along u and v.
     pub fn tangents(&self, u: f64, v: f64) -> [Vec3; 2] {
-        shape_derivatives(u, v).map(|d| combine(&self.corners, &d))
+        shape_derivatives(self.count, u, v).map(|d| self.combine(&d))
     }
 
     /// Outward normal times the area element: `x_,u x x_,v` (length^2).
@@ -66,19 +120,20 @@ impl Quad {
         a.cross(&b)
     }
 
-    /// Integral of every shape function over the face, `int N_k dA`; with the 3 x 3 Gauss rule it is exact for plane
-    /// faces (there the area element is linear) and an approximation on warped ones.
-    pub fn weights(&self) -> [f64; 4] {
+    /// Integral of every shape function over the face, `int N_k dA` (length^2); with the 3 x 3 Gauss rule it is exact for
+    /// plane parallelograms and plane bilinear faces, and an approximation on warped and curved ones. On a plane
+    /// parallelogram a biquadratic face's are 1/36, 4/36 and 16/36 of the area for corners, edges and centre.
+    pub fn weights(&self) -> [f64; 9] {
         self.weights_with(&GAUSS_3)
     }
 
     /// As [`Quad::weights`], with the given rule in both directions.
-    pub fn weights_with(&self, rule: &Rule) -> [f64; 4] {
-        let mut sum = [0.0; 4];
+    pub fn weights_with(&self, rule: &Rule) -> [f64; 9] {
+        let mut sum = [0.0; 9];
         for (v, wv) in rule.iter() {
             for (u, wu) in rule.iter() {
                 let da = wu * wv * self.area_vector(u, v).norm();
-                for (s, n) in sum.iter_mut().zip(shape(u, v)) {
+                for (s, n) in sum.iter_mut().zip(shape(self.count, u, v)) {
                     *s += n * da;
                 }
             }
@@ -90,14 +145,15 @@ impl Quad {
     pub fn area(&self) -> f64 {
         self.weights().iter().sum()
     }
-}
 
-fn combine(corners: &[Vec3; 4], weights: &[f64; 4]) -> Vec3 {
-    let mut sum = Vec3::zeros();
-    for (c, w) in corners.iter().zip(weights) {
-        sum += c * *w;
+    fn combine(&self, weights: &[f64; 9]) -> Vec3 {
+        let n = self.count[0] as usize * self.count[1] as usize;
+        let mut sum = Vec3::zeros();
+        for (x, w) in self.nodes[..n].iter().zip(weights) {
+            sum += x * *w;
+        }
+        sum
     }
-    sum
 }
 
 /// Tributary areas `sum over faces of int N dA` of the nodes of a face set, as pairs (node, area) in ascending node
@@ -105,9 +161,9 @@ fn combine(corners: &[Vec3; 4], weights: &[f64; 4]) -> Vec3 {
 pub fn tributary_areas(mesh: &Mesh, faces: &[Face]) -> Vec<(u32, f64)> {
     let mut areas = std::collections::BTreeMap::new();
     for face in faces {
-        if let (Some(nodes), Some(quad)) = (face_nodes(mesh, *face), Quad::of(mesh, *face)) {
-            for (node, area) in nodes.into_iter().zip(quad.weights()) {
-                *areas.entry(node).or_insert(0.0) += area;
+        if let Some(quad) = Quad::of(mesh, *face) {
+            for (node, area) in mesh.face_nodes(*face).nodes().iter().zip(quad.weights()) {
+                *areas.entry(*node).or_insert(0.0) += area;
             }
         }
     }
@@ -117,6 +173,7 @@ pub fn tributary_areas(mesh: &Mesh, faces: &[Face]) -> Vec<(u32, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::ElementKind;
 
     /// Unit cube: outward normals, unit areas, and a quarter of the area at every corner of a face.
     #[test]
@@ -139,7 +196,8 @@ mod tests {
                 (quad.area_vector(0.3, -0.2) * 16.0 - outward).norm() < 1e-14,
                 "face {face}"
             );
-            assert!(quad.weights().iter().all(|w| (w - 0.25).abs() < 1e-15));
+            assert!(quad.weights()[..4].iter().all(|w| (w - 0.25).abs() < 1e-15));
+            assert_eq!(quad.weights()[4..], [0.0; 5]);
             let centre = quad.point(0.0, 0.0) - Vec3::repeat(0.5);
             assert!((centre - outward / 8.0).norm() < 1e-15);
         }
@@ -186,7 +244,7 @@ mod tests {
     fn tributary_areas_of_a_trapezoid() {
         let corners =
             [[0.0, 0.0], [2.0, 0.0], [0.5, 1.0], [1.5, 1.0]].map(|p| Vec3::new(p[0], p[1], 0.0));
-        let weights = Quad { corners }.weights();
+        let weights = Quad::bilinear(corners).weights();
         // Width 2 - y: int (1 - y)(2 - y)/2 dy = 5/12, int y (2 - y)/2 dy = 1/3.
         for (found, expected) in weights
             .iter()
@@ -194,5 +252,79 @@ mod tests {
         {
             assert!((found - expected).abs() < 1e-15, "{weights:?}");
         }
+    }
+
+    /// Shape functions are one at their own node and nothing at the others, and add up to one; their derivatives against
+    /// dual numbers' worth of differences of polynomials: central differences are exact for quadratics.
+    #[test]
+    fn shape_functions_of_all_faces() {
+        for count in [[2, 2], [3, 2], [2, 3], [3, 3]] {
+            let [nu, nv] = count.map(usize::from);
+            let place = |k: usize, n: usize| 2.0 * k as f64 / (n - 1) as f64 - 1.0;
+            for k in 0..nu * nv {
+                let n = shape(count, place(k % nu, nu), place(k / nu, nv));
+                for (l, n) in n.iter().enumerate() {
+                    assert_eq!(*n, if l == k { 1.0 } else { 0.0 });
+                }
+            }
+            let (u, v, h) = (0.3, -0.7, 0.125);
+            assert!((shape(count, u, v).iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            let [du, dv] = shape_derivatives(count, u, v);
+            let along_u = [shape(count, u + h, v), shape(count, u - h, v)];
+            let along_v = [shape(count, u, v + h), shape(count, u, v - h)];
+            for k in 0..9 {
+                assert!(((along_u[0][k] - along_u[1][k]) / (2.0 * h) - du[k]).abs() < 1e-14);
+                assert!(((along_v[0][k] - along_v[1][k]) / (2.0 * h) - dv[k]).abs() < 1e-14);
+                assert_eq!(du[k] == 0.0, k >= nu * nv);
+            }
+        }
+    }
+
+    /// Simpson's weights on a plane face, and the outward normals of a Q18 box.
+    #[test]
+    fn faces_of_a_quadratic_box() {
+        let nodes = (0..18).map(|a| {
+            let (i, j, k) = (a % 3, a / 3 % 3, a / 9);
+            Vec3::new(1.5 * i as f64, 0.5 * j as f64, 2.0 * k as f64)
+        });
+        let mesh = Mesh {
+            kind: ElementKind::Q18,
+            nodes: nodes.collect(),
+            connectivity: (0..18).collect(),
+            node_sets: Default::default(),
+            face_sets: Default::default(),
+        };
+        let size = Vec3::new(3.0, 1.0, 2.0);
+        for face in 0..6 {
+            let quad = Quad::of(&mesh, Face { element: 0, face }).unwrap();
+            let axis = face as usize / 2;
+            let area = size.product() / size[axis];
+            let mut outward = Vec3::zeros();
+            outward[axis] = if face % 2 == 1 { area } else { -area };
+            assert!((quad.area_vector(0.3, -0.2) * 4.0 - outward).norm() < 1e-14);
+            let line = |n: u8| {
+                if n == 2 {
+                    [0.5, 0.5, 0.0]
+                } else {
+                    [1.0, 4.0, 1.0].map(|w| w / 6.0)
+                }
+            };
+            let expected = product(quad.count, line(quad.count[0]), line(quad.count[1]));
+            for (w, e) in quad.weights().iter().zip(expected) {
+                assert!((w - e * area).abs() < 1e-14, "face {face}");
+            }
+            let mut centre = 0.5 * size;
+            centre[axis] += 0.5 * size[axis] * outward[axis].signum();
+            assert!((quad.point(0.0, 0.0) - centre).norm() < 1e-14);
+        }
+        let areas = tributary_areas(
+            &mesh,
+            &[Face {
+                element: 0,
+                face: 5,
+            }],
+        );
+        assert_eq!(areas.len(), 9);
+        assert!((areas[4].1 - 3.0 * 16.0 / 36.0).abs() < 1e-14);
     }
 }

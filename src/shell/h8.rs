@@ -35,11 +35,13 @@ impl Formulation {
     }
 }
 
-impl From<Element> for Formulation {
-    fn from(element: Element) -> Formulation {
+impl Formulation {
+    /// The formulation of a scene's element; `None` for elements that do not have 8 nodes.
+    pub fn of(element: Element) -> Option<Formulation> {
         match element {
-            Element::H8 => Formulation::Eas7,
-            Element::H8Displacement => Formulation::Displacement,
+            Element::H8 => Some(Formulation::Eas7),
+            Element::H8Displacement => Some(Formulation::Displacement),
+            Element::Q18 => None,
         }
     }
 }

@@ -6,13 +6,15 @@
 //! Strains, stresses and tangents keep their covariant and contravariant components throughout, and isotropic laws are
 //! evaluated with the metric, so no rotation to Cartesian axes is paid for.
 //!
-//! - [`H8Block`]: the elements of one body, evaluated one at a time ([`H8System`] receives forces and tangent).
+//! - [`H8Block`], [`Q18Block`]: the elements of one body, evaluated one at a time ([`H8System`], [`Q18System`] receive
+//!   forces and tangent); [`Block`] is either.
 //! - [`material`]: St. Venant-Kirchhoff and neo-Hooke.
-//! - [`quadrature`], [`face`]: Gauss and Lobatto rules and the bilinear faces that loads and contact integrate over.
+//! - [`quadrature`], [`face`]: Gauss and Lobatto rules and the faces that loads and contact integrate over.
 
 // Index loops show the sums the way they are written on paper, over several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
+mod block;
 mod brick;
 mod error;
 pub mod face;
@@ -27,13 +29,15 @@ mod tangent;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use block::with_block;
+pub use block::{Block, ElementBlock, ElementSystem};
 pub use error::{ElementFault, FaultCause, ShellError};
 pub use face::{Quad, tributary_areas};
 pub use h8::{Formulation, H8Block, H8System};
 pub use material::{Law, MaterialLaw, Metric, NeoHooke, Response, StVenantKirchhoff};
 pub use q18::{Q18Block, Q18System};
 pub use quadrature::{Rule, gauss, lobatto};
-pub use stress::extrapolate;
+pub use stress::{extrapolate, extrapolate_quadratic};
 
 /// Voigt order of strains and stresses: 11, 22, 33, 12, 23, 13; strains with engineering shears `2 E_ij`.
 pub const VOIGT: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];

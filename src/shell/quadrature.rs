@@ -32,8 +32,18 @@ impl Rule {
     }
 }
 
+/// The two-point Gauss rule.
+pub(crate) const GAUSS_2: Rule = {
+    const X: f64 = 0.577_350_269_189_625_8;
+    Rule {
+        n: 2,
+        points: [-X, X, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        weights: [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    }
+};
+
 /// The three-point Gauss rule.
-pub(super) const GAUSS_3: Rule = {
+pub(crate) const GAUSS_3: Rule = {
     const X: f64 = 0.774_596_669_241_483_4;
     const W: f64 = 5.0 / 9.0;
     Rule {

@@ -2,6 +2,7 @@
 use super::VOIGT;
 use super::kinematics::V;
 use super::material::{Collapsed, MaterialLaw, Metric};
+use super::quadrature::GAUSS_3;
 use super::reference::{GP, contravariant, det, sign};
 use covact_geometry::Vec3;
 use nalgebra::Matrix3;
@@ -54,6 +55,28 @@ pub fn extrapolate(points: &[[f64; 6]; 8]) -> [[f64; 6]; 8] {
         for (g, point) in points.iter().enumerate() {
             // The node lies at -+1/GP in coordinates that put the Gauss points at -+1.
             let w = (0..3).fold(0.125, |w, bit| w * (1.0 + sign(a, bit) * sign(g, bit) / GP));
+            for (n, p) in node.iter_mut().zip(point) {
+                *n += w * p;
+            }
+        }
+    }
+    nodes
+}
+
+/// Extends values at the 3 x 3 x 2 Gauss points of a Q18 element to its nodes: linearly along each direction, after the
+/// least squares fit that Gauss's weights make of the three points in the plane. That fit passes through the parabola's
+/// values at the two-point Gauss points, where the strains of a quadratic element are more accurate than elsewhere
+/// (J. Barlow, IJNME 10 (1976)).
+pub fn extrapolate_quadratic(points: &[[f64; 6]; 18]) -> [[f64; 6]; 18] {
+    let line = |node: usize, point: usize| {
+        let x = node as f64 - 1.0;
+        GAUSS_3.weights()[point] * (0.5 + 1.5 * x * GAUSS_3.points()[point])
+    };
+    let mut nodes = [[0.0; 6]; 18];
+    for (a, node) in nodes.iter_mut().enumerate() {
+        for (g, point) in points.iter().enumerate() {
+            let through = 0.5 * (1.0 + if a / 9 == g / 9 { 1.0 } else { -1.0 } / GP);
+            let w = line(a % 3, g % 3) * line(a / 3 % 3, g / 3 % 3) * through;
             for (n, p) in node.iter_mut().zip(point) {
                 *n += w * p;
             }

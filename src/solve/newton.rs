@@ -11,6 +11,7 @@ use crate::model::Model;
 use crate::model::state::State;
 use crate::output::Phases;
 use crate::scene;
+use crate::shell::{ElementBlock, with_block};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -349,17 +350,16 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
                 continue;
             }
             let (states, base) = (&mut trial.elements[range.clone()], &w.base.elements[range]);
-            (states
-                .par_chunks_mut(len)
-                .zip(base.par_chunks(len))
-                .enumerate())
-            .with_min_len(64)
-            .for_each(|(e, (state, from))| {
-                // The condensation cache must be that of the linearisation that produced du.
-                state.copy_from_slice(from);
-                let du = body.displacements(e, &w.du);
-                body.block
-                    .update_alpha(state, &du, s, &from[..body.block.alpha_len()]);
+            with_block!(&body.block, block => {
+                let alphas = ElementBlock::alpha_len(block);
+                (states.par_chunks_mut(len).zip(base.par_chunks(len)).enumerate())
+                    .with_min_len(64)
+                    .for_each(|(e, (state, from))| {
+                        // The condensation cache must be that of the linearisation that produced du.
+                        state.copy_from_slice(from);
+                        let du = body.displacements(block, e, &w.du);
+                        block.update_alpha(state, &du, s, &from[..alphas]);
+                    });
             });
         }
     }

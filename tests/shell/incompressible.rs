@@ -44,9 +44,7 @@ fn ratio(nu: f64, formulation: Formulation, radial: bool, facets: bool) -> f64 {
             node(0, j, 1),
             node(0, j + 1, 1),
         ];
-        let quad = Quad {
-            corners: corners.map(|n| mesh.nodes[n]),
-        };
+        let quad = Quad::bilinear(corners.map(|n| mesh.nodes[n]));
         if facets {
             // Out of the hole, normal to the flat facet.
             let normal = quad.area_vector(0.0, 0.0).normalize();
@@ -61,7 +59,7 @@ fn ratio(nu: f64, formulation: Formulation, radial: bool, facets: bool) -> f64 {
             let span = 10f64.to_radians();
             for (s, w) in rule.iter() {
                 let angle = span * (j as f64 + 0.5 * (1.0 + s));
-                for (n, shape) in corners.into_iter().zip(shape(s, 0.0)) {
+                for (n, shape) in corners.into_iter().zip(shape([2, 2], s, 0.0)) {
                     let force = w * 0.5 * span * RADII[0] * shape;
                     load[3 * n] += force * angle.cos();
                     load[3 * n + 1] += force * angle.sin();

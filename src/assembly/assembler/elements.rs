@@ -1,8 +1,53 @@
-//! Elements: evaluated in parallel a chunk at a time, summed in order.
-use super::{Assembler, CHUNK, Fault, Kind, PAIRS, Totals, add_nodes, element_fault};
+//! Elements: evaluated in parallel a chunk at a time, summed in order. The loops are generic over the shape of the
+//! elements, which is chosen once for each body.
+use super::{Assembler, Fault, Kind, Totals, element_fault};
+use crate::assembly::{ConstrainedScatter, DofMap, SystemMatrix};
 use crate::model::state::State;
-use crate::shell::H8System;
+use crate::model::{BodyModel, Model};
+use crate::shell::{Block, ElementBlock, ElementSystem, H8System, Q18System, with_block};
 use rayon::prelude::*;
+
+/// Elements evaluated before their matrices are summed.
+const CHUNK: usize = 128;
+
+/// Room for one chunk of elements of each shape that the model has.
+pub(super) struct Systems {
+    h8: Vec<H8System>,
+    q18: Vec<Q18System>,
+}
+
+impl Systems {
+    pub(super) fn new(model: &Model) -> Systems {
+        let most = |of: fn(&Block) -> bool| {
+            let blocks = model.bodies.iter().map(|b| &b.block);
+            let counts = blocks.filter(|b| of(b)).map(Block::elements);
+            counts.max().unwrap_or(0).min(CHUNK)
+        };
+        Systems {
+            h8: vec![H8System::default(); most(|b| matches!(b, Block::H8(_)))],
+            q18: vec![Q18System::default(); most(|b| matches!(b, Block::Q18(_)))],
+        }
+    }
+}
+
+/// Pairs of `n` nodes, each counted once: entries of an element's map.
+pub(super) const fn pairs(n: usize) -> usize {
+    n * (n + 1) / 2
+}
+
+/// Where the elements of a body go.
+struct Sums<'a> {
+    matrix: &'a mut SystemMatrix,
+    dofs: &'a DofMap,
+    work: &'a mut ConstrainedScatter,
+    /// Of the body's elements.
+    kinds: &'a [Kind],
+    maps: &'a [u32],
+    increments: Option<&'a [f64]>,
+    residual: &'a mut [f64],
+    rhs: &'a mut [f64],
+    energy: &'a mut f64,
+}
 
 impl Assembler<'_> {
     pub(super) fn elements(
@@ -13,56 +58,147 @@ impl Assembler<'_> {
         rhs: &mut [f64],
         totals: &mut Totals,
     ) -> Result<(), Fault> {
-        let (mut first_state, mut first_element) = (0, 0);
+        let (mut first_state, mut first_element, mut first_map) = (0, 0, 0);
         for body in &self.model.bodies {
-            let (len, count) = (body.block.state_len(), body.block.elements());
-            let states = &mut state.elements[first_state..first_state + len * count];
-            let u = &state.u;
-            for start in (0..count).step_by(CHUNK) {
-                let n = CHUNK.min(count - start);
-                let evaluate = |i: usize, out: &mut H8System, s: &mut [f64]| {
-                    let x = body.displacements(start + i, u);
-                    body.block.evaluate(start + i, &x, s, out)
-                };
-                let outputs = (self.systems[..n].par_iter_mut()).with_min_len(8);
-                let done = if len == 0 {
-                    (outputs.enumerate()).try_for_each(|(i, out)| evaluate(i, out, &mut []))
-                } else {
-                    let chunk = &mut states[start * len..(start + n) * len];
-                    (outputs.zip(chunk.par_chunks_mut(len)).enumerate())
-                        .try_for_each(|(i, (out, s))| evaluate(i, out, s))
-                };
-                done.map_err(|fault| element_fault(&body.name, fault))?;
-                for i in 0..n {
-                    let nodes = body.element_nodes(start + i);
-                    let system = &mut self.systems[i];
-                    totals.internal_energy += system.energy;
-                    add_nodes(residual, &nodes, &system.f);
-                    let global = first_element + start + i;
-                    let kind = self.kinds[global];
-                    if kind != Kind::Free
-                        && let Some(g) = increments
-                    {
-                        self.dofs.subtract_prescribed(&nodes, &system.k, g, rhs);
-                    }
-                    let map = &self.element_maps[PAIRS * global..PAIRS * (global + 1)];
-                    match kind {
-                        Kind::Free => self.matrix.scatter(map, &system.k),
-                        Kind::Prescribed => {
-                            (self.dofs)
-                                .condense_matrix(&nodes, &mut system.k)
-                                .expect("an element without ties has all its nodes");
-                            self.matrix.scatter(map, &system.k);
-                        }
-                        Kind::Tied => (self.matrix)
-                            .scatter_constrained(&nodes, &system.k, self.dofs, &mut self.work)
-                            .expect("the pattern holds every element with what it is tied to"),
-                    }
-                }
-            }
-            first_state += len * count;
+            let count = body.block.elements();
+            let states = body.block.state_len() * count;
+            let map = pairs(body.mesh.kind.nodes()) * count;
+            let mut sums = Sums {
+                matrix: &mut self.matrix,
+                dofs: self.dofs,
+                work: &mut self.work,
+                kinds: &self.kinds[first_element..first_element + count],
+                maps: &self.element_maps[first_map..first_map + map],
+                increments,
+                residual,
+                rhs,
+                energy: &mut totals.internal_energy,
+            };
+            let (states, u) = (
+                &mut state.elements[first_state..first_state + states],
+                &state.u,
+            );
+            first_state += states.len();
             first_element += count;
+            first_map += map;
+            match &body.block {
+                Block::H8(b) => sums.add(body, b, &mut self.systems.h8, states, u),
+                Block::Q18(b) => sums.add(body, b, &mut self.systems.q18, states, u),
+            }?;
         }
         Ok(())
+    }
+
+    /// Internal forces and energy alone.
+    pub(super) fn element_forces(
+        &self,
+        state: &State,
+        residual: &mut [f64],
+        totals: &mut Totals,
+    ) -> Result<(), Fault> {
+        let mut first = 0;
+        for body in &self.model.bodies {
+            let states = body.block.state_len() * body.block.elements();
+            let own = &state.elements[first..first + states];
+            first += states;
+            with_block!(&body.block, block => {
+                forces(body, block, own, &state.u, residual, &mut totals.internal_energy)
+            })?;
+        }
+        Ok(())
+    }
+}
+
+impl Sums<'_> {
+    /// Evaluates and sums the elements of a body.
+    fn add<const N: usize, B: ElementBlock<N>>(
+        &mut self,
+        body: &BodyModel,
+        block: &B,
+        systems: &mut [B::System],
+        states: &mut [f64],
+        u: &[f64],
+    ) -> Result<(), Fault> {
+        let (len, count) = (block.state_len(), block.elements());
+        for start in (0..count).step_by(CHUNK) {
+            let n = CHUNK.min(count - start);
+            let evaluate = |i: usize, out: &mut B::System, s: &mut [f64]| {
+                let x = body.displacements(block, start + i, u);
+                block.evaluate(start + i, &x, s, out)
+            };
+            let outputs = (systems[..n].par_iter_mut()).with_min_len(8);
+            let done = if len == 0 {
+                (outputs.enumerate()).try_for_each(|(i, out)| evaluate(i, out, &mut []))
+            } else {
+                let chunk = &mut states[start * len..(start + n) * len];
+                (outputs.zip(chunk.par_chunks_mut(len)).enumerate())
+                    .try_for_each(|(i, (out, s))| evaluate(i, out, s))
+            };
+            done.map_err(|fault| element_fault(&body.name, fault))?;
+            for (i, system) in systems[..n].iter_mut().enumerate() {
+                self.scatter(start + i, &body.nodes_of(block, start + i), system);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds element `e` of the body.
+    #[inline]
+    fn scatter<const N: usize>(
+        &mut self,
+        e: usize,
+        nodes: &[u32; N],
+        system: &mut impl ElementSystem,
+    ) {
+        let (f, k, energy) = system.parts();
+        *self.energy += energy;
+        add_nodes(self.residual, nodes, f);
+        let kind = self.kinds[e];
+        if kind != Kind::Free
+            && let Some(g) = self.increments
+        {
+            self.dofs.subtract_prescribed(nodes, k, g, self.rhs);
+        }
+        let map = &self.maps[pairs(N) * e..pairs(N) * (e + 1)];
+        match kind {
+            Kind::Free => self.matrix.scatter(map, k),
+            Kind::Prescribed => {
+                (self.dofs)
+                    .condense_matrix(nodes, k)
+                    .expect("an element without ties has all its nodes");
+                self.matrix.scatter(map, k);
+            }
+            Kind::Tied => (self.matrix)
+                .scatter_constrained(nodes, k, self.dofs, self.work)
+                .expect("the pattern holds every element with what it is tied to"),
+        }
+    }
+}
+
+fn forces<const N: usize, B: ElementBlock<N>>(
+    body: &BodyModel,
+    block: &B,
+    states: &[f64],
+    u: &[f64],
+    residual: &mut [f64],
+    energy: &mut f64,
+) -> Result<(), Fault> {
+    let len = block.state_len();
+    let mut f = B::NO_FORCES;
+    for e in 0..block.elements() {
+        let x = body.displacements(block, e, u);
+        *energy += block
+            .residual(e, &x, &states[e * len..(e + 1) * len], &mut f)
+            .map_err(|fault| element_fault(&body.name, fault))?;
+        add_nodes(residual, &body.nodes_of(block, e), f.as_ref());
+    }
+    Ok(())
+}
+
+#[inline]
+fn add_nodes<const N: usize>(out: &mut [f64], nodes: &[u32; N], f: &[f64]) {
+    for (f, &n) in f.chunks_exact(3).zip(nodes) {
+        let at = 3 * n as usize;
+        (0..3).for_each(|c| out[at + c] += f[c]);
     }
 }

@@ -1,6 +1,8 @@
 //! Dead loads and follower pressure.
 use super::{Assembler, Fault, put};
+use crate::model::loads::{follower_force, follower_stiffness};
 use crate::model::state::State;
+use covact_geometry::Vec3;
 
 impl Assembler<'_> {
     pub(super) fn loads<const TANGENT: bool>(
@@ -11,30 +13,44 @@ impl Assembler<'_> {
         residual: &mut [f64],
         rhs: &mut [f64],
     ) -> Result<(), Fault> {
+        let (mut x, mut f, mut k) = ([Vec3::zeros(); 9], [0.0; 27], [0.0; 729]);
         self.external.fill(0.0);
         for (_, load) in &self.model.dead_loads {
             load.add(time, &mut self.external)?;
         }
         for (index, (_, load)) in self.model.follower_loads.iter().enumerate() {
             let p = load.value.eval(time)?;
-            for (i, nodes) in load.faces.iter().enumerate() {
-                let x = nodes.map(|n| self.model.position(n as usize, &state.u));
-                let f = crate::model::loads::follower_force(&x, p);
+            let mut at = 0;
+            for face in &load.faces {
+                let nodes = face.nodes();
+                for (x, &n) in x.iter_mut().zip(nodes) {
+                    *x = self.model.position(n as usize, &state.u);
+                }
+                follower_force(&x, face.count, p, &mut f);
                 for (k, &n) in nodes.iter().enumerate() {
                     (0..3).for_each(|c| self.external[3 * n as usize + c] += f[3 * k + c]);
                 }
                 if TANGENT {
                     // The system is symmetric: what is unsymmetric lives on the border of the loaded area only.
-                    let k = crate::model::loads::follower_stiffness(&x, p);
-                    let mut k = (k + k.transpose()) * -0.5;
-                    let map = &self.follower_maps[index][10 * i..10 * (i + 1)];
+                    follower_stiffness(&x, face.count, p, &mut k);
+                    let size = 3 * nodes.len();
+                    for column in 0..size {
+                        for row in 0..=column {
+                            let [upper, lower] = [column * size + row, row * size + column];
+                            k[upper] = -0.5 * (k[upper] + k[lower]);
+                            k[lower] = k[upper];
+                        }
+                    }
+                    let pairs = nodes.len() * (nodes.len() + 1) / 2;
+                    let map = &self.follower_maps[index][at..at + pairs];
+                    at += pairs;
                     put(
                         &mut self.matrix,
                         self.dofs,
                         &mut self.work,
                         nodes,
                         map,
-                        k.as_mut_slice(),
+                        &mut k[..size * size],
                         increments,
                         rhs,
                     );

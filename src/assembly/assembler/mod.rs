@@ -14,16 +14,14 @@ use crate::model::Model;
 use crate::model::driven::press::PressFault;
 use crate::model::state::State;
 use crate::scene::ValueError;
-use crate::shell::{ElementFault, H8System};
+use crate::shell::ElementFault;
 use covact_geometry::Vec3;
 
 use driven::Border;
+use elements::Systems;
 use std::sync::Arc;
 
 pub use driven::Loose;
-
-/// Elements evaluated before their matrices are summed.
-const CHUNK: usize = 128;
 
 /// What kept the model from being evaluated at a trial state. The step is cut.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -103,7 +101,7 @@ pub struct Assembler<'m> {
     /// Per pair: per point, where its blocks go.
     point_maps: Vec<Vec<u32>>,
     follower_maps: Vec<Vec<u32>>,
-    systems: Vec<H8System>,
+    systems: Systems,
     touches: Vec<Result<Option<Touch>, PointFault>>,
     work: ConstrainedScatter,
     /// Dead loads at the present time.
@@ -114,16 +112,17 @@ pub struct Assembler<'m> {
     pub penalties: Vec<f64>,
 }
 
-const PAIRS: usize = 36;
-
 impl<'m> Assembler<'m> {
     /// Builds the pattern of the model under its constraints.
     pub fn new(model: &'m Model, dofs: &'m DofMap) -> Result<Self, PatternError> {
         let mut groups: Vec<Vec<u32>> = Vec::new();
+        let mut nodes = Vec::new();
         for body in &model.bodies {
             for e in 0..body.block.elements() {
-                let mut group = Vec::with_capacity(8);
-                dofs.extend_nodes(&body.element_nodes(e), &mut group);
+                nodes.clear();
+                nodes.extend(body.element_nodes(e));
+                let mut group = Vec::with_capacity(nodes.len());
+                dofs.extend_nodes(&nodes, &mut group);
                 groups.push(group);
             }
         }
@@ -134,13 +133,15 @@ impl<'m> Assembler<'m> {
         let pattern =
             Pattern::new(model.nodes.len(), groups.iter().map(Vec::as_slice))?.with_border(border);
         let (mut element_maps, mut kinds) = (Vec::new(), Vec::new());
+        let mut extended = Vec::new();
         for body in &model.bodies {
             for e in 0..body.block.elements() {
-                let nodes = body.element_nodes(e);
+                nodes.clear();
+                nodes.extend(body.element_nodes(e));
                 pattern.element_map(&nodes, &mut element_maps)?;
-                let mut extended = Vec::new();
+                extended.clear();
                 dofs.extend_nodes(&nodes, &mut extended);
-                kinds.push(if extended.len() > 8 {
+                kinds.push(if extended.len() > nodes.len() {
                     Kind::Tied
                 } else if dofs.constrains(&nodes) {
                     Kind::Prescribed
@@ -161,7 +162,7 @@ impl<'m> Assembler<'m> {
         for (_, load) in &model.follower_loads {
             let mut maps = Vec::new();
             for nodes in &load.faces {
-                pattern.element_map(nodes, &mut maps)?;
+                pattern.element_map(nodes.nodes(), &mut maps)?;
             }
             follower_maps.push(maps);
         }
@@ -181,7 +182,7 @@ impl<'m> Assembler<'m> {
             kinds,
             point_maps,
             follower_maps,
-            systems: vec![H8System::default(); CHUNK],
+            systems: Systems::new(model),
             touches: vec![Ok(None); most],
             work: ConstrainedScatter::default(),
             external: vec![0.0; n],
@@ -237,21 +238,7 @@ impl<'m> Assembler<'m> {
     ) -> Result<Totals, Fault> {
         residual.fill(0.0);
         let mut totals = Totals::default();
-        let mut first = 0;
-        for body in &self.model.bodies {
-            let len = body.block.state_len();
-            let mut f = [0.0; 24];
-            for e in 0..body.block.elements() {
-                let at = first + e * len;
-                let x = body.displacements(e, &state.u);
-                let energy = (body.block)
-                    .residual(e, &x, &state.elements[at..at + len], &mut f)
-                    .map_err(|fault| element_fault(&body.name, fault))?;
-                totals.internal_energy += energy;
-                add_nodes(residual, &body.element_nodes(e), &f);
-            }
-            first += len * body.block.elements();
-        }
+        self.element_forces(state, residual, &mut totals)?;
         self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
         self.loads::<false>(state, time, None, residual, &mut [])?;
         Ok(totals)
@@ -286,12 +273,5 @@ fn element_fault(body: &str, fault: ElementFault) -> Fault {
     Fault::Element {
         body: body.to_owned(),
         fault,
-    }
-}
-
-fn add_nodes(out: &mut [f64], nodes: &[u32; 8], f: &[f64; 24]) {
-    for (k, &n) in nodes.iter().enumerate() {
-        let at = 3 * n as usize;
-        (0..3).for_each(|c| out[at + c] += f[3 * k + c]);
     }
 }

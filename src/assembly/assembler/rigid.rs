@@ -52,6 +52,7 @@ impl Assembler<'_> {
                 }
             });
             let mut deepest = 0.0f64;
+            let mut ke = [0.0; 729];
             let mut at = 0;
             let maps = &self.point_maps[index];
             for (i, p) in pair.points.iter().enumerate() {
@@ -88,7 +89,6 @@ impl Assembler<'_> {
                     }
                 }
                 if TANGENT {
-                    let mut ke = [0.0; 144];
                     let size = 3 * count;
                     let k = touch.tangent * p.area;
                     for (b, wb) in p.shape[..count].iter().enumerate() {

@@ -115,9 +115,10 @@ impl Groups {
                 let nodes = raw.node_sets.entry(name.clone()).or_default();
                 nodes.extend(&block.nodes);
                 if block.dim == 2 {
+                    // Corners come first.
                     let quads = block
                         .nodes
-                        .chunks_exact(4)
+                        .chunks_exact(block.kind.nodes)
                         .map(|q| [q[0], q[1], q[2], q[3]]);
                     raw.surfaces.entry(name).or_default().extend(quads);
                 }

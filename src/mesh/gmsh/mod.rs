@@ -1,6 +1,6 @@
 //! Reader of gmsh's mesh format 4.1, text and binary (format: gmsh reference manual, "MSH file format").
 //!
-//! Hexahedra of 8 nodes become elements; quadrilaterals of physical surfaces become face sets; the nodes of every
+//! Hexahedra of 8 or of 27 nodes become elements; quadrilaterals of physical surfaces become face sets; the nodes of every
 //! physical group become a node set of its name.
 mod cursor;
 mod groups;
@@ -18,9 +18,20 @@ use std::path::Path;
 /// gmsh numbers the nodes of a face around it; tensor node `a` is gmsh node `TENSOR[a]`.
 const TENSOR: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
+/// Node of gmsh's 27-node hexahedron at tensor place `i + 3 j + 9 k`.
+const TENSOR_27: [usize; 27] = [
+    0, 8, 1, 9, 20, 11, 3, 13, 2, // bottom
+    10, 21, 12, 22, 26, 23, 15, 24, 14, // middle
+    4, 16, 5, 17, 25, 18, 7, 19, 6, // top
+];
+
 const EXPORT: &str = "write the mesh with `gmsh model.geo -3 -format msh41`";
-const HEXAHEDRA: &str = "elements are hexahedra of 8 nodes; use transfinite or extruded layers with `Recombine`, \
-                         `Mesh.ElementOrder = 1` and `Mesh.SubdivisionAlgorithm = 2` where needed";
+const HEXAHEDRA: &str = "elements are hexahedra of 8 nodes (`Mesh.ElementOrder = 1`) or 27 (`Mesh.ElementOrder = 2`); use \
+                         transfinite or extruded layers with `Recombine`, and `Mesh.SubdivisionAlgorithm = 2` where \
+                         needed";
+const SERENDIPITY: &str = "they have no nodes in the middle of their faces; write full second-order elements of 27 nodes \
+                           (`Mesh.SecondOrderIncomplete = 0`, element `q18`) or linear ones (`Mesh.ElementOrder = 1`, \
+                           element `h8`)";
 
 /// Reads the mesh from the bytes of a file; `path` is for messages, `scale` multiplies every coordinate.
 pub fn read_gmsh(bytes: &[u8], path: &Path, scale: f64) -> Result<(Mesh, MeshReport), MeshError> {
@@ -57,9 +68,9 @@ pub(super) struct Block {
 pub(super) struct ElementType {
     number: i32,
     pub name: &'static str,
-    nodes: usize,
+    pub nodes: usize,
     dim: i32,
-    /// Of use here: points, lines, quadrilaterals, hexahedra of first order.
+    /// Of use here: points, lines, quadrilaterals and hexahedra with all nodes of their order.
     used: bool,
 }
 
@@ -86,14 +97,14 @@ const TYPES: [ElementType; 19] = [
     element_type(2, "triangles", 3, 2, false),
     element_type(3, "quadrilaterals", 4, 2, true),
     element_type(9, "quadratic triangles", 6, 2, false),
-    element_type(10, "quadratic quadrilaterals (9 nodes)", 9, 2, false),
+    element_type(10, "quadratic quadrilaterals (9 nodes)", 9, 2, true),
     element_type(16, "quadratic quadrilaterals (8 nodes)", 8, 2, false),
     element_type(4, "tetrahedra", 4, 3, false),
     element_type(5, "hexahedra", 8, 3, true),
     element_type(6, "prisms", 6, 3, false),
     element_type(7, "pyramids", 5, 3, false),
     element_type(11, "quadratic tetrahedra", 10, 3, false),
-    element_type(12, "quadratic hexahedra (27 nodes)", 27, 3, false),
+    element_type(12, "quadratic hexahedra (27 nodes)", 27, 3, true),
     element_type(13, "quadratic prisms (18 nodes)", 18, 3, false),
     element_type(14, "quadratic pyramids (14 nodes)", 14, 3, false),
     element_type(17, "quadratic hexahedra (20 nodes)", 20, 3, false),
@@ -361,7 +372,14 @@ impl Reader<'_> {
             }
             if kind.dim == 3 && !kind.used {
                 let what = format!("a mesh of {} (gmsh type {number})", kind.name);
-                return Err(c.unsupported(at, what, HEXAHEDRA));
+                let help = if number == 17 { SERENDIPITY } else { HEXAHEDRA };
+                return Err(c.unsupported(at, what, help));
+            }
+            let other = (self.blocks.iter()).find(|b| b.dim == 3 && b.kind.number != number);
+            if let Some(other) = other.filter(|_| dim == 3) {
+                let what = format!("a mesh of both {} and {}", other.kind.name, kind.name);
+                let help = "give all volumes the same `Mesh.ElementOrder`";
+                return Err(c.unsupported(at, what, help));
             }
             let each = 1 + kind.nodes as u64;
             let count = c.count("a number of elements in the block", each, 8 * each)?;
@@ -423,8 +441,11 @@ impl Reader<'_> {
             });
         }
         for block in self.blocks.iter().filter(|b| b.dim == 3) {
-            for e in block.nodes.chunks_exact(8) {
+            for e in block.nodes.chunks_exact(block.kind.nodes) {
                 self.raw.hexahedra.push(TENSOR.map(|a| e[a]));
+                if e.len() == 27 {
+                    self.raw.quadratic.push(TENSOR_27.map(|a| e[a]));
+                }
             }
         }
         if !self.skipped.is_empty() {

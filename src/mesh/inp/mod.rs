@@ -1,5 +1,5 @@
 //! Reader of Abaqus' and CalculiX' input files, of the part that describes a mesh: `*NODE`, `*ELEMENT` (C3D8 and its
-//! relatives, SC8R), `*NSET`, `*ELSET`, `*SURFACE, TYPE=ELEMENT` (Abaqus keywords reference; CalculiX manual, ch. 7).
+//! relatives, SC8R, C3D27), `*NSET`, `*ELSET`, `*SURFACE, TYPE=ELEMENT` (Abaqus keywords reference; CalculiX manual, ch. 7).
 //!
 //! Quadrilaterals (S4, CPS4, M3D4, ...) stand for faces: an element set of them becomes a face set, which is how gmsh
 //! writes physical surfaces. As in CalculiX, what a line refers to stands above it.
@@ -18,10 +18,15 @@ const TENSOR: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 /// Local faces of the file's faces S1 to S6.
 const FACES: [u8; 6] = [4, 5, 2, 1, 3, 0];
 const SOLIDS: [&str; 6] = ["C3D8", "C3D8I", "C3D8R", "C3D8H", "C3D8RH", "SC8R"];
+const QUADRATIC_SOLIDS: [&str; 4] = ["C3D27", "C3D27H", "C3D27R", "C3D27RH"];
 const QUADRILATERALS: [&str; 9] = [
     "S4", "S4R", "CPS4", "CPS4R", "CPE4", "CPE4R", "M3D4", "M3D4R", "SFM3D4",
 ];
-const ELEMENTS: &str = "solid elements are C3D8, C3D8I, C3D8R and SC8R, of 8 nodes";
+const QUADRATIC_QUADRILATERALS: [&str; 3] = ["S9R5", "M3D9", "M3D9R"];
+const ELEMENTS: &str =
+    "solid elements are C3D8, C3D8I, C3D8R and SC8R, of 8 nodes, and C3D27 of 27";
+const SERENDIPITY: &str = "it has no nodes in the middle of its faces; use C3D27 with all 27 nodes (element `q18`) or C3D8 \
+                           (element `h8`)";
 const FLAT: &str = "write a flat file: in Abaqus/CAE, Model > Edit Attributes > `Do not use parts and assemblies in \
                     input files`";
 
@@ -196,12 +201,25 @@ impl<'a> Reader<'a> {
                 set,
             });
         }
-        if QUADRILATERALS.contains(&kind.as_str()) {
+        let nodes = if QUADRATIC_SOLIDS.contains(&kind.as_str()) {
+            27
+        } else if QUADRILATERALS.contains(&kind.as_str()) {
+            4
+        } else if QUADRATIC_QUADRILATERALS.contains(&kind.as_str()) {
+            9
+        } else {
+            0
+        };
+        if nodes > 0 {
             return Ok(Mode::Element {
-                nodes: 4,
+                nodes,
                 given: false,
                 set,
             });
+        }
+        if kind.starts_with("C3D20") {
+            let what = format!("element type {kind}");
+            return Err(field.unsupported(self.path, what, SERENDIPITY));
         }
         if kind.starts_with("C3D") || kind.starts_with("SC") {
             let what = format!("element type {kind}");
@@ -404,7 +422,22 @@ impl<'a> Reader<'a> {
         }
         let tag = self.pending[0];
         let node = |a: usize| self.pending[a + 1] as u32;
-        let item = if nodes == 8 {
+        let item = if nodes == 8 || nodes == 27 {
+            let all = self.raw.hexahedra.len() * usize::from(nodes == 27);
+            if self.raw.quadratic.len() != all {
+                let expected = "elements of 8 or of 27 nodes, not both";
+                return Err(field.syntax(self.path, expected));
+            }
+            if nodes == 27 {
+                let all = std::array::from_fn(node);
+                let Some(tensor) = tensor_27(&all, &self.raw.nodes) else {
+                    let expected = "the nodes of element {tag} within its faces and its middle";
+                    return Err(
+                        field.syntax(self.path, &expected.replace("{tag}", &tag.to_string()))
+                    );
+                };
+                self.raw.quadratic.push(tensor);
+            }
             self.raw.hexahedra.push(TENSOR.map(node));
             self.raw.element_tags.push(tag);
             self.raw.thickness_is_given.push(given);
@@ -496,7 +529,10 @@ impl<'a> Reader<'a> {
             let nodes = self.raw.node_sets.entry(name.clone()).or_default();
             for item in items {
                 match *item {
-                    Item::Solid(e) => nodes.extend(self.raw.hexahedra[e as usize]),
+                    Item::Solid(e) => match self.raw.quadratic.get(e as usize) {
+                        Some(all) => nodes.extend(all),
+                        None => nodes.extend(self.raw.hexahedra[e as usize]),
+                    },
                     Item::Quad(q) => {
                         let quad = self.quads[q as usize];
                         nodes.extend(quad);
@@ -521,4 +557,53 @@ impl<'a> Reader<'a> {
         }
         Ok(self.raw)
     }
+}
+
+/// Places `i + 3 j + 9 k` of the file's corners and of the middles of its edges, in the file's order.
+const PLACES: [usize; 20] = [
+    0, 2, 8, 6, 18, 20, 26, 24, // corners
+    1, 5, 7, 3, 19, 23, 25, 21, 9, 11, 17, 15, // edges
+];
+/// Places of the middles of the faces and of the element.
+const INNER: [usize; 7] = [4, 10, 12, 14, 16, 22, 13];
+
+/// Nodes of a 27-node element by their places. The nodes in the middle of faces and of the element, the last seven, are
+/// told apart by where they lie, because programs do not agree on their order. `None` where two lie nearest to the same
+/// place.
+fn tensor_27(nodes: &[u32; 27], positions: &[Vec3]) -> Option<[u32; 27]> {
+    let mut tensor = [u32::MAX; 27];
+    for (place, &node) in PLACES.into_iter().zip(nodes) {
+        tensor[place] = node;
+    }
+    let at = |place: usize| positions[tensor[place] as usize];
+    // Where a 20-node element has these places.
+    let expected = INNER.map(|place| {
+        let c = [place % 3, place / 3 % 3, place / 9];
+        let (mut sum, mut edges, mut corners) = ([Vec3::zeros(); 2], 0, 0);
+        for other in PLACES {
+            let o = [other % 3, other / 3 % 3, other / 9];
+            if (0..3).any(|d| c[d] != 1 && o[d] != c[d]) {
+                continue;
+            }
+            let is_edge = o.contains(&1);
+            sum[usize::from(is_edge)] += at(other);
+            edges += usize::from(is_edge);
+            corners += usize::from(!is_edge);
+        }
+        // Both the face's four edges and the element's twelve weigh 2 resp. 3 in all, its corners one less, negative.
+        let weight = if edges == 4 { 2.0 } else { 3.0 };
+        sum[1] * (weight / edges as f64) - sum[0] * ((weight - 1.0) / corners as f64)
+    });
+    for &node in &nodes[20..] {
+        let x = positions[node as usize];
+        let nearest = (0..7).min_by(|&a, &b| {
+            let distance = |k: usize| (expected[k] - x).norm_squared();
+            distance(a).total_cmp(&distance(b))
+        })?;
+        if tensor[INNER[nearest]] != u32::MAX {
+            return None;
+        }
+        tensor[INNER[nearest]] = node;
+    }
+    Some(tensor)
 }

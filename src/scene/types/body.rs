@@ -51,6 +51,9 @@ pub enum Element {
     H8,
     /// 8-node brick without assumed or enhanced strains (locks when thin; for solids and comparisons).
     H8Displacement,
+    /// 18-node solid-shell, quadratic in its plane and linear through the thickness: assumed membrane, transverse shear and
+    /// thickness strains, four enhanced strains. Curved meshes follow cylinders and spheres closely.
+    Q18,
 }
 
 /// Where a body's mesh comes from.

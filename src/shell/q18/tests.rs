@@ -203,7 +203,9 @@ fn corners_of_the_mesh_are_those_of_the_element() {
         element: 0,
         face: 5,
     };
-    assert_eq!(mesh.face_nodes(top), [9, 11, 15, 17]);
-    // The bilinear face is none of this element's.
-    assert_eq!(crate::shell::face::face_nodes(&mesh, top), None);
+    assert_eq!(mesh.face_corners(top), [9, 11, 15, 17]);
+    assert_eq!(
+        mesh.face_nodes(top).nodes(),
+        [9, 10, 11, 12, 13, 14, 15, 16, 17]
+    );
 }

@@ -1,0 +1,228 @@
+//! The elements of a body, whatever their shape: one trait for the loops, one enum for the body.
+use super::error::{ElementFault, ShellError};
+use super::h8::{H8Block, H8System};
+use super::material::Law;
+use super::q18::{DOFS, Q18Block, Q18System};
+use super::stress::{extrapolate, extrapolate_quadratic};
+use crate::mesh::Mesh;
+use crate::scene::Element;
+use covact_geometry::Vec3;
+
+/// What a loop over the elements of a body needs: elements of `N` nodes, 3 dofs each, numbered `3 node + axis`. Loops are
+/// generic over it, so that the shape is chosen once per body.
+pub trait ElementBlock<const N: usize>: Sync {
+    /// Forces and tangent of one element.
+    type System: ElementSystem;
+    /// Forces alone.
+    type Forces: AsRef<[f64]> + Copy;
+    /// Forces to begin with.
+    const NO_FORCES: Self::Forces;
+
+    /// Number of elements.
+    fn elements(&self) -> usize;
+    /// Nodes of element `e` in the body's mesh.
+    fn nodes_of(&self, e: usize) -> [u32; N];
+    /// Numbers of state per element.
+    fn state_len(&self) -> usize;
+    /// Numbers of enhanced strains per element, at the start of its state.
+    fn alpha_len(&self) -> usize;
+    /// Undeformed volume of element `e`.
+    fn volume(&self, e: usize) -> f64;
+    /// Condensed forces and tangent; see [`H8Block::evaluate`].
+    fn evaluate(
+        &self,
+        e: usize,
+        u: &[Vec3; N],
+        state: &mut [f64],
+        out: &mut Self::System,
+    ) -> Result<(), ElementFault>;
+    /// Forces without tangent, with the condensation cached by the last evaluation; returns the energy. See
+    /// [`H8Block::residual`].
+    fn residual(
+        &self,
+        e: usize,
+        u: &[Vec3; N],
+        state: &[f64],
+        f: &mut Self::Forces,
+    ) -> Result<f64, ElementFault>;
+    /// `alpha = alpha_from - scale D^-1 (h + L du)`; see [`H8Block::update_alpha`].
+    fn update_alpha(&self, state: &mut [f64], du: &[Vec3; N], scale: f64, alpha_from: &[f64]);
+    /// Cauchy stress (xx, yy, zz, xy, yz, xz) at the nodes, extended from the Gauss points of the element.
+    fn nodal_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; N],
+        state: &[f64],
+        out: &mut [[f64; 6]; N],
+    ) -> Result<(), ElementFault>;
+}
+
+/// Forces and tangent of one element.
+pub trait ElementSystem: Clone + Default + Send {
+    /// Forces, tangent by columns, strain energy.
+    fn parts(&mut self) -> (&[f64], &mut [f64], f64);
+}
+
+impl ElementSystem for H8System {
+    #[inline]
+    fn parts(&mut self) -> (&[f64], &mut [f64], f64) {
+        (&self.f, &mut self.k, self.energy)
+    }
+}
+
+impl ElementSystem for Q18System {
+    #[inline]
+    fn parts(&mut self) -> (&[f64], &mut [f64], f64) {
+        (&self.f, &mut self.k[..], self.energy)
+    }
+}
+
+/// Methods that the blocks have under the same names.
+macro_rules! delegate {
+    ($n:literal) => {
+        #[inline]
+        fn elements(&self) -> usize {
+            self.elements()
+        }
+        #[inline]
+        fn nodes_of(&self, e: usize) -> [u32; $n] {
+            self.nodes_of(e)
+        }
+        fn volume(&self, e: usize) -> f64 {
+            self.volume(e)
+        }
+        #[inline]
+        fn evaluate(
+            &self,
+            e: usize,
+            u: &[Vec3; $n],
+            state: &mut [f64],
+            out: &mut Self::System,
+        ) -> Result<(), ElementFault> {
+            self.evaluate(e, u, state, out)
+        }
+        #[inline]
+        fn residual(
+            &self,
+            e: usize,
+            u: &[Vec3; $n],
+            state: &[f64],
+            f: &mut Self::Forces,
+        ) -> Result<f64, ElementFault> {
+            self.residual(e, u, state, f)
+        }
+        #[inline]
+        fn update_alpha(&self, state: &mut [f64], du: &[Vec3; $n], scale: f64, from: &[f64]) {
+            self.update_alpha(state, du, scale, from)
+        }
+    };
+}
+
+impl ElementBlock<8> for H8Block {
+    type System = H8System;
+    type Forces = [f64; 24];
+    const NO_FORCES: [f64; 24] = [0.0; 24];
+    delegate!(8);
+
+    #[inline]
+    fn state_len(&self) -> usize {
+        self.state_len()
+    }
+    #[inline]
+    fn alpha_len(&self) -> usize {
+        self.alpha_len()
+    }
+    fn nodal_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; 8],
+        state: &[f64],
+        out: &mut [[f64; 6]; 8],
+    ) -> Result<(), ElementFault> {
+        let mut points = [[0.0; 6]; 8];
+        self.stresses(e, u, state, &mut points)?;
+        *out = extrapolate(&points);
+        Ok(())
+    }
+}
+
+impl ElementBlock<18> for Q18Block {
+    type System = Q18System;
+    type Forces = [f64; DOFS];
+    const NO_FORCES: [f64; DOFS] = [0.0; DOFS];
+    delegate!(18);
+
+    #[inline]
+    fn state_len(&self) -> usize {
+        Q18Block::STATE_LEN
+    }
+    #[inline]
+    fn alpha_len(&self) -> usize {
+        Q18Block::ALPHA_LEN
+    }
+    fn nodal_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; 18],
+        state: &[f64],
+        out: &mut [[f64; 6]; 18],
+    ) -> Result<(), ElementFault> {
+        let mut points = [[0.0; 6]; 18];
+        self.stresses(e, u, state, &mut points)?;
+        *out = extrapolate_quadratic(&points);
+        Ok(())
+    }
+}
+
+/// The elements of one body.
+#[derive(Debug, Clone)]
+pub enum Block {
+    /// Elements of 8 nodes, of any formulation.
+    H8(H8Block),
+    /// Quadratic elements of 18 nodes.
+    Q18(Q18Block),
+}
+
+/// Runs a block of code with `$block` bound to the concrete elements of a [`Block`].
+macro_rules! with_block {
+    ($enum:expr, $block:ident => $body:expr) => {
+        match $enum {
+            $crate::shell::Block::H8($block) => $body,
+            $crate::shell::Block::Q18($block) => $body,
+        }
+    };
+}
+pub(crate) use with_block;
+
+impl Block {
+    /// Sets up the elements that a scene asks for.
+    ///
+    /// # Errors
+    /// Those of [`H8Block::new`] and [`Q18Block::new`].
+    pub fn new(mesh: &Mesh, element: Element, law: Law) -> Result<Block, ShellError> {
+        Ok(match super::Formulation::of(element) {
+            Some(formulation) => Block::H8(H8Block::new(mesh, formulation, law)?),
+            None => Block::Q18(Q18Block::new(mesh, law)?),
+        })
+    }
+
+    /// Number of elements.
+    pub fn elements(&self) -> usize {
+        with_block!(self, b => b.elements())
+    }
+
+    /// Numbers of state per element.
+    pub fn state_len(&self) -> usize {
+        with_block!(self, b => ElementBlock::state_len(b))
+    }
+
+    /// Numbers of enhanced strains per element, at the start of its state.
+    pub fn alpha_len(&self) -> usize {
+        with_block!(self, b => ElementBlock::alpha_len(b))
+    }
+
+    /// The law of all elements.
+    pub fn law(&self) -> Law {
+        with_block!(self, b => b.law())
+    }
+}
