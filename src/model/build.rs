@@ -5,6 +5,7 @@ mod values;
 
 use super::error::{At, number, text};
 use super::loads::{DeadLoad, FollowerPressure, load_points};
+use super::motion::pose;
 use super::slave::slave_points;
 use super::{BodyModel, Model, ModelError, PairModel, SurfaceModel, penalty};
 use crate::mesh::{self, Face, Mesh};
@@ -13,6 +14,7 @@ use crate::scene::{
 };
 use crate::shell::{H8Block, Law};
 use covact_geometry::Vec3;
+use nalgebra::Point3;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -115,6 +117,17 @@ fn mesh_error(body: &str, source: &MeshSource, error: mesh::MeshError) -> ModelE
     error
 }
 
+/// Puts a mesh where the scene wants it.
+fn place(mesh: &mut Mesh, placement: &scene::Placement) {
+    if *placement == scene::Placement::default() {
+        return;
+    }
+    let pose = pose(placement);
+    for x in &mut mesh.nodes {
+        *x = (pose * Point3::from(*x * placement.scale)).coords;
+    }
+}
+
 /// Where a body lies, for selections that miss it.
 fn extent(body: &str, mesh: &Mesh) -> String {
     let [low, high] = mesh.bounds();
@@ -136,6 +149,7 @@ impl<'s> Builder<'s> {
             let at = || format!("/bodies/{name}/mesh");
             let (mut mesh, report) =
                 mesh::build(&body.mesh, self.dir).map_err(|e| mesh_error(name, &body.mesh, e))?;
+            place(&mut mesh, &body.placement);
             for (set, selection) in &body.sets {
                 mesh.add_set(set, selection)
                     .at(|| format!("/bodies/{name}/sets/{set}"))

@@ -27,6 +27,14 @@ pub fn rotation(axis: [f64; 3], degrees: f64) -> UnitQuaternion<f64> {
     }
 }
 
+/// Rotation and translation of a placement; its scale is for the caller to apply first.
+pub fn pose(placement: &scene::Placement) -> Isometry3<f64> {
+    Isometry3::from_parts(
+        Translation3::from(Vec3::from(placement.translation)),
+        rotation(placement.axis, placement.angle),
+    )
+}
+
 impl Motion {
     /// Compiles the scene's motion. The scale of the placement is applied to the surface itself, not here.
     pub fn new(motion: &scene::Motion, placement: &scene::Placement) -> Result<Self, ValueError> {
@@ -45,10 +53,7 @@ impl Motion {
                 .transpose()?,
         };
         Ok(Motion {
-            placement: Isometry3::from_parts(
-                Translation3::from(Vec3::from(placement.translation)),
-                self::rotation(placement.axis, placement.angle),
-            ),
+            placement: pose(placement),
             translation: [compile(x)?, compile(y)?, compile(z)?],
             rotation,
         })

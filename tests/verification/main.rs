@@ -2,6 +2,7 @@
 mod die;
 mod hertz;
 mod loads;
+mod placed;
 mod plate_under_ball;
 mod punch;
 mod strip_over_cylinder;

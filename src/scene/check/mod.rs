@@ -31,6 +31,7 @@ pub fn check(loaded: &LoadedScene) -> Vec<Problem> {
             scene.materials.keys(),
         );
         shapes::check_mesh(&mut c, &format!("{at}/mesh"), &body.mesh);
+        shapes::check_placement(&mut c, &format!("{at}/placement"), &body.placement);
         for (set, selection) in &body.sets {
             let at = path(&["bodies", name, "sets", set]);
             shapes::check_selection(&mut c, &at, selection);

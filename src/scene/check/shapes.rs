@@ -196,6 +196,13 @@ pub(super) fn check_selection(c: &mut Checker, at: &str, selection: &Selection) 
     }
 }
 
+pub(super) fn check_placement(c: &mut Checker, at: &str, placement: &Placement) {
+    c.positive(&format!("{at}/scale"), "the scale", placement.scale);
+    c.direction(&format!("{at}/axis"), "the rotation axis", placement.axis);
+    c.finite(&format!("{at}/angle"), &[placement.angle]);
+    c.finite(&format!("{at}/translation"), &placement.translation);
+}
+
 pub(super) fn check_surface(c: &mut Checker, at: &str, surface: &Surface) {
     c.exactly_one(
         at,
@@ -233,16 +240,7 @@ pub(super) fn check_surface(c: &mut Checker, at: &str, surface: &Surface) {
             );
         }
     }
-    c.positive(
-        &format!("{at}/placement/scale"),
-        "the scale",
-        surface.placement.scale,
-    );
-    c.direction(
-        &format!("{at}/placement/axis"),
-        "the rotation axis",
-        surface.placement.axis,
-    );
+    check_placement(c, &format!("{at}/placement"), &surface.placement);
     if let Some(depth) = surface.depth {
         c.positive(&format!("{at}/depth"), "the depth", depth);
     }

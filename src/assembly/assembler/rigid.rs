@@ -1,0 +1,150 @@
+//! Contact with rigid surfaces: the slave points of a pair are evaluated in parallel and summed in order.
+use super::{Assembler, Fault, SurfaceForce, Totals, put};
+use crate::contact::law::{NormalLaw, Penalty};
+use crate::contact::published::Parts;
+use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
+use crate::model::state::{PointState, State};
+use crate::model::{Model, PairModel};
+use crate::scene::Tangent;
+use rayon::prelude::*;
+
+impl Assembler<'_> {
+    pub(super) fn contacts<const TANGENT: bool>(
+        &mut self,
+        state: &mut State,
+        time: f64,
+        increments: Option<&[f64]>,
+        residual: &mut [f64],
+        rhs: &mut [f64],
+        totals: &mut Totals,
+    ) -> Result<(), Fault> {
+        totals.surfaces = vec![SurfaceForce::default(); self.model.surfaces.len()];
+        self.contact.fill(0.0);
+        let mut first = 0;
+        for (index, pair) in self.model.pairs.iter().enumerate() {
+            let surface = &self.model.surfaces[pair.surface];
+            let master = surface.at(time)?;
+            let n = pair.points.len();
+            let points = &mut state.points[first..first + n];
+            let touches = &mut self.touches[..n];
+            let u = &state.u;
+            let law = Penalty {
+                eps_n: self.penalties[index],
+            };
+            let batch = Batch {
+                model: self.model,
+                pair,
+                master: &master,
+                law: &law,
+                u,
+            };
+            match pair.tangent {
+                Tangent::Exact => batch.evaluate(points, touches, &Exact),
+                Tangent::Published {
+                    rotational,
+                    curvature,
+                } => {
+                    let parts = Parts {
+                        rotational,
+                        curvature,
+                    };
+                    batch.evaluate(points, touches, &parts)
+                }
+            }
+            let mut deepest = 0.0f64;
+            let mut at = 0;
+            let maps = &self.point_maps[index];
+            for (i, p) in pair.points.iter().enumerate() {
+                let count = p.count as usize;
+                let pairs = count * (count + 1) / 2;
+                let map = &maps[at..at + pairs];
+                at += pairs;
+                let touch = match &touches[i] {
+                    Err(fault) => {
+                        let x = self.model.point_position(p, u);
+                        return Err(Fault::Contact {
+                            pair: pair.name.clone(),
+                            point: i,
+                            at: [x.x, x.y, x.z],
+                            fault: *fault,
+                        });
+                    }
+                    Ok(touch) => touch,
+                };
+                totals.changed += usize::from(touch.is_some() != points[i].closed);
+                points[i].closed = touch.is_some();
+                let Some(touch) = touch else { continue };
+                totals.active += 1;
+                deepest = deepest.max(-touch.xi3);
+                totals.contact_energy += 0.5 * touch.n * touch.xi3 * p.area;
+                let force = touch.residual * p.area;
+                let on = &mut totals.surfaces[pair.surface];
+                on.force -= force;
+                on.moment -= self.model.point_position(p, u).cross(&force);
+                for (node, w) in p.terms() {
+                    for c in 0..3 {
+                        residual[3 * node + c] += w * force[c];
+                        self.contact[3 * node + c] += w * force[c];
+                    }
+                }
+                if TANGENT {
+                    let mut ke = [0.0; 144];
+                    let size = 3 * count;
+                    let k = touch.tangent * p.area;
+                    for (b, wb) in p.shape[..count].iter().enumerate() {
+                        for (a, wa) in p.shape[..count].iter().enumerate() {
+                            for c in 0..3 {
+                                for r in 0..3 {
+                                    ke[(3 * b + c) * size + 3 * a + r] = wa * wb * k[(r, c)];
+                                }
+                            }
+                        }
+                    }
+                    let ke = &mut ke[..size * size];
+                    put(
+                        &mut self.matrix,
+                        self.dofs,
+                        &mut self.work,
+                        &p.nodes[..count],
+                        map,
+                        ke,
+                        increments,
+                        rhs,
+                    );
+                }
+            }
+            totals.penetration.push(deepest);
+            first += n;
+        }
+        totals.contact_norm = self.contact.iter().map(|f| f * f).sum::<f64>().sqrt();
+        Ok(())
+    }
+}
+
+/// The slave points of a pair at one trial state.
+struct Batch<'a, L> {
+    model: &'a Model,
+    pair: &'a PairModel,
+    master: &'a RigidMaster<'a>,
+    law: &'a L,
+    u: &'a [f64],
+}
+
+impl<L: NormalLaw> Batch<'_, L> {
+    /// Evaluates every point; law and tangent are types here, nothing is chosen inside the loop.
+    fn evaluate<T: RigidTangent>(
+        &self,
+        states: &mut [PointState],
+        touches: &mut [Result<Option<Touch>, PointFault>],
+        tangent: &T,
+    ) {
+        (self.pair.points.par_iter())
+            .zip(states.par_iter_mut())
+            .zip(touches.par_iter_mut())
+            .with_min_len(64)
+            .for_each(|((p, s), out)| {
+                let x = self.model.point_position(p, self.u);
+                *out = self.master.touch(&x, &mut s.hint, self.law, tangent);
+            });
+    }
+}

@@ -1,0 +1,64 @@
+//! Supports and loads.
+use crate::scene::value::Value;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A support: exactly one of `fixed`, `symmetry`, `displacement`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Support {
+    /// Node or face set, `body.set`.
+    pub on: String,
+    /// All three components are zero.
+    #[serde(default)]
+    pub fixed: bool,
+    /// The displacement along this axis is zero.
+    #[serde(default)]
+    pub symmetry: Option<Axis>,
+    /// Prescribed components.
+    #[serde(default)]
+    pub displacement: Option<Components>,
+    /// Acts on the mean of both faces of the shell (the mid-surface), which leaves rotation and thickness free: with
+    /// all three components a hinge that holds its place, with one a soft support.
+    #[serde(default)]
+    pub mid_surface: bool,
+}
+
+/// A coordinate axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// Components of a displacement; what is not named stays free. Expressions may use x, y, z (undeformed) and t.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Components {
+    pub x: Option<Value>,
+    pub y: Option<Value>,
+    pub z: Option<Value>,
+}
+
+/// A load: exactly one of `force`, `traction`, `pressure`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{"required": ["force"]}, {"required": ["traction"]}, {"required": ["pressure"]}]))]
+pub struct Load {
+    /// Node or face set, `body.set` (traction and pressure need faces).
+    pub on: String,
+    /// Total force, spread evenly over the nodes of a node set, over the area of a face set.
+    #[serde(default)]
+    pub force: Option<[Value; 3]>,
+    /// Force per undeformed area, of constant direction. Expressions may use x, y, z and t.
+    #[serde(default)]
+    pub traction: Option<[Value; 3]>,
+    /// Pressure against the outward normal (force / area). Expressions may use x, y, z and t; those of a follower t.
+    #[serde(default)]
+    pub pressure: Option<Value>,
+    /// The pressure follows the deformed faces (their area and normal).
+    #[serde(default)]
+    pub follower: bool,
+}

@@ -1,0 +1,129 @@
+//! Rigid surfaces: CAD files and exact shapes, their place and their side.
+use super::motion::Motion;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// A rigid surface: exactly one of `cad`, `sphere`, `cylinder`, `plane`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[schemars(extend("oneOf" = [{"required": ["cad"]}, {"required": ["sphere"]}, {"required": ["cylinder"]}, {"required": ["plane"]}]))]
+pub struct Surface {
+    /// NURBS patches from a CAD file.
+    pub cad: Option<CadFile>,
+    /// Exact sphere.
+    pub sphere: Option<SphereShape>,
+    /// Exact circular cylinder.
+    pub cylinder: Option<CylinderShape>,
+    /// Flat rectangle.
+    pub plane: Option<PlaneShape>,
+    /// Placement: first rotated, then moved.
+    pub placement: Placement,
+    /// Which side is outside.
+    pub side: Side,
+    /// A point deeper than this below the surface is not in contact (length); default: a tenth of the surface's size.
+    pub depth: Option<f64>,
+    pub motion: Motion,
+}
+
+/// A CAD file: IGES (`.igs`, `.iges`) or JSON (Kratos `.cad.json`, geomdl).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CadFile {
+    /// Path relative to the scene file.
+    pub file: PathBuf,
+    /// Use only these entities (IGES: directory sequence numbers, as `covact inspect` prints them; JSON: face ids).
+    /// Default: all.
+    #[serde(default)]
+    pub entities: Vec<u32>,
+    /// Go on although the file holds surfaces that cannot be read (they are reported).
+    #[serde(default)]
+    pub allow_skipped: bool,
+    /// Edges of patches closer than this are the same edge (length); default from the file's own resolution.
+    #[serde(default)]
+    pub tolerance: Option<f64>,
+}
+
+/// An exact sphere.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SphereShape {
+    pub radius: f64,
+    #[serde(default)]
+    pub center: [f64; 3],
+    /// Axis through the poles of the parametrisation; default y.
+    #[serde(default = "axis_y")]
+    pub axis: [f64; 3],
+}
+
+/// An exact circular cylinder without its ends.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderShape {
+    pub radius: f64,
+    pub length: f64,
+    /// Centre of the cylinder, in the middle of its length.
+    #[serde(default)]
+    pub center: [f64; 3],
+    #[serde(default = "axis_y")]
+    pub axis: [f64; 3],
+}
+
+/// A flat rectangle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneShape {
+    #[serde(default)]
+    pub center: [f64; 3],
+    #[serde(default = "axis_z")]
+    pub normal: [f64; 3],
+    /// Edge lengths of the rectangle.
+    pub size: [f64; 2],
+}
+
+/// Rigid placement of a surface before it moves, or of a mesh, with an optional scale.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Placement {
+    /// Multiplies every coordinate (of a CAD file after its units were converted).
+    pub scale: f64,
+    /// Rotation axis through the origin.
+    pub axis: [f64; 3],
+    /// Degrees.
+    pub angle: f64,
+    pub translation: [f64; 3],
+}
+
+/// Which side of a rigid surface is outside (where the bodies are).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Where the slave faces start.
+    #[default]
+    Auto,
+    /// The side of rho_1 x rho_2 of the first patch in the file (the others follow over shared edges).
+    AsGiven,
+    /// The opposite of `as_given`.
+    Reversed,
+    /// The side on which this point lies.
+    Point([f64; 3]),
+}
+
+impl Default for Placement {
+    fn default() -> Self {
+        Placement {
+            scale: 1.0,
+            axis: [0.0, 0.0, 1.0],
+            angle: 0.0,
+            translation: [0.0; 3],
+        }
+    }
+}
+
+fn axis_y() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+fn axis_z() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}
