@@ -15,7 +15,7 @@ const BATCH: usize = 100;
 
 /// Seconds for all batches, of each the best pass of those that fit into its time, at least five.
 fn time(batches: usize, mut pass: impl FnMut(usize)) -> f64 {
-    let mut one = |batch: usize| {
+    let one = |batch: usize| {
         let start = Instant::now();
         let mut best = f64::INFINITY;
         let mut passes = 0;
