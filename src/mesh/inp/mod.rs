@@ -433,10 +433,9 @@ impl<'a> Reader<'a> {
             if nodes == 27 {
                 let all = std::array::from_fn(node);
                 let Some(tensor) = tensor_27(&all, &self.raw.nodes) else {
-                    let expected = "the nodes of element {tag} within its faces and its middle";
-                    return Err(
-                        field.syntax(self.path, &expected.replace("{tag}", &tag.to_string()))
-                    );
+                    let expected =
+                        format!("the nodes of element {tag} within its faces and its middle");
+                    return Err(field.syntax(self.path, &expected));
                 };
                 self.raw.quadratic.push(tensor);
             }
