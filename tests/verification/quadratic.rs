@@ -203,6 +203,8 @@ fn ball(n: u32, points: Value) -> Outcome {
     set(&mut scene, "/bodies/plate/mesh/plate/elements", vec![n, n]);
     set(&mut scene, "/contacts/press/points", points);
     scene["bodies"]["plate"]["element"] = "q18".into();
+    // The steps change the way to a force, not the force.
+    scene["solution"]["step"] = json!({ "initial": 0.25, "max": 0.25 });
     scene["output"] = json!({ "every": 0 });
     done(&scene)
 }
@@ -239,25 +241,20 @@ fn plate_under_a_ball_converges_to_the_curve_of_linear_elements() {
 /// Simpson's weights their tributary areas: the same run.
 #[test]
 fn contact_at_nodes_and_at_quadrature_points() {
-    let [two, three, nodes, lobatto] = [
-        json!({ "gauss": 2 }),
-        json!({ "gauss": 3 }),
-        json!("nodes"),
-        json!({ "lobatto": 3 }),
-    ]
-    .map(|points| forces(&ball(10, points)));
+    let [nodes, lobatto] =
+        [json!("nodes"), json!({ "lobatto": 3 })].map(|points| forces(&ball(5, points)));
     for i in 0..4 {
         assert!(
             (lobatto[i] / nodes[i] - 1.0).abs() < 1e-9,
             "{lobatto:?} {nodes:?}"
         );
     }
-    for f in [two, three] {
-        assert!((f[3] / 16626.0 - 1.0).abs() < 3e-3, "{f:?}");
-    }
+    let two = forces(&ball(10, json!({ "gauss": 2 })));
+    assert!((two[3] / 16626.0 - 1.0).abs() < 3e-3, "{two:?}");
     // Nodes are 2.5 apart where the contact's edge moves over them.
+    let nodes = forces(&ball(10, json!("nodes")));
     assert!((nodes[3] / 16626.0 - 1.0).abs() < 1e-2, "{nodes:?}");
-    assert_ne!(nodes[3], three[3]);
+    assert_ne!(nodes[3], two[3]);
 }
 
 /// A plate lying on a wide flat tool under uniform pressure: every slave point of a quadratic face carries the
