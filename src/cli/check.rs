@@ -220,6 +220,9 @@ fn meaning(effect: &str) -> &'static str {
         "material.neo_hooke" => "rubber-like law for large strains",
         "contact.normal.penalty" => "contact pressure = penalty times penetration, no friction",
         "contact.master.rigid" => "surfaces do not deform",
+        "surface.driven_by_force" => {
+            "components of a surface's motion are unknowns with given forces"
+        }
         "contact.points.nodes" => "contact is sampled at nodes",
         "contact.points.gauss" => "contact is sampled at Gauss points of the faces",
         "contact.points.lobatto" => "contact is sampled at Lobatto points of the faces",
