@@ -236,6 +236,9 @@ fn meaning(effect: &str) -> &'static str {
         "contact.master.rigid" => "rigid surfaces",
         "contact.master.deformable" => "faces of bodies that deform",
         "contact.master.smooth" => "one smooth surface through the nodes of the faces",
+        "surface.driven_by_force" => {
+            "components of a surface's motion are unknowns with given forces"
+        }
         "contact.points.nodes" => "contact is sampled at nodes",
         "contact.points.gauss" => "contact is sampled at Gauss points of the faces",
         "contact.points.lobatto" => "contact is sampled at Lobatto points of the faces",
