@@ -269,6 +269,7 @@ fn a_summary_reads_back() {
         newton_iterations: 41,
         steps: 3,
         cuts: 1,
+        pattern_rebuilds: 0,
         effects: vec!["normal contact".into()],
         warnings: vec!["slave points are coarse".into()],
         versions: Versions::default(),

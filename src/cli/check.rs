@@ -222,6 +222,7 @@ fn meaning(effect: &str) -> &'static str {
         "contact.normal.penalty" => "contact pressure = penalty times penetration, no friction",
         "contact.master.rigid" => "rigid surfaces",
         "contact.master.deformable" => "faces of bodies that deform",
+        "contact.self" => "faces of a body touch faces of the same body",
         "contact.master.smooth" => "one smooth surface through the nodes of the faces",
         "contact.points.nodes" => "contact is sampled at nodes",
         "contact.points.gauss" => "contact is sampled at Gauss points of the faces",

@@ -1,5 +1,6 @@
 //! Scene to model.
 mod contacts;
+mod master_faces;
 mod supports;
 mod surfaces;
 mod values;

@@ -42,6 +42,13 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
             Tangent::Published { .. } => "contact.tangent.published",
         });
     }
+    if model
+        .pairs
+        .iter()
+        .any(|p| p.body_master().is_some_and(|m| m.own.is_some()))
+    {
+        add("contact.self");
+    }
     if !model.dead_loads.is_empty() {
         add("load.dead");
     }

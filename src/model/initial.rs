@@ -1,8 +1,12 @@
 //! How the contact pairs stand before anything moves.
 use super::error::{number, text};
-use super::master::Master;
-use super::{Model, ModelError};
+use super::master::{Master, Masters};
+use super::{Model, ModelError, PairModel};
+use crate::contact::points::SlavePoint;
 use covact_geometry::Vec3;
+
+/// Cosine between the normals of slave and master above which their faces look the same way.
+const SAME_WAY: f64 = 0.5;
 
 /// Initial gaps of a pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,6 +19,9 @@ pub struct InitialGap {
     pub touching: usize,
     /// Points that start behind the surface, deeper than its search depth: they are not in contact.
     pub behind: usize,
+    /// Mean of `n_slave . n_master` at the points nearest to the master (within an element of the nearest); above zero
+    /// the faces look the same way. None for rigid masters.
+    pub facing: Option<f64>,
     /// At the nearest point, the body lies between its slave face and the surface: the wrong face is the slave.
     pub turned_away: bool,
 }
@@ -22,22 +29,25 @@ pub struct InitialGap {
 /// Distances of all points of pair `index` at time 0, wherever they are.
 pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError> {
     let pair = &model.pairs[index];
-    // Surfaces of bodies are kept at their undeformed positions in the model.
-    let master = (pair.master.at(model, 0.0))
-        .map_err(|e| text(format!("/contacts/{}/master", pair.name), e.to_string()))?;
     let zero = vec![0.0; 3 * model.nodes.len()];
+    let masters = Masters::new(model);
+    let master = (masters.at(model, index, &zero, 0.0))
+        .map_err(|e| text(format!("/contacts/{}/master", pair.name), e.to_string()))?;
     let mut gap = InitialGap {
         smallest: f64::INFINITY,
         largest: f64::NEG_INFINITY,
         touching: 0,
         behind: 0,
+        facing: None,
         turned_away: false,
     };
     let mut hint = None;
     let mut nearest = None;
+    let mut facing: Vec<(f64, f64)> = Vec::new();
+    let normals = pair.body_master().map(|_| slave_normals(model, pair));
     for (i, p) in pair.points.iter().enumerate() {
         let x = model.point_position(p, &zero);
-        let Some(seen) = master.see(pair, i, &x, hint) else {
+        let Some(seen) = master.see(i, &x, hint) else {
             continue;
         };
         hint = Some(seen.hint);
@@ -46,14 +56,41 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
             gap.smallest = distance;
             nearest = Some((p.nodes[0], x, seen.normal));
         }
+        if let Some(normals) = &normals {
+            facing.push((seen.distance, normals[i].dot(&seen.normal)));
+        }
         gap.largest = gap.largest.max(distance);
         gap.touching += usize::from(seen.closed);
         gap.behind += usize::from(seen.behind);
+    }
+    let least = facing.iter().fold(f64::INFINITY, |a, f| a.min(f.0));
+    let near = |f: &&(f64, f64)| f.0 <= least + pair.element_size;
+    let near: Vec<f64> = facing.iter().filter(near).map(|f| f.1).collect();
+    if !near.is_empty() {
+        gap.facing = Some(near.iter().sum::<f64>() / near.len() as f64);
     }
     if let Some((node, x, n)) = nearest {
         gap.turned_away = turned_away(model, pair.body, node, &x, &n);
     }
     Ok(gap)
+}
+
+/// Outward unit normals of the undeformed slave faces at the points of a pair.
+fn slave_normals(model: &Model, pair: &PairModel) -> Vec<Vec3> {
+    let body = &model.bodies[pair.body];
+    let mut at_node = vec![Vec3::zeros(); body.mesh.nodes.len()];
+    for &face in &pair.faces {
+        let (area, normal) = body.mesh.face_area_normal(face);
+        for &n in body.mesh.face_nodes(face).nodes() {
+            at_node[n as usize] += normal * area;
+        }
+    }
+    let first = body.first_node as usize;
+    let normal = |p: &SlavePoint| {
+        let sum = (p.terms()).fold(Vec3::zeros(), |s, (n, w)| s + at_node[n - first] * w);
+        sum.try_normalize(0.0).unwrap_or_else(Vec3::zeros)
+    };
+    pair.points.iter().map(normal).collect()
 }
 
 /// Whether the elements at a node lie clearly behind the point `x` as seen along the outward normal `n` of the surface
@@ -78,6 +115,24 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
     for (index, pair) in model.pairs.iter().enumerate() {
         let master = pair.master_words(model);
         let gap = initial_gap(model, index)?;
+        if let Some(master) = pair.body_master()
+            && gap.facing.is_some_and(|cosine| cosine > SAME_WAY)
+        {
+            // The elements of the slave tell which of the two is wrong.
+            let (side, set) = match gap.turned_away {
+                true => ("slave", &pair.slave),
+                false => ("master", &master.name),
+            };
+            return Err(text(
+                format!("/contacts/{}/{side}", pair.name),
+                format!(
+                    "the faces `{}` and `{}` look the same way where they are closest: `{set}` lies on the side of its \
+                     body that is turned away from the other",
+                    pair.slave, master.name
+                ),
+            )
+            .help("take the faces on the other side of that body, whose outward normals point at the other faces"));
+        }
         notes.push(format!(
             "contact `{}`: initial gaps from {} to {} at {} points, {} of them in contact",
             pair.name,

@@ -9,13 +9,14 @@ pub mod loads;
 pub mod master;
 pub mod motion;
 pub mod penalty;
+pub mod self_contact;
 pub mod slave;
 pub mod state;
 
 use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::RigidMaster;
-use crate::mesh::Mesh;
+use crate::mesh::{Face, Mesh};
 use crate::scene::{Tangent, TimeFunction, ValueError};
 use crate::shell::{Block, ElementBlock};
 use constraints::{MeanPrescribed, Prescribed};
@@ -78,7 +79,11 @@ pub struct SurfaceModel {
 #[derive(Debug)]
 pub struct PairModel {
     pub name: String,
+    /// The slave faces, `body.set`.
+    pub slave: String,
     pub body: usize,
+    /// The slave faces.
+    pub faces: Vec<Face>,
     pub master: Master,
     pub points: Vec<SlavePoint>,
     /// Penalty (force / length^3).

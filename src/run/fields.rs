@@ -98,13 +98,13 @@ impl Fields {
         self.sunk.fill(0);
         let mut first = 0;
         for (index, (pair, eps_n)) in model.pairs.iter().zip(penalties).enumerate() {
-            let master = masters.at(model, index, time)?;
+            let master = masters.at(model, index, &state.u, time)?;
             let states = &state.points[first..first + pair.points.len()];
             let fronts = &mut self.front[first..first + pair.points.len()];
             for (i, ((p, s), front)) in pair.points.iter().zip(states).zip(fronts).enumerate() {
                 let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
-                let seen = master.see(pair, i, &x, s.hint);
+                let seen = master.see(i, &x, s.hint);
                 let closed = seen.is_some_and(|s| s.closed);
                 let sunk = seen.is_some_and(|s| s.behind);
                 self.sunk[index] += usize::from(*front && sunk);
