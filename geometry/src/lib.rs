@@ -9,6 +9,8 @@
 //!   [`Foot`] says where it lies (face, edge, corner, crease, pole), how sure it is, and on which side the point is.
 //! - **Facets** ([`Bilinear`], [`Biquadratic`]): cut from patches, read from STL, or the faces of finite elements. They are
 //!   surfaces as well, so all of the above holds for them.
+//! - **Moving facets** ([`MovingFacets`]): facets whose nodes move from step to step, as they are or as one smooth surface,
+//!   with the shape functions of the nodes and a search tree that is refitted.
 //!
 //! ```
 //! use covact_geometry::{Location, NurbsPatch, PatchSet, Status, Vec3};

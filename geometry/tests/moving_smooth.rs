@@ -145,16 +145,17 @@ fn planes_are_planes() {
 fn error(set: &MovingFacets, distance: impl Fn(&Vec3) -> f64) -> f64 {
     let mut worst = 0.0f64;
     for facet in 0..set.len() as u32 {
-        for k in 0..49 {
-            let xi = [k % 7, k / 7].map(|k| k as f64 / 3.0 - 1.0);
+        for k in 0..25 {
+            let xi = [k % 5, k / 5].map(|k| k as f64 / 2.0 - 1.0);
             worst = worst.max(distance(&set.jet(facet, xi).rho).abs());
         }
     }
     worst
 }
 
-/// Rates of the distance from cylinder, sphere and torus under refinement: 4 where a circle is sampled evenly, at least 3 at
-/// borders and irregular nodes.
+/// Rates of the distance from cylinder, sphere and torus under refinement: 4 where a circle is sampled evenly; 3 on a sphere
+/// whose mesh has nodes of three facets and lines with kinks, which is approached from below (2.6, 2.8, 2.9 with 8, 16, 32, 64
+/// facets along an edge of the cube).
 #[test]
 fn curved_surfaces_converge() {
     let cylinder = |n: usize| {
@@ -180,12 +181,12 @@ fn curved_surfaces_converge() {
     );
     let cases: [Case; 4] = [
         ("cylinder", &cylinder, &radial, 3.9),
-        ("quarter of a cylinder", &quarter, &radial, 2.9),
-        ("torus", &|n| torus([3 * n, 2 * n], 1), &ring, 3.8),
-        ("sphere", &ball, &round, 2.9),
+        ("quarter of a cylinder", &quarter, &radial, 3.9),
+        ("torus", &|n| torus([2 * n, n], 1), &ring, 3.8),
+        ("sphere", &ball, &round, 2.7),
     ];
     for (name, mesh, distance, least) in cases {
-        let errors = [4, 8, 16].map(|n| {
+        let errors = [8, 16, 32].map(|n| {
             let mesh = mesh(n);
             let mut set = mesh.smooth();
             set.update(|k| mesh.nodes[k as usize]);

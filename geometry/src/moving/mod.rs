@@ -267,7 +267,8 @@ impl MovingFacets {
     }
 
     /// Moves the facets to where their nodes are: control points, and the boxes of the search tree, which the first update
-    /// builds. Not finite positions leave their facets out of every search. No allocation but in the first call.
+    /// builds. Runs on the calling thread. Positions that are not finite leave their facets out of every search. No
+    /// allocation but in the first call.
     pub fn update(&mut self, position: impl Fn(u32) -> Vec3 + Sync) {
         for (x, &number) in self.positions.iter_mut().zip(&self.numbers) {
             *x = position(number);

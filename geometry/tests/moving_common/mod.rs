@@ -160,7 +160,7 @@ pub fn cube(n: usize) -> Mesh {
 /// Distance by exhaustive search: a grid of points on every facet, then a damped Gauss-Newton iteration with clamping from
 /// the best of each of the nearest facets. Shares no code with the search under test but the jets.
 pub fn exhaustive(set: &MovingFacets, q: &Vec3, accept: impl Fn(u32) -> bool) -> f64 {
-    const STEPS: usize = 12;
+    const STEPS: usize = 8;
     let mut seeds: Vec<(f64, u32, [f64; 2])> = Vec::new();
     for facet in (0..set.len() as u32).filter(|f| accept(*f)) {
         for k in 0..(STEPS + 1) * (STEPS + 1) {
@@ -171,7 +171,7 @@ pub fn exhaustive(set: &MovingFacets, q: &Vec3, accept: impl Fn(u32) -> bool) ->
     }
     seeds.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut best = f64::INFINITY;
-    for &(_, facet, xi) in seeds.iter().take(24) {
+    for &(_, facet, xi) in seeds.iter().take(16) {
         best = best.min(refine(set, facet, xi, q));
     }
     best.sqrt()

@@ -10,11 +10,16 @@
 //!   three nodes (Catmull-Rom where they are equally spaced); the spacing is the mean length of the edges that a strip of
 //!   facets has across it, the same all along the strip. So on a structured mesh the surface is a piecewise bicubic Hermite
 //!   tensor product and has continuous tangent planes everywhere.
-//! - At other nodes a quadratic is fitted to the nodes around, and all edges leave in its tangent plane.
+//! - At other nodes, and for a line that has a kink within the surface (15 degrees, and half as much again as at the next
+//!   nodes of the line), a quadratic is fitted to the nodes around, and all edges leave in its tangent plane.
 //! - At borders, and on either side of sharp edges, which stay sharp, lines end with the parabola of their last three nodes.
 //! - Twists come from the tensor product where lines cross, else from the bilinearly blended Coons patch of the four
-//!   edges (Adini's twist). Only there, around nodes where not four facets meet, tangent planes differ a little across
-//!   edges away from the nodes.
+//!   edges (Adini's twist). Only there, around nodes where not four straight lines meet, tangent planes differ a little
+//!   across edges away from the nodes.
+//!
+//! Measured (tests/moving_smooth.rs): normals jump by less than 2e-13 on structured meshes, uneven, curved and deformed; on a
+//! sphere made of a cube by 1.5, 0.43 and 0.15 degrees with 4, 8, 16 facets along an edge of the cube. The distance from a
+//! cylinder or a torus falls with the fourth power of the size of the facets, from that sphere with the third.
 
 mod fit;
 mod lines;
@@ -219,8 +224,7 @@ impl Mesh {
 fn extraction(mesh: &Mesh, tangents: &Tangents, facet: u32) -> (Vec<u32>, Operator) {
     let third = 1.0 / 3.0;
     let mut rows: [Combination; 16] = Default::default();
-    for corner in 0..4 {
-        let [edge2, edge1] = EDGES_AT[corner];
+    for (corner, [edge2, edge1]) in EDGES_AT.into_iter().enumerate() {
         let node = mesh.node(facet, corner);
         let own = Combination::of(&[(node, 1.0)]);
         let [along1, along2] = [edge1, edge2].map(|edge| tangents.of(mesh, facet, edge, corner));

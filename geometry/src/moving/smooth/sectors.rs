@@ -52,7 +52,15 @@ impl Mesh {
         for &(facet, corner) in &sector.corners {
             let corner = corner as usize;
             let off = |c: usize| self.point(self.node(facet, c)) - origin;
-            let (a, b) = (off(corner ^ 1), off(corner ^ 2));
+            // At the tip of a triangle one of both is the node itself.
+            let leg = |c: usize| {
+                if self.node(facet, c) == node {
+                    off(corner ^ 3)
+                } else {
+                    off(c)
+                }
+            };
+            let (a, b) = (leg(corner ^ 1), leg(corner ^ 2));
             // The sign makes it rho_1 x rho_2 whatever the corner.
             let sign = if corner == 0 || corner == 3 {
                 1.0

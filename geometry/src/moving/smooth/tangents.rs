@@ -6,9 +6,9 @@ use super::sectors::{Sector, Spoke};
 use super::{CREASE, Combination, Mesh};
 use crate::moving::topology::ENDS;
 
-/// Lines that turn by more than this within the surface at a node (radians, 20 degrees) do not run on through it: the
+/// Lines that turn by more than this within the surface at a node (radians, 15 degrees) do not run on through it: the
 /// parabola through three such nodes is a poor curve of the surface, and finer meshes would be no better there.
-const KINK: f64 = std::f64::consts::PI / 9.0;
+const KINK: f64 = std::f64::consts::PI / 12.0;
 
 /// How the tangent of an edge at one of its ends came about.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,19 +37,19 @@ impl Tangents {
             zero: Combination::default(),
         };
         let count = mesh.topology.node_count() as u32;
-        let sectors: Vec<Vec<Sector>> = (0..count).map(|node| mesh.sectors(node)).collect();
-        for (node, sectors) in sectors.iter().enumerate() {
-            out.central(mesh, node as u32, sectors);
+        let all: Vec<Vec<Sector>> = (0..count).map(|node| mesh.sectors(node)).collect();
+        for (node, sectors) in all.iter().enumerate() {
+            out.central(mesh, node as u32, sectors, &all);
         }
         // What lines that end here take over from their next nodes is central there.
         let mut ends = Vec::new();
-        for (node, sectors) in sectors.iter().enumerate() {
+        for (node, sectors) in all.iter().enumerate() {
             out.last_of_lines(mesh, node as u32, sectors, &mut ends);
         }
         for (edge, end, rule, tangent) in ends.drain(..) {
             out.of[edge as usize][end] = Some((rule, tangent));
         }
-        for (node, sectors) in sectors.iter().enumerate() {
+        for (node, sectors) in all.iter().enumerate() {
             for sector in sectors {
                 out.planes(mesh, node as u32, sector);
             }
@@ -90,7 +90,7 @@ impl Tangents {
     }
 
     /// Edges of lines that run on through a node, and of nodes inside the surface where they do not.
-    fn central(&mut self, mesh: &Mesh, node: u32, sectors: &[Sector]) {
+    fn central(&mut self, mesh: &Mesh, node: u32, sectors: &[Sector], all: &[Vec<Sector>]) {
         if let Some([a, b]) = running_on(mesh, node, sectors) {
             for (own, other) in [(a, b), (b, a)] {
                 self.set(
@@ -105,8 +105,7 @@ impl Tangents {
             if sector.is_regular() {
                 for &own in &sector.soft {
                     let other = opposite(mesh, sector, own);
-                    if let Some(other) = other.filter(|o| turn(mesh, node, sector, own, *o) <= KINK)
-                    {
+                    if let Some(other) = other.filter(|o| runs_on(mesh, all, node, own, *o)) {
                         let tangent = through(mesh, node, own, other);
                         self.set(node, own, Rule::Central(other), tangent);
                     }
@@ -228,6 +227,37 @@ fn running_on(mesh: &Mesh, node: u32, sectors: &[Sector]) -> Option<[Spoke; 2]> 
     }
     let [u, v] = [a, b].map(|s| mesh.point(s.to) - mesh.point(node));
     (u.cross(&v).norm().atan2(-u.dot(&v)) <= CREASE).then_some([a, b])
+}
+
+/// Whether a line runs on through a regular node: it hardly turns there within the surface, or hardly more than at the next
+/// nodes of the line, where it is merely a coarse curve.
+fn runs_on(mesh: &Mesh, all: &[Vec<Sector>], node: u32, own: Spoke, other: Spoke) -> bool {
+    let regular = |node: u32| match &all[node as usize][..] {
+        [sector] if sector.is_regular() => Some(sector),
+        _ => None,
+    };
+    let next = |spoke: Spoke| {
+        let sector = regular(spoke.to)?;
+        let back = Spoke { to: node, ..spoke };
+        Some(turn(
+            mesh,
+            spoke.to,
+            sector,
+            back,
+            opposite(mesh, sector, back)?,
+        ))
+    };
+    let Some(sector) = regular(node) else {
+        return false;
+    };
+    let here = turn(mesh, node, sector, own, other);
+    let coarse = || {
+        [own, other]
+            .into_iter()
+            .filter_map(next)
+            .any(|next| here <= 1.5 * next)
+    };
+    here <= KINK || coarse()
 }
 
 /// Angle by which a line turns at a node within the surface (radians, on the reference positions).
