@@ -67,7 +67,7 @@ pub const COLUMNS: &[ColumnDoc] = &[
     doc(
         "moment_balance.<name>.<axis>",
         "force length",
-        "the same of moments about its present centre",
+        "the same of moments about its present centre (of two free rotations to second order of the angles)",
     ),
     doc("energy.internal", "energy", "strain energy of all bodies"),
     doc(

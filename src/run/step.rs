@@ -106,8 +106,9 @@ impl Attempts<'_, '_> {
         Ok(converged)
     }
 
-    /// Takes the last accepted state. A surface driven by force that touches nothing in it is placed where the contact
-    /// with bodies that stand still carries its force: where it merely touched it would have no stiffness.
+    /// Takes the last accepted state. A surface driven by force that touches nothing in it, or would not at `end`, is
+    /// placed where the contact with bodies that stand still carries its force: where it merely touched it would have no
+    /// stiffness.
     fn restart(&self, end: f64, trial: &mut State) -> Result<(), Fault> {
         trial.copy_from(self.committed);
         for entry in self.model.driven() {
@@ -118,14 +119,14 @@ impl Attempts<'_, '_> {
                 first = range.end;
                 pair.surface == index && trial.points[range].iter().any(|p| p.closed)
             });
-            if touches {
-                continue;
-            }
             let at = driven.dof(0)..driven.dof(6);
             let mut q = Vector6::from_column_slice(&trial.u[at.clone()]);
-            let mut u = trial.u.clone();
             let penalties = &self.assembler.penalties;
             let mut presser = Presser::new(self.model, entry, penalties, &trial.u);
+            if touches && presser.press(end, &q)?.active > 0 {
+                continue;
+            }
+            let mut u = trial.u.clone();
             let placed = presser.place(end, &mut q, |q| {
                 u[at.clone()].copy_from_slice(q.as_slice());
                 driven.driving(end, &u)

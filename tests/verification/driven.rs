@@ -89,10 +89,11 @@ fn foundation(free: Value) -> Value {
 #[test]
 fn a_plane_on_a_winkler_foundation_sinks_and_tilts_as_the_closed_form_says() {
     // Area 24, second moments 6 * 4^3 / 12 = 32 about x and 4 * 6^3 / 12 = 72 about y; two Gauss points a side
-    // integrate them exactly. Small angles: the closed form is right to their square.
+    // integrate them exactly. Small angles: the closed form is right to their square. The centre lies in the plane: a
+    // tilted force with an arm across it would have a moment of its own.
     let (f, m_x, m_y) = (-6.0, 0.3, 0.5);
     let outcome = done(&foundation(json!({
-        "center": [0, 0, 0],
+        "center": [0, 0, 0.25],
         "force": { "z": f }, "moment": { "x": m_x, "y": m_y }
     })));
     let sunk = f / (50.0 * 24.0) - 0.25;
@@ -111,11 +112,12 @@ fn a_plane_on_a_winkler_foundation_sinks_and_tilts_as_the_closed_form_says() {
     }
     for axis in ["x", "y"] {
         let left = outcome.at(&format!("moment_balance.plane.{axis}"), 1.0);
-        assert!(left.abs() < 1e-9, "moment about {axis}: {left:e}");
+        // What holds the rotation vector's z at zero takes part in second order of the angles: 2e-4 by 5e-5 here.
+        assert!(left.abs() < 1e-8, "moment about {axis}: {left:e}");
     }
     // The same load as one force beside the middle: the moments are those of its arm.
     let beside = done(&foundation(json!({
-        "center": [-m_y / f, m_x / f, 0],
+        "center": [-m_y / f, m_x / f, 0.25],
         "force": { "z": f }, "moment": { "x": 0, "y": 0 }
     })));
     for (name, tolerance) in [
@@ -167,8 +169,8 @@ fn a_block_loaded_off_its_centre_tilts_its_plane_in_balance() {
     assert!(y > 0.5 && x > 0.5, "{x} {y}");
     // Newton's method is quadratic once the same points stay in contact.
     let last = residuals(&outcome, outcome.summary.steps);
-    println!("{last:.1e?}");
-    assert!(quadratic(&last), "{last:.1e?}");
+    println!("{last:?}");
+    assert!(quadratic(&last), "{last:?}");
 }
 
 /// Relative residuals of the last attempt at a step.
@@ -194,14 +196,10 @@ fn residuals(outcome: &Outcome, step: u32) -> Vec<f64> {
     out
 }
 
-/// Whether some iteration below 1e-2 at least doubles the number of right digits, within a factor of 30 and above
-/// round-off.
+/// Whether an iteration doubles the number of right digits, within a factor of 30, from where round-off does not do the
+/// same.
 fn quadratic(r: &[f64]) -> bool {
-    r.windows(3).any(|w| {
-        w[0] < 1e-2
-            && w[1] < 1e-2 * w[0]
-            && (w[2] < 30.0 * w[1] * (w[1] / w[0]).powi(1) || w[2] < 1e-11)
-    })
+    (r.windows(2)).any(|w| (1e-6..1e-2).contains(&w[0]) && w[1] < 30.0 * w[0] * w[0])
 }
 
 #[test]
@@ -286,7 +284,7 @@ fn a_ball_that_may_spin_is_held_and_named() {
         warning.contains("surface `ball`") && warning.contains("held"),
         "{warning}"
     );
-    assert_eq!(outcome.at("rotation.ball.z", 1.0), 0.0);
+    assert!(outcome.at("rotation.ball.z", 1.0).abs() < 1e-9);
 }
 
 #[test]
@@ -314,4 +312,87 @@ fn forces_that_nothing_resists_are_named() {
         "{reason}"
     );
     assert!(lifted.summary.time > 0.7, "{}", lifted.summary.time);
+}
+
+/// Problems of a scene before anything is read, then the error of its model: pointer and message.
+fn refused(scene: &Value) -> (String, String) {
+    let loaded = covact::scene::parse(&scene.to_string(), "scene.json").unwrap();
+    if let Some(problem) = covact::scene::check(&loaded).into_iter().next() {
+        return (problem.pointer, problem.message);
+    }
+    let error = covact::model::build::build(&loaded).expect_err("refused");
+    assert!(error.help.is_some(), "{error}");
+    (error.pointer.clone(), error.to_string())
+}
+
+#[test]
+fn what_cannot_be_driven_is_refused_by_name() {
+    let ball = |motion: Value| {
+        let mut scene = plate(4);
+        scene["surfaces"]["ball"]["sphere"]["center"] = json!([0, 0, 30]);
+        scene["surfaces"]["ball"]["motion"] = motion;
+        scene
+    };
+    let at = |field: &str| format!("/surfaces/ball/motion/free{field}");
+    for (motion, pointer, part) in [
+        (
+            json!({ "free": {} }),
+            at(""),
+            "no component of the motion is free",
+        ),
+        (
+            json!({ "translation": [0, 0, "-t"], "free": { "force": { "z": -5 } } }),
+            at("/force/z"),
+            "the translation along z is both prescribed over time and free",
+        ),
+        (
+            json!({
+                "rotation": { "axis": [0, 1, 1], "angle": "5*t" },
+                "free": { "force": { "z": -5 }, "moment": { "y": 0 } }
+            }),
+            at("/moment/y"),
+            "the rotation about y is both prescribed over time and free",
+        ),
+        (
+            json!({ "free": { "force": { "z": 5 } } }),
+            at(""),
+            "no slave point lies in its way along z",
+        ),
+        (
+            json!({ "free": { "force": { "z": { "table": [[0, 0], [0.5, 0], [1, -5]] } } } }),
+            at(""),
+            "the force is zero at the end of the first step (t = 0.25)",
+        ),
+    ] {
+        let (found, message) = refused(&ball(motion));
+        assert!(
+            found == pointer && message.contains(part),
+            "{found}: {message}"
+        );
+    }
+    let mut alone = ball(json!({ "free": { "force": { "z": -5 } } }));
+    alone["contacts"] = json!({});
+    let (found, message) = refused(&alone);
+    assert!(
+        found == at("") && message.contains("takes part in no contact"),
+        "{message}"
+    );
+    // A constant translation only says where the surface starts, and the way to the first touch is told.
+    let placed = ball(json!({ "translation": [0, 0, 1], "free": { "force": { "z": -5 } } }));
+    let loaded = covact::scene::parse(&placed.to_string(), "scene.json").unwrap();
+    let model = covact::model::build::build(&loaded).unwrap();
+    let (_, _, driven) = model.driven().next().unwrap();
+    // Gauss points of the first element lie beside the apex: 25 - sqrt(25^2 - r^2) above it, r = 12.5 (1 - 1/sqrt 3) / 2 * sqrt 2.
+    let r = 12.5 * (1.0 - 1.0 / 3f64.sqrt()) / 2.0 * 2f64.sqrt();
+    let way = 30.0 + 1.0 - 25.0 - 1.0 + 25.0 - (625.0 - r * r).sqrt();
+    assert!(
+        (driven.start[2] + way).abs() < 1e-9,
+        "{} {way}",
+        driven.start[2]
+    );
+    let note = model.notes.iter().find(|n| n.contains("until it touches"));
+    assert!(
+        note.is_some_and(|n| n.contains("surface `ball`: moved by (0, 0, -5.")),
+        "{note:?}"
+    );
 }

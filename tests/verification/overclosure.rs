@@ -26,7 +26,7 @@ fn pressed(choice: Value, depth: f64) -> Value {
             "y": { "on": "block.y_min", "symmetry": "y" }
         },
         "solution": {
-            "step": { "initial": 0.25, "max": 0.25 }, "newton": { "tolerance": 1e-12 }, "threads": 1
+            "step": { "initial": 0.25, "max": 0.25 }, "newton": { "tolerance": 1e-9 }, "threads": 1
         },
         "output": { "every": 0 }
     })

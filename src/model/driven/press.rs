@@ -364,7 +364,7 @@ fn modified_step(tangent: &Matrix6<f64>, free: &[bool; 6], f: &Vector6<f64>) -> 
     let largest = eigen.eigenvalues.amax();
     if largest <= 0.0 {
         // No contact: any length, the caller bounds it.
-        return f * (f64::MAX.sqrt() / f.norm());
+        return f * (1e100 / f.norm());
     }
     let mut step = Vector6::zeros();
     for i in 0..6 {
