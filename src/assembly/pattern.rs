@@ -35,6 +35,8 @@ pub(super) const FLAG_BITS: u32 = 2;
 pub struct Pattern {
     column_starts: Vec<u32>,
     rows: Vec<u32>,
+    /// Nodes at the end that couple with so many others that they are to be eliminated last.
+    border: u32,
     id: u64,
 }
 
@@ -98,8 +100,22 @@ impl Pattern {
         Ok(Self {
             column_starts,
             rows,
+            border: 0,
             id,
         })
+    }
+
+    /// Says that the last `nodes` nodes couple with very many others (a rigid body's with all that it may touch):
+    /// solvers eliminate them after all others.
+    pub fn with_border(mut self, nodes: u32) -> Self {
+        self.border = nodes.min(self.nodes() as u32);
+        self.id ^= u64::from(self.border).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self
+    }
+
+    /// Number of nodes at the end that are to be eliminated last.
+    pub fn border(&self) -> usize {
+        self.border as usize
     }
 
     /// Number of nodes.

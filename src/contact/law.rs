@@ -3,8 +3,82 @@ use super::kernel::Normal;
 
 /// A law between the normal coordinate `xi3` (negative = penetration) and the normal traction.
 pub trait NormalLaw: Sync {
-    /// Traction at a penetrating point, `xi3 < 0`.
+    /// Traction at a point in contact.
     fn normal(&self, xi3: f64) -> Normal;
+
+    /// The gap that the law sees at a normal coordinate (length).
+    #[inline]
+    fn gap(&self, xi3: f64) -> f64 {
+        xi3
+    }
+
+    /// Whether a point below the surface, `xi3 < 0`, is in contact.
+    #[inline]
+    fn closes(&self, _xi3: f64) -> bool {
+        true
+    }
+}
+
+/// What the gaps of slave points are measured from: chosen outside the loop over points, nothing where there is none.
+pub trait GapOffset: Sync {
+    /// The law of a single point.
+    type Law<L: NormalLaw>: NormalLaw;
+    /// The law of point `index` of a pair.
+    fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Self::Law<L>;
+}
+
+/// Gaps are normal coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NoOffset;
+
+impl GapOffset for NoOffset {
+    type Law<L: NormalLaw> = L;
+    #[inline]
+    fn law<L: NormalLaw + Copy>(&self, _index: usize, law: &L) -> L {
+        *law
+    }
+}
+
+/// The gap of point `i` is `xi3 - factor z0[i]` with `z0 <= 0`, an overclosure that is not to be resolved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Offsets<'a> {
+    /// Per point of the pair, zero or negative (length).
+    pub z0: &'a [f64],
+    pub factor: f64,
+}
+
+impl GapOffset for Offsets<'_> {
+    type Law<L: NormalLaw> = Shifted<L>;
+    #[inline]
+    fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Shifted<L> {
+        Shifted {
+            law: *law,
+            z0: self.factor * self.z0[index],
+        }
+    }
+}
+
+/// A law of the gap `xi3 - z0`; the geometry keeps the true `xi3`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shifted<L> {
+    pub law: L,
+    /// Zero or negative (length).
+    pub z0: f64,
+}
+
+impl<L: NormalLaw> NormalLaw for Shifted<L> {
+    #[inline]
+    fn normal(&self, xi3: f64) -> Normal {
+        self.law.normal(xi3 - self.z0)
+    }
+    #[inline]
+    fn gap(&self, xi3: f64) -> f64 {
+        xi3 - self.z0
+    }
+    #[inline]
+    fn closes(&self, xi3: f64) -> bool {
+        xi3 < self.z0
+    }
 }
 
 /// Penalty: `N = eps_n xi3`.

@@ -81,7 +81,7 @@ impl Meeting {
         law: &L,
         tangent: &T,
     ) -> Result<Option<SlotTouch>, PointFault> {
-        if !self.presses() {
+        if !self.presses() || !law.closes(self.xi3) {
             return Ok(None);
         }
         self.check()?;

@@ -5,6 +5,8 @@
 //! - [`rigid`], [`moving`]: closest points on masters that do not move or whose nodes do, [`meeting`]: what both give;
 //! - [`spin`]: a rigid body's translation and spin in the slots, [`averaged`]: the gap in the mean of slave nodes.
 pub mod averaged;
+pub mod carried;
+pub mod closest;
 pub mod corner;
 pub mod fault;
 pub mod kernel;

@@ -1,4 +1,5 @@
-//! Contact of slave points with a rigid surface of NURBS patches.
+//! Contact of slave points with a rigid surface: NURBS patches or facets, whatever finds closest points.
+use super::closest::ClosestPoint;
 use super::corner;
 pub use super::fault::{Piece, PointFault};
 use super::kernel::{self, Normal};
@@ -35,8 +36,9 @@ impl RigidTangent for Parts {
 
 /// A rigid surface at its present position.
 #[derive(Debug, Clone)]
-pub struct RigidMaster<'a> {
-    pub surface: &'a PatchSet,
+pub struct RigidMaster<'a, P = PatchSet> {
+    /// Patches of one kind, or what stands for a choice among several.
+    pub surface: &'a P,
     /// From the surface's own coordinates to space.
     pub pose: Isometry3<f64>,
     /// Points deeper than this below the surface are not in contact (length).
@@ -56,11 +58,13 @@ pub struct Touch {
     pub tangent: Matrix3<f64>,
     /// Normal coordinate, negative.
     pub xi3: f64,
+    /// Gap that the law sees, negative: the normal coordinate, less its offset where there is one.
+    pub gap: f64,
     /// Normal traction, negative.
     pub n: f64,
 }
 
-impl RigidMaster<'_> {
+impl<P: ClosestPoint> RigidMaster<'_, P> {
     /// Foot of a point of space within `reach`, in the surface's own coordinates.
     pub fn foot(&self, x: &Vec3, hint: Option<Hint>, reach: f64) -> Option<Foot> {
         let local = self.pose.inverse_transform_point(&Point3::from(*x)).coords;
@@ -92,7 +96,7 @@ impl RigidMaster<'_> {
             let piece = Piece::Patch(patch);
             return Err(PointFault::ProjectionNotConverged { piece, xi });
         }
-        if !presses(&foot) {
+        if !presses(&foot) || !law.closes(foot.signed_distance) {
             return Ok(None);
         }
         let geometry = self.geometry(&foot, &(local - foot.jet.rho))?;
@@ -111,6 +115,7 @@ impl RigidMaster<'_> {
             residual: r * residual,
             tangent: r * k * r.transpose(),
             xi3: geometry.xi3(),
+            gap: law.gap(geometry.xi3()),
             n: normal.n,
         }))
     }

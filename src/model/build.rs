@@ -1,18 +1,21 @@
 //! Scene to model.
 mod contacts;
+mod facets;
 mod master_faces;
 mod supports;
 mod surfaces;
 mod values;
 
+use super::driven::Driven;
 use super::error::{At, number, text};
 use super::loads::{DeadLoad, FollowerPressure, load_points};
 use super::motion::pose;
 use super::slave::slave_points;
-use super::{BodyModel, Model, ModelError};
+use super::{BodyModel, Model, ModelError, SurfaceModel};
 use crate::mesh::{self, Face, Mesh};
 use crate::scene::{
-    self, LoadedScene, MeshSource, POSITION_AND_TIME, Scene, TIME, TimeFunction, Value,
+    self, InitialOverclosure, LoadedScene, MeshSource, POSITION_AND_TIME, Scene, TIME,
+    TimeFunction, Value,
 };
 use crate::shell::{Block, Law};
 use covact_geometry::Vec3;
@@ -47,8 +50,9 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         warnings: Vec::new(),
     };
     builder.bodies()?;
-    let (pairs, surfaces) = builder.contacts()?;
-    let supports = builder.supports()?;
+    let (pairs, mut surfaces) = builder.contacts()?;
+    let held = builder.drive(&mut surfaces)?;
+    let supports = builder.supports(&held)?;
     let (dead_loads, follower_loads) = builder.loads()?;
     let mut model = Model {
         title: scene.title.clone(),
@@ -68,7 +72,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         kinks: Vec::new(),
     };
     model.effects = super::effects::effects(scene, &model);
-    model.kinks = kinks(&model, scene.solution.end_time);
+    model.kinks = kinks(scene, &model);
     values::check(scene, &model)?;
     if let Some(free) = super::free_motion::free_motions(&model).first() {
         let message = format!(
@@ -78,18 +82,30 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         let help = "add or extend a support until the body is held; contact and loads do not hold it before it touches";
         return Err(text(format!("/bodies/{}", free.body), message).help(help));
     }
-    super::initial::check(&mut model)?;
+    super::initial::check(&mut model, scene)?;
+    super::driven::start::approach(&mut model, scene)?;
     Ok(model)
 }
 
 /// Times inside the run at which something prescribed has a kink.
-fn kinks(model: &Model, end: f64) -> Vec<f64> {
+fn kinks(scene: &Scene, model: &Model) -> Vec<f64> {
+    let end = scene.solution.end_time;
+    let shrunk = (scene.contacts.values()).filter_map(|c| match c.initial_overclosure {
+        InitialOverclosure::Shrink { until } => Some(until),
+        _ => None,
+    });
     let mut times: Vec<f64> = (model.surfaces.iter().flat_map(|s| s.motion.functions()))
         .chain(model.dead_loads.iter().flat_map(|(_, l)| l.functions()))
         .chain(model.follower_loads.iter().map(|(_, l)| &l.value))
         .chain(model.prescribed.iter().filter_map(|p| p.value.as_ref()))
         .chain(model.means.iter().filter_map(|p| p.mean.as_ref()))
+        .chain(
+            model
+                .driven()
+                .flat_map(|(_, _, d)| d.loads.iter().flatten()),
+        )
         .flat_map(TimeFunction::breakpoints)
+        .chain(shrunk)
         .filter(|t| *t > 0.0 && *t < end)
         .collect();
     times.sort_by(f64::total_cmp);
@@ -210,6 +226,45 @@ impl<'s> Builder<'s> {
             _ => mesh.node_set(set).at(|| pointer.to_owned())?.to_vec(),
         };
         Ok((index, local.into_iter().map(|n| n + first).collect()))
+    }
+
+    /// Appends the nodes of surfaces driven by force; returns their degrees of freedom that are not free.
+    fn drive(&mut self, surfaces: &mut [SurfaceModel]) -> Result<Vec<u32>, ModelError> {
+        let mut held = Vec::new();
+        for surface in surfaces {
+            let described = &self.scene.surfaces[&surface.name];
+            let Some(free) = &described.motion.free else {
+                continue;
+            };
+            let node = u32::try_from(self.nodes.len()).map_err(|_| {
+                let pointer = format!("/surfaces/{}", surface.name);
+                text(pointer, "too many nodes: more than 2^32")
+            })?;
+            let bounds = surface.set.bounds().map(Into::into);
+            let driven = Driven::new(&surface.name, free, &surface.motion, bounds, node)?;
+            let pointer = || format!("/surfaces/{}/motion", surface.name);
+            let placed = surface.motion.pose(0.0).at(pointer)?;
+            let center = placed * Point3::from(driven.center);
+            self.nodes.extend([center.coords, Vec3::zeros()]);
+            let free = driven.free();
+            held.extend((0..6).filter(|&c| !free[c]).map(|c| driven.dof(c) as u32));
+            let words = driven.words();
+            let about = match free[3..].contains(&true) {
+                true => format!(
+                    "; it turns about ({}, {}, {}), to which moments refer",
+                    number(center.x),
+                    number(center.y),
+                    number(center.z)
+                ),
+                false => String::new(),
+            };
+            (self.notes).push(format!(
+                "surface `{}`: driven by force {words}{about}",
+                surface.name
+            ));
+            surface.driven = Some(driven);
+        }
+        Ok(held)
     }
 
     #[allow(clippy::type_complexity)]

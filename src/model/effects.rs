@@ -1,6 +1,6 @@
 //! The effects a scene calls for, by name: what the run then does, and nothing else.
 use super::Model;
-use crate::scene::{Element, MasterSurface, Material, Points, Scene, Tangent};
+use crate::scene::{Element, FacetKind, MasterSurface, Material, Points, Scene, Tangent};
 use std::collections::BTreeSet;
 
 /// Names of the effects that are on, sorted.
@@ -32,6 +32,14 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
         if contact.master_surface == Some(MasterSurface::Smooth) {
             add("contact.master.smooth");
         }
+        let master = model.surfaces.iter().find(|s| s.name == contact.master);
+        if let Some(facets) = master.and_then(|s| s.facets.as_ref()) {
+            add(match facets.kind {
+                FacetKind::Bilinear => "contact.master.rigid.facets.bilinear",
+                FacetKind::Biquadratic => "contact.master.rigid.facets.biquadratic",
+                FacetKind::Smooth => "contact.master.rigid.facets.smooth",
+            });
+        }
         add(match contact.points {
             Points::Nodes => "contact.points.nodes",
             Points::Gauss(_) => "contact.points.gauss",
@@ -48,6 +56,9 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
         .any(|p| p.body_master().is_some_and(|m| m.own.is_some()))
     {
         add("contact.self");
+    }
+    if model.driven().next().is_some() {
+        add("surface.driven_by_force");
     }
     if !model.dead_loads.is_empty() {
         add("load.dead");

@@ -5,7 +5,7 @@ use crate::scene::ValueError;
 use crate::shell::ShellError;
 use crate::shell::quadrature::QuadratureError;
 use covact_geometry::MovingError;
-use covact_geometry::io::CadError;
+use covact_geometry::io::{CadError, StlError};
 use covact_geometry::project::{PatchSetError, SideError};
 
 /// Why a model could not be built, with the JSON pointer of the field at fault.
@@ -36,6 +36,8 @@ pub enum Cause {
     Shell(#[from] ShellError),
     #[error(transparent)]
     Cad(#[from] CadError),
+    #[error(transparent)]
+    Stl(#[from] StlError),
     #[error(transparent)]
     Patches(#[from] PatchSetError),
     #[error(transparent)]

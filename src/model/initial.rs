@@ -1,8 +1,10 @@
 //! How the contact pairs stand before anything moves.
 use super::error::{number, text};
 use super::master::{Master, Masters};
-use super::{Model, ModelError, PairModel};
+use super::overclosure::{Deepest, treat};
+use super::{Model, ModelError, PairModel, SurfaceModel};
 use crate::contact::points::SlavePoint;
+use crate::scene::{InitialOverclosure, Scene};
 use covact_geometry::Vec3;
 
 /// Cosine between the normals of slave and master above which their faces look the same way.
@@ -15,6 +17,8 @@ pub struct InitialGap {
     pub smallest: f64,
     /// Largest signed distance.
     pub largest: f64,
+    /// Where the point with the smallest distance is.
+    pub place: Vec3,
     /// Points that start in contact.
     pub touching: usize,
     /// Points that start behind the surface, deeper than its search depth: they are not in contact.
@@ -28,6 +32,15 @@ pub struct InitialGap {
 
 /// Distances of all points of pair `index` at time 0, wherever they are.
 pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError> {
+    initial_gaps(model, index, &mut Vec::new())
+}
+
+/// The same with the overclosure of every point, zero or negative, in `overclosures`.
+fn initial_gaps(
+    model: &Model,
+    index: usize,
+    overclosures: &mut Vec<f64>,
+) -> Result<InitialGap, ModelError> {
     let pair = &model.pairs[index];
     let zero = vec![0.0; 3 * model.nodes.len()];
     let masters = Masters::new(model);
@@ -36,6 +49,7 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
     let mut gap = InitialGap {
         smallest: f64::INFINITY,
         largest: f64::NEG_INFINITY,
+        place: Vec3::zeros(),
         touching: 0,
         behind: 0,
         facing: None,
@@ -48,12 +62,14 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
     for (i, p) in pair.points.iter().enumerate() {
         let x = model.point_position(p, &zero);
         let Some(seen) = master.see(i, &x, hint) else {
+            overclosures.push(0.0);
             continue;
         };
         hint = Some(seen.hint);
         let distance = seen.gap();
         if distance < gap.smallest {
             gap.smallest = distance;
+            gap.place = x;
             nearest = Some((p.nodes[0], x, seen.normal));
         }
         if let Some(normals) = &normals {
@@ -61,6 +77,7 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
         }
         gap.largest = gap.largest.max(distance);
         gap.touching += usize::from(seen.closed);
+        overclosures.push(if seen.closed { distance } else { 0.0 });
         gap.behind += usize::from(seen.behind);
     }
     let least = facing.iter().fold(f64::INFINITY, |a, f| a.min(f.0));
@@ -109,12 +126,14 @@ fn turned_away(model: &Model, body: usize, node: u32, x: &Vec3, n: &Vec3) -> boo
 
 /// Refuses tools that start deep inside a body, and warns of small overclosures and of slave points too coarse for the
 /// tool.
-pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
+pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
     let mut warnings = Vec::new();
     let mut notes = Vec::new();
-    for (index, pair) in model.pairs.iter().enumerate() {
+    for index in 0..model.pairs.len() {
+        let mut overclosures = Vec::new();
+        let gap = initial_gaps(model, index, &mut overclosures)?;
+        let pair = &model.pairs[index];
         let master = pair.master_words(model);
-        let gap = initial_gap(model, index)?;
         if let Some(master) = pair.body_master()
             && gap.facing.is_some_and(|cosine| cosine > SAME_WAY)
         {
@@ -167,14 +186,6 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
             )
             .help(help));
         }
-        if gap.smallest < -1e-9 * pair.element_size {
-            warnings.push(format!(
-                "contact `{}` starts with an overclosure of {} at {} point(s); the first step resolves it with strain",
-                pair.name,
-                number(-gap.smallest),
-                gap.touching
-            ));
-        }
         if gap.turned_away {
             warnings.push(format!(
                 "contact `{}`: body `{}` lies between its slave faces and {master}: are the faces on the other side of \
@@ -195,29 +206,45 @@ pub(super) fn check(model: &mut Model) -> Result<(), ModelError> {
                 number(pair.master.depth(model))
             ));
         }
-        let Master::Rigid(surface) = &pair.master else {
-            continue;
-        };
-        let surface = &model.surfaces[*surface];
-        let spacing = point_spacing(model, index);
-        if let Some(radius) = (surface.set.curvature_range().convex).map(|c| c.radius())
-            && spacing > 0.5 * radius
-        {
-            warnings.push(format!(
-                "contact `{}`: its slave points are {} apart, too coarse for the smallest convex radius {} of surface \
-                 `{}`, which will sink in between them: refine the mesh or take more `points` a face (at most {} \
-                 apart)",
-                pair.name,
-                number(spacing),
-                number(radius),
-                surface.name,
-                number(0.5 * radius)
-            ));
+        if let Some(number) = pair.rigid_master() {
+            warnings.extend(too_coarse(model, index, &model.surfaces[number]));
+        }
+        if gap.smallest < -1e-9 * pair.element_size {
+            let choice = (scene.contacts.get(&pair.name))
+                .map_or(InitialOverclosure::Strain, |c| c.initial_overclosure);
+            let deepest = Deepest {
+                xi3: gap.smallest,
+                at: gap.place,
+            };
+            let told = treat(model, index, choice, overclosures, deepest)?;
+            match choice {
+                InitialOverclosure::Strain => warnings.push(told),
+                _ => notes.push(told),
+            }
         }
     }
     model.warnings.extend(warnings);
     model.notes.extend(notes);
     Ok(())
+}
+
+/// A warning of slave points that are too far apart for a rigid surface.
+fn too_coarse(model: &Model, index: usize, surface: &SurfaceModel) -> Option<String> {
+    let spacing = point_spacing(model, index);
+    let [Some(radius), _] = surface.radii() else {
+        return None;
+    };
+    (spacing > 0.5 * radius).then(|| {
+        format!(
+            "contact `{}`: its slave points are {} apart, too coarse for the smallest convex radius {} of surface \
+             `{}`, which will sink in between them: refine the mesh or take more `points` a face (at most {} apart)",
+            model.pairs[index].name,
+            number(spacing),
+            number(radius),
+            surface.name,
+            number(0.5 * radius)
+        )
+    })
 }
 
 /// Mean distance of neighbouring slave points: the square root of the mean tributary area.

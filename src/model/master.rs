@@ -1,5 +1,6 @@
 //! The master of a contact pair: a rigid surface, or faces of a deformable body.
 use super::self_contact::{Accept, Opposing, OwnFacets};
+use super::surface::SurfaceSet;
 use super::{Model, PairModel};
 use crate::contact::moving;
 use crate::contact::rigid::{self, RigidMaster};
@@ -107,7 +108,7 @@ impl Masters {
         time: f64,
     ) -> Result<MasterNow<'a>, ValueError> {
         Ok(match (&model.pairs[pair].master, &self.surfaces[pair]) {
-            (Master::Rigid(surface), _) => MasterNow::Rigid(model.surfaces[*surface].at(time)?),
+            (Master::Rigid(surface), _) => MasterNow::Rigid(model.surfaces[*surface].at(time, u)?),
             (Master::Body(body), surface) => MasterNow::Body {
                 model,
                 u,
@@ -120,7 +121,7 @@ impl Masters {
 
 /// A master at one time.
 pub enum MasterNow<'a> {
-    Rigid(RigidMaster<'a>),
+    Rigid(RigidMaster<'a, SurfaceSet>),
     Body {
         model: &'a Model,
         /// Displacements that the surface was put to.

@@ -1,6 +1,7 @@
 //! The model: what a scene becomes before anything is solved. All choices of effects are made here, once.
 pub mod build;
 pub mod constraints;
+pub mod driven;
 pub mod effects;
 pub mod error;
 pub mod free_motion;
@@ -8,30 +9,34 @@ pub mod initial;
 pub mod loads;
 pub mod master;
 pub mod motion;
+pub mod overclosure;
 pub mod penalty;
 pub mod self_contact;
 pub mod slave;
 pub mod state;
+pub mod surface;
 
 use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;
-use crate::contact::rigid::RigidMaster;
 use crate::mesh::{Face, Mesh};
 use crate::scene::{Tangent, TimeFunction, ValueError};
 use crate::shell::{Block, ElementBlock};
 use constraints::{MeanPrescribed, Prescribed};
-use covact_geometry::{PatchSet, Vec3};
+use covact_geometry::Vec3;
+use driven::Driven;
 use loads::{DeadLoad, FollowerPressure};
 use master::Master;
-use motion::Motion;
+use overclosure::Overclosure;
 
 pub use error::ModelError;
+pub use surface::SurfaceModel;
 
 /// Bodies, rigid surfaces, contact pairs, supports and loads, with all names resolved.
 #[derive(Debug)]
 pub struct Model {
     pub title: String,
-    /// Undeformed positions of all nodes, body after body.
+    /// Undeformed positions of all nodes, body after body, then two for every surface driven by force: its centre, and
+    /// the origin for its rotation.
     pub nodes: Vec<Vec3>,
     pub bodies: Vec<BodyModel>,
     pub surfaces: Vec<SurfaceModel>,
@@ -64,17 +69,6 @@ pub struct BodyModel {
     pub first_node: u32,
 }
 
-/// A rigid surface.
-#[derive(Debug)]
-pub struct SurfaceModel {
-    pub name: String,
-    /// Patches in the scene's length unit and the surface's own coordinates.
-    pub set: PatchSet,
-    pub motion: Motion,
-    /// Depth below which a point does not count (length).
-    pub depth: f64,
-}
-
 /// A contact pair.
 #[derive(Debug)]
 pub struct PairModel {
@@ -93,6 +87,8 @@ pub struct PairModel {
     pub tangent: Tangent,
     /// Mean edge length of the slave faces.
     pub element_size: f64,
+    /// Offsets of the gaps where the scene asks for them.
+    pub overclosure: Option<Overclosure>,
 }
 
 impl Model {
@@ -106,6 +102,16 @@ impl Model {
     #[inline]
     pub fn point_position(&self, p: &SlavePoint, u: &[f64]) -> Vec3 {
         (p.terms()).fold(Vec3::zeros(), |x, (n, w)| x + self.position(n, u) * w)
+    }
+
+    /// Number of nodes that belong to bodies; those of driven surfaces come after them.
+    pub fn body_nodes(&self) -> usize {
+        self.nodes.len() - 2 * self.driven().count()
+    }
+
+    /// Surfaces driven by force, with their numbers.
+    pub fn driven(&self) -> impl Iterator<Item = (usize, &SurfaceModel, &Driven)> {
+        (self.surfaces.iter().enumerate()).filter_map(|(i, s)| Some((i, s, s.driven.as_ref()?)))
     }
 
     /// Number of unknowns.
@@ -165,16 +171,5 @@ impl BodyModel {
     /// Node numbers of an element in the model, for any shape of elements.
     pub fn element_nodes(&self, e: usize) -> impl Iterator<Item = u32> + '_ {
         self.mesh.element(e).iter().map(|n| n + self.first_node)
-    }
-}
-
-impl SurfaceModel {
-    /// The surface at its position of time `t`.
-    pub fn at(&self, t: f64) -> Result<RigidMaster<'_>, ValueError> {
-        Ok(RigidMaster {
-            surface: &self.set,
-            pose: self.motion.pose(t)?,
-            depth: self.depth,
-        })
     }
 }

@@ -14,7 +14,7 @@ pub struct PointState {
 /// and replaces the committed one when the step is accepted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
-    /// Displacements, 3 per node of the model.
+    /// Displacements, 3 per node of the model; those of driven surfaces are their translations and rotations.
     pub u: Vec<f64>,
     /// Element states, `state_len` per element, body after body.
     pub elements: Vec<f64>,
@@ -23,15 +23,19 @@ pub struct State {
 }
 
 impl State {
-    /// The undeformed state.
+    /// The undeformed state; surfaces driven by force stand where they first touch.
     pub fn new(model: &Model) -> Self {
         let elements = model
             .bodies
             .iter()
             .map(|b| b.block.state_len() * b.block.elements());
         let points = model.pairs.iter().map(|p| p.points.len());
+        let mut u = vec![0.0; 3 * model.nodes.len()];
+        for (_, _, driven) in model.driven() {
+            u[driven.dof(0)..driven.dof(6)].copy_from_slice(&driven.start);
+        }
         State {
-            u: vec![0.0; 3 * model.nodes.len()],
+            u,
             elements: vec![0.0; elements.sum()],
             points: vec![PointState::default(); points.sum()],
         }

@@ -1,4 +1,4 @@
-//! Rigid surfaces as exact rational Bezier cells and as flat quadrilaterals.
+//! Rigid surfaces as exact rational Bezier cells, bilinear ones as plain quadrilaterals, and as flat quadrilaterals.
 use super::OutputError;
 use super::bezier::{MAX_DEGREE, SurfacePiece, vtk_order};
 use super::vtu::{Array, DEGREES, Grid, WEIGHTS};
@@ -15,12 +15,13 @@ pub struct SurfaceOutput {
     left_out: Vec<usize>,
 }
 
-/// Bezier cells.
+/// Bezier cells, and quadrilaterals where the degree is one.
 #[derive(Debug, Clone, Default)]
 struct Exact {
     points: Vec<Point3<f64>>,
     weights: Vec<f64>,
     offsets: Vec<u64>,
+    types: Vec<CellType>,
     degrees: Vec<f64>,
     patch: Vec<u32>,
     entity: Vec<u32>,
@@ -93,7 +94,7 @@ impl SurfaceOutput {
             points: moved(&e.points, at),
             connectivity: (0..e.points.len() as u64).collect(),
             offsets: e.offsets.clone(),
-            types: vec![CellType::BezierQuadrilateral; e.offsets.len()],
+            types: e.types.clone(),
             point_data: vec![Array::new(WEIGHTS, 1, e.weights.clone())],
             cell_data: vec![
                 Array::new(DEGREES, 3, e.degrees.clone()),
@@ -145,6 +146,12 @@ impl Exact {
             self.weights.push(w);
         }
         self.offsets.push(self.points.len() as u64);
+        // Every program knows these; with equal weights they are the same.
+        let equal = piece.points.iter().all(|c| c[3] == piece.points[0][3]);
+        self.types.push(match piece.degree {
+            [1, 1] if equal => CellType::Quad,
+            _ => CellType::BezierQuadrilateral,
+        });
         let [p, q] = piece.degree;
         self.degrees.extend([p as f64, q as f64, 0.0]);
         self.patch.push(piece.patch);

@@ -58,6 +58,9 @@ pub struct SurfaceReport {
     pub name: String,
     /// CAD file or shape.
     pub source: String,
+    /// Facets in place of the exact surface, or triangles of a file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub facets: Option<FacetsReport>,
     pub patches: usize,
     /// Unconnected parts.
     pub parts: usize,
@@ -85,6 +88,16 @@ pub struct SurfaceReport {
     pub reversed: usize,
     /// A point deeper than this below the surface is not in contact.
     pub depth: f64,
+}
+
+/// Facets of a rigid surface.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FacetsReport {
+    /// `bilinear`, `biquadratic` or `smooth`.
+    pub kind: &'static str,
+    pub count: usize,
+    /// Largest distance from the exact surface at the points measured; none for triangles of a file.
+    pub chord: Option<f64>,
 }
 
 /// A contact pair before anything moves.
@@ -146,7 +159,7 @@ pub fn check(scene: &LoadedScene) -> Result<CheckReport, RunError> {
     Ok(CheckReport {
         title: model.title.clone(),
         unit: scene.units.length.name().to_owned(),
-        nodes: model.nodes.len(),
+        nodes: model.body_nodes(),
         elements: model.bodies.iter().map(|b| b.block.elements()).sum(),
         dofs: model.unknowns(),
         contact_points: model.contact_points(),
@@ -199,11 +212,16 @@ fn surface_report(scene: &Scene, surface: &SurfaceModel) -> SurfaceReport {
         _ => "plane".to_owned(),
     };
     let edges = surface.set.edges();
-    let curvature = surface.set.curvature_range();
+    let [convex, concave] = surface.radii();
     SurfaceReport {
         name: surface.name.clone(),
         source,
-        patches: surface.set.patches().len(),
+        facets: surface.facets.as_ref().map(|f| FacetsReport {
+            kind: f.kind.name(),
+            count: f.count,
+            chord: f.chord,
+        }),
+        patches: surface.set.count(),
         parts: surface.set.components().len(),
         bounds: surface.set.bounds().map(Into::into),
         smooth_edges: edges.smooth,
@@ -213,8 +231,8 @@ fn surface_report(scene: &Scene, surface: &SurfaceModel) -> SurfaceReport {
         free_edges: edges.free.len(),
         poles: edges.poles.len(),
         largest_gap: edges.largest_gap,
-        smallest_convex_radius: curvature.convex.map(|c| c.radius()),
-        smallest_concave_radius: curvature.concave.map(|c| c.radius()),
+        smallest_convex_radius: convex,
+        smallest_concave_radius: concave,
         reversed: surface.set.sides().iter().filter(|s| **s < 0.0).count(),
         depth: surface.depth,
     }

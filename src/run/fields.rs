@@ -1,11 +1,12 @@
 //! Fields of an accepted state, gathered on nodes for the output.
 use super::RunError;
+use super::pieces::pieces;
 use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::output::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, Results, SurfaceOutput,
-    SurfacePiece, SurfaceState,
+    SurfaceState,
 };
 use crate::shell::{ElementBlock, with_block};
 use covact_geometry::Vec3;
@@ -39,11 +40,7 @@ impl Fields {
         let mut notes = Vec::new();
         let mut surfaces = Vec::new();
         for surface in &model.surfaces {
-            let mut pieces = Vec::new();
-            for (i, patch) in surface.set.patches().iter().enumerate() {
-                let reversed = surface.set.sides()[i] < 0.0;
-                pieces.extend(SurfacePiece::of_patch(patch, i as u32, i as u32, reversed));
-            }
+            let pieces = pieces(surface, tessellation);
             let output = SurfaceOutput::new(&surface.name, pieces, tessellation)?;
             if !output.left_out().is_empty() {
                 notes.push(format!(
@@ -101,15 +98,22 @@ impl Fields {
             let master = masters.at(model, index, &state.u, time)?;
             let states = &state.points[first..first + pair.points.len()];
             let fronts = &mut self.front[first..first + pair.points.len()];
+            let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
             for (i, ((p, s), front)) in pair.points.iter().zip(states).zip(fronts).enumerate() {
+                let z0 = offsets.as_ref().map_or(0.0, |o| o.factor * o.z0[i]);
                 let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
                 let seen = master.see(i, &x, s.hint);
-                let closed = seen.is_some_and(|s| s.closed);
+                let below = seen.is_some_and(|s| s.closed);
+                let closed = below && seen.is_some_and(|s| s.signed_distance < z0);
                 let sunk = seen.is_some_and(|s| s.behind);
                 self.sunk[index] += usize::from(*front && sunk);
-                *front = closed || seen.is_some_and(|s| s.signed_distance >= 0.0);
-                let gap = seen.map_or(f64::NAN, |s| s.gap());
+                *front = below || seen.is_some_and(|s| s.signed_distance >= 0.0);
+                let gap = match &seen {
+                    None => f64::NAN,
+                    Some(s) if below => s.signed_distance - z0,
+                    Some(s) => s.distance,
+                };
                 let pressure = if closed { -eps_n * gap } else { 0.0 };
                 if gap < self.smallest_gap {
                     self.smallest_gap = gap;
@@ -180,7 +184,7 @@ impl Fields {
             })
             .collect();
         let poses: Vec<_> = (model.surfaces.iter())
-            .map(|s| s.motion.pose(time).unwrap_or_default())
+            .map(|s| s.pose(time, &state.u).unwrap_or_default())
             .collect();
         let surfaces: Vec<SurfaceState> = (self.surfaces.iter().zip(&poses))
             .map(|(surface, at)| SurfaceState { surface, at })

@@ -32,6 +32,16 @@ pub fn columns(model: &Model) -> Vec<String> {
             names.extend(AXES.map(|axis| format!("{quantity}.{name}.{axis}")));
         }
     }
+    for (_, surface, _) in model.driven() {
+        for quantity in [
+            "displacement",
+            "rotation",
+            "force_balance",
+            "moment_balance",
+        ] {
+            names.extend(AXES.map(|axis| format!("{quantity}.{}.{axis}", surface.name)));
+        }
+    }
     for pair in deformable(model) {
         for side in ["slave", "master"] {
             for quantity in ["force", "moment"] {
@@ -76,6 +86,23 @@ pub fn row(r: &Record) -> Vec<f64> {
     }
     for (force, moment) in reactions(r.model, r.residual, r.u) {
         out.extend(force.iter().chain(moment.iter()));
+    }
+    for (index, surface, driven) in r.model.driven() {
+        let (moved, theta) = driven.motion(r.u);
+        let given = driven
+            .given(r.time)
+            .and_then(|given| Ok((given, surface.center(r.time, r.u)?)));
+        let on = &totals.surfaces[index];
+        let (force, moment) = match given {
+            Ok(((force, moment), center)) => (
+                force - on.force,
+                moment - (on.moment - center.cross(&on.force)),
+            ),
+            Err(_) => (Vec3::repeat(f64::NAN), Vec3::repeat(f64::NAN)),
+        };
+        for v in [moved, theta * 180.0 / std::f64::consts::PI, force, moment] {
+            out.extend(v.iter());
+        }
     }
     for (_, sides) in (r.model.pairs.iter().zip(&totals.pairs)).filter(|(p, _)| is_deformable(p)) {
         let [slave, master] = [sides.slave, sides.master];

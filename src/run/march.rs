@@ -76,7 +76,10 @@ impl<'a, 'm> March<'a, 'm> {
                 warnings: model.warnings.clone(),
                 ..Progress::default()
             },
-            touched: vec![false; model.pairs.len()],
+            // A pair whose overclosure counts as touching touches from the start.
+            touched: (model.pairs.iter())
+                .map(|p| p.overclosure.is_some())
+                .collect(),
             touching: vec![false; model.pairs.len()],
         }
     }
@@ -235,6 +238,22 @@ impl<'a, 'm> March<'a, 'm> {
                 "step {step} is balanced to {residual:.1e} of its forces only, which is what rounding leaves: a penalty, \
                  a stiffness or a displacement is too large for double precision"
             ));
+        }
+        for (index, surface, driven) in self.model.driven() {
+            let mut share = [0.0f64; 6];
+            for loose in (converged.totals.loose.iter()).filter(|l| l.surface == index) {
+                for (s, d) in share.iter_mut().zip(loose.direction) {
+                    *s += d * d;
+                }
+            }
+            if share.iter().any(|s| *s > 0.0) {
+                self.warn(format!(
+                    "surface `{}` is free to move {}, but nothing resists it there and nothing drives it: it is held as \
+                     it stands",
+                    surface.name,
+                    driven.direction_words(&share)
+                ));
+            }
         }
         if converged.negative_pivots > 0 {
             self.warn(format!(

@@ -4,6 +4,7 @@ mod error;
 mod fields;
 mod history;
 mod march;
+mod pieces;
 mod progress;
 mod step;
 

@@ -10,6 +10,7 @@
 //! What fails all three is cut.
 use super::progress::Progress;
 use crate::assembly::{Assembler, Fault};
+use crate::model::driven::press::{Placed, Presser};
 use crate::model::state::State;
 use crate::model::{Model, penalty};
 use crate::output::Phases;
@@ -17,6 +18,7 @@ use crate::scene;
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::DirectSolver;
 use crate::solve::newton::{Converged, Newton, Patience, StepFailure, Workspace};
+use nalgebra::Vector6;
 use std::sync::atomic::AtomicBool;
 
 /// Stages of a softened start, as multiples of the penalty.
@@ -61,7 +63,7 @@ impl Attempts<'_, '_> {
                 other => return other,
             }
         }
-        trial.copy_from(self.committed);
+        self.restart(end, trial)?;
         let patience = if touching {
             Patience::Short
         } else {
@@ -73,7 +75,6 @@ impl Attempts<'_, '_> {
             }
             other => return other,
         }
-        trial.copy_from(self.committed);
         let result = self.softened(step, end, trial, &penalties);
         if result.is_err() {
             self.assembler.penalties.copy_from_slice(&penalties);
@@ -89,9 +90,12 @@ impl Attempts<'_, '_> {
         penalties: &[f64],
     ) -> Result<Converged, StepFailure> {
         let mut iterations = 0;
-        for stage in STAGES {
+        for (i, stage) in STAGES.into_iter().enumerate() {
             for (eps, full) in self.assembler.penalties.iter_mut().zip(penalties) {
                 *eps = stage * full;
+            }
+            if i == 0 {
+                self.restart(end, trial)?;
             }
             iterations += self.newton(step, end, trial, Patience::Long)?.iterations;
         }
@@ -99,6 +103,39 @@ impl Attempts<'_, '_> {
         let mut converged = self.converge(step, end, trial, Patience::Long)?;
         converged.iterations += iterations;
         Ok(converged)
+    }
+
+    /// Takes the last accepted state. A surface driven by force that touches nothing in it, or would not at `end`, is
+    /// placed where the contact with bodies that stand still carries its force: where it merely touched it would have no
+    /// stiffness.
+    fn restart(&self, end: f64, trial: &mut State) -> Result<(), Fault> {
+        trial.copy_from(self.committed);
+        for entry in self.model.driven() {
+            let (index, surface, driven) = entry;
+            let mut first = 0;
+            let touches = self.model.pairs.iter().any(|pair| {
+                let range = first..first + pair.points.len();
+                first = range.end;
+                pair.rigid_master() == Some(index) && trial.points[range].iter().any(|p| p.closed)
+            });
+            let at = driven.dof(0)..driven.dof(6);
+            let mut q = Vector6::from_column_slice(&trial.u[at.clone()]);
+            let penalties = &self.assembler.penalties;
+            let mut presser = Presser::new(self.model, entry, penalties, &trial.u);
+            if touches && presser.press(end, &q)?.active > 0 {
+                continue;
+            }
+            let mut u = trial.u.clone();
+            let placed = presser.place(end, &mut q, |q| {
+                u[at.clone()].copy_from_slice(q.as_slice());
+                driven.driving(end, &u)
+            })?;
+            if let Placed::RunsAway(direction) = placed {
+                return Err(Fault::unresisted(surface, driven, &direction));
+            }
+            trial.u[at].copy_from_slice(q.as_slice());
+        }
+        Ok(())
     }
 
     fn again(&mut self, step: u32, start: &str, failure: &StepFailure, penalties: &[f64]) {

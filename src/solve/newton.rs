@@ -186,6 +186,10 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
             }
             let stuck = self.patience == Patience::Short && since_best >= UNTIL_GIVEN_UP;
             if iteration >= self.settings.max_iterations || stuck {
+                let negligible = norms.target(self.settings.tolerance);
+                if let Some(fault) = self.assembler.runs_away(&totals.loose, negligible) {
+                    return Err(fault.into());
+                }
                 return Err(StepFailure::TooManyIterations {
                     iterations: iteration,
                     residual: norms.relative(),
@@ -232,7 +236,10 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
         self.phases.start("factorization");
         let factored = self.solver.factorize(self.assembler.matrix());
         self.phases.stop("factorization");
-        let negative = factored?.negative_pivots;
+        let negative = match factored {
+            Ok(factored) => factored.negative_pivots,
+            Err(error) => return Err(self.unsolvable(error)),
+        };
         self.phases.start("solve");
         w.du.copy_from_slice(&w.rhs);
         let solved = self.solver.solve_in_place(&mut w.du);
@@ -241,6 +248,19 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
         let g = pending.then_some(&w.increments[..]);
         self.model.dofs.expand(&mut w.du, g);
         Ok(negative)
+    }
+
+    /// What a matrix that cannot be factorized means: in the terms of the scene where a surface driven by force is not
+    /// held.
+    fn unsolvable(&self, error: LinearError) -> StepFailure {
+        match &error {
+            LinearError::NonPositivePivot { dof }
+            | LinearError::ZeroPivot { dof }
+            | LinearError::TinyPivot { dof, .. } => {
+                (self.assembler.unheld(dof.dof())).map_or(error.into(), StepFailure::Fault)
+            }
+            _ => error.into(),
+        }
     }
 
     /// Moves `trial` along the increment and linearises there; halves the step where an element or a contact point

@@ -1,7 +1,8 @@
-//! Tangents of contact against dual numbers.
+//! Tangents of contact against dual numbers and differences.
 mod averaged;
 mod balance;
 mod cases;
+mod driven;
 mod edges;
 mod faults;
 mod normal;

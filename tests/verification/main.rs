@@ -1,7 +1,11 @@
 //! Verification against closed forms and published results, named by their source.
+mod ball_by_weight;
 mod die;
+mod driven;
+mod facets;
 mod hertz;
 mod loads;
+mod overclosure;
 mod placed;
 mod plate_under_ball;
 mod punch;

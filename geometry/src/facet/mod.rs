@@ -8,14 +8,16 @@
 //! curvature of the surface that it stands for is in the angles between facets.
 //!
 //! A [`FacetMesh`] holds nodes that facets share. It comes from smooth surfaces ([`bilinear_facets`],
-//! [`biquadratic_facets`]), from STL files ([`Stl::facets`](crate::io::Stl::facets)) or from the faces of a finite-element mesh.
+//! [`biquadratic_facets`]; [`smooth_patches`] lays one smooth surface over them), from STL files ([`Stl::facets`](crate::io::Stl::facets)) or from the faces of a finite-element mesh.
 
 mod bilinear;
 mod biquadratic;
+mod counts;
 mod deviation;
 mod lines;
 mod mesh;
 mod refine;
+mod smooth;
 
 pub use bilinear::Bilinear;
 pub use biquadratic::Biquadratic;
@@ -23,6 +25,7 @@ pub use mesh::FacetMesh;
 pub use refine::{
     Crack, FacetOrigin, Faceted, Refinement, bilinear_facets, biquadratic_facets, facet_patch,
 };
+pub use smooth::{distance_from, smooth_patches};
 
 /// Why facets could not be made. Numbers count from zero.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -40,8 +43,8 @@ pub enum FacetError {
         /// Nodes that there are.
         count: usize,
     },
-    /// The chord tolerance is not a positive finite number.
-    #[error("the chord tolerance {0} is not a positive number")]
+    /// The chord tolerance or the size is not a positive finite number.
+    #[error("the chord tolerance or size {0} is not a positive number")]
     Tolerance(f64),
     /// No facets per span are asked for.
     #[error("a span cannot be cut in no facets at all")]
@@ -69,6 +72,12 @@ pub enum FacetError {
         /// The tolerance asked for; zero where a number per span was.
         tolerance: f64,
     },
+    /// No smooth surface can be laid over the facets.
+    #[error(transparent)]
+    Smooth(#[from] crate::moving::MovingError),
+    /// A piece of the smooth surface that is no patch.
+    #[error(transparent)]
+    Patch(#[from] crate::patch::PatchError),
     /// A single patch that is no set.
     #[error(transparent)]
     Set(#[from] crate::project::PatchSetError),

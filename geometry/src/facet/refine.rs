@@ -13,6 +13,12 @@ use crate::surface::{Surface, Vec3};
 pub enum Refinement {
     /// That many facets in each direction of every span.
     PerSpan(u32),
+    /// That many facets in each direction of every patch, shared among its spans by their lengths. A span is one facet at
+    /// least, so a patch of more spans gets more.
+    PerPatch([u32; 2]),
+    /// Facets no longer than this (a length) along the lines of constant parameters that were measured, five in each span
+    /// and direction.
+    Size(f64),
     /// As many facets as keep them within this distance (a length) of the surface, and along the borders of patches within
     /// it of the border. A span is one facet at least.
     Chord(f64),
@@ -56,7 +62,7 @@ pub struct Faceted<const N: usize> {
 }
 
 /// More facets than this are refused.
-const LIMIT: usize = 4_000_000;
+pub(super) const LIMIT: usize = 4_000_000;
 
 /// Bilinear facets of a set of patches.
 ///
@@ -110,24 +116,21 @@ fn facets<S: Surface, const N: usize>(
     if let Some(trimmed) = patches.iter().position(|p| p.trim().is_some()) {
         return Err(FacetError::Trimmed(trimmed));
     }
-    let (first, tolerance) = match refinement {
-        Refinement::PerSpan(0) => return Err(FacetError::Count),
-        Refinement::PerSpan(n) => (n as usize, None),
-        Refinement::Chord(tolerance) if tolerance.is_finite() && tolerance > 0.0 => {
-            // Shared nodes are off one of the two sides by the gap, however fine the facets.
-            let gap = set.edges().largest_gap;
-            if gap > 0.5 * tolerance {
-                return Err(FacetError::Gap { gap, tolerance });
-            }
-            (1, Some(tolerance))
-        }
-        Refinement::Chord(tolerance) => return Err(FacetError::Tolerance(tolerance)),
+    let mut counts: Counts = (patches.iter())
+        .map(|patch| super::counts::first(patch, refinement))
+        .collect::<Result<_, _>>()?;
+    let tolerance = match refinement {
+        Refinement::Chord(tolerance) => Some(tolerance),
+        _ => None,
     };
+    if let Some(tolerance) = tolerance {
+        // Shared nodes are off one of the two sides by the gap, however fine the facets.
+        let gap = set.edges().largest_gap;
+        if gap > 0.5 * tolerance {
+            return Err(FacetError::Gap { gap, tolerance });
+        }
+    }
     let degree = if N == 4 { 1 } else { 2 };
-    let mut counts: Counts = patches
-        .iter()
-        .map(|p| [0, 1].map(|k| vec![first; p.spans(k).len()]))
-        .collect();
     let mut last = 0.0;
     loop {
         let too_many = FacetError::TooMany {

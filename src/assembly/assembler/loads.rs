@@ -57,6 +57,7 @@ impl Assembler<'_> {
                 }
             }
         }
+        self.driving(state, time)?;
         for (r, f) in residual.iter_mut().zip(&self.external) {
             *r -= f;
         }

@@ -1,5 +1,6 @@
 //! The pattern of a model and where the blocks of everything that is assembled go.
 use super::couplings::Couplings;
+use super::driven;
 use super::{DofMap, Kind, Pattern, PatternError};
 use crate::model::Model;
 
@@ -43,8 +44,11 @@ pub(super) fn pattern(
             }
         }
     }
+    let driven = driven::groups(model, |nodes, out| dofs.extend_nodes(nodes, out));
     let groups = starts.windows(2).map(|w| &nodes[w[0]..w[1]]);
-    Pattern::new(model.nodes.len(), groups)
+    let groups = groups.chain(driven.iter().map(Vec::as_slice));
+    let border = (model.nodes.len() - model.body_nodes()) as u32;
+    Ok(Pattern::new(model.nodes.len(), groups)?.with_border(border))
 }
 
 impl Maps {

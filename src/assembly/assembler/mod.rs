@@ -3,6 +3,7 @@
 //! Elements and slave points are evaluated in parallel, a chunk at a time, and summed in order by one thread, so that
 //! the result is the same to the last bit for every number of threads.
 mod couplings;
+mod driven;
 mod elements;
 mod loads;
 mod maps;
@@ -13,6 +14,7 @@ use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
 use crate::contact::rigid::{PointFault, Touch};
 use crate::model::Model;
+use crate::model::driven::press::PressFault;
 use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::scene::ValueError;
@@ -22,8 +24,11 @@ use covact_geometry::Vec3;
 use maps::Maps;
 use moving::Meetings;
 
+use driven::Border;
 use elements::Systems;
 use std::sync::Arc;
+
+pub use driven::Loose;
 
 /// What kept the model from being evaluated at a trial state. The step is cut.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -37,6 +42,21 @@ pub enum Fault {
         at: [f64; 3],
         fault: PointFault,
     },
+    /// A surface driven by force touches no slave point.
+    #[error(
+        "surface `{surface}`, which forces drive {free}, has lost all contact: nothing holds it. Forces act on the \
+         surface: check their sign and size over time, the components that are free, and what supports the bodies under it"
+    )]
+    Untouched { surface: String, free: String },
+    /// A surface driven by force moves in a direction in which nothing resists it.
+    #[error(
+        "nothing resists the motion of surface `{surface}` {motion}, and its forces drive it on: take the component out \
+         of `free`, or give its force another direction"
+    )]
+    Unresisted { surface: String, motion: String },
+    /// A surface driven by force could not be placed.
+    #[error(transparent)]
+    Press(#[from] PressFault),
     #[error(transparent)]
     Value(#[from] ValueError),
     /// The system has grown too large.
@@ -79,6 +99,8 @@ pub struct Totals {
     pub penetration: Vec<f64>,
     /// Norm of the contact forces on nodes.
     pub contact_norm: f64,
+    /// Motions of driven surfaces that the contact does not resist, found with the tangent.
+    pub loose: Vec<Loose>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,6 +134,7 @@ pub struct Assembler<'m> {
     /// Dead loads at the present time.
     external: Vec<f64>,
     contact: Vec<f64>,
+    borders: Vec<Border>,
     /// Penalty per pair; an automatic one may be raised in the course of a run.
     pub penalties: Vec<f64>,
 }
@@ -126,6 +149,7 @@ impl<'m> Assembler<'m> {
         let rigid = model.pairs.iter().filter(|p| p.rigid_master().is_some());
         let most = rigid.map(|p| p.points.len()).max().unwrap_or(0);
         let n = 3 * model.nodes.len();
+        let borders = Border::all(model, &pattern)?;
         Ok(Assembler {
             model,
             dofs,
@@ -144,6 +168,7 @@ impl<'m> Assembler<'m> {
             work: ConstrainedScatter::default(),
             external: vec![0.0; n],
             contact: vec![0.0; n],
+            borders,
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
         })
     }
@@ -180,7 +205,7 @@ impl<'m> Assembler<'m> {
         rhs: &mut [f64],
     ) -> Result<Totals, Fault> {
         // First, because it may change the pattern.
-        self.meet::<true>(state)?;
+        self.meet::<true>(state, time)?;
         self.matrix.clear();
         residual.fill(0.0);
         rhs.fill(0.0);
@@ -188,6 +213,7 @@ impl<'m> Assembler<'m> {
         self.elements(state, increments, residual, rhs, &mut totals)?;
         self.contacts::<true>(state, time, increments, residual, rhs, &mut totals)?;
         self.loads::<true>(state, time, increments, residual, rhs)?;
+        self.own_blocks(&state.u, time, residual, &mut totals)?;
         for (b, r) in rhs.iter_mut().zip(residual.iter()) {
             *b -= r;
         }
@@ -203,7 +229,7 @@ impl<'m> Assembler<'m> {
         time: f64,
         residual: &mut [f64],
     ) -> Result<Totals, Fault> {
-        self.meet::<false>(state)?;
+        self.meet::<false>(state, time)?;
         residual.fill(0.0);
         let mut totals = Totals::default();
         self.element_forces(state, residual, &mut totals)?;

@@ -1,9 +1,10 @@
 //! Contact with bodies: the slave points of a pair are evaluated in parallel, their matrices formed in parallel, and all
 //! is summed in order.
 use super::couplings::Couplings;
+use super::driven::Border;
 use super::{Assembler, Fault, SurfaceForce, Totals, maps, put};
 use crate::contact::kernel::assemble_force;
-use crate::contact::law::{NormalLaw, Penalty};
+use crate::contact::law::{GapOffset, NoOffset, NormalLaw, Offsets, Penalty};
 use crate::contact::moving::{MovingMaster, MovingTouch};
 use crate::contact::point::FaceTangent;
 use crate::contact::published::Parts;
@@ -100,7 +101,11 @@ fn near(
 impl Assembler<'_> {
     /// Evaluates the points of all pairs with bodies as masters. Where a matrix is to be made, and one of them touches a
     /// facet that the pattern does not couple it with, the pattern is built anew.
-    pub(super) fn meet<const TANGENT: bool>(&mut self, state: &mut State) -> Result<(), Fault> {
+    pub(super) fn meet<const TANGENT: bool>(
+        &mut self,
+        state: &mut State,
+        time: f64,
+    ) -> Result<(), Fault> {
         if self.couplings.iter().all(Option::is_none) {
             return Ok(());
         }
@@ -133,15 +138,17 @@ impl Assembler<'_> {
             let states = &mut state.points[range];
             let meetings = &mut self.meetings[index];
             let touches = &mut meetings.touches;
+            let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+            let offsets = offsets.as_ref();
             match &master.own {
-                None => batch.choose(states, touches, &All),
+                None => batch.offset(states, touches, offsets, &All),
                 Some(own) => {
                     let accept = Opposing {
                         own,
                         normals: &surface.normals,
                         position: |n: u32| self.model.position(n as usize, &state.u),
                     };
-                    batch.choose(states, touches, &accept);
+                    batch.offset(states, touches, offsets, &accept);
                 }
             }
             meetings.active.clear();
@@ -191,6 +198,7 @@ impl Assembler<'_> {
         }
         let pattern = std::sync::Arc::new(maps::pattern(self.model, self.dofs, &self.couplings)?);
         let maps = maps::Maps::new(self.model, self.dofs, &pattern)?;
+        self.borders = Border::all(self.model, &pattern)?;
         self.element_maps = maps.elements;
         self.kinds = maps.kinds;
         self.point_maps = maps.points;
@@ -207,6 +215,7 @@ impl Assembler<'_> {
         &mut self,
         index: usize,
         u: &[f64],
+        time: f64,
         states: &mut [PointState],
         increments: Option<&[f64]>,
         residual: &mut [f64],
@@ -239,6 +248,7 @@ impl Assembler<'_> {
         totals.active += active.len();
         let mut deepest = 0.0f64;
         let force = &mut totals.pairs[index];
+        let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
         for chunk in active.chunks(CHUNK) {
             (chunk.par_iter())
                 .zip(rows.par_iter_mut())
@@ -261,8 +271,12 @@ impl Assembler<'_> {
             {
                 let Some(touch) = touch(i) else { continue };
                 let p = &pair.points[i as usize];
-                deepest = deepest.max(-touch.xi3);
-                totals.contact_energy += 0.5 * touch.n * touch.xi3 * p.area;
+                let offset = offsets
+                    .as_ref()
+                    .map_or(0.0, |o| o.factor * o.z0[i as usize]);
+                let gap = touch.xi3 - offset;
+                deepest = deepest.max(-gap);
+                totals.contact_energy += 0.5 * touch.n * gap * p.area;
                 let r = touch.residual * p.area;
                 let mut add = |node: usize, f: &Vec3, side: &mut SurfaceForce| {
                     side.force -= f;
@@ -320,16 +334,31 @@ struct Batch<'a, L> {
     u: &'a [f64],
 }
 
-impl<L: NormalLaw> Batch<'_, L> {
-    /// Evaluates every point under the tangent of the pair.
-    fn choose<A: Accept>(
+impl<L: NormalLaw + Copy> Batch<'_, L> {
+    /// Evaluates every point with gaps measured from where the pair says.
+    fn offset<A: Accept>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<MovingTouch>, PointFault>],
+        offsets: Option<&Offsets>,
+        accept: &A,
+    ) {
+        match offsets {
+            None => self.choose(states, touches, &NoOffset, accept),
+            Some(offsets) => self.choose(states, touches, offsets, accept),
+        }
+    }
+
+    /// Evaluates every point under the tangent of the pair.
+    fn choose<O: GapOffset, A: Accept>(
+        &self,
+        states: &mut [PointState],
+        touches: &mut [Result<Option<MovingTouch>, PointFault>],
+        offsets: &O,
         accept: &A,
     ) {
         match self.pair.tangent {
-            Tangent::Exact => self.evaluate(states, touches, accept, &Exact),
+            Tangent::Exact => self.evaluate(states, touches, offsets, accept, &Exact),
             Tangent::Published {
                 rotational,
                 curvature,
@@ -338,16 +367,18 @@ impl<L: NormalLaw> Batch<'_, L> {
                     rotational,
                     curvature,
                 };
-                self.evaluate(states, touches, accept, &parts)
+                self.evaluate(states, touches, offsets, accept, &parts)
             }
         }
     }
 
-    /// Evaluates every point; law, tangent and the facets that exist are types here, nothing is chosen inside the loop.
-    fn evaluate<A: Accept, T: FaceTangent>(
+    /// Evaluates every point; law, offsets, tangent and the facets that exist are types here, nothing is chosen inside the
+    /// loop.
+    fn evaluate<O: GapOffset, A: Accept, T: FaceTangent>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<MovingTouch>, PointFault>],
+        offsets: &O,
         accept: &A,
         tangent: &T,
     ) {
@@ -360,7 +391,9 @@ impl<L: NormalLaw> Batch<'_, L> {
                 let x = self.model.point_position(p, self.u);
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
-                *out = (self.master).touch(&x, &mut s.hint, self.law, tangent, facet);
+                let law = offsets.law(i, self.law);
+                let touch = (self.master).touch(&x, &mut s.hint, &law, tangent, facet);
+                *out = touch.map(|t| t.filter(|t| law.closes(t.xi3)));
             });
     }
 }

@@ -1,12 +1,14 @@
 //! Contact with rigid surfaces: the slave points of a pair are evaluated in parallel and summed in order.
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
-use crate::contact::law::{NormalLaw, Penalty};
+use crate::contact::closest::ClosestPoint;
+use crate::contact::law::{GapOffset, NoOffset, NormalLaw, Penalty};
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
 use crate::model::master::Master;
 use crate::model::state::{PointState, State};
 use crate::model::{Model, PairModel};
 use crate::scene::Tangent;
+use crate::with_patches;
 use rayon::prelude::*;
 
 impl Assembler<'_> {
@@ -22,16 +24,19 @@ impl Assembler<'_> {
         totals.surfaces = vec![SurfaceForce::default(); self.model.surfaces.len()];
         totals.pairs = vec![PairForce::default(); self.model.pairs.len()];
         self.contact.fill(0.0);
+        self.clear_borders();
         let mut first = 0;
         for (index, pair) in self.model.pairs.iter().enumerate() {
             let Master::Rigid(number) = pair.master else {
                 let states = &mut state.points[first..first + pair.points.len()];
-                self.moving::<TANGENT>(index, &state.u, states, increments, residual, rhs, totals);
+                self.moving::<TANGENT>(
+                    index, &state.u, time, states, increments, residual, rhs, totals,
+                );
                 first += pair.points.len();
                 continue;
             };
             let surface = &self.model.surfaces[number];
-            let master = surface.at(time)?;
+            let master = surface.at(time, &state.u)?;
             let n = pair.points.len();
             let points = &mut state.points[first..first + n];
             let touches = &mut self.touches[..n];
@@ -39,26 +44,23 @@ impl Assembler<'_> {
             let law = Penalty {
                 eps_n: self.penalties[index],
             };
-            let batch = Batch {
-                model: self.model,
-                pair,
-                master: &master,
-                law: &law,
-                u,
-            };
-            match pair.tangent {
-                Tangent::Exact => batch.evaluate(points, touches, &Exact),
-                Tangent::Published {
-                    rotational,
-                    curvature,
-                } => {
-                    let parts = Parts {
-                        rotational,
-                        curvature,
-                    };
-                    batch.evaluate(points, touches, &parts)
+            with_patches!(master.surface, patches => {
+                let batch = Batch {
+                    model: self.model,
+                    pair,
+                    master: &RigidMaster {
+                        surface: patches,
+                        pose: master.pose,
+                        depth: master.depth,
+                    },
+                    law: &law,
+                    u,
+                };
+                match &pair.overclosure {
+                    None => batch.choose(points, touches, &NoOffset),
+                    Some(overclosure) => batch.choose(points, touches, &overclosure.offsets(time)),
                 }
-            }
+            });
             let mut deepest = 0.0f64;
             let mut ke = [0.0; 729];
             let mut at = 0;
@@ -84,8 +86,8 @@ impl Assembler<'_> {
                 points[i].closed = touch.is_some();
                 let Some(touch) = touch else { continue };
                 totals.active += 1;
-                deepest = deepest.max(-touch.xi3);
-                totals.contact_energy += 0.5 * touch.n * touch.xi3 * p.area;
+                deepest = deepest.max(-touch.gap);
+                totals.contact_energy += 0.5 * touch.n * touch.gap * p.area;
                 let force = touch.residual * p.area;
                 let on = &mut totals.surfaces[number];
                 on.force -= force;
@@ -123,36 +125,65 @@ impl Assembler<'_> {
             }
             totals.penetration.push(deepest);
             first += n;
+            if surface.driven.is_some() {
+                self.carry::<TANGENT>(index, &state.u, time)?;
+            }
         }
+        self.close_borders::<TANGENT>(&state.u, increments, residual, rhs)?;
         totals.contact_norm = self.contact.iter().map(|f| f * f).sum::<f64>().sqrt();
         Ok(())
     }
 }
 
 /// The slave points of a pair at one trial state.
-struct Batch<'a, L> {
+struct Batch<'a, P, L> {
     model: &'a Model,
     pair: &'a PairModel,
-    master: &'a RigidMaster<'a>,
+    master: &'a RigidMaster<'a, P>,
     law: &'a L,
     u: &'a [f64],
 }
 
-impl<L: NormalLaw> Batch<'_, L> {
-    /// Evaluates every point; law and tangent are types here, nothing is chosen inside the loop.
-    fn evaluate<T: RigidTangent>(
+impl<P: ClosestPoint, L: NormalLaw + Copy> Batch<'_, P, L> {
+    /// Evaluates every point with the tangent that the pair asks for.
+    fn choose<O: GapOffset>(
+        &self,
+        states: &mut [PointState],
+        touches: &mut [Result<Option<Touch>, PointFault>],
+        offset: &O,
+    ) {
+        match self.pair.tangent {
+            Tangent::Exact => self.evaluate(states, touches, &Exact, offset),
+            Tangent::Published {
+                rotational,
+                curvature,
+            } => {
+                let parts = Parts {
+                    rotational,
+                    curvature,
+                };
+                self.evaluate(states, touches, &parts, offset)
+            }
+        }
+    }
+
+    /// Evaluates every point; surface, law, tangent and offset are types here, nothing is chosen inside the loop.
+    fn evaluate<T: RigidTangent, O: GapOffset>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<Touch>, PointFault>],
         tangent: &T,
+        offset: &O,
     ) {
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
+            .enumerate()
             .with_min_len(64)
-            .for_each(|((p, s), out)| {
+            .for_each(|(i, ((p, s), out))| {
                 let x = self.model.point_position(p, self.u);
-                *out = self.master.touch(&x, &mut s.hint, self.law, tangent);
+                let law = offset.law(i, self.law);
+                *out = self.master.touch(&x, &mut s.hint, &law, tangent);
             });
     }
 }

@@ -94,6 +94,7 @@ impl Builder<'_> {
             automatic: is_automatic,
             tangent: contact.tangent,
             element_size: size.edge,
+            overclosure: None,
         })
     }
 

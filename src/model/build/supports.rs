@@ -34,11 +34,11 @@ struct Collector<'a> {
 }
 
 impl Builder<'_> {
-    /// Resolves all supports.
+    /// Resolves all supports; `held` are degrees of freedom that stay zero besides.
     ///
     /// # Errors
     /// [`ModelError`] for unknown sets, values that do not compile, and supports that contradict each other.
-    pub(super) fn supports(&self) -> Result<Supports, ModelError> {
+    pub(super) fn supports(&self, held: &[u32]) -> Result<Supports, ModelError> {
         let scene = self.scene;
         let mut all = Collector {
             nodes: &self.nodes,
@@ -86,6 +86,9 @@ impl Builder<'_> {
                     }
                 }
             }
+        }
+        for &dof in held {
+            (all.dofs.prescribe(dof)).at(|| "/surfaces".to_owned())?;
         }
         let dofs = all.dofs.build().at(|| "/supports".to_owned())?;
         Ok(Supports {

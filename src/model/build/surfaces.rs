@@ -1,8 +1,11 @@
 //! Rigid surfaces: patches from CAD files or exact shapes, their place and their side.
-use super::super::error::{At, cause, number, text};
+use super::super::error::{At, number, text};
 use super::super::motion::Motion;
+use super::super::surface::{FacetModel, SurfaceSet};
 use super::super::{ModelError, PairModel, SurfaceModel};
 use super::Builder;
+use super::facets::Source;
+use crate::contact::closest::ClosestPoint;
 use crate::scene::{self, Side};
 use covact_geometry::project::{ComponentSide, SideError, SideOutcome};
 use covact_geometry::{NurbsPatch, PatchSet, Vec3, io, primitives};
@@ -27,7 +30,18 @@ impl Builder<'_> {
         surface: &scene::Surface,
     ) -> Result<(SurfaceModel, Vec<String>), ModelError> {
         let here = || format!("/surfaces/{name}");
-        let source = self.patches(name, surface)?;
+        let source = match &surface.cad {
+            Some(cad) => match self.read_cad(name, cad)? {
+                Source::Stl(stl) => {
+                    let cut = self.stl(name, surface, cad, &stl)?;
+                    let size = cut.set.size();
+                    let parts = (cut.set, Some(cut.model), cut.labels);
+                    return self.placed(name, surface, parts, size);
+                }
+                Source::Cad(file) => self.cad_patches(name, cad, &file)?,
+            },
+            None => self.patches(name, surface)?,
+        };
         let scale = surface.placement.scale;
         let patches = if scale == 1.0 {
             source.patches
@@ -38,16 +52,36 @@ impl Builder<'_> {
                 .map_err(|e| text(here(), e.to_string()))?
         };
         let set = PatchSet::new(patches, source.tolerance.map(|t| t * scale)).at(here)?;
+        let size = set.size();
+        let parts = match &surface.facets {
+            None => (SurfaceSet::Nurbs(set), None, source.labels),
+            Some(facets) => {
+                let cut = self.facets(name, facets, set, &source.labels)?;
+                (cut.set, Some(cut.model), cut.labels)
+            }
+        };
+        self.placed(name, surface, parts, size)
+    }
+
+    /// The surface with its motion and depth; `size` is that of the exact surface.
+    fn placed(
+        &self,
+        name: &str,
+        surface: &scene::Surface,
+        (set, facets, labels): (SurfaceSet, Option<FacetModel>, Vec<String>),
+        size: f64,
+    ) -> Result<(SurfaceModel, Vec<String>), ModelError> {
         let motion = Motion::new(&surface.motion, &surface.placement)
             .at(|| format!("/surfaces/{name}/motion"))?;
-        let depth = surface.depth.unwrap_or(0.1 * set.size());
         let model = SurfaceModel {
             name: name.to_owned(),
             set,
+            facets,
             motion,
-            depth,
+            driven: None,
+            depth: surface.depth.unwrap_or(0.1 * size),
         };
-        Ok((model, source.labels))
+        Ok((model, labels))
     }
 
     fn patches(&mut self, name: &str, surface: &scene::Surface) -> Result<Patches, ModelError> {
@@ -61,8 +95,16 @@ impl Builder<'_> {
             .map_err(|e| text(field(f), e.to_string()))
         };
         if let Some(s) = &surface.sphere {
-            let p = primitives::sphere(s.radius, s.center.into(), s.axis.into());
-            return made("sphere", p.map(|p| vec![p]));
+            let (r, center, axis) = (s.radius, s.center.into(), s.axis.into());
+            if surface.facets.is_some() {
+                // Without poles no facet is a triangle.
+                let six = primitives::sphere_without_poles(r, center, axis);
+                return made("sphere", six.map(Vec::from));
+            }
+            return made(
+                "sphere",
+                primitives::sphere(r, center, axis).map(|p| vec![p]),
+            );
         }
         if let Some(c) = &surface.cylinder {
             let p = primitives::cylinder(c.radius, c.length, c.center.into(), c.axis.into());
@@ -72,26 +114,19 @@ impl Builder<'_> {
             let p = primitives::plane(p.center.into(), p.normal.into(), p.size);
             return made("plane", p.map(|p| vec![p]));
         }
-        let Some(cad) = &surface.cad else {
-            return Err(text(
-                format!("/surfaces/{name}"),
-                "a surface needs one of `cad`, `sphere`, `cylinder`, `plane`",
-            ));
-        };
-        self.cad_patches(name, cad)
+        Err(text(
+            format!("/surfaces/{name}"),
+            "a surface needs one of `cad`, `sphere`, `cylinder`, `plane`",
+        ))
     }
 
-    fn cad_patches(&mut self, name: &str, cad: &scene::CadFile) -> Result<Patches, ModelError> {
+    fn cad_patches(
+        &mut self,
+        name: &str,
+        cad: &scene::CadFile,
+        file: &io::CadFile,
+    ) -> Result<Patches, ModelError> {
         let field = |f: &str| format!("/surfaces/{name}/cad/{f}");
-        let path = self.dir.join(&cad.file);
-        let file = io::read_path(&path).map_err(|e| {
-            let damaged = matches!(e, io::CadError::Content { .. });
-            let mut error = cause(field("file"), e);
-            error.help = damaged.then(|| {
-                "line and column are those of the CAD file: it is damaged or cut off, export it again".to_owned()
-            });
-            error
-        })?;
         let shown = cad.file.display();
         let own = io::LengthUnit::from_name(self.scene.units.length.name());
         let factor = match own.as_ref().and_then(|own| file.unit.factor_to(own)) {
@@ -227,11 +262,15 @@ impl Builder<'_> {
                 "where the given point lies"
             }
         };
+        let what = match model.facets {
+            Some(_) => "facet(s)",
+            None => "patch(es)",
+        };
         let reversed = model.set.sides().iter().filter(|s| **s < 0.0).count();
         self.notes.push(format!(
-            "surface `{name}`: its outside is {how} (normals of {reversed} of {} patch(es) turned round); a point \
+            "surface `{name}`: its outside is {how} (normals of {reversed} of {} {what} turned round); a point \
              deeper than {} below it is not in contact (`depth`)",
-            model.set.patches().len(),
+            model.set.count(),
             number(model.depth)
         ));
         Ok(())
@@ -246,8 +285,12 @@ impl Builder<'_> {
     ) -> Result<(), ModelError> {
         let pose = (model.motion.pose(0.0)).at(|| format!("/surfaces/{name}/motion"))?;
         let local = |x: Vec3| pose.inverse_transform_point(&x.into()).coords;
+        // Facets lie on either side of the surface that they stand for: points as near as that say nothing.
+        let chord = (model.facets.as_ref()).and_then(|f| f.chord).unwrap_or(0.0);
+        let clear = |x: &Vec3| chord == 0.0 || model.set.project(x, None, 2.0 * chord).is_none();
         let points: Vec<Vec3> = (pairs.iter().flat_map(|pair| pair.points.iter()))
             .map(|p| local((p.terms()).fold(Vec3::zeros(), |x, (n, w)| x + self.nodes[n] * w)))
+            .filter(clear)
             .collect();
         // The elements below the faces tell where the faces themselves do not: faces that lie on the surface have no
         // side, and a few that start with a small overclosure contradict the rest.

@@ -29,6 +29,13 @@ pub(super) fn check(scene: &Scene, model: &Model) -> Result<(), ModelError> {
             })?;
         }
     }
+    for (_, surface, driven) in model.driven() {
+        for f in driven.loads.iter().flatten() {
+            told(in_time(f, &times), &|| {
+                format!("/surfaces/{}/motion/free", surface.name)
+            })?;
+        }
+    }
     let mut supports: BTreeMap<u32, Vec<(u32, &TimeFunction)>> = BTreeMap::new();
     let means = (model.means.iter()).map(|m| (m.support, m.free, &m.mean));
     for (support, dof, value) in (model.prescribed.iter())

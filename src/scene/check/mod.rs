@@ -77,6 +77,21 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
         Points::Gauss(n) => c.whole(&format!("{at}/points/gauss"), n.into(), 1, 10),
         Points::Lobatto(n) => c.whole(&format!("{at}/points/lobatto"), n.into(), 2, 10),
     }
+    if let InitialOverclosure::Shrink { until } = contact.initial_overclosure {
+        let at = format!("{at}/initial_overclosure/shrink/until");
+        c.positive(&at, "the time until which the overclosure shrinks", until);
+        let end = scene.solution.end_time;
+        if until > end {
+            let message = format!(
+                "the overclosure would shrink until t = {until}, but the run ends at {end}"
+            );
+            c.add(
+                &at,
+                message,
+                Some("end the run later, or shrink sooner".into()),
+            );
+        }
+    }
     match contact.penalty {
         Penalty::Auto => {}
         Penalty::Value(p) => c.positive(&format!("{at}/penalty/value"), "the penalty", p),

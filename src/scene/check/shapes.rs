@@ -1,7 +1,7 @@
 //! Meshes, selections and rigid surfaces.
 use super::checker::Checker;
 use crate::scene::types::*;
-use crate::scene::value::TIME;
+use crate::scene::value::{TIME, Value};
 
 /// More elements than this are taken for a mistake.
 const MAX_ELEMENTS: f64 = 5e7;
@@ -221,6 +221,9 @@ pub(super) fn check_surface(c: &mut Checker, at: &str, surface: &Surface) {
             c.positive(&format!("{at}/cad/tolerance"), "the tolerance", tolerance);
         }
     }
+    if let Some(facets) = &surface.facets {
+        check_facets(c, &format!("{at}/facets"), facets);
+    }
     if let Some(s) = &surface.sphere {
         c.positive(&format!("{at}/sphere/radius"), "the radius", s.radius);
         c.direction(&format!("{at}/sphere/axis"), "the axis", s.axis);
@@ -258,5 +261,80 @@ pub(super) fn check_surface(c: &mut Checker, at: &str, surface: &Surface) {
             &rotation.angle,
             &TIME,
         );
+    }
+    if let Some(free) = &surface.motion.free {
+        check_free(c, &format!("{at}/motion"), &surface.motion, free);
+    }
+}
+
+/// Components driven by force: at least one, and none that a prescribed motion moves too.
+fn check_free(c: &mut Checker, at: &str, motion: &Motion, free: &FreeMotion) {
+    let (force, moment) = (free.force.axes(), free.moment.axes());
+    if force.iter().chain(&moment).all(|(_, v)| v.is_none()) {
+        let help = "name a component of `force` or `moment`, e.g. `\"force\": {\"z\": -5}`, or leave `free` out";
+        c.add(
+            &format!("{at}/free"),
+            "no component of the motion is free",
+            Some(help.into()),
+        );
+    }
+    if let Some(center) = free.center {
+        c.finite(&format!("{at}/free/center"), &center);
+    }
+    for (quantity, components) in [("force", force), ("moment", moment)] {
+        for (axis, value) in components {
+            if let Some(value) = value {
+                c.value(&format!("{at}/free/{quantity}/{axis}"), value, &TIME);
+            }
+        }
+    }
+    let varies = |v: &Value| v.compile(&TIME).is_ok_and(|f| f.depends_on_time());
+    let help = |held: &str| {
+        let text = format!(
+            "a component either follows {held} or is driven by force; a constant value only says where it starts"
+        );
+        Some(text)
+    };
+    for (i, (axis, value)) in force.into_iter().enumerate() {
+        if value.is_some() && varies(&motion.translation[i]) {
+            c.add(
+                &format!("{at}/free/force/{axis}"),
+                format!("the translation along {axis} is both prescribed over time and free"),
+                help("`translation`"),
+            );
+        }
+    }
+    let Some(rotation) = motion.rotation.as_ref().filter(|r| varies(&r.angle)) else {
+        return;
+    };
+    for (i, (axis, value)) in moment.into_iter().enumerate() {
+        if value.is_some() && rotation.axis[i] != 0.0 {
+            c.add(
+                &format!("{at}/free/moment/{axis}"),
+                format!("the rotation about {axis} is both prescribed over time and free"),
+                help("`rotation`"),
+            );
+        }
+    }
+}
+
+fn check_facets(c: &mut Checker, at: &str, facets: &Facets) {
+    c.exactly_one(
+        at,
+        "fineness of the facets",
+        &[
+            ("chord", facets.chord.is_some()),
+            ("size", facets.size.is_some()),
+            ("count", facets.count.is_some()),
+        ],
+    );
+    if let Some(chord) = facets.chord {
+        c.positive(&format!("{at}/chord"), "the chord error", chord);
+    }
+    if let Some(size) = facets.size {
+        c.positive(&format!("{at}/size"), "the size of the facets", size);
+    }
+    for (i, count) in facets.count.into_iter().flatten().enumerate() {
+        c.whole(&format!("{at}/count/{i}"), count, 1, 100_000);
     }
 }

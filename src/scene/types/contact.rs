@@ -23,6 +23,23 @@ pub struct Contact {
     pub penalty: Penalty,
     #[serde(default)]
     pub tangent: Tangent,
+    #[serde(default)]
+    pub initial_overclosure: InitialOverclosure,
+}
+
+/// What becomes of slave points that start below the master.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum InitialOverclosure {
+    /// The first step resolves it with strain.
+    #[default]
+    Strain,
+    /// It counts as touching: the gap of every point is measured from where it starts, and nothing is stressed.
+    StressFree,
+    /// Stress-free at the start and resolved evenly until the time `until`: an interference fit.
+    Shrink { until: f64 },
+    /// An error that names the place and the amount.
+    Refuse,
 }
 
 /// The surface that a deformable body offers to its slaves.

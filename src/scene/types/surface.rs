@@ -1,4 +1,4 @@
-//! Rigid surfaces: CAD files and exact shapes, their place and their side.
+//! Rigid surfaces: CAD files and exact shapes, facets in their place, where they are and which side is outside.
 use super::motion::Motion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 #[serde(deny_unknown_fields, default)]
 #[schemars(extend("oneOf" = [{"required": ["cad"]}, {"required": ["sphere"]}, {"required": ["cylinder"]}, {"required": ["plane"]}]))]
 pub struct Surface {
-    /// NURBS patches from a CAD file.
+    /// NURBS patches from a CAD file, or triangles from an STL file.
     pub cad: Option<CadFile>,
     /// Exact sphere.
     pub sphere: Option<SphereShape>,
@@ -17,6 +17,8 @@ pub struct Surface {
     pub cylinder: Option<CylinderShape>,
     /// Flat rectangle.
     pub plane: Option<PlaneShape>,
+    /// Facets in place of the exact surface; default: none, the surface is used as it is.
+    pub facets: Option<Facets>,
     /// Placement: first rotated, then moved.
     pub placement: Placement,
     /// Which side is outside.
@@ -26,7 +28,8 @@ pub struct Surface {
     pub motion: Motion,
 }
 
-/// A CAD file: IGES (`.igs`, `.iges`) or JSON (Kratos `.cad.json`, geomdl).
+/// A CAD file: IGES (`.igs`, `.iges`), JSON (Kratos `.cad.json`, geomdl, `covact convert`), or STL, whose triangles are
+/// facets already.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CadFile {
@@ -39,9 +42,50 @@ pub struct CadFile {
     /// Go on although the file holds surfaces that cannot be read (they are reported).
     #[serde(default)]
     pub allow_skipped: bool,
-    /// Edges of patches closer than this are the same edge (length); default from the file's own resolution.
+    /// Edges of patches closer than this are the same edge (length), in an STL file vertices; default from the file's own
+    /// resolution.
     #[serde(default)]
     pub tolerance: Option<f64>,
+}
+
+/// Facets in place of an exact surface, with nodes that lie on it: their kind and exactly one of `chord`, `size`, `count`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{"required": ["chord"]}, {"required": ["size"]}, {"required": ["count"]}]))]
+pub struct Facets {
+    pub kind: FacetKind,
+    /// Largest distance from the exact surface (length); with `smooth` that of the quadrilaterals between its nodes.
+    #[serde(default)]
+    pub chord: Option<f64>,
+    /// Longest edge of a facet (length).
+    #[serde(default)]
+    pub size: Option<f64>,
+    /// Facets along both directions of every patch, one for each of its spans at least.
+    #[serde(default)]
+    pub count: Option<[u32; 2]>,
+}
+
+/// What facets are like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FacetKind {
+    /// Four nodes, as the faces of linear elements.
+    Bilinear,
+    /// Nine nodes, as the faces of quadratic elements.
+    Biquadratic,
+    /// One smooth surface of bicubic patches over quadrilaterals.
+    Smooth,
+}
+
+impl FacetKind {
+    /// As scenes write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            FacetKind::Bilinear => "bilinear",
+            FacetKind::Biquadratic => "biquadratic",
+            FacetKind::Smooth => "smooth",
+        }
+    }
 }
 
 /// An exact sphere.

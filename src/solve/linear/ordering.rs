@@ -5,6 +5,7 @@ use crate::assembly::Pattern;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::{amd, cholesky::simplicial};
+use std::borrow::Cow;
 
 /// Below this many nodes minimum degree alone is tried: nested dissection takes longer than all that it could save.
 const METIS_MIN_NODES: usize = 1000;
@@ -26,6 +27,7 @@ pub(super) struct NodeOrder {
 /// The order that `choice` asks for.
 pub(super) fn order(pattern: &Pattern, choice: OrderingChoice) -> Result<NodeOrder, LinearError> {
     let n = pattern.nodes();
+    let inner = Inner::new(pattern);
     let try_amd = choice != OrderingChoice::Metis;
     let try_metis = match choice {
         OrderingChoice::Amd => false,
@@ -34,18 +36,22 @@ pub(super) fn order(pattern: &Pattern, choice: OrderingChoice) -> Result<NodeOrd
     };
     let mut best: Option<NodeOrder> = None;
     if try_amd {
-        let mut order = evaluate(pattern, Ordering::Amd, minimum_degree(pattern)?)?;
+        let mut order = evaluate(
+            pattern,
+            Ordering::Amd,
+            inner.complete(minimum_degree(&inner)?),
+        )?;
         order.flops_amd = Some(order.flops);
         best = Some(order);
     }
     if try_metis {
-        let (mut starts, mut neighbours) = adjacency(pattern);
+        let (mut starts, mut neighbours) = adjacency(&inner);
         match (
             metis::nested_dissection(&mut starts, &mut neighbours),
             best.as_mut(),
         ) {
             (Ok(new_to_old), _) => {
-                let mut order = evaluate(pattern, Ordering::Metis, new_to_old)?;
+                let mut order = evaluate(pattern, Ordering::Metis, inner.complete(new_to_old))?;
                 let flops = order.flops;
                 order.flops_amd = best.as_ref().map(|b| b.flops);
                 let mut kept = match best {
@@ -63,20 +69,67 @@ pub(super) fn order(pattern: &Pattern, choice: OrderingChoice) -> Result<NodeOrd
     best.ok_or(LinearError::Metis { code: 0 })
 }
 
-/// The node graph as faer sees it: lower triangle with diagonal.
-fn symbolic(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, u32> {
-    let n = pattern.nodes();
-    SymbolicSparseColMatRef::new_checked(n, n, pattern.column_starts(), None, pattern.rows())
+/// The graph of all nodes but those of the pattern's border, which are eliminated last: a node that couples with half of
+/// the others would only blind an ordering to the rest. Lower triangle with diagonal.
+struct Inner<'a> {
+    starts: Cow<'a, [u32]>,
+    rows: Cow<'a, [u32]>,
+    /// All nodes.
+    nodes: u32,
 }
 
-fn minimum_degree(pattern: &Pattern) -> Result<Vec<u32>, LinearError> {
-    let n = pattern.nodes();
-    let mut memory = buffer(amd::order_scratch::<u32>(n, pattern.blocks()))?;
+impl<'a> Inner<'a> {
+    fn new(pattern: &'a Pattern) -> Self {
+        let nodes = pattern.nodes() as u32;
+        if pattern.border() == 0 {
+            return Inner {
+                starts: Cow::Borrowed(pattern.column_starts()),
+                rows: Cow::Borrowed(pattern.rows()),
+                nodes,
+            };
+        }
+        let n = pattern.nodes() - pattern.border();
+        let (mut starts, mut rows) = (vec![0u32], Vec::new());
+        for column in 0..n {
+            rows.extend((pattern.column(column).iter()).filter(|row| (**row as usize) < n));
+            starts.push(rows.len() as u32);
+        }
+        Inner {
+            starts: Cow::Owned(starts),
+            rows: Cow::Owned(rows),
+            nodes,
+        }
+    }
+
+    fn nodes(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    fn column(&self, column: usize) -> &[u32] {
+        &self.rows[self.starts[column] as usize..self.starts[column + 1] as usize]
+    }
+
+    /// An order of the inner nodes with those of the border appended.
+    fn complete(&self, mut new_to_old: Vec<u32>) -> Vec<u32> {
+        new_to_old.extend(self.nodes() as u32..self.nodes);
+        new_to_old
+    }
+
+    /// As faer sees it.
+    fn symbolic(&self) -> SymbolicSparseColMatRef<'_, u32> {
+        let n = self.nodes();
+        SymbolicSparseColMatRef::new_checked(n, n, &self.starts, None, &self.rows)
+    }
+}
+
+fn minimum_degree(graph: &Inner) -> Result<Vec<u32>, LinearError> {
+    let n = graph.nodes();
+    let mut memory = buffer(amd::order_scratch::<u32>(n, graph.rows.len()))?;
     let (mut new_to_old, mut old_to_new) = (vec![0u32; n], vec![0u32; n]);
     amd::order(
         &mut new_to_old,
         &mut old_to_new,
-        symbolic(pattern),
+        graph.symbolic(),
         amd::Control::default(),
         MemStack::new(&mut memory),
     )
@@ -86,7 +139,7 @@ fn minimum_degree(pattern: &Pattern) -> Result<Vec<u32>, LinearError> {
 
 /// Neighbours of every node, both directions, without the node itself. METIS counts with signed 32 bits, which the
 /// limit on blocks keeps.
-fn adjacency(pattern: &Pattern) -> (Vec<i32>, Vec<i32>) {
+fn adjacency(pattern: &Inner) -> (Vec<i32>, Vec<i32>) {
     let n = pattern.nodes();
     let mut starts = vec![0i32; n + 1];
     for column in 0..n {

@@ -1,0 +1,440 @@
+//! A driven surface against bodies that stand still: how hard it presses, when it touches first, where its forces hold
+//! it. This is where a step starts from that the surface enters without contact; six unknowns, no system.
+use super::turn;
+use super::{Driven, Model, SurfaceModel};
+use crate::contact::carried::carried;
+use crate::contact::law::{Penalty, Shifted};
+use crate::contact::rigid::{Exact, PointFault, RigidMaster, behind, presses};
+use crate::model::overclosure::Overclosure;
+use crate::model::surface::SurfaceSet;
+use crate::scene::ValueError;
+use covact_geometry::{Hint, Vec3};
+use nalgebra::{Isometry3, Matrix6, SymmetricEigen, Vector6};
+use rayon::prelude::*;
+
+/// A slave point that could not be evaluated.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PressFault {
+    #[error("contact `{pair}`, slave point {point}: {fault}")]
+    Point {
+        pair: String,
+        point: usize,
+        at: Vec3,
+        fault: PointFault,
+    },
+    #[error(transparent)]
+    Value(#[from] ValueError),
+}
+
+/// Contact of a driven surface with bodies that stand still, in its six degrees of freedom.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Press {
+    /// Energy stored in the penalties.
+    pub energy: f64,
+    /// Forces that hold the surface there: its gradient.
+    pub residual: Vector6<f64>,
+    /// Its second derivative.
+    pub tangent: Matrix6<f64>,
+    /// Points in contact.
+    pub active: usize,
+}
+
+/// How placing a surface under its forces ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Placed {
+    /// The contact carries the forces, or nearly so: what is left is Newton's.
+    Held,
+    /// It moved on and on in this direction (six degrees of freedom) without being stopped.
+    RunsAway([f64; 6]),
+}
+
+/// Slave points of all pairs of a surface, at rest.
+pub struct Presser<'m> {
+    surface: &'m SurfaceModel,
+    driven: &'m Driven,
+    pairs: Vec<PairAtRest<'m>>,
+    /// Largest step: a fraction of an element and of the depth.
+    stride: f64,
+}
+
+struct PairAtRest<'m> {
+    name: &'m str,
+    law: Penalty,
+    overclosure: Option<&'m Overclosure>,
+    points: Vec<PointAtRest>,
+}
+
+impl PairAtRest<'_> {
+    /// Part of the points' offsets that is left at time `t`.
+    fn factor(&self, t: f64) -> f64 {
+        self.overclosure.map_or(0.0, |o| o.factor(t))
+    }
+}
+
+struct PointAtRest {
+    x: Vec3,
+    area: f64,
+    /// Offset of its gap at the start.
+    z0: f64,
+    hint: Option<Hint>,
+}
+
+/// Part of an element, or of the depth, that the surface moves in one step of a search.
+const STRIDE: f64 = 0.25;
+/// Part of an element by which a search goes on past points that it grazes.
+const GRAZE: f64 = 0.01;
+/// Steps of a search.
+const STEPS: usize = 400;
+
+impl<'m> Presser<'m> {
+    /// The slave points of surface `index` at displacements `u`; penalties per pair of the model.
+    pub fn new(
+        model: &'m Model,
+        (index, surface, driven): (usize, &'m SurfaceModel, &'m Driven),
+        penalties: &[f64],
+        u: &[f64],
+    ) -> Self {
+        let mut size = surface.depth;
+        let mut pairs = Vec::new();
+        for (pair, &eps_n) in model.pairs.iter().zip(penalties) {
+            if pair.rigid_master() != Some(index) {
+                continue;
+            }
+            size = size.min(pair.element_size);
+            let points = (pair.points.iter())
+                .enumerate()
+                .map(|(i, p)| PointAtRest {
+                    x: model.point_position(p, u),
+                    area: p.area,
+                    z0: pair.overclosure.as_ref().map_or(0.0, |o| o.z0[i]),
+                    hint: None,
+                })
+                .collect();
+            pairs.push(PairAtRest {
+                name: &pair.name,
+                law: Penalty { eps_n },
+                overclosure: pair.overclosure.as_ref(),
+                points,
+            });
+        }
+        Presser {
+            surface,
+            driven,
+            pairs,
+            stride: STRIDE * size,
+        }
+    }
+
+    /// Whether any pair has the surface as its master.
+    pub fn is_empty(&self) -> bool {
+        self.pairs.iter().all(|p| p.points.is_empty())
+    }
+
+    fn parts(&self, q: &Vector6<f64>) -> (Vec3, Vec3) {
+        let part = |i: usize| Vec3::new(q[i], q[i + 1], q[i + 2]);
+        (part(0), part(3) / self.driven.lever)
+    }
+
+    fn master(
+        &self,
+        prescribed: &Isometry3<f64>,
+        moved: &Vec3,
+        theta: &Vec3,
+    ) -> RigidMaster<'m, SurfaceSet> {
+        RigidMaster {
+            surface: &self.surface.set,
+            pose: self.driven.pose(prescribed, moved, theta),
+            depth: self.surface.depth,
+        }
+    }
+
+    /// Energy, forces and stiffness at time `t` and degrees of freedom `q`.
+    pub fn press(&mut self, t: f64, q: &Vector6<f64>) -> Result<Press, PressFault> {
+        let (moved, theta) = self.parts(q);
+        let prescribed = self.surface.motion.pose(t)?;
+        let master = self.master(&prescribed, &moved, &theta);
+        let center = (prescribed * nalgebra::Point3::from(self.driven.center)).coords + moved;
+        let mut out = Press {
+            energy: 0.0,
+            residual: Vector6::zeros(),
+            tangent: Matrix6::zeros(),
+            active: 0,
+        };
+        for pair in &mut self.pairs {
+            let (law, factor) = (pair.law, pair.factor(t));
+            let touches: Vec<_> = (pair.points.par_iter_mut())
+                .with_min_len(64)
+                .map(|p| {
+                    let z0 = factor * p.z0;
+                    master.touch(&p.x, &mut p.hint, &Shifted { law, z0 }, &Exact)
+                })
+                .collect();
+            for (point, (touch, p)) in touches.into_iter().zip(&pair.points).enumerate() {
+                let touch = touch.map_err(|fault| PressFault::Point {
+                    pair: pair.name.to_owned(),
+                    point,
+                    at: p.x,
+                    fault,
+                })?;
+                let Some(touch) = touch else { continue };
+                let (r, k) = (touch.residual * p.area, touch.tangent * p.area);
+                let c = carried(&r, &k, &(p.x - center));
+                out.active += 1;
+                out.energy += 0.5 * touch.n * touch.gap * p.area;
+                add(&mut out.residual, &-r, &c.spin);
+                add_tangent(&mut out.tangent, &k, &-c.point_spin, &c.spin_spin);
+            }
+        }
+        (out.residual, out.tangent) =
+            in_rotation_vector(&out.residual, &out.tangent, &theta, self.driven.lever);
+        Ok(out)
+    }
+
+    /// Distance of the nearest slave point, and whether any is below the surface.
+    fn nearest(&mut self, t: f64, q: &Vector6<f64>) -> Result<(f64, bool), PressFault> {
+        let (moved, theta) = self.parts(q);
+        let prescribed = self.surface.motion.pose(t)?;
+        let master = self.master(&prescribed, &moved, &theta);
+        let (mut nearest, mut below) = (f64::INFINITY, false);
+        for pair in &mut self.pairs {
+            let factor = pair.factor(t);
+            let found = (pair.points.par_iter_mut())
+                .with_min_len(64)
+                .filter_map(|p| {
+                    let foot = master.foot(&p.x, p.hint, f64::INFINITY)?;
+                    p.hint = Some(Hint {
+                        patch: foot.patch,
+                        xi: foot.xi,
+                    });
+                    let (gap, inside) = (foot.signed_distance - factor * p.z0, presses(&foot));
+                    let distance = if inside { gap.max(0.0) } else { foot.distance };
+                    let below = inside && gap < 0.0 && !behind(&foot, master.depth);
+                    Some((distance, below))
+                })
+                .reduce(|| (f64::INFINITY, false), |a, b| (a.0.min(b.0), a.1 || b.1));
+            nearest = nearest.min(found.0);
+            below |= found.1;
+        }
+        Ok((nearest, below))
+    }
+
+    /// Unit direction in which forces drive the surface: along the force, or, where it has none, about the moment.
+    /// `None` where both are zero.
+    pub fn direction(driving: &[f64; 6]) -> Option<Vector6<f64>> {
+        let mut e = Vector6::from_column_slice(driving);
+        if e.fixed_rows::<3>(0).norm() > 0.0 {
+            e.fixed_rows_mut::<3>(3).fill(0.0);
+        }
+        (e.norm() > 0.0 && e.norm().is_finite()).then(|| e / e.norm())
+    }
+
+    /// How far from `q` the surface goes in direction `e` until its contact first resists; `None` if it never does.
+    /// No point is passed over: a step is no longer than the distance of the nearest point, save past points that are
+    /// only grazed.
+    pub fn advance(
+        &mut self,
+        t: f64,
+        q: &Vector6<f64>,
+        e: &Vector6<f64>,
+    ) -> Result<Option<f64>, PressFault> {
+        let turning = e.fixed_rows::<3>(0).norm() == 0.0;
+        let reach = if turning {
+            std::f64::consts::PI * self.driven.lever
+        } else {
+            let center = (self.surface.motion.pose(t)?)
+                * nalgebra::Point3::from(self.driven.center)
+                + self.parts(q).0;
+            let points = self.pairs.iter().flat_map(|p| &p.points);
+            let far = points.fold(0.0f64, |a, p| a.max((p.x - center.coords).norm()));
+            far + self.driven.lever
+        };
+        let graze = (GRAZE / STRIDE * self.stride).max(1e-3 * reach / STEPS as f64);
+        let (mut before, mut s) = (0.0, 0.0);
+        while s <= reach {
+            let (distance, below) = self.nearest(t, &(q + e * s))?;
+            if below && self.press(t, &(q + e * s))?.residual.dot(e) > 0.0 {
+                return self.first(t, q, e, before, s).map(Some);
+            }
+            before = s;
+            s += if below { graze } else { distance.max(graze) };
+            if !s.is_finite() {
+                break;
+            }
+        }
+        Ok(None)
+    }
+
+    /// Bisects for the first resistance between `low` and `high`.
+    fn first(
+        &mut self,
+        t: f64,
+        q: &Vector6<f64>,
+        e: &Vector6<f64>,
+        mut low: f64,
+        mut high: f64,
+    ) -> Result<f64, PressFault> {
+        while high - low > 1e-12 * self.driven.lever {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if self.press(t, &(q + e * middle))?.residual.dot(e) > 0.0 {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        Ok(low)
+    }
+
+    /// Moves the surface from `q` to where the penalties of bodies that stand still carry its forces: a modified
+    /// Newton's method on the potential energy in steps that stay below a fraction of an element, so that no contact
+    /// is jumped over. `driving` gives the generalised forces at degrees of freedom.
+    pub fn place(
+        &mut self,
+        t: f64,
+        q: &mut Vector6<f64>,
+        mut driving: impl FnMut(&Vector6<f64>) -> Result<[f64; 6], ValueError>,
+    ) -> Result<Placed, PressFault> {
+        let free = self.driven.free();
+        let forces = driving(q)?;
+        let Some(e) = Self::direction(&forces) else {
+            return Ok(Placed::Held);
+        };
+        if self.press(t, q)?.residual.dot(&e) <= 0.0 {
+            match self.advance(t, q, &e)? {
+                Some(s) => *q += e * s,
+                None => return Ok(Placed::RunsAway(e.into())),
+            }
+        }
+        let mut last = e;
+        for _ in 0..STEPS {
+            let now = self.press(t, q)?;
+            let forces = driving(q)?;
+            let force = |c: usize| {
+                if free[c] {
+                    forces[c] - now.residual[c]
+                } else {
+                    0.0
+                }
+            };
+            let f = Vector6::from_fn(|c, _| force(c));
+            if f.norm() <= 1e-6 * Vector6::from(forces).norm() && now.active > 0 {
+                return Ok(Placed::Held);
+            }
+            let mut step = modified_step(&now.tangent, &free, &f);
+            let length = step.norm();
+            if length > self.stride {
+                step *= self.stride / length;
+            }
+            last = step;
+            // The work of the driving forces along the step stands for their potential.
+            let mut s = 1.0;
+            let down = loop {
+                let there = self.press(t, &(*q + step * s))?;
+                let work: f64 = (0..6).map(|c| forces[c] * step[c] * s).sum();
+                if there.energy - now.energy - work <= -1e-6 * s * f.dot(&step) {
+                    break true;
+                }
+                s *= 0.5;
+                if s < 1e-6 {
+                    break false;
+                }
+            };
+            if !down {
+                return Ok(Placed::Held);
+            }
+            *q += step * s;
+        }
+        Ok(Placed::RunsAway(last.into()))
+    }
+}
+
+/// Step against the forces `f` with the magnitudes of the stiffness's eigenvalues: downhill also where it is indefinite
+/// or zero.
+fn modified_step(tangent: &Matrix6<f64>, free: &[bool; 6], f: &Vector6<f64>) -> Vector6<f64> {
+    let k = Matrix6::from_fn(|i, j| {
+        if free[i] && free[j] {
+            tangent[(i, j)]
+        } else {
+            0.0
+        }
+    });
+    let eigen = SymmetricEigen::new(k);
+    let largest = eigen.eigenvalues.amax();
+    if largest <= 0.0 {
+        // No contact: any length, the caller bounds it.
+        return f * (1e100 / f.norm());
+    }
+    let mut step = Vector6::zeros();
+    for i in 0..6 {
+        let v = eigen.eigenvectors.column(i);
+        step += v * (v.dot(f) / eigen.eigenvalues[i].abs().max(1e-8 * largest));
+    }
+    step
+}
+
+/// Adds translation and spin parts.
+pub fn add(out: &mut Vector6<f64>, translation: &Vec3, spin: &Vec3) {
+    let mut part = out.fixed_rows_mut::<3>(0);
+    part += translation;
+    let mut part = out.fixed_rows_mut::<3>(3);
+    part += spin;
+}
+
+/// Adds blocks of translation, translation and spin, spin.
+pub fn add_tangent(
+    out: &mut Matrix6<f64>,
+    translation: &nalgebra::Matrix3<f64>,
+    mixed: &nalgebra::Matrix3<f64>,
+    spin: &nalgebra::Matrix3<f64>,
+) {
+    let mut block = out.fixed_view_mut::<3, 3>(0, 0);
+    block += translation;
+    let mut block = out.fixed_view_mut::<3, 3>(0, 3);
+    block += mixed;
+    let mut block = out.fixed_view_mut::<3, 3>(3, 0);
+    block += mixed.transpose();
+    let mut block = out.fixed_view_mut::<3, 3>(3, 3);
+    block += spin;
+}
+
+/// Residual and symmetric tangent of translation and spin, as those of the degrees of freedom: the rotation vector times
+/// the lever. The moments of `residual` must be all that the tangent belongs to.
+pub fn in_rotation_vector(
+    residual: &Vector6<f64>,
+    tangent: &Matrix6<f64>,
+    theta: &Vec3,
+    lever: f64,
+) -> (Vector6<f64>, Matrix6<f64>) {
+    let spin = turn::spin_of(theta) / lever;
+    let moment: Vec3 = residual.fixed_rows::<3>(3).into();
+    let mut r = *residual;
+    r.fixed_rows_mut::<3>(3).copy_from(&spin.tr_mul(&moment));
+    let mut k = *tangent;
+    let mixed = tangent.fixed_view::<3, 3>(0, 3) * spin;
+    k.fixed_view_mut::<3, 3>(0, 3).copy_from(&mixed);
+    k.fixed_view_mut::<3, 3>(3, 0).copy_from(&mixed.transpose());
+    k.fixed_view_mut::<3, 3>(3, 3).copy_from(&spin_block(
+        &tangent.fixed_view::<3, 3>(3, 3).into(),
+        &moment,
+        theta,
+        lever,
+    ));
+    (r, k)
+}
+
+/// The block of the rotation alone: the second derivative by spins on top of the present rotation is that by rotation
+/// vectors but for half of the moment's cross product (two turns do not commute) and the change of `T`.
+pub fn spin_block(
+    spin_spin: &nalgebra::Matrix3<f64>,
+    moment: &Vec3,
+    theta: &Vec3,
+    lever: f64,
+) -> nalgebra::Matrix3<f64> {
+    let spin = turn::spin_of(theta);
+    let by_spin = spin_spin - crate::contact::carried::cross_matrix(moment) * 0.5;
+    let k =
+        (spin.transpose() * by_spin * spin + turn::moment_slope(theta, moment)) / (lever * lever);
+    (k + k.transpose()) * 0.5
+}

@@ -1,0 +1,71 @@
+//! Where driven surfaces stand before the first step: a surface that touches nothing has no stiffness, so it is moved
+//! along its force until it touches.
+use super::press::Presser;
+use super::{Model, ModelError, text};
+use crate::model::error::At;
+use crate::scene::Scene;
+use nalgebra::Vector6;
+
+/// Moves every driven surface along its force (where it has none, about its moment) until it first touches, and notes
+/// how far.
+///
+/// # Errors
+/// [`ModelError`] where it would never touch, has no contact at all, or nothing drives it at the end of the first step.
+pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
+    let step = &scene.solution.step;
+    let stops = model.kinks.iter().chain(&scene.solution.stops);
+    let first = (stops.copied().filter(|t| *t > 0.0)).fold(
+        step.initial.min(step.max).min(scene.solution.end_time),
+        f64::min,
+    );
+    let penalties: Vec<f64> = model.pairs.iter().map(|p| p.eps_n).collect();
+    let u = vec![0.0; 3 * model.nodes.len()];
+    let mut starts = Vec::new();
+    for entry in model.driven() {
+        let (index, surface, driven) = entry;
+        let name = &surface.name;
+        let pointer = || format!("/surfaces/{name}/motion/free");
+        let mut presser = Presser::new(model, entry, &penalties, &u);
+        if presser.is_empty() {
+            let message =
+                format!("surface `{name}` is driven by force, but takes part in no contact");
+            return Err(text(pointer(), message)
+                .help("name it as `master` of a contact, or leave `free` out"));
+        }
+        let driving = driven.driving(first, &u).at(pointer)?;
+        let Some(e) = Presser::direction(&driving) else {
+            let message = format!(
+                "surface `{name}` is driven by force {}, but the force is zero at the end of the first step \
+                 (t = {first}): nothing presses it against a body",
+                driven.words()
+            );
+            return Err(text(pointer(), message)
+                .help("give it a force from the start, or prescribe the motion until it acts"));
+        };
+        let q = Vector6::zeros();
+        let found = (presser.advance(0.0, &q, &e)).map_err(|f| text(pointer(), f.to_string()))?;
+        let Some(s) = found else {
+            let message = format!(
+                "surface `{name}` is driven by force {}, but no slave point lies in its way {}",
+                driven.words(),
+                driven.direction_words(&e.into())
+            );
+            return Err(text(pointer(), message).help(
+                "forces act on the surface: check their sign, the `placement`, the `side` and which components are free",
+            ));
+        };
+        starts.push((index, e * s));
+    }
+    for (index, start) in starts {
+        let surface = &mut model.surfaces[index];
+        if let Some(driven) = &mut surface.driven {
+            driven.start = start.into();
+            let how = match start.norm() > 0.0 {
+                true => format!("{} until it touches", driven.start_words()),
+                false => "it starts in contact".to_owned(),
+            };
+            (model.notes).push(format!("surface `{}`: {how}", surface.name));
+        }
+    }
+    Ok(())
+}
