@@ -256,7 +256,6 @@ fn a_summary_reads_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("summary.json");
     let summary = Summary {
-        pattern_rebuilds: 0,
         status: RunStatus::NotConverged,
         reason: Some("step 4 would have to be smaller than 1e-5".into()),
         time: 0.3,
@@ -271,6 +270,7 @@ fn a_summary_reads_back() {
         factorizations: BTreeMap::from([("llt".to_string(), 40), ("ldlt".to_string(), 1)]),
         steps: 3,
         cuts: 1,
+        pattern_rebuilds: 0,
         effects: vec!["normal contact".into()],
         warnings: vec!["slave points are coarse".into()],
         versions: Versions::default(),

@@ -325,3 +325,46 @@ fn all_problems_are_listed_in_the_order_of_the_file() {
         .collect();
     assert_eq!(lines, ["3", "6", "12", "14", "15"], "{found:?}");
 }
+
+#[test]
+fn facets_say_how_fine_they_are() {
+    let sphere = "\"sphere\": {\"radius\": 5}";
+    let with = |facets: &str| {
+        let text = SCENE.replacen(sphere, &format!("{sphere}, \"facets\": {facets}"), 1);
+        assert!(text.contains(facets));
+        problems(&text)
+    };
+    for good in ["\"chord\": 0.1", "\"size\": 2", "\"count\": [3, 4]"] {
+        let facets = format!("{{\"kind\": \"smooth\", {good}}}");
+        assert_eq!(with(&facets), Vec::<String>::new());
+    }
+    for (facets, expected) in [
+        (
+            "{\"kind\": \"bilinear\"}",
+            "the fineness of the facets does not say what it is (exactly one of `chord`, `size`, `count`)",
+        ),
+        (
+            "{\"kind\": \"bilinear\", \"chord\": 0.1, \"size\": 1}",
+            "the fineness of the facets has `chord` and `size` at once",
+        ),
+        (
+            "{\"kind\": \"bilinear\", \"chord\": 0}",
+            "the chord error is 0 (it must be positive)",
+        ),
+        (
+            "{\"kind\": \"biquadratic\", \"size\": -1}",
+            "the size of the facets is -1 (it must be positive)",
+        ),
+        (
+            "{\"kind\": \"biquadratic\", \"count\": [4, 0]}",
+            "`count` is 0 (a whole number from 1 to 100000)",
+        ),
+    ] {
+        let found = with(facets);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(
+            found[0].starts_with("12:") && found[0].contains(expected),
+            "{found:?}"
+        );
+    }
+}

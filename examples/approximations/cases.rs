@@ -96,7 +96,8 @@ impl Case {
             "motion": { "translation": [0, 0, "-5*t"] }
         });
         // The exact sphere is six patches here; a facet is about as long as nodes of the plate are apart.
-        let facets = |kind: &str| json!({ "kind": kind, "count": [self.intervals, self.intervals] });
+        let facets =
+            |kind: &str| json!({ "kind": kind, "count": [self.intervals, self.intervals] });
         match self.master {
             Master::Facets => ball["facets"] = facets("bilinear"),
             Master::Smooth => ball["facets"] = facets("smooth"),

@@ -44,14 +44,15 @@ impl Errors {
         };
         let reference = (SHELLS.iter().rev())
             .find_map(|&shell| reference(&of(shell, Master::Nurbs)))
-            .ok_or("no three runs on the exact ball, one twice as fine as the other, that converge")?;
+            .ok_or(
+                "no three runs on the exact ball, one twice as fine as the other, that converge",
+            )?;
         let mut curves = Vec::new();
         for shell in SHELLS {
             for master in MASTERS {
                 let own = of(shell, master);
                 let error = |r: &Record| (r.force / reference.force - 1.0).abs();
-                let points: Vec<[f64; 2]> =
-                    own.iter().map(|r| [r.dofs as f64, error(r)]).collect();
+                let points: Vec<[f64; 2]> = own.iter().map(|r| [r.dofs as f64, error(r)]).collect();
                 let rate = match own.as_slice() {
                     [.., a, b] => {
                         let finer = f64::from(b.case.intervals) / f64::from(a.case.intervals);
@@ -93,28 +94,32 @@ impl Errors {
         let mut parts = Vec::new();
         for c in &self.curves {
             if let Some([dofs, error]) = c.points.last() {
-                parts.push(format!(
-                    "{} on {} {:.2} %, rate {:.1}",
-                    c.shell.name(),
-                    c.master.name(),
-                    100.0 * error,
-                    c.rate
-                ) + if parts.is_empty() {
-                    format!(" ({dofs:.0} unknowns, the finest of all)")
-                } else {
-                    String::new()
-                }
-                .as_str());
+                parts.push(
+                    format!(
+                        "{} on {} {:.2} %, rate {:.1}",
+                        c.shell.name(),
+                        c.master.name(),
+                        100.0 * error,
+                        c.rate
+                    ) + if parts.is_empty() {
+                        format!(" ({dofs:.0} unknowns, the finest of all)")
+                    } else {
+                        String::new()
+                    }
+                    .as_str(),
+                );
             }
         }
         format!(
             "Force on the ball of `ball_on_plate` at a depth of 5 mm, error against unknowns; master facets about as \
              long as the nodes of the plate are apart. At the finest meshes: {}. Reference {:.2} N, extrapolated from \
-             {} on the exact ball (order {:.1}), whose finest run is {:.3} % off it.",
+             {} on the exact ball (order {:.1}), whose finest run, with {} nodes along an edge of the quarter, is \
+             {:.3} % off it.",
             parts.join("; "),
             r.force,
             r.shell.name(),
             r.rate,
+            r.intervals + 1,
             100.0 * r.own
         )
     }

@@ -96,7 +96,9 @@ fn solve(case: &Case) -> Outcome<Record> {
         return Err(format!("{} {reason}", summary.status.name()).into());
     }
     let history = covact::output::read_csv(&folder.path().join("history.csv"))?;
-    let force = history.column("force.ball.z").and_then(|c| c.last().copied());
+    let force = history
+        .column("force.ball.z")
+        .and_then(|c| c.last().copied());
     Ok(Record {
         case: *case,
         dofs: summary.dofs,

@@ -235,6 +235,7 @@ fn meaning(effect: &str) -> &'static str {
         "contact.normal.penalty" => "contact pressure = penalty times penetration, no friction",
         "contact.master.rigid" => "rigid surfaces",
         "contact.master.deformable" => "faces of bodies that deform",
+        "contact.self" => "faces of a body touch faces of the same body",
         "contact.master.smooth" => "one smooth surface through the nodes of the faces",
         "surface.driven_by_force" => {
             "components of a surface's motion are unknowns with given forces"

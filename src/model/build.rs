@@ -1,6 +1,7 @@
 //! Scene to model.
 mod contacts;
 mod facets;
+mod master_faces;
 mod supports;
 mod surfaces;
 mod values;

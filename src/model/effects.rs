@@ -50,6 +50,13 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
             Tangent::Published { .. } => "contact.tangent.published",
         });
     }
+    if model
+        .pairs
+        .iter()
+        .any(|p| p.body_master().is_some_and(|m| m.own.is_some()))
+    {
+        add("contact.self");
+    }
     if model.driven().next().is_some() {
         add("surface.driven_by_force");
     }

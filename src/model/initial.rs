@@ -1,10 +1,14 @@
 //! How the contact pairs stand before anything moves.
 use super::error::{number, text};
-use super::master::Master;
+use super::master::{Master, Masters};
 use super::overclosure::{Deepest, treat};
-use super::{Model, ModelError};
+use super::{Model, ModelError, PairModel, SurfaceModel};
+use crate::contact::points::SlavePoint;
 use crate::scene::{InitialOverclosure, Scene};
 use covact_geometry::Vec3;
+
+/// Cosine between the normals of slave and master above which their faces look the same way.
+const SAME_WAY: f64 = 0.5;
 
 /// Initial gaps of a pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +23,9 @@ pub struct InitialGap {
     pub touching: usize,
     /// Points that start behind the surface, deeper than its search depth: they are not in contact.
     pub behind: usize,
+    /// Mean of `n_slave . n_master` at the points nearest to the master (within an element of the nearest); above zero
+    /// the faces look the same way. None for rigid masters.
+    pub facing: Option<f64>,
     /// At the nearest point, the body lies between its slave face and the surface: the wrong face is the slave.
     pub turned_away: bool,
 }
@@ -36,8 +43,8 @@ fn initial_gaps(
 ) -> Result<InitialGap, ModelError> {
     let pair = &model.pairs[index];
     let zero = vec![0.0; 3 * model.nodes.len()];
-    // Surfaces of bodies are kept at their undeformed positions in the model.
-    let master = (pair.master.at(model, 0.0, &zero))
+    let masters = Masters::new(model);
+    let master = (masters.at(model, index, &zero, 0.0))
         .map_err(|e| text(format!("/contacts/{}/master", pair.name), e.to_string()))?;
     let mut gap = InitialGap {
         smallest: f64::INFINITY,
@@ -45,13 +52,16 @@ fn initial_gaps(
         place: Vec3::zeros(),
         touching: 0,
         behind: 0,
+        facing: None,
         turned_away: false,
     };
     let mut hint = None;
     let mut nearest = None;
+    let mut facing: Vec<(f64, f64)> = Vec::new();
+    let normals = pair.body_master().map(|_| slave_normals(model, pair));
     for (i, p) in pair.points.iter().enumerate() {
         let x = model.point_position(p, &zero);
-        let Some(seen) = master.see(pair, i, &x, hint) else {
+        let Some(seen) = master.see(i, &x, hint) else {
             overclosures.push(0.0);
             continue;
         };
@@ -62,15 +72,42 @@ fn initial_gaps(
             gap.place = x;
             nearest = Some((p.nodes[0], x, seen.normal));
         }
+        if let Some(normals) = &normals {
+            facing.push((seen.distance, normals[i].dot(&seen.normal)));
+        }
         gap.largest = gap.largest.max(distance);
         gap.touching += usize::from(seen.closed);
         overclosures.push(if seen.closed { distance } else { 0.0 });
         gap.behind += usize::from(seen.behind);
     }
+    let least = facing.iter().fold(f64::INFINITY, |a, f| a.min(f.0));
+    let near = |f: &&(f64, f64)| f.0 <= least + pair.element_size;
+    let near: Vec<f64> = facing.iter().filter(near).map(|f| f.1).collect();
+    if !near.is_empty() {
+        gap.facing = Some(near.iter().sum::<f64>() / near.len() as f64);
+    }
     if let Some((node, x, n)) = nearest {
         gap.turned_away = turned_away(model, pair.body, node, &x, &n);
     }
     Ok(gap)
+}
+
+/// Outward unit normals of the undeformed slave faces at the points of a pair.
+fn slave_normals(model: &Model, pair: &PairModel) -> Vec<Vec3> {
+    let body = &model.bodies[pair.body];
+    let mut at_node = vec![Vec3::zeros(); body.mesh.nodes.len()];
+    for &face in &pair.faces {
+        let (area, normal) = body.mesh.face_area_normal(face);
+        for &n in body.mesh.face_nodes(face).nodes() {
+            at_node[n as usize] += normal * area;
+        }
+    }
+    let first = body.first_node as usize;
+    let normal = |p: &SlavePoint| {
+        let sum = (p.terms()).fold(Vec3::zeros(), |s, (n, w)| s + at_node[n - first] * w);
+        sum.try_normalize(0.0).unwrap_or_else(Vec3::zeros)
+    };
+    pair.points.iter().map(normal).collect()
 }
 
 /// Whether the elements at a node lie clearly behind the point `x` as seen along the outward normal `n` of the surface
@@ -97,6 +134,24 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
         let gap = initial_gaps(model, index, &mut overclosures)?;
         let pair = &model.pairs[index];
         let master = pair.master_words(model);
+        if let Some(master) = pair.body_master()
+            && gap.facing.is_some_and(|cosine| cosine > SAME_WAY)
+        {
+            // The elements of the slave tell which of the two is wrong.
+            let (side, set) = match gap.turned_away {
+                true => ("slave", &pair.slave),
+                false => ("master", &master.name),
+            };
+            return Err(text(
+                format!("/contacts/{}/{side}", pair.name),
+                format!(
+                    "the faces `{}` and `{}` look the same way where they are closest: `{set}` lies on the side of its \
+                     body that is turned away from the other",
+                    pair.slave, master.name
+                ),
+            )
+            .help("take the faces on the other side of that body, whose outward normals point at the other faces"));
+        }
         notes.push(format!(
             "contact `{}`: initial gaps from {} to {} at {} points, {} of them in contact",
             pair.name,
@@ -151,7 +206,9 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
                 number(pair.master.depth(model))
             ));
         }
-        warnings.extend(too_coarse(model, index));
+        if let Some(number) = pair.rigid_master() {
+            warnings.extend(too_coarse(model, index, &model.surfaces[number]));
+        }
         if gap.smallest < -1e-9 * pair.element_size {
             let choice = (scene.contacts.get(&pair.name))
                 .map_or(InitialOverclosure::Strain, |c| c.initial_overclosure);
@@ -171,17 +228,17 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
     Ok(())
 }
 
-/// Warns of slave points so far apart that a convex part of a rigid surface sinks in between them.
-fn too_coarse(model: &Model, index: usize) -> Option<String> {
-    let pair = &model.pairs[index];
-    let surface = &model.surfaces[pair.rigid_master()?];
+/// A warning of slave points that are too far apart for a rigid surface.
+fn too_coarse(model: &Model, index: usize, surface: &SurfaceModel) -> Option<String> {
     let spacing = point_spacing(model, index);
-    let radius = surface.radii()[0]?;
+    let [Some(radius), _] = surface.radii() else {
+        return None;
+    };
     (spacing > 0.5 * radius).then(|| {
         format!(
             "contact `{}`: its slave points are {} apart, too coarse for the smallest convex radius {} of surface \
              `{}`, which will sink in between them: refine the mesh or take more `points` a face (at most {} apart)",
-            pair.name,
+            model.pairs[index].name,
             number(spacing),
             number(radius),
             surface.name,

@@ -1,4 +1,5 @@
 //! The master of a contact pair: a rigid surface, or faces of a deformable body.
+use super::self_contact::{Accept, Opposing, OwnFacets};
 use super::surface::SurfaceSet;
 use super::{Model, PairModel};
 use crate::contact::moving;
@@ -30,39 +31,72 @@ pub struct BodyMaster {
     pub depth: f64,
     /// Mean edge length of the faces.
     pub element_size: f64,
+    /// What the slave points do not touch, where they belong to the same body.
+    pub own: Option<OwnFacets>,
+}
+
+/// A surface of a body, where a state puts it.
+#[derive(Debug, Clone)]
+pub struct BodySurface {
+    pub facets: MovingFacets,
+    /// Normals of the facets at their middles; none but for self contact.
+    pub normals: Vec<Vec3>,
+}
+
+impl BodySurface {
+    /// The surface of a master at the undeformed positions.
+    pub fn new(master: &BodyMaster) -> Self {
+        let mut out = BodySurface {
+            facets: master.facets.clone(),
+            normals: vec![Vec3::zeros(); master.own.as_ref().map_or(0, |_| master.facets.len())],
+        };
+        out.turn();
+        out
+    }
+
+    fn turn(&mut self) {
+        for (facet, normal) in self.normals.iter_mut().enumerate() {
+            let [a, b] = self.facets.jet(facet as u32, [0.0; 2]).rho_i;
+            *normal = a.cross(&b);
+        }
+    }
+
+    fn update(&mut self, model: &Model, u: &[f64]) {
+        self.facets.update(|node| model.position(node as usize, u));
+        self.turn();
+    }
 }
 
 /// The surfaces of all masters that are bodies, where a state puts them.
 #[derive(Debug)]
 pub struct Masters {
-    facets: Vec<Option<MovingFacets>>,
+    surfaces: Vec<Option<BodySurface>>,
 }
 
 impl Masters {
     /// At the undeformed positions.
     pub fn new(model: &Model) -> Self {
-        let facets = model.pairs.iter().map(|pair| match &pair.master {
-            Master::Rigid(_) => None,
-            Master::Body(body) => Some(body.facets.clone()),
-        });
+        let surfaces = model.pairs.iter();
         Masters {
-            facets: facets.collect(),
+            surfaces: surfaces
+                .map(|p| p.body_master().map(BodySurface::new))
+                .collect(),
         }
     }
 
     /// Moves every surface with the displacements `u` (three per node).
     pub fn update(&mut self, model: &Model, u: &[f64]) {
-        for facets in self.facets.iter_mut().flatten() {
-            facets.update(|node| model.position(node as usize, u));
+        for surface in self.surfaces.iter_mut().flatten() {
+            surface.update(model, u);
         }
     }
 
     /// The surface of a pair; none where its master is rigid.
-    pub fn facets(&self, pair: usize) -> Option<&MovingFacets> {
-        self.facets[pair].as_ref()
+    pub fn surface(&self, pair: usize) -> Option<&BodySurface> {
+        self.surfaces[pair].as_ref()
     }
 
-    /// The master of a pair at `time` with the displacements `u`; a body's where the last [`Masters::update`] put it.
+    /// The master of a pair at `time`; a body's where the last [`Masters::update`] put it.
     ///
     /// # Errors
     /// A motion of a rigid surface without a value at that time.
@@ -70,12 +104,17 @@ impl Masters {
         &'a self,
         model: &'a Model,
         pair: usize,
+        u: &'a [f64],
         time: f64,
-        u: &[f64],
     ) -> Result<MasterNow<'a>, ValueError> {
-        Ok(match (&model.pairs[pair].master, &self.facets[pair]) {
-            (Master::Body(body), Some(facets)) => MasterNow::Body { body, facets },
-            (master, _) => master.at(model, time, u)?,
+        Ok(match (&model.pairs[pair].master, &self.surfaces[pair]) {
+            (Master::Rigid(surface), _) => MasterNow::Rigid(model.surfaces[*surface].at(time, u)?),
+            (Master::Body(body), surface) => MasterNow::Body {
+                model,
+                u,
+                body,
+                surface: surface.as_ref(),
+            },
         })
     }
 }
@@ -84,8 +123,11 @@ impl Masters {
 pub enum MasterNow<'a> {
     Rigid(RigidMaster<'a, SurfaceSet>),
     Body {
+        model: &'a Model,
+        /// Displacements that the surface was put to.
+        u: &'a [f64],
         body: &'a BodyMaster,
-        facets: &'a MovingFacets,
+        surface: Option<&'a BodySurface>,
     },
 }
 
@@ -114,25 +156,6 @@ impl Master {
             Master::Body(body) => body.depth,
         }
     }
-
-    /// The master at `time` with the displacements `u`, a body's undeformed.
-    ///
-    /// # Errors
-    /// As [`Masters::at`].
-    pub fn at<'a>(
-        &'a self,
-        model: &'a Model,
-        time: f64,
-        u: &[f64],
-    ) -> Result<MasterNow<'a>, ValueError> {
-        Ok(match self {
-            Master::Rigid(surface) => MasterNow::Rigid(model.surfaces[*surface].at(time, u)?),
-            Master::Body(body) => MasterNow::Body {
-                body,
-                facets: &body.facets,
-            },
-        })
-    }
 }
 
 impl Seen {
@@ -156,16 +179,21 @@ impl MasterNow<'_> {
     }
 
     /// The closest point of the master to slave point `point` at `x`; none where nothing is found.
-    pub fn see(
+    pub fn see(&self, point: usize, x: &Vec3, hint: Option<Hint>) -> Option<Seen> {
+        self.see_within(point, x, hint, f64::INFINITY)
+    }
+
+    /// [`MasterNow::see`] up to a distance.
+    pub fn see_within(
         &self,
-        _pair: &PairModel,
-        _point: usize,
+        point: usize,
         x: &Vec3,
         hint: Option<Hint>,
+        reach: f64,
     ) -> Option<Seen> {
         match self {
             MasterNow::Rigid(master) => {
-                let foot = master.foot(x, hint, f64::INFINITY)?;
+                let foot = master.foot(x, hint, reach)?;
                 let behind = rigid::behind(&foot, master.depth);
                 Some(Seen {
                     hint: Hint {
@@ -179,8 +207,26 @@ impl MasterNow<'_> {
                     behind,
                 })
             }
-            MasterNow::Body { body, facets } => {
-                let foot = facets.project(x, hint, f64::INFINITY, |_| true)?;
+            MasterNow::Body {
+                model,
+                u,
+                body,
+                surface,
+            } => {
+                let surface = (*surface)?;
+                let facets = &surface.facets;
+                let foot = match &body.own {
+                    None => facets.project(x, hint, reach, |_| true),
+                    Some(own) => {
+                        let accept = Opposing {
+                            own,
+                            normals: &surface.normals,
+                            position: |n: u32| model.position(n as usize, u),
+                        };
+                        let at = accept.point(point);
+                        facets.project(x, hint, reach, |f| accept.facet(at, f))
+                    }
+                }?;
                 let behind = moving::behind(&foot, body.depth);
                 Some(Seen {
                     hint: foot.hint(),

@@ -11,6 +11,7 @@ pub mod master;
 pub mod motion;
 pub mod overclosure;
 pub mod penalty;
+pub mod self_contact;
 pub mod slave;
 pub mod state;
 pub mod surface;
@@ -18,7 +19,7 @@ pub mod symmetry;
 
 use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;
-use crate::mesh::Mesh;
+use crate::mesh::{Face, Mesh};
 use crate::scene::{Tangent, TimeFunction, ValueError};
 use crate::shell::{Block, ElementBlock};
 use constraints::{MeanPrescribed, Prescribed};
@@ -75,7 +76,11 @@ pub struct BodyModel {
 #[derive(Debug)]
 pub struct PairModel {
     pub name: String,
+    /// The slave faces, `body.set`.
+    pub slave: String,
     pub body: usize,
+    /// The slave faces.
+    pub faces: Vec<Face>,
     pub master: Master,
     pub points: Vec<SlavePoint>,
     /// Penalty (force / length^3).

@@ -50,6 +50,26 @@ pub const COLUMNS: &[ColumnDoc] = &[
         "moment of that force about the origin of the scene",
     ),
     doc(
+        "displacement.<name>.<axis>",
+        "length",
+        "free displacement of a surface driven by force, on top of its prescribed motion",
+    ),
+    doc(
+        "rotation.<name>.<axis>",
+        "degree",
+        "rotation vector of its free rotation about its centre",
+    ),
+    doc(
+        "force_balance.<name>.<axis>",
+        "force",
+        "its driving force less the force it exerts: nothing where it is free, what its guide takes elsewhere",
+    ),
+    doc(
+        "moment_balance.<name>.<axis>",
+        "force length",
+        "the same of moments about its present centre (of two free rotations to second order of the angles)",
+    ),
+    doc(
         "slave.force.<name>.<axis>",
         "force",
         "total force on the slave faces of a contact pair whose master is a body",
@@ -78,26 +98,6 @@ pub const COLUMNS: &[ColumnDoc] = &[
         "imbalance.moment.<name>",
         "force length",
         "length of the sum of the moments on both sides of such a pair",
-    ),
-    doc(
-        "displacement.<name>.<axis>",
-        "length",
-        "free displacement of a surface driven by force, on top of its prescribed motion",
-    ),
-    doc(
-        "rotation.<name>.<axis>",
-        "degree",
-        "rotation vector of its free rotation about its centre",
-    ),
-    doc(
-        "force_balance.<name>.<axis>",
-        "force",
-        "its driving force less the force it exerts: nothing where it is free, what its guide takes elsewhere",
-    ),
-    doc(
-        "moment_balance.<name>.<axis>",
-        "force length",
-        "the same of moments about its present centre (of two free rotations to second order of the angles)",
     ),
     doc("energy.internal", "energy", "strain energy of all bodies"),
     doc(

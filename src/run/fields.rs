@@ -75,8 +75,8 @@ impl Fields {
     }
 
     /// Recovers pressure, gap and status at the nodes of all slave surfaces: averages over the slave points by their
-    /// shape functions and areas, `p_I = sum w N_I p / sum w N_I` (where `N_I > 0`). With points at nodes that is the
-    /// point's own pressure; as the areas are the modelled ones, it is right on symmetry planes too.
+    /// shape functions and areas, `p_I = sum w N_I p / sum w N_I`. With points at nodes that is the point's own
+    /// pressure; as the areas are the modelled ones, it is right on symmetry planes too.
     pub fn gather(
         &mut self,
         model: &Model,
@@ -95,7 +95,7 @@ impl Fields {
         self.sunk.fill(0);
         let mut first = 0;
         for (index, (pair, eps_n)) in model.pairs.iter().zip(penalties).enumerate() {
-            let master = masters.at(model, index, time, &state.u)?;
+            let master = masters.at(model, index, &state.u, time)?;
             let states = &state.points[first..first + pair.points.len()];
             let fronts = &mut self.front[first..first + pair.points.len()];
             let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
@@ -103,9 +103,9 @@ impl Fields {
                 let z0 = offsets.as_ref().map_or(0.0, |o| o.factor * o.z0[i]);
                 let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
-                let seen = master.see(pair, i, &x, s.hint);
+                let seen = master.see(i, &x, s.hint);
                 let below = seen.is_some_and(|s| s.closed);
-                let closed = seen.is_some_and(|s| s.closed && s.signed_distance < z0);
+                let closed = below && seen.is_some_and(|s| s.signed_distance < z0);
                 let sunk = seen.is_some_and(|s| s.behind);
                 self.sunk[index] += usize::from(*front && sunk);
                 *front = below || seen.is_some_and(|s| s.signed_distance >= 0.0);
@@ -120,8 +120,7 @@ impl Fields {
                 }
                 self.largest_pressure = self.largest_pressure.max(pressure);
                 self.area += if closed { p.area } else { 0.0 };
-                // Quadratic shape functions are negative in places; weights that are not keep pressures from being so.
-                for (node, n) in p.terms().filter(|term| term.1 > 0.0) {
+                for (node, n) in p.terms() {
                     let w = n * p.area;
                     self.weight[node] += w;
                     self.sums[node][0] += w * pressure;

@@ -32,16 +32,6 @@ pub fn columns(model: &Model) -> Vec<String> {
             names.extend(AXES.map(|axis| format!("{quantity}.{name}.{axis}")));
         }
     }
-    for pair in deformable(model) {
-        for side in ["slave", "master"] {
-            for quantity in ["force", "moment"] {
-                names.extend(AXES.map(|axis| format!("{side}.{quantity}.{}.{axis}", pair.name)));
-            }
-        }
-        for quantity in ["force", "moment"] {
-            names.push(format!("imbalance.{quantity}.{}", pair.name));
-        }
-    }
     for (_, surface, _) in model.driven() {
         for quantity in [
             "displacement",
@@ -50,6 +40,16 @@ pub fn columns(model: &Model) -> Vec<String> {
             "moment_balance",
         ] {
             names.extend(AXES.map(|axis| format!("{quantity}.{}.{axis}", surface.name)));
+        }
+    }
+    for pair in deformable(model) {
+        for side in ["slave", "master"] {
+            for quantity in ["force", "moment"] {
+                names.extend(AXES.map(|axis| format!("{side}.{quantity}.{}.{axis}", pair.name)));
+            }
+        }
+        for quantity in ["force", "moment"] {
+            names.push(format!("imbalance.{quantity}.{}", pair.name));
         }
     }
     names.extend(
@@ -87,14 +87,6 @@ pub fn row(r: &Record) -> Vec<f64> {
     for (force, moment) in reactions(r.model, r.residual, r.u) {
         out.extend(force.iter().chain(moment.iter()));
     }
-    for (_, sides) in (r.model.pairs.iter().zip(&totals.pairs)).filter(|(p, _)| is_deformable(p)) {
-        let [slave, master] = [sides.slave, sides.master];
-        for side in [slave, master] {
-            out.extend(side.force.iter().chain(side.moment.iter()));
-        }
-        out.push((slave.force + master.force).norm());
-        out.push((slave.moment + master.moment).norm());
-    }
     for (index, surface, driven) in r.model.driven() {
         let (moved, theta) = driven.motion(r.u);
         let given = driven
@@ -111,6 +103,14 @@ pub fn row(r: &Record) -> Vec<f64> {
         for v in [moved, theta * 180.0 / std::f64::consts::PI, force, moment] {
             out.extend(v.iter());
         }
+    }
+    for (_, sides) in (r.model.pairs.iter().zip(&totals.pairs)).filter(|(p, _)| is_deformable(p)) {
+        let [slave, master] = [sides.slave, sides.master];
+        for side in [slave, master] {
+            out.extend(side.force.iter().chain(side.moment.iter()));
+        }
+        out.push((slave.force + master.force).norm());
+        out.push((slave.moment + master.moment).norm());
     }
     out.extend([
         totals.internal_energy,

@@ -182,7 +182,7 @@ impl Attempts<'_, '_> {
         masters.update(self.model, &trial.u);
         let mut first = 0;
         for (index, pair) in self.model.pairs.iter().enumerate() {
-            let master = (masters.at(self.model, index, end, &trial.u)).map_err(Fault::from)?;
+            let master = (masters.at(self.model, index, &trial.u, end)).map_err(Fault::from)?;
             let range = first..first + pair.points.len();
             first = range.end;
             let now = &trial.points[range.clone()];
@@ -192,7 +192,7 @@ impl Attempts<'_, '_> {
                 .filter(|(_, ((_, now), before))| before.closed && !now.closed);
             let sunk = opened.filter(|(i, ((p, now), _))| {
                 let x = self.model.point_position(p, &trial.u);
-                (master.see(pair, *i, &x, now.hint)).is_some_and(|s| s.behind)
+                (master.see(*i, &x, now.hint)).is_some_and(|s| s.behind)
             });
             let points = sunk.count();
             if points > 0 {

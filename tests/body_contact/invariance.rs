@@ -37,7 +37,8 @@ fn the_order_of_the_pairs_changes_nothing() {
             scene["supports"][name]["on"] = json!(on);
         }
         let lid = json!({
-            "slave": "arch.inner", "master": "lid.bottom", "points": {"gauss": 2}
+            "slave": "arch.inner", "master": "lid.bottom", "points": {"gauss": 2},
+            "penalty": {"value": 300}
         });
         scene["contacts"] = json!({first: press, second: lid});
         let outcome = done(&scene);

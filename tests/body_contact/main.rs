@@ -1,8 +1,10 @@
 //! Contact between deformable bodies.
+mod bad_input;
 mod blocks;
 mod convergence;
 mod invariance;
 mod patch;
+mod self_contact;
 mod shells;
 mod sliding;
 #[path = "../verification/support.rs"]

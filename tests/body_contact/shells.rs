@@ -19,7 +19,10 @@ pub fn arch_on_plate(depth: f64, steps: u32, points: Value) -> Value {
                 "elements": [8, 2], "origin": [0, 0, 20.31]
             }}, "material": "m"}
         },
-        "contacts": {"press": {"slave": "arch.outer", "master": "plate.top", "points": points}},
+        "contacts": {"press": {
+            "slave": "arch.outer", "master": "plate.top", "points": points,
+            "penalty": {"value": 300}
+        }},
         "supports": {
             "clamped": {"on": "plate.x_max", "fixed": true},
             "plate_x": {"on": "plate.x_min", "symmetry": "x"},

@@ -325,3 +325,49 @@ fn sets_of_a_mesh_file() {
         &["no face set `tops` (did you mean `top`?)"],
     );
 }
+
+#[test]
+fn facets_that_cannot_be() {
+    let folder = folder_with(
+        "tool.stl",
+        "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 9\nvertex 9 0 9\nvertex 0 9 9\nendloop\nendfacet\nendsolid t\n",
+    );
+    for (file, facets, pointer, parts) in [
+        (
+            asset("die.igs"),
+            json!({ "kind": "bilinear", "size": 1 }),
+            "/surfaces/ball/facets",
+            [
+                "is trimmed, and trimmed patches cannot be cut into facets",
+                "help: leave out `facets`",
+            ],
+        ),
+        (
+            "tool.stl".into(),
+            json!({ "kind": "smooth", "chord": 0.1 }),
+            "/surfaces/ball/facets",
+            [
+                "a smooth surface needs quadrilaterals",
+                "help: leave out `facets`, or take the CAD file",
+            ],
+        ),
+        (
+            "tool.stl".into(),
+            json!({ "kind": "biquadratic", "count": [2, 2] }),
+            "/surfaces/ball/facets",
+            [
+                "whose triangles are facets already",
+                "help: leave out `facets`",
+            ],
+        ),
+        (
+            asset("sphere.igs"),
+            json!({ "kind": "bilinear", "size": 1e-6 }),
+            "/surfaces/ball/facets/size",
+            ["facets would be needed", "help: ask for coarser facets"],
+        ),
+    ] {
+        let ball = json!({ "cad": { "file": file }, "facets": facets });
+        plate_refused_in(folder.path(), &[("/surfaces/ball", ball)], pointer, &parts);
+    }
+}

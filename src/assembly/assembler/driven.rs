@@ -51,18 +51,17 @@ const STAND_IN: f64 = 1e-3;
 const STRIDE: f64 = 0.25;
 
 /// Groups of nodes that the pattern must couple for driven surfaces.
-pub(super) fn groups(model: &Model) -> Vec<Vec<u32>> {
+pub(super) fn groups(model: &Model, extend: impl Fn(&[u32], &mut Vec<u32>)) -> Vec<Vec<u32>> {
     let mut groups = Vec::new();
     for (_, _, driven) in model.driven() {
         groups.push(driven.nodes().to_vec());
     }
     for pair in &model.pairs {
-        if let Some(driven) = pair
-            .rigid_master()
-            .and_then(|s| model.surfaces[s].driven.as_ref())
-        {
+        let surface = pair.rigid_master().map(|s| &model.surfaces[s]);
+        if let Some(driven) = surface.and_then(|s| s.driven.as_ref()) {
             for p in &pair.points {
-                let mut group = p.nodes[..p.count as usize].to_vec();
+                let mut group = Vec::new();
+                extend(&p.nodes[..p.count as usize], &mut group);
                 group.extend(driven.nodes());
                 groups.push(group);
             }
@@ -147,10 +146,10 @@ impl Assembler<'_> {
         let Some(surface) = pair.rigid_master() else {
             return Ok(());
         };
+        let center = self.model.surfaces[surface].center(time, u)?;
         let Some(border) = (self.borders.iter_mut()).find(|b| b.surface == surface) else {
             return Ok(());
         };
-        let center = self.model.surfaces[surface].center(time, u)?;
         for (p, touch) in pair.points.iter().zip(&self.touches) {
             let Ok(Some(touch)) = touch else { continue };
             border.active += 1;

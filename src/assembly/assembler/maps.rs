@@ -1,6 +1,7 @@
 //! The pattern of a model and where the blocks of everything that is assembled go.
 use super::couplings::Couplings;
-use super::{DofMap, Kind, Pattern, PatternError, driven};
+use super::driven;
+use super::{DofMap, Kind, Pattern, PatternError};
 use crate::model::Model;
 
 /// Places of all blocks on one pattern.
@@ -13,8 +14,7 @@ pub(super) struct Maps {
     pub followers: Vec<Vec<u32>>,
 }
 
-/// The pattern of a model under its constraints: elements, slave points with the facets that
-/// they may touch, and driven surfaces with all they may touch.
+/// The pattern of a model under its constraints: elements, and slave points with the facets that they may touch.
 pub(super) fn pattern(
     model: &Model,
     dofs: &DofMap,
@@ -44,10 +44,9 @@ pub(super) fn pattern(
             }
         }
     }
-    for group in driven::groups(model) {
-        add(&group);
-    }
+    let driven = driven::groups(model, |nodes, out| dofs.extend_nodes(nodes, out));
     let groups = starts.windows(2).map(|w| &nodes[w[0]..w[1]]);
+    let groups = groups.chain(driven.iter().map(Vec::as_slice));
     let border = (model.nodes.len() - model.body_nodes()) as u32;
     Ok(Pattern::new(model.nodes.len(), groups)?.with_border(border))
 }

@@ -142,7 +142,8 @@ pub struct Assembler<'m> {
 impl<'m> Assembler<'m> {
     /// Builds the pattern of the model under its constraints.
     pub fn new(model: &'m Model, dofs: &'m DofMap) -> Result<Self, PatternError> {
-        let couplings = moving::first_couplings(model);
+        let masters = Masters::new(model);
+        let couplings = moving::first_couplings(model, &masters);
         let pattern = Arc::new(maps::pattern(model, dofs, &couplings)?);
         let maps = Maps::new(model, dofs, &pattern)?;
         let rigid = model.pairs.iter().filter(|p| p.rigid_master().is_some());
@@ -159,7 +160,7 @@ impl<'m> Assembler<'m> {
             follower_maps: maps.followers,
             systems: Systems::new(model),
             touches: vec![Ok(None); most],
-            masters: Masters::new(model),
+            masters,
             couplings,
             meetings: model.pairs.iter().map(Meetings::new).collect(),
             new_pattern: Some(pattern),
@@ -204,7 +205,7 @@ impl<'m> Assembler<'m> {
         rhs: &mut [f64],
     ) -> Result<Totals, Fault> {
         // First, because it may change the pattern.
-        self.meet(state)?;
+        self.meet::<true>(state, time)?;
         self.matrix.clear();
         residual.fill(0.0);
         rhs.fill(0.0);
@@ -228,7 +229,7 @@ impl<'m> Assembler<'m> {
         time: f64,
         residual: &mut [f64],
     ) -> Result<Totals, Fault> {
-        self.meet(state)?;
+        self.meet::<false>(state, time)?;
         residual.fill(0.0);
         let mut totals = Totals::default();
         self.element_forces(state, residual, &mut totals)?;

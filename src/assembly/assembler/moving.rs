@@ -1,15 +1,17 @@
 //! Contact with bodies: the slave points of a pair are evaluated in parallel, their matrices formed in parallel, and all
 //! is summed in order.
 use super::couplings::Couplings;
+use super::driven::Border;
 use super::{Assembler, Fault, SurfaceForce, Totals, maps, put};
 use crate::contact::kernel::assemble_force;
-use crate::contact::law::{NormalLaw, Penalty};
+use crate::contact::law::{GapOffset, NoOffset, NormalLaw, Offsets, Penalty};
 use crate::contact::moving::{MovingMaster, MovingTouch};
 use crate::contact::point::FaceTangent;
-use crate::contact::points::SlavePoint;
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault};
 use crate::contact::scatter::assemble_point;
+use crate::model::master::{MasterNow, Masters};
+use crate::model::self_contact::{Accept, All, Opposing};
 use crate::model::state::{PointState, State};
 use crate::model::{Model, PairModel};
 use crate::scene::Tangent;
@@ -52,30 +54,58 @@ impl Meetings {
     }
 }
 
-/// Couplings of all pairs before anything has moved: points nearer than an element, and those within the depth.
-pub(super) fn first_couplings(model: &Model) -> Vec<Option<Couplings>> {
+/// Couplings of all pairs before anything has moved.
+pub(super) fn first_couplings(model: &Model, masters: &Masters) -> Vec<Option<Couplings>> {
     let zero = vec![0.0; 3 * model.nodes.len()];
-    (model.pairs.iter())
-        .map(|pair| {
-            let master = pair.body_master()?;
-            let reach = master.depth.max(pair.element_size);
-            let near = |(i, p): (usize, &SlavePoint)| {
-                let x = model.point_position(p, &zero);
-                let foot = master.facets.project(&x, None, reach, |_| true)?;
-                Some((i, foot.facet))
-            };
+    (model.pairs.iter().enumerate())
+        .map(|(index, pair)| {
+            let surface = masters.surface(index)?;
             let mut couplings = Couplings::new(&pair.points);
-            let near: Vec<_> = pair.points.iter().enumerate().filter_map(near).collect();
-            couplings.couple(&master.facets, near.into_iter());
+            let near = near(model, masters, index, &zero, &[]);
+            couplings.couple(&surface.facets, near.into_iter());
             Some(couplings)
         })
         .collect()
 }
 
+/// Points of a pair that are nearer to their master than an element or its depth, with the facets at their feet.
+/// `states` may be empty.
+fn near(
+    model: &Model,
+    masters: &Masters,
+    index: usize,
+    u: &[f64],
+    states: &[PointState],
+) -> Vec<(usize, u32)> {
+    let pair = &model.pairs[index];
+    let Some(body) = pair.body_master() else {
+        return Vec::new();
+    };
+    let master = MasterNow::Body {
+        model,
+        u,
+        body,
+        surface: masters.surface(index),
+    };
+    let reach = body.depth.max(pair.element_size);
+    (pair.points.iter().enumerate())
+        .filter_map(|(i, p)| {
+            let x = model.point_position(p, u);
+            let hint = states.get(i).and_then(|s| s.hint);
+            let seen = master.see_within(i, &x, hint, reach)?;
+            Some((i, seen.hint.patch))
+        })
+        .collect()
+}
+
 impl Assembler<'_> {
-    /// Evaluates the points of all pairs with bodies as masters, and builds the pattern anew where one of them touches a
-    /// facet that the pattern does not couple it with.
-    pub(super) fn meet(&mut self, state: &mut State) -> Result<(), Fault> {
+    /// Evaluates the points of all pairs with bodies as masters. Where a matrix is to be made, and one of them touches a
+    /// facet that the pattern does not couple it with, the pattern is built anew.
+    pub(super) fn meet<const TANGENT: bool>(
+        &mut self,
+        state: &mut State,
+        time: f64,
+    ) -> Result<(), Fault> {
         if self.couplings.iter().all(Option::is_none) {
             return Ok(());
         }
@@ -85,9 +115,9 @@ impl Assembler<'_> {
         for (index, pair) in self.model.pairs.iter().enumerate() {
             let range = first..first + pair.points.len();
             first = range.end;
-            let (Some(master), Some(facets), Some(couplings)) = (
+            let (Some(master), Some(surface), Some(couplings)) = (
                 pair.body_master(),
-                self.masters.facets(index),
+                self.masters.surface(index),
                 &self.couplings[index],
             ) else {
                 continue;
@@ -99,7 +129,7 @@ impl Assembler<'_> {
                 model: self.model,
                 pair,
                 master: MovingMaster {
-                    facets,
+                    facets: &surface.facets,
                     depth: master.depth,
                 },
                 law: &law,
@@ -108,17 +138,17 @@ impl Assembler<'_> {
             let states = &mut state.points[range];
             let meetings = &mut self.meetings[index];
             let touches = &mut meetings.touches;
-            match pair.tangent {
-                Tangent::Exact => batch.evaluate(states, touches, &Exact),
-                Tangent::Published {
-                    rotational,
-                    curvature,
-                } => {
-                    let parts = Parts {
-                        rotational,
-                        curvature,
+            let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+            let offsets = offsets.as_ref();
+            match &master.own {
+                None => batch.offset(states, touches, offsets, &All),
+                Some(own) => {
+                    let accept = Opposing {
+                        own,
+                        normals: &surface.normals,
+                        position: |n: u32| self.model.position(n as usize, &state.u),
                     };
-                    batch.evaluate(states, touches, &parts)
+                    batch.offset(states, touches, offsets, &accept);
                 }
             }
             meetings.active.clear();
@@ -141,7 +171,7 @@ impl Assembler<'_> {
                 }
             }
         }
-        if missing {
+        if TANGENT && missing {
             self.couple_anew(state)?;
         }
         Ok(())
@@ -153,20 +183,22 @@ impl Assembler<'_> {
         for (index, pair) in self.model.pairs.iter().enumerate() {
             let states = &state.points[first..first + pair.points.len()];
             first += pair.points.len();
-            if let (Some(master), Some(couplings)) =
-                (pair.body_master(), &mut self.couplings[index])
-            {
-                let touches = &self.meetings[index].touches;
-                let near = states.iter().zip(touches).enumerate();
-                let near = near.filter_map(|(i, (state, touch))| match touch {
-                    Ok(Some(touch)) => Some((i, touch.facet)),
-                    _ => state.hint.map(|hint| (i, hint.patch)),
-                });
-                couplings.couple(&master.facets, near);
+            let (Some(surface), Some(couplings)) =
+                (self.masters.surface(index), &mut self.couplings[index])
+            else {
+                continue;
+            };
+            let mut near = near(self.model, &self.masters, index, &state.u, states);
+            for &i in &self.meetings[index].active {
+                if let Ok(Some(touch)) = &self.meetings[index].touches[i as usize] {
+                    near.push((i as usize, touch.facet));
+                }
             }
+            couplings.couple(&surface.facets, near.into_iter());
         }
         let pattern = std::sync::Arc::new(maps::pattern(self.model, self.dofs, &self.couplings)?);
         let maps = maps::Maps::new(self.model, self.dofs, &pattern)?;
+        self.borders = Border::all(self.model, &pattern)?;
         self.element_maps = maps.elements;
         self.kinds = maps.kinds;
         self.point_maps = maps.points;
@@ -183,6 +215,7 @@ impl Assembler<'_> {
         &mut self,
         index: usize,
         u: &[f64],
+        time: f64,
         states: &mut [PointState],
         increments: Option<&[f64]>,
         residual: &mut [f64],
@@ -190,11 +223,12 @@ impl Assembler<'_> {
         totals: &mut Totals,
     ) {
         let pair = &self.model.pairs[index];
-        let (Some(facets), Some(couplings)) =
-            (self.masters.facets(index), &mut self.couplings[index])
+        let (Some(surface), Some(couplings)) =
+            (self.masters.surface(index), &mut self.couplings[index])
         else {
             return;
         };
+        let facets = &surface.facets;
         let Meetings {
             touches,
             active,
@@ -214,6 +248,7 @@ impl Assembler<'_> {
         totals.active += active.len();
         let mut deepest = 0.0f64;
         let force = &mut totals.pairs[index];
+        let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
         for chunk in active.chunks(CHUNK) {
             (chunk.par_iter())
                 .zip(rows.par_iter_mut())
@@ -236,8 +271,12 @@ impl Assembler<'_> {
             {
                 let Some(touch) = touch(i) else { continue };
                 let p = &pair.points[i as usize];
-                deepest = deepest.max(-touch.xi3);
-                totals.contact_energy += 0.5 * touch.n * touch.xi3 * p.area;
+                let offset = offsets
+                    .as_ref()
+                    .map_or(0.0, |o| o.factor * o.z0[i as usize]);
+                let gap = touch.xi3 - offset;
+                deepest = deepest.max(-gap);
+                totals.contact_energy += 0.5 * touch.n * gap * p.area;
                 let r = touch.residual * p.area;
                 let mut add = |node: usize, f: &Vec3, side: &mut SurfaceForce| {
                     side.force -= f;
@@ -295,23 +334,66 @@ struct Batch<'a, L> {
     u: &'a [f64],
 }
 
-impl<L: NormalLaw> Batch<'_, L> {
-    /// Evaluates every point; law and tangent are types here, nothing is chosen inside the loop.
-    fn evaluate<T: FaceTangent>(
+impl<L: NormalLaw + Copy> Batch<'_, L> {
+    /// Evaluates every point with gaps measured from where the pair says.
+    fn offset<A: Accept>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<MovingTouch>, PointFault>],
+        offsets: Option<&Offsets>,
+        accept: &A,
+    ) {
+        match offsets {
+            None => self.choose(states, touches, &NoOffset, accept),
+            Some(offsets) => self.choose(states, touches, offsets, accept),
+        }
+    }
+
+    /// Evaluates every point under the tangent of the pair.
+    fn choose<O: GapOffset, A: Accept>(
+        &self,
+        states: &mut [PointState],
+        touches: &mut [Result<Option<MovingTouch>, PointFault>],
+        offsets: &O,
+        accept: &A,
+    ) {
+        match self.pair.tangent {
+            Tangent::Exact => self.evaluate(states, touches, offsets, accept, &Exact),
+            Tangent::Published {
+                rotational,
+                curvature,
+            } => {
+                let parts = Parts {
+                    rotational,
+                    curvature,
+                };
+                self.evaluate(states, touches, offsets, accept, &parts)
+            }
+        }
+    }
+
+    /// Evaluates every point; law, offsets, tangent and the facets that exist are types here, nothing is chosen inside the
+    /// loop.
+    fn evaluate<O: GapOffset, A: Accept, T: FaceTangent>(
+        &self,
+        states: &mut [PointState],
+        touches: &mut [Result<Option<MovingTouch>, PointFault>],
+        offsets: &O,
+        accept: &A,
         tangent: &T,
     ) {
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
+            .enumerate()
             .with_min_len(32)
-            .for_each(|((p, s), out)| {
+            .for_each(|(i, ((p, s), out))| {
                 let x = self.model.point_position(p, self.u);
-                *out = self
-                    .master
-                    .touch(&x, &mut s.hint, self.law, tangent, |_| true);
+                let at = accept.point(i);
+                let facet = |f| accept.facet(at, f);
+                let law = offsets.law(i, self.law);
+                let touch = (self.master).touch(&x, &mut s.hint, &law, tangent, facet);
+                *out = touch.map(|t| t.filter(|t| law.closes(t.xi3)));
             });
     }
 }

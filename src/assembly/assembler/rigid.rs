@@ -29,7 +29,9 @@ impl Assembler<'_> {
         for (index, pair) in self.model.pairs.iter().enumerate() {
             let Master::Rigid(number) = pair.master else {
                 let states = &mut state.points[first..first + pair.points.len()];
-                self.moving::<TANGENT>(index, &state.u, states, increments, residual, rhs, totals);
+                self.moving::<TANGENT>(
+                    index, &state.u, time, states, increments, residual, rhs, totals,
+                );
                 first += pair.points.len();
                 continue;
             };

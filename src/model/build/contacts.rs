@@ -1,9 +1,11 @@
 //! Contact pairs: slave points, masters, penalties.
-use super::super::error::{At, number};
+use super::super::error::{At, number, text};
 use super::super::master::{BodyMaster, Master};
+use super::super::self_contact::OwnFacets;
 use super::super::slave::slave_points;
 use super::super::{ModelError, PairModel, SurfaceModel, penalty};
-use super::Builder;
+use super::{Builder, master_faces};
+use crate::contact::points::SlavePoint;
 use crate::mesh::Face;
 use crate::scene::{Contact, MasterSurface, Penalty};
 use covact_geometry::MovingFacets;
@@ -46,14 +48,17 @@ impl Builder<'_> {
         let pointer = |field: &str| format!("/contacts/{name}/{field}");
         let (body, faces) = self.faces(&contact.slave, &pointer("slave"))?;
         let model = &self.bodies[body];
-        let points = slave_points(&model.mesh, &faces, contact.points, model.first_node)
+        let mut points = slave_points(&model.mesh, &faces, contact.points, model.first_node)
             .at(|| pointer("points"))?;
         let (size, mut automatic) = self.stiffness(body, &faces);
         let mut softer = "the slave's";
         let master = match rigid {
             Some(surface) => Master::Rigid(surface),
             None => {
-                let (master, stiffness) = self.body_master(name, contact)?;
+                let (mut master, stiffness) = self.body_master(name, contact)?;
+                if master.body == body {
+                    self.own_body(name, contact, &faces, &mut points, &mut master)?;
+                }
                 if stiffness < automatic {
                     automatic = stiffness;
                     softer = "the master's, which are softer than the slave's,";
@@ -80,7 +85,9 @@ impl Builder<'_> {
         ));
         Ok(PairModel {
             name: name.to_owned(),
+            slave: contact.slave.clone(),
             body,
+            faces,
             master,
             points,
             eps_n,
@@ -110,6 +117,8 @@ impl Builder<'_> {
         let (body, faces) = self.faces(&contact.master, &pointer())?;
         let (size, automatic) = self.stiffness(body, &faces);
         let model = &self.bodies[body];
+        master_faces::check(&model.mesh, &faces, &contact.master)
+            .map_err(|(message, help)| text(pointer(), message).help(help))?;
         let nodes: Vec<_> = (faces.iter())
             .map(|&f| model.mesh.face_nodes(f).shifted(model.first_node))
             .collect();
@@ -135,7 +144,62 @@ impl Builder<'_> {
             smooth,
             depth,
             element_size: size.edge,
+            own: None,
         };
         Ok((master, automatic))
+    }
+
+    /// Slave and master on one body: what is connected is no contact.
+    fn own_body(
+        &mut self,
+        name: &str,
+        contact: &Contact,
+        slave: &[Face],
+        points: &mut [SlavePoint],
+        master: &mut BodyMaster,
+    ) -> Result<(), ModelError> {
+        let body = &self.bodies[master.body];
+        let (_, faces) = self.faces(&contact.master, &format!("/contacts/{name}/master"))?;
+        let common = slave.iter().filter(|f| faces.contains(f)).count();
+        let equal = common == slave.len() && common == faces.len();
+        if common > 0 && !equal {
+            let message = format!(
+                "`{}` and `{}` have {common} face(s) in common, {} and {} in all: these would be in contact with \
+                 themselves",
+                contact.slave,
+                contact.master,
+                slave.len(),
+                faces.len()
+            );
+            return Err(text(format!("/contacts/{name}/master"), message).help(
+                "for self contact give the same set as slave and as master, else two sets without a common face",
+            ));
+        }
+        // As far as a point may sink in, through the wall and one more face.
+        let distance = 2.0 * master.depth + master.element_size;
+        master.own = Some(OwnFacets::new(
+            &body.mesh,
+            body.first_node,
+            points,
+            slave,
+            &faces,
+            &master.facets,
+            distance,
+        ));
+        self.notes.push(format!(
+            "contact `{name}`: self contact of body `{}`; what is nearer than {} along its undeformed mesh is left out, \
+             and faces whose normals do not oppose each other",
+            body.name,
+            number(distance)
+        ));
+        if equal {
+            // Where two faces meet, the points of both push, half each.
+            points.iter_mut().for_each(|p| p.area *= 0.5);
+            self.notes.push(format!(
+                "contact `{name}`: its faces are slave and master at once, so that of two that meet each carries half of \
+                 the pressure with half of its area"
+            ));
+        }
+        Ok(())
     }
 }
