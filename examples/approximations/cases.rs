@@ -85,7 +85,7 @@ impl Case {
         self.to_string()
     }
 
-    /// The scene `ball_on_plate` to half of its depth, as this case wants it.
+    /// The scene `ball_on_plate` as this case wants it.
     pub fn scene(&self) -> Value {
         let (element, count, points) = match self.shell {
             Shell::H8 => ("h8", self.intervals, 3),
@@ -93,7 +93,7 @@ impl Case {
         };
         let mut ball = json!({
             "sphere": { "radius": 25, "center": [0, 0, 26] },
-            "motion": { "translation": [0, 0, "-5*t"] }
+            "motion": { "translation": [0, 0, "-10*t"] }
         });
         // The exact sphere is six patches here; a facet is about as long as nodes of the plate are apart.
         let facets =
@@ -122,7 +122,7 @@ impl Case {
                 "symmetry_x": { "on": "plate.x_min", "symmetry": "x" },
                 "symmetry_y": { "on": "plate.y_min", "symmetry": "y" }
             },
-            "solution": { "step": { "initial": 0.25, "max": 0.25 } },
+            "solution": { "step": { "initial": 0.125, "max": 0.125 }, "stops": [0.25, 0.5, 0.75] },
             "output": { "every": 0 }
         })
     }

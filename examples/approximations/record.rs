@@ -10,8 +10,8 @@ pub struct Record {
     pub case: Case,
     /// Unknowns.
     pub dofs: usize,
-    /// Force on the ball (N).
-    pub force: f64,
+    /// Force on the ball (N) at every depth.
+    pub forces: [f64; 4],
     pub iterations: u64,
     pub seconds: f64,
 }
@@ -22,7 +22,8 @@ pub struct Runs {
     pub records: Vec<Record>,
 }
 
-const HEADER: &str = "shell,master,intervals,dofs,force,iterations,seconds";
+const HEADER: &str =
+    "shell,master,intervals,dofs,force_2.5,force_5,force_7.5,force_10,iterations,seconds";
 
 impl Runs {
     /// The runs of a file, none where there is no such file yet.
@@ -55,8 +56,12 @@ impl Runs {
             let (shell, master) = (r.case.shell.name(), r.case.master.name());
             writeln!(
                 text,
-                "{shell},{master},{},{},{:.9},{},{:.3}",
-                r.case.intervals, r.dofs, r.force, r.iterations, r.seconds
+                "{shell},{master},{},{},{},{},{:.3}",
+                r.case.intervals,
+                r.dofs,
+                r.forces.map(|f| format!("{f:.6}")).join(","),
+                r.iterations,
+                r.seconds
             )?;
         }
         let part = self.path.with_extension("part");
@@ -68,7 +73,19 @@ impl Runs {
 
 fn parse(line: &str) -> Option<Record> {
     let cells: Vec<&str> = line.split(',').collect();
-    let [shell, master, intervals, dofs, force, iterations, seconds] = cells[..] else {
+    let [
+        shell,
+        master,
+        intervals,
+        dofs,
+        a,
+        b,
+        c,
+        d,
+        iterations,
+        seconds,
+    ] = cells[..]
+    else {
         return None;
     };
     Some(Record {
@@ -78,7 +95,12 @@ fn parse(line: &str) -> Option<Record> {
             intervals: intervals.parse().ok()?,
         },
         dofs: dofs.parse().ok()?,
-        force: force.parse().ok()?,
+        forces: [
+            a.parse().ok()?,
+            b.parse().ok()?,
+            c.parse().ok()?,
+            d.parse().ok()?,
+        ],
         iterations: iterations.parse().ok()?,
         seconds: seconds.parse().ok()?,
     })
