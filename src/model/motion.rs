@@ -102,6 +102,7 @@ mod tests {
                 axis: [0.0, 0.0, 3.0],
                 angle: scene::Value::Expression("90*t".to_owned()),
             }),
+            free: None,
         };
         let placement = scene::Placement {
             axis: [1.0, 0.0, 0.0],
