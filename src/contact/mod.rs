@@ -1,4 +1,9 @@
 //! The covariant core of contact: slave points, kernel, laws. It knows nothing of shells or files.
+//!
+//! - [`kernel`]: face points in nine slots, [`corner`]: edges and vertices, [`published`]: the published tangent;
+//! - [`point`]: one response for all of them, [`law`]: what the traction is;
+//! - [`rigid`], [`moving`]: closest points on masters that do not move or whose nodes do, [`meeting`]: what both give;
+//! - [`spin`]: a rigid body's translation and spin in the slots, [`averaged`]: the gap in the mean of slave nodes.
 pub mod averaged;
 pub mod carried;
 pub mod corner;

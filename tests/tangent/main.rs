@@ -1,4 +1,12 @@
 //! Tangents of contact against dual numbers and differences.
+mod averaged;
+mod balance;
+mod cases;
 mod driven;
+mod edges;
+mod faults;
 mod normal;
+mod pairs;
+mod spin;
 mod support;
+mod surface;

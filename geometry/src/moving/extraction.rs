@@ -65,7 +65,7 @@ impl Operator {
     /// Shape functions of the nodes; `out.count` says how many there are.
     #[inline]
     pub fn shape<const M: usize>(&self, xi: [f64; 2], out: &mut ShapeRows) {
-        let [u, v] = xi.map(bernstein::<M>);
+        let [u, v] = xi.map(bernstein::<f64, M>);
         out.n[..out.count].fill(0.0);
         out.n_1[..out.count].fill(0.0);
         out.n_2[..out.count].fill(0.0);

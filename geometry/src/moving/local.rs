@@ -33,6 +33,8 @@ pub(super) struct Local {
     /// Whether the bound holds the point: the distance would fall across it.
     pub active: [bool; 2],
     pub converged: bool,
+    /// Whether the rectangle was the whole facet.
+    pub whole: bool,
 }
 
 /// What the iteration works on: a facet's net, the query, the rectangle, and the length that tolerances are relative to.
@@ -80,6 +82,7 @@ impl Problem<'_> {
             at,
             active,
             converged: false,
+            whole: self.range == ALL,
         }
     }
 
@@ -129,11 +132,12 @@ impl Problem<'_> {
 
     /// Undamped Newton steps as far as they help.
     pub fn refine<const M: usize>(&self, s: &mut Local) {
-        for _ in 0..3 {
+        for _ in 0..2 {
             let Some(step) = undamped_step(s) else {
                 return;
             };
-            if step.iter().all(|x| x.abs() <= 1e-15) {
+            // What the last step left is rounding.
+            if step.iter().all(|x| x.abs() <= 1e-14) {
                 return;
             }
             let next = self.at::<M>(moved(s, step, 1.0));
@@ -163,11 +167,11 @@ impl Problem<'_> {
         let cut = [clamp(0, step[0]), clamp(1, step[1])];
         let stopped = |k: usize| cut[k].abs() < step[k].abs() * (1.0 - 1e-12);
         let mut out = cut;
-        for k in 0..2 {
+        for (k, cut) in cut.into_iter().enumerate() {
             let other = 1 - k;
             let f = s.hessian[2 * other];
             if stopped(k) && !stopped(other) && !s.active[other] && f > 0.0 {
-                out[other] = clamp(other, -(s.gradient[other] + s.hessian[1] * cut[k]) / f);
+                out[other] = clamp(other, -(s.gradient[other] + s.hessian[1] * cut) / f);
             }
         }
         out

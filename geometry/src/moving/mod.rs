@@ -20,6 +20,7 @@ mod net;
 mod place;
 mod prove;
 mod search;
+mod smooth;
 mod topology;
 
 use crate::project::tree::Tree;
@@ -27,6 +28,8 @@ use crate::project::{EdgeKind, Hint, Status};
 use crate::surface::{Jet, Vec3};
 use extraction::Operator;
 use topology::Topology;
+
+pub use smooth::CREASE;
 
 /// Most nodes that a facet may depend on.
 pub const MAX: usize = 32;

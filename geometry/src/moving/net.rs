@@ -1,44 +1,47 @@
 //! Polynomial Bezier nets of `M x M` control points over `[-1, 1]^2`: jets, shape weights, boxes, sub-pieces.
 
+use num_dual::DualNum;
+
 use super::EMPTY_BOX;
 use crate::surface::{Jet, Vec3};
 
 /// Bernstein polynomials of degree `M - 1` at `xi`, with first and second derivatives by `xi`.
 #[inline]
-pub(super) fn bernstein<const M: usize>(xi: f64) -> [[f64; M]; 3] {
+pub(super) fn bernstein<D: DualNum<f64> + Copy, const M: usize>(xi: D) -> [[D; M]; 3] {
     // Weights that are 0 and 1 at the ends, so that corners are control points to the last digit.
-    let (a, b) = (0.5 * (1.0 - xi), 0.5 * (1.0 + xi));
-    let mut out = [[0.0; M]; 3];
+    let (zero, half) = (D::zero(), D::from(0.5));
+    let (a, b) = ((D::one() - xi) * half, (D::one() + xi) * half);
+    let mut out = [[zero; M]; 3];
     let p = (M - 1) as f64;
     // Degrees P - 2, P - 1 and P, one from the other; differences of lower degrees are derivatives.
-    let mut low = [0.0; M];
-    low[0] = 1.0;
+    let mut low = [zero; M];
+    low[0] = D::one();
     for degree in 1..M {
         if degree + 1 == M {
-            let f = 0.5 * p;
-            for k in 0..M {
-                let before = if k > 0 { low[k - 1] } else { 0.0 };
-                let own = if k < degree { low[k] } else { 0.0 };
-                out[1][k] = f * (before - own);
+            let f = D::from(0.5 * p);
+            for (k, first) in out[1].iter_mut().enumerate() {
+                let before = if k > 0 { low[k - 1] } else { zero };
+                let own = if k < degree { low[k] } else { zero };
+                *first = (before - own) * f;
             }
         }
         if degree + 2 == M {
-            let f = 0.25 * p * (p - 1.0);
-            for k in 0..M {
-                let at = |i: usize| if i < degree { low[i] } else { 0.0 };
+            let f = D::from(0.25 * p * (p - 1.0));
+            for (k, out) in out[2].iter_mut().enumerate() {
+                let at = |i: usize| if i < degree { low[i] } else { zero };
                 let mut second = at(k);
                 if k > 0 {
-                    second -= 2.0 * at(k - 1);
+                    second -= at(k - 1) + at(k - 1);
                 }
                 if k > 1 {
                     second += at(k - 2);
                 }
-                out[2][k] = f * second;
+                *out = second * f;
             }
         }
         for k in (0..=degree).rev() {
-            let before = if k > 0 { low[k - 1] * b } else { 0.0 };
-            let own = if k < degree { low[k] * a } else { 0.0 };
+            let before = if k > 0 { low[k - 1] * b } else { zero };
+            let own = if k < degree { low[k] * a } else { zero };
             low[k] = before + own;
         }
     }
@@ -49,7 +52,7 @@ pub(super) fn bernstein<const M: usize>(xi: f64) -> [[f64; M]; 3] {
 /// Point with first and second derivatives.
 #[inline]
 pub(super) fn jet<const M: usize>(net: &[[f64; 4]], xi: [f64; 2]) -> Jet {
-    let [u, v] = xi.map(bernstein::<M>);
+    let [u, v] = xi.map(bernstein::<f64, M>);
     let mut sums = [[0.0; 3]; 6];
     for (j, row) in net.chunks_exact(M).enumerate().take(M) {
         // Value and derivatives along the row.
@@ -99,4 +102,35 @@ pub(super) fn bounds(net: &[[f64; 4]]) -> [Vec3; 2] {
 /// The halves of a net: `left` becomes the first, the second is returned in `right`.
 pub(super) fn halve<const M: usize>(left: &mut [[f64; 4]], right: &mut [[f64; 4]], dir: usize) {
     crate::project::piece::split(left, right, [M - 1; 2], dir, 0.5);
+}
+
+#[cfg(test)]
+mod tests {
+    use num_dual::Dual64;
+
+    use super::bernstein;
+
+    fn check<const M: usize>() {
+        for xi in [-1.0, -0.37, 0.2, 0.99] {
+            let exact = bernstein::<Dual64, M>(Dual64::new(xi, 1.0));
+            let found = bernstein::<f64, M>(xi);
+            assert!((found[0].iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            for order in 0..2 {
+                let largest = exact[order].iter().map(|d| d.eps.abs()).fold(0.0, f64::max);
+                assert!(largest > 0.1 || order + 1 >= M);
+                for k in 0..M {
+                    assert_eq!(found[order][k], exact[order][k].re);
+                    assert!((found[order + 1][k] - exact[order][k].eps).abs() < 1e-14);
+                }
+            }
+        }
+    }
+
+    /// The derivatives are those of the polynomials (by dual numbers).
+    #[test]
+    fn derivatives_are_derivatives() {
+        check::<2>();
+        check::<3>();
+        check::<4>();
+    }
 }

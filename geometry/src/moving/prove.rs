@@ -29,15 +29,19 @@ pub(super) fn judge<const M: usize, const L: usize>(net: &[[f64; 4]], q: &Vec3) 
     let p = (L - 1) as f64;
     // Second derivatives, up to a common factor: f_uu, f_vv from second differences, f_uv from mixed ones.
     let (mut uu, mut vv, mut uv) = (f64::INFINITY, f64::INFINITY, 0.0f64);
-    for j in 0..L {
-        for i in 0..L - 2 {
-            uu = uu.min(f[j][i] - 2.0 * f[j][i + 1] + f[j][i + 2]);
-            vv = vv.min(f[i][j] - 2.0 * f[i + 1][j] + f[i + 2][j]);
+    for row in &f {
+        for w in row.windows(3) {
+            uu = uu.min(w[0] - 2.0 * w[1] + w[2]);
         }
     }
-    for j in 0..L - 1 {
-        for i in 0..L - 1 {
-            uv = uv.max((f[j][i] - f[j][i + 1] - f[j + 1][i] + f[j + 1][i + 1]).abs());
+    for rows in f.windows(3) {
+        for ((a, b), c) in rows[0].iter().zip(&rows[1]).zip(&rows[2]) {
+            vv = vv.min(a - 2.0 * b + c);
+        }
+    }
+    for rows in f.windows(2) {
+        for (a, b) in rows[0].windows(2).zip(rows[1].windows(2)) {
+            uv = uv.max((a[0] - a[1] - b[0] + b[1]).abs());
         }
     }
     let (uu, vv, uv) = (p * (p - 1.0) * uu, p * (p - 1.0) * vv, p * p * uv);
@@ -57,16 +61,16 @@ pub(super) fn judge<const M: usize, const L: usize>(net: &[[f64; 4]], q: &Vec3) 
     };
     for dir in 0..2 {
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for j in 0..L {
-            for i in 0..L - 1 {
-                let step = if dir == 0 {
-                    f[j][i + 1] - f[j][i]
-                } else {
-                    f[i + 1][j] - f[i][j]
-                };
-                least = least.min(step);
-                most = most.max(step);
-            }
+        let mut take = |step: f64| {
+            least = least.min(step);
+            most = most.max(step);
+        };
+        if dir == 0 {
+            let steps = f.iter().flat_map(|row| row.windows(2));
+            steps.for_each(|w| take(w[1] - w[0]));
+        } else {
+            let steps = f.windows(2).flat_map(|rows| rows[0].iter().zip(&rows[1]));
+            steps.for_each(|(a, b)| take(b - a));
         }
         if least >= 0.0 && edge(dir, 0) {
             return Verdict::ConvexEdge { dir, end: 0 };
@@ -96,17 +100,21 @@ fn coefficients<const M: usize, const L: usize>(net: &[[f64; 4]], q: &Vec3) -> [
     }
     let mut out = [[0.0; L]; L];
     for j in 0..M {
-        for l in 0..M {
+        for l in j..M {
+            // Both orders of a pair of rows are the same.
+            let double = if l == j { 1.0 } else { 2.0 };
             for (i, a) in points[j].iter().enumerate() {
+                let a = a.map(|a| a * double);
                 for (k, b) in points[l].iter().enumerate() {
                     out[j + l][i + k] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
                 }
             }
         }
     }
-    for (j, row) in out.iter_mut().enumerate() {
-        for (i, f) in row.iter_mut().enumerate() {
-            *f /= BINOMIALS[2 * p][i] * BINOMIALS[2 * p][j];
+    let inverse: [f64; L] = std::array::from_fn(|k| 1.0 / BINOMIALS[2 * p][k]);
+    for (row, g) in out.iter_mut().zip(&inverse) {
+        for (f, h) in row.iter_mut().zip(&inverse) {
+            *f *= g * h;
         }
     }
     out

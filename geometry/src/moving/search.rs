@@ -55,21 +55,23 @@ impl MovingFacets {
             parts: 0,
             complete: true,
         };
-        let mut hinted = u32::MAX;
+        let mut hinted = None;
         if let Some(hint) = hint
             && (hint.patch as usize) < self.len()
             && hint.xi.iter().all(|x| x.is_finite())
             && self.is_finite(hint.patch)
             && accept(hint.patch)
         {
-            hinted = hint.patch;
-            let local = search.problem(hinted, ALL).solve::<M>(hint.xi);
-            search.offer(hinted, &local);
-            search.prove(hinted, &local);
+            let local = search.problem(hint.patch, ALL).solve::<M>(hint.xi);
+            search.offer(hint.patch, &local);
+            hinted = Some((hint.patch, local));
         }
         tree.visit(q, search.limit2(), |facet| {
-            if facet != hinted && self.is_finite(facet) && accept(facet) {
-                search.facet(facet);
+            if self.is_finite(facet) && accept(facet) {
+                match &hinted {
+                    Some((hinted, local)) if *hinted == facet => search.again(facet, local),
+                    _ => search.facet(facet),
+                }
             }
             search.limit2()
         });
@@ -122,18 +124,17 @@ impl MovingFacets {
         found: &Local,
         accept: &impl Fn(u32) -> bool,
     ) -> (u32, Local) {
-        let solve = |facet: u32, xi: [f64; 2]| {
-            let problem = Problem {
-                net: self.net::<M>(facet),
-                q,
-                range: ALL,
-                size: self.size,
-            };
-            let mut s = problem.solve::<M>(xi);
-            problem.refine::<M>(&mut s);
-            s
+        let problem = |facet: u32| Problem {
+            net: self.net::<M>(facet),
+            q,
+            range: ALL,
+            size: self.size,
         };
-        let mut best = (facet, solve(facet, found.xi));
+        let mut best = (facet, *found);
+        if !found.converged || !found.whole {
+            best.1 = problem(facet).solve::<M>(found.xi);
+        }
+        problem(facet).refine::<M>(&mut best.1);
         for _ in 0..HOPS {
             let (facet, s) = best;
             if s.at == [0, 0] {
@@ -144,7 +145,8 @@ impl MovingFacets {
                 if !(accept(facet) && self.is_finite(facet)) {
                     return;
                 }
-                let t = solve(facet, xi);
+                let mut t = problem(facet).solve::<M>(xi);
+                problem(facet).refine::<M>(&mut t);
                 let now = nearer.as_ref().map_or(s.d2, |n| n.1.d2);
                 // Equally near but not held by its border is better.
                 let free = s.active != [false; 2] && t.active == [false; 2] && t.converged;
@@ -261,6 +263,14 @@ impl<'a, const M: usize, const L: usize> Search<'a, M, L> {
         let local = self.problem(facet, ALL).solve::<M>(seed::<M>(net, self.q));
         self.offer(facet, &local);
         self.prove(facet, &local);
+    }
+
+    /// Looks at the facet of the hint, whose stationary point is known.
+    fn again(&mut self, facet: u32, local: &Local) {
+        let best = self.best.as_ref().is_some_and(|best| best.0 == facet);
+        if best || !self.excluded(self.set.net::<M>(facet)) {
+            self.prove(facet, local);
+        }
     }
 
     /// Makes sure that nothing on a facet is nearer than its stationary point and the best of all.

@@ -165,6 +165,24 @@ impl Topology {
         self.corner_of[facet as usize][corner]
     }
 
+    /// Number of an edge of a facet; `None` where it is one node.
+    pub fn edge(&self, facet: u32, edge: usize) -> Option<u32> {
+        Some(self.edge_of[facet as usize][edge]).filter(|&k| k != NONE)
+    }
+
+    /// Facets with their edges at an edge by its number.
+    pub fn edge_members(&self, edge: u32) -> &[(u32, u8)] {
+        self.edges.get(edge)
+    }
+
+    pub fn edge_count(&self) -> usize {
+        self.edges.first.len() - 1
+    }
+
+    pub fn facet_count(&self) -> usize {
+        self.edge_of.len()
+    }
+
     /// Number of the nodes that are corners.
     pub fn node_count(&self) -> usize {
         self.corners.first.len() - 1

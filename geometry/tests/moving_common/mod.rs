@@ -40,7 +40,10 @@ impl Mesh {
         closed: [bool; 2],
         map: impl Fn(f64, f64) -> Vec3,
     ) -> Self {
-        let lines = [p * n + usize::from(!closed[0]), p * m + usize::from(!closed[1])];
+        let lines = [
+            p * n + usize::from(!closed[0]),
+            p * m + usize::from(!closed[1]),
+        ];
         let nodes = (0..lines[0] * lines[1])
             .map(|k| {
                 let (i, j) = (k % lines[0], k / lines[0]);
@@ -82,11 +85,18 @@ impl Mesh {
     pub fn deformed(&self, size: f64, noise: f64, seed: u64) -> Vec<Vec3> {
         let mut random = Random(seed);
         let waves: Vec<(Vec3, Vec3, f64)> = (0..4)
-            .map(|_| (random.vector(size), random.vector(3.0), random.between(0.0, 6.0)))
+            .map(|_| {
+                (
+                    random.vector(size),
+                    random.vector(3.0),
+                    random.between(0.0, 6.0),
+                )
+            })
             .collect();
         (self.nodes.iter())
             .map(|x| {
-                let wave = |s: Vec3, (a, k, phase): &(Vec3, Vec3, f64)| s + a * (k.dot(x) + phase).sin();
+                let wave =
+                    |s: Vec3, (a, k, phase): &(Vec3, Vec3, f64)| s + a * (k.dot(x) + phase).sin();
                 x + waves.iter().fold(Vec3::zeros(), wave) + random.vector(noise)
             })
             .collect()
@@ -130,7 +140,12 @@ pub fn cube(n: usize) -> Mesh {
             };
             for j in 0..n {
                 for i in 0..n {
-                    facets.push(vec![node(i, j), node(i + 1, j), node(i, j + 1), node(i + 1, j + 1)]);
+                    facets.push(vec![
+                        node(i, j),
+                        node(i + 1, j),
+                        node(i, j + 1),
+                        node(i + 1, j + 1),
+                    ]);
                 }
             }
         }
@@ -145,17 +160,18 @@ pub fn cube(n: usize) -> Mesh {
 /// Distance by exhaustive search: a grid of points on every facet, then a damped Gauss-Newton iteration with clamping from
 /// the best of each of the nearest facets. Shares no code with the search under test but the jets.
 pub fn exhaustive(set: &MovingFacets, q: &Vec3, accept: impl Fn(u32) -> bool) -> f64 {
-    const STEPS: usize = 12;
+    const STEPS: usize = 8;
     let mut seeds: Vec<(f64, u32, [f64; 2])> = Vec::new();
     for facet in (0..set.len() as u32).filter(|f| accept(*f)) {
         for k in 0..(STEPS + 1) * (STEPS + 1) {
-            let xi = [k % (STEPS + 1), k / (STEPS + 1)].map(|k| 2.0 * k as f64 / STEPS as f64 - 1.0);
+            let xi =
+                [k % (STEPS + 1), k / (STEPS + 1)].map(|k| 2.0 * k as f64 / STEPS as f64 - 1.0);
             seeds.push(((set.jet(facet, xi).rho - q).norm_squared(), facet, xi));
         }
     }
     seeds.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut best = f64::INFINITY;
-    for &(_, facet, xi) in seeds.iter().take(24) {
+    for &(_, facet, xi) in seeds.iter().take(16) {
         best = best.min(refine(set, facet, xi, q));
     }
     best.sqrt()
@@ -181,7 +197,10 @@ fn refine(set: &MovingFacets, facet: u32, mut xi: [f64; 2], q: &Vec3) -> f64 {
             _ => {
                 let det = h11 * h22 - h12 * h12;
                 if det > 0.0 && h11 > 0.0 {
-                    [(h22 * g[0] - h12 * g[1]) / det, (h11 * g[1] - h12 * g[0]) / det]
+                    [
+                        (h22 * g[0] - h12 * g[1]) / det,
+                        (h11 * g[1] - h12 * g[0]) / det,
+                    ]
                 } else {
                     damping = damping.max(1e-3) * 4.0;
                     if damping > 1e12 {
@@ -213,7 +232,10 @@ pub fn check_foot(set: &MovingFacets, q: &Vec3, foot: &MovingFoot) {
     let rho = set.jet(foot.facet, foot.xi).rho;
     let noise = 1e-12 * (set.size() + q.norm());
     assert!((rho - foot.jet.rho).norm() <= noise, "{q:?} {foot:?}");
-    assert!(((q - rho).norm() - foot.distance).abs() <= noise, "{q:?} {foot:?}");
+    assert!(
+        ((q - rho).norm() - foot.distance).abs() <= noise,
+        "{q:?} {foot:?}"
+    );
     assert!((foot.signed_distance.abs() - foot.distance).abs() <= noise);
     assert!((foot.normal.norm() - 1.0).abs() < 1e-12, "{q:?} {foot:?}");
     let inside = foot.xi.iter().all(|x| x.abs() < 1.0);
@@ -228,4 +250,39 @@ pub fn check_foot(set: &MovingFacets, q: &Vec3, foot: &MovingFoot) {
 
 pub fn hint(facet: u32, xi: [f64; 2]) -> Option<Hint> {
     Some(Hint { patch: facet, xi })
+}
+
+/// Partition of unity, and that the combination of the nodes is the point with its tangents.
+pub fn check_shape(
+    set: &MovingFacets,
+    facet: u32,
+    xi: [f64; 2],
+    rows: &covact_geometry::ShapeRows,
+    position: impl Fn(u32) -> Vec3,
+) {
+    let nodes = set.nodes(facet);
+    assert_eq!(rows.count, nodes.len());
+    let sum = |n: &[f64]| n[..rows.count].iter().sum::<f64>();
+    assert!(
+        (sum(&rows.n) - 1.0).abs() < 1e-14,
+        "{:e}",
+        sum(&rows.n) - 1.0
+    );
+    assert!(sum(&rows.n_1).abs() < 1e-14 && sum(&rows.n_2).abs() < 1e-14);
+    let jet = set.jet(facet, xi);
+    let combine = |n: &[f64]| {
+        let terms = nodes.iter().zip(n);
+        terms.fold(Vec3::zeros(), |s, (&k, n)| s + position(k) * *n)
+    };
+    for (n, v) in [
+        (&rows.n, jet.rho),
+        (&rows.n_1, jet.rho_i[0]),
+        (&rows.n_2, jet.rho_i[1]),
+    ] {
+        assert!(
+            v.norm() > 0.0 && (combine(n) - v).norm() < 2e-14,
+            "{:e}",
+            (combine(n) - v).norm()
+        );
+    }
 }
