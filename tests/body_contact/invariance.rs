@@ -23,10 +23,10 @@ fn any_number_of_threads_gives_the_same_bits() {
 #[test]
 fn the_order_of_the_pairs_changes_nothing() {
     let force = |first: &str, second: &str| {
-        let mut scene = arch_on_plate(1.0, 2, json!({"gauss": 2}));
+        let mut scene = arch_on_plate(1.5, 3, json!({"gauss": 2}));
         let press = scene["contacts"]["press"].take();
         scene["bodies"]["lid"] = json!({"mesh": {"plate": {
-            "size": [9, 4], "thickness": 0.3, "elements": [7, 3], "origin": [0, 0, 0.95]
+            "size": [9, 4], "thickness": 0.3, "elements": [7, 3], "origin": [0, 0, 0.63]
         }}, "material": "m"});
         for (name, on, what) in [
             ("lid_clamped", "lid.x_max", json!({"fixed": true})),
@@ -52,7 +52,7 @@ fn the_order_of_the_pairs_changes_nothing() {
     let (a, b) = (force("a", "b"), force("z", "b"));
     println!("{a:?} {b:?}");
     for (a, b) in a.iter().zip(&b) {
-        assert!(a.abs() > 0.01);
+        assert!(a.abs() > 1e-4, "{a:?}");
         assert!((a - b).abs() < 1e-9 * a.abs());
     }
 }

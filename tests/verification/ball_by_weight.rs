@@ -1,4 +1,4 @@
-//! `ball_by_weight`: a ball of radius 20 laid on a rubber cushion (E = 1, nu = .45), its weight growing to 100 (25 on the
+//! `ball_by_weight`: a ball of radius 20 laid on a rubber cushion (E = 1, nu = .4), its weight growing to 100 (25 on the
 //! quarter).
 //!
 //! ```text
@@ -37,7 +37,7 @@ fn weight_is_carried_and_the_ball_sinks_as_hertz_has_it_at_first() {
     // stiffer, and the less so the smaller the contact is.
     let stiffer = |t: f64| {
         let d = -5.0 - outcome.at("displacement.ball.z", t);
-        let hertz = 4.0 / 3.0 / (1.0 - 0.45f64.powi(2)) * 20f64.sqrt() * d.powf(1.5);
+        let hertz = 4.0 / 3.0 / (1.0 - 0.4f64.powi(2)) * 20f64.sqrt() * d.powf(1.5);
         100.0 * t / hertz
     };
     let (first, last) = (stiffer(0.125), stiffer(1.0));
