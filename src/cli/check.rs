@@ -220,17 +220,13 @@ fn meaning(effect: &str) -> &'static str {
         "material.st_venant_kirchhoff" => "linear stress-strain law for small strains",
         "material.neo_hooke" => "rubber-like law for large strains",
         "contact.normal.penalty" => "contact pressure = penalty times penetration, no friction",
-<<<<<<< HEAD
         "contact.master.rigid" => "rigid surfaces",
         "contact.master.deformable" => "faces of bodies that deform",
         "contact.self" => "faces of a body touch faces of the same body",
         "contact.master.smooth" => "one smooth surface through the nodes of the faces",
-=======
-        "contact.master.rigid" => "surfaces do not deform",
         "surface.driven_by_force" => {
             "components of a surface's motion are unknowns with given forces"
         }
->>>>>>> driven
         "contact.points.nodes" => "contact is sampled at nodes",
         "contact.points.gauss" => "contact is sampled at Gauss points of the faces",
         "contact.points.lobatto" => "contact is sampled at Lobatto points of the faces",

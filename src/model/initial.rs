@@ -83,7 +83,9 @@ fn initial_gaps(
             {
                 nearest_distance = seen.distance;
                 let face = master.faces[master.facets.source(seen.hint.patch) as usize];
-                let element = model.bodies[master.body].mesh.element_center(face.element as usize);
+                let element = model.bodies[master.body]
+                    .mesh
+                    .element_center(face.element as usize);
                 gap.looks_at_master = normals[i].dot(&(element - x)) > 0.0;
             }
         }
