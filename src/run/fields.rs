@@ -75,8 +75,8 @@ impl Fields {
     }
 
     /// Recovers pressure, gap and status at the nodes of all slave surfaces: averages over the slave points by their
-    /// shape functions and areas, `p_I = sum w N_I p / sum w N_I`. With points at nodes that is the point's own
-    /// pressure; as the areas are the modelled ones, it is right on symmetry planes too.
+    /// shape functions and areas, `p_I = sum w N_I p / sum w N_I` (where `N_I > 0`). With points at nodes that is the
+    /// point's own pressure; as the areas are the modelled ones, it is right on symmetry planes too.
     pub fn gather(
         &mut self,
         model: &Model,
@@ -120,7 +120,8 @@ impl Fields {
                 }
                 self.largest_pressure = self.largest_pressure.max(pressure);
                 self.area += if closed { p.area } else { 0.0 };
-                for (node, n) in p.terms() {
+                // Quadratic shape functions are negative in places; weights that are not keep pressures from being so.
+                for (node, n) in p.terms().filter(|term| term.1 > 0.0) {
                     let w = n * p.area;
                     self.weight[node] += w;
                     self.sums[node][0] += w * pressure;

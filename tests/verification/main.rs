@@ -9,6 +9,7 @@ mod overclosure;
 mod placed;
 mod plate_under_ball;
 mod punch;
+mod quadratic;
 mod strip_over_cylinder;
 mod support;
 mod supports;
