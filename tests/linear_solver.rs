@@ -1,7 +1,8 @@
 //! The direct solver against dense solutions, and its errors.
 use covact::assembly::{Pattern, SystemMatrix};
 use covact::solve::linear::{
-    DirectSolver, DofName, LinearError, LinearSolver, Mode, Ordering, OrderingChoice, SolverOptions,
+    DirectSolver, DofName, LinearError, LinearSolver, Method, Mode, Ordering, OrderingChoice,
+    SolverOptions,
 };
 use nalgebra::{DMatrix, DVector};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -157,7 +158,7 @@ fn positive_definite_as_dense() {
                 solver.analyze(matrix.pattern()).unwrap();
                 let found = solver.factorize(&matrix).unwrap();
                 assert_eq!(found.negative_pivots, 0);
-                assert_eq!(found.mode == Mode::Ldlt, mode == Mode::Ldlt);
+                assert_eq!(found.method == Method::Ldlt, mode == Mode::Ldlt);
                 let mut x = rhs.clone();
                 solver.solve_in_place(&mut x).unwrap();
                 // Condition about 1e3: twelve digits and a margin.
@@ -189,7 +190,10 @@ fn indefinite_with_inertia() {
         let mut solver = DirectSolver::new(options(Mode::Auto, OrderingChoice::Best));
         solver.analyze(matrix.pattern()).unwrap();
         let found = solver.factorize(&matrix).unwrap();
-        assert_eq!((found.mode, found.negative_pivots), (Mode::Ldlt, negative));
+        assert_eq!(
+            (found.method, found.negative_pivots),
+            (Method::Ldlt, negative)
+        );
         let (mut x, mut r, mut c) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         solver
             .solve_refined(&matrix, &rhs, &mut x, &mut r, &mut c)
@@ -224,10 +228,10 @@ fn auto_returns_to_llt() {
         .into_iter()
         .map(|m| {
             let f = solver.factorize(m).unwrap();
-            (f.mode, f.negative_pivots)
+            (f.method, f.negative_pivots)
         })
         .collect();
-    use Mode::{Ldlt, Llt};
+    use Method::{Ldlt, Llt};
     assert_eq!(modes, [(Llt, 0), (Ldlt, 1), (Ldlt, 1), (Ldlt, 0), (Llt, 0)]);
 }
 

@@ -250,7 +250,8 @@ impl DofMap {
 
     /// `T^t K T` in place: clears the rows and columns of removed dofs of an element matrix after it has added those of
     /// tied dofs, times the coefficient, to their targets. `nodes` must hold the targets, too
-    /// ([`extend_nodes`](Self::extend_nodes)), and `ke` have `3 * nodes.len()` rows, zero for the added nodes.
+    /// ([`extend_nodes`](Self::extend_nodes)), and `ke` have `3 * nodes.len()` rows, zero for the added nodes. `ke` need
+    /// not be symmetric.
     ///
     /// # Errors
     /// [`ConstraintError::TargetMissing`]; `ke` is then half done.

@@ -1,17 +1,23 @@
-//! The values of a symmetric system on a pattern.
+//! The values of a system on a pattern, symmetric or not.
 use super::constraints::DofMap;
 use super::pattern::{FLAG_BITS, Pattern, PatternError, SAME_NODE, TRANSPOSED};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// A symmetric matrix on a [`Pattern`].
+/// A matrix on a [`Pattern`], symmetric or with a symmetric structure only.
 ///
 /// Blocks are stored one after the other in the pattern's order, nine values each, column-major. Diagonal blocks hold
 /// both of their triangles, zeros are kept: which entries exist depends on the pattern alone.
+///
+/// An unsymmetric matrix holds the blocks above the diagonal in a second array of the same order, each as its
+/// transpose: the first array is the lower triangle of the matrix, the second that of its transpose. A symmetric
+/// matrix has no second array and costs nothing more.
 #[derive(Debug, Clone)]
 pub struct SystemMatrix {
     pattern: Arc<Pattern>,
     values: Vec<f64>,
+    /// Lower triangle of the transpose; its diagonal blocks are zeros that nobody reads.
+    transposed: Option<Vec<f64>>,
 }
 
 /// Buffers of [`SystemMatrix::scatter_constrained`], kept by the caller so that no element allocates.
@@ -23,10 +29,26 @@ pub struct ConstrainedScatter {
 }
 
 impl SystemMatrix {
-    /// A zero matrix.
+    /// A symmetric matrix of zeros.
     pub fn new(pattern: Arc<Pattern>) -> Self {
         let values = vec![0.0; 9 * pattern.blocks()];
-        Self { pattern, values }
+        Self {
+            pattern,
+            values,
+            transposed: None,
+        }
+    }
+
+    /// An unsymmetric matrix of zeros: twice the memory of a symmetric one.
+    pub fn unsymmetric(pattern: Arc<Pattern>) -> Self {
+        let mut matrix = Self::new(pattern);
+        matrix.transposed = Some(vec![0.0; matrix.values.len()]);
+        matrix
+    }
+
+    /// Whether the blocks below the diagonal stand for those above it, too.
+    pub fn is_symmetric(&self) -> bool {
+        self.transposed.is_none()
     }
 
     /// The pattern, shared.
@@ -34,29 +56,48 @@ impl SystemMatrix {
         &self.pattern
     }
 
-    /// All values: nine a block (column-major), in the order of the pattern's blocks.
+    /// The values of the lower triangle: nine a block (column-major), in the order of the pattern's blocks.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// All values, to write to. The diagonal blocks must stay symmetric.
+    /// The values of the lower triangle, to write to. The diagonal blocks of a symmetric matrix must stay symmetric.
     pub fn values_mut(&mut self) -> &mut [f64] {
         &mut self.values
+    }
+
+    /// The lower triangle of the transpose, laid out as [`values`](Self::values): the blocks above the diagonal, each
+    /// transposed (row-major). Its diagonal blocks mean nothing; those of `values` are complete. `None` for a
+    /// symmetric matrix, for which `values` is that triangle.
+    pub fn transposed_values(&self) -> Option<&[f64]> {
+        self.transposed.as_deref()
+    }
+
+    /// [`transposed_values`](Self::transposed_values), to write to.
+    pub fn transposed_values_mut(&mut self) -> Option<&mut [f64]> {
+        self.transposed.as_deref_mut()
     }
 
     /// Sets every value to zero.
     pub fn clear(&mut self) {
         self.values.fill(0.0);
+        if let Some(transposed) = &mut self.transposed {
+            transposed.fill(0.0);
+        }
     }
 
-    /// Adds the symmetric element matrix `ke` (column-major, `3n` x `3n`, dof `3 * local node + component`) where
-    /// `map` of [`Pattern::element_map`] says.
+    /// Adds the element matrix `ke` (column-major, `3n` x `3n`, dof `3 * local node + component`) where `map` of
+    /// [`Pattern::element_map`] says. If this matrix is symmetric, so must be `ke`: only the blocks below its
+    /// diagonal are read then.
     ///
     /// # Panics
     /// If `map` is not of an element of the size of `ke`, or of another, larger pattern.
     pub fn scatter(&mut self, map: &[u32], ke: &[f64]) {
         let n = element_nodes(map.len(), ke.len());
-        scatter_into(&mut self.values, map, ke, n);
+        match &mut self.transposed {
+            None => scatter_into(&mut self.values, map, ke, n),
+            Some(transposed) => scatter_both_into(&mut self.values, transposed, 0, map, ke, n),
+        }
     }
 
     /// Adds many element matrices of `n` nodes each, `n (n + 1) / 2` numbers of `maps` and `9 n^2` of `kes` for each
@@ -78,21 +119,32 @@ impl SystemMatrix {
         let elements = maps.chunks_exact(pairs).zip(kes.chunks_exact(size));
         let threads = threads.clamp(1, rayon::current_num_threads().max(1));
         if threads == 1 {
-            for (map, ke) in elements {
-                scatter_into(&mut self.values, map, ke, n);
+            match &mut self.transposed {
+                None => elements.for_each(|(map, ke)| scatter_into(&mut self.values, map, ke, n)),
+                Some(transposed) => elements.for_each(|(map, ke)| {
+                    scatter_both_into(&mut self.values, transposed, 0, map, ke, n);
+                }),
             }
             return;
         }
         let blocks = self.pattern.blocks().div_ceil(threads).max(1);
-        self.values
-            .par_chunks_mut(9 * blocks)
-            .enumerate()
-            .for_each(|(chunk, values)| {
+        let chunks = self.values.par_chunks_mut(9 * blocks).enumerate();
+        match &mut self.transposed {
+            None => chunks.for_each(|(chunk, values)| {
                 let first = (chunk * blocks) as u32;
                 for (map, ke) in elements.clone() {
                     scatter_into_range(values, first, map, ke, n);
                 }
-            });
+            }),
+            Some(transposed) => chunks.zip(transposed.par_chunks_mut(9 * blocks)).for_each(
+                |((chunk, values), transposed)| {
+                    let first = (chunk * blocks) as u32;
+                    for (map, ke) in elements.clone() {
+                        scatter_both_into(values, transposed, first, map, ke, n);
+                    }
+                },
+            ),
+        }
     }
 
     /// Adds the matrix of an element some of whose dofs may be prescribed or tied, without a precomputed map (a
@@ -170,11 +222,15 @@ impl SystemMatrix {
 
     /// Entry at (row, column) dof, zero where the pattern has no block. For tests and messages; it searches.
     pub fn get(&self, row: usize, column: usize) -> f64 {
-        let (row, column) = (row.max(column), row.min(column));
-        match self.pattern.block((row / 3) as u32, (column / 3) as u32) {
-            Some(block) => self.values[9 * block as usize + 3 * (column % 3) + row % 3],
-            None => 0.0,
+        let Some(block) = self.pattern.block((row / 3) as u32, (column / 3) as u32) else {
+            return 0.0;
+        };
+        let first = 9 * block as usize;
+        if row / 3 >= column / 3 {
+            return self.values[first + 3 * (column % 3) + row % 3];
         }
+        let transposed = self.transposed.as_deref().unwrap_or(&self.values);
+        transposed[first + 3 * (row % 3) + column % 3]
     }
 
     /// Writes the diagonal, one value a dof.
@@ -204,7 +260,7 @@ impl SystemMatrix {
         self.product(x, y, f64::abs, f64::abs);
     }
 
-    /// `out = sum_j |a_ij|`.
+    /// `out_i = sum_j |a_ij|`.
     ///
     /// # Panics
     /// As [`multiply`](Self::multiply).
@@ -212,6 +268,18 @@ impl SystemMatrix {
         // Any vector of the right length does, as every entry counts as one.
         let any = &self.values[..self.pattern.dofs()];
         self.product(any, out, f64::abs, |_| 1.0);
+    }
+
+    /// Whether a block holds a value that is infinite or NaN: (row, column) of the first. A block above the diagonal
+    /// goes by the name of its mirror image.
+    pub fn first_not_finite(&self) -> Option<(u32, u32)> {
+        // A product with zero is zero, and NaN if the value is infinite or NaN.
+        let broken = |b: &[f64]| b.iter().map(|v| v * 0.0).sum::<f64>() != 0.0;
+        let find = |values: &[f64]| values.chunks_exact(9).position(broken);
+        let block = find(&self.values).or_else(|| self.transposed.as_deref().and_then(find))?;
+        let starts = self.pattern.column_starts();
+        let column = starts.partition_point(|&s| s as usize <= block) - 1;
+        Some((self.pattern.rows()[block], column as u32))
     }
 
     fn diagonal_index(&self, dof: usize) -> usize {
@@ -226,16 +294,39 @@ impl SystemMatrix {
         value: impl Fn(f64) -> f64,
         entry: impl Fn(f64) -> f64,
     ) {
+        match &self.transposed {
+            None => self.product_of::<false>(&[], x, y, value, entry),
+            Some(transposed) => self.product_of::<true>(transposed, x, y, value, entry),
+        }
+    }
+
+    /// The product with the lower triangle and what mirrors it: the triangle itself, or `transposed` if that is told.
+    #[inline(always)]
+    fn product_of<const UNSYMMETRIC: bool>(
+        &self,
+        transposed: &[f64],
+        x: &[f64],
+        y: &mut [f64],
+        value: impl Fn(f64) -> f64,
+        entry: impl Fn(f64) -> f64,
+    ) {
         let n = self.pattern.dofs();
         assert!(x.len() == n && y.len() == n, "vector of another length");
         y.fill(0.0);
         let mut blocks = self.values.chunks_exact(9);
+        let mut mirrored = transposed.chunks_exact(9);
         for column in 0..self.pattern.nodes() {
             let xc: [f64; 3] = std::array::from_fn(|b| entry(x[3 * column + b]));
             let mut yc = [0.0; 3];
             for (k, &row) in self.pattern.column(column).iter().enumerate() {
                 let Some(block) = blocks.next() else { return };
                 let a: [f64; 9] = std::array::from_fn(|i| value(block[i]));
+                let m = if UNSYMMETRIC {
+                    let Some(block) = mirrored.next() else { return };
+                    std::array::from_fn(|i| value(block[i]))
+                } else {
+                    a
+                };
                 let r = 3 * row as usize;
                 let yr = &mut y[r..r + 3];
                 for i in 0..3 {
@@ -244,9 +335,9 @@ impl SystemMatrix {
                 if k > 0 {
                     let xr = &x[r..r + 3];
                     for b in 0..3 {
-                        yc[b] += a[3 * b] * entry(xr[0])
-                            + a[3 * b + 1] * entry(xr[1])
-                            + a[3 * b + 2] * entry(xr[2]);
+                        yc[b] += m[3 * b] * entry(xr[0])
+                            + m[3 * b + 1] * entry(xr[1])
+                            + m[3 * b + 2] * entry(xr[2]);
                     }
                 }
             }
@@ -291,6 +382,64 @@ fn scatter_into_range(values: &mut [f64], first: u32, map: &[u32], ke: &[f64], n
                 let start = 9 * block as usize;
                 add_block(&mut values[start..start + 9], code, ke, 3 * n, 3 * p, 3 * q);
             }
+        }
+    }
+}
+
+/// Adds an unsymmetric element matrix, as far as `values` and `transposed`, which start at block `first`, hold its
+/// blocks.
+fn scatter_both_into(
+    values: &mut [f64],
+    transposed: &mut [f64],
+    first: u32,
+    map: &[u32],
+    ke: &[f64],
+    n: usize,
+) {
+    let count = (values.len() / 9) as u32;
+    let size = 3 * n;
+    let mut at = 0;
+    for q in 0..n {
+        for p in q..n {
+            let code = map[at];
+            at += 1;
+            let block = (code >> FLAG_BITS).wrapping_sub(first);
+            if block >= count {
+                continue;
+            }
+            let start = 9 * block as usize;
+            let lower = &mut values[start..start + 9];
+            let flags = code & (TRANSPOSED | SAME_NODE);
+            let (row, column) = if flags == TRANSPOSED { (q, p) } else { (p, q) };
+            add_plain(lower, ke, size, row, column);
+            if flags == SAME_NODE {
+                add_plain(lower, ke, size, column, row);
+            } else if p != q {
+                let upper = &mut transposed[start..start + 9];
+                add_turned(upper, ke, size, column, row);
+            }
+        }
+    }
+}
+
+/// Adds the block of local nodes (row, column) of `ke`.
+#[inline(always)]
+fn add_plain(block: &mut [f64], ke: &[f64], size: usize, row: usize, column: usize) {
+    for b in 0..3 {
+        let from = &ke[(3 * column + b) * size + 3 * row..][..3];
+        for a in 0..3 {
+            block[3 * b + a] += from[a];
+        }
+    }
+}
+
+/// Adds the transpose of the block of local nodes (row, column) of `ke`.
+#[inline(always)]
+fn add_turned(block: &mut [f64], ke: &[f64], size: usize, row: usize, column: usize) {
+    for b in 0..3 {
+        let from = &ke[(3 * column + b) * size + 3 * row..][..3];
+        for a in 0..3 {
+            block[3 * a + b] += from[a];
         }
     }
 }

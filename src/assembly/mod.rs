@@ -1,4 +1,4 @@
-//! From element matrices to one sparse symmetric system.
+//! From element matrices to one sparse system, symmetric or with a symmetric structure.
 //!
 //! - [`Pattern`]: which nodes are coupled, as 3 x 3 blocks of the lower triangle;
 //! - [`SystemMatrix`]: the values on a pattern, with scatter and products;

@@ -234,6 +234,7 @@ fn meaning(effect: &str) -> &'static str {
         "contact.tangent.published" => "tangent matrix of the published form",
         "load.dead" => "loads of constant direction",
         "load.follower_pressure" => "pressures that follow the deformed faces",
+        "system.unsymmetric" => "unsymmetric tangent matrix, factorized by LU",
         "support.mid_surface" => "supports on the mean of both faces of a shell",
         _ => "",
     }

@@ -66,11 +66,13 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         dead_loads,
         follower_loads,
         dofs: supports.dofs,
+        symmetric: true,
         effects: Vec::new(),
         notes: builder.notes,
         warnings: builder.warnings,
         kinks: Vec::new(),
     };
+    symmetry(scene, &mut model)?;
     model.effects = super::effects::effects(scene, &model);
     model.kinks = kinks(scene, &model);
     values::check(scene, &model)?;
@@ -85,6 +87,30 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     super::initial::check(&mut model, scene)?;
     super::driven::start::approach(&mut model, scene)?;
     Ok(model)
+}
+
+/// Decides whether the system is symmetric, and whether the linear solver that was asked for can solve it.
+fn symmetry(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
+    let reasons = super::symmetry::unsymmetric_effects(model);
+    model.symmetric = reasons.is_empty();
+    let asked = match scene.solution.linear_solver {
+        scene::LinearSolver::Llt => "llt",
+        scene::LinearSolver::Ldlt => "ldlt",
+        scene::LinearSolver::Auto | scene::LinearSolver::Lu => "",
+    };
+    match reasons.first() {
+        Some(reason) if !asked.is_empty() => {
+            let message =
+                format!("`{asked}` is for symmetric systems, and this one is not: {reason}");
+            let help = "take `auto` or `lu`, or hold the border of the faces";
+            Err(text("/solution/linear_solver", message).help(help))
+        }
+        _ => {
+            let note = |reason: String| format!("{reason}, so that the system is unsymmetric (LU)");
+            model.notes.extend(reasons.into_iter().map(note));
+            Ok(())
+        }
+    }
 }
 
 /// Times inside the run at which something prescribed has a kink.

@@ -66,6 +66,9 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
     if !model.follower_loads.is_empty() {
         add("load.follower_pressure");
     }
+    if !model.symmetric {
+        add("system.unsymmetric");
+    }
     if !model.means.is_empty() {
         add("support.mid_surface");
     }

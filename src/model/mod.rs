@@ -15,6 +15,7 @@ pub mod self_contact;
 pub mod slave;
 pub mod state;
 pub mod surface;
+pub mod symmetry;
 
 use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;
@@ -49,6 +50,8 @@ pub struct Model {
     pub follower_loads: Vec<(String, FollowerPressure)>,
     /// Which degrees of freedom are unknown.
     pub dofs: DofMap,
+    /// Whether the tangent is symmetric ([`symmetry::unsymmetric_effects`]).
+    pub symmetric: bool,
     /// Effects that are on, by name.
     pub effects: Vec<String>,
     /// Choices the program made, in words.

@@ -62,6 +62,9 @@ pub struct Summary {
     pub contact_points: usize,
     /// Iterations of all steps, of failed attempts too.
     pub newton_iterations: u64,
+    /// Factorizations by method, `llt`, `ldlt` or `lu`, of failed attempts too.
+    #[serde(default)]
+    pub factorizations: BTreeMap<String, u64>,
     /// Accepted steps.
     pub steps: u32,
     /// Attempts that failed and were rolled back.

@@ -11,7 +11,7 @@ use crate::model::{Model, penalty};
 use crate::output::{History, Phases, Results, RunStatus};
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
-use crate::solve::linear::DirectSolver;
+use crate::solve::linear::{LinearSolver, Method};
 use crate::solve::newton::{Converged, StepFailure, Workspace};
 use crate::solve::stepping::Stepping;
 use std::path::Path;
@@ -32,8 +32,8 @@ pub(super) struct March<'a, 'm> {
     scene: &'a Scene,
     model: &'m Model,
     pub assembler: &'a mut Assembler<'m>,
-    solver: &'a mut DirectSolver,
-    workspace: Workspace,
+    solver: &'a mut dyn LinearSolver,
+    pub workspace: Workspace,
     pub observer: &'a mut (dyn Observer + Send),
     interrupt: &'a AtomicBool,
     pub phases: Phases,
@@ -58,7 +58,7 @@ impl<'a, 'm> March<'a, 'm> {
         scene: &'a Scene,
         model: &'m Model,
         assembler: &'a mut Assembler<'m>,
-        solver: &'a mut DirectSolver,
+        solver: &'a mut dyn LinearSolver,
         observer: &'a mut (dyn Observer + Send),
         interrupt: &'a AtomicBool,
         phases: Phases,
@@ -255,11 +255,26 @@ impl<'a, 'm> March<'a, 'm> {
                 ));
             }
         }
-        if converged.negative_pivots > 0 {
-            self.warn(format!(
-                "step {step}: the last tangent of the step has {} negative pivot(s): the equilibrium may be unstable",
-                converged.negative_pivots
-            ));
+        if let Some(last) = converged.factorization {
+            let negative = last.negative_pivots;
+            if negative > 0 && last.method == Method::Lu {
+                self.warn(format!(
+                    "step {step}: the determinant of the step's last tangent is negative: the equilibrium may be \
+                     unstable"
+                ));
+            } else if negative > 0 {
+                self.warn(format!(
+                    "step {step}: the last tangent of the step has {negative} negative pivot(s): the equilibrium may be \
+                     unstable"
+                ));
+            }
+            if last.perturbed_pivots > 0 {
+                self.warn(format!(
+                    "step {step}: {} pivot(s) of the last tangent were too small and were replaced; the solution was \
+                     refined",
+                    last.perturbed_pivots
+                ));
+            }
         }
         self.observer.event(&Event::StepAccepted {
             step,

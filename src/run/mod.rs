@@ -18,7 +18,7 @@ use crate::model;
 use crate::output::{Phases, RunStatus, Summary, Versions, cpu_seconds, peak_memory_mb};
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
-use crate::solve::linear::{DirectSolver, LinearSolver, SolverOptions};
+use crate::solve::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
 use march::March;
 use progress::Progress;
 use std::path::Path;
@@ -79,11 +79,7 @@ fn solve(
     }
     phases.start("analysis");
     let mut assembler = Assembler::new(&model, &model.dofs).map_err(|e| RunError::internal(&e))?;
-    let mut solver = DirectSolver::new(SolverOptions {
-        mode: mode(&loaded.scene),
-        threads,
-        ..SolverOptions::default()
-    });
+    let mut solver = solver(&loaded.scene, model.symmetric, threads);
     if let Some(pattern) = assembler.take_new_pattern() {
         solver
             .analyze(&pattern)
@@ -94,7 +90,7 @@ fn solve(
         &loaded.scene,
         &model,
         &mut assembler,
-        &mut solver,
+        &mut *solver,
         observer,
         interrupt,
         phases,
@@ -112,6 +108,7 @@ fn solve(
     } = march.progress;
     let phases = march.phases;
     let pattern_rebuilds = march.assembler.rebuilds();
+    let factorizations = march.workspace.factorizations.iter();
     let summary = Summary {
         status,
         reason,
@@ -124,6 +121,9 @@ fn solve(
         dofs: model.unknowns(),
         contact_points: model.contact_points(),
         newton_iterations: iterations,
+        factorizations: factorizations
+            .map(|(method, count)| (method.name().to_owned(), *count))
+            .collect(),
         steps,
         cuts,
         pattern_rebuilds,
@@ -148,12 +148,21 @@ fn solve(
     Ok(summary)
 }
 
-fn mode(scene: &Scene) -> crate::solve::linear::Mode {
+/// The solver that the scene asks for; an unsymmetric system has only one, which the model has checked.
+fn solver(scene: &Scene, symmetric: bool, threads: usize) -> Box<dyn LinearSolver> {
     use crate::scene::LinearSolver as Choice;
     use crate::solve::linear::Mode;
-    match scene.solution.linear_solver {
+    let options = |mode| SolverOptions {
+        mode,
+        threads,
+        ..SolverOptions::default()
+    };
+    let mode = match scene.solution.linear_solver {
+        _ if !symmetric => return Box::new(LuSolver::new(options(Mode::Auto))),
+        Choice::Lu => return Box::new(LuSolver::new(options(Mode::Auto))),
         Choice::Auto => Mode::Auto,
         Choice::Llt => Mode::Llt,
         Choice::Ldlt => Mode::Ldlt,
-    }
+    };
+    Box::new(DirectSolver::new(options(mode)))
 }

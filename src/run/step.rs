@@ -16,7 +16,7 @@ use crate::model::{Model, penalty};
 use crate::output::Phases;
 use crate::scene;
 use crate::solve::event::{Event, Observer};
-use crate::solve::linear::DirectSolver;
+use crate::solve::linear::LinearSolver;
 use crate::solve::newton::{Converged, Newton, Patience, StepFailure, Workspace};
 use nalgebra::Vector6;
 use std::sync::atomic::AtomicBool;
@@ -32,7 +32,7 @@ pub(super) struct Attempts<'a, 'm> {
     /// The last accepted state.
     pub committed: &'a State,
     pub assembler: &'a mut Assembler<'m>,
-    pub solver: &'a mut DirectSolver,
+    pub solver: &'a mut dyn LinearSolver,
     pub workspace: &'a mut Workspace,
     pub settings: &'a scene::Newton,
     pub phases: &'a mut Phases,

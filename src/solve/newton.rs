@@ -5,7 +5,7 @@
 //! the increment, which also covers steps an element cannot take) comes in where full steps fail to make headway.
 use super::convergence::{Norms, Verdict};
 use super::event::{Event, Observer};
-use super::linear::{LinearError, LinearSolver};
+use super::linear::{Factorization, LinearError, LinearSolver, Method};
 use crate::assembly::{Assembler, Fault, Totals};
 use crate::model::Model;
 use crate::model::state::State;
@@ -13,6 +13,7 @@ use crate::output::Phases;
 use crate::scene;
 use crate::shell::{ElementBlock, with_block};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Why a step failed. All but [`StepFailure::Interrupted`] call for a smaller step.
@@ -61,8 +62,8 @@ pub struct Converged {
     pub history: Vec<(f64, usize)>,
     /// Largest round-off floor met, relative to the forces.
     pub floor: f64,
-    /// Negative pivots of the last factorization: above zero the equilibrium is unstable.
-    pub negative_pivots: usize,
+    /// The last factorization; none if the start was in equilibrium already.
+    pub factorization: Option<Factorization>,
 }
 
 /// Work space of Newton's method: allocated once for a run.
@@ -74,6 +75,8 @@ pub struct Workspace {
     scratch: Vec<f64>,
     absolute: Vec<f64>,
     base: State,
+    /// Factorizations made so far, of failed attempts too.
+    pub factorizations: BTreeMap<Method, u64>,
 }
 
 impl Workspace {
@@ -87,6 +90,7 @@ impl Workspace {
             scratch: vec![0.0; n],
             absolute: vec![0.0; n],
             base: State::new(model),
+            factorizations: BTreeMap::new(),
         }
     }
 
@@ -106,7 +110,7 @@ pub enum Patience {
 }
 
 /// One step of Newton's method.
-pub struct Newton<'a, 'm, S: LinearSolver> {
+pub struct Newton<'a, 'm, S: LinearSolver + ?Sized> {
     pub model: &'m Model,
     pub assembler: &'a mut Assembler<'m>,
     pub solver: &'a mut S,
@@ -127,7 +131,7 @@ const UNTIL_GIVEN_UP: u32 = 9;
 /// Smallest factor of the line search.
 const SMALLEST: f64 = 1.0 / 64.0;
 
-impl<S: LinearSolver> Newton<'_, '_, S> {
+impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
     /// Solves for equilibrium at `time`, starting from `trial`, and leaves it there. On failure `trial` is spoilt: the
     /// caller takes its copy back.
     pub fn solve(
@@ -143,7 +147,7 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
             .map_err(Fault::from)?;
         let mut pending = outstanding > 0.0;
         let mut history: Vec<(f64, usize)> = Vec::new();
-        let (mut floor, mut negative_pivots) = (0.0f64, 0usize);
+        let (mut floor, mut factorization) = (0.0f64, None);
         let (mut best, mut since_best) = (f64::INFINITY, 0u32);
         let mut first_energy = 0.0;
         let mut factor = 1.0;
@@ -178,7 +182,7 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
                         totals,
                         history,
                         floor,
-                        negative_pivots,
+                        factorization,
                     });
                 }
                 Verdict::Diverged => return Err(StepFailure::NotFinite { iteration }),
@@ -201,7 +205,7 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
             } else {
                 since_best += 1;
             }
-            negative_pivots = self.solve_linear(pending)?;
+            factorization = Some(self.solve_linear(pending)?);
             self.iterations += 1;
             let search = self.settings.line_search && !pending && since_best >= UNTIL_SEARCH;
             (totals, factor) = self.advance(trial, time, search)?;
@@ -224,9 +228,8 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
         totals
     }
 
-    /// Solves for the increment; returns the number of negative pivots.
-    fn solve_linear(&mut self, pending: bool) -> Result<usize, StepFailure> {
-        let w = &mut *self.workspace;
+    /// Solves for the increment.
+    fn solve_linear(&mut self, pending: bool) -> Result<Factorization, StepFailure> {
         if let Some(pattern) = self.assembler.take_new_pattern() {
             self.phases.start("analysis");
             let analyzed = self.solver.analyze(&pattern).map(drop);
@@ -236,18 +239,20 @@ impl<S: LinearSolver> Newton<'_, '_, S> {
         self.phases.start("factorization");
         let factored = self.solver.factorize(self.assembler.matrix());
         self.phases.stop("factorization");
-        let negative = match factored {
-            Ok(factored) => factored.negative_pivots,
+        let factored = match factored {
+            Ok(factored) => factored,
             Err(error) => return Err(self.unsolvable(error)),
         };
+        let w = &mut *self.workspace;
+        *w.factorizations.entry(factored.method).or_default() += 1;
         self.phases.start("solve");
         w.du.copy_from_slice(&w.rhs);
-        let solved = self.solver.solve_in_place(&mut w.du);
+        let solved = (self.solver).solve_with(self.assembler.matrix(), &mut w.du);
         self.phases.stop("solve");
         solved?;
         let g = pending.then_some(&w.increments[..]);
         self.model.dofs.expand(&mut w.du, g);
-        Ok(negative)
+        Ok(factored)
     }
 
     /// What a matrix that cannot be factorized means: in the terms of the scene where a surface driven by force is not

@@ -44,6 +44,29 @@ fn a_body_that_can_move() {
     );
 }
 
+/// A pressure that follows faces with a free border has no potential.
+#[test]
+fn a_symmetric_factorization_of_an_unsymmetric_system() {
+    for solver in ["llt", "ldlt"] {
+        let load = json!({ "blow": { "on": "plate.bottom", "pressure": "t", "follower": true } });
+        // One edge of the plate may move across and up.
+        let slides = json!({ "on": "plate.y_max", "symmetry": "x" });
+        plate_refused(
+            &[
+                ("/loads", load),
+                ("/supports/clamp_y", slides),
+                ("/solution/linear_solver", json!(solver)),
+            ],
+            "/solution/linear_solver",
+            &[
+                &format!("`{solver}` is for symmetric systems, and this one is not"),
+                "the follower pressure `blow` acts on faces whose border is free to move",
+                "help: take `auto` or `lu`, or hold the border of the faces",
+            ],
+        );
+    }
+}
+
 #[test]
 fn two_supports_that_contradict_each_other() {
     for mid_surface in [false, true] {

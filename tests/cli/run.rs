@@ -84,6 +84,9 @@ fn results_of_a_run() {
     for phase in ["model", "assembly", "factorization", "output"] {
         assert!(phases[phase].as_f64().unwrap() > 0.0, "{phase}");
     }
+    let factorizations = &summary["factorizations"];
+    assert_eq!(factorizations["llt"], summary["newton_iterations"]);
+    assert_eq!(factorizations.as_object().unwrap().len(), 1);
     let effects = summary["effects"].as_array().unwrap();
     assert!(effects.contains(&json!("contact.normal.penalty")));
     assert!(summary["versions"]["covact"].is_string());

@@ -5,6 +5,7 @@ mod cases;
 mod driven;
 mod edges;
 mod faults;
+mod follower;
 mod normal;
 mod pairs;
 mod spin;

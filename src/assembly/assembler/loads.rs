@@ -18,6 +18,12 @@ impl Assembler<'_> {
         for (_, load) in &self.model.dead_loads {
             load.add(time, &mut self.external)?;
         }
+        // On the matrix side a load's stiffness counts negative. A symmetric system takes the symmetric part: what is
+        // unsymmetric lives on the border of the loaded area, which is held there.
+        let on_matrix: fn(&mut [f64], usize) = match self.matrix.is_symmetric() {
+            true => negative_symmetric,
+            false => |k, _| k.iter_mut().for_each(|k| *k = -*k),
+        };
         for (index, (_, load)) in self.model.follower_loads.iter().enumerate() {
             let p = load.value.eval(time)?;
             let mut at = 0;
@@ -31,16 +37,9 @@ impl Assembler<'_> {
                     (0..3).for_each(|c| self.external[3 * n as usize + c] += f[3 * k + c]);
                 }
                 if TANGENT {
-                    // The system is symmetric: what is unsymmetric lives on the border of the loaded area only.
                     follower_stiffness(&x, face.count, p, &mut k);
                     let size = 3 * nodes.len();
-                    for column in 0..size {
-                        for row in 0..=column {
-                            let [upper, lower] = [column * size + row, row * size + column];
-                            k[upper] = -0.5 * (k[upper] + k[lower]);
-                            k[lower] = k[upper];
-                        }
-                    }
+                    on_matrix(&mut k[..size * size], size);
                     let pairs = nodes.len() * (nodes.len() + 1) / 2;
                     let map = &self.follower_maps[index][at..at + pairs];
                     at += pairs;
@@ -62,5 +61,16 @@ impl Assembler<'_> {
             *r -= f;
         }
         Ok(())
+    }
+}
+
+/// `-(k + k^t) / 2` in place of `k` of `size` rows.
+fn negative_symmetric(k: &mut [f64], size: usize) {
+    for column in 0..size {
+        for row in 0..=column {
+            let [upper, lower] = [column * size + row, row * size + column];
+            k[upper] = -0.5 * (k[upper] + k[lower]);
+            k[lower] = k[upper];
+        }
     }
 }

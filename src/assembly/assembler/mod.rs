@@ -153,7 +153,7 @@ impl<'m> Assembler<'m> {
         Ok(Assembler {
             model,
             dofs,
-            matrix: SystemMatrix::new(pattern.clone()),
+            matrix: system(model, pattern.clone()),
             element_maps: maps.elements,
             kinds: maps.kinds,
             point_maps: maps.points,
@@ -236,6 +236,14 @@ impl<'m> Assembler<'m> {
         self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
         self.loads::<false>(state, time, None, residual, &mut [])?;
         Ok(totals)
+    }
+}
+
+/// A zero system, symmetric where the model is.
+fn system(model: &Model, pattern: Arc<Pattern>) -> SystemMatrix {
+    match model.symmetric {
+        true => SystemMatrix::new(pattern),
+        false => SystemMatrix::unsymmetric(pattern),
     }
 }
 

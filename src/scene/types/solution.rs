@@ -45,11 +45,15 @@ pub struct Newton {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LinearSolver {
-    /// Cholesky, and LDL^T where the matrix turns out indefinite.
+    /// Cholesky, and LDL^T where the matrix turns out indefinite; LU where an effect makes it unsymmetric.
     #[default]
     Auto,
+    /// Cholesky: the run fails where the matrix is indefinite.
     Llt,
+    /// LDL^T without pivoting, for symmetric matrices.
     Ldlt,
+    /// LU, for symmetric matrices too (about twice the cost).
+    Lu,
 }
 
 /// What is written.

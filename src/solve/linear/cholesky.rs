@@ -1,10 +1,15 @@
 //! The direct solver: faer's supernodal Cholesky factorizations on node blocks.
 use super::ordering::{self, NodeOrder, buffer};
-use super::{Analysis, DofName, Factorization, LinearError, LinearSolver, Mode, SolverOptions};
+use super::permuted::{PermutedBlocks, expand};
+use super::symbolic;
+use super::{
+    Analysis, Factorization, LinearError, LinearSolver, Method, Mode, SolverOptions,
+    first_not_finite, reserved, same_pattern,
+};
 use crate::assembly::{Pattern, SystemMatrix};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::{ldlt::factor::LdltError, llt::factor::LltError};
-use faer::sparse::linalg::cholesky::{simplicial, supernodal};
+use faer::sparse::linalg::cholesky::supernodal;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par};
 use std::fmt;
@@ -41,7 +46,7 @@ impl DirectSolver {
     pub fn node_order(&self) -> Option<&[u32]> {
         self.prepared
             .as_ref()
-            .map(|p| p.matrix.new_to_old.as_slice())
+            .map(|p| p.matrix.blocks.new_to_old.as_slice())
     }
 
     /// Whether the solver is prepared for matrices on `pattern`.
@@ -74,6 +79,9 @@ impl LinearSolver for DirectSolver {
         if !same_pattern(&prepared.pattern, matrix.pattern()) {
             return Err(LinearError::PatternMismatch);
         }
+        if !matrix.is_symmetric() {
+            return Err(LinearError::Unsymmetric);
+        }
         prepared.matrix.gather(matrix)?;
         let mode = self.options.mode;
         let llt = mode == Mode::Llt || (mode == Mode::Auto && !prepared.expect_indefinite);
@@ -94,7 +102,7 @@ impl LinearSolver for DirectSolver {
             let ratio = found.smallest_pivot_ratio;
             return Err(LinearError::TinyPivot { dof, ratio });
         }
-        prepared.factor = Some(found.mode);
+        prepared.factor = Some(found.method);
         Ok(found)
     }
 
@@ -104,19 +112,10 @@ impl LinearSolver for DirectSolver {
     }
 }
 
-fn same_pattern(a: &Arc<Pattern>, b: &Arc<Pattern>) -> bool {
-    Arc::ptr_eq(a, b) || (a.id() == b.id() && a.nodes() == b.nodes() && a.blocks() == b.blocks())
-}
-
 /// The lower triangle of the permuted matrix, by columns of dofs.
 #[derive(Debug)]
 struct PermutedMatrix {
-    new_to_old: Vec<u32>,
-    /// Starts of the node columns in `sources`.
-    starts: Vec<u32>,
-    /// Where each block comes from: twice its number in the pattern, plus one if it is transposed. The diagonal
-    /// block is the first of its column.
-    sources: Vec<u32>,
+    blocks: PermutedBlocks,
     dof_starts: Vec<u32>,
     dof_rows: Vec<u32>,
     values: Vec<f64>,
@@ -124,43 +123,12 @@ struct PermutedMatrix {
 
 impl PermutedMatrix {
     fn new(pattern: &Pattern, order: NodeOrder) -> Self {
-        let n = pattern.nodes();
-        let old_to_new = &order.old_to_new;
-        let mut starts = vec![0u32; n + 1];
-        for column in 0..n {
-            for &row in pattern.column(column) {
-                let new = old_to_new[column].min(old_to_new[row as usize]);
-                starts[new as usize + 1] += 1;
-            }
-        }
-        for i in 0..n {
-            starts[i + 1] += starts[i];
-        }
-        let mut rows = vec![0u32; pattern.blocks()];
-        let mut sources = vec![0u32; pattern.blocks()];
-        let mut next = starts.clone();
-        let mut add = |column: u32, row: u32, source: u32| {
-            let at = &mut next[column as usize];
-            rows[*at as usize] = row;
-            sources[*at as usize] = source;
-            *at += 1;
-        };
-        for (old, &new) in old_to_new.iter().enumerate() {
-            add(new, new, 2 * pattern.column_starts()[old]);
-        }
-        for column in 0..n {
-            let first = pattern.column_starts()[column];
-            for (k, &row) in pattern.column(column).iter().enumerate().skip(1) {
-                let (c, r) = (old_to_new[column], old_to_new[row as usize]);
-                let transposed = u32::from(c > r);
-                add(c.min(r), c.max(r), 2 * (first + k as u32) + transposed);
-            }
-        }
-        let (dof_starts, dof_rows) = expand(&starts, &rows);
+        let mut blocks = PermutedBlocks::new(pattern, order);
+        let (dof_starts, dof_rows) = expand(&blocks.starts, &blocks.rows);
+        // The dofs' rows say the same.
+        blocks.rows = Vec::new();
         Self {
-            new_to_old: order.new_to_old,
-            starts,
-            sources,
+            blocks,
             values: vec![0.0; dof_rows.len()],
             dof_starts,
             dof_rows,
@@ -170,8 +138,8 @@ impl PermutedMatrix {
     /// Copies the values in the new order and checks that they are finite.
     fn gather(&mut self, matrix: &SystemMatrix) -> Result<(), LinearError> {
         let from = matrix.values();
-        for column in self.starts.windows(2) {
-            let sources = &self.sources[column[0] as usize..column[1] as usize];
+        for column in self.blocks.starts.windows(2) {
+            let sources = &self.blocks.sources[column[0] as usize..column[1] as usize];
             let height = 3 * sources.len();
             let to = &mut self.values[9 * column[0] as usize..][..3 * height];
             for (k, &source) in sources.iter().enumerate() {
@@ -211,33 +179,11 @@ impl PermutedMatrix {
 
     fn diagonal(&self, dof: usize) -> f64 {
         let (node, c) = (dof / 3, dof % 3);
-        let first = self.starts[node] as usize;
-        let height = 3 * (self.starts[node + 1] as usize - first);
+        let starts = &self.blocks.starts;
+        let first = starts[node] as usize;
+        let height = 3 * (starts[node + 1] as usize - first);
         self.values[9 * first + c * height + c]
     }
-
-    fn dof_name(&self, permuted: usize) -> DofName {
-        DofName {
-            node: self.new_to_old.get(permuted / 3).copied().unwrap_or(0),
-            component: (permuted % 3) as u8,
-        }
-    }
-}
-
-/// Columns and rows of dofs for columns and rows of nodes, every block full.
-fn expand(starts: &[u32], rows: &[u32]) -> (Vec<u32>, Vec<u32>) {
-    let mut dof_starts = Vec::with_capacity(3 * starts.len());
-    let mut dof_rows = Vec::with_capacity(9 * rows.len());
-    dof_starts.push(0);
-    for column in starts.windows(2) {
-        for _ in 0..3 {
-            for &row in &rows[column[0] as usize..column[1] as usize] {
-                dof_rows.extend([3 * row, 3 * row + 1, 3 * row + 2]);
-            }
-            dof_starts.push(dof_rows.len() as u32);
-        }
-    }
-    (dof_starts, dof_rows)
 }
 
 fn not_finite(pattern: &Pattern, block: u32) -> LinearError {
@@ -261,33 +207,15 @@ struct Prepared {
     par: Par,
     /// The last matrix had negative pivots.
     expect_indefinite: bool,
-    factor: Option<Mode>,
+    factor: Option<Method>,
 }
 
 impl Prepared {
     fn new(pattern: &Arc<Pattern>, options: &SolverOptions) -> Result<Self, LinearError> {
         let order = ordering::order(pattern, options.ordering)?;
         let n = pattern.dofs();
-        let mut analysis = Analysis {
-            ordering: order.ordering,
-            flops: order.flops,
-            flops_amd: order.flops_amd,
-            flops_metis: order.flops_metis,
-            fill: order.fill,
-            stored: 0,
-            memory_bytes: 0,
-            threads: 1,
-            metis_failed: order.metis_failed,
-        };
-        if options.threads > 1 && order.flops >= options.parallel_min_flops {
-            analysis.threads = options.threads;
-        }
-        let par = if analysis.threads > 1 {
-            Par::rayon(analysis.threads)
-        } else {
-            Par::Seq
-        };
-        let symbolic = symbolic_factor(pattern, &order)?;
+        let (mut analysis, par) = Analysis::of(&order, options);
+        let symbolic = symbolic::of_dofs(pattern, &order)?;
         let matrix = PermutedMatrix::new(pattern, order);
         let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
             &symbolic,
@@ -302,16 +230,10 @@ impl Prepared {
         let bytes = scratch.size_bytes();
         let memory = buffer(scratch)?;
         analysis.stored = symbolic.len_val();
-        let mut factor_values = Vec::new();
-        factor_values
-            .try_reserve_exact(analysis.stored)
-            .map_err(|_| LinearError::OutOfMemory {
-                bytes: 8 * analysis.stored,
-            })?;
-        factor_values.resize(analysis.stored, 0.0);
+        let factor_values = reserved(analysis.stored)?;
         analysis.memory_bytes = bytes
             + 8 * (analysis.stored + matrix.values.len() + n)
-            + 4 * (matrix.dof_rows.len() + matrix.dof_starts.len() + matrix.sources.len())
+            + 4 * (matrix.dof_rows.len() + matrix.dof_starts.len() + matrix.blocks.sources.len())
             + 4 * (symbolic.row_idx().len() + 4 * symbolic.n_supernodes());
         Ok(Self {
             pattern: Arc::clone(pattern),
@@ -338,14 +260,14 @@ impl Prepared {
             Default::default(),
         );
         if let Err(LltError::NonPositivePivot { index }) = result {
-            let dof = self.matrix.dof_name(index);
+            let dof = self.matrix.blocks.dof_name(index);
             return Err(LinearError::NonPositivePivot { dof });
         }
         let mut found = Smallest::default();
         self.for_each_pivot(|dof, l| {
             found.see(dof, l * l, self.matrix.diagonal(dof).abs());
         });
-        Ok(found.into_factorization(Mode::Llt, &self.matrix))
+        Ok(found.into_factorization(Method::Llt, &self.matrix))
     }
 
     fn ldlt(&mut self) -> Result<Factorization, LinearError> {
@@ -359,7 +281,7 @@ impl Prepared {
             Default::default(),
         );
         if let Err(LdltError::ZeroPivot { index }) = result {
-            let dof = self.matrix.dof_name(index);
+            let dof = self.matrix.blocks.dof_name(index);
             return Err(LinearError::ZeroPivot { dof });
         }
         let mut indefinite = false;
@@ -373,7 +295,7 @@ impl Prepared {
             let terms = self.matrix.diagonal(dof).abs().max(self.vector[dof]);
             found.see(dof, d, terms);
         });
-        Ok(found.into_factorization(Mode::Ldlt, &self.matrix))
+        Ok(found.into_factorization(Method::Ldlt, &self.matrix))
     }
 
     /// Calls `f` with every permuted dof and its entry on the factor's diagonal, in order.
@@ -410,7 +332,7 @@ impl Prepared {
     }
 
     fn solve(&mut self, rhs: &mut [f64]) -> Result<(), LinearError> {
-        let mode = self.factor.ok_or(LinearError::NotFactorized)?;
+        let method = self.factor.ok_or(LinearError::NotFactorized)?;
         let n = self.vector.len();
         if rhs.len() != n {
             return Err(LinearError::Length {
@@ -421,56 +343,21 @@ impl Prepared {
         if let Some(dof) = first_not_finite(rhs) {
             return Err(LinearError::NonFiniteRightHandSide { dof });
         }
-        for (new, &old) in self.matrix.new_to_old.iter().enumerate() {
-            let old = 3 * old as usize;
-            self.vector[3 * new..3 * new + 3].copy_from_slice(&rhs[old..old + 3]);
-        }
+        self.matrix.blocks.permute(rhs, &mut self.vector);
         let x = MatMut::from_column_major_slice_mut(&mut self.vector, n, 1);
         let stack = MemStack::new(&mut self.memory);
-        match mode {
-            Mode::Llt => supernodal::SupernodalLltRef::new(&self.symbolic, &self.factor_values)
+        match method {
+            Method::Llt => supernodal::SupernodalLltRef::new(&self.symbolic, &self.factor_values)
                 .solve_in_place_with_conj(Conj::No, x, Par::Seq, stack),
             _ => supernodal::SupernodalLdltRef::new(&self.symbolic, &self.factor_values)
                 .solve_in_place_with_conj(Conj::No, x, Par::Seq, stack),
         }
-        for (new, &old) in self.matrix.new_to_old.iter().enumerate() {
-            let old = 3 * old as usize;
-            rhs[old..old + 3].copy_from_slice(&self.vector[3 * new..3 * new + 3]);
-        }
+        self.matrix.blocks.restore(&self.vector, rhs);
         match first_not_finite(rhs) {
             Some(dof) => Err(LinearError::NonFiniteSolution { dof }),
             None => Ok(()),
         }
     }
-}
-
-fn first_not_finite(x: &[f64]) -> Option<DofName> {
-    x.iter().position(|x| !x.is_finite()).map(DofName::new)
-}
-
-/// Structure of the factor: elimination tree, counts and supernodes of the permuted dofs.
-fn symbolic_factor(
-    pattern: &Pattern,
-    order: &NodeOrder,
-) -> Result<supernodal::SymbolicSupernodalCholesky<u32>, LinearError> {
-    let n = pattern.dofs();
-    let (starts, rows) = ordering::upper(pattern, &order.old_to_new);
-    let (dof_starts, dof_rows) = expand(&starts, &rows);
-    let graph = SymbolicSparseColMatRef::new_unsorted_checked(n, n, &dof_starts, None, &dof_rows);
-    let scratch = simplicial::prefactorize_symbolic_cholesky_scratch::<u32>(n, dof_rows.len())
-        .or(supernodal::factorize_supernodal_symbolic_cholesky_scratch::<u32>(n));
-    let mut memory = buffer(scratch)?;
-    let stack = MemStack::new(&mut memory);
-    let (mut parents, mut counts) = (vec![0i32; n], vec![0u32; n]);
-    let tree = simplicial::prefactorize_symbolic_cholesky(&mut parents, &mut counts, graph, stack);
-    supernodal::factorize_supernodal_symbolic_cholesky(
-        graph,
-        tree,
-        &counts,
-        stack,
-        Default::default(),
-    )
-    .map_err(|_| LinearError::TooLarge)
 }
 
 /// Runs over the pivots and keeps the smallest ratio.
@@ -490,12 +377,13 @@ impl Smallest {
         }
     }
 
-    fn into_factorization(self, mode: Mode, matrix: &PermutedMatrix) -> Factorization {
+    fn into_factorization(self, method: Method, matrix: &PermutedMatrix) -> Factorization {
         Factorization {
-            mode,
+            method,
+            perturbed_pivots: 0,
             negative_pivots: self.negative,
             smallest_pivot_ratio: self.at.map_or(1.0, |(_, r)| r),
-            smallest_pivot: self.at.map(|(dof, _)| matrix.dof_name(dof)),
+            smallest_pivot: self.at.map(|(dof, _)| matrix.blocks.dof_name(dof)),
         }
     }
 }

@@ -1,14 +1,21 @@
-//! Direct solution of the symmetric system of a Newton iteration.
+//! Direct solution of the system of a Newton iteration: [`DirectSolver`] where it is symmetric, [`LuSolver`] where only
+//! its structure is.
 //!
 //! The symbolic work (ordering, structure of the factor, memory) is done once for a pattern, the numeric factorization
 //! as often as the values change, without allocating.
 mod cholesky;
+mod lu;
 mod metis;
 mod ordering;
+mod permuted;
+mod symbolic;
 
 pub use cholesky::DirectSolver;
+pub use lu::LuSolver;
 
 use crate::assembly::{Pattern, SystemMatrix};
+use faer::Par;
+use ordering::NodeOrder;
 use std::fmt;
 use std::sync::Arc;
 
@@ -23,8 +30,9 @@ pub trait LinearSolver {
     /// Factorizes a matrix on the analysed pattern.
     ///
     /// # Errors
-    /// [`LinearError::NotAnalyzed`], [`LinearError::PatternMismatch`], [`LinearError::NonFiniteMatrix`] and the errors
-    /// of a matrix that has no (accurate) factorization; there is no factorization to solve with after any of them.
+    /// [`LinearError::NotAnalyzed`], [`LinearError::PatternMismatch`], [`LinearError::Unsymmetric`] where the solver is
+    /// for symmetric matrices, [`LinearError::NonFiniteMatrix`] and the errors of a matrix that has no (accurate)
+    /// factorization; there is no factorization to solve with after any of them.
     fn factorize(&mut self, matrix: &SystemMatrix) -> Result<Factorization, LinearError>;
 
     /// Overwrites the right-hand side with the solution.
@@ -33,6 +41,16 @@ pub trait LinearSolver {
     /// [`LinearError::NotFactorized`], [`LinearError::Length`], [`LinearError::NonFiniteRightHandSide`],
     /// [`LinearError::NonFiniteSolution`].
     fn solve_in_place(&mut self, rhs: &mut [f64]) -> Result<(), LinearError>;
+
+    /// Overwrites the right-hand side with the solution, with what the solver needs of the factorized `matrix` to make
+    /// it as accurate as a Newton iteration wants it: nothing by default.
+    ///
+    /// # Errors
+    /// As [`solve_in_place`](Self::solve_in_place), and [`LinearError::Inaccurate`].
+    fn solve_with(&mut self, matrix: &SystemMatrix, rhs: &mut [f64]) -> Result<(), LinearError> {
+        let _ = matrix;
+        self.solve_in_place(rhs)
+    }
 
     /// Solves and improves the solution once with the residual in working precision: `x = A^-1 b` and then
     /// `x += A^-1 (b - A x)`. It makes the backward error small where pivoting was poor (indefinite matrices); it does
@@ -70,7 +88,7 @@ pub trait LinearSolver {
     }
 }
 
-/// Which factorization to make.
+/// Which factorization of a symmetric matrix to make.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mode {
     /// `L L^t`: an indefinite matrix is an error.
@@ -81,6 +99,28 @@ pub enum Mode {
     /// definite again.
     #[default]
     Auto,
+}
+
+/// A factorization that was made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Method {
+    /// `L L^t`
+    Llt,
+    /// `L D L^t`
+    Ldlt,
+    /// `L U` with exchanges of rows within the diagonal blocks.
+    Lu,
+}
+
+impl Method {
+    /// The name in scenes and results: `llt`, `ldlt`, `lu`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Method::Llt => "llt",
+            Method::Ldlt => "ldlt",
+            Method::Lu => "lu",
+        }
+    }
 }
 
 /// Which orders of the nodes to try.
@@ -96,9 +136,10 @@ pub enum OrderingChoice {
     Best,
 }
 
-/// Settings of a [`DirectSolver`].
+/// Settings of a [`DirectSolver`] or an [`LuSolver`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolverOptions {
+    /// For symmetric matrices; [`LuSolver`] knows one factorization only.
     pub mode: Mode,
     pub ordering: OrderingChoice,
     /// Threads of the dense kernels at most; 1 is serial (and does not allocate). More are used only where they help
@@ -107,7 +148,8 @@ pub struct SolverOptions {
     /// Operations of a factorization below which one thread is used all the same.
     pub parallel_min_flops: f64,
     /// A pivot smaller than this times the sum of the magnitudes that it is the rest of is refused: fewer than about
-    /// two digits of the solution would be right at 1e-14. Zero accepts everything but an exact zero.
+    /// two digits of the solution would be right at 1e-14. Zero accepts everything but an exact zero. [`LuSolver`]
+    /// replaces a smaller pivot instead and tests whether the matrix is singular.
     pub pivot_tolerance: f64,
 }
 
@@ -141,7 +183,7 @@ pub struct Analysis {
     pub flops_amd: Option<f64>,
     /// Operations with nested dissection, if it was tried.
     pub flops_metis: Option<f64>,
-    /// Nonzeros of the factor's lower triangle.
+    /// Nonzeros of the factor's lower triangle, of both triangles for [`LuSolver`].
     pub fill: u64,
     /// Values stored for the factor, with the zeros that wide supernodes bring.
     pub stored: usize,
@@ -153,16 +195,49 @@ pub struct Analysis {
     pub metis_failed: Option<i32>,
 }
 
+impl Analysis {
+    /// What the order alone tells, and the threads it is worth.
+    fn of(order: &NodeOrder, options: &SolverOptions) -> (Self, Par) {
+        let threads = if options.threads > 1 && order.flops >= options.parallel_min_flops {
+            options.threads
+        } else {
+            1
+        };
+        let analysis = Analysis {
+            ordering: order.ordering,
+            flops: order.flops,
+            flops_amd: order.flops_amd,
+            flops_metis: order.flops_metis,
+            fill: order.fill,
+            stored: 0,
+            memory_bytes: 0,
+            threads,
+            metis_failed: order.metis_failed,
+        };
+        let par = if threads > 1 {
+            Par::rayon(threads)
+        } else {
+            Par::Seq
+        };
+        (analysis, par)
+    }
+}
+
 /// What a numeric factorization found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Factorization {
-    /// [`Mode::Llt`] or [`Mode::Ldlt`], whichever succeeded.
-    pub mode: Mode,
+    /// The factorization that succeeded.
+    pub method: Method,
     /// Number of negative pivots, which is the number of negative eigenvalues (Sylvester's law of inertia); zero for a
-    /// stable equilibrium.
+    /// stable equilibrium. [`Method::Lu`] has no inertia: one where the determinant is negative (an odd number of
+    /// negative real eigenvalues), else zero.
     pub negative_pivots: usize,
-    /// Smallest ratio of a pivot to the magnitudes that it is the rest of: 1e-16 over it estimates the relative error
-    /// of the solution, and its reciprocal bounds the condition of the (diagonally scaled) matrix from below.
+    /// Pivots that were too small and were replaced ([`Method::Lu`] only); the refinement of the solution makes up for
+    /// them.
+    pub perturbed_pivots: usize,
+    /// Smallest ratio of a pivot to the magnitudes that it is the rest of ([`Method::Lu`]: to the largest entry of its
+    /// row): 1e-16 over it estimates the relative error of the solution, and its reciprocal bounds the condition of
+    /// the (diagonally scaled) matrix from below.
     pub smallest_pivot_ratio: f64,
     /// Where that ratio is; `None` for a system without dofs.
     pub smallest_pivot: Option<DofName>,
@@ -206,6 +281,8 @@ pub enum LinearError {
     NotFactorized,
     #[error("the matrix has another pattern than the one that was analysed")]
     PatternMismatch,
+    #[error("the matrix is unsymmetric, and the factorization is for symmetric ones")]
+    Unsymmetric,
     #[error("a vector has {given} entries, the system has {expected}")]
     Length { given: usize, expected: usize },
     #[error("the factor has more entries than 32-bit indices can count")]
@@ -225,9 +302,33 @@ pub enum LinearError {
     /// Nothing but round-off is left of a pivot.
     #[error("the matrix is singular to working precision: {dof} (pivot ratio {ratio:.1e})")]
     TinyPivot { dof: DofName, ratio: f64 },
+    /// A row or a column of zeros.
+    #[error("the matrix is singular, its row or column is zero: {dof}")]
+    ZeroRow { dof: DofName },
+    /// The solution does not satisfy the equations, although it was refined.
+    #[error(
+        "the solution is inaccurate (backward error {error:.1e}): the matrix is too near to a singular one"
+    )]
+    Inaccurate { error: f64 },
     #[error("the right-hand side is not finite: {dof}")]
     NonFiniteRightHandSide { dof: DofName },
     /// The solution overflowed; the dof is the first that is affected, not always the one where it began.
     #[error("the solution is not finite: {dof}")]
     NonFiniteSolution { dof: DofName },
+}
+
+fn same_pattern(a: &Arc<Pattern>, b: &Arc<Pattern>) -> bool {
+    Arc::ptr_eq(a, b) || (a.id() == b.id() && a.nodes() == b.nodes() && a.blocks() == b.blocks())
+}
+
+fn first_not_finite(x: &[f64]) -> Option<DofName> {
+    x.iter().position(|x| !x.is_finite()).map(DofName::new)
+}
+
+/// A vector of zeros, or a typed error where the allocator would abort.
+fn reserved(len: usize) -> Result<Vec<f64>, LinearError> {
+    let mut values = Vec::new();
+    (values.try_reserve_exact(len)).map_err(|_| LinearError::OutOfMemory { bytes: 8 * len })?;
+    values.resize(len, 0.0);
+    Ok(values)
 }

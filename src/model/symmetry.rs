@@ -1,0 +1,71 @@
+//! Which effects make the tangent unsymmetric. Decided once, before anything is solved.
+use super::Model;
+use crate::assembly::Dof;
+use crate::mesh::FaceNodes;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Why the tangent is unsymmetric, an effect a sentence; empty for a symmetric one.
+///
+/// A pressure that follows the faces has a potential but for terms along their border, the triple products of two
+/// displacements and the border's tangent (K. Schweizerhof and E. Ramm, "Displacement dependent pressure loads in
+/// nonlinear finite element analyses", Computers and Structures 18 (1984)). They vanish along an edge that is held, and
+/// along one that slides in a plane of symmetry.
+pub fn unsymmetric_effects(model: &Model) -> Vec<String> {
+    let still = still(model);
+    (model.follower_loads.iter())
+        .filter(|(_, load)| border(&load.faces).any(|edge| !quiet(model, &still, edge)))
+        .map(|(name, _)| {
+            format!("the follower pressure `{name}` acts on faces whose border is free to move")
+        })
+        .collect()
+}
+
+/// Nodes of the edges that belong to one of the faces only: both ends, and the middle (or again an end).
+fn border(faces: &[FaceNodes]) -> impl Iterator<Item = [u32; 3]> {
+    let mut turns: BTreeMap<[u32; 2], (i32, u32)> = BTreeMap::new();
+    for face in faces {
+        let [n, m] = face.count.map(usize::from);
+        let at = |i: usize, j: usize| face.nodes[i + n * j];
+        // All the same way round.
+        let corners = [at(0, 0), at(n - 1, 0), at(n - 1, m - 1), at(0, m - 1)];
+        let middles = [
+            at(n / 2, 0),
+            at(n - 1, m / 2),
+            at(n / 2, m - 1),
+            at(0, m / 2),
+        ];
+        for (k, middle) in middles.into_iter().enumerate() {
+            let (a, b) = (corners[k], corners[(k + 1) % 4]);
+            // Two neighbours walk along their edge in opposite directions.
+            let turn = turns.entry([a.min(b), a.max(b)]).or_insert((0, middle));
+            turn.0 += if a < b { 1 } else { -1 };
+        }
+    }
+    (turns.into_iter())
+        .filter(|(_, (turns, _))| *turns != 0)
+        .map(|([a, b], (_, middle))| [a, b, middle])
+}
+
+/// Degrees of freedom that are prescribed to stay where they are.
+fn still(model: &Model) -> BTreeSet<u32> {
+    let prescribed = model.prescribed.iter();
+    let mut still: BTreeSet<u32> = prescribed.clone().map(|p| p.dof).collect();
+    for p in prescribed.filter(|p| p.value.is_some()) {
+        still.remove(&p.dof);
+    }
+    still.retain(|dof| model.dofs.dof(*dof as usize) == Dof::Prescribed);
+    still
+}
+
+/// Whether the terms of an edge vanish: it is held, or lies in a plane across which its nodes do not move.
+fn quiet(model: &Model, still: &BTreeSet<u32>, nodes: [u32; 3]) -> bool {
+    let held = |node: u32, c: u32| model.dofs.dof((3 * node + c) as usize) == Dof::Prescribed;
+    if (0..3).all(|c| nodes.iter().all(|&n| held(n, c))) {
+        return true;
+    }
+    let still = |node: u32, c: usize| still.contains(&(3 * node + c as u32));
+    let [a, b, middle] = nodes.map(|n| model.nodes[n as usize]);
+    let (edge, half) = (b - a, middle - a);
+    let flat = |c: usize| edge[c].abs().max(half[c].abs()) <= 1e-9 * edge.norm();
+    (0..3).any(|c| flat(c) && nodes.iter().all(|&n| still(n, c)))
+}
