@@ -120,8 +120,8 @@ fn border_of_a_driven_surface_is_the_derivative_of_the_residual() {
         }
         let removed: Vec<u32> = model.dofs.removed().collect();
         removed.iter().for_each(|d| state.u[*d as usize] = 0.0);
-        for c in 0..3 {
-            state.u[at + 3 + c] = turned[c] * driven.lever;
+        for (c, turned) in turned.into_iter().enumerate() {
+            state.u[at + 3 + c] = turned * driven.lever;
         }
         // As deep as it takes for the fillets to hold the punch sideways.
         let held = [0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4]
