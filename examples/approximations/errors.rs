@@ -88,6 +88,18 @@ impl Errors {
         out
     }
 
+    /// Whether facets take force away from a shell that has too much of it on the exact ball, at the finest common mesh.
+    fn cancels(&self, shell: Shell) -> Option<bool> {
+        let of = |master| {
+            let own = |c: &&Curve| c.shell == shell && c.master == master;
+            self.curves.iter().find(own).map(|c| &c.records)
+        };
+        let (facets, exact) = (of(Master::Facets)?, of(Master::Nurbs)?);
+        let (f, e) = (facets.iter().rev())
+            .find_map(|f| Some((f, exact.iter().find(|e| e.dofs == f.dofs)?)))?;
+        Some(f.force < e.force && e.force > self.reference.force)
+    }
+
     /// What the picture shows, in numbers.
     pub fn caption(&self) -> String {
         let r = &self.reference;
@@ -110,11 +122,22 @@ impl Errors {
                 );
             }
         }
+        let cancels: Vec<&str> = (SHELLS.into_iter())
+            .filter(|&s| self.cancels(s).unwrap_or(false))
+            .map(Shell::name)
+            .collect();
+        let cancels = match cancels.is_empty() {
+            true => String::new(),
+            false => format!(
+                " Facets take force away, {} on the exact ball has too much: these errors partly cancel.",
+                cancels.join(" and ")
+            ),
+        };
         format!(
             "Force on the ball of `ball_on_plate` at a depth of 5 mm, error against unknowns; master facets about as \
              long as the nodes of the plate are apart. At the finest meshes: {}. Reference {:.2} N, extrapolated from \
              {} on the exact ball (order {:.1}), whose finest run, with {} nodes along an edge of the quarter, is \
-             {:.3} % off it.",
+             {:.3} % off it.{cancels}",
             parts.join("; "),
             r.force,
             r.shell.name(),

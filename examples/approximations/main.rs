@@ -1,11 +1,12 @@
 //! Error against degrees of freedom for linear and quadratic shells on faceted, smooth and exact masters.
 //!
 //! ```sh
-//! cargo run --release --example approximations -- OUT
+//! cargo run --release --example approximations -- OUT [INTERVALS]
 //! ```
 //!
 //! The problem is the clamped plate under a rigid ball of the scene `ball_on_plate`, pushed in by half of its depth; the
-//! quantity is the force on the ball. Master facets become finer together with the shell. `OUT` gets `runs.csv` (one row
+//! quantity is the force on the ball. `INTERVALS` (default 64) bounds the fineness of the meshes.
+//! Master facets become finer together with the shell. `OUT` gets `runs.csv` (one row
 //! per finished run; a run that is in it is not done again, so an interrupted command goes on where it stopped),
 //! `approximations.csv` with the errors, `approximations.svg` and `approximations.md`, its caption. Runs that fail are
 //! named, and the exit code is then 4.
@@ -25,10 +26,18 @@ type Outcome<T> = Result<T, Box<dyn Error>>;
 
 fn main() -> ExitCode {
     let Some(out) = std::env::args_os().nth(1).map(PathBuf::from) else {
-        eprintln!("usage: cargo run --release --example approximations -- OUT");
+        eprintln!("usage: cargo run --release --example approximations -- OUT [INTERVALS]");
         return ExitCode::from(2);
     };
-    match study(&out) {
+    let finest = match std::env::args().nth(2).map(|n| n.parse()) {
+        None => u32::MAX,
+        Some(Ok(n)) => n,
+        Some(Err(e)) => {
+            eprintln!("INTERVALS: {e}");
+            return ExitCode::from(2);
+        }
+    };
+    match study(&out, finest) {
         Ok(failed) if failed.is_empty() => ExitCode::SUCCESS,
         Ok(failed) => {
             eprintln!("{} run(s) failed:", failed.len());
@@ -45,11 +54,13 @@ fn main() -> ExitCode {
 }
 
 /// Does all runs that are missing, then evaluates and draws them; the names of those that failed, with the reason.
-fn study(out: &Path) -> Outcome<Vec<String>> {
+fn study(out: &Path, finest: u32) -> Outcome<Vec<String>> {
     std::fs::create_dir_all(out)?;
     let mut runs = Runs::open(&out.join("runs.csv"))?;
     let mut failed = Vec::new();
-    let all = cases();
+    let all: Vec<Case> = (cases().into_iter())
+        .filter(|c| c.intervals <= finest)
+        .collect();
     for (number, case) in all.iter().enumerate() {
         if runs.find(case).is_some() {
             continue;
