@@ -26,6 +26,8 @@ pub struct InitialGap {
     /// Mean of `n_slave . n_master` at the points nearest to the master (within an element of the nearest); above zero
     /// the faces look the same way. None for rigid masters.
     pub facing: Option<f64>,
+    /// At the nearest point, the slave looks towards the body that the master belongs to.
+    pub looks_at_master: bool,
     /// At the nearest point, the body lies between its slave face and the surface: the wrong face is the slave.
     pub turned_away: bool,
 }
@@ -53,10 +55,12 @@ fn initial_gaps(
         touching: 0,
         behind: 0,
         facing: None,
+        looks_at_master: false,
         turned_away: false,
     };
     let mut hint = None;
     let mut nearest = None;
+    let mut nearest_distance = f64::INFINITY;
     let mut facing: Vec<(f64, f64)> = Vec::new();
     let normals = pair.body_master().map(|_| slave_normals(model, pair));
     for (i, p) in pair.points.iter().enumerate() {
@@ -74,6 +78,16 @@ fn initial_gaps(
         }
         if let Some(normals) = &normals {
             facing.push((seen.distance, normals[i].dot(&seen.normal)));
+            if let Some(master) = pair.body_master()
+                && seen.distance <= nearest_distance
+            {
+                nearest_distance = seen.distance;
+                let face = master.faces[master.facets.source(seen.hint.patch) as usize];
+                let element = model.bodies[master.body]
+                    .mesh
+                    .element_center(face.element as usize);
+                gap.looks_at_master = normals[i].dot(&(element - x)) > 0.0;
+            }
         }
         gap.largest = gap.largest.max(distance);
         gap.touching += usize::from(seen.closed);
@@ -137,10 +151,9 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
         if let Some(master) = pair.body_master()
             && gap.facing.is_some_and(|cosine| cosine > SAME_WAY)
         {
-            // The elements of the slave tell which of the two is wrong.
-            let (side, set) = match gap.turned_away {
-                true => ("slave", &pair.slave),
-                false => ("master", &master.name),
+            let (side, set) = match gap.looks_at_master {
+                false => ("slave", &pair.slave),
+                true => ("master", &master.name),
             };
             return Err(text(
                 format!("/contacts/{}/{side}", pair.name),

@@ -4,6 +4,7 @@ use super::surface::SurfaceSet;
 use super::{Model, PairModel};
 use crate::contact::moving;
 use crate::contact::rigid::{self, RigidMaster};
+use crate::mesh::Face;
 use crate::scene::ValueError;
 use covact_geometry::{Hint, MovingFacets, Vec3};
 
@@ -23,6 +24,8 @@ pub struct BodyMaster {
     pub name: String,
     /// Number of the body.
     pub body: usize,
+    /// Faces of the body's mesh that the surface is made of.
+    pub faces: Vec<Face>,
     /// The surface over nodes of the model, at their undeformed positions.
     pub facets: MovingFacets,
     /// The surface is smooth across the edges of the faces.

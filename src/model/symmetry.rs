@@ -20,30 +20,30 @@ pub fn unsymmetric_effects(model: &Model) -> Vec<String> {
         .collect()
 }
 
-/// Edges that belong to one of the faces only, from node to node (a quadratic edge is two).
-fn border(faces: &[FaceNodes]) -> impl Iterator<Item = [u32; 2]> {
-    let mut turns: BTreeMap<[u32; 2], i32> = BTreeMap::new();
+/// Nodes of the edges that belong to one of the faces only: both ends, and the middle (or again an end).
+fn border(faces: &[FaceNodes]) -> impl Iterator<Item = [u32; 3]> {
+    let mut turns: BTreeMap<[u32; 2], (i32, u32)> = BTreeMap::new();
     for face in faces {
-        let around: Vec<u32> = around(face).collect();
-        for (k, &a) in around.iter().enumerate() {
-            let b = around[(k + 1) % around.len()];
+        let [n, m] = face.count.map(usize::from);
+        let at = |i: usize, j: usize| face.nodes[i + n * j];
+        // All the same way round.
+        let corners = [at(0, 0), at(n - 1, 0), at(n - 1, m - 1), at(0, m - 1)];
+        let middles = [
+            at(n / 2, 0),
+            at(n - 1, m / 2),
+            at(n / 2, m - 1),
+            at(0, m / 2),
+        ];
+        for (k, middle) in middles.into_iter().enumerate() {
+            let (a, b) = (corners[k], corners[(k + 1) % 4]);
             // Two neighbours walk along their edge in opposite directions.
-            *turns.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
+            let turn = turns.entry([a.min(b), a.max(b)]).or_insert((0, middle));
+            turn.0 += if a < b { 1 } else { -1 };
         }
     }
     (turns.into_iter())
-        .filter(|(_, turns)| *turns != 0)
-        .map(|(edge, _)| edge)
-}
-
-/// Nodes of a face around its border.
-fn around(face: &FaceNodes) -> impl Iterator<Item = u32> + '_ {
-    let [nu, nv] = face.count.map(usize::from);
-    let below = 0..nu - 1;
-    let right = (0..nv - 1).map(move |j| nu * j + nu - 1);
-    let above = (1..nu).rev().map(move |i| nu * (nv - 1) + i);
-    let left = (1..nv).rev().map(move |j| nu * j);
-    (below.chain(right).chain(above).chain(left)).map(|k| face.nodes[k])
+        .filter(|(_, (turns, _))| *turns != 0)
+        .map(|([a, b], (_, middle))| [a, b, middle])
 }
 
 /// Degrees of freedom that are prescribed to stay where they are.
@@ -58,12 +58,14 @@ fn still(model: &Model) -> BTreeSet<u32> {
 }
 
 /// Whether the terms of an edge vanish: it is held, or lies in a plane across which its nodes do not move.
-fn quiet(model: &Model, still: &BTreeSet<u32>, [a, b]: [u32; 2]) -> bool {
+fn quiet(model: &Model, still: &BTreeSet<u32>, nodes: [u32; 3]) -> bool {
     let held = |node: u32, c: u32| model.dofs.dof((3 * node + c) as usize) == Dof::Prescribed;
-    if (0..3).all(|c| held(a, c) && held(b, c)) {
+    if (0..3).all(|c| nodes.iter().all(|&n| held(n, c))) {
         return true;
     }
     let still = |node: u32, c: usize| still.contains(&(3 * node + c as u32));
-    let edge = model.nodes[b as usize] - model.nodes[a as usize];
-    (0..3).any(|c| edge[c].abs() <= 1e-9 * edge.norm() && still(a, c) && still(b, c))
+    let [a, b, middle] = nodes.map(|n| model.nodes[n as usize]);
+    let (edge, half) = (b - a, middle - a);
+    let flat = |c: usize| edge[c].abs().max(half[c].abs()) <= 1e-9 * edge.norm();
+    (0..3).any(|c| flat(c) && nodes.iter().all(|&n| still(n, c)))
 }

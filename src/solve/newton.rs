@@ -230,7 +230,6 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
 
     /// Solves for the increment.
     fn solve_linear(&mut self, pending: bool) -> Result<Factorization, StepFailure> {
-        let w = &mut *self.workspace;
         if let Some(pattern) = self.assembler.take_new_pattern() {
             self.phases.start("analysis");
             let analyzed = self.solver.analyze(&pattern).map(drop);
@@ -244,6 +243,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             Ok(factored) => factored,
             Err(error) => return Err(self.unsolvable(error)),
         };
+        let w = &mut *self.workspace;
         *w.factorizations.entry(factored.method).or_default() += 1;
         self.phases.start("solve");
         w.du.copy_from_slice(&w.rhs);

@@ -19,28 +19,28 @@ fn any_number_of_threads_gives_the_same_bits() {
     }
 }
 
-/// The arch between two plates: which pair comes first is a matter of their names.
+/// A second plate under the first: which pair comes first is a matter of their names.
 #[test]
 fn the_order_of_the_pairs_changes_nothing() {
     let force = |first: &str, second: &str| {
-        let mut scene = arch_on_plate(1.0, 2, json!({"gauss": 2}));
+        let mut scene = arch_on_plate(1.5, 3, json!({"gauss": 2}));
         let press = scene["contacts"]["press"].take();
-        scene["bodies"]["lid"] = json!({"mesh": {"plate": {
-            "size": [9, 4], "thickness": 0.3, "elements": [7, 3], "origin": [0, 0, 0.95]
+        scene["bodies"]["base"] = json!({"mesh": {"plate": {
+            "size": [10, 4.3], "thickness": 0.3, "elements": [9, 3], "origin": [0, 0, -0.31]
         }}, "material": "m"});
         for (name, on, what) in [
-            ("lid_clamped", "lid.x_max", json!({"fixed": true})),
-            ("lid_x", "lid.x_min", json!({"symmetry": "x"})),
-            ("lid_y", "lid.y_min", json!({"symmetry": "y"})),
+            ("base_clamped", "base.x_max", json!({"fixed": true})),
+            ("base_x", "base.x_min", json!({"symmetry": "x"})),
+            ("base_y", "base.y_min", json!({"symmetry": "y"})),
         ] {
             scene["supports"][name] = what;
             scene["supports"][name]["on"] = json!(on);
         }
-        let lid = json!({
-            "slave": "arch.inner", "master": "lid.bottom", "points": {"gauss": 2},
+        let rest = json!({
+            "slave": "plate.bottom", "master": "base.top", "points": {"gauss": 2},
             "penalty": {"value": 300}
         });
-        scene["contacts"] = json!({first: press, second: lid});
+        scene["contacts"] = json!({first: press, second: rest});
         let outcome = done(&scene);
         let columns = [
             format!("slave.force.{first}.z"),
@@ -52,7 +52,7 @@ fn the_order_of_the_pairs_changes_nothing() {
     let (a, b) = (force("a", "b"), force("z", "b"));
     println!("{a:?} {b:?}");
     for (a, b) in a.iter().zip(&b) {
-        assert!(a.abs() > 0.01);
+        assert!(a.abs() > 1e-4, "{a:?}");
         assert!((a - b).abs() < 1e-9 * a.abs());
     }
 }

@@ -56,7 +56,9 @@ fn the_error_of_meshes_that_do_not_match_falls_with_the_gauss_points() {
 fn linear_and_quadratic_elements_pass_the_patch_test() {
     let p = exact();
     for [upper, lower] in [["h8", "q18"], ["q18", "h8"], ["q18", "q18"]] {
-        for points in [json!("nodes"), json!({"gauss": 3})] {
+        // A linear slave's nodes meet corners of quadratic faces only, which bear no uniform pressure.
+        let points = [json!({"gauss": 3}), json!("nodes")];
+        for points in &points[..if upper == "h8" { 1 } else { 2 }] {
             let mut scene = patch(2, 2, points.clone());
             scene["bodies"]["upper"]["element"] = json!(upper);
             scene["bodies"]["lower"]["element"] = json!(lower);

@@ -3,7 +3,7 @@ use crate::blocks::done;
 use crate::support::Outcome;
 use serde_json::{Value, json};
 
-/// A quarter of the plate (10 long, 4 wide) and of the arch of radius 20 above it, whose ends move down by `depth` in
+/// A quarter of the plate (10 long, 4 wide) and of the arch of radius 20 above it (3.7 wide, lest its edge slide off), whose ends move down by `depth` in
 /// `steps` steps. The arch is the slave.
 pub fn arch_on_plate(depth: f64, steps: u32, points: Value) -> Value {
     let step = 1.0 / f64::from(steps);
@@ -15,7 +15,7 @@ pub fn arch_on_plate(depth: f64, steps: u32, points: Value) -> Value {
                 "size": [10, 4], "thickness": 0.3, "elements": [10, 3]
             }}, "material": "m"},
             "arch": {"mesh": {"cylinder_panel": {
-                "radius": 20, "thickness": 0.3, "angles": [160, 180], "y": [0, 4],
+                "radius": 20, "thickness": 0.3, "angles": [160, 180], "y": [0, 3.7],
                 "elements": [8, 2], "origin": [0, 0, 20.31]
             }}, "material": "m"}
         },

@@ -1,13 +1,11 @@
 //! The tangent of a follower pressure in the assembled system, and which borders make it unsymmetric.
 use covact::assembly::{Assembler, Dof};
-use covact::mesh::FaceNodes;
 use covact::model::Model;
 use covact::model::build::build;
 use covact::model::loads::follower_stiffness;
 use covact::model::state::State;
 use covact::scene;
-use covact_geometry::Vec3;
-use nalgebra::{DMatrix, SMatrix};
+use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
 /// A plate of 3 x 2 elements under a follower pressure on its upper face.
@@ -54,17 +52,6 @@ fn tangent(model: &Model, time: f64) -> (DMatrix<f64>, State) {
     (DMatrix::from_fn(n, n, |i, j| matrix.get(i, j)), state)
 }
 
-/// Stiffness of a pressure of 50 on a face of four nodes.
-fn stiffness(model: &Model, face: &FaceNodes, u: &[f64]) -> SMatrix<f64, 12, 12> {
-    let mut x = [Vec3::zeros(); 9];
-    for (x, &n) in x.iter_mut().zip(face.nodes()) {
-        *x = model.position(n as usize, u);
-    }
-    let mut k = [0.0; 729];
-    follower_stiffness(&x, face.count, 50.0, &mut k);
-    SMatrix::from_column_slice(&k[..144])
-}
-
 /// The pressure's part of the tangent, by its value at two times, is minus the stiffness of its faces at all free
 /// degrees of freedom: nothing is lost above or below the diagonal.
 #[test]
@@ -75,12 +62,16 @@ fn the_assembled_follower_stiffness_is_that_of_the_faces() {
     let (with, _) = tangent(&model, 1.0);
     let found = &with - &without;
     let mut expected = DMatrix::<f64>::zeros(found.nrows(), found.ncols());
-    for nodes in &model.follower_loads[0].1.faces {
-        let k = stiffness(&model, nodes, &state.u);
-        let dof = |i: usize| 3 * nodes.nodes()[i / 3] as usize + i % 3;
+    let mut k = [0.0; 729];
+    for face in &model.follower_loads[0].1.faces {
+        let nodes = face.nodes();
+        let at = |k: usize| nodes.get(k).map(|&n| model.position(n as usize, &state.u));
+        let x = std::array::from_fn(|k| at(k).unwrap_or_default());
+        follower_stiffness(&x, face.count, 50.0, &mut k);
+        let dof = |i: usize| 3 * nodes[i / 3] as usize + i % 3;
         for j in 0..12 {
             for i in 0..12 {
-                expected[(dof(i), dof(j))] -= k[(i, j)];
+                expected[(dof(i), dof(j))] -= k[12 * j + i];
             }
         }
     }
@@ -146,9 +137,13 @@ fn borders_decide_the_symmetry() {
         }
     }
     let mut whole = DMatrix::<f64>::zeros(state.u.len(), state.u.len());
-    for nodes in &model.follower_loads[0].1.faces {
-        let k = stiffness(&model, nodes, &state.u);
-        let dof = |i: usize| 3 * nodes.nodes()[i / 3] as usize + i % 3;
+    let mut k = [0.0; 729];
+    for face in &model.follower_loads[0].1.faces {
+        let nodes = face.nodes();
+        let at = |k: usize| nodes.get(k).map(|&n| model.position(n as usize, &state.u));
+        let x = std::array::from_fn(|k| at(k).unwrap_or_default());
+        follower_stiffness(&x, face.count, 50.0, &mut k);
+        let dof = |i: usize| 3 * nodes[i / 3] as usize + i % 3;
         for (at, k) in k.iter().enumerate() {
             whole[(dof(at % 12), dof(at / 12))] += k;
         }

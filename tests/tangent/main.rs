@@ -1,4 +1,4 @@
-//! Tangents of contact and loads against dual numbers, differences and closed forms.
+//! Tangents of contact against dual numbers and differences.
 mod averaged;
 mod balance;
 mod cases;

@@ -20,9 +20,9 @@ impl Assembler<'_> {
         }
         // On the matrix side a load's stiffness counts negative. A symmetric system takes the symmetric part: what is
         // unsymmetric lives on the border of the loaded area, which is held there.
-        let on_matrix = match self.matrix.is_symmetric() {
-            true => symmetric_part,
-            false => negative,
+        let on_matrix: fn(&mut [f64], usize) = match self.matrix.is_symmetric() {
+            true => negative_symmetric,
+            false => |k, _| k.iter_mut().for_each(|k| *k = -*k),
         };
         for (index, (_, load)) in self.model.follower_loads.iter().enumerate() {
             let p = load.value.eval(time)?;
@@ -39,8 +39,7 @@ impl Assembler<'_> {
                 if TANGENT {
                     follower_stiffness(&x, face.count, p, &mut k);
                     let size = 3 * nodes.len();
-                    let own = &mut k[..size * size];
-                    on_matrix(own, size);
+                    on_matrix(&mut k[..size * size], size);
                     let pairs = nodes.len() * (nodes.len() + 1) / 2;
                     let map = &self.follower_maps[index][at..at + pairs];
                     at += pairs;
@@ -65,13 +64,8 @@ impl Assembler<'_> {
     }
 }
 
-/// `k = -k` of a matrix of `size` rows.
-fn negative(k: &mut [f64], _size: usize) {
-    k.iter_mut().for_each(|k| *k = -*k);
-}
-
-/// `k = -(k + k^T) / 2` of a matrix of `size` rows.
-fn symmetric_part(k: &mut [f64], size: usize) {
+/// `-(k + k^t) / 2` in place of `k` of `size` rows.
+fn negative_symmetric(k: &mut [f64], size: usize) {
     for column in 0..size {
         for row in 0..=column {
             let [upper, lower] = [column * size + row, row * size + column];

@@ -153,7 +153,7 @@ impl<'m> Assembler<'m> {
         Ok(Assembler {
             model,
             dofs,
-            matrix: empty(model, &pattern),
+            matrix: system(model, pattern.clone()),
             element_maps: maps.elements,
             kinds: maps.kinds,
             point_maps: maps.points,
@@ -239,6 +239,14 @@ impl<'m> Assembler<'m> {
     }
 }
 
+/// A zero system, symmetric where the model is.
+fn system(model: &Model, pattern: Arc<Pattern>) -> SystemMatrix {
+    match model.symmetric {
+        true => SystemMatrix::new(pattern),
+        false => SystemMatrix::unsymmetric(pattern),
+    }
+}
+
 /// Scatters a small matrix under the constraints, with what prescribed increments contribute to the right-hand side.
 #[allow(clippy::too_many_arguments)]
 fn put(
@@ -267,13 +275,5 @@ fn element_fault(body: &str, fault: ElementFault) -> Fault {
     Fault::Element {
         body: body.to_owned(),
         fault,
-    }
-}
-
-/// An empty matrix on a pattern, symmetric if the model is.
-fn empty(model: &Model, pattern: &Arc<Pattern>) -> SystemMatrix {
-    match model.symmetric {
-        true => SystemMatrix::new(pattern.clone()),
-        false => SystemMatrix::unsymmetric(pattern.clone()),
     }
 }

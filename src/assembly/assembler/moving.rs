@@ -203,7 +203,7 @@ impl Assembler<'_> {
         self.kinds = maps.kinds;
         self.point_maps = maps.points;
         self.follower_maps = maps.followers;
-        self.matrix = super::empty(self.model, &pattern);
+        self.matrix = super::system(self.model, pattern.clone());
         self.new_pattern = Some(pattern);
         self.rebuilds += 1;
         Ok(())

@@ -140,6 +140,7 @@ impl Builder<'_> {
         let master = BodyMaster {
             name: contact.master.clone(),
             body,
+            faces,
             facets,
             smooth,
             depth,
@@ -159,7 +160,7 @@ impl Builder<'_> {
         master: &mut BodyMaster,
     ) -> Result<(), ModelError> {
         let body = &self.bodies[master.body];
-        let (_, faces) = self.faces(&contact.master, &format!("/contacts/{name}/master"))?;
+        let faces = &master.faces;
         let common = slave.iter().filter(|f| faces.contains(f)).count();
         let equal = common == slave.len() && common == faces.len();
         if common > 0 && !equal {
@@ -182,7 +183,7 @@ impl Builder<'_> {
             body.first_node,
             points,
             slave,
-            &faces,
+            faces,
             &master.facets,
             distance,
         ));
