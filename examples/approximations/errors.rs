@@ -151,7 +151,7 @@ impl Errors {
         let cancels = match cancels.is_empty() {
             true => String::new(),
             false => format!(
-                " Facets take force away, {} on the exact ball has too much: these errors partly cancel.",
+                " Facets take force away, and {} shells have too much of it on the exact ball: these errors partly cancel.",
                 cancels.join(" and ")
             ),
         };

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! The problem is the clamped plate under a rigid ball of the scene `ball_on_plate`, the error is
-//! the mean of those of the force at four depths. `INTERVALS` (default 64) bounds the fineness of the meshes.
+//! the mean of those of the force at four depths. `INTERVALS` (default 32) bounds the fineness of the meshes.
 //! Master facets become finer together with the shell. `OUT` gets `runs.csv` (one row
 //! per finished run; a run that is in it is not done again, so an interrupted command goes on where it stopped),
 //! `approximations.csv` with the errors, `approximations.svg` and `approximations.md`, its caption. Runs that fail are

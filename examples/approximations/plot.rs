@@ -73,6 +73,11 @@ pub fn draw(errors: &Errors, path: &Path) -> Outcome<()> {
     let mut names = Vec::new();
     for curve in &errors.curves {
         let colour = colour(curve.master);
+        // Smooth and exact masters may hardly differ: a wide line shows around a narrow one.
+        let width = match curve.master {
+            Master::Smooth => 6,
+            _ => 2,
+        };
         let points: Vec<(f64, f64)> = (curve.points.iter())
             .map(|p| (p[0], p[1].max(0.55 * low.max(0.3 * own))))
             .collect();
@@ -82,7 +87,7 @@ pub fn draw(errors: &Errors, path: &Path) -> Outcome<()> {
                     points.iter().copied(),
                     7,
                     4,
-                    colour.stroke_width(2),
+                    colour.stroke_width(width),
                 ))?;
                 let ring = |p: &(f64, f64)| Circle::new(*p, 4, colour.stroke_width(2));
                 chart.draw_series(points.iter().map(ring))?;
@@ -90,7 +95,7 @@ pub fn draw(errors: &Errors, path: &Path) -> Outcome<()> {
             Shell::Q18 => {
                 chart.draw_series(LineSeries::new(
                     points.iter().copied(),
-                    colour.stroke_width(2),
+                    colour.stroke_width(width),
                 ))?;
                 chart.draw_series(points.iter().map(|p| Circle::new(*p, 4, colour.filled())))?;
             }
