@@ -59,7 +59,7 @@ impl MovingMaster<'_> {
         let Some(foot) = self.search(x, hint, self.depth, accept)? else {
             return Ok(None);
         };
-        if !presses(&foot) {
+        if !presses(&foot, x) {
             return Ok(None);
         }
         let meeting = self.at(x, &foot)?;
@@ -125,7 +125,7 @@ impl MovingMaster<'_> {
             geometry: self.geometry(x, foot)?,
             xi3: foot.signed_distance,
             normal: foot.normal,
-            free: free(foot),
+            free: free(foot, x),
         })
     }
 
@@ -174,18 +174,23 @@ pub fn master_row(shape: &ShapeRows, k: usize) -> NodeRow {
     [-shape.n[k], shape.n_1[k], shape.n_2[k]]
 }
 
-/// Whether a foot means contact: below the surface and not on a free border, past which nothing stands in the way.
-pub fn presses(foot: &MovingFoot) -> bool {
-    foot.signed_distance < 0.0 && !free(foot)
+/// Whether the foot of `x` means contact: below the surface and not past a free border, where nothing stands in the way.
+pub fn presses(foot: &MovingFoot, x: &Vec3) -> bool {
+    foot.signed_distance < 0.0 && !free(foot, x)
 }
 
-/// Whether a point lies below the surface, deeper than it is searched: not in contact, though not outside either.
-pub fn behind(foot: &MovingFoot, depth: f64) -> bool {
-    presses(foot) && foot.distance > depth
+/// Whether the point `x` lies below the surface, deeper than it is searched: not in contact, though not outside either.
+pub fn behind(foot: &MovingFoot, x: &Vec3, depth: f64) -> bool {
+    presses(foot, x) && foot.distance > depth
 }
 
-fn free(foot: &MovingFoot) -> bool {
-    matches!(
+/// A point past a free border by less than a quarter of what it lies below the surface is still held by the border.
+/// Penetrations are small, and so is this overhang; without it points on a plane of symmetry would lose the facets that
+/// rise from it, whose normals lean across the plane. This is the cosine, `4 / sqrt(17)`.
+const OVERHANG: f64 = 0.970_142_5;
+
+fn free(foot: &MovingFoot, x: &Vec3) -> bool {
+    let border = matches!(
         foot.place,
         MovingPlace::Edge {
             kind: EdgeKind::Free,
@@ -193,5 +198,6 @@ fn free(foot: &MovingFoot) -> bool {
         } | MovingPlace::Corner {
             kind: EdgeKind::Free
         }
-    )
+    );
+    border && (foot.jet.rho - x).dot(&foot.normal) < OVERHANG * foot.distance
 }

@@ -230,13 +230,13 @@ impl MasterNow<'_> {
                         facets.project(x, hint, reach, |f| accept.facet(at, f))
                     }
                 }?;
-                let behind = moving::behind(&foot, body.depth);
+                let behind = moving::behind(&foot, x, body.depth);
                 Some(Seen {
                     hint: foot.hint(),
                     distance: foot.distance,
                     signed_distance: foot.signed_distance,
                     normal: foot.normal,
-                    closed: moving::presses(&foot) && !behind,
+                    closed: moving::presses(&foot, x) && !behind,
                     behind,
                 })
             }

@@ -1,9 +1,8 @@
 //! Newton's method converges quadratically with a master that deforms.
-use crate::blocks::done;
 use crate::shells::arch_on_plate;
-use crate::support::Outcome;
+use crate::support::{Outcome, solve};
 use covact::solve::event::Event;
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// Residuals of each accepted step from the last iteration on in which a point changed.
 fn endings(outcome: &Outcome) -> Vec<Vec<f64>> {
@@ -29,35 +28,54 @@ fn endings(outcome: &Outcome) -> Vec<Vec<f64>> {
     out
 }
 
-/// Where the iteration stops: nothing is known below.
-const TOLERANCE: f64 = 1e-11;
-/// `r_(k+1) / r_k^2` with residuals relative to the forces. It tends to half the relative change of the tangent along the
-/// displacement that the whole force would cause: the deflection in thicknesses, about 2 / 0.3 here. A tangent with an
-/// error converges linearly, and its ratio grows without bound.
-const C: f64 = 10.0;
+/// What rounding leaves: residuals fall to 1e-13.
+const FLOOR: f64 = 1e-12;
+/// `r_(k+1) / r_k^2` with residuals relative to the forces tends to a number of the order of the deflection in
+/// thicknesses, 2 / 0.3 here, but is larger where points pass from facet to facet on the way: up to 97 is measured. A
+/// tangent with an error converges linearly, and its ratio grows without bound.
+const C: f64 = 200.0;
+
+/// How many pairs of residuals satisfy and violate quadratic convergence; pairs of which nothing can be said are left
+/// out.
+fn judge(points: &Value, surface: &str, tangent: Value) -> [usize; 2] {
+    let mut scene = arch_on_plate(2.0, 5, points.clone());
+    scene["contacts"]["press"]["master_surface"] = json!(surface);
+    scene["contacts"]["press"]["tangent"] = tangent;
+    let mut count = [0, 0];
+    for e in endings(&solve(&scene)) {
+        let shown: Vec<String> = e.iter().map(|r| format!("{r:.1e}")).collect();
+        println!("{points} {surface}: {}", shown.join(" "));
+        for pair in e.windows(2) {
+            let bound = (C * pair[0] * pair[0]).max(FLOOR);
+            if bound < 0.1 * pair[0] {
+                count[usize::from(pair[1] > bound)] += 1;
+            }
+        }
+    }
+    count
+}
 
 #[test]
 fn residuals_fall_quadratically_on_a_master_that_deforms() {
-    let mut good = 0;
+    let mut all = 0;
     for (points, surface) in [
         (json!("nodes"), "faces"),
         (json!({"gauss": 2}), "faces"),
         (json!({"gauss": 2}), "smooth"),
     ] {
-        let mut scene = arch_on_plate(2.0, 5, points.clone());
-        scene["contacts"]["press"]["master_surface"] = json!(surface);
-        let outcome = done(&scene);
-        for e in endings(&outcome) {
-            let shown: Vec<String> = e.iter().map(|r| format!("{r:.1e}")).collect();
-            println!("{points} {surface}: {}", shown.join(" "));
-            for pair in e.windows(2) {
-                let bound = C * pair[0] * pair[0];
-                if bound > TOLERANCE && bound < 0.1 * pair[0] {
-                    assert!(pair[1] <= bound, "{points} {surface}: {shown:?}");
-                    good += 1;
-                }
-            }
-        }
+        let [good, bad] = judge(&points, surface, json!("exact"));
+        assert!(
+            good >= 2 && bad == 0,
+            "{points} {surface}: {good} good, {bad} bad"
+        );
+        all += good;
     }
-    assert!(good >= 10, "{good} pairs of residuals tell anything");
+    assert!(all >= 10, "{all} pairs of residuals tell anything");
+}
+
+#[test]
+fn a_tangent_without_its_rotational_part_is_found_out() {
+    let main = json!({ "published": { "rotational": false, "curvature": false } });
+    let [good, bad] = judge(&json!({"gauss": 2}), "faces", main);
+    assert!(bad >= 3, "{good} good, {bad} bad");
 }
