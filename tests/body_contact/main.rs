@@ -3,6 +3,7 @@ mod bad_input;
 mod blocks;
 mod convergence;
 mod invariance;
+mod overclosure;
 mod patch;
 mod self_contact;
 mod shells;
