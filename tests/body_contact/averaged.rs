@@ -1,6 +1,7 @@
 //! Gaps averaged over the faces around slave nodes, in the assembled system and in runs.
 use crate::blocks::{DELTA, E, done, patch, pressures};
 use crate::convergence::judge_scene;
+use crate::self_contact::pinched;
 use crate::shells::{arch_on_plate, balance};
 use crate::support::{scene_json, set};
 use covact::assembly::{Assembler, DofMap, Totals};
@@ -203,33 +204,51 @@ fn exact(eps: f64) -> f64 {
     p
 }
 
-/// Two blocks whose meshes do not match, under ever stiffer penalties: how far the pressures at the nodes are off, and
-/// the largest at a point or node.
+/// Two blocks whose meshes do not match, under ever stiffer penalties: how far the tractions are off. Those of points
+/// oscillate the more the stiffer the penalty, up to 36 % with 2 x 2 points; those of averaged gaps, which are the nodes'
+/// own, are off by what the points miss of the kinks in the master's shape functions, 6.7 % with 2 x 2 points and 0.33 %
+/// with 10 x 10, whatever the penalty. (The nodal means of pointwise tractions hide the oscillation: they are off by less.)
 #[test]
 fn blocks_under_a_stiff_penalty() {
-    for eps in [1e8, 1e9, 1e10] {
+    let run = |points: u32, gap: &str, eps: f64| {
+        let mut scene = patch(3, 2, json!({ "gauss": points }));
+        scene["contacts"]["press"]["penalty"]["value"] = json!(eps);
+        scene["contacts"]["press"]["gap"] = json!(gap);
+        scene["solution"]["newton"]["tolerance"] = json!(1e-10);
+        let outcome = done(&scene);
         let p = exact(eps);
-        for n in [2u32, 3, 5, 10] {
-            let errors = ["pointwise", "averaged"].map(|gap| {
-                let mut scene = patch(3, 2, json!({ "gauss": n }));
-                scene["contacts"]["press"]["penalty"]["value"] = json!(eps);
-                scene["contacts"]["press"]["gap"] = json!(gap);
-                scene["solution"]["newton"]["tolerance"] = json!(1e-10);
-                let outcome = done(&scene);
-                let [low, high] = pressures(&outcome, "upper");
-                let most = outcome.column("pressure.max")[0];
-                let force = outcome.column("force.ground.z")[0];
-                let error = (high - p).max(p - low) / p;
-                println!(
-                    "eps {eps:.0e}, {n} points, {gap}: nodes off by {error:.2e}, largest {:.2e}, force {:.2e}, {} its",
-                    most / p - 1.0,
-                    force / p - 1.0,
-                    outcome.summary.newton_iterations
-                );
-                error
-            });
-            let _ = errors;
+        let [low, high] = pressures(&outcome, "upper");
+        let nodes = (high - p).max(p - low) / p;
+        let largest = outcome.column("pressure.max")[0] / p - 1.0;
+        let force = outcome.column("force.ground.z")[0] / p - 1.0;
+        println!(
+            "{eps:.0e}, {points} points, {gap}: nodes {nodes:.2e}, largest {largest:.2e}, force {force:.2e}"
+        );
+        assert!(force.abs() < 3e-4);
+        [nodes, largest]
+    };
+    let automatic = model(&patch(3, 2, json!("nodes"))).notes;
+    println!("{automatic:?}");
+    let points = [2, 3, 5, 10];
+    let mut before: Option<[f64; 4]> = None;
+    for (eps, stated) in [
+        (1e8, [0.125, 0.0992, 0.0463, 0.0128]),
+        (1e9, [0.299, 0.159, 0.0814, 0.0221]),
+        (1e10, [0.363, 0.169, 0.0878, 0.0240]),
+    ] {
+        let pointwise = points.map(|n| run(n, "pointwise", eps));
+        let averaged = points.map(|n| run(n, "averaged", eps));
+        for i in 0..4 {
+            let (at_points, at_nodes) = (pointwise[i][1], averaged[i][0]);
+            assert!((at_points / stated[i] - 1.0).abs() < 0.02, "{at_points}");
+            // What is left is the quadrature's, and no matter of the penalty.
+            if let Some(before) = before {
+                assert!((at_nodes / before[i] - 1.0).abs() < 0.08, "{at_nodes}");
+            }
+            assert!(at_nodes < [0.07, 0.062, 0.025, 0.0034][i], "{at_nodes}");
+            assert!(at_nodes < 0.65 * at_points, "{at_nodes} {at_points}");
         }
+        before = Some(averaged.map(|a| a[0]));
     }
 }
 
@@ -244,8 +263,9 @@ fn an_arch_comes_down_on_a_plate() {
         let mut scene = averaged(arch_on_plate(2.0, 5, points.clone()));
         scene["contacts"]["press"]["master_surface"] = json!(surface);
         scene["output"] = json!({"every": 1});
-        let [good, bad] = judge_scene(&scene);
-        println!("{points} {surface}: {good} good, {bad} bad");
+        // Residuals rise where points pass an edge of the master.
+        let [good, bad, risen] = judge_scene(&scene);
+        println!("{points} {surface}: {good} good, {bad} bad, {risen} risen");
         let outcome = done(&scene);
         let [force, sum, moment] = balance(&outcome, "press");
         println!("force {force:.4}, off by {sum:.1e}, {moment:.1e}");
@@ -268,39 +288,59 @@ fn an_arch_comes_down_on_a_plate() {
     }
 }
 
-/// The clamped plate under a ball (see `plate_under_ball`): the same force as with points at nodes, on 20 x 20 elements.
+/// The clamped plate under a ball (see `plate_under_ball`) needs the same force as with gaps of the points, to half a
+/// percent. Measured on 25 x 25 elements: 0.17 % at most; on 40 x 40 it is 621.8 / 2554.5 / 7256.3 / 16602, within 0.2 % of
+/// the converged 622 / 2550 / 7248 / 16580.
 #[test]
 fn the_ball_on_a_plate_needs_the_same_force() {
-    let run = |points: Value, gap: &str| {
+    let run = |gap: &str| {
         let mut scene = scene_json("ball_on_plate.json");
         set(
             &mut scene,
             "/bodies/plate/mesh/plate/elements",
-            vec![20, 20],
+            vec![25, 25],
         );
         scene["contacts"]
             .as_object_mut()
             .unwrap()
             .values_mut()
             .for_each(|c| {
-                c["points"] = points.clone();
+                c["points"] = json!({"gauss": 3});
                 c["gap"] = json!(gap);
             });
         scene["output"] = json!({"every": 0});
         let outcome = done(&scene);
+        let f = [0.25, 0.5, 0.75, 1.0].map(|t| -4.0 * outcome.at("force.ball.z", t));
         println!(
-            "{points} {gap}: {} iterations",
+            "{gap}: {} iterations {f:.1?}",
             outcome.summary.newton_iterations
         );
-        [0.25, 0.5, 0.75, 1.0].map(|t| -4.0 * outcome.at("force.ball.z", t))
+        f
     };
-    let nodes = run(json!("nodes"), "pointwise");
-    let pointwise = run(json!({"gauss": 3}), "pointwise");
-    let own = run(json!({"gauss": 3}), "averaged");
-    println!("nodes {nodes:.1?}, pointwise {pointwise:.1?}, averaged {own:.1?}");
-    for (a, b) in own.iter().zip(&nodes) {
-        assert!((a / b - 1.0).abs() < 5e-3, "{a} instead of {b}");
+    for (a, b) in run("averaged").iter().zip(run("pointwise")) {
+        assert!(
+            b > 500.0 && (a / b - 1.0).abs() < 5e-3,
+            "{a} instead of {b}"
+        );
     }
+}
+
+/// The walls of a pinched tube, slave and master at once: both sides feel the same.
+#[test]
+fn a_body_touches_itself() {
+    let outcome = done(&averaged(pinched(6.0, json!({"gauss": 3}))));
+    let name = outcome
+        .history
+        .columns
+        .iter()
+        .find_map(|c| c.strip_prefix("imbalance.force."));
+    let pair = name.expect("a pair").to_owned();
+    let [force, sum, moment] = balance(&outcome, &pair);
+    println!(
+        "force {force}, off by {sum:.1e}, {moment:.1e}, {:?}",
+        outcome.summary.warnings
+    );
+    assert!(outcome.summary.steps > 0);
 }
 
 /// An overclosure that counts as touching presses nothing, and one that shrinks ends where strain ends.
