@@ -1,4 +1,5 @@
 //! Contact between deformable bodies.
+mod averaged;
 mod bad_input;
 mod blocks;
 mod convergence;
