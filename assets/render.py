@@ -52,6 +52,7 @@ def arguments():
     p.add_argument("--fit", choices=["bodies", "all"], default="bodies", help="what the picture is centred on")
     p.add_argument("--opacity", type=float, default=0.35, help="of rigid surfaces; 0 leaves them out")
     p.add_argument("--no-edges", action="store_true", help="leave out the element edges")
+    p.add_argument("--palette", type=int, metavar="COLOURS", help="at most this many colours (up to 256): smaller files")
     p.add_argument("--size", type=int, nargs=2, default=[1400, 900], metavar=("WIDTH", "HEIGHT"))
     return p.parse_args()
 
@@ -196,6 +197,20 @@ def place_camera(plotter, args, bounds):
     plotter.renderer.ResetCameraClippingRange()
 
 
+def with_palette(image, colours, cmap):
+    """The picture with so many colours: those of the background and the colour bar, the rest spread over what occurs."""
+    pixels = np.asarray(image)
+    background = pixels[np.linspace(0, len(pixels) - 1, colours // 8).astype(int), 0]
+    bar = [np.array(pv.LookupTable(cmap, n_values=colours // 4).values)[:, :3]] if cmap else []
+    kept = np.unique(np.concatenate([background, *bar]), axis=0)
+    occur = np.unique(pixels.reshape(-1, 3), axis=0)
+    rest = Image.fromarray(occur[None]).quantize(colours - len(kept)).convert("RGB")
+    both = np.concatenate([kept, np.unique(np.asarray(rest).reshape(-1, 3), axis=0)])
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(both.astype(np.uint8).tobytes())
+    return image.quantize(palette=palette, dither=Image.Dither.NONE)
+
+
 def main():
     args = arguments()
     parts, time = read_step(args.folder, args.time)
@@ -244,7 +259,10 @@ def main():
     image = plotter.screenshot(return_img=True)[:, :, :3].astype(float)
     height, width = image.shape[0] // 2, image.shape[1] // 2
     image = image[: 2 * height, : 2 * width].reshape(height, 2, width, 2, 3).mean(axis=(1, 3))
-    Image.fromarray(np.rint(image).astype(np.uint8)).save(args.output, optimize=True)
+    image = Image.fromarray(np.rint(image).astype(np.uint8))
+    if args.palette:
+        image = with_palette(image, args.palette, args.cmap if args.field else None)
+    image.save(args.output, optimize=True)
     print(f"{args.output}: time {time:g}")
 
 

@@ -28,7 +28,8 @@ pub struct InitialGap {
     pub facing: Option<f64>,
     /// At the nearest point, the slave looks towards the body that the master belongs to.
     pub looks_at_master: bool,
-    /// At the nearest point, the body lies between its slave face and the surface: the wrong face is the slave.
+    /// At the nearest point, the body lies between its slave face and the surface: the wrong face is the slave. Never so
+    /// in self contact.
     pub turned_away: bool,
 }
 
@@ -100,7 +101,10 @@ fn initial_gaps(
     if !near.is_empty() {
         gap.facing = Some(near.iter().sum::<f64>() / near.len() as f64);
     }
-    if let Some((node, x, n)) = nearest {
+    // Faces of one body that see each other do so from opposite sides, maybe at a right angle: nothing to be judged there.
+    if let Some((node, x, n)) = nearest
+        && pair.body_master().is_none_or(|m| m.own.is_none())
+    {
         gap.turned_away = turned_away(model, pair.body, node, &x, &n);
     }
     Ok(gap)

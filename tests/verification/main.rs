@@ -1,5 +1,6 @@
 //! Verification against closed forms and published results, named by their source.
 mod ball_by_weight;
+mod body_scenes;
 mod die;
 mod driven;
 mod facets;
