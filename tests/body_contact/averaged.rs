@@ -258,7 +258,7 @@ fn blocks_under_a_stiff_penalty() {
 fn an_arch_comes_down_on_a_plate() {
     for (points, surface) in [
         (json!({"gauss": 3}), "faces"),
-        (json!({"lobatto": 4}), "smooth"),
+        (json!({"gauss": 3}), "smooth"),
     ] {
         let mut scene = averaged(arch_on_plate(2.0, 5, points.clone()));
         scene["contacts"]["press"]["master_surface"] = json!(surface);
@@ -329,7 +329,7 @@ fn the_ball_on_a_plate_needs_the_same_force() {
 /// The walls of a pinched tube, slave and master at once: both sides feel the same.
 #[test]
 fn a_body_touches_itself() {
-    let scene = pinched(2.0 * R - T + 0.05, json!({"gauss": 3}));
+    let scene = pinched(2.0 * R - T + 0.6, json!({"gauss": 3}));
     let outcome = done(&averaged(scene.clone()));
     let [force, sum] = ["force.push.z", "imbalance.force.walls"].map(|c| outcome.at(c, 1.0));
     let active = *outcome.column("points.active").last().expect("steps");
