@@ -329,7 +329,7 @@ fn the_ball_on_a_plate_needs_the_same_force() {
 /// The walls of a pinched tube, slave and master at once: both sides feel the same.
 #[test]
 fn a_body_touches_itself() {
-    let scene = pinched(2.0 * R - T + 0.3, json!({"gauss": 3}));
+    let scene = pinched(2.0 * R - T + 0.6, json!({"gauss": 3}));
     let outcome = done(&averaged(scene));
     let [force, sum] = ["force.push.z", "imbalance.force.walls"].map(|c| outcome.at(c, 1.0));
     let active = *outcome.column("points.active").last().expect("steps");

@@ -115,7 +115,9 @@ fn border_of_a_driven_surface_is_the_derivative_of_the_residual() {
             let mut scene = punch(force.clone(), moment.clone());
             for contact in scene["contacts"].as_object_mut().unwrap().values_mut() {
                 contact["gap"] = json!(gap);
-                contact["points"] = json!({"gauss": 3});
+                if gap == "averaged" {
+                    contact["points"] = json!({"gauss": 3});
+                }
             }
             let name = format!("{name}, {gap}");
             let model = model(&scene);
@@ -131,7 +133,7 @@ fn border_of_a_driven_surface_is_the_derivative_of_the_residual() {
                 state.u[at + 3 + c] = turned * driven.lever;
             }
             // As deep as it takes for the fillets to hold the punch sideways.
-            let held = [0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4]
+            let held = [0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4, 1.8, 2.2, 2.6, 3.0]
                 .into_iter()
                 .find_map(|depth| {
                     let mut deeper = state.clone();
