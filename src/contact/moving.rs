@@ -200,5 +200,5 @@ pub fn free(foot: &MovingFoot, x: &Vec3) -> bool {
             kind: EdgeKind::Free
         }
     );
-    border && (foot.jet.rho - x).dot(&foot.normal) < OVERHANG * foot.distance
+    border && (foot.jet.rho - x).dot(&foot.normal).abs() < OVERHANG * foot.distance
 }

@@ -1,7 +1,7 @@
 //! Gaps averaged over the faces around slave nodes, in the assembled system and in runs.
 use crate::blocks::{DELTA, E, done, patch, pressures};
 use crate::convergence::judge_scene;
-use crate::self_contact::pinched;
+use crate::self_contact::{R, T, pinched};
 use crate::shells::{arch_on_plate, balance};
 use crate::support::{scene_json, set};
 use covact::assembly::{Assembler, DofMap, Totals};
@@ -258,14 +258,13 @@ fn blocks_under_a_stiff_penalty() {
 fn an_arch_comes_down_on_a_plate() {
     for (points, surface) in [
         (json!({"gauss": 3}), "faces"),
-        (json!({"lobatto": 4}), "smooth"),
+        (json!({"gauss": 3}), "smooth"),
     ] {
         let mut scene = averaged(arch_on_plate(2.0, 5, points.clone()));
         scene["contacts"]["press"]["master_surface"] = json!(surface);
         scene["output"] = json!({"every": 1});
-        // Residuals rise where points pass an edge of the master.
-        let [good, bad, risen] = judge_scene(&scene);
-        println!("{points} {surface}: {good} good, {bad} bad, {risen} risen");
+        let [good, bad] = judge_scene(&scene);
+        println!("{points} {surface}: {good} good, {bad} bad");
         let outcome = done(&scene);
         let [force, sum, moment] = balance(&outcome, "press");
         println!("force {force:.4}, off by {sum:.1e}, {moment:.1e}");
@@ -278,8 +277,10 @@ fn an_arch_comes_down_on_a_plate() {
             balance(&done(&scene), "press")[0]
         };
         println!("pointwise {plain:.4}");
+        // The tractions of points that pass an edge between faces do not vanish; that is the one.
+        let passed = usize::from(surface == "faces");
         assert!(
-            good >= 2 && bad == 0,
+            good >= 5 && bad <= passed,
             "{points} {surface}: {good} good, {bad} bad"
         );
         assert!(force > 1.0 && sum < 1e-12 * force && moment < 1e-11 * force);
@@ -328,19 +329,12 @@ fn the_ball_on_a_plate_needs_the_same_force() {
 /// The walls of a pinched tube, slave and master at once: both sides feel the same.
 #[test]
 fn a_body_touches_itself() {
-    let outcome = done(&averaged(pinched(6.0, json!({"gauss": 3}))));
-    let name = outcome
-        .history
-        .columns
-        .iter()
-        .find_map(|c| c.strip_prefix("imbalance.force."));
-    let pair = name.expect("a pair").to_owned();
-    let [force, sum, moment] = balance(&outcome, &pair);
-    println!(
-        "force {force}, off by {sum:.1e}, {moment:.1e}, {:?}",
-        outcome.summary.warnings
-    );
-    assert!(outcome.summary.steps > 0);
+    let scene = pinched(2.0 * R - T + 0.6, json!({"gauss": 3}));
+    let outcome = done(&averaged(scene));
+    let [force, sum] = ["force.push.z", "imbalance.force.walls"].map(|c| outcome.at(c, 1.0));
+    let active = *outcome.column("points.active").last().expect("steps");
+    println!("force {force}, off by {sum:.1e}, {active} nodes closed");
+    assert!(active > 0.0 && force < -0.01 && sum < 1e-12);
 }
 
 /// An overclosure that counts as touching presses nothing, and one that shrinks ends where strain ends.

@@ -11,52 +11,61 @@ fn warnings(outcome: &crate::support::Outcome, words: &str) -> Vec<String> {
 #[test]
 fn points_that_sink_deeper_than_the_depth_fail_the_step() {
     // A penalty a thousandth of what the plate asks for lets the ball sink in by its whole way.
-    let mut scene = plate(6, 3.0, 4);
-    scene["contacts"]["press"]["penalty"] = json!({ "value": 1 });
-    scene["surfaces"]["ball"]["depth"] = json!(1.2);
-    scene["solution"]["step"] = json!({ "initial": 0.25, "max": 0.25, "min": 0.02 });
-    let outcome = solve(&scene);
-    assert_eq!(outcome.summary.status.name(), "not_converged");
-    let reason = outcome.summary.reason.clone().unwrap_or_default();
-    assert!(
-        reason.contains("contact `press`: ")
-            && reason.contains("sank deeper than the `depth` 1.2")
-            && reason.contains("surface `ball`"),
-        "{reason}"
-    );
-    // What was accepted is in contact.
-    assert!(outcome.column("points.active").last() > Some(&0.0));
+    for gap in ["pointwise", "averaged"] {
+        let mut scene = plate(6, 3.0, 4);
+        scene["contacts"]["press"]["gap"] = json!(gap);
+        scene["contacts"]["press"]["penalty"] = json!({ "value": 1 });
+        scene["surfaces"]["ball"]["depth"] = json!(1.2);
+        scene["solution"]["step"] = json!({ "initial": 0.25, "max": 0.25, "min": 0.02 });
+        let outcome = solve(&scene);
+        assert_eq!(outcome.summary.status.name(), "not_converged");
+        let reason = outcome.summary.reason.clone().unwrap_or_default();
+        assert!(
+            reason.contains("contact `press`: ")
+                && reason.contains("sank deeper than the `depth` 1.2")
+                && reason.contains("surface `ball`"),
+            "{reason}"
+        );
+        // What was accepted is in contact.
+        assert!(outcome.column("points.active").last() > Some(&0.0));
+    }
 }
 
 #[test]
 fn a_tool_that_jumps_through_the_sheet_is_told() {
     // The first step ends with the middle of the plate deeper in the ball than its depth; it never touched.
-    let mut scene = plate(6, 3.0, 1);
-    scene["surfaces"]["ball"]["depth"] = json!(0.001);
-    let outcome = solve(&scene);
-    let told = warnings(&outcome, "passed through surface `ball` at step 1");
-    assert_eq!(told.len(), 1, "{:?}", outcome.summary.warnings);
-    assert!(told[0].starts_with("contact `press`: "), "{}", told[0]);
+    for gap in ["pointwise", "averaged"] {
+        let mut scene = plate(6, 3.0, 1);
+        scene["contacts"]["press"]["gap"] = json!(gap);
+        scene["surfaces"]["ball"]["depth"] = json!(0.001);
+        let outcome = solve(&scene);
+        let told = warnings(&outcome, "passed through surface `ball` at step 1");
+        assert_eq!(told.len(), 1, "{:?}", outcome.summary.warnings);
+        assert!(told[0].starts_with("contact `press`: "), "{}", told[0]);
+    }
 }
 
 #[test]
 fn a_contact_that_opens_is_told_with_its_step() {
-    let mut scene = plate(6, 1.0, 2);
-    scene["surfaces"]["ball"]["motion"]["translation"] =
-        json!([0, 0, { "table": [[0, 0], [0.5, -1], [1, 1]] }]);
-    let outcome = done(&scene);
-    let told = warnings(&outcome, "opened at step");
-    assert_eq!(told.len(), 1, "{:?}", outcome.summary.warnings);
-    let active = outcome.column("points.active");
-    let first = active.iter().position(|a| *a > 0.0).expect("contact");
-    let step = first
-        + active[first..]
-            .iter()
-            .position(|a| *a == 0.0)
-            .expect("opens")
-        + 1;
-    let expected = format!("contact `press` opened at step {step} (");
-    assert!(told[0].starts_with(&expected), "{} {expected}", told[0]);
+    for gap in ["pointwise", "averaged"] {
+        let mut scene = plate(6, 1.0, 2);
+        scene["contacts"]["press"]["gap"] = json!(gap);
+        scene["surfaces"]["ball"]["motion"]["translation"] =
+            json!([0, 0, { "table": [[0, 0], [0.5, -1], [1, 1]] }]);
+        let outcome = done(&scene);
+        let told = warnings(&outcome, "opened at step");
+        assert_eq!(told.len(), 1, "{:?}", outcome.summary.warnings);
+        let active = outcome.column("points.active");
+        let first = active.iter().position(|a| *a > 0.0).expect("contact");
+        let step = first
+            + active[first..]
+                .iter()
+                .position(|a| *a == 0.0)
+                .expect("opens")
+            + 1;
+        let expected = format!("contact `press` opened at step {step} (");
+        assert!(told[0].starts_with(&expected), "{} {expected}", told[0]);
+    }
 }
 
 /// The plate and the ball travel far together while the ball presses, so that the last digit of a position grows.
