@@ -255,7 +255,7 @@ fn walls_of_the_pinched_tube_touch_with_pressure() {
     let last = *step.last().expect("steps") as u32;
     let tube = outcome.body("tube", last);
     let (u, p) = (tube.field("displacement"), tube.field("contact_pressure"));
-    let mut pressed = 0;
+    let (mut pressed, mut middle) = (0, 0);
     for (n, x) in tube.points.iter().enumerate() {
         let mirror = (tube.points.iter())
             .position(|q| (q[0] - x[0]).hypot(q[1] - x[1]).hypot(q[2] + x[2]) < 1e-6)
@@ -267,11 +267,21 @@ fn walls_of_the_pinched_tube_touch_with_pressure() {
         }
         if x[0].hypot(x[2]) < 19.5 && p[n] > 0.0 {
             pressed += 1;
-            assert!(x[1] < 15.0 && (x[2] + u[3 * n + 2]).abs() < 0.3);
+            // A node shows the pressure of the faces around it, so it may be an element away from those that touch.
+            let z = (x[2] + u[3 * n + 2]).abs();
+            assert!(x[1] < 15.0 && z < 1.5, "{x:?} at {z}");
+            if x[0].abs() + x[1] < 1e-6 {
+                println!("in the middle: pressure {}, {z} from z = 0", p[n]);
+                // Held at Gauss points, faces that bulge towards each other sink in further at their corners.
+                assert!(p[n] > 0.1 && z < 0.1);
+                middle += 1;
+            }
         }
     }
     println!("{pressed} nodes of the inner face are pressed");
-    assert!(pressed >= 4);
+    assert!(pressed >= 4 && middle == 2);
+    // 1 % of the size of an element.
+    assert!(peak("penetration.max") < 0.027);
     // Until shortly before the balls are two walls apart nothing touches inside: the tube's outer faces alone are in contact.
     let way = |t: f64| 19.3 * t;
     let apart = time
@@ -308,7 +318,7 @@ fn a_quadratic_cap_on_linear_elements_is_refined() {
     };
     let [coarse, middle, fine] = [2, 3, 5].map(force);
     println!("{coarse:?} {middle:?} {fine:?}");
-    // Measured: 8.5 % and 1.0 % from the finest; the third order of the quadratic shape would give (5 / 3)^3 less of it.
+    // Measured: 8.5 % and 1.0 % away from the finest, on the same coarse block.
     assert_close("refined twice", middle.0, fine.0, 0.015);
     assert!((middle.0 - fine.0).abs() < (coarse.0 - fine.0).abs());
 }
