@@ -33,7 +33,13 @@ pub struct NodalGap {
     pub moment: f64,
     /// `m_A = int N_A dS` (length^2).
     pub area: f64,
+    /// `int |N_A| dS` (length^2): shape functions of quadratic faces are negative in parts.
+    pub spread: f64,
 }
+
+/// A node of which less than this part of `int |N_A| dS` is left in `m_A` has no mean: what counts of its faces are the
+/// parts in which its shape function is negative. In a whole square face of nine nodes it is 4/9 for a corner.
+const LEAST: f64 = 0.05;
 
 impl NodalGap {
     /// Adds a point with the node's shape function, the point's area and its gap. A point whose foot lies on a free border
@@ -42,11 +48,12 @@ impl NodalGap {
     pub fn add(&mut self, shape: f64, area: f64, xi3: f64) {
         self.moment += shape * area * xi3;
         self.area += shape * area;
+        self.spread += shape.abs() * area;
     }
 
     /// The mean `g_A`; `None` where nothing of the node's faces counts.
     pub fn gap(&self) -> Option<f64> {
-        (self.area > 0.0).then(|| self.moment / self.area)
+        (self.area > LEAST * self.spread).then(|| self.moment / self.area)
     }
 
     /// Traction `lambda_A` and stiffness of the node; zero where it is open.

@@ -189,7 +189,8 @@ pub fn behind(foot: &MovingFoot, x: &Vec3, depth: f64) -> bool {
 /// rise from it, whose normals lean across the plane. This is the cosine, `4 / sqrt(17)`.
 const OVERHANG: f64 = 0.970_142_5;
 
-fn free(foot: &MovingFoot, x: &Vec3) -> bool {
+/// Whether a foot lies on a free border that does not hold the point `x`.
+pub fn free(foot: &MovingFoot, x: &Vec3) -> bool {
     let border = matches!(
         foot.place,
         MovingPlace::Edge {

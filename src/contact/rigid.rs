@@ -258,7 +258,7 @@ pub fn presses(foot: &Foot) -> bool {
 }
 
 /// Whether a foot lies on a free border.
-fn free(foot: &Foot) -> bool {
+pub fn free(foot: &Foot) -> bool {
     matches!(
         foot.location,
         Location::Edge {

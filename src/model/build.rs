@@ -32,6 +32,8 @@ struct Builder<'s> {
     body_index: BTreeMap<&'s str, usize>,
     notes: Vec<String>,
     warnings: Vec<String>,
+    /// Slave nodes with averaged gaps so far.
+    averaged: usize,
 }
 
 /// Reads every mesh and CAD file of the scene and resolves all names.
@@ -48,6 +50,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         body_index: BTreeMap::new(),
         notes: Vec::new(),
         warnings: Vec::new(),
+        averaged: 0,
     };
     builder.bodies()?;
     let (pairs, mut surfaces) = builder.contacts()?;

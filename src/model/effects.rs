@@ -1,6 +1,6 @@
 //! The effects a scene calls for, by name: what the run then does, and nothing else.
 use super::Model;
-use crate::scene::{Element, FacetKind, MasterSurface, Material, Points, Scene, Tangent};
+use crate::scene::{Element, FacetKind, Gap, MasterSurface, Material, Points, Scene, Tangent};
 use std::collections::BTreeSet;
 
 /// Names of the effects that are on, sorted.
@@ -45,6 +45,9 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
             Points::Gauss(_) => "contact.points.gauss",
             Points::Lobatto(_) => "contact.points.lobatto",
         });
+        if contact.gap == Gap::Averaged {
+            add("contact.gap.averaged");
+        }
         add(match contact.tangent {
             Tangent::Exact => "contact.tangent.exact",
             Tangent::Published { .. } => "contact.tangent.published",

@@ -145,6 +145,8 @@ pub struct Seen {
     pub signed_distance: f64,
     /// Outward unit normal there, in space.
     pub normal: Vec3,
+    /// The foot lies on a free border and does not count.
+    pub free: bool,
     /// In contact: below the surface and no deeper than its depth.
     pub closed: bool,
     /// Below the surface and deeper than its depth: not in contact, though not outside either.
@@ -206,6 +208,7 @@ impl MasterNow<'_> {
                     distance: foot.distance,
                     signed_distance: foot.signed_distance,
                     normal: master.pose.rotation * foot.normal,
+                    free: rigid::free(&foot),
                     closed: rigid::presses(&foot) && !behind,
                     behind,
                 })
@@ -236,6 +239,7 @@ impl MasterNow<'_> {
                     distance: foot.distance,
                     signed_distance: foot.signed_distance,
                     normal: foot.normal,
+                    free: moving::free(&foot, x),
                     closed: moving::presses(&foot, x) && !behind,
                     behind,
                 })

@@ -1,4 +1,5 @@
 //! The model: what a scene becomes before anything is solved. All choices of effects are made here, once.
+pub mod averaged;
 pub mod build;
 pub mod constraints;
 pub mod driven;
@@ -22,6 +23,7 @@ use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
 use crate::scene::{Tangent, TimeFunction, ValueError};
 use crate::shell::{Block, ElementBlock};
+use averaged::SlaveNodes;
 use constraints::{MeanPrescribed, Prescribed};
 use covact_geometry::Vec3;
 use driven::Driven;
@@ -92,6 +94,8 @@ pub struct PairModel {
     pub element_size: f64,
     /// Offsets of the gaps where the scene asks for them.
     pub overclosure: Option<Overclosure>,
+    /// The slave's nodes, where gaps are averaged.
+    pub averaged: Option<SlaveNodes>,
 }
 
 impl Model {

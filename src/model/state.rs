@@ -20,6 +20,8 @@ pub struct State {
     pub elements: Vec<f64>,
     /// Slave points, pair after pair.
     pub points: Vec<PointState>,
+    /// Whether slave nodes were closed, pair after pair of those with averaged gaps.
+    pub nodes: Vec<bool>,
 }
 
 impl State {
@@ -30,6 +32,7 @@ impl State {
             .iter()
             .map(|b| b.block.state_len() * b.block.elements());
         let points = model.pairs.iter().map(|p| p.points.len());
+        let nodes = (model.pairs.iter().filter_map(|p| p.averaged.as_ref())).map(|a| a.len());
         let mut u = vec![0.0; 3 * model.nodes.len()];
         for (_, _, driven) in model.driven() {
             u[driven.dof(0)..driven.dof(6)].copy_from_slice(&driven.start);
@@ -38,6 +41,7 @@ impl State {
             u,
             elements: vec![0.0; elements.sum()],
             points: vec![PointState::default(); points.sum()],
+            nodes: vec![false; nodes.sum()],
         }
     }
 
@@ -46,6 +50,7 @@ impl State {
         self.u.copy_from_slice(&other.u);
         self.elements.copy_from_slice(&other.elements);
         self.points.copy_from_slice(&other.points);
+        self.nodes.copy_from_slice(&other.nodes);
     }
 
     /// Continues the change from `before` to `self` by `ratio` into `out`: a start for the next step that has the
@@ -61,10 +66,14 @@ impl State {
         along(&self.u, &before.u, &mut out.u);
         along(&self.elements, &before.elements, &mut out.elements);
         out.points.copy_from_slice(&self.points);
+        out.nodes.copy_from_slice(&self.nodes);
     }
 
     /// Bytes that this state occupies.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.u[..]) + size_of_val(&self.elements[..]) + size_of_val(&self.points[..])
+        size_of_val(&self.u[..])
+            + size_of_val(&self.elements[..])
+            + size_of_val(&self.points[..])
+            + size_of_val(&self.nodes[..])
     }
 }

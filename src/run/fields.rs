@@ -1,5 +1,6 @@
 //! Fields of an accepted state, gathered on nodes for the output.
 use super::RunError;
+use super::averaged::{NodeNow, nodes_now};
 use super::pieces::pieces;
 use crate::model::master::Masters;
 use crate::model::state::State;
@@ -76,7 +77,8 @@ impl Fields {
 
     /// Recovers pressure, gap and status at the nodes of all slave surfaces: averages over the slave points by their
     /// shape functions and areas, `p_I = sum w N_I p / sum w N_I`. With points at nodes that is the point's own
-    /// pressure; as the areas are the modelled ones, it is right on symmetry planes too.
+    /// pressure; as the areas are the modelled ones, it is right on symmetry planes too. Where gaps are averaged, they and
+    /// the pressures are the nodes' own.
     pub fn gather(
         &mut self,
         model: &Model,
@@ -98,6 +100,15 @@ impl Fields {
             let master = masters.at(model, index, &state.u, time)?;
             let states = &state.points[first..first + pair.points.len()];
             let fronts = &mut self.front[first..first + pair.points.len()];
+            if let Some(nodes) = &pair.averaged {
+                let (now, sunk) = nodes_now(
+                    model, pair, nodes, *eps_n, &master, state, first, time, fronts,
+                );
+                self.sunk[index] += sunk;
+                now.iter().for_each(|n| self.take(n));
+                first += pair.points.len();
+                continue;
+            }
             let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
             for (i, ((p, s), front)) in pair.points.iter().zip(states).zip(fronts).enumerate() {
                 let z0 = offsets.as_ref().map_or(0.0, |o| o.factor * o.z0[i]);
@@ -144,6 +155,17 @@ impl Fields {
             self.smallest_gap = f64::NAN;
         }
         Ok(())
+    }
+
+    /// Takes over a node with an averaged gap.
+    fn take(&mut self, n: &NodeNow) {
+        self.smallest_gap = self.smallest_gap.min(n.gap);
+        self.largest_pressure = self.largest_pressure.max(n.pressure);
+        self.area += n.area;
+        self.pressure[n.node] += n.pressure;
+        self.gap[n.node] = self.gap[n.node].min(n.gap);
+        let status = if n.closed { CLOSED } else { OPEN };
+        self.status[n.node] = self.status[n.node].max(status);
     }
 
     /// Writes all bodies and surfaces of an accepted step.

@@ -41,10 +41,16 @@ fn judge(points: &Value, surface: &str, tangent: Value) -> [usize; 2] {
     let mut scene = arch_on_plate(2.0, 5, points.clone());
     scene["contacts"]["press"]["master_surface"] = json!(surface);
     scene["contacts"]["press"]["tangent"] = tangent;
+    println!("{points} {surface}:");
+    judge_scene(&scene)
+}
+
+/// [`judge`] for any scene.
+pub fn judge_scene(scene: &Value) -> [usize; 2] {
     let mut count = [0, 0];
-    for e in endings(&solve(&scene)) {
+    for e in endings(&solve(scene)) {
         let shown: Vec<String> = e.iter().map(|r| format!("{r:.1e}")).collect();
-        println!("{points} {surface}: {}", shown.join(" "));
+        println!("{}", shown.join(" "));
         for pair in e.windows(2) {
             let bound = (C * pair[0] * pair[0]).max(FLOOR);
             if bound < 0.1 * pair[0] {

@@ -1,8 +1,10 @@
 //! Contact between deformable bodies.
+mod averaged;
 mod bad_input;
 mod blocks;
 mod convergence;
 mod invariance;
+mod overclosure;
 mod patch;
 mod self_contact;
 mod shells;

@@ -3,11 +3,11 @@ use crate::support::solve;
 use serde_json::{Value, json};
 
 /// Radius and thickness of the tube.
-const R: f64 = 10.0;
-const T: f64 = 0.5;
+pub const R: f64 = 10.0;
+pub const T: f64 = 0.5;
 
 /// Half of a ring of one element's width whose top is pushed down by `way`; the inner faces are slave and master.
-fn pinched(way: f64, points: Value) -> Value {
+pub fn pinched(way: f64, points: Value) -> Value {
     json!({
         "covact": 1,
         "materials": {"m": {"st_venant_kirchhoff": {"E": 1000, "nu": 0}}},

@@ -4,7 +4,7 @@ use covact::run::{RunOptions, run};
 use covact::scene;
 use covact::solve::event::{Event, Observer};
 use serde_json::Value;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 /// Results of a run.
@@ -46,12 +46,17 @@ pub fn set(scene: &mut Value, pointer: &str, value: impl Into<Value>) {
 
 /// Runs a scene; paths in it are relative to the shipped scenes.
 pub fn solve(scene: &Value) -> Outcome {
+    solve_in(scene, &scenes())
+}
+
+/// Runs a scene; paths in it are relative to `dir`.
+pub fn solve_in(scene: &Value, dir: &Path) -> Outcome {
     let text = serde_json::to_string_pretty(scene).expect("serialisable");
     let mut loaded = match scene::parse(&text, "scene.json") {
         Ok(loaded) => loaded,
         Err(e) => panic!("{e}"),
     };
-    loaded.dir = scenes();
+    loaded.dir = dir.to_path_buf();
     let folder = tempfile::tempdir().expect("temporary folder");
     let mut recorder = Recorder::default();
     let never = AtomicBool::new(false);

@@ -1,6 +1,7 @@
 //! Closest point within a rectangle of one facet: safeguarded Newton iteration with active bounds.
 
 use super::net::jet;
+use crate::project::downhill::Downhill;
 use crate::surface::{Jet, Vec3};
 
 /// The whole facet.
@@ -99,7 +100,7 @@ impl Problem<'_> {
             let mut step = self.bounded(&s, newton.unwrap_or_else(|| damped_step(&s)));
             let mut slope = s.gradient[0] * step[0] + s.gradient[1] * step[1];
             if slope >= 0.0 || !slope.is_finite() {
-                step = self.bounded(&s, diagonal_step(&s));
+                step = self.bounded(&s, s.downhill().diagonal_step());
                 slope = s.gradient[0] * step[0] + s.gradient[1] * step[1];
             }
             // Below the noise the distances that are compared differ by rounding only.
@@ -179,6 +180,16 @@ impl Problem<'_> {
 }
 
 impl Local {
+    /// What a Newton step is made from.
+    #[inline]
+    fn downhill(&self) -> Downhill<'_> {
+        Downhill {
+            gradient: &self.gradient,
+            metric: &self.metric,
+            active: self.active,
+        }
+    }
+
     /// Largest `(rho_i . d / |rho_i|)^2` of the free directions.
     #[inline]
     fn residual2(&self) -> f64 {
@@ -231,7 +242,7 @@ fn spectrum(f: &[f64; 3], a: &[f64; 3]) -> Option<(f64, f64)> {
 /// Newton step, or `None` where the Hessian is not positive definite.
 #[inline]
 fn undamped_step(s: &Local) -> Option<[f64; 2]> {
-    solve(s, &s.hessian)
+    s.downhill().solve(&s.hessian)
 }
 
 /// Step where the Hessian is not positive definite: shifted by so much of the metric that it is.
@@ -247,41 +258,7 @@ fn damped_step(s: &Local) -> [f64; 2] {
         }
         _ => None,
     };
-    form.and_then(|form| solve(s, &form))
-        .or_else(|| solve(s, &s.metric))
-        .unwrap_or_else(|| diagonal_step(s))
-}
-
-/// Solves `F_ij step_j = -g_i` in the free directions if `f` is safely positive definite there.
-#[inline]
-fn solve(s: &Local, f: &[f64; 3]) -> Option<[f64; 2]> {
-    let g = &s.gradient;
-    let scale = [1e-12 * s.metric[0], 1e-12 * s.metric[2]];
-    match s.active {
-        [true, true] => Some([0.0; 2]),
-        [false, true] => (f[0] > scale[0]).then(|| [-g[0] / f[0], 0.0]),
-        [true, false] => (f[2] > scale[1]).then(|| [0.0, -g[1] / f[2]]),
-        [false, false] => {
-            let det = f[0] * f[2] - f[1] * f[1];
-            (f[0] > scale[0] && f[2] > scale[1] && det > 1e-12 * f[0] * f[2]).then(|| {
-                [
-                    (f[1] * g[1] - f[2] * g[0]) / det,
-                    (f[1] * g[0] - f[0] * g[1]) / det,
-                ]
-            })
-        }
-    }
-}
-
-/// Each free direction by itself, with the metric alone; a direction of no length stays.
-fn diagonal_step(s: &Local) -> [f64; 2] {
-    let one = |k: usize| {
-        let a = s.metric[2 * k];
-        if s.active[k] || a <= f64::MIN_POSITIVE {
-            0.0
-        } else {
-            -0.5 * s.gradient[k] / a
-        }
-    };
-    [one(0), one(1)]
+    form.and_then(|form| s.downhill().solve(&form))
+        .or_else(|| s.downhill().solve(&s.metric))
+        .unwrap_or_else(|| s.downhill().diagonal_step())
 }

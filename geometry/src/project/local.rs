@@ -1,6 +1,7 @@
 //! Closest point within a smooth region of one patch: safeguarded Newton iteration with active bounds.
 
 use super::PatchSet;
+use super::downhill::Downhill;
 use super::search::ROUGH;
 use crate::surface::{Jet, Surface, Vec3};
 
@@ -39,6 +40,16 @@ pub(super) struct Local {
 }
 
 impl Local {
+    /// What a Newton step is made from.
+    #[inline]
+    fn downhill(&self) -> Downhill<'_> {
+        Downhill {
+            gradient: &self.gradient,
+            metric: &self.metric,
+            active: self.active,
+        }
+    }
+
     /// Nowhere yet.
     #[inline]
     fn in_region(region: &Region) -> Local {
@@ -236,7 +247,7 @@ impl<S: Surface> PatchSet<S> {
                 return now;
             }
             if slope >= 0.0 || !slope.is_finite() {
-                step = bounded(s, diagonal_step(s));
+                step = bounded(s, s.downhill().diagonal_step());
                 slope = s.gradient[0] * step[0] + s.gradient[1] * step[1];
             }
             self.evaluate(q, moved(s, step, 1.0), s.span, next);
@@ -379,9 +390,9 @@ fn moved(s: &Local, step: [f64; 2], factor: f64) -> [f64; 2] {
 #[cold]
 fn damped_step(s: &Local) -> [f64; 2] {
     absolute(s)
-        .and_then(|f| solve(s, &f))
-        .or_else(|| solve(s, &s.metric))
-        .unwrap_or_else(|| diagonal_step(s))
+        .and_then(|f| s.downhill().solve(&f))
+        .or_else(|| s.downhill().solve(&s.metric))
+        .unwrap_or_else(|| s.downhill().diagonal_step())
 }
 
 /// The Hessian with the absolute values of its eigenvalues over the metric, none smaller than 1e-9 of the largest; `None`
@@ -427,41 +438,7 @@ fn absolute(s: &Local) -> Option<[f64; 3]> {
 /// Newton step, or `None` where the Hessian is not positive definite.
 #[inline]
 fn undamped_step(s: &Local) -> Option<[f64; 2]> {
-    solve(s, &s.hessian)
-}
-
-/// Solves `F_ij step_j = -g_i` in the free directions if `f` is safely positive definite there.
-#[inline]
-fn solve(s: &Local, f: &[f64; 3]) -> Option<[f64; 2]> {
-    let g = &s.gradient;
-    let scale = [1e-12 * s.metric[0], 1e-12 * s.metric[2]];
-    match s.active {
-        [true, true] => Some([0.0; 2]),
-        [false, true] => (f[0] > scale[0]).then(|| [-g[0] / f[0], 0.0]),
-        [true, false] => (f[2] > scale[1]).then(|| [0.0, -g[1] / f[2]]),
-        [false, false] => {
-            let det = f[0] * f[2] - f[1] * f[1];
-            (f[0] > scale[0] && f[2] > scale[1] && det > 1e-12 * f[0] * f[2]).then(|| {
-                [
-                    (f[1] * g[1] - f[2] * g[0]) / det,
-                    (f[1] * g[0] - f[0] * g[1]) / det,
-                ]
-            })
-        }
-    }
-}
-
-/// Each free direction by itself, with the metric alone; a direction of no length stays.
-fn diagonal_step(s: &Local) -> [f64; 2] {
-    let one = |k: usize| {
-        let a = s.metric[2 * k];
-        if s.active[k] || a <= f64::MIN_POSITIVE {
-            0.0
-        } else {
-            -0.5 * s.gradient[k] / a
-        }
-    };
-    [one(0), one(1)]
+    s.downhill().solve(&s.hessian)
 }
 
 /// Shortens a step to the bounds: a direction that would leave stops there and the other is solved for again.

@@ -11,6 +11,7 @@ pub(crate) mod ball;
 mod batch;
 mod cells;
 mod convex;
+pub(crate) mod downhill;
 mod finish;
 mod integrate;
 mod local;

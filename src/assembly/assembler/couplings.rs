@@ -75,6 +75,11 @@ impl Couplings {
         self.place(self.cell(point), facet).is_some()
     }
 
+    /// Facets that a cell is coupled with, ascending.
+    pub fn facets(&self, cell: usize) -> impl Iterator<Item = u32> + '_ {
+        self.facets[cell].iter().map(|c| c.facet)
+    }
+
     /// All couplings, cell by cell.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, u32)> + '_ {
         (self.facets.iter().enumerate())

@@ -34,9 +34,9 @@ pub(super) struct Border {
     own_map: Vec<u32>,
     /// Per slave node: blocks of its displacement with translation and spin.
     blocks: Vec<[Matrix3<f64>; 2]>,
-    residual: Vector6<f64>,
-    tangent: Matrix6<f64>,
-    active: usize,
+    pub residual: Vector6<f64>,
+    pub tangent: Matrix6<f64>,
+    pub active: usize,
     /// Smallest element of the slaves.
     element_size: f64,
 }
@@ -119,6 +119,16 @@ impl Border {
             active: 0,
             element_size,
         })
+    }
+
+    /// Number of the surface in the model.
+    pub fn surface(&self) -> usize {
+        self.surface
+    }
+
+    /// Blocks of a slave node's displacement with translation and spin.
+    pub fn block(&mut self, node: usize) -> &mut [Matrix3<f64>; 2] {
+        &mut self.blocks[self.place[node] as usize]
     }
 
     fn clear(&mut self) {

@@ -1,7 +1,7 @@
 //! The pattern of a model and where the blocks of everything that is assembled go.
 use super::couplings::Couplings;
-use super::driven;
 use super::{DofMap, Kind, Pattern, PatternError};
+use super::{averaged, driven};
 use crate::model::Model;
 
 /// Places of all blocks on one pattern.
@@ -43,6 +43,7 @@ pub(super) fn pattern(
                 add(&plain);
             }
         }
+        averaged::groups(pair, couplings.as_ref(), &mut add);
     }
     let driven = driven::groups(model, |nodes, out| dofs.extend_nodes(nodes, out));
     let groups = starts.windows(2).map(|w| &nodes[w[0]..w[1]]);

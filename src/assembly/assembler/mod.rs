@@ -2,6 +2,7 @@
 //!
 //! Elements and slave points are evaluated in parallel, a chunk at a time, and summed in order by one thread, so that
 //! the result is the same to the last bit for every number of threads.
+mod averaged;
 mod couplings;
 mod driven;
 mod elements;
@@ -19,6 +20,7 @@ use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::scene::ValueError;
 use crate::shell::ElementFault;
+use averaged::Averaged;
 use couplings::Couplings;
 use covact_geometry::Vec3;
 use maps::Maps;
@@ -80,6 +82,12 @@ pub struct PairForce {
     pub master: SurfaceForce,
 }
 
+impl PairForce {
+    fn sides(&mut self) -> [&mut SurfaceForce; 2] {
+        [&mut self.slave, &mut self.master]
+    }
+}
+
 /// Totals of one evaluation.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Totals {
@@ -91,9 +99,9 @@ pub struct Totals {
     pub surfaces: Vec<SurfaceForce>,
     /// Per pair; zero where its master is rigid.
     pub pairs: Vec<PairForce>,
-    /// Points in contact.
+    /// Points in contact, or nodes where gaps are averaged.
     pub active: usize,
-    /// Points whose status differs from the one in the state when the evaluation began.
+    /// Points or nodes whose status differs from the one in the state when the evaluation began.
     pub changed: usize,
     /// Deepest penetration, >= 0, per pair.
     pub penetration: Vec<f64>,
@@ -127,6 +135,8 @@ pub struct Assembler<'m> {
     /// Per pair whose master is a body: the nodes that the pattern couples, and the points at the last state.
     couplings: Vec<Option<Couplings>>,
     meetings: Vec<Meetings>,
+    /// Per pair with averaged gaps: its points and nodes at the last state.
+    averaged: Vec<Option<Averaged>>,
     /// The pattern, until the solver has taken it.
     new_pattern: Option<Arc<Pattern>>,
     rebuilds: u32,
@@ -163,6 +173,7 @@ impl<'m> Assembler<'m> {
             masters,
             couplings,
             meetings: model.pairs.iter().map(Meetings::new).collect(),
+            averaged: model.pairs.iter().map(Averaged::new).collect(),
             new_pattern: Some(pattern),
             rebuilds: 0,
             work: ConstrainedScatter::default(),

@@ -1,5 +1,6 @@
 //! Contact with bodies: the slave points of a pair are evaluated in parallel, their matrices formed in parallel, and all
 //! is summed in order.
+use super::averaged::Averaged;
 use super::couplings::Couplings;
 use super::driven::Border;
 use super::{Assembler, Fault, SurfaceForce, Totals, maps, put};
@@ -34,9 +35,9 @@ pub(super) struct Meetings {
 }
 
 impl Meetings {
-    /// Room for a pair; none is needed where the master is rigid.
+    /// Room for a pair; none is needed where the master is rigid or gaps are averaged.
     pub fn new(pair: &PairModel) -> Self {
-        let Some(master) = pair.body_master() else {
+        let (Some(master), None) = (pair.body_master(), &pair.averaged) else {
             return Meetings::default();
         };
         let slave = pair.points.iter().map(|p| p.count as usize).max();
@@ -122,6 +123,32 @@ impl Assembler<'_> {
             ) else {
                 continue;
             };
+            if let Some(averaged) = &mut self.averaged[index] {
+                let facets = MovingMaster {
+                    facets: &surface.facets,
+                    depth: master.depth,
+                };
+                let (model, u, eps_n) = (self.model, &state.u, self.penalties[index]);
+                let (states, reach) = (&mut state.points[range], pair.reach(model));
+                match &master.own {
+                    None => averaged.meet(model, pair, eps_n, u, time, states, |_, x, hint| {
+                        facets.meet(x, hint, reach, |_| true)
+                    }),
+                    Some(own) => {
+                        let accept = Opposing {
+                            own,
+                            normals: &surface.normals,
+                            position: |n: u32| model.position(n as usize, u),
+                        };
+                        averaged.meet(model, pair, eps_n, u, time, states, |i, x, hint| {
+                            let at = accept.point(i);
+                            facets.meet(x, hint, reach, |f| accept.facet(at, f))
+                        })
+                    }
+                }?;
+                missing |= averaged.touched().any(|(i, f)| !couplings.holds(i, f));
+                continue;
+            }
             let law = Penalty {
                 eps_n: self.penalties[index],
             };
@@ -194,6 +221,7 @@ impl Assembler<'_> {
                     near.push((i as usize, touch.facet));
                 }
             }
+            near.extend(self.averaged[index].iter().flat_map(Averaged::touched));
             couplings.couple(&surface.facets, near.into_iter());
         }
         let pattern = std::sync::Arc::new(maps::pattern(self.model, self.dofs, &self.couplings)?);

@@ -27,6 +27,15 @@ impl Assembler<'_> {
         self.clear_borders();
         let mut first = 0;
         for (index, pair) in self.model.pairs.iter().enumerate() {
+            if pair.averaged.is_some() {
+                let n = pair.points.len();
+                self.meet_rigid(index, &state.u, time, &mut state.points[first..first + n])?;
+                self.average::<TANGENT>(
+                    index, first, state, time, increments, residual, rhs, totals,
+                )?;
+                first += n;
+                continue;
+            }
             let Master::Rigid(number) = pair.master else {
                 let states = &mut state.points[first..first + pair.points.len()];
                 self.moving::<TANGENT>(

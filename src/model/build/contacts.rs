@@ -1,4 +1,5 @@
 //! Contact pairs: slave points, masters, penalties.
+use super::super::averaged::SlaveNodes;
 use super::super::error::{At, number, text};
 use super::super::master::{BodyMaster, Master};
 use super::super::self_contact::OwnFacets;
@@ -7,7 +8,7 @@ use super::super::{ModelError, PairModel, SurfaceModel, penalty};
 use super::{Builder, master_faces};
 use crate::contact::points::SlavePoint;
 use crate::mesh::Face;
-use crate::scene::{Contact, MasterSurface, Penalty};
+use crate::scene::{Contact, Gap, MasterSurface, Penalty};
 use covact_geometry::MovingFacets;
 use penalty::FaceSize;
 use std::collections::BTreeMap;
@@ -83,6 +84,26 @@ impl Builder<'_> {
         self.notes.push(format!(
             "contact `{name}`: penalty {value} (pressure per penetration), {how}"
         ));
+        let averaged = match contact.gap {
+            Gap::Pointwise => None,
+            Gap::Averaged => {
+                let first = self.averaged;
+                let nodes = SlaveNodes::new(&points, first).map_err(|node| {
+                    let x = self.nodes[node as usize];
+                    let message = format!(
+                        "the averaged gap has no weight at the node near ({}, {}, {}): the integral of its shape function \
+                         is not positive",
+                        number(x.x),
+                        number(x.y),
+                        number(x.z)
+                    );
+                    let help = "take more points, at least {\"gauss\": 2}, or less distorted faces";
+                    text(pointer("gap"), message).help(help)
+                })?;
+                self.averaged += nodes.len();
+                Some(nodes)
+            }
+        };
         Ok(PairModel {
             name: name.to_owned(),
             slave: contact.slave.clone(),
@@ -95,6 +116,7 @@ impl Builder<'_> {
             tangent: contact.tangent,
             element_size: size.edge,
             overclosure: None,
+            averaged,
         })
     }
 

@@ -77,6 +77,14 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
         Points::Gauss(n) => c.whole(&format!("{at}/points/gauss"), n.into(), 1, 10),
         Points::Lobatto(n) => c.whole(&format!("{at}/points/lobatto"), n.into(), 2, 10),
     }
+    if contact.gap == Gap::Averaged && contact.points == Points::Nodes {
+        c.add(
+            &format!("{at}/gap"),
+            "an averaged gap is the mean over points of the faces, but the points are the nodes"
+                .to_owned(),
+            Some("take `\"points\": {\"gauss\": 3}` or `{\"lobatto\": 3}`".into()),
+        );
+    }
     if let InitialOverclosure::Shrink { until } = contact.initial_overclosure {
         let at = format!("{at}/initial_overclosure/shrink/until");
         c.positive(&at, "the time until which the overclosure shrinks", until);

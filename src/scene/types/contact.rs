@@ -19,6 +19,9 @@ pub struct Contact {
     pub depth: Option<f64>,
     #[serde(default)]
     pub points: Points,
+    /// Whether every slave point has a gap of its own, or every slave node the mean of those around it.
+    #[serde(default)]
+    pub gap: Gap,
     #[serde(default)]
     pub penalty: Penalty,
     #[serde(default)]
@@ -64,6 +67,18 @@ pub enum Points {
     Gauss(u8),
     /// Lobatto points, this many along each direction of a face (2 to 10).
     Lobatto(u8),
+}
+
+/// What must not be negative.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Gap {
+    /// The gap of every slave point.
+    #[default]
+    Pointwise,
+    /// The gap of every slave node, averaged with its shape function over the points of the faces around it: many points
+    /// at a stiff penalty do not ask more of the faces than their nodes can give. For Gauss and Lobatto points.
+    Averaged,
 }
 
 /// Normal penalty: pressure per penetration (force / length^3).

@@ -1,0 +1,515 @@
+//! Contact with averaged gaps: the closest points of a pair are found in parallel, then everything is summed in order.
+//!
+//! A closed node couples all slave nodes of the faces around it with each other, and with all master nodes that the
+//! points of these faces meet: the rank-one part of [`crate::contact::averaged`].
+use super::couplings::Couplings;
+use super::driven::Border;
+use super::{Assembler, Fault, SurfaceForce, Totals, put};
+use crate::contact::averaged::{self, GapRow, NodalGap};
+use crate::contact::carried::carried;
+use crate::contact::fault::{Piece, PointFault};
+use crate::contact::kernel::{Normal, assemble_force};
+use crate::contact::law::Penalty;
+use crate::contact::meeting::Meeting;
+use crate::contact::point::FaceTangent;
+use crate::contact::published::Parts;
+use crate::contact::rigid::{Exact, RigidMaster};
+use crate::contact::scatter::assemble_point;
+use crate::model::averaged::{Share, SlaveNodes};
+use crate::model::driven::press;
+use crate::model::master::Master;
+use crate::model::state::{PointState, State};
+use crate::model::{Model, PairModel};
+use crate::scene::Tangent;
+use crate::with_patches;
+use covact_geometry::{Hint, ShapeRows, Vec3};
+use nalgebra::{Matrix3, Vector6};
+use rayon::prelude::*;
+
+/// On an edge or a corner nearer than this part of an element the direction of the distance is not looked at.
+const NEAR: f64 = 1e-6;
+
+/// A pair with averaged gaps at the state evaluated last, and room for its matrices.
+pub(super) struct Averaged {
+    met: Vec<Result<Option<Meeting>, PointFault>>,
+    shares: Vec<Share>,
+    /// Per point: it has a gap and a closed node.
+    carries: Vec<bool>,
+    /// Per point that carries: the derivative of its gap.
+    directions: Vec<Vec3>,
+    /// Per point that carries: shape functions of the master; none where it is rigid.
+    rows: Vec<ShapeRows>,
+    gaps: Vec<NodalGap>,
+    normals: Vec<Normal>,
+    row: GapRow,
+    keys: Vec<u32>,
+    map: Vec<u32>,
+    ke: Vec<f64>,
+}
+
+impl Averaged {
+    /// Room for a pair; nothing where its gaps are those of the points.
+    pub fn new(pair: &PairModel) -> Option<Self> {
+        let nodes = pair.averaged.as_ref()?;
+        let points = pair.points.len();
+        let moving = if pair.body_master().is_some() {
+            points
+        } else {
+            0
+        };
+        Some(Averaged {
+            met: vec![Ok(None); points],
+            shares: vec![Share::Nothing; points],
+            carries: vec![false; points],
+            directions: vec![Vec3::zeros(); points],
+            rows: vec![ShapeRows::default(); moving],
+            gaps: vec![NodalGap::default(); nodes.len()],
+            normals: vec![Normal { n: 0.0, dn: 0.0 }; nodes.len()],
+            row: GapRow::default(),
+            keys: Vec::new(),
+            map: Vec::new(),
+            ke: Vec::new(),
+        })
+    }
+
+    /// Finds the closest point of every slave point, and from them the gaps and tractions of the nodes.
+    #[allow(clippy::too_many_arguments)]
+    pub fn meet<F>(
+        &mut self,
+        model: &Model,
+        pair: &PairModel,
+        eps_n: f64,
+        u: &[f64],
+        time: f64,
+        states: &mut [PointState],
+        find: F,
+    ) -> Result<(), Fault>
+    where
+        F: Fn(usize, &Vec3, &mut Option<Hint>) -> Result<Option<Meeting>, PointFault> + Sync,
+    {
+        let Some(nodes) = &pair.averaged else {
+            return Ok(());
+        };
+        (pair.points.par_iter())
+            .zip(states.par_iter_mut())
+            .zip(self.met.par_iter_mut())
+            .enumerate()
+            .with_min_len(32)
+            .for_each(|(i, ((p, s), out))| {
+                *out = find(i, &model.point_position(p, u), &mut s.hint);
+            });
+        let fault = |point: usize, fault: PointFault| {
+            let x = model.point_position(&pair.points[point], u);
+            Fault::Contact {
+                pair: pair.name.clone(),
+                point,
+                at: [x.x, x.y, x.z],
+                fault,
+            }
+        };
+        let (depth, reach) = (pair.master.depth(model), pair.reach(model));
+        let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+        self.gaps.fill(NodalGap::default());
+        for (i, (p, met)) in pair.points.iter().zip(&self.met).enumerate() {
+            let met = met.as_ref().map_err(|e| fault(i, *e))?;
+            let z0 = offsets.as_ref().map_or(0.0, |o| o.factor * o.z0[i]);
+            let share = Share::new(met.map(|m| (m.xi3, m.free)), z0, depth, reach);
+            for (at, shape) in nodes.terms(i, p) {
+                share.add_to(&mut self.gaps[at], shape, p.area);
+            }
+            self.shares[i] = share;
+        }
+        let law = Penalty { eps_n };
+        for (normal, gap) in self.normals.iter_mut().zip(&self.gaps) {
+            *normal = gap.normal(&law);
+        }
+        for (i, p) in pair.points.iter().enumerate() {
+            let closed = nodes.terms(i, p).any(|(at, _)| self.closed(at));
+            self.carries[i] = closed && matches!(self.shares[i], Share::Gap(_));
+            if let (true, Ok(Some(met))) = (self.carries[i], &self.met[i]) {
+                met.check().map_err(|e| fault(i, e))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn closed(&self, node: usize) -> bool {
+        self.gaps[node].gap().is_some_and(|g| g < 0.0)
+    }
+
+    /// Points that carry, with the facets they meet.
+    pub fn touched(&self) -> impl Iterator<Item = (usize, u32)> + '_ {
+        (self.met.iter().zip(&self.carries).enumerate()).filter_map(|(i, (met, carries))| match met
+        {
+            Ok(Some(met)) if *carries => facet(met).map(|f| (i, f)),
+            _ => None,
+        })
+    }
+
+    /// Tells the state what is closed, and the totals of the nodes.
+    fn count(&self, points: &mut [PointState], nodes: &mut [bool], totals: &mut Totals) {
+        for (state, carries) in points.iter_mut().zip(&self.carries) {
+            state.closed = *carries;
+        }
+        let mut deepest = 0.0f64;
+        for (at, was) in nodes.iter_mut().enumerate() {
+            let closed = self.closed(at);
+            totals.changed += usize::from(closed != *was);
+            *was = closed;
+            let (gap, normal) = (&self.gaps[at], &self.normals[at]);
+            if let (true, Some(g)) = (closed, gap.gap()) {
+                totals.active += 1;
+                totals.contact_energy += 0.5 * normal.n * g * gap.area;
+                deepest = deepest.max(-g);
+            }
+        }
+        totals.penetration.push(deepest);
+    }
+}
+
+fn facet(met: &Meeting) -> Option<u32> {
+    match met.piece {
+        Piece::Facet(facet) => Some(facet),
+        Piece::Patch(_) => None,
+    }
+}
+
+/// Nodes that a closed node of the slave couples: those of the faces around it, and those of the facets that these are
+/// coupled with.
+pub(super) fn groups(pair: &PairModel, couplings: Option<&Couplings>, mut add: impl FnMut(&[u32])) {
+    let Some(nodes) = &pair.averaged else { return };
+    let (mut group, mut cells) = (Vec::new(), Vec::new());
+    for place in 0..nodes.len() {
+        group.clear();
+        cells.clear();
+        for around in nodes.around(place) {
+            let point = around.point as usize;
+            let p = &pair.points[point];
+            group.extend_from_slice(&p.nodes[..p.count as usize]);
+            cells.extend(couplings.map(|c| c.cell(point)));
+        }
+        cells.dedup();
+        if let (Some(couplings), Some(master)) = (couplings, pair.body_master()) {
+            for facet in cells.iter().flat_map(|&cell| couplings.facets(cell)) {
+                group.extend_from_slice(master.facets.nodes(facet));
+            }
+        }
+        group.sort_unstable();
+        group.dedup();
+        add(&group);
+    }
+}
+
+impl Assembler<'_> {
+    /// Finds the points of a pair with a rigid master; those of bodies are found before the pattern is known to do.
+    pub(super) fn meet_rigid(
+        &mut self,
+        index: usize,
+        u: &[f64],
+        time: f64,
+        states: &mut [PointState],
+    ) -> Result<(), Fault> {
+        let (model, pair) = (self.model, &self.model.pairs[index]);
+        let (Master::Rigid(number), Some(averaged)) = (&pair.master, &mut self.averaged[index])
+        else {
+            return Ok(());
+        };
+        let master = model.surfaces[*number].at(time, u)?;
+        let (eps_n, reach) = (self.penalties[index], pair.reach(model));
+        with_patches!(master.surface, patches => {
+            let master = RigidMaster {
+                surface: patches,
+                pose: master.pose,
+                depth: master.depth,
+            };
+            averaged.meet(model, pair, eps_n, u, time, states, |_, x, hint| {
+                master.meet(x, hint, reach)
+            })
+        })
+    }
+
+    /// Sums up pair `index`, whose points are found.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn average<const TANGENT: bool>(
+        &mut self,
+        index: usize,
+        first: usize,
+        state: &mut State,
+        time: f64,
+        increments: Option<&[f64]>,
+        residual: &mut [f64],
+        rhs: &mut [f64],
+        totals: &mut Totals,
+    ) -> Result<(), Fault> {
+        let pair = &self.model.pairs[index];
+        let Some(nodes) = &pair.averaged else {
+            return Ok(());
+        };
+        // Taken out, so that the rest of the assembler is free.
+        let Some(mut own) = self.averaged[index].take() else {
+            return Ok(());
+        };
+        let points = &mut state.points[first..first + pair.points.len()];
+        own.count(points, &mut state.nodes[nodes.range()], totals);
+        let u = &state.u;
+        let center = match pair.rigid_master() {
+            Some(surface) => self.model.surfaces[surface].center(time, u)?,
+            None => Vec3::zeros(),
+        };
+        let at = At {
+            index,
+            u,
+            increments,
+            center,
+        };
+        match pair.tangent {
+            Tangent::Exact => {
+                self.points::<TANGENT, _>(&at, &mut own, nodes, &Exact, residual, rhs, totals)
+            }
+            Tangent::Published {
+                rotational,
+                curvature,
+            } => {
+                let parts = Parts {
+                    rotational,
+                    curvature,
+                };
+                self.points::<TANGENT, _>(&at, &mut own, nodes, &parts, residual, rhs, totals)
+            }
+        }
+        if TANGENT {
+            self.rank_one(&at, &mut own, nodes, rhs);
+        }
+        self.averaged[index] = Some(own);
+        Ok(())
+    }
+
+    /// Forces of the points, and the geometric part of the tangent.
+    #[allow(clippy::too_many_arguments)]
+    fn points<const TANGENT: bool, T: FaceTangent>(
+        &mut self,
+        at: &At,
+        own: &mut Averaged,
+        nodes: &SlaveNodes,
+        tangent: &T,
+        residual: &mut [f64],
+        rhs: &mut [f64],
+        totals: &mut Totals,
+    ) {
+        let (model, index, u) = (self.model, at.index, at.u);
+        let pair = &model.pairs[index];
+        let surface = pair.rigid_master();
+        let small = NEAR * pair.element_size;
+        let mut next = 0;
+        for (i, p) in pair.points.iter().enumerate() {
+            let count = p.count as usize;
+            let start = next;
+            next += count * (count + 1) / 2;
+            let Ok(Some(met)) = &own.met[i] else { continue };
+            if !own.carries[i] {
+                continue;
+            }
+            let lambda = averaged::traction(nodes.terms(i, p).map(|(a, w)| (w, own.normals[a].n)));
+            let geometry = met.steady(small);
+            own.directions[i] = geometry.normal();
+            let (r, k) = averaged::point(&geometry, lambda, tangent);
+            let r = r * p.area;
+            let mut add = |node: usize, f: &Vec3| {
+                for c in 0..3 {
+                    residual[3 * node + c] += f[c];
+                    self.contact[3 * node + c] += f[c];
+                }
+            };
+            let force: Vec3 = r.fixed_rows::<3>(0).into();
+            for (node, w) in p.terms() {
+                add(node, &(force * w));
+            }
+            let (slave, master) = match surface {
+                Some(number) => (&mut totals.surfaces[number], None),
+                None => {
+                    let [slave, master] = totals.pairs[index].sides();
+                    (slave, Some(master))
+                }
+            };
+            let x = model.point_position(p, u);
+            slave.force -= force;
+            slave.moment -= x.cross(&force);
+            if let (Some(side), Some(facet), Some(body)) =
+                (master, facet(met), self.masters.surface(index))
+            {
+                let rows = &mut own.rows[i];
+                body.facets.shape(facet, met.xi, rows);
+                let masters = body.facets.nodes(facet);
+                for (k, &node) in masters.iter().enumerate() {
+                    let row = [-rows.n[k], rows.n_1[k], rows.n_2[k]];
+                    let f = assemble_force(&r, &row);
+                    add(node as usize, &f);
+                    side.add(&model.position(node as usize, u), &f);
+                }
+                if TANGENT {
+                    let n = count + masters.len();
+                    own.ke.resize(9 * n * n, 0.0);
+                    assemble_point(&k, &p.shape[..count], rows, p.area, &mut own.ke);
+                    own.keys.clear();
+                    own.keys.extend_from_slice(&p.nodes[..count]);
+                    own.keys.extend_from_slice(masters);
+                    self.put_averaged(own, at.increments, rhs);
+                }
+                continue;
+            }
+            let k: Matrix3<f64> = k.fixed_view::<3, 3>(0, 0) * p.area;
+            let mut borders = self.borders.iter_mut();
+            if let Some(border) = borders.find(|b| surface == Some(b.surface())) {
+                border.carry::<TANGENT>(p, &force, &k, &(x - at.center));
+            }
+            if TANGENT {
+                let size = 3 * count;
+                own.ke.resize(size * size, 0.0);
+                for (b, wb) in p.shape[..count].iter().enumerate() {
+                    for (a, wa) in p.shape[..count].iter().enumerate() {
+                        for c in 0..3 {
+                            for r in 0..3 {
+                                own.ke[(3 * b + c) * size + 3 * a + r] = wa * wb * k[(r, c)];
+                            }
+                        }
+                    }
+                }
+                put(
+                    &mut self.matrix,
+                    self.dofs,
+                    &mut self.work,
+                    &p.nodes[..count],
+                    &self.point_maps[index][start..next],
+                    &mut own.ke,
+                    at.increments,
+                    rhs,
+                );
+            }
+        }
+    }
+
+    /// The rank-one part of every closed node.
+    fn rank_one(&mut self, at: &At, own: &mut Averaged, nodes: &SlaveNodes, rhs: &mut [f64]) {
+        let (model, index) = (self.model, at.index);
+        let pair = &model.pairs[index];
+        let surface = pair.rigid_master();
+        for place in 0..nodes.len() {
+            if !own.closed(place) {
+                continue;
+            }
+            own.row.clear();
+            // Derivative by translation and spin of a rigid master.
+            let mut motion = Vector6::zeros();
+            for around in nodes.around(place) {
+                let i = around.point as usize;
+                let (true, Ok(Some(met))) = (own.carries[i], &own.met[i]) else {
+                    continue;
+                };
+                let p = &pair.points[i];
+                let g3 = own.directions[i] * (around.shape * p.area);
+                for (node, w) in p.terms() {
+                    own.row.add(node as u32, g3 * w);
+                }
+                match (facet(met), self.masters.surface(index)) {
+                    (Some(facet), Some(body)) => {
+                        let masters = body.facets.nodes(facet).iter();
+                        for (node, w) in masters.zip(&own.rows[i].n) {
+                            own.row.add(*node, g3 * -w);
+                        }
+                    }
+                    _ => {
+                        let arm = model.point_position(p, at.u) - at.center;
+                        press::add(&mut motion, &-g3, &g3.cross(&arm));
+                    }
+                }
+            }
+            own.row.finish();
+            let scale = own.normals[place].dn / own.gaps[place].area;
+            let entries = own.row.entries();
+            own.keys.clear();
+            own.keys.extend(entries.iter().map(|e| e.0));
+            let n = 3 * entries.len();
+            own.ke.clear();
+            for column in 0..n {
+                let by = scale * entries[column / 3].1[column % 3];
+                own.ke
+                    .extend(entries.iter().flat_map(|e| (0..3).map(|c| by * e.1[c])));
+            }
+            let mut borders = self.borders.iter_mut();
+            if let Some(border) = borders.find(|b| surface == Some(b.surface())) {
+                border.rank_one(entries, &motion, scale);
+            }
+            self.put_averaged(own, at.increments, rhs);
+        }
+    }
+
+    /// Scatters the matrix of the nodes in `keys`.
+    fn put_averaged(&mut self, own: &mut Averaged, increments: Option<&[f64]>, rhs: &mut [f64]) {
+        own.map.clear();
+        (self.matrix.pattern())
+            .element_map(&own.keys, &mut own.map)
+            .expect("the pattern was built with every facet that the points around a node meet");
+        put(
+            &mut self.matrix,
+            self.dofs,
+            &mut self.work,
+            &own.keys,
+            &own.map,
+            &mut own.ke,
+            increments,
+            rhs,
+        );
+    }
+}
+
+/// What is summed where.
+struct At<'a> {
+    /// Number of the pair.
+    index: usize,
+    u: &'a [f64],
+    increments: Option<&'a [f64]>,
+    /// Centre of a rigid master.
+    center: Vec3,
+}
+
+impl SurfaceForce {
+    /// Adds what the residual `f` of a node at `x` says.
+    fn add(&mut self, x: &Vec3, f: &Vec3) {
+        self.force -= f;
+        self.moment -= x.cross(f);
+    }
+}
+
+impl Border {
+    /// Adds a point with residual `r` and tangent `k`, at `arm` from the centre.
+    fn carry<const TANGENT: bool>(
+        &mut self,
+        p: &crate::contact::points::SlavePoint,
+        r: &Vec3,
+        k: &Matrix3<f64>,
+        arm: &Vec3,
+    ) {
+        self.active += 1;
+        let c = carried(r, k, arm);
+        press::add(&mut self.residual, &-r, &c.spin);
+        if TANGENT {
+            press::add_tangent(&mut self.tangent, k, &-c.point_spin, &c.spin_spin);
+            for (node, w) in p.terms() {
+                let [translation, spin] = self.block(node);
+                *translation -= k * w;
+                *spin += c.point_spin * w;
+            }
+        }
+    }
+
+    /// Adds `scale c x c` with the entries of `c` at the slave's nodes and the surface's own.
+    fn rank_one(&mut self, entries: &[(u32, Vec3)], motion: &Vector6<f64>, scale: f64) {
+        let [t, s] = [0, 3].map(|i| Vec3::new(motion[i], motion[i + 1], motion[i + 2]) * scale);
+        for (node, v) in entries {
+            let [translation, spin] = self.block(*node as usize);
+            *translation += v * t.transpose();
+            *spin += v * s.transpose();
+        }
+        self.tangent += motion * motion.transpose() * scale;
+    }
+}

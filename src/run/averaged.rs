@@ -1,0 +1,81 @@
+//! Nodes of a pair with averaged gaps, as the output shows them.
+use crate::contact::averaged::NodalGap;
+use crate::contact::law::Penalty;
+use crate::model::averaged::{Share, SlaveNodes};
+use crate::model::master::MasterNow;
+use crate::model::state::State;
+use crate::model::{Model, PairModel};
+
+/// A slave node.
+pub(super) struct NodeNow {
+    /// Number in the model.
+    pub node: usize,
+    pub closed: bool,
+    /// Mean gap `g_A`; of an open node the mean distance of its points.
+    pub gap: f64,
+    /// `-lambda_A`.
+    pub pressure: f64,
+    /// `m_A` of a closed node.
+    pub area: f64,
+}
+
+/// Sums of a node over its points.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    gap: NodalGap,
+    /// Weighted distances as they are shown, and all of the weight.
+    shown: f64,
+    area: f64,
+}
+
+/// The nodes of a pair in an accepted state; `hints` starts the search of its points at number `first` of the state's,
+/// and `front` becomes whether each is in front of the master or in contact. Also says how many of them are no longer,
+/// but lie below it and deeper than its depth.
+#[allow(clippy::too_many_arguments)]
+pub(super) fn nodes_now(
+    model: &Model,
+    pair: &PairModel,
+    nodes: &SlaveNodes,
+    eps_n: f64,
+    master: &MasterNow,
+    state: &State,
+    first: usize,
+    time: f64,
+    front: &mut [bool],
+) -> (Vec<NodeNow>, usize) {
+    let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+    let reach = pair.reach(model);
+    let mut sums = vec![Sums::default(); nodes.len()];
+    let mut sunk = 0;
+    for (i, (p, front)) in pair.points.iter().zip(front).enumerate() {
+        let z0 = offsets.as_ref().map_or(0.0, |o| o.factor * o.z0[i]);
+        let x = model.point_position(p, &state.u);
+        let seen = master.see(i, &x, state.points[first + i].hint);
+        sunk += usize::from(*front && seen.is_some_and(|s| s.behind));
+        *front = seen.is_some_and(|s| s.closed || s.signed_distance >= 0.0);
+        let found = seen.map(|s| (s.signed_distance, s.free));
+        let share = Share::new(found, z0, master.depth(), reach);
+        let shown = match (share, &seen) {
+            (Share::Gap(gap), _) => gap,
+            (_, Some(seen)) => seen.distance,
+            (_, None) => f64::NAN,
+        };
+        for (at, shape) in nodes.terms(i, p) {
+            share.add_to(&mut sums[at].gap, shape, p.area);
+            sums[at].shown += shape * p.area * shown;
+            sums[at].area += shape * p.area;
+        }
+    }
+    let law = Penalty { eps_n };
+    let now = nodes.nodes().iter().zip(&sums).map(|(&node, s)| {
+        let closed = s.gap.gap().filter(|g| *g < 0.0);
+        NodeNow {
+            node: node as usize,
+            closed: closed.is_some(),
+            gap: closed.unwrap_or(s.shown / s.area),
+            pressure: -s.gap.normal(&law).n,
+            area: closed.map_or(0.0, |_| s.gap.area),
+        }
+    });
+    (now.collect(), sunk)
+}
