@@ -288,7 +288,7 @@ fn walls_of_the_pinched_tube_touch_with_pressure() {
         .iter()
         .zip(&step)
         .filter(|(t, _)| way(**t) < 15.0)
-        .last();
+        .next_back();
     let tube = outcome.body("tube", *apart.expect("a step").1 as u32);
     let p = tube.field("contact_pressure");
     let inside = (tube.points.iter().zip(p)).filter(|(x, p)| x[0].hypot(x[2]) < 19.5 && **p > 0.0);
