@@ -284,11 +284,7 @@ fn walls_of_the_pinched_tube_touch_with_pressure() {
     assert!(peak("penetration.max") < 0.027);
     // Until shortly before the balls are two walls apart nothing touches inside: the tube's outer faces alone are in contact.
     let way = |t: f64| 19.3 * t;
-    let apart = time
-        .iter()
-        .zip(&step)
-        .filter(|(t, _)| way(**t) < 15.0)
-        .next_back();
+    let apart = (time.iter().zip(&step)).rfind(|(t, _)| way(**t) < 15.0);
     let tube = outcome.body("tube", *apart.expect("a step").1 as u32);
     let p = tube.field("contact_pressure");
     let inside = (tube.points.iter().zip(p)).filter(|(x, p)| x[0].hypot(x[2]) < 19.5 && **p > 0.0);
