@@ -28,11 +28,10 @@ impl Assembler<'_> {
         let mut first = 0;
         for (index, pair) in self.model.pairs.iter().enumerate() {
             let Master::Rigid(number) = pair.master else {
-                let states = &mut state.points[first..first + pair.points.len()];
-                self.moving::<TANGENT>(
-                    index, &state.u, time, states, increments, residual, rhs, totals,
-                );
-                first += pair.points.len();
+                let count = state.slaves(self.model, index).len();
+                let range = first..first + count;
+                self.moving::<TANGENT>(index, state, range, time, increments, residual, rhs, totals);
+                first += count;
                 continue;
             };
             let surface = &self.model.surfaces[number];

@@ -76,6 +76,17 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
         Points::Nodes => {}
         Points::Gauss(n) => c.whole(&format!("{at}/points/gauss"), n.into(), 1, 10),
         Points::Lobatto(n) => c.whole(&format!("{at}/points/lobatto"), n.into(), 2, 10),
+        Points::Segments(n) => check_segments(c, &format!("{at}/points/segments"), n, contact, scene),
+    }
+    if contact.passes != Passes::One && scene.surfaces.contains_key(&contact.master) {
+        c.add(
+            &format!("{at}/passes"),
+            format!(
+                "the master `{}` is a rigid surface, which has no pass of its own",
+                contact.master
+            ),
+            Some("`two_half` is for masters that are faces of a body".into()),
+        );
     }
     if let InitialOverclosure::Shrink { until } = contact.initial_overclosure {
         let at = format!("{at}/initial_overclosure/shrink/until");
@@ -100,6 +111,37 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
             "the factor of the penalty",
             p,
         ),
+    }
+}
+
+/// Segments need facets to cut with that are not the slave's own, and have no points that last.
+fn check_segments(c: &mut Checker, at: &str, degree: u8, contact: &Contact, scene: &Scene) {
+    c.whole(at, degree.into(), 1, 5);
+    if scene.surfaces.contains_key(&contact.master) {
+        c.add(
+            at,
+            format!(
+                "the master `{}` is a rigid surface, which has no facets to cut the slave faces with",
+                contact.master
+            ),
+            Some(
+                "take `{\"gauss\": n}` or `{\"lobatto\": n}`; segments are for masters that are faces of a body".into(),
+            ),
+        );
+    }
+    let body = |set: &str| set.split_once('.').map(|(body, _)| body.to_owned());
+    if body(&contact.slave).is_some() && body(&contact.slave) == body(&contact.master) {
+        let message = "slave and master belong to one body, whose faces do not cut one another";
+        let help = "take `{\"gauss\": n}`";
+        c.add(at, message.to_owned(), Some(help.to_owned()));
+    }
+    if !matches!(
+        contact.initial_overclosure,
+        InitialOverclosure::Strain | InitialOverclosure::Refuse
+    ) {
+        let message = "gaps cannot be measured from where points start that are cut anew in every step";
+        let help = "take `{\"gauss\": n}`, or `initial_overclosure` `strain` or `refuse`";
+        c.add(at, message.to_owned(), Some(help.to_owned()));
     }
 }
 
