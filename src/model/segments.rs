@@ -137,9 +137,14 @@ impl Outline {
                 continue;
             }
             let along = |s: f64| at([a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])]);
-            let bends =
-                |p: &Vec3, m: &Vec3, q: &Vec3| ((p + q) * 0.5 - m).norm() > BEND * size;
-            divide(corners[k], corners[(k + 1) % 4], &along, &bends, &mut points);
+            let bends = |p: &Vec3, m: &Vec3, q: &Vec3| ((p + q) * 0.5 - m).norm() > BEND * size;
+            divide(
+                corners[k],
+                corners[(k + 1) % 4],
+                &along,
+                &bends,
+                &mut points,
+            );
         }
         let jet = facets.jet(facet, [0.0; 2]);
         let normal = jet.rho_i[0].cross(&jet.rho_i[1]);
@@ -236,9 +241,8 @@ impl Place {
         let mut out = Polygon::new();
         for (k, a) in near.iter().enumerate() {
             let b = near[(k + 1) % near.len()];
-            let along = |s: f64| {
-                self.parameters([a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])])
-            };
+            let along =
+                |s: f64| self.parameters([a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])]);
             let bends = |p: &Point, m: &Point, q: &Point| {
                 (0.5 * (p[0] + q[0]) - m[0]).hypot(0.5 * (p[1] + q[1]) - m[1]) > BEND
             };

@@ -165,7 +165,12 @@ impl Fields {
             first = range.end;
             let master = masters.at(model, index, &state.u, time)?;
             let fronts = self.front[range.clone()].iter_mut();
-            for (i, ((p, s), front)) in points.iter().zip(&state.points[range]).zip(fronts).enumerate() {
+            for (i, ((p, s), front)) in points
+                .iter()
+                .zip(&state.points[range])
+                .zip(fronts)
+                .enumerate()
+            {
                 let seen = master.see(i, &model.point_position(p, &state.u), s.hint);
                 *front = seen.is_some_and(|s| s.closed || s.signed_distance >= 0.0);
             }

@@ -4,9 +4,11 @@ mod blocks;
 mod convergence;
 mod invariance;
 mod patch;
+mod segments;
 mod self_contact;
 mod shells;
 mod sliding;
 #[path = "../verification/support.rs"]
 #[allow(dead_code)]
 mod support;
+mod two_half;

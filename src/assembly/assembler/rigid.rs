@@ -30,7 +30,9 @@ impl Assembler<'_> {
             let Master::Rigid(number) = pair.master else {
                 let count = state.slaves(self.model, index).len();
                 let range = first..first + count;
-                self.moving::<TANGENT>(index, state, range, time, increments, residual, rhs, totals);
+                self.moving::<TANGENT>(
+                    index, state, range, time, increments, residual, rhs, totals,
+                );
                 first += count;
                 continue;
             };

@@ -104,9 +104,7 @@ impl Builder<'_> {
             Penalty::Scaled(f) => format!("{} of the automatic {auto}", number(f)),
         };
         // The back pass of two has the penalty of the first.
-        let told = format!(
-            "contact `{name}`: penalty {value} (pressure per penetration), {how}"
-        );
+        let told = format!("contact `{name}`: penalty {value} (pressure per penetration), {how}");
         if self.scene.contacts.get(name) == Some(contact) {
             self.notes.push(told);
         }

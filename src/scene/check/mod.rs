@@ -76,7 +76,9 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
         Points::Nodes => {}
         Points::Gauss(n) => c.whole(&format!("{at}/points/gauss"), n.into(), 1, 10),
         Points::Lobatto(n) => c.whole(&format!("{at}/points/lobatto"), n.into(), 2, 10),
-        Points::Segments(n) => check_segments(c, &format!("{at}/points/segments"), n, contact, scene),
+        Points::Segments(n) => {
+            check_segments(c, &format!("{at}/points/segments"), n, contact, scene)
+        }
     }
     if contact.passes != Passes::One && scene.surfaces.contains_key(&contact.master) {
         c.add(
@@ -139,7 +141,8 @@ fn check_segments(c: &mut Checker, at: &str, degree: u8, contact: &Contact, scen
         contact.initial_overclosure,
         InitialOverclosure::Strain | InitialOverclosure::Refuse
     ) {
-        let message = "gaps cannot be measured from where points start that are cut anew in every step";
+        let message =
+            "gaps cannot be measured from where points start that are cut anew in every step";
         let help = "take `{\"gauss\": n}`, or `initial_overclosure` `strain` or `refuse`";
         c.add(at, message.to_owned(), Some(help.to_owned()));
     }
