@@ -244,6 +244,8 @@ fn meaning(effect: &str) -> &'static str {
         "contact.points.gauss" => "contact is sampled at Gauss points of the faces",
         "contact.points.lobatto" => "contact is sampled at Lobatto points of the faces",
         "contact.gap.averaged" => "gaps averaged over the faces around slave nodes",
+        "contact.points.segments" => "contact is integrated over faces cut by those they meet",
+        "contact.passes.two_half" => "each side of a contact is the slave once, no side preferred",
         "contact.tangent.exact" => "tangent matrix exact at every penetration",
         "contact.tangent.published" => "tangent matrix of the published form",
         "load.dead" => "loads of constant direction",

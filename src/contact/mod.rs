@@ -6,6 +6,7 @@
 //! - [`spin`]: a rigid body's translation and spin in the slots, [`averaged`]: the gap in the mean of slave nodes.
 pub mod averaged;
 pub mod carried;
+pub mod clip;
 pub mod closest;
 pub mod corner;
 pub mod fault;

@@ -58,6 +58,14 @@ pub fn assemble_point(
     }
 }
 
+/// What is left of a point's matrix in a half pass, whose traction acts on the slave alone: the slave's rows. `ke` as of
+/// [`assemble_point`], for so many nodes of each side.
+pub fn keep_slave_rows(slave: usize, master: usize, ke: &mut [f64]) {
+    for column in ke.chunks_exact_mut(3 * (slave + master)) {
+        column[3 * slave..].fill(0.0);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,8 @@
 //! The effects a scene calls for, by name: what the run then does, and nothing else.
 use super::Model;
-use crate::scene::{Element, FacetKind, Gap, MasterSurface, Material, Points, Scene, Tangent};
+use crate::scene::{
+    Element, FacetKind, Gap, MasterSurface, Material, Passes, Points, Scene, Tangent,
+};
 use std::collections::BTreeSet;
 
 /// Names of the effects that are on, sorted.
@@ -44,9 +46,13 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
             Points::Nodes => "contact.points.nodes",
             Points::Gauss(_) => "contact.points.gauss",
             Points::Lobatto(_) => "contact.points.lobatto",
+            Points::Segments(_) => "contact.points.segments",
         });
         if contact.gap == Gap::Averaged {
             add("contact.gap.averaged");
+        }
+        if contact.passes == Passes::TwoHalf {
+            add("contact.passes.two_half");
         }
         add(match contact.tangent {
             Tangent::Exact => "contact.tangent.exact",

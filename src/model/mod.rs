@@ -12,6 +12,7 @@ pub mod master;
 pub mod motion;
 pub mod overclosure;
 pub mod penalty;
+pub mod segments;
 pub mod self_contact;
 pub mod slave;
 pub mod state;
@@ -84,7 +85,12 @@ pub struct PairModel {
     /// The slave faces.
     pub faces: Vec<Face>,
     pub master: Master,
+    /// Slave points; those of integration segments as they are before anything moves ([`state::State::slaves`]).
     pub points: Vec<SlavePoint>,
+    /// Slave faces are cut by the master's facets, with rules of this degree on the pieces.
+    pub segments: Option<u8>,
+    /// One of the two passes of a contact whose sides are both slaves.
+    pub half: Option<HalfPass>,
     /// Penalty (force / length^3).
     pub eps_n: f64,
     /// The penalty may be raised to keep the penetration small.
@@ -96,6 +102,18 @@ pub struct PairModel {
     pub overclosure: Option<Overclosure>,
     /// The slave's nodes, where gaps are averaged.
     pub averaged: Option<SlaveNodes>,
+}
+
+/// A pass of the two-half-pass contact (R. A. Sauer and L. De Lorenzis, "A computational contact formulation based on
+/// surface potentials", Computer Methods in Applied Mechanics and Engineering 253 (2013), and "An unbiased computational
+/// contact formulation for 3D friction", International Journal for Numerical Methods in Engineering 101 (2015)): each side
+/// is the slave once, and a pass acts on its slave alone, with all of the traction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct HalfPass {
+    /// The pair of the other pass.
+    pub other: usize,
+    /// The second of the two passes: its slave is what the scene calls the master.
+    pub back: bool,
 }
 
 impl Model {

@@ -11,6 +11,8 @@ use crate::shell::{Quad, tributary_areas};
 /// Nodes carry their true tributary area `int N dA`; so on a symmetry plane a node stands for the half that is
 /// modelled, and its pressure is right.
 ///
+/// Integration segments are made by [`super::segments`], where the master is known; here they are Gauss points.
+///
 /// # Errors
 /// A number of points that no rule has.
 pub fn slave_points(
@@ -27,6 +29,8 @@ pub fn slave_points(
         }
         Points::Gauss(n) => quadrature::gauss(n as usize)?,
         Points::Lobatto(n) => quadrature::lobatto(n as usize)?,
+        // Not cut by anything: the rule of as high a degree.
+        Points::Segments(n) => quadrature::gauss(n as usize / 2 + 1)?,
     };
     Ok(sampled(mesh, faces, &rule, offset))
 }

@@ -1,6 +1,8 @@
 //! What a step may change, so that it can be taken back as a whole.
 use super::Model;
+use crate::contact::points::SlavePoint;
 use covact_geometry::Hint;
+use std::sync::Arc;
 
 /// State of one slave point on a rigid surface without friction: where the last search ended, and whether the point was
 /// closed. There is no history: nothing here outlives the next search.
@@ -22,6 +24,9 @@ pub struct State {
     pub points: Vec<PointState>,
     /// Whether slave nodes were closed, pair after pair of those with averaged gaps.
     pub nodes: Vec<bool>,
+    /// Per pair, the slave points of its integration segments since they were last cut; none where the points are those
+    /// of the model.
+    pub cuts: Vec<Option<Arc<[SlavePoint]>>>,
 }
 
 impl State {
@@ -42,15 +47,23 @@ impl State {
             elements: vec![0.0; elements.sum()],
             points: vec![PointState::default(); points.sum()],
             nodes: vec![false; nodes.sum()],
+            cuts: vec![None; model.pairs.len()],
         }
     }
 
-    /// Takes over another state without allocating.
+    /// The slave points of a pair.
+    #[inline]
+    pub fn slaves<'a>(&'a self, model: &'a Model, pair: usize) -> &'a [SlavePoint] {
+        slaves(&self.cuts, model, pair)
+    }
+
+    /// Takes over another state, without allocating unless it has more slave points.
     pub fn copy_from(&mut self, other: &State) {
         self.u.copy_from_slice(&other.u);
         self.elements.copy_from_slice(&other.elements);
-        self.points.copy_from_slice(&other.points);
+        self.points.clone_from(&other.points);
         self.nodes.copy_from_slice(&other.nodes);
+        self.cuts.clone_from(&other.cuts);
     }
 
     /// Continues the change from `before` to `self` by `ratio` into `out`: a start for the next step that has the
@@ -65,8 +78,9 @@ impl State {
         };
         along(&self.u, &before.u, &mut out.u);
         along(&self.elements, &before.elements, &mut out.elements);
-        out.points.copy_from_slice(&self.points);
+        out.points.clone_from(&self.points);
         out.nodes.copy_from_slice(&self.nodes);
+        out.cuts.clone_from(&self.cuts);
     }
 
     /// Bytes that this state occupies.
@@ -75,5 +89,18 @@ impl State {
             + size_of_val(&self.elements[..])
             + size_of_val(&self.points[..])
             + size_of_val(&self.nodes[..])
+    }
+}
+
+/// [`State::slaves`] where the rest of the state is borrowed.
+#[inline]
+pub fn slaves<'a>(
+    cuts: &'a [Option<Arc<[SlavePoint]>>],
+    model: &'a Model,
+    pair: usize,
+) -> &'a [SlavePoint] {
+    match &cuts[pair] {
+        None => &model.pairs[pair].points,
+        Some(cut) => cut,
     }
 }

@@ -12,12 +12,20 @@ use std::collections::{BTreeMap, BTreeSet};
 /// along one that slides in a plane of symmetry.
 pub fn unsymmetric_effects(model: &Model) -> Vec<String> {
     let still = still(model);
-    (model.follower_loads.iter())
+    let halves = (model.pairs.iter())
+        .filter(|p| p.half.is_some_and(|h| !h.back))
+        .map(|p| {
+            format!(
+                "contact `{}` is made of two half passes, in each of which the traction acts on the slave alone",
+                p.name
+            )
+        });
+    let follower = (model.follower_loads.iter())
         .filter(|(_, load)| border(&load.faces).any(|edge| !quiet(model, &still, edge)))
         .map(|(name, _)| {
             format!("the follower pressure `{name}` acts on faces whose border is free to move")
-        })
-        .collect()
+        });
+    follower.chain(halves).collect()
 }
 
 /// Nodes of the edges that belong to one of the faces only: both ends, and the middle (or again an end).

@@ -299,6 +299,7 @@ fn pair_report(
             Points::Nodes => "at the nodes of the faces".to_owned(),
             Points::Gauss(n) => format!("{n} x {n} Gauss points a face"),
             Points::Lobatto(n) => format!("{n} x {n} Lobatto points a face"),
+            Points::Segments(n) => format!("segments with rules of degree {n}"),
         },
         spacing: point_spacing(model, index),
         penalty: pair.eps_n,

@@ -98,19 +98,22 @@ impl Fields {
         let mut first = 0;
         for (index, (pair, eps_n)) in model.pairs.iter().zip(penalties).enumerate() {
             let master = masters.at(model, index, &state.u, time)?;
-            let states = &state.points[first..first + pair.points.len()];
-            let fronts = &mut self.front[first..first + pair.points.len()];
+            let points = state.slaves(model, index);
+            let states = &state.points[first..first + points.len()];
+            let fronts = &mut self.front[first..first + points.len()];
             if let Some(nodes) = &pair.averaged {
                 let (now, sunk) = nodes_now(
                     model, pair, nodes, *eps_n, &master, state, first, time, fronts,
                 );
                 self.sunk[index] += sunk;
                 now.iter().for_each(|n| self.take(n));
-                first += pair.points.len();
+                first += points.len();
                 continue;
             }
+            // Both passes of two see the same area.
+            let share = if pair.half.is_some() { 0.5 } else { 1.0 };
             let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
-            for (i, ((p, s), front)) in pair.points.iter().zip(states).zip(fronts).enumerate() {
+            for (i, ((p, s), front)) in points.iter().zip(states).zip(fronts).enumerate() {
                 let z0 = offsets.as_ref().map_or(0.0, |o| o.factor * o.z0[i]);
                 let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
@@ -130,7 +133,7 @@ impl Fields {
                     self.smallest_gap = gap;
                 }
                 self.largest_pressure = self.largest_pressure.max(pressure);
-                self.area += if closed { p.area } else { 0.0 };
+                self.area += if closed { share * p.area } else { 0.0 };
                 for (node, n) in p.terms() {
                     let w = n * p.area;
                     self.weight[node] += w;
@@ -141,7 +144,7 @@ impl Fields {
                 }
             }
             // Pressures of several surfaces on the same face add up; the nearest surface gives the gap.
-            for (node, _) in pair.points.iter().flat_map(|p| p.terms()) {
+            for (node, _) in points.iter().flat_map(|p| p.terms()) {
                 let weight = std::mem::take(&mut self.weight[node]);
                 let [pressure, gap] = std::mem::take(&mut self.sums[node]);
                 if weight > 0.0 {
@@ -149,7 +152,7 @@ impl Fields {
                     self.gap[node] = self.gap[node].min(gap / weight);
                 }
             }
-            first += pair.points.len();
+            first += points.len();
         }
         if self.smallest_gap == f64::INFINITY {
             self.smallest_gap = f64::NAN;
@@ -166,6 +169,35 @@ impl Fields {
         self.gap[n.node] = self.gap[n.node].min(n.gap);
         let status = if n.closed { CLOSED } else { OPEN };
         self.status[n.node] = self.status[n.node].max(status);
+    }
+
+    /// Takes over the slave points of a state whose segments were cut anew; what was gathered stays.
+    pub fn resample(
+        &mut self,
+        model: &Model,
+        masters: &Masters,
+        state: &State,
+        time: f64,
+    ) -> Result<(), RunError> {
+        self.front.resize(state.points.len(), false);
+        let mut first = 0;
+        for index in 0..model.pairs.len() {
+            let points = state.slaves(model, index);
+            let range = first..first + points.len();
+            first = range.end;
+            let master = masters.at(model, index, &state.u, time)?;
+            let fronts = self.front[range.clone()].iter_mut();
+            for (i, ((p, s), front)) in points
+                .iter()
+                .zip(&state.points[range])
+                .zip(fronts)
+                .enumerate()
+            {
+                let seen = master.see(i, &model.point_position(p, &state.u), s.hint);
+                *front = seen.is_some_and(|s| s.closed || s.signed_distance >= 0.0);
+            }
+        }
+        Ok(())
     }
 
     /// Writes all bodies and surfaces of an accepted step.

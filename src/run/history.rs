@@ -1,5 +1,6 @@
 //! Rows of `history.csv`.
 use super::fields::Fields;
+use crate::assembly::PairForce;
 use crate::model::{Model, PairModel};
 use crate::solve::newton::Converged;
 use covact_geometry::Vec3;
@@ -42,7 +43,7 @@ pub fn columns(model: &Model) -> Vec<String> {
             names.extend(AXES.map(|axis| format!("{quantity}.{}.{axis}", surface.name)));
         }
     }
-    for pair in deformable(model) {
+    for (_, pair) in deformable(model) {
         for side in ["slave", "master"] {
             for quantity in ["force", "moment"] {
                 names.extend(AXES.map(|axis| format!("{side}.{quantity}.{}.{axis}", pair.name)));
@@ -104,8 +105,8 @@ pub fn row(r: &Record) -> Vec<f64> {
             out.extend(v.iter());
         }
     }
-    for (_, sides) in (r.model.pairs.iter().zip(&totals.pairs)).filter(|(p, _)| is_deformable(p)) {
-        let [slave, master] = [sides.slave, sides.master];
+    for (index, _) in deformable(r.model) {
+        let PairForce { slave, master } = totals.pairs[index];
         for side in [slave, master] {
             out.extend(side.force.iter().chain(side.moment.iter()));
         }
@@ -125,13 +126,11 @@ pub fn row(r: &Record) -> Vec<f64> {
     out
 }
 
-/// Pairs whose master is a body.
-fn deformable(model: &Model) -> impl Iterator<Item = &PairModel> {
-    model.pairs.iter().filter(|p| is_deformable(p))
-}
-
-fn is_deformable(pair: &PairModel) -> bool {
-    pair.body_master().is_some()
+/// Contacts whose master is a body, with their numbers; two half passes are one.
+fn deformable(model: &Model) -> impl Iterator<Item = (usize, &PairModel)> {
+    let back = |pair: &PairModel| pair.half.is_some_and(|half| half.back);
+    let pairs = model.pairs.iter().enumerate();
+    pairs.filter(move |(_, p)| p.body_master().is_some() && !back(p))
 }
 
 /// Force and moment about the origin that each support exerts on the deformed body.

@@ -7,7 +7,7 @@ use super::step::Attempts;
 use crate::assembly::Assembler;
 use crate::model::error::number;
 use crate::model::state::State;
-use crate::model::{Model, penalty};
+use crate::model::{Model, penalty, segments};
 use crate::output::{History, Phases, Results, RunStatus};
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
@@ -117,10 +117,18 @@ impl<'a, 'm> March<'a, 'm> {
         // The state before the last accepted step and that step's size, while the path is smooth.
         let mut before: Option<(State, f64)> = None;
         let mut cuts = 0;
+        let segmented = self.model.pairs.iter().any(|p| p.segments.is_some());
         while !stepping.done(self.progress.time) {
             let end = stepping.next(self.progress.time);
             let dt = end - self.progress.time;
             let step = self.progress.steps + 1;
+            // On the last accepted state, so that a step that is cut has the same segments.
+            if segmented && cuts == 0 {
+                let masters = &mut self.assembler.masters;
+                segments::recut(self.model, masters, committed, self.progress.time)?;
+                let time = self.progress.time;
+                (outputs.fields).resample(self.model, masters, committed, time)?;
+            }
             self.observer.event(&Event::StepStarted {
                 step,
                 time: end,

@@ -113,8 +113,8 @@ impl Attempts<'_, '_> {
         for entry in self.model.driven() {
             let (index, surface, driven) = entry;
             let mut first = 0;
-            let touches = self.model.pairs.iter().any(|pair| {
-                let range = first..first + pair.points.len();
+            let touches = (self.model.pairs.iter().enumerate()).any(|(i, pair)| {
+                let range = first..first + trial.slaves(self.model, i).len();
                 first = range.end;
                 pair.rigid_master() == Some(index) && trial.points[range].iter().any(|p| p.closed)
             });
@@ -183,10 +183,11 @@ impl Attempts<'_, '_> {
         let mut first = 0;
         for (index, pair) in self.model.pairs.iter().enumerate() {
             let master = (masters.at(self.model, index, &trial.u, end)).map_err(Fault::from)?;
-            let range = first..first + pair.points.len();
+            let points = trial.slaves(self.model, index);
+            let range = first..first + points.len();
             first = range.end;
             let now = &trial.points[range.clone()];
-            let opened = (pair.points.iter().zip(now))
+            let opened = (points.iter().zip(now))
                 .zip(&self.committed.points[range])
                 .enumerate()
                 .filter(|(_, ((_, now), before))| before.closed && !now.closed);
@@ -233,14 +234,20 @@ impl Attempts<'_, '_> {
     /// Raises the automatic penalties of pairs that penetrate too deep, and says so in `told`; whether there were any.
     fn stiffen(&mut self, step: u32, converged: &Converged, told: &mut Vec<String>) -> bool {
         let mut raised = false;
+        let before = self.assembler.penalties.clone();
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let allowed = penalty::TOLERATED * pair.element_size;
             let deepest = converged.totals.penetration[i];
             if !pair.automatic || deepest <= allowed {
                 continue;
             }
-            let eps = self.assembler.penalties[i] * 2.0 * deepest / allowed;
-            self.assembler.penalties[i] = eps;
+            let eps = before[i] * 2.0 * deepest / allowed;
+            // Two half passes have one penalty.
+            let other = pair.half.map_or(i, |half| half.other);
+            for index in [i, other] {
+                let penalty = &mut self.assembler.penalties[index];
+                *penalty = penalty.max(eps);
+            }
             raised = true;
             told.push(format!(
                 "contact `{}`: penetration {deepest:.3e} above {allowed:.3e} (1 % of an element) at step {step}: \

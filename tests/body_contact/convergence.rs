@@ -5,7 +5,7 @@ use covact::solve::event::Event;
 use serde_json::{Value, json};
 
 /// Residuals of each accepted step from the last iteration on in which a point changed.
-fn endings(outcome: &Outcome) -> Vec<Vec<f64>> {
+pub fn endings(outcome: &Outcome) -> Vec<Vec<f64>> {
     let mut out = Vec::new();
     let mut settled: Vec<f64> = Vec::new();
     for event in &outcome.events {
@@ -29,11 +29,11 @@ fn endings(outcome: &Outcome) -> Vec<Vec<f64>> {
 }
 
 /// What rounding leaves: residuals fall to 1e-13.
-const FLOOR: f64 = 1e-12;
+pub const FLOOR: f64 = 1e-12;
 /// `r_(k+1) / r_k^2` with residuals relative to the forces tends to a number of the order of the deflection in
 /// thicknesses, 2 / 0.3 here, but is larger where points pass from facet to facet on the way: up to 97 is measured. A
 /// tangent with an error converges linearly, and its ratio grows without bound.
-const C: f64 = 200.0;
+pub const C: f64 = 200.0;
 
 /// How many pairs of residuals satisfy and violate quadratic convergence; pairs of which nothing can be said are left
 /// out.

@@ -6,9 +6,11 @@ mod convergence;
 mod invariance;
 mod overclosure;
 mod patch;
+mod segments;
 mod self_contact;
 mod shells;
 mod sliding;
 #[path = "../verification/support.rs"]
 #[allow(dead_code)]
 mod support;
+mod two_half;

@@ -58,6 +58,20 @@ impl Couplings {
         }
     }
 
+    /// Takes over other points on the same cells, in the same order; every cell has some.
+    pub fn resample(&mut self, points: &[SlavePoint]) {
+        self.cell_of.clear();
+        let last = self.facets.len().saturating_sub(1);
+        let mut cell = 0;
+        for p in points {
+            let own = &p.nodes[..p.count as usize];
+            while cell < last && self.nodes(cell) != own {
+                cell += 1;
+            }
+            self.cell_of.push(cell as u32);
+        }
+    }
+
     /// Cell of a slave point.
     #[inline]
     pub fn cell(&self, point: usize) -> usize {

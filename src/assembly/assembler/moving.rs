@@ -3,21 +3,24 @@
 use super::averaged::Averaged;
 use super::couplings::Couplings;
 use super::driven::Border;
-use super::{Assembler, Fault, SurfaceForce, Totals, maps, put};
+use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, maps, put};
 use crate::contact::kernel::assemble_force;
 use crate::contact::law::{GapOffset, NoOffset, NormalLaw, Offsets, Penalty};
 use crate::contact::moving::{MovingMaster, MovingTouch};
 use crate::contact::point::FaceTangent;
+use crate::contact::points::SlavePoint;
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault};
-use crate::contact::scatter::assemble_point;
+use crate::contact::scatter::{assemble_point, keep_slave_rows};
 use crate::model::master::{MasterNow, Masters};
 use crate::model::self_contact::{Accept, All, Opposing};
-use crate::model::state::{PointState, State};
-use crate::model::{Model, PairModel};
+use crate::model::state::{PointState, State, slaves};
+use crate::model::{HalfPass, Model, PairModel};
 use crate::scene::Tangent;
 use covact_geometry::{ShapeRows, Vec3};
 use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Points whose matrices are formed before they are summed.
 const CHUNK: usize = 64;
@@ -32,6 +35,8 @@ pub(super) struct Meetings {
     matrices: Vec<f64>,
     /// Numbers that the largest matrix has.
     stride: usize,
+    /// The segments that the points are of.
+    cut: Option<Arc<[SlavePoint]>>,
 }
 
 impl Meetings {
@@ -43,14 +48,31 @@ impl Meetings {
         let slave = pair.points.iter().map(|p| p.count as usize).max();
         let facets = 0..master.facets.len() as u32;
         let facet = facets.map(|f| master.facets.nodes(f).len()).max();
-        let stride = (3 * (slave.unwrap_or(0) + facet.unwrap_or(0))).pow(2);
-        let most = CHUNK.min(pair.points.len());
-        Meetings {
-            touches: vec![Ok(None); pair.points.len()],
-            active: Vec::with_capacity(pair.points.len()),
-            rows: vec![ShapeRows::default(); most],
-            matrices: vec![0.0; most * stride],
-            stride,
+        let mut out = Meetings {
+            stride: (3 * (slave.unwrap_or(0) + facet.unwrap_or(0))).pow(2),
+            ..Meetings::default()
+        };
+        out.resize(pair.points.len());
+        out
+    }
+
+    /// Room for another number of points.
+    fn resize(&mut self, points: usize) {
+        let most = CHUNK.min(points);
+        self.touches.clear();
+        self.touches.resize(points, Ok(None));
+        self.active.clear();
+        self.active.reserve(points);
+        self.rows.resize(most, ShapeRows::default());
+        self.matrices.resize(most * self.stride, 0.0);
+    }
+
+    /// Whether the points are those of `cut`.
+    fn holds(&self, cut: &Option<Arc<[SlavePoint]>>) -> bool {
+        match (&self.cut, cut) {
+            (None, None) => true,
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            _ => false,
         }
     }
 }
@@ -62,7 +84,7 @@ pub(super) fn first_couplings(model: &Model, masters: &Masters) -> Vec<Option<Co
         .map(|(index, pair)| {
             let surface = masters.surface(index)?;
             let mut couplings = Couplings::new(&pair.points);
-            let near = near(model, masters, index, &zero, &[]);
+            let near = near(model, masters, index, &pair.points, &zero, &[]);
             couplings.couple(&surface.facets, near.into_iter());
             Some(couplings)
         })
@@ -75,6 +97,7 @@ fn near(
     model: &Model,
     masters: &Masters,
     index: usize,
+    points: &[SlavePoint],
     u: &[f64],
     states: &[PointState],
 ) -> Vec<(usize, u32)> {
@@ -89,7 +112,7 @@ fn near(
         surface: masters.surface(index),
     };
     let reach = body.depth.max(pair.element_size);
-    (pair.points.iter().enumerate())
+    (points.iter().enumerate())
         .filter_map(|(i, p)| {
             let x = model.point_position(p, u);
             let hint = states.get(i).and_then(|s| s.hint);
@@ -114,12 +137,13 @@ impl Assembler<'_> {
         let mut first = 0;
         let mut missing = false;
         for (index, pair) in self.model.pairs.iter().enumerate() {
-            let range = first..first + pair.points.len();
+            let points = slaves(&state.cuts, self.model, index);
+            let range = first..first + points.len();
             first = range.end;
             let (Some(master), Some(surface), Some(couplings)) = (
                 pair.body_master(),
                 self.masters.surface(index),
-                &self.couplings[index],
+                &mut self.couplings[index],
             ) else {
                 continue;
             };
@@ -149,12 +173,18 @@ impl Assembler<'_> {
                 missing |= averaged.touched().any(|(i, f)| !couplings.holds(i, f));
                 continue;
             }
+            if !self.meetings[index].holds(&state.cuts[index]) {
+                self.meetings[index].cut = state.cuts[index].clone();
+                self.meetings[index].resize(points.len());
+                couplings.resample(points);
+            }
             let law = Penalty {
                 eps_n: self.penalties[index],
             };
             let batch = Batch {
                 model: self.model,
                 pair,
+                points,
                 master: MovingMaster {
                     facets: &surface.facets,
                     depth: master.depth,
@@ -182,7 +212,7 @@ impl Assembler<'_> {
             for (i, touch) in touches.iter().enumerate() {
                 match touch {
                     Err(fault) => {
-                        let x = self.model.point_position(&pair.points[i], &state.u);
+                        let x = self.model.point_position(&points[i], &state.u);
                         return Err(Fault::Contact {
                             pair: pair.name.clone(),
                             point: i,
@@ -207,15 +237,16 @@ impl Assembler<'_> {
     /// Builds the pattern anew for the points that are in contact or near it.
     fn couple_anew(&mut self, state: &State) -> Result<(), Fault> {
         let mut first = 0;
-        for (index, pair) in self.model.pairs.iter().enumerate() {
-            let states = &state.points[first..first + pair.points.len()];
-            first += pair.points.len();
+        for index in 0..self.model.pairs.len() {
+            let points = state.slaves(self.model, index);
+            let states = &state.points[first..first + points.len()];
+            first += points.len();
             let (Some(surface), Some(couplings)) =
                 (self.masters.surface(index), &mut self.couplings[index])
             else {
                 continue;
             };
-            let mut near = near(self.model, &self.masters, index, &state.u, states);
+            let mut near = near(self.model, &self.masters, index, points, &state.u, states);
             for &i in &self.meetings[index].active {
                 if let Ok(Some(touch)) = &self.meetings[index].touches[i as usize] {
                     near.push((i as usize, touch.facet));
@@ -242,15 +273,19 @@ impl Assembler<'_> {
     pub(super) fn moving<const TANGENT: bool>(
         &mut self,
         index: usize,
-        u: &[f64],
+        state: &mut State,
+        range: Range<usize>,
         time: f64,
-        states: &mut [PointState],
         increments: Option<&[f64]>,
         residual: &mut [f64],
         rhs: &mut [f64],
         totals: &mut Totals,
     ) {
         let pair = &self.model.pairs[index];
+        let points = slaves(&state.cuts, self.model, index);
+        let u = &state.u[..];
+        let states = &mut state.points[range];
+        let half = pair.half.is_some();
         let (Some(surface), Some(couplings)) =
             (self.masters.surface(index), &mut self.couplings[index])
         else {
@@ -263,6 +298,7 @@ impl Assembler<'_> {
             rows,
             matrices,
             stride,
+            ..
         } = &mut self.meetings[index];
         let touch = |i: u32| match &touches[i as usize] {
             Ok(Some(touch)) => Some(touch),
@@ -275,7 +311,9 @@ impl Assembler<'_> {
         }
         totals.active += active.len();
         let mut deepest = 0.0f64;
-        let force = &mut totals.pairs[index];
+        // Both passes of two are one contact with two sides, whose energy is the mean of both.
+        let mut force = PairForce::default();
+        let share = if half { 0.25 } else { 0.5 };
         let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
         for chunk in active.chunks(CHUNK) {
             (chunk.par_iter())
@@ -284,12 +322,16 @@ impl Assembler<'_> {
                 .with_min_len(8)
                 .for_each(|((&i, rows), ke)| {
                     let Some(touch) = touch(i) else { return };
-                    let p = &pair.points[i as usize];
+                    let p = &points[i as usize];
                     facets.shape(touch.facet, touch.xi, rows);
                     if TANGENT {
                         let slave = &p.shape[..p.count as usize];
                         let size = 3 * (slave.len() + rows.count);
-                        assemble_point(&touch.tangent, slave, rows, p.area, &mut ke[..size * size]);
+                        let ke = &mut ke[..size * size];
+                        assemble_point(&touch.tangent, slave, rows, p.area, ke);
+                        if half {
+                            keep_slave_rows(slave.len(), rows.count, ke);
+                        }
                     }
                 });
             for ((&i, rows), ke) in chunk
@@ -298,13 +340,13 @@ impl Assembler<'_> {
                 .zip(matrices.chunks_mut(*stride))
             {
                 let Some(touch) = touch(i) else { continue };
-                let p = &pair.points[i as usize];
+                let p = &points[i as usize];
                 let offset = offsets
                     .as_ref()
                     .map_or(0.0, |o| o.factor * o.z0[i as usize]);
                 let gap = touch.xi3 - offset;
                 deepest = deepest.max(-gap);
-                totals.contact_energy += 0.5 * touch.n * gap * p.area;
+                totals.contact_energy += share * touch.n * gap * p.area;
                 let r = touch.residual * p.area;
                 let mut add = |node: usize, f: &Vec3, side: &mut SurfaceForce| {
                     side.force -= f;
@@ -318,7 +360,8 @@ impl Assembler<'_> {
                     add(node, &assemble_force(&r, &[w, 0.0, 0.0]), &mut force.slave);
                 }
                 let nodes = facets.nodes(touch.facet);
-                for (k, &node) in nodes.iter().enumerate() {
+                let pushed = if half { &[] } else { nodes };
+                for (k, &node) in pushed.iter().enumerate() {
                     let row = [-rows.n[k], rows.n_1[k], rows.n_2[k]];
                     add(node as usize, &assemble_force(&r, &row), &mut force.master);
                 }
@@ -350,6 +393,11 @@ impl Assembler<'_> {
             }
         }
         totals.penetration.push(deepest);
+        match pair.half {
+            Some(HalfPass { other, back: true }) => totals.pairs[other].master = force.slave,
+            Some(_) => totals.pairs[index].slave = force.slave,
+            None => totals.pairs[index] = force,
+        }
     }
 }
 
@@ -357,6 +405,7 @@ impl Assembler<'_> {
 struct Batch<'a, L> {
     model: &'a Model,
     pair: &'a PairModel,
+    points: &'a [SlavePoint],
     master: MovingMaster<'a>,
     law: &'a L,
     u: &'a [f64],
@@ -410,7 +459,7 @@ impl<L: NormalLaw + Copy> Batch<'_, L> {
         accept: &A,
         tangent: &T,
     ) {
-        (self.pair.points.par_iter())
+        (self.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
             .enumerate()

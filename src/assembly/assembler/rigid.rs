@@ -37,11 +37,12 @@ impl Assembler<'_> {
                 continue;
             }
             let Master::Rigid(number) = pair.master else {
-                let states = &mut state.points[first..first + pair.points.len()];
+                let count = state.slaves(self.model, index).len();
+                let range = first..first + count;
                 self.moving::<TANGENT>(
-                    index, &state.u, time, states, increments, residual, rhs, totals,
+                    index, state, range, time, increments, residual, rhs, totals,
                 );
-                first += pair.points.len();
+                first += count;
                 continue;
             };
             let surface = &self.model.surfaces[number];

@@ -4,11 +4,11 @@ use super::super::error::{At, number, text};
 use super::super::master::{BodyMaster, Master};
 use super::super::self_contact::OwnFacets;
 use super::super::slave::slave_points;
-use super::super::{ModelError, PairModel, SurfaceModel, penalty};
+use super::super::{HalfPass, ModelError, PairModel, SurfaceModel, penalty, segments};
 use super::{Builder, master_faces};
 use crate::contact::points::SlavePoint;
 use crate::mesh::Face;
-use crate::scene::{Contact, Gap, MasterSurface, Penalty};
+use crate::scene::{Contact, Gap, MasterSurface, Passes, Penalty, Points};
 use covact_geometry::MovingFacets;
 use penalty::FaceSize;
 use std::collections::BTreeMap;
@@ -28,7 +28,19 @@ impl Builder<'_> {
         let mut pairs = Vec::new();
         for (name, contact) in &self.scene.contacts {
             let rigid = surface_index.get(contact.master.as_str()).copied();
+            let first = pairs.len();
             pairs.push(self.pair(name, contact, rigid)?);
+            if contact.passes == Passes::TwoHalf {
+                let mut back = contact.clone();
+                std::mem::swap(&mut back.slave, &mut back.master);
+                pairs.push(self.pair(name, &back, None)?);
+                for (index, pair) in pairs[first..].iter_mut().enumerate() {
+                    pair.half = Some(HalfPass {
+                        other: first + 1 - index,
+                        back: index == 1,
+                    });
+                }
+            }
         }
         for (index, (name, surface)) in self.scene.surfaces.iter().enumerate() {
             let own: Vec<&PairModel> = (pairs.iter())
@@ -49,7 +61,8 @@ impl Builder<'_> {
         let pointer = |field: &str| format!("/contacts/{name}/{field}");
         let (body, faces) = self.faces(&contact.slave, &pointer("slave"))?;
         let model = &self.bodies[body];
-        let mut points = slave_points(&model.mesh, &faces, contact.points, model.first_node)
+        let first_node = model.first_node;
+        let mut points = slave_points(&model.mesh, &faces, contact.points, first_node)
             .at(|| pointer("points"))?;
         let (size, mut automatic) = self.stiffness(body, &faces);
         let mut softer = "the slave's";
@@ -59,6 +72,16 @@ impl Builder<'_> {
                 let (mut master, stiffness) = self.body_master(name, contact)?;
                 if master.body == body {
                     self.own_body(name, contact, &faces, &mut points, &mut master)?;
+                }
+                if let Points::Segments(degree) = contact.points {
+                    let mesh = &self.bodies[body].mesh;
+                    let nodes: Vec<_> = (faces.iter())
+                        .map(|&f| mesh.face_nodes(f).shifted(first_node))
+                        .collect();
+                    let position = |n: u32| self.nodes[n as usize];
+                    let reach = segments::reach(master.depth, size.edge);
+                    let facets = &master.facets;
+                    points = segments::segments(&nodes, facets, position, position, degree, reach);
                 }
                 if stiffness < automatic {
                     automatic = stiffness;
@@ -81,9 +104,11 @@ impl Builder<'_> {
             ),
             Penalty::Scaled(f) => format!("{} of the automatic {auto}", number(f)),
         };
-        self.notes.push(format!(
-            "contact `{name}`: penalty {value} (pressure per penetration), {how}"
-        ));
+        // The back pass of two has the penalty of the first.
+        let told = format!("contact `{name}`: penalty {value} (pressure per penetration), {how}");
+        if self.scene.contacts.get(name) == Some(contact) {
+            self.notes.push(told);
+        }
         let averaged = match contact.gap {
             Gap::Pointwise => None,
             Gap::Averaged => {
@@ -111,6 +136,11 @@ impl Builder<'_> {
             faces,
             master,
             points,
+            segments: match contact.points {
+                Points::Segments(degree) => Some(degree),
+                _ => None,
+            },
+            half: None,
             eps_n,
             automatic: is_automatic,
             tangent: contact.tangent,
@@ -197,6 +227,17 @@ impl Builder<'_> {
             return Err(text(format!("/contacts/{name}/master"), message).help(
                 "for self contact give the same set as slave and as master, else two sets without a common face",
             ));
+        }
+        if equal && contact.passes == Passes::TwoHalf {
+            return Err(text(
+                format!("/contacts/{name}/passes"),
+                format!(
+                    "`{}` is slave and master at once: both sides of self contact are slaves already, with half of their \
+                     areas",
+                    contact.slave
+                ),
+            )
+            .help("leave `passes` out, or give two sets without a common face"));
         }
         // As far as a point may sink in, through the wall and one more face.
         let distance = 2.0 * master.depth + master.element_size;

@@ -76,6 +76,19 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
         Points::Nodes => {}
         Points::Gauss(n) => c.whole(&format!("{at}/points/gauss"), n.into(), 1, 10),
         Points::Lobatto(n) => c.whole(&format!("{at}/points/lobatto"), n.into(), 2, 10),
+        Points::Segments(n) => {
+            check_segments(c, &format!("{at}/points/segments"), n, contact, scene)
+        }
+    }
+    if contact.passes != Passes::One && scene.surfaces.contains_key(&contact.master) {
+        c.add(
+            &format!("{at}/passes"),
+            format!(
+                "the master `{}` is a rigid surface, which has no pass of its own",
+                contact.master
+            ),
+            Some("`two_half` is for masters that are faces of a body".into()),
+        );
     }
     if contact.gap == Gap::Averaged && contact.points == Points::Nodes {
         c.add(
@@ -83,6 +96,19 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
             "an averaged gap is the mean over points of the faces, but the points are the nodes"
                 .to_owned(),
             Some("take `\"points\": {\"gauss\": 3}` or `{\"lobatto\": 3}`".into()),
+        );
+    }
+    // The nodes' weights belong to points that stay, and their tangent to both sides.
+    let with = match (contact.points, contact.passes) {
+        (Points::Segments(_), _) => Some("segments, which are cut anew at every step"),
+        (_, Passes::TwoHalf) => Some("two half passes"),
+        _ => None,
+    };
+    if let (Gap::Averaged, Some(with)) = (contact.gap, with) {
+        c.add(
+            &format!("{at}/gap"),
+            format!("an averaged gap does not go with {with}"),
+            Some("take `pointwise`, or Gauss points and one pass".into()),
         );
     }
     if let InitialOverclosure::Shrink { until } = contact.initial_overclosure {
@@ -108,6 +134,38 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
             "the factor of the penalty",
             p,
         ),
+    }
+}
+
+/// Segments need facets to cut with that are not the slave's own, and have no points that last.
+fn check_segments(c: &mut Checker, at: &str, degree: u8, contact: &Contact, scene: &Scene) {
+    c.whole(at, degree.into(), 1, 5);
+    if scene.surfaces.contains_key(&contact.master) {
+        c.add(
+            at,
+            format!(
+                "the master `{}` is a rigid surface, which has no facets to cut the slave faces with",
+                contact.master
+            ),
+            Some(
+                "take `{\"gauss\": n}` or `{\"lobatto\": n}`; segments are for masters that are faces of a body".into(),
+            ),
+        );
+    }
+    let body = |set: &str| set.split_once('.').map(|(body, _)| body.to_owned());
+    if body(&contact.slave).is_some() && body(&contact.slave) == body(&contact.master) {
+        let message = "slave and master belong to one body, whose faces do not cut one another";
+        let help = "take `{\"gauss\": n}`";
+        c.add(at, message.to_owned(), Some(help.to_owned()));
+    }
+    if !matches!(
+        contact.initial_overclosure,
+        InitialOverclosure::Strain | InitialOverclosure::Refuse
+    ) {
+        let message =
+            "gaps cannot be measured from where points start that are cut anew in every step";
+        let help = "take `{\"gauss\": n}`, or `initial_overclosure` `strain` or `refuse`";
+        c.add(at, message.to_owned(), Some(help.to_owned()));
     }
 }
 

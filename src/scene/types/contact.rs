@@ -23,6 +23,8 @@ pub struct Contact {
     #[serde(default)]
     pub gap: Gap,
     #[serde(default)]
+    pub passes: Passes,
+    #[serde(default)]
     pub penalty: Penalty,
     #[serde(default)]
     pub tangent: Tangent,
@@ -67,6 +69,21 @@ pub enum Points {
     Gauss(u8),
     /// Lobatto points, this many along each direction of a face (2 to 10).
     Lobatto(u8),
+    /// The faces cut by the facets of the master at the start of every step, with a rule of this degree on the triangles of
+    /// every piece (1 to 5): exact where faces do not match. Only for masters that are other bodies.
+    Segments(u8),
+}
+
+/// Which side of a contact is the slave; other than `one` only for masters that are bodies.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Passes {
+    /// The slave: its traction acts on the master with the opposite sign, and forces and moments balance.
+    #[default]
+    One,
+    /// Each side in turn, and the traction of a pass acts on its slave alone: no side is preferred, forces balance as far as
+    /// both sides find the same gaps (`imbalance` in the history), and the system is unsymmetric.
+    TwoHalf,
 }
 
 /// What must not be negative.

@@ -1,0 +1,107 @@
+//! Two half passes: each side is the slave once.
+use crate::blocks::{done, exact, patch, pressures};
+use crate::convergence::{C, FLOOR, endings};
+use crate::shells::arch_on_plate;
+use crate::support::solve;
+use serde_json::json;
+
+/// Each side integrates its own shape functions, so that no kink lies within a face: few points suffice on meshes that do
+/// not match (Sauer and De Lorenzis (2013)).
+#[test]
+fn two_half_passes_pass_the_patch_test() {
+    let p = exact();
+    for [upper, lower] in [["h8", "h8"], ["h8", "q18"], ["q18", "q18"]] {
+        let mut scene = patch(3, 2, json!({"gauss": 3}));
+        scene["contacts"]["press"]["passes"] = json!("two_half");
+        scene["bodies"]["upper"]["element"] = json!(upper);
+        scene["bodies"]["lower"]["element"] = json!(lower);
+        scene["solution"]["newton"]["tolerance"] = json!(1e-12);
+        let outcome = done(&scene);
+        for body in ["upper", "lower"] {
+            let [low, high] = pressures(&outcome, body);
+            println!("{upper} on {lower}, {body}: {low} {high} {p}");
+            assert!((high - p).max(p - low) < 1e-10 * p, "{low} {high} {p}");
+        }
+        assert!(outcome.column("imbalance.force.press")[0] < 1e-10 * p);
+    }
+}
+
+/// The imbalance of two curved sides falls as they are refined.
+#[test]
+fn the_imbalance_falls_with_refinement() {
+    let share = |factor: u32| {
+        let mut scene = arch_on_plate(1.5, 3, json!({"gauss": 5}));
+        scene["contacts"]["press"]["passes"] = json!("two_half");
+        for (_, body) in scene["bodies"].as_object_mut().expect("bodies") {
+            for (_, mesh) in body["mesh"].as_object_mut().expect("mesh") {
+                for n in mesh["elements"].as_array_mut().expect("elements") {
+                    *n = json!(n.as_u64().expect("number") * u64::from(factor));
+                }
+            }
+        }
+        let outcome = done(&scene);
+        let last = |name: &str| *outcome.column(name).last().expect("steps");
+        let force = last("slave.force.press.z").abs();
+        let share = last("imbalance.force.press") / force;
+        println!("{factor}: force {force:.6e}, imbalance {share:.3e}");
+        assert!(force > 0.0);
+        share
+    };
+    let shares = [1, 2].map(share);
+    assert!(shares[0] > 1e-9, "{shares:?}");
+    assert!(shares[1] < 0.6 * shares[0], "{shares:?}");
+}
+
+/// Slave and master exchanged are the same equations.
+#[test]
+fn exchanged_roles_give_the_same_result() {
+    let values = |exchange: bool| {
+        let mut scene = arch_on_plate(1.5, 3, json!({"gauss": 2}));
+        let press = &mut scene["contacts"]["press"];
+        press["passes"] = json!("two_half");
+        if exchange {
+            let (slave, master) = (press["slave"].take(), press["master"].take());
+            press["slave"] = master;
+            press["master"] = slave;
+        }
+        scene["solution"]["newton"]["tolerance"] = json!(1e-12);
+        let outcome = done(&scene);
+        let sides = if exchange {
+            ["master", "slave"]
+        } else {
+            ["slave", "master"]
+        };
+        let mut names = sides.map(|s| format!("{s}.force.press.z")).to_vec();
+        names.extend(["energy.internal", "energy.contact", "points.active"].map(String::from));
+        names
+            .iter()
+            .map(|n| *outcome.column(n).last().expect("steps"))
+            .collect::<Vec<f64>>()
+    };
+    let (a, b) = (values(false), values(true));
+    println!("{a:?}\n{b:?}");
+    for (a, b) in a.iter().zip(&b) {
+        assert!(*a != 0.0 && (a - b).abs() < 1e-10 * a.abs(), "{a} {b}");
+    }
+}
+
+/// A tangent that lacked something would converge linearly.
+#[test]
+fn residuals_fall_quadratically_in_two_half_passes() {
+    let mut scene = arch_on_plate(2.0, 5, json!({"gauss": 2}));
+    scene["contacts"]["press"]["passes"] = json!("two_half");
+    let outcome = solve(&scene);
+    assert_eq!(outcome.summary.status.name(), "done");
+    let mut good = 0;
+    for e in endings(&outcome) {
+        println!("{e:?}");
+        for pair in e.windows(2) {
+            let bound = (C * pair[0] * pair[0]).max(FLOOR);
+            if bound < 0.1 * pair[0] {
+                assert!(pair[1] <= bound, "{e:?}");
+                good += 1;
+            }
+        }
+    }
+    assert!(good >= 2, "{good}");
+}
