@@ -1,16 +1,17 @@
 //! Slave faces cut by the facets of the master.
 use crate::blocks::{done, exact, patch, pressures};
+use crate::shells::arch_on_plate;
 use covact::mesh::FaceNodes;
 use covact::model::segments::segments;
 use covact_geometry::{MovingFacets, Vec3};
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// The patch test on meshes of which no inner edges coincide: no kink lies within a piece, so that the pressure is
 /// uniform to rounding, where the Gauss points of whole faces are off by percents.
 #[test]
 fn segments_pass_the_patch_test_on_meshes_that_do_not_match() {
     let p = exact();
-    let off = |upper: &str, lower: &str, points: serde_json::Value| {
+    let off = |upper: &str, lower: &str, points: Value| {
         let mut scene = patch(3, 2, points.clone());
         scene["bodies"]["upper"]["element"] = json!(upper);
         scene["bodies"]["lower"]["element"] = json!(lower);
@@ -87,7 +88,13 @@ fn segments_of_coaxial_arches_sum_to_the_slave_area() {
             .iter()
             .map(|f| covact::shell::Quad::new(f, at).area())
             .sum();
-        let whole = segments(&slave, &facets, at, at, 4, 0.0).len();
+        // An arch far inside cuts nothing.
+        let (inner, z) = arch(0.1, 1, 1, 2, true);
+        let inner: Vec<_> = inner.iter().map(|f| (f.nodes(), f.count)).collect();
+        let mut far = MovingFacets::new(&inner).expect("facets");
+        far.update(|n| z[n as usize]);
+        let whole = segments(&slave, &far, at, at, 4, 0.0).len();
+        assert_eq!(whole, 15 * 2 * 6, "two triangles of six points a face");
         let points = segments(&slave, &facets, at, at, 4, 0.2);
         let sum: f64 = points.iter().map(|p| p.area).sum();
         println!(
@@ -98,5 +105,25 @@ fn segments_of_coaxial_arches_sum_to_the_slave_area() {
         assert!((sum - area).abs() < 1e-10 * area);
         assert!(points.iter().all(|p| p.area > 0.0));
         assert!(points.len() > whole, "nothing was cut");
+    }
+}
+
+/// Cut anew at every step of a run in which faces bend and slide on each other: the force is that of many Gauss points,
+/// both sides feel the same, and the steps converge.
+#[test]
+fn segments_follow_faces_that_bend_and_slide() {
+    for surface in ["faces", "smooth"] {
+        let run = |points: Value| {
+            let mut scene = arch_on_plate(1.5, 5, points);
+            scene["contacts"]["press"]["master_surface"] = json!(surface);
+            let outcome = done(&scene);
+            let last = |name: &str| *outcome.column(name).last().expect("steps");
+            let force = last("slave.force.press.z").abs();
+            assert!(force > 0.1 && last("imbalance.force.press") < 1e-12 * force);
+            force
+        };
+        let (cut, gauss) = (run(json!({"segments": 2})), run(json!({"gauss": 10})));
+        println!("{surface}: segments {cut}, 10 x 10 Gauss points {gauss}");
+        assert!((cut / gauss - 1.0).abs() < 0.01, "{surface}: {cut} {gauss}");
     }
 }
