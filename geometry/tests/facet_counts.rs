@@ -4,7 +4,7 @@ use covact_geometry::facet::{
     FacetError, Refinement, bilinear_facets, biquadratic_facets, distance_from, smooth_patches,
 };
 use covact_geometry::primitives::{cylinder, sphere_without_poles};
-use covact_geometry::{PatchSet, Surface, Vec3};
+use covact_geometry::{PatchSet, Vec3};
 
 fn tube() -> PatchSet {
     let tube = cylinder(2.0, 3.0, Vec3::zeros(), Vec3::z()).unwrap();

@@ -103,7 +103,6 @@ mod tests {
                 axis: [0.0, 0.0, 3.0],
                 angle: scene::Value::Expression("90*t".to_owned()),
             }),
-            ..scene::Motion::default()
         };
         let placement = scene::Placement {
             axis: [1.0, 0.0, 0.0],

@@ -267,7 +267,7 @@ impl Place {
             let j = |t: &Vec3, c: usize| t.dot(&self.axes[c]) / self.size;
             let determinant = j(&t, 0) * j(&s, 1) - j(&s, 0) * j(&t, 1);
             // Not finite, or turned over.
-            if !(determinant > least) {
+            if determinant.is_nan() || determinant <= least {
                 return plane;
             }
             let step = [
