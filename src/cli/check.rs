@@ -234,6 +234,11 @@ fn meaning(effect: &str) -> &'static str {
         "material.neo_hooke" => "rubber-like law for large strains",
         "contact.normal.penalty" => "contact pressure = penalty times penetration, no friction",
         "contact.master.rigid" => "rigid surfaces",
+        "contact.master.rigid.facets.bilinear" => "plane or twisted facets for a rigid surface",
+        "contact.master.rigid.facets.biquadratic" => "curved facets for a rigid surface",
+        "contact.master.rigid.facets.smooth" => {
+            "one smooth surface over the facets of a rigid surface"
+        }
         "contact.master.deformable" => "faces of bodies that deform",
         "contact.self" => "faces of a body touch faces of the same body",
         "contact.master.smooth" => "one smooth surface through the nodes of the faces",
