@@ -105,3 +105,19 @@ fn residuals_fall_quadratically_in_two_half_passes() {
     }
     assert!(good >= 2, "{good}");
 }
+
+/// A smooth surface is not the faces that it smooths, and each pass sees one side smooth: told before anything is solved.
+#[test]
+fn smooth_surfaces_in_two_half_passes_draw_a_warning() {
+    let warnings = |surface: &str| {
+        let mut scene = arch_on_plate(1.5, 5, json!({"gauss": 2}));
+        scene["contacts"]["press"]["passes"] = json!("two_half");
+        scene["contacts"]["press"]["master_surface"] = json!(surface);
+        let loaded = covact::scene::parse(&scene.to_string(), "scene.json").expect("a scene");
+        let model = covact::model::build::build(&loaded).expect("a model");
+        (model.warnings.iter())
+            .filter(|w| w.contains("`press`") && w.contains("sagitta"))
+            .count()
+    };
+    assert_eq!([warnings("faces"), warnings("smooth")], [0, 1]);
+}

@@ -31,6 +31,13 @@ impl Builder<'_> {
             let first = pairs.len();
             pairs.push(self.pair(name, contact, rigid)?);
             if contact.passes == Passes::TwoHalf {
+                if contact.master_surface == Some(MasterSurface::Smooth) {
+                    self.warnings.push(format!(
+                        "contact `{name}`: with `two_half` each pass meets the smooth surface of one side and the faces of \
+                         the other, which differ by the sagitta of an element: the forces of both sides (`imbalance`) \
+                         agree only as far as meshes are fine for their curvature"
+                    ));
+                }
                 let mut back = contact.clone();
                 std::mem::swap(&mut back.slave, &mut back.master);
                 pairs.push(self.pair(name, &back, None)?);
