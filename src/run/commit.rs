@@ -3,6 +3,7 @@ use crate::assembly::Fault;
 use crate::contact::friction::history::{PointHistory, PointStatus};
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::Friction;
+use crate::contact::friction::trial::Traction;
 use crate::contact::rigid::RigidMaster;
 use crate::model::master::Master;
 use crate::model::state::State;
@@ -74,7 +75,7 @@ fn open(
     }
 }
 
-/// Takes the state at the end of a step into the histories.
+/// Takes the state at the end of a step, which began at time `start`, into the histories.
 ///
 /// # Errors
 /// A point that cannot be evaluated, or a motion or a coefficient without a value at `time`.
@@ -82,6 +83,7 @@ pub fn commit(
     model: &Model,
     penalties: &[f64],
     state: &mut State,
+    start: f64,
     time: f64,
 ) -> Result<Sliding, Fault> {
     let mut total = Sliding::default();
@@ -96,7 +98,10 @@ pub fn commit(
             continue;
         };
         let master = model.surfaces[surface].at(time, &state.u)?;
-        let now = friction.law.at(time)?;
+        let (was, now) = (friction.law.at(start)?, friction.law.at(time)?);
+        let limited = |trial: &Vec3, normal: &Vec3, pressure: f64| {
+            with_law!(was, law => law.slip(trial, normal, pressure).t)
+        };
         let eps_n = penalties[index];
         let batch = Batch {
             model,
@@ -114,7 +119,7 @@ pub fn commit(
             (histories.par_iter_mut().zip(hints).enumerate())
                 .with_min_len(64)
                 .try_for_each(|(i, (history, point))| {
-                    batch.accept(i, point.hint, &friction, history)
+                    batch.accept(i, point.hint, &friction, &limited, history)
                 })?;
         });
         for (history, p) in state.histories[range].iter().zip(&pair.points) {
@@ -141,11 +146,14 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
+    /// `limited` is the traction that the law allowed at the start of the step, for a trial traction, a normal and a
+    /// pressure.
     fn accept<F: FrictionLaw>(
         &self,
         i: usize,
         mut hint: Option<Hint>,
         friction: &Friction<F>,
+        limited: &impl Fn(&Vec3, &Vec3, f64) -> Vec3,
         history: &mut PointHistory,
     ) -> Result<(), Fault> {
         let x = (self.model).point_position(&self.pair.points[i], self.u);
@@ -161,22 +169,30 @@ impl Batch<'_> {
             })?;
         let turn = self.master.pose.rotation;
         let Some(touch) = touch else {
+            // As the pressure falls to nothing, the point slides back by what was elastic.
+            let elastic = history.t.norm() / friction.eps_t;
+            history.dissipated += 0.5 * history.t.norm() * elastic;
+            history.slip += elastic;
             *history = open(&self.master, &x, hint, z0, history);
             return Ok(());
         };
-        let t = touch.traction.slip.t;
-        let slid = touch.traction.slid(friction.eps_t);
-        let before = turn.inverse() * history.t;
-        let slides = touch.traction.slip.slides;
+        let Traction { trial, slip, .. } = &touch.traction;
+        let (t, slides) = (slip.t, slip.slides);
         if slides {
-            // Of second order in the step, where the traction at its end alone would be of first.
-            history.dissipated += 0.5 * (before + t).dot(&slid);
+            // The traction under which it slid, from the limit at the start of the step to the one at its end: of second
+            // order in the step also where the point stuck at the start, or slid the other way, or did not touch.
+            let first = limited(trial, &touch.normal, -history.n);
+            let slid = touch.traction.slid(friction.eps_t);
+            history.dissipated += 0.5 * (first + t).dot(&slid);
             history.slip += slid.norm();
         }
-        if slides || history.approach > 0.0 {
-            history.base = touch.local;
-            history.lambda = t;
-        }
+        // Where it sticks nothing changes by this, but that a later penalty works on later displacements only.
+        let attraction = history.attraction(friction.eps_t);
+        history.lambda = match slides || history.approach > 0.0 {
+            true => t,
+            false => attraction.unprojected(&touch.local),
+        };
+        history.base = touch.local;
         history.approach = 0.0;
         history.status = match slides {
             true => PointStatus::Slip,

@@ -21,7 +21,8 @@ pub struct PointHistory {
     /// Attraction point that slip is measured from: in the own coordinates of a rigid surface; on a facet the components,
     /// along `rho_1`, `rho_2` and `n` at `place`, of its distance from the facet (length).
     pub base: Vec3,
-    /// Tangential traction when the base was set, or its multiplier, in the coordinates of `base` (force / length^2).
+    /// Tangential traction when the base was set, or its multiplier, in the coordinates of `base` (force / length^2). What
+    /// of it lies along a normal that has turned since counts for nothing.
     pub lambda: Vec3,
     /// Multiplier of the normal traction, `<= 0` (force / length^2).
     pub lambda_n: f64,
