@@ -99,9 +99,7 @@ pub fn commit(
         };
         let master = model.surfaces[surface].at(time, &state.u)?;
         let (was, now) = (friction.law.at(start)?, friction.law.at(time)?);
-        let limited = |trial: &Vec3, normal: &Vec3, pressure: f64| {
-            with_law!(was, law => law.slip(trial, normal, pressure).t)
-        };
+        let limited = |trial: &Vec3, normal: &Vec3, pressure: f64| with_law!(was, law => law.slip(trial, normal, pressure).t);
         let eps_n = penalties[index];
         let batch = Batch {
             model,

@@ -461,9 +461,8 @@ pub fn in_rotation_vector_with_friction(
     let mixed = spin.tr_mul(&tangent.fixed_view::<3, 3>(3, 0)) / lever;
     k.fixed_view_mut::<3, 3>(3, 0).copy_from(&mixed);
     let spin_spin = tangent.fixed_view::<3, 3>(3, 3).into();
-    (k.fixed_view_mut::<3, 3>(3, 3)).copy_from(&whole_spin_block(
-        &spin_spin, &moment, theta, lever,
-    ));
+    (k.fixed_view_mut::<3, 3>(3, 3))
+        .copy_from(&whole_spin_block(&spin_spin, &moment, theta, lever));
     (r, k)
 }
 
