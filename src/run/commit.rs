@@ -160,7 +160,13 @@ impl Batch<'_> {
                 let (n, eps_t) = (touch.touch.n, friction.eps_t);
                 history.accept(&touch.local, &touch.traction, n, eps_t, turn);
             }
-            None => release(&self.master, &x, hint, z0, history),
+            None => {
+                let pose = &self.master.pose;
+                let local = (pose.inverse_transform_point(&Point3::from(x))).coords;
+                let foot = self.master.foot(&x, hint, f64::INFINITY);
+                let gap = foot.map(|f| f.signed_distance - z0);
+                history.leave(&local, gap, self.eps_n, friction.eps_t, &pose.rotation);
+            }
         }
         Ok(())
     }

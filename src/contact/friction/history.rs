@@ -67,8 +67,13 @@ impl PointHistory {
         if slides {
             let slid = traction.slid(eps_t);
             let before = to_space.inverse_transform_vector(&self.t);
-            // Of second order in the step, where the traction at its end alone would be of first.
-            self.dissipated += 0.5 * (before + t).dot(&slid);
+            // Of second order in the step, where the traction at its end alone would be of first. A point that stuck slides
+            // from where it met its limit, which is nearer to the traction at the end than to the one before.
+            let first = match self.status {
+                PointStatus::Stick => t,
+                _ => before,
+            };
+            self.dissipated += 0.5 * (first + t).dot(&slid);
             self.slip += slid.norm();
         }
         if slides || self.approach > 0.0 {
@@ -82,6 +87,32 @@ impl PointHistory {
         };
         self.n = n;
         self.t = to_space * t;
+    }
+
+    /// Takes over the end of an accepted step in which a point that was in contact has opened, at `local` in the coordinates
+    /// of the base and a distance `gap` from the master. It slides, and its traction falls to nothing, in the part of the
+    /// step before it opens: the normal traction is taken to pass evenly to what the penalty `eps_n` would make of the gap.
+    pub fn leave(
+        &mut self,
+        local: &Vec3,
+        gap: Option<f64>,
+        eps_n: f64,
+        eps_t: f64,
+        to_space: &UnitQuaternion<f64>,
+    ) {
+        if self.status != PointStatus::Open {
+            let before = to_space.inverse_transform_vector(&self.t);
+            let beyond = gap.map_or(f64::INFINITY, |g| self.lambda_n + eps_n * g);
+            let part = match beyond.is_finite() && beyond > self.n {
+                true => self.n / (self.n - beyond),
+                false => 0.0,
+            };
+            let trial = self.lambda + (local - self.base) * eps_t;
+            let slid = (before + (trial - before) * part) / eps_t;
+            self.dissipated += (0.5 * before.dot(&slid)).max(0.0);
+            self.slip += slid.norm();
+        }
+        self.release(local, gap);
     }
 
     /// Takes over the end of an accepted step in which the point is open: slip will be measured from where it is, `local`, in
