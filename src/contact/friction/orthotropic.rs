@@ -1,6 +1,6 @@
 //! Friction with two coefficients, along a direction of the master and across it.
 use super::law::{FrictionLaw, Slip};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use num_dual::DualNum;
 
 /// Sine of the angle between the direction and the normal below which the two coefficients approach each other.
