@@ -226,6 +226,7 @@ impl FrictionLaw for Orthotropic {
 mod tests {
     use super::super::law::Coulomb;
     use super::*;
+    use nalgebra::Matrix3;
     use num_dual::Dual64;
 
     fn law(mu: [f64; 2], direction: [f64; 3]) -> Orthotropic {
