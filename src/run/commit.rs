@@ -3,7 +3,6 @@ use crate::assembly::Fault;
 use crate::contact::friction::history::{PointHistory, PointStatus};
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::Friction;
-use crate::contact::friction::trial::Traction;
 use crate::contact::rigid::RigidMaster;
 use crate::model::master::Master;
 use crate::model::state::State;
@@ -51,28 +50,23 @@ pub fn start(model: &Model, state: &mut State) -> Result<(), Fault> {
         .for_each(|(i, ((history, p), point))| {
             let z0 = offsets.map_or(0.0, |o| o.at(i));
             let x = model.point_position(p, u);
-            *history = open(&master, &x, point.hint, z0, history);
+            release(&master, &x, point.hint, z0, history);
         });
     }
     Ok(())
 }
 
-/// History of an open point: slip is measured from where it is now, in the part of a step after it has touched.
-fn open(
+/// History of an open point: slip is measured from where it is now.
+fn release(
     master: &RigidMaster<'_, SurfaceSet>,
     x: &Vec3,
     hint: Option<Hint>,
     z0: f64,
-    before: &PointHistory,
-) -> PointHistory {
+    history: &mut PointHistory,
+) {
+    let local = (master.pose.inverse_transform_point(&Point3::from(*x))).coords;
     let foot = master.foot(x, hint, f64::INFINITY);
-    PointHistory {
-        base: (master.pose.inverse_transform_point(&Point3::from(*x))).coords,
-        approach: foot.map_or(f64::INFINITY, |f| (f.signed_distance - z0).max(0.0)),
-        slip: before.slip,
-        dissipated: before.dissipated,
-        ..PointHistory::default()
-    }
+    history.release(&local, foot.map(|f| f.signed_distance - z0));
 }
 
 /// Takes the state at the end of a step, which began at time `start`, into the histories.
@@ -165,39 +159,21 @@ impl Batch<'_> {
                 at: [x.x, x.y, x.z],
                 fault,
             })?;
-        let turn = self.master.pose.rotation;
-        let Some(touch) = touch else {
-            // As the pressure falls to nothing, the point slides back by what was elastic.
-            let elastic = history.t.norm() / friction.eps_t;
-            history.dissipated += 0.5 * history.t.norm() * elastic;
-            history.slip += elastic;
-            *history = open(&self.master, &x, hint, z0, history);
-            return Ok(());
-        };
-        let Traction { trial, slip, .. } = &touch.traction;
-        let (t, slides) = (slip.t, slip.slides);
-        if slides {
-            // The traction under which it slid, from the limit at the start of the step to the one at its end: of second
-            // order in the step also where the point stuck at the start, or slid the other way, or did not touch.
-            let first = limited(trial, &touch.normal, -history.n);
-            let slid = touch.traction.slid(friction.eps_t);
-            history.dissipated += 0.5 * (first + t).dot(&slid);
-            history.slip += slid.norm();
+        match touch {
+            Some(touch) => {
+                let turn = &self.master.pose.rotation;
+                let (n, eps_t) = (touch.touch.n, friction.eps_t);
+                let first = limited(&touch.traction.trial, &touch.normal, -history.n);
+                history.accept(&touch.local, &touch.traction, &first, n, eps_t, turn);
+            }
+            None => {
+                let pose = &self.master.pose;
+                let local = (pose.inverse_transform_point(&Point3::from(x))).coords;
+                let foot = self.master.foot(&x, hint, f64::INFINITY);
+                let gap = foot.map(|f| f.signed_distance - z0);
+                history.leave(&local, gap, self.eps_n, friction.eps_t, &pose.rotation);
+            }
         }
-        // Where it sticks nothing changes by this, but that a later penalty works on later displacements only.
-        let attraction = history.attraction(friction.eps_t);
-        history.lambda = match slides || history.approach > 0.0 {
-            true => t,
-            false => attraction.unprojected(&touch.local),
-        };
-        history.base = touch.local;
-        history.approach = 0.0;
-        history.status = match slides {
-            true => PointStatus::Slip,
-            false => PointStatus::Stick,
-        };
-        history.n = touch.touch.n;
-        history.t = turn * t;
         Ok(())
     }
 }
