@@ -482,7 +482,7 @@ impl SurfaceForce {
 
 impl Border {
     /// Adds a point with residual `r` and tangent `k`, at `arm` from the centre.
-    fn carry<const TANGENT: bool>(
+    pub(super) fn carry<const TANGENT: bool>(
         &mut self,
         p: &crate::contact::points::SlavePoint,
         r: &Vec3,
@@ -493,11 +493,15 @@ impl Border {
         let c = carried(r, k, arm);
         press::add(&mut self.residual, &-r, &c.spin);
         if TANGENT {
-            press::add_tangent(&mut self.tangent, k, &-c.point_spin, &c.spin_spin);
+            press::add_tangent(&mut self.tangent, k, &c);
             for (node, w) in p.terms() {
                 let [translation, spin] = self.block(node);
                 *translation -= k * w;
                 *spin += c.point_spin * w;
+                if let Some([translation, spin]) = self.row(node) {
+                    *translation -= k.transpose() * w;
+                    *spin += c.spin_point.transpose() * w;
+                }
             }
         }
     }
@@ -509,6 +513,10 @@ impl Border {
             let [translation, spin] = self.block(*node as usize);
             *translation += v * t.transpose();
             *spin += v * s.transpose();
+            if let Some([translation, spin]) = self.row(*node as usize) {
+                *translation += v * t.transpose();
+                *spin += v * s.transpose();
+            }
         }
         self.tangent += motion * motion.transpose() * scale;
     }

@@ -4,12 +4,11 @@
 //! last. The blocks are summed over the points first and scattered once for each slave node.
 use super::{Assembler, Fault, Totals, put};
 use crate::assembly::{Pattern, PatternError};
-use crate::contact::carried::carried;
 use crate::model::driven::{Driven, press, turn};
 use crate::model::state::State;
 use crate::model::{Model, SurfaceModel};
 use crate::scene::ValueError;
-use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
+use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector3, Vector6};
 
 /// A direction of a driven surface's motion that the contact does not resist as it stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,6 +33,9 @@ pub(super) struct Border {
     own_map: Vec<u32>,
     /// Per slave node: blocks of its displacement with translation and spin.
     blocks: Vec<[Matrix3<f64>; 2]>,
+    /// With friction, per slave node: blocks of translation and spin with its displacement, transposed. Without it they
+    /// are those above, and there are none here.
+    rows: Vec<[Matrix3<f64>; 2]>,
     pub residual: Vector6<f64>,
     pub tangent: Matrix6<f64>,
     pub active: usize,
@@ -87,12 +89,14 @@ impl Border {
         let mut place = vec![u32::MAX; model.nodes.len()];
         let mut nodes = Vec::new();
         let mut element_size = f64::INFINITY;
+        let mut friction = false;
         for pair in model
             .pairs
             .iter()
             .filter(|p| p.rigid_master() == Some(surface))
         {
             element_size = element_size.min(pair.element_size);
+            friction |= pair.friction.is_some();
             for (node, _) in pair.points.iter().flat_map(|p| p.terms()) {
                 if place[node] == u32::MAX {
                     place[node] = nodes.len() as u32;
@@ -110,6 +114,7 @@ impl Border {
         Ok(Border {
             surface,
             blocks: vec![[Matrix3::zeros(); 2]; nodes.len()],
+            rows: vec![[Matrix3::zeros(); 2]; if friction { nodes.len() } else { 0 }],
             nodes,
             place,
             maps,
@@ -131,12 +136,27 @@ impl Border {
         &mut self.blocks[self.place[node] as usize]
     }
 
+    /// Blocks of translation and spin with a slave node's displacement, transposed; only with friction.
+    pub fn row(&mut self, node: usize) -> Option<&mut [Matrix3<f64>; 2]> {
+        self.rows.get_mut(self.place[node] as usize)
+    }
+
     fn clear(&mut self) {
         self.blocks.fill([Matrix3::zeros(); 2]);
+        self.rows.fill([Matrix3::zeros(); 2]);
         self.residual = Vector6::zeros();
         self.tangent = Matrix6::zeros();
         self.active = 0;
     }
+}
+
+/// Blocks of a slave node with translation and spin by the six degrees of freedom.
+fn by_dof([translation, by_spin]: &[Matrix3<f64>; 2], spin: &Matrix3<f64>) -> [Vector3<f64>; 6] {
+    let by_vector = by_spin * spin;
+    std::array::from_fn(|c| match c {
+        0..3 => translation.column(c).into(),
+        _ => by_vector.column(c - 3).into(),
+    })
 }
 
 impl Assembler<'_> {
@@ -162,18 +182,9 @@ impl Assembler<'_> {
         };
         for (p, touch) in pair.points.iter().zip(&self.touches) {
             let Ok(Some(touch)) = touch else { continue };
-            border.active += 1;
             let (r, k) = (touch.residual * p.area, touch.tangent * p.area);
-            let c = carried(&r, &k, &(self.model.point_position(p, u) - center));
-            press::add(&mut border.residual, &-r, &c.spin);
-            if TANGENT {
-                press::add_tangent(&mut border.tangent, &k, &-c.point_spin, &c.spin_spin);
-                for (node, w) in p.terms() {
-                    let [translation, spin] = &mut border.blocks[border.place[node] as usize];
-                    *translation -= k * w;
-                    *spin += c.point_spin * w;
-                }
-            }
+            let arm = self.model.point_position(p, u) - center;
+            border.carry::<TANGENT>(p, &r, &k, &arm);
         }
         Ok(())
     }
@@ -211,20 +222,14 @@ impl Assembler<'_> {
             let spin = turn::spin_of(&theta) / driven.lever;
             let [t, s] = driven.nodes();
             for (i, &node) in border.nodes.iter().enumerate() {
-                let [translation, by_spin] = &border.blocks[i];
-                let by_vector = by_spin * spin;
                 let mut ke = [0.0; 81];
-                for column in 0..6 {
-                    for row in 0..3 {
-                        let value = match column < 3 {
-                            true => translation[(row, column)],
-                            false => by_vector[(row, column - 3)],
-                        };
-                        if free[column] {
-                            ke[9 * (3 + column) + row] = value;
-                        }
+                let columns = by_dof(&border.blocks[i], &spin);
+                let rows = (border.rows.get(i)).map_or(columns, |row| by_dof(row, &spin));
+                for c in (0..6).filter(|c| free[*c]) {
+                    for r in 0..3 {
+                        ke[9 * (3 + c) + r] = columns[c][r];
                         // The row is kept where prescribed displacements of the slave are still to come.
-                        ke[9 * row + 3 + column] = if free[column] { value } else { 0.0 };
+                        ke[9 * r + 3 + c] = rows[c][r];
                     }
                 }
                 let map = &border.maps[THREE * i..THREE * (i + 1)];
@@ -284,10 +289,20 @@ impl Assembler<'_> {
             block -= (slope + slope.transpose()) * 0.5;
             let k = Matrix6::from_fn(|i, j| if free[i] && free[j] { k[(i, j)] } else { 0.0 });
             let mut own = k;
-            let eigen = SymmetricEigen::new(k);
-            let largest = eigen.eigenvalues.amax();
+            let (values, directions) = match border.rows.is_empty() {
+                true => {
+                    let eigen = SymmetricEigen::new(k);
+                    (eigen.eigenvalues, eigen.eigenvectors)
+                }
+                // With friction `k` has no symmetry: what is not resisted has no image.
+                false => {
+                    let v = SymmetricEigen::new(k.transpose() * k).eigenvectors;
+                    (Vector6::from_fn(|i, _| (k * v.column(i)).norm()), v)
+                }
+            };
+            let largest = values.amax();
             for i in 0..6 {
-                let (value, v) = (eigen.eigenvalues[i], eigen.eigenvectors.column(i));
+                let (value, v) = (values[i], directions.column(i));
                 let held = (0..6).all(|c| free[c] || v[c].abs() < 1e-6);
                 if value > NONE * largest || !held {
                     continue;

@@ -2,7 +2,7 @@
 //! it. This is where a step starts from that the surface enters without contact; six unknowns, no system.
 use super::turn;
 use super::{Driven, Model, SurfaceModel};
-use crate::contact::carried::carried;
+use crate::contact::carried::{Carried, carried};
 use crate::contact::law::{Penalty, Shifted};
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, behind, presses};
 use crate::model::overclosure::Overclosure;
@@ -182,7 +182,7 @@ impl<'m> Presser<'m> {
                 out.active += 1;
                 out.energy += 0.5 * touch.n * touch.gap * p.area;
                 add(&mut out.residual, &-r, &c.spin);
-                add_tangent(&mut out.tangent, &k, &-c.point_spin, &c.spin_spin);
+                add_tangent(&mut out.tangent, &k, &c);
             }
         }
         (out.residual, out.tangent) =
@@ -382,24 +382,19 @@ pub fn add(out: &mut Vector6<f64>, translation: &Vec3, spin: &Vec3) {
     part += spin;
 }
 
-/// Adds blocks of translation, translation and spin, spin.
-pub fn add_tangent(
-    out: &mut Matrix6<f64>,
-    translation: &nalgebra::Matrix3<f64>,
-    mixed: &nalgebra::Matrix3<f64>,
-    spin: &nalgebra::Matrix3<f64>,
-) {
+/// Adds what a point with tangent `k` gives the translation and the spin.
+pub fn add_tangent(out: &mut Matrix6<f64>, k: &nalgebra::Matrix3<f64>, c: &Carried) {
     let mut block = out.fixed_view_mut::<3, 3>(0, 0);
-    block += translation;
+    block += k;
     let mut block = out.fixed_view_mut::<3, 3>(0, 3);
-    block += mixed;
+    block -= c.point_spin;
     let mut block = out.fixed_view_mut::<3, 3>(3, 0);
-    block += mixed.transpose();
+    block -= c.spin_point;
     let mut block = out.fixed_view_mut::<3, 3>(3, 3);
-    block += spin;
+    block += c.spin_spin;
 }
 
-/// Residual and symmetric tangent of translation and spin, as those of the degrees of freedom: the rotation vector times
+/// Residual and tangent of translation and spin, as those of the degrees of freedom: the rotation vector times
 /// the lever. The moments of `residual` must be all that the tangent belongs to.
 pub fn in_rotation_vector(
     residual: &Vector6<f64>,
@@ -414,7 +409,8 @@ pub fn in_rotation_vector(
     let mut k = *tangent;
     let mixed = tangent.fixed_view::<3, 3>(0, 3) * spin;
     k.fixed_view_mut::<3, 3>(0, 3).copy_from(&mixed);
-    k.fixed_view_mut::<3, 3>(3, 0).copy_from(&mixed.transpose());
+    let mixed = spin.transpose() * tangent.fixed_view::<3, 3>(3, 0);
+    k.fixed_view_mut::<3, 3>(3, 0).copy_from(&mixed);
     k.fixed_view_mut::<3, 3>(3, 3).copy_from(&spin_block(
         &tangent.fixed_view::<3, 3>(3, 3).into(),
         &moment,
@@ -434,7 +430,5 @@ pub fn spin_block(
 ) -> nalgebra::Matrix3<f64> {
     let spin = turn::spin_of(theta);
     let by_spin = spin_spin - crate::contact::carried::cross_matrix(moment) * 0.5;
-    let k =
-        (spin.transpose() * by_spin * spin + turn::moment_slope(theta, moment)) / (lever * lever);
-    (k + k.transpose()) * 0.5
+    (spin.transpose() * by_spin * spin + turn::moment_slope(theta, moment)) / (lever * lever)
 }
