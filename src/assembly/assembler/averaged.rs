@@ -482,7 +482,7 @@ impl SurfaceForce {
 
 impl Border {
     /// Adds a point with residual `r` and tangent `k`, at `arm` from the centre.
-    pub(super) fn carry<const TANGENT: bool>(
+    fn carry<const TANGENT: bool>(
         &mut self,
         p: &crate::contact::points::SlavePoint,
         r: &Vec3,
@@ -498,10 +498,6 @@ impl Border {
                 let [translation, spin] = self.block(node);
                 *translation -= k * w;
                 *spin += c.point_spin * w;
-                if let Some([translation, spin]) = self.row(node) {
-                    *translation -= k.transpose() * w;
-                    *spin += c.spin_point.transpose() * w;
-                }
             }
         }
     }
@@ -513,10 +509,6 @@ impl Border {
             let [translation, spin] = self.block(*node as usize);
             *translation += v * t.transpose();
             *spin += v * s.transpose();
-            if let Some([translation, spin]) = self.row(*node as usize) {
-                *translation += v * t.transpose();
-                *spin += v * s.transpose();
-            }
         }
         self.tangent += motion * motion.transpose() * scale;
     }

@@ -1,14 +1,16 @@
 //! Rigid surfaces driven by force: the rows of their translation and rotation.
 //!
 //! A driven surface couples with every slave node of its pairs: a dense border of six rows, which the solver eliminates
-//! last. The blocks are summed over the points first and scattered once for each slave node.
+//! last. The blocks are summed over the points first and scattered once for each slave node. Friction takes the symmetry
+//! from the border and from the surface's own block.
 use super::{Assembler, Fault, Totals, put};
 use crate::assembly::{Pattern, PatternError};
+use crate::contact::carried::{carried, carried_with_friction};
 use crate::model::driven::{Driven, press, turn};
 use crate::model::state::State;
 use crate::model::{Model, SurfaceModel};
 use crate::scene::ValueError;
-use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 
 /// A direction of a driven surface's motion that the contact does not resist as it stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,9 +35,8 @@ pub(super) struct Border {
     own_map: Vec<u32>,
     /// Per slave node: blocks of its displacement with translation and spin.
     blocks: Vec<[Matrix3<f64>; 2]>,
-    /// With friction, per slave node: blocks of translation and spin with its displacement, transposed. Without it they
-    /// are those above, and there are none here.
-    rows: Vec<[Matrix3<f64>; 2]>,
+    /// With friction, what the blocks below the diagonal have over the transposed ones; else empty.
+    below: Vec<[Matrix3<f64>; 2]>,
     pub residual: Vector6<f64>,
     pub tangent: Matrix6<f64>,
     pub active: usize,
@@ -89,14 +90,14 @@ impl Border {
         let mut place = vec![u32::MAX; model.nodes.len()];
         let mut nodes = Vec::new();
         let mut element_size = f64::INFINITY;
-        let mut friction = false;
+        let mut slides = false;
         for pair in model
             .pairs
             .iter()
             .filter(|p| p.rigid_master() == Some(surface))
         {
             element_size = element_size.min(pair.element_size);
-            friction |= pair.friction.is_some();
+            slides |= pair.friction.is_some();
             for (node, _) in pair.points.iter().flat_map(|p| p.terms()) {
                 if place[node] == u32::MAX {
                     place[node] = nodes.len() as u32;
@@ -114,7 +115,10 @@ impl Border {
         Ok(Border {
             surface,
             blocks: vec![[Matrix3::zeros(); 2]; nodes.len()],
-            rows: vec![[Matrix3::zeros(); 2]; if friction { nodes.len() } else { 0 }],
+            below: match slides {
+                true => vec![[Matrix3::zeros(); 2]; nodes.len()],
+                false => Vec::new(),
+            },
             nodes,
             place,
             maps,
@@ -136,27 +140,13 @@ impl Border {
         &mut self.blocks[self.place[node] as usize]
     }
 
-    /// Blocks of translation and spin with a slave node's displacement, transposed; only with friction.
-    pub fn row(&mut self, node: usize) -> Option<&mut [Matrix3<f64>; 2]> {
-        self.rows.get_mut(self.place[node] as usize)
-    }
-
     fn clear(&mut self) {
         self.blocks.fill([Matrix3::zeros(); 2]);
-        self.rows.fill([Matrix3::zeros(); 2]);
+        self.below.fill([Matrix3::zeros(); 2]);
         self.residual = Vector6::zeros();
         self.tangent = Matrix6::zeros();
         self.active = 0;
     }
-}
-
-/// Blocks of a slave node with translation and spin by the six degrees of freedom.
-fn by_dof([translation, by_spin]: &[Matrix3<f64>; 2], spin: &Matrix3<f64>) -> [Vector3<f64>; 6] {
-    let by_vector = by_spin * spin;
-    std::array::from_fn(|c| match c {
-        0..3 => translation.column(c).into(),
-        _ => by_vector.column(c - 3).into(),
-    })
 }
 
 impl Assembler<'_> {
@@ -176,15 +166,35 @@ impl Assembler<'_> {
         let Some(surface) = pair.rigid_master() else {
             return Ok(());
         };
+        let slides = pair.friction.is_some();
         let center = self.model.surfaces[surface].center(time, u)?;
         let Some(border) = (self.borders.iter_mut()).find(|b| b.surface == surface) else {
             return Ok(());
         };
         for (p, touch) in pair.points.iter().zip(&self.touches) {
             let Ok(Some(touch)) = touch else { continue };
+            border.active += 1;
             let (r, k) = (touch.residual * p.area, touch.tangent * p.area);
             let arm = self.model.point_position(p, u) - center;
-            border.carry::<TANGENT>(p, &r, &k, &arm);
+            let c = match slides {
+                true => carried_with_friction(&r, &k, &arm),
+                false => carried(&r, &k, &arm),
+            };
+            press::add(&mut border.residual, &-r, &c.spin);
+            if TANGENT {
+                press::add_tangent(&mut border.tangent, &k, &c);
+                for (node, w) in p.terms() {
+                    let at = border.place[node] as usize;
+                    let [translation, spin] = &mut border.blocks[at];
+                    *translation -= k * w;
+                    *spin += c.point_spin * w;
+                    if slides {
+                        let [translation, spin] = &mut border.below[at];
+                        *translation -= (k - k.transpose()) * w;
+                        *spin += (c.spin_point - c.point_spin.transpose()) * w;
+                    }
+                }
+            }
         }
         Ok(())
     }
@@ -206,8 +216,10 @@ impl Assembler<'_> {
                 return Err(Fault::untouched(surface, driven));
             }
             let (_, theta) = driven.motion(u);
-            let (r, k) =
-                press::in_rotation_vector(&border.residual, &border.tangent, &theta, driven.lever);
+            let (r, k) = match border.below.is_empty() {
+                true => press::in_rotation_vector,
+                false => press::in_rotation_vector_with_friction,
+            }(&border.residual, &border.tangent, &theta, driven.lever);
             border.residual = r;
             let at = driven.dof(0);
             for c in 0..6 {
@@ -222,14 +234,25 @@ impl Assembler<'_> {
             let spin = turn::spin_of(&theta) / driven.lever;
             let [t, s] = driven.nodes();
             for (i, &node) in border.nodes.iter().enumerate() {
+                let [translation, by_spin] = &border.blocks[i];
+                let by_vector = by_spin * spin;
                 let mut ke = [0.0; 81];
-                let columns = by_dof(&border.blocks[i], &spin);
-                let rows = (border.rows.get(i)).map_or(columns, |row| by_dof(row, &spin));
-                for c in (0..6).filter(|c| free[*c]) {
-                    for r in 0..3 {
-                        ke[9 * (3 + c) + r] = columns[c][r];
+                let mut over = [Matrix3::zeros(); 2];
+                if let Some([translation, spin_over]) = border.below.get(i) {
+                    over = [*translation, spin.tr_mul(spin_over)];
+                }
+                for column in 0..6 {
+                    for row in 0..3 {
+                        let value = match column < 3 {
+                            true => translation[(row, column)],
+                            false => by_vector[(row, column - 3)],
+                        };
+                        if free[column] {
+                            ke[9 * (3 + column) + row] = value;
+                        }
                         // The row is kept where prescribed displacements of the slave are still to come.
-                        ke[9 * r + 3 + c] = rows[c][r];
+                        let below = value + over[column / 3][(column % 3, row)];
+                        ke[9 * row + 3 + column] = if free[column] { below } else { 0.0 };
                     }
                 }
                 let map = &border.maps[THREE * i..THREE * (i + 1)];
@@ -286,23 +309,16 @@ impl Assembler<'_> {
             let slope = turn::moment_slope(&theta, &moment) / (lever * lever);
             let mut k = border.tangent;
             let mut block = k.fixed_view_mut::<3, 3>(3, 3);
-            block -= (slope + slope.transpose()) * 0.5;
+            block -= match border.below.is_empty() {
+                true => (slope + slope.transpose()) * 0.5,
+                false => slope,
+            };
             let k = Matrix6::from_fn(|i, j| if free[i] && free[j] { k[(i, j)] } else { 0.0 });
             let mut own = k;
-            let (values, directions) = match border.rows.is_empty() {
-                true => {
-                    let eigen = SymmetricEigen::new(k);
-                    (eigen.eigenvalues, eigen.eigenvectors)
-                }
-                // With friction `k` has no symmetry: what is not resisted has no image.
-                false => {
-                    let v = SymmetricEigen::new(k.transpose() * k).eigenvectors;
-                    (Vector6::from_fn(|i, _| (k * v.column(i)).norm()), v)
-                }
-            };
+            let (values, vectors) = resistances(&k, border.below.is_empty());
             let largest = values.amax();
             for i in 0..6 {
-                let (value, v) = (values[i], directions.column(i));
+                let (value, v) = (values[i], vectors.column(i));
                 let held = (0..6).all(|c| free[c] || v[c].abs() < 1e-6);
                 if value > NONE * largest || !held {
                     continue;
@@ -346,6 +362,21 @@ impl Assembler<'_> {
         let driven = surface.driven.as_ref()?;
         Some(Fault::unresisted(surface, driven, &worst.direction))
     }
+}
+
+/// Directions of a surface's motion, and how much stiffness it has along them. Without symmetry these are the singular
+/// values: the symmetric part of a tangent with points that slide has a negative eigenvalue along every direction in which
+/// friction grows with pressure, whereas what is loose moves without any force.
+fn resistances(k: &Matrix6<f64>, symmetric: bool) -> (Vector6<f64>, Matrix6<f64>) {
+    if symmetric {
+        let eigen = SymmetricEigen::new(*k);
+        return (eigen.eigenvalues, eigen.eigenvectors);
+    }
+    // Through `K^T K` a singular value would be known to half of the digits only; as its eigenvectors these directions are
+    // known well enough, and the stiffness along them follows from them.
+    let vectors = SymmetricEigen::new(k.transpose() * k).eigenvectors;
+    let values = Vector6::from_fn(|i, _| (k * vectors.column(i)).norm());
+    (values, vectors)
 }
 
 impl Fault {
