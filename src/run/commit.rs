@@ -69,7 +69,7 @@ fn release(
     history.release(&local, foot.map(|f| f.signed_distance - z0));
 }
 
-/// Takes the state at the end of a step into the histories.
+/// Takes the state at the end of a step, which began at time `start`, into the histories.
 ///
 /// # Errors
 /// A point that cannot be evaluated, or a motion or a coefficient without a value at `time`.
@@ -77,6 +77,7 @@ pub fn commit(
     model: &Model,
     penalties: &[f64],
     state: &mut State,
+    start: f64,
     time: f64,
 ) -> Result<Sliding, Fault> {
     let mut total = Sliding::default();
@@ -91,7 +92,8 @@ pub fn commit(
             continue;
         };
         let master = model.surfaces[surface].at(time, &state.u)?;
-        let now = friction.law.at(time)?;
+        let (was, now) = (friction.law.at(start)?, friction.law.at(time)?);
+        let limited = |trial: &Vec3, normal: &Vec3, pressure: f64| with_law!(was, law => law.slip(trial, normal, pressure).t);
         let eps_n = penalties[index];
         let batch = Batch {
             model,
@@ -109,7 +111,7 @@ pub fn commit(
             (histories.par_iter_mut().zip(hints).enumerate())
                 .with_min_len(64)
                 .try_for_each(|(i, (history, point))| {
-                    batch.accept(i, point.hint, &friction, history)
+                    batch.accept(i, point.hint, &friction, &limited, history)
                 })?;
         });
         for (history, p) in state.histories[range].iter().zip(&pair.points) {
@@ -136,11 +138,14 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
+    /// `limited` is the traction that the law allowed at the start of the step, for a trial traction, a normal and a
+    /// pressure.
     fn accept<F: FrictionLaw>(
         &self,
         i: usize,
         mut hint: Option<Hint>,
         friction: &Friction<F>,
+        limited: &impl Fn(&Vec3, &Vec3, f64) -> Vec3,
         history: &mut PointHistory,
     ) -> Result<(), Fault> {
         let x = (self.model).point_position(&self.pair.points[i], self.u);
@@ -158,7 +163,8 @@ impl Batch<'_> {
             Some(touch) => {
                 let turn = &self.master.pose.rotation;
                 let (n, eps_t) = (touch.touch.n, friction.eps_t);
-                history.accept(&touch.local, &touch.traction, n, eps_t, turn);
+                let first = limited(&touch.traction.trial, &touch.normal, -history.n);
+                history.accept(&touch.local, &touch.traction, &first, n, eps_t, turn);
             }
             None => {
                 let pose = &self.master.pose;

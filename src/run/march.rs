@@ -164,8 +164,9 @@ impl<'a, 'm> March<'a, 'm> {
                     }
                     stepping.accepted(converged.iterations);
                     let penalties = &self.assembler.penalties;
-                    let sliding = commit::commit(self.model, penalties, committed, end)
-                        .map_err(|e| RunError::internal(&e))?;
+                    let sliding =
+                        commit::commit(self.model, penalties, committed, self.progress.time, end)
+                            .map_err(|e| RunError::internal(&e))?;
                     self.accept(step, end, &converged);
                     self.record(outputs, committed, dt, cuts, &converged, &sliding)?;
                     cuts = 0;

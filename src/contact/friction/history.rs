@@ -23,7 +23,8 @@ pub struct PointHistory {
     /// Attraction point that slip is measured from: in the own coordinates of a rigid surface; on a facet the components,
     /// along `rho_1`, `rho_2` and `n` at `place`, of its distance from the facet (length).
     pub base: Vec3,
-    /// Tangential traction when the base was set, or its multiplier, in the coordinates of `base` (force / length^2).
+    /// Tangential traction when the base was set, or its multiplier, in the coordinates of `base` (force / length^2). What
+    /// of it lies along a normal that has turned since counts for nothing.
     pub lambda: Vec3,
     /// Multiplier of the normal traction, `<= 0` (force / length^2).
     pub lambda_n: f64,
@@ -52,34 +53,31 @@ impl PointHistory {
     }
 
     /// Takes over the end of an accepted step in which the point is in contact: at `local` and under `traction`, both in the
-    /// coordinates of the base, which `to_space` turns into those of space; `n` is the normal traction and `eps_t` the
-    /// tangential penalty. A point that slides, or has come into contact, is tied to where it is now, with the traction it
-    /// has; one that sticks keeps what it was tied to.
+    /// coordinates of the base, which `to_space` turns into those of space; `first` is the traction that the law allowed at
+    /// the start of the step, `n` the normal traction now and `eps_t` the tangential penalty. The point is tied to where it is
+    /// now: with the traction it has where it slides or has come into contact, with what it was tied by where it sticks.
     pub fn accept(
         &mut self,
         local: &Vec3,
         traction: &Traction,
+        first: &Vec3,
         n: f64,
         eps_t: f64,
         to_space: &UnitQuaternion<f64>,
     ) {
         let (t, slides) = (traction.slip.t, traction.slip.slides);
         if slides {
+            // Of second order in the step also where the point stuck at its start, or slid the other way, or did not touch.
             let slid = traction.slid(eps_t);
-            let before = to_space.inverse_transform_vector(&self.t);
-            // Of second order in the step, where the traction at its end alone would be of first. A point that stuck slides
-            // from where it met its limit, which is nearer to the traction at the end than to the one before.
-            let first = match self.status {
-                PointStatus::Stick => t,
-                _ => before,
-            };
             self.dissipated += 0.5 * (first + t).dot(&slid);
             self.slip += slid.norm();
         }
-        if slides || self.approach > 0.0 {
-            self.base = *local;
-            self.lambda = t;
-        }
+        // Where it sticks nothing changes by this, but that a later penalty works on later displacements only.
+        self.lambda = match slides || self.approach > 0.0 {
+            true => t,
+            false => self.attraction(eps_t).unprojected(local),
+        };
+        self.base = *local;
         self.approach = 0.0;
         self.status = match slides {
             true => PointStatus::Slip,

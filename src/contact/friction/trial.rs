@@ -31,6 +31,13 @@ fn after_impact<D: DualNum<f64> + Copy>(approach: f64, gap: D) -> (D, D) {
     (gap * over, -over * over * approach)
 }
 
+impl Attraction {
+    /// Traction of a point at `x` before it is projected, in contact throughout the step.
+    pub fn unprojected(&self, x: &Vector3<f64>) -> Vector3<f64> {
+        self.lambda + (x - self.base) * self.eps_t
+    }
+}
+
 impl<D: DualNum<f64> + Copy> Attraction<D> {
     /// Traction of a slave point at `x` with unit normal `n`, under the law; with its derivative with respect to `x` where
     /// the attraction point stands still: `turn = dn/dx`, and the pressure `-N` changes by `-dn_dg n . dx`.
