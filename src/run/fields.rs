@@ -2,6 +2,7 @@
 use super::RunError;
 use super::averaged::{NodeNow, nodes_now};
 use super::pieces::pieces;
+use crate::contact::friction::history::PointStatus;
 use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
@@ -112,23 +113,23 @@ impl Fields {
             }
             // Both passes of two see the same area.
             let share = if pair.half.is_some() { 0.5 } else { 1.0 };
-            let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+            let offsets = pair.offsets(time);
+            let histories = pair.history().map(|range| &state.histories[range]);
             for (i, ((p, s), front)) in points.iter().zip(states).zip(fronts).enumerate() {
-                let z0 = offsets.as_ref().map_or(0.0, |o| o.factor * o.z0[i]);
+                let z0 = offsets.map_or(0.0, |o| o.at(i));
                 let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
                 let seen = master.see(i, &x, s.hint);
-                let below = seen.is_some_and(|s| s.closed);
-                let closed = below && seen.is_some_and(|s| s.signed_distance < z0);
                 let sunk = seen.is_some_and(|s| s.behind);
                 self.sunk[index] += usize::from(*front && sunk);
-                *front = below || seen.is_some_and(|s| s.signed_distance >= 0.0);
-                let gap = match &seen {
-                    None => f64::NAN,
-                    Some(s) if below => s.signed_distance - z0,
-                    Some(s) => s.distance,
+                *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
+                let gap = seen.map_or(f64::NAN, |s| s.gap(z0));
+                let (closed, pressure) = match histories.map(|h| &h[i]) {
+                    // The step's own, which may be that of a point slightly above the surface.
+                    Some(history) => (history.status != PointStatus::Open, -history.n),
+                    None if gap < 0.0 => (true, -eps_n * gap),
+                    None => (false, 0.0),
                 };
-                let pressure = if closed { -eps_n * gap } else { 0.0 };
                 if gap < self.smallest_gap {
                     self.smallest_gap = gap;
                 }
@@ -194,7 +195,7 @@ impl Fields {
                 .enumerate()
             {
                 let seen = master.see(i, &model.point_position(p, &state.u), s.hint);
-                *front = seen.is_some_and(|s| s.closed || s.signed_distance >= 0.0);
+                *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
             }
         }
         Ok(())

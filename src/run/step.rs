@@ -121,7 +121,8 @@ impl Attempts<'_, '_> {
             let at = driven.dof(0)..driven.dof(6);
             let mut q = Vector6::from_column_slice(&trial.u[at.clone()]);
             let penalties = &self.assembler.penalties;
-            let mut presser = Presser::new(self.model, entry, penalties, &trial.u);
+            let mut presser =
+                Presser::new(self.model, entry, penalties, &trial.histories, &trial.u);
             if touches && presser.press(end, &q)?.active > 0 {
                 continue;
             }

@@ -111,7 +111,7 @@ fn near(
         body,
         surface: masters.surface(index),
     };
-    let reach = body.depth.max(pair.element_size);
+    let reach = body.depth.max(pair.element_size + pair.offset);
     (points.iter().enumerate())
         .filter_map(|(i, p)| {
             let x = model.point_position(p, u);
@@ -195,7 +195,7 @@ impl Assembler<'_> {
             let states = &mut state.points[range];
             let meetings = &mut self.meetings[index];
             let touches = &mut meetings.touches;
-            let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+            let offsets = pair.offsets(time);
             let offsets = offsets.as_ref();
             match &master.own {
                 None => batch.offset(states, touches, offsets, &All),
@@ -314,7 +314,7 @@ impl Assembler<'_> {
         // Both passes of two are one contact with two sides, whose energy is the mean of both.
         let mut force = PairForce::default();
         let share = if half { 0.25 } else { 0.5 };
-        let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+        let offsets = pair.offsets(time);
         for chunk in active.chunks(CHUNK) {
             (chunk.par_iter())
                 .zip(rows.par_iter_mut())
@@ -341,9 +341,7 @@ impl Assembler<'_> {
             {
                 let Some(touch) = touch(i) else { continue };
                 let p = &points[i as usize];
-                let offset = offsets
-                    .as_ref()
-                    .map_or(0.0, |o| o.factor * o.z0[i as usize]);
+                let offset = offsets.map_or(0.0, |o| o.at(i as usize));
                 let gap = touch.xi3 - offset;
                 deepest = deepest.max(-gap);
                 totals.contact_energy += share * touch.n * gap * p.area;

@@ -77,12 +77,12 @@ impl Assembler<'_> {
                     law: &law,
                     u,
                 };
-                match (&pair.overclosure, &friction) {
+                match (pair.offsets(time), &friction) {
                     (None, None) => batch.choose(points, touches, &NoOffset),
-                    (Some(over), None) => batch.choose(points, touches, &over.offsets(time)),
-                    (_, Some((now, eps_t, histories))) => with_law!(*now, law => {
+                    (Some(over), None) => batch.choose(points, touches, &over),
+                    (over, Some((now, eps_t, histories))) => with_law!(*now, law => {
                         let friction = Friction { law, eps_t: *eps_t };
-                        batch.slide(points, touches, &friction, histories, pair.offsets(time))
+                        batch.slide(points, touches, &friction, histories, over)
                     }),
                 }
             });

@@ -1,5 +1,5 @@
 //! What a slave point remembers between steps.
-use crate::contact::law::Augmented;
+use crate::contact::law::{Augmented, Penalty};
 use covact_geometry::{Hint, Vec3};
 
 /// Whether a point touches, and whether it slides there.
@@ -43,7 +43,7 @@ impl PointHistory {
     #[inline]
     pub fn law(&self, eps_n: f64, z0: f64) -> Augmented {
         Augmented {
-            eps_n,
+            law: Penalty { eps_n },
             z0,
             lambda_n: self.lambda_n,
         }
