@@ -50,31 +50,26 @@ pub fn start(model: &Model, state: &mut State) -> Result<(), Fault> {
         .for_each(|(i, ((history, p), point))| {
             let z0 = offsets.map_or(0.0, |o| o.at(i));
             let x = model.point_position(p, u);
-            *history = open(&master, &x, point.hint, z0, history);
+            release(&master, &x, point.hint, z0, history);
         });
     }
     Ok(())
 }
 
-/// History of an open point: slip is measured from where it is now, in the part of a step after it has touched.
-fn open(
+/// History of an open point: slip is measured from where it is now.
+fn release(
     master: &RigidMaster<'_, SurfaceSet>,
     x: &Vec3,
     hint: Option<Hint>,
     z0: f64,
-    before: &PointHistory,
-) -> PointHistory {
+    history: &mut PointHistory,
+) {
+    let local = (master.pose.inverse_transform_point(&Point3::from(*x))).coords;
     let foot = master.foot(x, hint, f64::INFINITY);
-    PointHistory {
-        base: (master.pose.inverse_transform_point(&Point3::from(*x))).coords,
-        approach: foot.map_or(f64::INFINITY, |f| (f.signed_distance - z0).max(0.0)),
-        slip: before.slip,
-        dissipated: before.dissipated,
-        ..PointHistory::default()
-    }
+    history.release(&local, foot.map(|f| f.signed_distance - z0));
 }
 
-/// Takes the state at the end of a step into the histories.
+/// Takes the state at the end of a step, which began at time `start`, into the histories.
 ///
 /// # Errors
 /// A point that cannot be evaluated, or a motion or a coefficient without a value at `time`.
@@ -82,6 +77,7 @@ pub fn commit(
     model: &Model,
     penalties: &[f64],
     state: &mut State,
+    start: f64,
     time: f64,
 ) -> Result<Sliding, Fault> {
     let mut total = Sliding::default();
@@ -96,7 +92,8 @@ pub fn commit(
             continue;
         };
         let master = model.surfaces[surface].at(time, &state.u)?;
-        let now = friction.law.at(time)?;
+        let (was, now) = (friction.law.at(start)?, friction.law.at(time)?);
+        let limited = |trial: &Vec3, normal: &Vec3, pressure: f64| with_law!(was, law => law.slip(trial, normal, pressure).t);
         let eps_n = penalties[index];
         let batch = Batch {
             model,
@@ -114,7 +111,7 @@ pub fn commit(
             (histories.par_iter_mut().zip(hints).enumerate())
                 .with_min_len(64)
                 .try_for_each(|(i, (history, point))| {
-                    batch.accept(i, point.hint, &friction, history)
+                    batch.accept(i, point.hint, &friction, &limited, history)
                 })?;
         });
         for (history, p) in state.histories[range].iter().zip(&pair.points) {
@@ -141,11 +138,14 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
+    /// `limited` is the traction that the law allowed at the start of the step, for a trial traction, a normal and a
+    /// pressure.
     fn accept<F: FrictionLaw>(
         &self,
         i: usize,
         mut hint: Option<Hint>,
         friction: &Friction<F>,
+        limited: &impl Fn(&Vec3, &Vec3, f64) -> Vec3,
         history: &mut PointHistory,
     ) -> Result<(), Fault> {
         let x = (self.model).point_position(&self.pair.points[i], self.u);
@@ -159,31 +159,21 @@ impl Batch<'_> {
                 at: [x.x, x.y, x.z],
                 fault,
             })?;
-        let turn = self.master.pose.rotation;
-        let Some(touch) = touch else {
-            *history = open(&self.master, &x, hint, z0, history);
-            return Ok(());
-        };
-        let t = touch.traction.slip.t;
-        let slid = touch.traction.slid(friction.eps_t);
-        let before = turn.inverse() * history.t;
-        let slides = touch.traction.slip.slides;
-        if slides {
-            // Of second order in the step, where the traction at its end alone would be of first.
-            history.dissipated += 0.5 * (before + t).dot(&slid);
-            history.slip += slid.norm();
+        match touch {
+            Some(touch) => {
+                let turn = &self.master.pose.rotation;
+                let (n, eps_t) = (touch.touch.n, friction.eps_t);
+                let first = limited(&touch.traction.trial, &touch.normal, -history.n);
+                history.accept(&touch.local, &touch.traction, &first, n, eps_t, turn);
+            }
+            None => {
+                let pose = &self.master.pose;
+                let local = (pose.inverse_transform_point(&Point3::from(x))).coords;
+                let foot = self.master.foot(&x, hint, f64::INFINITY);
+                let gap = foot.map(|f| f.signed_distance - z0);
+                history.leave(&local, gap, self.eps_n, friction.eps_t, &pose.rotation);
+            }
         }
-        if slides || history.approach > 0.0 {
-            history.base = touch.local;
-            history.lambda = t;
-        }
-        history.approach = 0.0;
-        history.status = match slides {
-            true => PointStatus::Slip,
-            false => PointStatus::Stick,
-        };
-        history.n = touch.touch.n;
-        history.t = turn * t;
         Ok(())
     }
 }

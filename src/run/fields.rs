@@ -1,6 +1,7 @@
 //! Fields of an accepted state, gathered on nodes for the output.
 use super::RunError;
 use super::averaged::{NodeNow, nodes_now};
+use super::friction_fields::{self, FrictionFields};
 use super::pieces::pieces;
 use crate::contact::friction::history::PointStatus;
 use crate::model::master::Masters;
@@ -10,6 +11,7 @@ use crate::output::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, Results, SurfaceOutput,
     SurfaceState,
 };
+use crate::scene::Output;
 use crate::shell::{ElementBlock, with_block};
 use covact_geometry::Vec3;
 
@@ -24,6 +26,9 @@ pub struct Fields {
     weight: Vec<f64>,
     /// Weighted pressure and gap of the pair at hand.
     sums: Vec<[f64; 2]>,
+    friction: FrictionFields,
+    /// Gaps of all slave points when last gathered, where clouds of points are written; else empty.
+    gaps: Vec<f64>,
     /// Per slave point: in front of its surface or in contact when last gathered.
     front: Vec<bool>,
     /// Per pair: points that were in front of the surface or in contact when last gathered, and now lie below it,
@@ -38,21 +43,22 @@ pub struct Fields {
 }
 
 impl Fields {
-    pub fn new(model: &Model, tessellation: u32) -> Result<Self, OutputError> {
+    /// Prepares what `output` asks for.
+    pub fn new(model: &Model, output: &Output) -> Result<Self, OutputError> {
         let mut notes = Vec::new();
         let mut surfaces = Vec::new();
         for surface in &model.surfaces {
-            let pieces = pieces(surface, tessellation);
-            let output = SurfaceOutput::new(&surface.name, pieces, tessellation)?;
-            if !output.left_out().is_empty() {
+            let pieces = pieces(surface, output.tessellation);
+            let written = SurfaceOutput::new(&surface.name, pieces, output.tessellation)?;
+            if !written.left_out().is_empty() {
                 notes.push(format!(
                     "surface `{}`: {} Bezier piece(s) have a degree too high for VTK and are in the tessellated \
                      copy only",
                     surface.name,
-                    output.left_out().len()
+                    written.left_out().len()
                 ));
             }
-            surfaces.push(output);
+            surfaces.push(written);
         }
         let n = model.nodes.len();
         Ok(Fields {
@@ -63,6 +69,11 @@ impl Fields {
             status: vec![NOT_A_SLAVE; n],
             weight: vec![0.0; n],
             sums: vec![[0.0; 2]; n],
+            friction: FrictionFields::new(model),
+            gaps: match output.contact_points {
+                true => vec![f64::NAN; model.contact_points()],
+                false => Vec::new(),
+            },
             front: vec![false; model.contact_points()],
             sunk: vec![0; model.pairs.len()],
             smallest_gap: f64::NAN,
@@ -79,7 +90,7 @@ impl Fields {
     /// Recovers pressure, gap and status at the nodes of all slave surfaces: averages over the slave points by their
     /// shape functions and areas, `p_I = sum w N_I p / sum w N_I`. With points at nodes that is the point's own
     /// pressure; as the areas are the modelled ones, it is right on symmetry planes too. Where gaps are averaged, they and
-    /// the pressures are the nodes' own.
+    /// the pressures are the nodes' own. Points with history have the pressure and the status that was solved for.
     pub fn gather(
         &mut self,
         model: &Model,
@@ -96,6 +107,10 @@ impl Fields {
         self.largest_pressure = 0.0;
         self.area = 0.0;
         self.sunk.fill(0);
+        self.friction.clear();
+        if !self.gaps.is_empty() {
+            self.gaps.resize(state.points.len(), f64::NAN);
+        }
         let mut first = 0;
         for (index, (pair, eps_n)) in model.pairs.iter().zip(penalties).enumerate() {
             let master = masters.at(model, index, &state.u, time)?;
@@ -124,11 +139,20 @@ impl Fields {
                 self.sunk[index] += usize::from(*front && sunk);
                 *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
                 let gap = seen.map_or(f64::NAN, |s| s.gap(z0));
-                let (closed, pressure) = match histories.map(|h| &h[i]) {
+                if let Some(kept) = self.gaps.get_mut(first + i) {
+                    *kept = gap;
+                }
+                let history = histories.map(|h| &h[i]);
+                let (closed, pressure) = match history {
                     // The step's own, which may be that of a point slightly above the surface.
                     Some(history) => (history.status != PointStatus::Open, -history.n),
                     None if gap < 0.0 => (true, -eps_n * gap),
                     None => (false, 0.0),
+                };
+                let status = match history {
+                    Some(history) => friction_fields::status(history),
+                    None if closed => CLOSED,
+                    None => OPEN,
                 };
                 if gap < self.smallest_gap {
                     self.smallest_gap = gap;
@@ -140,9 +164,11 @@ impl Fields {
                     self.weight[node] += w;
                     self.sums[node][0] += w * pressure;
                     self.sums[node][1] += w * gap;
-                    let status = if closed { CLOSED } else { OPEN };
                     self.status[node] = self.status[node].max(status);
                 }
+            }
+            if let (Some(_), Some(histories)) = (&pair.friction, histories) {
+                self.friction.gather(points, histories);
             }
             // Pressures of several surfaces on the same face add up; the nearest surface gives the gap.
             for (node, _) in points.iter().flat_map(|p| p.terms()) {
@@ -234,7 +260,7 @@ impl Fields {
                         gap: &self.gap[range.clone()],
                         status: &self.status[range],
                     }),
-                    fields: Vec::new(),
+                    fields: self.friction.of(model, i, body),
                 }
             })
             .collect();
@@ -244,7 +270,11 @@ impl Fields {
         let surfaces: Vec<SurfaceState> = (self.surfaces.iter().zip(&poses))
             .map(|(surface, at)| SurfaceState { surface, at })
             .collect();
-        results.write(step, time, &bodies, &surfaces)
+        let clouds = match self.gaps.is_empty() {
+            true => Vec::new(),
+            false => friction_fields::clouds(model, state, &self.gaps),
+        };
+        results.write(step, time, &bodies, &surfaces, &clouds)
     }
 }
 
