@@ -164,6 +164,9 @@ impl Averaged {
             }
         }
         totals.penetration.push(deepest);
+        totals
+            .touching
+            .push((0..self.gaps.len()).any(|at| self.closed(at)));
     }
 }
 
