@@ -1,4 +1,5 @@
 //! Laws of normal contact: gap in, traction and stiffness out. Chosen outside every loop.
+use super::friction::history::PointHistory;
 use super::kernel::Normal;
 
 /// A law between the normal coordinate `xi3` (negative = penetration) and the normal traction.
@@ -16,6 +17,12 @@ pub trait NormalLaw: Sync {
     #[inline]
     fn closes(&self, xi3: f64) -> bool {
         xi3 < 0.0
+    }
+
+    /// Normal coordinate up to which a point may be in contact; zero or less: only below the surface (length).
+    #[inline]
+    fn reach(&self) -> f64 {
+        0.0
     }
 }
 
@@ -39,10 +46,13 @@ impl GapOffset for NoOffset {
     }
 }
 
-/// The gap of point `i` is `xi3 - factor z0[i]` with `z0 <= 0`, an overclosure that is not to be resolved.
+/// The gap of point `i` is `xi3 - base - factor z0[i]`: the surface is thicker than it is modelled, or an overclosure `z0 <= 0`
+/// is not to be resolved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Offsets<'a> {
-    /// Per point of the pair, zero or negative (length).
+    /// Distance from the surface at which contact begins (length, `>= 0`).
+    pub base: f64,
+    /// Per point of the pair, zero or negative (length); empty where all are zero.
     pub z0: &'a [f64],
     pub factor: f64,
 }
@@ -51,7 +61,7 @@ impl Offsets<'_> {
     /// What the gap of a point is measured from (length).
     #[inline]
     pub fn at(&self, index: usize) -> f64 {
-        self.factor * self.z0[index]
+        self.base + self.z0.get(index).map_or(0.0, |z0| self.factor * z0)
     }
 }
 
@@ -70,7 +80,7 @@ impl GapOffset for Offsets<'_> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shifted<L> {
     pub law: L,
-    /// Zero or negative (length).
+    /// Length; positive where contact begins in front of the surface.
     pub z0: f64,
 }
 
@@ -86,6 +96,30 @@ impl<L: NormalLaw> NormalLaw for Shifted<L> {
     #[inline]
     fn closes(&self, xi3: f64) -> bool {
         xi3 < self.z0
+    }
+    #[inline]
+    fn reach(&self) -> f64 {
+        self.z0
+    }
+}
+
+/// Points of a pair with normal multipliers, and what their gaps are measured from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Multipliers<'a> {
+    /// Per point of the pair.
+    pub histories: &'a [PointHistory],
+    pub offsets: Option<Offsets<'a>>,
+}
+
+impl GapOffset for Multipliers<'_> {
+    type Law<L: NormalLaw> = Augmented<L>;
+    #[inline]
+    fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Augmented<L> {
+        Augmented {
+            law: *law,
+            z0: self.offsets.map_or(0.0, |o| o.at(index)),
+            lambda_n: self.histories[index].lambda_n,
+        }
     }
 }
 
@@ -106,23 +140,24 @@ impl NormalLaw for Penalty {
     }
 }
 
-/// The penalty law of a point with history: `N = lambda_n + eps_n (xi3 - z0)`, open where that would pull.
+/// The law of a point with history: `N = lambda_n + N(xi3 - z0)`, open where that would pull. With a multiplier a point may
+/// be in contact slightly above the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Augmented {
-    /// Pressure per penetration (force / length^3).
-    pub eps_n: f64,
+pub struct Augmented<L = Penalty> {
+    pub law: L,
     /// What the gap is measured from (length).
     pub z0: f64,
     /// Multiplier of the normal traction, `<= 0`; zero without augmentation (force / length^2).
     pub lambda_n: f64,
 }
 
-impl NormalLaw for Augmented {
+impl<L: NormalLaw> NormalLaw for Augmented<L> {
     #[inline]
     fn normal(&self, xi3: f64) -> Normal {
+        let Normal { n, dn } = self.law.normal(xi3 - self.z0);
         Normal {
-            n: self.lambda_n + self.eps_n * (xi3 - self.z0),
-            dn: self.eps_n,
+            n: self.lambda_n + n,
+            dn,
         }
     }
     #[inline]
@@ -131,6 +166,11 @@ impl NormalLaw for Augmented {
     }
     #[inline]
     fn closes(&self, xi3: f64) -> bool {
-        self.lambda_n + self.eps_n * (xi3 - self.z0) < 0.0
+        self.normal(xi3).n < 0.0
+    }
+    #[inline]
+    fn reach(&self) -> f64 {
+        let Normal { n, dn } = self.law.normal(0.0);
+        self.z0 - (self.lambda_n + n) / dn
     }
 }

@@ -56,9 +56,10 @@ pub struct Touch {
     pub residual: Vec3,
     /// Derivative of the residual with respect to the slave point, force / length^3.
     pub tangent: Matrix3<f64>,
-    /// Normal coordinate, negative.
+    /// Normal coordinate, negative below the surface.
     pub xi3: f64,
-    /// Gap that the law sees, negative: the normal coordinate, less its offset where there is one.
+    /// Gap that the law sees: the normal coordinate, less its offset where there is one. Negative, but for a point that a
+    /// multiplier holds slightly above.
     pub gap: f64,
     /// Normal traction, negative.
     pub n: f64,
@@ -105,7 +106,8 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
             return Err(PointFault::NotFinite);
         }
         let local = self.pose.inverse_transform_point(&Point3::from(*x)).coords;
-        let Some(foot) = self.surface.project(&local, *hint, self.depth) else {
+        let reach = self.depth.max(law.reach());
+        let Some(foot) = self.surface.project(&local, *hint, reach) else {
             *hint = None;
             return Ok(None);
         };
@@ -116,7 +118,8 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
             let piece = Piece::Patch(patch);
             return Err(PointFault::ProjectionNotConverged { piece, xi });
         }
-        if free(&foot) || !law.closes(foot.signed_distance) {
+        let xi3 = foot.signed_distance;
+        if free(&foot) || xi3 < -self.depth || !law.closes(xi3) {
             return Ok(None);
         }
         let geometry = self.geometry(&foot, &(local - foot.jet.rho))?;
@@ -124,8 +127,12 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
             return Err(PointFault::BeyondFocalSurface {
                 piece: Piece::Patch(patch),
                 xi,
-                xi3: foot.signed_distance,
+                xi3,
             });
+        }
+        if !geometry.directs(&law.normal(xi3)) {
+            let piece = Piece::Patch(patch);
+            return Err(PointFault::NoDirection { piece, xi, xi3 });
         }
         Ok(Some((local, geometry)))
     }

@@ -1,5 +1,5 @@
 //! What slave points with history remember of a step that is accepted.
-use crate::assembly::Fault;
+use crate::assembly::{Fault, PointAnswer};
 use crate::contact::friction::history::{PointHistory, PointStatus};
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::Friction;
@@ -35,7 +35,9 @@ pub fn start(model: &Model, state: &mut State) -> Result<(), Fault> {
     for (index, pair) in model.pairs.iter().enumerate() {
         let points = first..first + state.slaves(model, index).len();
         first = points.end;
-        let (Some(range), Master::Rigid(surface)) = (pair.history(), &pair.master) else {
+        let (Some(range), Some(_), Master::Rigid(surface)) =
+            (pair.history(), &pair.friction, &pair.master)
+        else {
             continue;
         };
         let master = model.surfaces[*surface].at(0.0, &state.u)?;
@@ -76,6 +78,7 @@ fn release(
 pub fn commit(
     model: &Model,
     penalties: &[f64],
+    answers: &[Option<PointAnswer>],
     state: &mut State,
     start: f64,
     time: f64,
@@ -85,11 +88,22 @@ pub fn commit(
     for (index, pair) in model.pairs.iter().enumerate() {
         let points = first..first + state.slaves(model, index).len();
         first = points.end;
-        let (Some(friction), Some(range)) = (&pair.friction, pair.history()) else {
+        let Some(range) = pair.history() else {
+            continue;
+        };
+        let Some(friction) = &pair.friction else {
+            press(&answers[range.clone()], &mut state.histories[range]);
             continue;
         };
         let Master::Rigid(surface) = pair.master else {
             continue;
+        };
+        // What the tangential penalties carry beside the multipliers.
+        let stretched = match pair.augmentation {
+            Some(_) => (answers[range.clone()].iter().zip(&pair.points))
+                .filter_map(|(answer, p)| Some(answer.as_ref()?.elastic.powi(2) * p.area))
+                .sum(),
+            None => 0.0,
         };
         let master = model.surfaces[surface].at(time, &state.u)?;
         let (was, now) = (friction.law.at(start)?, friction.law.at(time)?);
@@ -120,11 +134,29 @@ pub fn commit(
                 PointStatus::Stick => total.stick += 1,
                 PointStatus::Slip => total.slip += 1,
             }
-            total.stored += 0.5 * history.t.norm_squared() / eps_t * p.area;
+            if pair.augmentation.is_none() {
+                total.stored += 0.5 * history.t.norm_squared() / eps_t * p.area;
+            }
             total.dissipated += history.dissipated * p.area;
         }
+        total.stored += 0.5 * eps_t * stretched;
     }
     Ok(total)
+}
+
+/// Points without friction take their tractions as multipliers into the next step.
+fn press(answers: &[Option<PointAnswer>], histories: &mut [PointHistory]) {
+    for (history, answer) in histories.iter_mut().zip(answers) {
+        *history = match answer {
+            Some(answer) => PointHistory {
+                lambda_n: answer.n,
+                n: answer.n,
+                status: PointStatus::Stick,
+                ..PointHistory::default()
+            },
+            None => PointHistory::default(),
+        };
+    }
 }
 
 /// The points of a pair with a rigid master at an accepted state.
@@ -164,7 +196,15 @@ impl Batch<'_> {
                 let turn = &self.master.pose.rotation;
                 let (n, eps_t) = (touch.touch.n, friction.eps_t);
                 let first = limited(&touch.traction.trial, &touch.normal, -history.n);
+                let (base, tied) = (history.base, history.approach == 0.0);
                 history.accept(&touch.local, &touch.traction, &first, n, eps_t, turn);
+                if self.pair.augmentation.is_some() {
+                    history.lambda_n = n;
+                    if tied && history.status == PointStatus::Stick {
+                        // It stays tied to where it was, so that what elastic slip is left does not add up.
+                        (history.base, history.lambda) = (base, touch.traction.slip.t);
+                    }
+                }
             }
             None => {
                 let pose = &self.master.pose;

@@ -162,10 +162,12 @@ impl<'a, 'm> March<'a, 'm> {
                     if stepping.at_kink(end) {
                         before = None;
                     }
-                    stepping.accepted(converged.iterations);
-                    let penalties = &self.assembler.penalties;
+                    // Augmentations say nothing of how far a step may go.
+                    stepping.accepted(converged.iterations - converged.augmenting);
+                    let (assembler, start) = (&self.assembler, self.progress.time);
+                    let (penalties, answers) = (&assembler.penalties, assembler.answers());
                     let sliding =
-                        commit::commit(self.model, penalties, committed, self.progress.time, end)
+                        commit::commit(self.model, penalties, answers, committed, start, end)
                             .map_err(|e| RunError::internal(&e))?;
                     self.accept(step, end, &converged);
                     self.record(outputs, committed, dt, cuts, &converged, &sliding)?;
@@ -229,7 +231,7 @@ impl<'a, 'm> March<'a, 'm> {
         self.progress.time = end;
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let deepest = converged.totals.penetration[i];
-            let touching = deepest > 0.0;
+            let touching = converged.totals.touching[i];
             self.touched[i] |= touching;
             if std::mem::replace(&mut self.touching[i], touching) && !touching {
                 self.warn(format!(
@@ -239,7 +241,7 @@ impl<'a, 'm> March<'a, 'm> {
                 ));
             }
             let allowed = penalty::TOLERATED * pair.element_size;
-            if !pair.automatic && deepest > allowed {
+            if !pair.automatic && pair.augmentation.is_none() && deepest > allowed {
                 self.warn(format!(
                     "contact `{}`: penetration above 1 % of an element ({allowed:.3e}) under the given penalty",
                     pair.name
