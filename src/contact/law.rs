@@ -12,6 +12,14 @@ pub trait NormalLaw: Sync {
         xi3
     }
 
+    /// Distance from an edge or a vertex within which the direction of the distance gives way to the pseudo-normal
+    /// ([`super::corner::steady`]), at most `small` (length): as far as the traction left at no distance reaches. Zero for
+    /// a penalty, whose force is smooth by itself.
+    #[inline]
+    fn steady_radius(&self, _small: f64) -> f64 {
+        0.0
+    }
+
     /// Whether a point at this normal coordinate is in contact.
     #[inline]
     fn closes(&self, xi3: f64) -> bool {
@@ -132,5 +140,9 @@ impl NormalLaw for Augmented {
     #[inline]
     fn closes(&self, xi3: f64) -> bool {
         self.lambda_n + self.eps_n * (xi3 - self.z0) < 0.0
+    }
+    #[inline]
+    fn steady_radius(&self, small: f64) -> f64 {
+        (self.lambda_n / self.eps_n - self.z0).abs().min(small)
     }
 }

@@ -4,6 +4,7 @@ mod body_scenes;
 mod die;
 mod driven;
 mod facets;
+mod friction_kernel;
 mod hertz;
 mod hertz_bodies;
 mod hinged_roof;

@@ -1,6 +1,6 @@
 //! Friction with two coefficients, along a direction of the master and across it.
 use super::law::{FrictionLaw, Slip};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use num_dual::DualNum;
 
 /// Sine of the angle between the direction and the normal below which the two coefficients approach each other.
@@ -226,6 +226,7 @@ impl FrictionLaw for Orthotropic {
 mod tests {
     use super::super::law::Coulomb;
     use super::*;
+    use nalgebra::Matrix3;
     use num_dual::Dual64;
 
     fn law(mu: [f64; 2], direction: [f64; 3]) -> Orthotropic {
