@@ -16,9 +16,12 @@
 //!
 //! - [`trial`]: from the position to the traction and its derivative;
 //! - [`law`]: Coulomb's law, and what any law has to give; [`orthotropic`]: a law of two coefficients;
-//! - [`rigid`]: points on rigid masters.
+//! - [`rigid`]: points on rigid masters;
+//! - [`published`], [`evolution`]: the published tangents and the rate law in components, to compare with.
+pub mod evolution;
 pub mod history;
 pub mod law;
 pub mod orthotropic;
+pub mod published;
 pub mod rigid;
 pub mod trial;
