@@ -4,7 +4,7 @@ use crate::support::{self, Shape, V};
 use covact::contact::friction::history::PointHistory;
 use covact::contact::friction::law::FrictionLaw;
 use covact::contact::friction::rigid::{Friction, FrictionTouch};
-use covact::contact::law::Augmented;
+use covact::contact::law::{Augmented, Penalty};
 use covact::contact::rigid::RigidMaster;
 use covact_geometry::{NurbsPatch, PatchSet};
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
@@ -66,7 +66,7 @@ impl Case {
 
     pub fn law(&self) -> Augmented {
         Augmented {
-            eps_n: EPS_N,
+            law: Penalty { eps_n: EPS_N },
             z0: self.z0,
             lambda_n: self.lambda_n,
         }
