@@ -1,10 +1,13 @@
 //! What slave points with history remember of a step that is accepted.
+mod moving;
+
 use crate::assembly::Fault;
 use crate::contact::friction::history::{PointHistory, PointStatus};
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::Friction;
+use crate::contact::points::SlavePoint;
 use crate::contact::rigid::RigidMaster;
-use crate::model::master::Master;
+use crate::model::master::{Master, Masters};
 use crate::model::state::State;
 use crate::model::surface::SurfaceSet;
 use crate::model::{Model, PairModel};
@@ -26,16 +29,39 @@ pub struct Sliding {
     pub dissipated: f64,
 }
 
+impl Sliding {
+    /// Adds the points of a pair, of whose energies `share` counts.
+    fn add(&mut self, histories: &[PointHistory], points: &[SlavePoint], eps_t: f64, share: f64) {
+        for (history, p) in histories.iter().zip(points) {
+            match history.status {
+                PointStatus::Open => {}
+                PointStatus::Stick => self.stick += 1,
+                PointStatus::Slip => self.slip += 1,
+            }
+            self.stored += 0.5 * share * history.t.norm_squared() / eps_t * p.area;
+            self.dissipated += share * history.dissipated * p.area;
+        }
+    }
+}
+
 /// Sets the points that slip is measured from, before anything has moved.
 ///
 /// # Errors
 /// A motion without a value at time 0.
-pub fn start(model: &Model, state: &mut State) -> Result<(), Fault> {
+pub fn start(model: &Model, masters: &mut Masters, state: &mut State) -> Result<(), Fault> {
+    masters.update(model, &state.u);
     let mut first = 0;
     for (index, pair) in model.pairs.iter().enumerate() {
         let points = first..first + state.slaves(model, index).len();
         first = points.end;
-        let (Some(range), Master::Rigid(surface)) = (pair.history(), &pair.master) else {
+        let Some(range) = pair.history() else {
+            continue;
+        };
+        let Master::Rigid(surface) = &pair.master else {
+            let batch = moving::Batch::new(model, masters, index, &state.u, 0.0, 0.0);
+            if let Some(batch) = batch {
+                batch.start(&state.points[points], &mut state.histories[range]);
+            }
             continue;
         };
         let master = model.surfaces[*surface].at(0.0, &state.u)?;
@@ -81,9 +107,11 @@ fn open(
 pub fn commit(
     model: &Model,
     penalties: &[f64],
+    masters: &mut Masters,
     state: &mut State,
     time: f64,
 ) -> Result<Sliding, Fault> {
+    masters.update(model, &state.u);
     let mut total = Sliding::default();
     let mut first = 0;
     for (index, pair) in model.pairs.iter().enumerate() {
@@ -92,12 +120,19 @@ pub fn commit(
         let (Some(friction), Some(range)) = (&pair.friction, pair.history()) else {
             continue;
         };
+        let now = friction.law.at(time)?;
+        let eps_n = penalties[index];
+        let eps_t = friction.ratio * eps_n;
         let Master::Rigid(surface) = pair.master else {
+            let batch = moving::Batch::new(model, masters, index, &state.u, time, eps_n);
+            if let Some(batch) = batch {
+                let histories = &mut state.histories[range.clone()];
+                batch.commit(&state.points[points], histories, now, eps_t)?;
+            }
+            total.add(&state.histories[range], &pair.points, eps_t, pair.share());
             continue;
         };
         let master = model.surfaces[surface].at(time, &state.u)?;
-        let now = friction.law.at(time)?;
-        let eps_n = penalties[index];
         let batch = Batch {
             model,
             pair,
@@ -106,7 +141,6 @@ pub fn commit(
             time,
             eps_n,
         };
-        let eps_t = friction.ratio * eps_n;
         let histories = &mut state.histories[range.clone()];
         let hints = &state.points[points];
         with_law!(now, law => {
@@ -117,15 +151,7 @@ pub fn commit(
                     batch.accept(i, point.hint, &friction, history)
                 })?;
         });
-        for (history, p) in state.histories[range].iter().zip(&pair.points) {
-            match history.status {
-                PointStatus::Open => {}
-                PointStatus::Stick => total.stick += 1,
-                PointStatus::Slip => total.slip += 1,
-            }
-            total.stored += 0.5 * history.t.norm_squared() / eps_t * p.area;
-            total.dissipated += history.dissipated * p.area;
-        }
+        total.add(&state.histories[range], &pair.points, eps_t, pair.share());
     }
     Ok(total)
 }

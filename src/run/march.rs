@@ -97,7 +97,8 @@ impl<'a, 'm> March<'a, 'm> {
             self.warn(note);
         }
         let mut committed = State::new(self.model);
-        commit::start(self.model, &mut committed).map_err(|e| RunError::internal(&e))?;
+        let masters = &mut self.assembler.masters;
+        commit::start(self.model, masters, &mut committed).map_err(|e| RunError::internal(&e))?;
         self.gather(&mut outputs, &committed, 0.0)?;
         self.write(&mut outputs, &committed)?;
         let ending = self.steps(&mut committed, &mut outputs);
@@ -163,8 +164,10 @@ impl<'a, 'm> March<'a, 'm> {
                         before = None;
                     }
                     stepping.accepted(converged.iterations);
-                    let penalties = &self.assembler.penalties;
-                    let sliding = commit::commit(self.model, penalties, committed, end)
+                    let Assembler {
+                        penalties, masters, ..
+                    } = &mut *self.assembler;
+                    let sliding = commit::commit(self.model, penalties, masters, committed, end)
                         .map_err(|e| RunError::internal(&e))?;
                     self.accept(step, end, &converged);
                     self.record(outputs, committed, dt, cuts, &converged, &sliding)?;

@@ -6,6 +6,7 @@ mod driven;
 mod edges;
 mod faults;
 mod follower;
+mod friction;
 mod normal;
 mod pairs;
 mod spin;

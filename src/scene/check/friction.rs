@@ -49,13 +49,6 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene)
             Some(help.into()),
         );
     }
-    if !scene.surfaces.contains_key(&contact.master) && contact.master.contains('.') {
-        c.add(
-            &format!("{at}/friction"),
-            "friction is for masters that are rigid surfaces",
-            None,
-        );
-    }
 }
 
 fn coefficient(c: &mut Checker, at: &str, mu: &Value) {
