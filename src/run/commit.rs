@@ -76,31 +76,26 @@ pub fn start(model: &Model, masters: &mut Masters, state: &mut State) -> Result<
         .for_each(|(i, ((history, p), point))| {
             let z0 = offsets.map_or(0.0, |o| o.at(i));
             let x = model.point_position(p, u);
-            *history = open(&master, &x, point.hint, z0, history);
+            release(&master, &x, point.hint, z0, history);
         });
     }
     Ok(())
 }
 
-/// History of an open point: slip is measured from where it is now, in the part of a step after it has touched.
-fn open(
+/// History of an open point: slip is measured from where it is now.
+fn release(
     master: &RigidMaster<'_, SurfaceSet>,
     x: &Vec3,
     hint: Option<Hint>,
     z0: f64,
-    before: &PointHistory,
-) -> PointHistory {
+    history: &mut PointHistory,
+) {
+    let local = (master.pose.inverse_transform_point(&Point3::from(*x))).coords;
     let foot = master.foot(x, hint, f64::INFINITY);
-    PointHistory {
-        base: (master.pose.inverse_transform_point(&Point3::from(*x))).coords,
-        approach: foot.map_or(f64::INFINITY, |f| (f.signed_distance - z0).max(0.0)),
-        slip: before.slip,
-        dissipated: before.dissipated,
-        ..PointHistory::default()
-    }
+    history.release(&local, foot.map(|f| f.signed_distance - z0));
 }
 
-/// Takes the state at the end of a step into the histories.
+/// Takes the state at the end of a step, which began at time `start`, into the histories.
 ///
 /// # Errors
 /// A point that cannot be evaluated, or a motion or a coefficient without a value at `time`.
@@ -109,6 +104,7 @@ pub fn commit(
     penalties: &[f64],
     masters: &mut Masters,
     state: &mut State,
+    start: f64,
     time: f64,
 ) -> Result<Sliding, Fault> {
     masters.update(model, &state.u);
@@ -120,14 +116,15 @@ pub fn commit(
         let (Some(friction), Some(range)) = (&pair.friction, pair.history()) else {
             continue;
         };
-        let now = friction.law.at(time)?;
+        let (was, now) = (friction.law.at(start)?, friction.law.at(time)?);
+        let limited = |trial: &Vec3, normal: &Vec3, pressure: f64| with_law!(was, law => law.slip(trial, normal, pressure).t);
         let eps_n = penalties[index];
         let eps_t = friction.ratio * eps_n;
         let Master::Rigid(surface) = pair.master else {
             let batch = moving::Batch::new(model, masters, index, &state.u, time, eps_n);
             if let Some(batch) = batch {
                 let histories = &mut state.histories[range.clone()];
-                batch.commit(&state.points[points], histories, now, eps_t)?;
+                batch.commit(&state.points[points], histories, (now, eps_t), &limited)?;
             }
             total.add(&state.histories[range], &pair.points, eps_t, pair.share());
             continue;
@@ -148,7 +145,7 @@ pub fn commit(
             (histories.par_iter_mut().zip(hints).enumerate())
                 .with_min_len(64)
                 .try_for_each(|(i, (history, point))| {
-                    batch.accept(i, point.hint, &friction, history)
+                    batch.accept(i, point.hint, &friction, &limited, history)
                 })?;
         });
         total.add(&state.histories[range], &pair.points, eps_t, pair.share());
@@ -167,11 +164,14 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
+    /// `limited` is the traction that the law allowed at the start of the step, for a trial traction, a normal and a
+    /// pressure.
     fn accept<F: FrictionLaw>(
         &self,
         i: usize,
         mut hint: Option<Hint>,
         friction: &Friction<F>,
+        limited: &impl Fn(&Vec3, &Vec3, f64) -> Vec3,
         history: &mut PointHistory,
     ) -> Result<(), Fault> {
         let x = (self.model).point_position(&self.pair.points[i], self.u);
@@ -185,31 +185,21 @@ impl Batch<'_> {
                 at: [x.x, x.y, x.z],
                 fault,
             })?;
-        let turn = self.master.pose.rotation;
-        let Some(touch) = touch else {
-            *history = open(&self.master, &x, hint, z0, history);
-            return Ok(());
-        };
-        let t = touch.traction.slip.t;
-        let slid = touch.traction.slid(friction.eps_t);
-        let before = turn.inverse() * history.t;
-        let slides = touch.traction.slip.slides;
-        if slides {
-            // Of second order in the step, where the traction at its end alone would be of first.
-            history.dissipated += 0.5 * (before + t).dot(&slid);
-            history.slip += slid.norm();
+        match touch {
+            Some(touch) => {
+                let turn = &self.master.pose.rotation;
+                let (n, eps_t) = (touch.touch.n, friction.eps_t);
+                let first = limited(&touch.traction.trial, &touch.normal, -history.n);
+                history.accept(&touch.local, &touch.traction, &first, n, eps_t, turn);
+            }
+            None => {
+                let pose = &self.master.pose;
+                let local = (pose.inverse_transform_point(&Point3::from(x))).coords;
+                let foot = self.master.foot(&x, hint, f64::INFINITY);
+                let gap = foot.map(|f| f.signed_distance - z0);
+                history.leave(&local, gap, self.eps_n, friction.eps_t, &pose.rotation);
+            }
         }
-        if slides || history.approach > 0.0 {
-            history.base = touch.local;
-            history.lambda = t;
-        }
-        history.approach = 0.0;
-        history.status = match slides {
-            true => PointStatus::Slip,
-            false => PointStatus::Stick,
-        };
-        history.n = touch.touch.n;
-        history.t = turn * t;
         Ok(())
     }
 }

@@ -90,7 +90,7 @@ impl<'a, 'm> March<'a, 'm> {
         let mut outputs = Outputs {
             results: Results::create(out)?,
             table: History::create(&out.join("history.csv"), history::columns(self.model))?,
-            fields: Fields::new(self.model, self.scene.output.tessellation)?,
+            fields: Fields::new(self.model, &self.scene.output)?,
             written: None,
         };
         for note in outputs.fields.notes() {
@@ -167,8 +167,15 @@ impl<'a, 'm> March<'a, 'm> {
                     let Assembler {
                         penalties, masters, ..
                     } = &mut *self.assembler;
-                    let sliding = commit::commit(self.model, penalties, masters, committed, end)
-                        .map_err(|e| RunError::internal(&e))?;
+                    let sliding = commit::commit(
+                        self.model,
+                        penalties,
+                        masters,
+                        committed,
+                        self.progress.time,
+                        end,
+                    )
+                    .map_err(|e| RunError::internal(&e))?;
                     self.accept(step, end, &converged);
                     self.record(outputs, committed, dt, cuts, &converged, &sliding)?;
                     cuts = 0;

@@ -107,7 +107,7 @@ impl Attempts<'_, '_> {
 
     /// Takes the last accepted state. A surface driven by force that touches nothing in it, or would not at `end`, is
     /// placed where the contact with bodies that stand still carries its force: where it merely touched it would have no
-    /// stiffness.
+    /// stiffness. Nothing is done where friction alone resists.
     fn restart(&self, end: f64, trial: &mut State) -> Result<(), Fault> {
         trial.copy_from(self.committed);
         for entry in self.model.driven() {
@@ -122,7 +122,7 @@ impl Attempts<'_, '_> {
             let mut q = Vector6::from_column_slice(&trial.u[at.clone()]);
             let penalties = &self.assembler.penalties;
             let mut presser = Presser::new(self.model, entry, penalties, &trial.u);
-            if touches && presser.press(end, &q)?.active > 0 {
+            if presser.only_friction_resists() || touches && presser.press(end, &q)?.active > 0 {
                 continue;
             }
             let mut u = trial.u.clone();

@@ -68,16 +68,16 @@ impl Sliding {
             };
             let base = x + V::new(0.02, -0.035, 0.015);
             let lambda = V::new(-0.04, 0.03, 0.02);
-            let kept = master.attach(hint, &base, &lambda).expect("a normal");
             held.push(at.held);
-            histories.push(PointHistory {
-                place: Some(kept.place),
-                base: kept.base,
-                lambda: kept.lambda,
+            let mut history = PointHistory {
+                base,
+                lambda,
                 lambda_n: LAMBDA_N,
                 approach,
                 ..PointHistory::default()
-            });
+            };
+            master.attach(&mut history, Some(hint));
+            histories.push(history);
         }
         let friction = Friction {
             law: Coulomb { mu },

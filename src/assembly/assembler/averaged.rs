@@ -493,7 +493,7 @@ impl Border {
         let c = carried(r, k, arm);
         press::add(&mut self.residual, &-r, &c.spin);
         if TANGENT {
-            press::add_tangent(&mut self.tangent, k, &-c.point_spin, &c.spin_spin);
+            press::add_tangent(&mut self.tangent, k, &c);
             for (node, w) in p.terms() {
                 let [translation, spin] = self.block(node);
                 *translation -= k * w;

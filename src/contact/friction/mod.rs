@@ -15,7 +15,7 @@
 //! return from a finite chord; the slip is the one at the slave point, to which the traction is conjugate at every `xi3`.
 //!
 //! - [`trial`]: from the position to the traction and its derivative;
-//! - [`law`]: Coulomb's law, and what any law has to give;
+//! - [`law`]: Coulomb's law, and what any law has to give; [`orthotropic`]: a law of two coefficients;
 //! - [`rigid`]: points on rigid masters;
 //! - [`anchor`]: the attraction point on a facet that moves, [`moving`]: the response there in the slots,
 //!   [`touch`]: points on faces of bodies, [`scatter`]: from the slots to their nodes.
@@ -23,6 +23,7 @@ pub mod anchor;
 pub mod history;
 pub mod law;
 pub mod moving;
+pub mod orthotropic;
 pub mod rigid;
 pub mod scatter;
 pub mod touch;

@@ -25,6 +25,8 @@ pub struct FrictionTouch {
     pub traction: Traction,
     /// The slave point in the surface's own coordinates.
     pub local: Vec3,
+    /// Unit normal at the foot, in the same coordinates.
+    pub normal: Vec3,
 }
 
 impl PointHistory {
@@ -69,6 +71,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
             touch: self.in_space(&geometry, law, &normal, residual, k),
             traction,
             local,
+            normal: n,
         }))
     }
 }

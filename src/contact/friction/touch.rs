@@ -21,14 +21,8 @@ pub struct MovingFrictionTouch {
     pub gap: f64,
     /// Normal traction, negative.
     pub n: f64,
-}
-
-/// An attraction point that is to be kept, as [`PointHistory`] keeps it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Attached {
-    pub place: Hint,
-    pub base: Vec3,
-    pub lambda: Vec3,
+    /// Outward unit vector that it acts along.
+    pub normal: Vec3,
 }
 
 /// How near the direction of the distance is lost on an edge or a vertex, relative to the size of the surface.
@@ -80,30 +74,39 @@ impl MovingMaster<'_> {
             response: respond_with_friction(&geometry, &normal, &friction.law, &pull, form),
             gap,
             n: normal.n,
+            normal: geometry.normal(),
         }))
     }
 
-    /// The space point `base` and the traction `lambda` as components at a place of the surface, so that they move with it
-    /// from now on. Where the facet has no normal there, the place is moved a little towards its middle; `None` where it
-    /// has none anywhere near.
-    pub fn attach(&self, place: Hint, base: &Vec3, lambda: &Vec3) -> Option<Attached> {
-        [0.0, 1e-3, 0.1].into_iter().find_map(|step| {
-            let xi = place.xi.map(|x| x * (1.0 - step));
-            let anchor = Anchor::new(&self.facets.jet(place.patch, xi))?;
-            Some(Attached {
-                place: Hint {
-                    patch: place.patch,
-                    xi,
-                },
-                base: anchor.components(&(base - anchor.rho)),
-                lambda: anchor.components(lambda),
+    /// Attaches an attraction point and its traction, in space, to the surface at `foot`, to move with it from now on. Where
+    /// the facet has no normal there, the place is moved a little towards its middle; where it has none anywhere near,
+    /// or there is no foot, the point is attached to nothing and nothing pulls at it.
+    pub fn attach(&self, history: &mut PointHistory, foot: Option<Hint>) {
+        let found = foot.and_then(|Hint { patch, xi }| {
+            [0.0, 1e-3, 0.1].into_iter().find_map(|step| {
+                let xi = xi.map(|x| x * (1.0 - step));
+                let anchor = Anchor::new(&self.facets.jet(patch, xi))?;
+                Some((Hint { patch, xi }, anchor))
             })
-        })
+        });
+        (history.place, history.base, history.lambda) = match found {
+            Some((place, anchor)) => (
+                Some(place),
+                anchor.components(&(history.base - anchor.rho)),
+                anchor.components(&history.lambda),
+            ),
+            None => (None, Vec3::zeros(), Vec3::zeros()),
+        };
     }
 
-    /// A traction with components at a place of the surface, in space; zero where there is none.
-    pub fn carried(&self, place: Option<Hint>, components: &Vec3) -> Vec3 {
+    /// Turns attraction point and traction of a history into those of space, where the surface is now; of a history without
+    /// a place the attraction point is `x`.
+    pub fn detach(&self, history: &mut PointHistory, x: &Vec3) {
+        let place = history.place.take();
         let anchor = place.and_then(|p| Anchor::new(&self.facets.jet(p.patch, p.xi)));
-        anchor.map_or_else(Vec3::zeros, |a| a.vector(components))
+        (history.base, history.lambda) = match anchor {
+            Some(a) => (a.rho + a.vector(&history.base), a.vector(&history.lambda)),
+            None => (*x, Vec3::zeros()),
+        };
     }
 }

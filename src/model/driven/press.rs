@@ -2,7 +2,7 @@
 //! it. This is where a step starts from that the surface enters without contact; six unknowns, no system.
 use super::turn;
 use super::{Driven, Model, SurfaceModel};
-use crate::contact::carried::carried;
+use crate::contact::carried::{Carried, carried, cross_matrix};
 use crate::contact::law::{Penalty, Shifted};
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, behind, presses};
 use crate::model::overclosure::Overclosure;
@@ -53,6 +53,8 @@ pub struct Presser<'m> {
     surface: &'m SurfaceModel,
     driven: &'m Driven,
     pairs: Vec<PairAtRest<'m>>,
+    /// Whether any pair has friction, which resists what the normal tractions here do not.
+    slides: bool,
     /// Largest step: a fraction of an element and of the depth.
     stride: f64,
 }
@@ -95,12 +97,14 @@ impl<'m> Presser<'m> {
         u: &[f64],
     ) -> Self {
         let mut size = surface.depth;
+        let mut slides = false;
         let mut pairs = Vec::new();
         for (pair, &eps_n) in model.pairs.iter().zip(penalties) {
             if pair.rigid_master() != Some(index) {
                 continue;
             }
             size = size.min(pair.element_size);
+            slides |= pair.friction.is_some();
             let points = (pair.points.iter())
                 .enumerate()
                 .map(|(i, p)| PointAtRest {
@@ -121,6 +125,7 @@ impl<'m> Presser<'m> {
             surface,
             driven,
             pairs,
+            slides,
             stride: STRIDE * size,
         }
     }
@@ -128,6 +133,11 @@ impl<'m> Presser<'m> {
     /// Whether any pair has the surface as its master.
     pub fn is_empty(&self) -> bool {
         self.pairs.iter().all(|p| p.points.is_empty())
+    }
+
+    /// Whether friction alone works against what drives the surface: no translation is free.
+    pub fn only_friction_resists(&self) -> bool {
+        self.slides && self.driven.free()[..3].iter().all(|free| !free)
     }
 
     fn parts(&self, q: &Vector6<f64>) -> (Vec3, Vec3) {
@@ -182,7 +192,7 @@ impl<'m> Presser<'m> {
                 out.active += 1;
                 out.energy += 0.5 * touch.n * touch.gap * p.area;
                 add(&mut out.residual, &-r, &c.spin);
-                add_tangent(&mut out.tangent, &k, &-c.point_spin, &c.spin_spin);
+                add_tangent(&mut out.tangent, &k, &c);
             }
         }
         (out.residual, out.tangent) =
@@ -318,7 +328,11 @@ impl<'m> Presser<'m> {
                     0.0
                 }
             };
-            let f = Vector6::from_fn(|c, _| force(c));
+            let mut f = Vector6::from_fn(|c, _| force(c));
+            if self.slides && now.active > 0 {
+                // What is left to friction is Newton's.
+                f = resisted(&now.tangent, &free, &f);
+            }
             if f.norm() <= 1e-6 * Vector6::from(forces).norm() && now.active > 0 {
                 return Ok(Placed::Held);
             }
@@ -374,6 +388,21 @@ fn modified_step(tangent: &Matrix6<f64>, free: &[bool; 6], f: &Vector6<f64>) -> 
     step
 }
 
+/// The part of forces that works along directions which have stiffness.
+fn resisted(tangent: &Matrix6<f64>, free: &[bool; 6], f: &Vector6<f64>) -> Vector6<f64> {
+    let masked = |i: usize, j: usize| match free[i] && free[j] {
+        true => tangent[(i, j)],
+        false => 0.0,
+    };
+    let eigen = SymmetricEigen::new(Matrix6::from_fn(masked));
+    let smallest = 1e-6 * eigen.eigenvalues.amax();
+    let stiff = (0..6).filter(|&i| eigen.eigenvalues[i].abs() > smallest);
+    stiff.fold(Vector6::zeros(), |sum, i| {
+        let v = eigen.eigenvectors.column(i);
+        sum + v * v.dot(f)
+    })
+}
+
 /// Adds translation and spin parts.
 pub fn add(out: &mut Vector6<f64>, translation: &Vec3, spin: &Vec3) {
     let mut part = out.fixed_rows_mut::<3>(0);
@@ -382,21 +411,16 @@ pub fn add(out: &mut Vector6<f64>, translation: &Vec3, spin: &Vec3) {
     part += spin;
 }
 
-/// Adds blocks of translation, translation and spin, spin.
-pub fn add_tangent(
-    out: &mut Matrix6<f64>,
-    translation: &nalgebra::Matrix3<f64>,
-    mixed: &nalgebra::Matrix3<f64>,
-    spin: &nalgebra::Matrix3<f64>,
-) {
+/// Adds the blocks of translation and spin of a point with tangent `k`.
+pub fn add_tangent(out: &mut Matrix6<f64>, k: &nalgebra::Matrix3<f64>, c: &Carried) {
     let mut block = out.fixed_view_mut::<3, 3>(0, 0);
-    block += translation;
+    block += k;
     let mut block = out.fixed_view_mut::<3, 3>(0, 3);
-    block += mixed;
+    block -= c.point_spin;
     let mut block = out.fixed_view_mut::<3, 3>(3, 0);
-    block += mixed.transpose();
+    block -= c.spin_point;
     let mut block = out.fixed_view_mut::<3, 3>(3, 3);
-    block += spin;
+    block += c.spin_spin;
 }
 
 /// Residual and symmetric tangent of translation and spin, as those of the degrees of freedom: the rotation vector times
@@ -424,6 +448,24 @@ pub fn in_rotation_vector(
     (r, k)
 }
 
+/// [`in_rotation_vector`] for a tangent without symmetry.
+pub fn in_rotation_vector_with_friction(
+    residual: &Vector6<f64>,
+    tangent: &Matrix6<f64>,
+    theta: &Vec3,
+    lever: f64,
+) -> (Vector6<f64>, Matrix6<f64>) {
+    let (r, mut k) = in_rotation_vector(residual, tangent, theta, lever);
+    let spin = turn::spin_of(theta);
+    let moment: Vec3 = residual.fixed_rows::<3>(3).into();
+    let mixed = spin.tr_mul(&tangent.fixed_view::<3, 3>(3, 0)) / lever;
+    k.fixed_view_mut::<3, 3>(3, 0).copy_from(&mixed);
+    let spin_spin = tangent.fixed_view::<3, 3>(3, 3).into();
+    (k.fixed_view_mut::<3, 3>(3, 3))
+        .copy_from(&whole_spin_block(&spin_spin, &moment, theta, lever));
+    (r, k)
+}
+
 /// The block of the rotation alone: the second derivative by spins on top of the present rotation is that by rotation
 /// vectors but for half of the moment's cross product (two turns do not commute) and the change of `T`.
 pub fn spin_block(
@@ -432,9 +474,18 @@ pub fn spin_block(
     theta: &Vec3,
     lever: f64,
 ) -> nalgebra::Matrix3<f64> {
-    let spin = turn::spin_of(theta);
-    let by_spin = spin_spin - crate::contact::carried::cross_matrix(moment) * 0.5;
-    let k =
-        (spin.transpose() * by_spin * spin + turn::moment_slope(theta, moment)) / (lever * lever);
+    let k = whole_spin_block(spin_spin, moment, theta, lever);
     (k + k.transpose()) * 0.5
+}
+
+/// [`spin_block`] before rounding is taken out of what is symmetric, or without symmetry.
+fn whole_spin_block(
+    spin_spin: &nalgebra::Matrix3<f64>,
+    moment: &Vec3,
+    theta: &Vec3,
+    lever: f64,
+) -> nalgebra::Matrix3<f64> {
+    let spin = turn::spin_of(theta);
+    let by_spin = spin_spin - cross_matrix(moment) * 0.5;
+    (spin.transpose() * by_spin * spin + turn::moment_slope(theta, moment)) / (lever * lever)
 }

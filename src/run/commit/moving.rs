@@ -1,10 +1,10 @@
 //! Slave points on faces of bodies: their attraction points are material points of these faces.
 use crate::assembly::Fault;
-use crate::contact::friction::history::{PointHistory, PointStatus};
+use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::moving::Reduced;
 use crate::contact::friction::rigid::Friction;
-use crate::contact::friction::touch::Attached;
+use crate::contact::friction::trial::Traction;
 use crate::contact::moving::MovingMaster;
 use crate::model::friction::LawNow;
 use crate::model::master::{BodyMaster, BodySurface, Masters};
@@ -13,6 +13,7 @@ use crate::model::state::PointState;
 use crate::model::{Model, PairModel};
 use crate::with_law;
 use covact_geometry::{Hint, Vec3};
+use nalgebra::{Matrix3, UnitQuaternion};
 use rayon::prelude::*;
 
 /// The points of a pair whose master is a body, at an accepted state.
@@ -66,14 +67,14 @@ impl<'a> Batch<'a> {
         (histories.par_iter_mut().zip(points).enumerate())
             .with_min_len(64)
             .for_each(|(i, (history, point))| {
-                let x = self.model.point_position(&self.pair.points[i], self.u);
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
-                *history = self.open(&master, i, &x, point.hint, history, facet);
+                self.open(&master, i, point.hint, history, facet);
             });
     }
 
-    /// Takes the end of a step into the histories.
+    /// Takes the end of a step into the histories. `limited` is the traction that the law allowed at its start, for a
+    /// trial traction, a normal and a pressure.
     ///
     /// # Errors
     /// A point that cannot be evaluated.
@@ -81,14 +82,14 @@ impl<'a> Batch<'a> {
         &self,
         points: &[PointState],
         histories: &mut [PointHistory],
-        law: LawNow,
-        eps_t: f64,
+        (law, eps_t): (LawNow, f64),
+        limited: &(impl Fn(&Vec3, &Vec3, f64) -> Vec3 + Sync),
     ) -> Result<(), Fault> {
         with_law!(law, law => {
             let friction = Friction { law, eps_t };
             match &self.body.own {
-                None => self.accept(points, histories, &friction, &All),
-                Some(own) => self.accept(points, histories, &friction, &self.opposing(own)),
+                None => self.accept(points, histories, &friction, limited, &All),
+                Some(own) => self.accept(points, histories, &friction, limited, &self.opposing(own)),
             }
         })
     }
@@ -117,6 +118,7 @@ impl<'a> Batch<'a> {
         points: &[PointState],
         histories: &mut [PointHistory],
         friction: &Friction<F>,
+        limited: &(impl Fn(&Vec3, &Vec3, f64) -> Vec3 + Sync),
         accept: &A,
     ) -> Result<(), Fault> {
         let master = self.master();
@@ -125,16 +127,18 @@ impl<'a> Batch<'a> {
             .try_for_each(|(i, (history, point))| {
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
-                self.point(&master, i, point.hint, friction, history, facet)
+                self.point(&master, i, point.hint, friction, limited, history, facet)
             })
     }
 
+    #[expect(clippy::too_many_arguments)]
     fn point<F: FrictionLaw>(
         &self,
         master: &MovingMaster<'_>,
         i: usize,
         mut hint: Option<Hint>,
         friction: &Friction<F>,
+        limited: &impl Fn(&Vec3, &Vec3, f64) -> Vec3,
         history: &mut PointHistory,
         accept: impl Fn(u32) -> bool + Copy,
     ) -> Result<(), Fault> {
@@ -148,66 +152,48 @@ impl<'a> Batch<'a> {
                 at: [x.x, x.y, x.z],
                 fault,
             })?;
-        let Some(touch) = touch else {
-            *history = self.open(master, i, &x, hint, history, accept);
-            return Ok(());
+        // Where the master is now, its coordinates are those of space: what follows is as on a rigid master that does not
+        // move, until the point is attached again.
+        let still = UnitQuaternion::identity();
+        master.detach(history, &x);
+        let foot = match touch {
+            Some(touch) => {
+                let traction = Traction {
+                    trial: touch.response.trial,
+                    slip: touch.response.slip,
+                    tangent: Matrix3::zeros(),
+                };
+                let first = limited(&traction.trial, &touch.normal, -history.n);
+                history.accept(&x, &traction, &first, touch.n, friction.eps_t, &still);
+                Some(touch.foot)
+            }
+            None => {
+                let foot = (master.facets).project(&x, hint, f64::INFINITY, accept);
+                let gap = foot.as_ref().map(|f| f.signed_distance - self.offset(i));
+                history.leave(&x, gap, self.eps_n, friction.eps_t, &still);
+                foot.map(|f| f.hint())
+            }
         };
-        let t = touch.response.slip.t;
-        let slides = touch.response.slip.slides;
-        if slides {
-            // Of second order in the step. The tractions are along what is slid, at either end of it, but the one before
-            // lies as the master lay then: its size alone does not ask how that has turned.
-            let slid = touch.response.slid(friction.eps_t).norm();
-            history.dissipated += 0.5 * (history.t.norm() + t.norm()) * slid;
-            history.slip += slid;
-        }
-        if slides || history.approach > 0.0 || history.place.is_none() {
-            set(history, master.attach(touch.foot, &x, &t));
-        }
-        history.approach = 0.0;
-        history.status = match slides {
-            true => PointStatus::Slip,
-            false => PointStatus::Stick,
-        };
-        history.n = touch.n;
-        history.t = t;
+        master.attach(history, foot);
         Ok(())
     }
 
-    /// History of an open point: slip is measured from where it is now, seen from the nearest facet, in the part of a step
-    /// after it has touched.
+    /// History of an open point at the start.
     fn open(
         &self,
         master: &MovingMaster<'_>,
         i: usize,
-        x: &Vec3,
         hint: Option<Hint>,
-        before: &PointHistory,
+        history: &mut PointHistory,
         accept: impl Fn(u32) -> bool,
-    ) -> PointHistory {
-        let mut history = PointHistory {
-            approach: f64::INFINITY,
-            slip: before.slip,
-            dissipated: before.dissipated,
-            ..PointHistory::default()
-        };
-        if let Some(foot) = (master.facets).project(x, hint, f64::INFINITY, accept) {
-            history.approach = (foot.signed_distance - self.offset(i)).max(0.0);
-            set(&mut history, master.attach(foot.hint(), x, &Vec3::zeros()));
-        }
-        history
+    ) {
+        let x = (self.model).point_position(&self.pair.points[i], self.u);
+        let foot = (master.facets).project(&x, hint, f64::INFINITY, accept);
+        history.release(&x, foot.as_ref().map(|f| f.signed_distance - self.offset(i)));
+        master.attach(history, foot.map(|f| f.hint()));
     }
 
     fn offset(&self, i: usize) -> f64 {
         (self.pair.offsets(self.time)).map_or(0.0, |o| o.at(i))
     }
-}
-
-/// Sets the attraction point; none where it could not be kept, and nothing pulls until it can.
-fn set(history: &mut PointHistory, attached: Option<Attached>) {
-    history.place = attached.map(|a| a.place);
-    (history.base, history.lambda) = match attached {
-        Some(a) => (a.base, a.lambda),
-        None => (Vec3::zeros(), Vec3::zeros()),
-    };
 }

@@ -1,10 +1,10 @@
 //! What can be wrong with the friction of a contact.
 use super::checker::Checker;
-use super::{Contact, Friction, Gap, Penalty, Points, Scene, TIME, Tangent, check_penalty};
+use super::{Contact, Friction, Gap, Penalty, Points, TIME, Tangent, check_penalty};
 use crate::scene::Value;
 
 /// Problems of the friction of the contact at `at`.
-pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene) {
+pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
     let Some(friction) = &contact.friction else {
         if contact.tangential_penalty != Penalty::Auto {
             c.add(

@@ -53,6 +53,13 @@ pub fn check(loaded: &LoadedScene) -> Vec<Problem> {
     }
     check_solution(&mut c, &scene.solution);
     c.whole("/output/tessellation", scene.output.tessellation, 1, 200);
+    if scene.output.contact_points && scene.contacts.values().all(|c| c.friction.is_none()) {
+        c.add(
+            "/output/contact_points",
+            "no contact has friction: there are no slave points with values of their own",
+            Some("leave it out, or give a contact `friction`".into()),
+        );
+    }
     c.finish()
 }
 
@@ -128,7 +135,7 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
         }
     }
     check_penalty(c, &format!("{at}/penalty"), contact.penalty);
-    friction::check(c, at, contact, scene);
+    friction::check(c, at, contact);
 }
 
 fn check_penalty(c: &mut Checker, at: &str, penalty: Penalty) {
