@@ -139,6 +139,21 @@ pub(super) fn vertex_slots<D: DualNum<f64> + Copy>(
     k
 }
 
+/// `E` of an edge that moves: `ds = E . slots / (|rho'|^2 - rho'' . d)`.
+pub(super) fn along_edge<D: DualNum<f64> + Copy>(
+    d: &Vector3<D>,
+    direction: &[D; 2],
+    rho_s: &Vector3<D>,
+) -> Slots<D> {
+    let mut e = Slots::from_element(D::zero());
+    for k in 0..3 {
+        e[k] = rho_s[k];
+        e[3 + k] = d[k] * direction[0];
+        e[6 + k] = d[k] * direction[1];
+    }
+    e
+}
+
 /// Tangent at an edge that moves, in the nine slots.
 pub(super) fn edge_slots<D: DualNum<f64> + Copy>(
     d: &Vector3<D>,
@@ -148,12 +163,7 @@ pub(super) fn edge_slots<D: DualNum<f64> + Copy>(
     rho_ss: &Vector3<D>,
     normal: &Normal<D>,
 ) -> SlotMatrix<D> {
-    let mut e = Slots::from_element(D::zero());
-    for k in 0..3 {
-        e[k] = rho_s[k];
-        e[3 + k] = d[k] * direction[0];
-        e[6 + k] = d[k] * direction[1];
-    }
+    let e = along_edge(d, direction, rho_s);
     let scale = normal.n / (xi3 * curvature(d, rho_s, rho_ss));
     vertex_slots(d, xi3, normal) - e * e.transpose() * scale
 }

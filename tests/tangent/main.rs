@@ -6,6 +6,7 @@ mod driven;
 mod edges;
 mod faults;
 mod follower;
+mod friction;
 mod friction_edges;
 mod friction_published;
 mod friction_rigid;
