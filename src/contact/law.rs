@@ -12,10 +12,10 @@ pub trait NormalLaw: Sync {
         xi3
     }
 
-    /// Whether a point below the surface, `xi3 < 0`, is in contact.
+    /// Whether a point at this normal coordinate is in contact.
     #[inline]
-    fn closes(&self, _xi3: f64) -> bool {
-        true
+    fn closes(&self, xi3: f64) -> bool {
+        xi3 < 0.0
     }
 }
 
@@ -47,13 +47,21 @@ pub struct Offsets<'a> {
     pub factor: f64,
 }
 
+impl Offsets<'_> {
+    /// What the gap of a point is measured from (length).
+    #[inline]
+    pub fn at(&self, index: usize) -> f64 {
+        self.factor * self.z0[index]
+    }
+}
+
 impl GapOffset for Offsets<'_> {
     type Law<L: NormalLaw> = Shifted<L>;
     #[inline]
     fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Shifted<L> {
         Shifted {
             law: *law,
-            z0: self.factor * self.z0[index],
+            z0: self.at(index),
         }
     }
 }
@@ -95,5 +103,34 @@ impl NormalLaw for Penalty {
             n: self.eps_n * xi3,
             dn: self.eps_n,
         }
+    }
+}
+
+/// The penalty law of a point with history: `N = lambda_n + eps_n (xi3 - z0)`, open where that would pull.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Augmented {
+    /// Pressure per penetration (force / length^3).
+    pub eps_n: f64,
+    /// What the gap is measured from (length).
+    pub z0: f64,
+    /// Multiplier of the normal traction, `<= 0`; zero without augmentation (force / length^2).
+    pub lambda_n: f64,
+}
+
+impl NormalLaw for Augmented {
+    #[inline]
+    fn normal(&self, xi3: f64) -> Normal {
+        Normal {
+            n: self.lambda_n + self.eps_n * (xi3 - self.z0),
+            dn: self.eps_n,
+        }
+    }
+    #[inline]
+    fn gap(&self, xi3: f64) -> f64 {
+        xi3 - self.z0
+    }
+    #[inline]
+    fn closes(&self, xi3: f64) -> bool {
+        self.lambda_n + self.eps_n * (xi3 - self.z0) < 0.0
     }
 }

@@ -3,6 +3,7 @@
 //! - [`kernel`]: face points in nine slots, [`corner`]: edges and vertices, [`published`]: the published tangent;
 //! - [`point`]: one response for all of them, [`law`]: what the traction is;
 //! - [`rigid`], [`moving`]: closest points on masters that do not move or whose nodes do, [`meeting`]: what both give;
+//! - [`friction`]: slip, its laws and its history;
 //! - [`spin`]: a rigid body's translation and spin in the slots, [`averaged`]: the gap in the mean of slave nodes.
 pub mod averaged;
 pub mod carried;
@@ -10,6 +11,7 @@ pub mod clip;
 pub mod closest;
 pub mod corner;
 pub mod fault;
+pub mod friction;
 pub mod kernel;
 pub mod law;
 pub mod meeting;

@@ -9,7 +9,7 @@ use super::kernel::{self, Normal, SlotMatrix, Slots};
 use super::published::{self, Parts};
 use super::rigid::Exact;
 use covact_geometry::{Frame, Jet};
-use nalgebra::{Isometry3, Point3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use num_dual::DualNum;
 
 /// Where the foot of a contact point lies and what the surface looks like there.
@@ -109,6 +109,36 @@ impl<D: DualNum<f64> + Copy> PointGeometry<D> {
                 d * xi3.recip()
             }
             PointGeometry::Pole { normal, .. } => *normal,
+        }
+    }
+
+    /// How the unit normal turns as the slave point moves over a master that stands still, `dn/dr_s` (1 / length), symmetric:
+    /// `-(A^-1 h a^-1)^ij rho_i x rho_j` on a face; nothing at a pole, where the curvature is not known.
+    pub fn turn(&self) -> Matrix3<D> {
+        match self {
+            PointGeometry::Face { frame, xi3 } => {
+                let unit = Normal {
+                    n: D::one(),
+                    dn: D::zero(),
+                };
+                kernel::normal_tangent_rigid(frame, *xi3, &unit)
+            }
+            PointGeometry::Edge {
+                d,
+                xi3,
+                rho_s,
+                rho_ss,
+                ..
+            } => {
+                let n = d * xi3.recip();
+                corner::edge_tangent(d, rho_s, rho_ss, xi3.recip())
+                    - n * n.transpose() * xi3.recip()
+            }
+            PointGeometry::Vertex { d, xi3 } => {
+                let n = d * xi3.recip();
+                corner::vertex_tangent(xi3.recip()) - n * n.transpose() * xi3.recip()
+            }
+            PointGeometry::Pole { .. } => Matrix3::from_element(D::zero()),
         }
     }
 

@@ -74,6 +74,9 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
     /// Evaluates one slave point; `None` where it is open.
     ///
     /// `hint` is where the search starts, and is set to where it ended.
+    ///
+    /// # Errors
+    /// [`PointFault`] where the point has no reliable closest point.
     pub fn touch<L: NormalLaw, T: RigidTangent>(
         &self,
         x: &Vec3,
@@ -81,6 +84,23 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         law: &L,
         tangent: &T,
     ) -> Result<Option<Touch>, PointFault> {
+        let Some((_, geometry)) = self.contact_at(x, hint, law)? else {
+            return Ok(None);
+        };
+        let normal = law.normal(geometry.xi3());
+        let (residual, k) = respond_rigid(&geometry, &normal, tangent);
+        Ok(Some(self.in_space(&geometry, law, &normal, residual, k)))
+    }
+
+    /// The slave point at `x` and what the surface looks like at its foot, in the surface's own coordinates; `None` where
+    /// the point is open. `hint` as for [`Self::touch`].
+    #[inline]
+    pub(super) fn contact_at<L: NormalLaw>(
+        &self,
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        law: &L,
+    ) -> Result<Option<(Vec3, PointGeometry)>, PointFault> {
         if !(x.x.is_finite() && x.y.is_finite() && x.z.is_finite()) {
             return Err(PointFault::NotFinite);
         }
@@ -96,7 +116,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
             let piece = Piece::Patch(patch);
             return Err(PointFault::ProjectionNotConverged { piece, xi });
         }
-        if !presses(&foot) || !law.closes(foot.signed_distance) {
+        if free(&foot) || !law.closes(foot.signed_distance) {
             return Ok(None);
         }
         let geometry = self.geometry(&foot, &(local - foot.jet.rho))?;
@@ -107,17 +127,28 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
                 xi3: foot.signed_distance,
             });
         }
-        let normal = law.normal(geometry.xi3());
-        let (residual, k) = respond_rigid(&geometry, &normal, tangent);
+        Ok(Some((local, geometry)))
+    }
+
+    /// A touch from residual and tangent in the surface's own coordinates.
+    #[inline]
+    pub(super) fn in_space<L: NormalLaw>(
+        &self,
+        geometry: &PointGeometry,
+        law: &L,
+        normal: &Normal,
+        residual: Vec3,
+        tangent: Matrix3<f64>,
+    ) -> Touch {
         let rotation = Rotation3::from(self.pose.rotation);
         let r = rotation.matrix();
-        Ok(Some(Touch {
+        Touch {
             residual: r * residual,
-            tangent: r * k * r.transpose(),
+            tangent: r * tangent * r.transpose(),
             xi3: geometry.xi3(),
             gap: law.gap(geometry.xi3()),
             n: normal.n,
-        }))
+        }
     }
 
     /// The closest point within `reach` on either side, for what needs more than [`Self::touch`]: a rigid surface with
@@ -210,9 +241,9 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
     }
 }
 
-/// Residual and tangent of a point on a rigid master: the first 3 x 3 block of [`super::point::respond`], without the
+/// Residual and tangent of normal contact on a rigid master: the first 3 x 3 block of [`super::point::respond`], without the
 /// work for the rest.
-fn respond_rigid<T: RigidTangent>(
+pub(super) fn respond_rigid<T: RigidTangent>(
     geometry: &PointGeometry,
     normal: &Normal,
     tangent: &T,

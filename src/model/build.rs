@@ -34,6 +34,8 @@ struct Builder<'s> {
     warnings: Vec<String>,
     /// Slave nodes with averaged gaps so far.
     averaged: usize,
+    /// Slave points with history so far.
+    histories: usize,
 }
 
 /// Reads every mesh and CAD file of the scene and resolves all names.
@@ -51,6 +53,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         notes: Vec::new(),
         warnings: Vec::new(),
         averaged: 0,
+        histories: 0,
     };
     builder.bodies()?;
     let (pairs, mut surfaces) = builder.contacts()?;
@@ -105,7 +108,7 @@ fn symmetry(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
         Some(reason) if !asked.is_empty() => {
             let message =
                 format!("`{asked}` is for symmetric systems, and this one is not: {reason}");
-            let help = "take `auto` or `lu`, or hold the border of the faces";
+            let help = "take `auto` or `lu`";
             Err(text("/solution/linear_solver", message).help(help))
         }
         _ => {
@@ -128,6 +131,7 @@ fn kinks(scene: &Scene, model: &Model) -> Vec<f64> {
         .chain(model.follower_loads.iter().map(|(_, l)| &l.value))
         .chain(model.prescribed.iter().filter_map(|p| p.value.as_ref()))
         .chain(model.means.iter().filter_map(|p| p.mean.as_ref()))
+        .chain((model.pairs.iter().filter_map(|p| p.friction.as_ref())).flat_map(|f| f.functions()))
         .chain(
             model
                 .driven()

@@ -1,5 +1,6 @@
 //! The effects a scene calls for, by name: what the run then does, and nothing else.
 use super::Model;
+use super::friction::LawModel;
 use crate::scene::{
     Element, FacetKind, Gap, MasterSurface, Material, Passes, Points, Scene, Tangent,
 };
@@ -57,6 +58,11 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
         add(match contact.tangent {
             Tangent::Exact => "contact.tangent.exact",
             Tangent::Published { .. } => "contact.tangent.published",
+        });
+    }
+    for friction in model.pairs.iter().filter_map(|p| p.friction.as_ref()) {
+        add(match friction.law {
+            LawModel::Coulomb { .. } => "contact.friction.coulomb",
         });
     }
     if model

@@ -6,6 +6,7 @@ pub mod driven;
 pub mod effects;
 pub mod error;
 pub mod free_motion;
+pub mod friction;
 pub mod initial;
 pub mod loads;
 pub mod master;
@@ -28,6 +29,7 @@ use averaged::SlaveNodes;
 use constraints::{MeanPrescribed, Prescribed};
 use covact_geometry::Vec3;
 use driven::Driven;
+use friction::FrictionModel;
 use loads::{DeadLoad, FollowerPressure};
 use master::Master;
 use overclosure::Overclosure;
@@ -102,6 +104,10 @@ pub struct PairModel {
     pub overclosure: Option<Overclosure>,
     /// The slave's nodes, where gaps are averaged.
     pub averaged: Option<SlaveNodes>,
+    /// Friction where the scene asks for it.
+    pub friction: Option<FrictionModel>,
+    /// Number of the first point among those with history ([`state::State::histories`]); none where the points have none.
+    pub first_history: Option<usize>,
 }
 
 /// A pass of the two-half-pass contact (R. A. Sauer and L. De Lorenzis, "A computational contact formulation based on
@@ -144,6 +150,14 @@ impl Model {
         self.dofs.dofs() - self.dofs.removed().count()
     }
 
+    /// Number of slave points with history.
+    pub fn histories(&self) -> usize {
+        let pairs = self.pairs.iter();
+        pairs
+            .map(|p| p.history().map_or(0, |range| range.len()))
+            .sum()
+    }
+
     /// Number of slave points.
     pub fn contact_points(&self) -> usize {
         self.pairs.iter().map(|p| p.points.len()).sum()
@@ -169,6 +183,15 @@ impl Model {
         let largest = g.iter().fold(0.0f64, |a, x| a.max(x.abs()));
         self.dofs.particular(g);
         Ok(largest)
+    }
+}
+
+impl PairModel {
+    /// Where the histories of the points are among all; none where the points have none.
+    #[inline]
+    pub fn history(&self) -> Option<std::ops::Range<usize>> {
+        self.first_history
+            .map(|first| first..first + self.points.len())
     }
 }
 

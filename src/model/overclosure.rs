@@ -1,6 +1,6 @@
 //! Overclosures at the start that are not resolved by strain at once.
 use super::error::{number, text};
-use super::{Model, ModelError};
+use super::{Model, ModelError, PairModel};
 use crate::contact::law::Offsets;
 use crate::scene::InitialOverclosure;
 use covact_geometry::Vec3;
@@ -26,6 +26,13 @@ impl Overclosure {
             z0: &self.z0,
             factor: self.factor(t),
         }
+    }
+}
+
+impl PairModel {
+    /// What the gaps of the points are measured from at time `t`; none where they are normal coordinates.
+    pub fn offsets(&self, t: f64) -> Option<Offsets<'_>> {
+        self.overclosure.as_ref().map(|o| o.offsets(t))
     }
 }
 

@@ -49,3 +49,11 @@ pub fn face_size(mesh: &Mesh, faces: &[Face]) -> FaceSize {
 pub fn automatic(material: &Material, size: &FaceSize) -> f64 {
     FACTOR * modulus(material) / size.edge.min(size.depth)
 }
+
+/// Poisson's ratio of a material.
+pub fn poisson(material: &Material) -> f64 {
+    match material {
+        Material::StVenantKirchhoff(Elastic { nu, .. })
+        | Material::NeoHooke(Elastic { nu, .. }) => *nu,
+    }
+}

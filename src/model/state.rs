@@ -1,11 +1,11 @@
 //! What a step may change, so that it can be taken back as a whole.
 use super::Model;
+use crate::contact::friction::history::PointHistory;
 use crate::contact::points::SlavePoint;
 use covact_geometry::Hint;
 use std::sync::Arc;
 
-/// State of one slave point on a rigid surface without friction: where the last search ended, and whether the point was
-/// closed. There is no history: nothing here outlives the next search.
+/// Where the last search for a slave point ended, and whether the point was closed. Nothing here outlives the next search.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PointState {
     pub hint: Option<Hint>,
@@ -24,6 +24,8 @@ pub struct State {
     pub points: Vec<PointState>,
     /// Whether slave nodes were closed, pair after pair of those with averaged gaps.
     pub nodes: Vec<bool>,
+    /// What slave points remember, pair after pair of those with friction ([`super::PairModel::history`]).
+    pub histories: Vec<PointHistory>,
     /// Per pair, the slave points of its integration segments since they were last cut; none where the points are those
     /// of the model.
     pub cuts: Vec<Option<Arc<[SlavePoint]>>>,
@@ -47,6 +49,7 @@ impl State {
             elements: vec![0.0; elements.sum()],
             points: vec![PointState::default(); points.sum()],
             nodes: vec![false; nodes.sum()],
+            histories: vec![PointHistory::default(); model.histories()],
             cuts: vec![None; model.pairs.len()],
         }
     }
@@ -63,6 +66,7 @@ impl State {
         self.elements.copy_from_slice(&other.elements);
         self.points.clone_from(&other.points);
         self.nodes.copy_from_slice(&other.nodes);
+        self.histories.copy_from_slice(&other.histories);
         self.cuts.clone_from(&other.cuts);
     }
 
@@ -80,6 +84,7 @@ impl State {
         along(&self.elements, &before.elements, &mut out.elements);
         out.points.clone_from(&self.points);
         out.nodes.copy_from_slice(&self.nodes);
+        out.histories.copy_from_slice(&self.histories);
         out.cuts.clone_from(&self.cuts);
     }
 
@@ -89,6 +94,7 @@ impl State {
             + size_of_val(&self.elements[..])
             + size_of_val(&self.points[..])
             + size_of_val(&self.nodes[..])
+            + size_of_val(&self.histories[..])
     }
 }
 

@@ -25,7 +25,16 @@ pub fn unsymmetric_effects(model: &Model) -> Vec<String> {
         .map(|(name, _)| {
             format!("the follower pressure `{name}` acts on faces whose border is free to move")
         });
-    follower.chain(halves).collect()
+    // The second of two half passes has the friction of the first.
+    let friction = (model.pairs.iter())
+        .filter(|p| p.friction.is_some() && !p.half.is_some_and(|h| h.back))
+        .map(|p| {
+            format!(
+                "the friction of contact `{}` depends on its pressure",
+                p.name
+            )
+        });
+    follower.chain(halves).chain(friction).collect()
 }
 
 /// Nodes of the edges that belong to one of the faces only: both ends, and the middle (or again an end).

@@ -106,6 +106,22 @@ pub const COLUMNS: &[ColumnDoc] = &[
         "energy stored in the contact penalties",
     ),
     doc(
+        "energy.friction",
+        "energy",
+        "energy stored in the tangential penalties; only with friction",
+    ),
+    doc(
+        "energy.dissipated",
+        "energy",
+        "energy dissipated by friction since the start",
+    ),
+    doc(
+        "points.stick",
+        "-",
+        "slave points that touch without sliding",
+    ),
+    doc("points.slip", "-", "slave points that slide"),
+    doc(
         "penetration.max",
         "length",
         "largest penetration of a slave point; 0 without contact",

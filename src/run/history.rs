@@ -1,4 +1,5 @@
 //! Rows of `history.csv`.
+use super::commit::Sliding;
 use super::fields::Fields;
 use crate::assembly::PairForce;
 use crate::model::{Model, PairModel};
@@ -13,6 +14,7 @@ pub struct Record<'a> {
     pub dt: f64,
     pub cuts: u32,
     pub converged: &'a Converged,
+    pub sliding: &'a Sliding,
     /// Residual at all degrees of freedom: reactions at the constrained ones.
     pub residual: &'a [f64],
     /// Displacements, 3 per node.
@@ -66,6 +68,17 @@ pub fn columns(model: &Model) -> Vec<String> {
         ]
         .map(String::from),
     );
+    if frictional(model) {
+        names.extend(
+            [
+                "energy.friction",
+                "energy.dissipated",
+                "points.stick",
+                "points.slip",
+            ]
+            .map(String::from),
+        );
+    }
     names
 }
 
@@ -123,7 +136,16 @@ pub fn row(r: &Record) -> Vec<f64> {
         totals.active as f64,
         changed as f64,
     ]);
+    if frictional(r.model) {
+        let s = r.sliding;
+        out.extend([s.stored, s.dissipated, s.stick as f64, s.slip as f64]);
+    }
     out
+}
+
+/// Whether any contact has friction.
+fn frictional(model: &Model) -> bool {
+    model.pairs.iter().any(|p| p.friction.is_some())
 }
 
 /// Contacts whose master is a body, with their numbers; two half passes are one.

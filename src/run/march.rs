@@ -1,5 +1,6 @@
 //! The march through time: steps, roll-back, output.
 use super::RunError;
+use super::commit::{self, Sliding};
 use super::fields::Fields;
 use super::history;
 use super::progress::Progress;
@@ -96,6 +97,7 @@ impl<'a, 'm> March<'a, 'm> {
             self.warn(note);
         }
         let mut committed = State::new(self.model);
+        commit::start(self.model, &mut committed).map_err(|e| RunError::internal(&e))?;
         self.gather(&mut outputs, &committed, 0.0)?;
         self.write(&mut outputs, &committed)?;
         let ending = self.steps(&mut committed, &mut outputs);
@@ -161,8 +163,11 @@ impl<'a, 'm> March<'a, 'm> {
                         before = None;
                     }
                     stepping.accepted(converged.iterations);
+                    let penalties = &self.assembler.penalties;
+                    let sliding = commit::commit(self.model, penalties, committed, end)
+                        .map_err(|e| RunError::internal(&e))?;
                     self.accept(step, end, &converged);
-                    self.record(outputs, committed, dt, cuts, &converged)?;
+                    self.record(outputs, committed, dt, cuts, &converged, &sliding)?;
                     cuts = 0;
                     continue;
                 }
@@ -307,6 +312,7 @@ impl<'a, 'm> March<'a, 'm> {
         dt: f64,
         cuts: u32,
         converged: &Converged,
+        sliding: &Sliding,
     ) -> Result<(), RunError> {
         let (step, time) = (self.progress.steps, self.progress.time);
         self.phases.start("output");
@@ -329,6 +335,7 @@ impl<'a, 'm> March<'a, 'm> {
             dt,
             cuts,
             converged,
+            sliding,
             residual: self.workspace.residual(),
             u: &state.u,
             fields: &outputs.fields,

@@ -1,6 +1,7 @@
 //! A scene from file to results: what `covact run` and `covact check` do, without the printing.
 mod averaged;
 mod check;
+mod commit;
 mod error;
 mod fields;
 mod history;

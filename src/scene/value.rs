@@ -90,6 +90,12 @@ pub enum ValueError {
     NotFinite { expression: String, value: f64 },
     #[error(transparent)]
     Eval(#[from] EvalError),
+    #[error("{what} is {value} at t = {time}, where it must not be negative")]
+    Negative {
+        what: &'static str,
+        value: f64,
+        time: f64,
+    },
 }
 
 /// A [`TimeFunction`] gave something infinite or no number.

@@ -1,14 +1,17 @@
 //! Contact with rigid surfaces: the slave points of a pair are evaluated in parallel and summed in order.
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
 use crate::contact::closest::ClosestPoint;
-use crate::contact::law::{GapOffset, NoOffset, NormalLaw, Penalty};
+use crate::contact::friction::history::PointHistory;
+use crate::contact::friction::law::FrictionLaw;
+use crate::contact::friction::rigid::Friction;
+use crate::contact::law::{GapOffset, NoOffset, NormalLaw, Offsets, Penalty};
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
 use crate::model::master::Master;
 use crate::model::state::{PointState, State};
 use crate::model::{Model, PairModel};
 use crate::scene::Tangent;
-use crate::with_patches;
+use crate::{with_law, with_patches};
 use rayon::prelude::*;
 
 impl Assembler<'_> {
@@ -54,6 +57,14 @@ impl Assembler<'_> {
             let law = Penalty {
                 eps_n: self.penalties[index],
             };
+            let friction = match (&pair.friction, pair.history()) {
+                (Some(friction), Some(range)) => Some((
+                    friction.law.at(time)?,
+                    friction.ratio * law.eps_n,
+                    &state.histories[range],
+                )),
+                _ => None,
+            };
             with_patches!(master.surface, patches => {
                 let batch = Batch {
                     model: self.model,
@@ -66,9 +77,13 @@ impl Assembler<'_> {
                     law: &law,
                     u,
                 };
-                match &pair.overclosure {
-                    None => batch.choose(points, touches, &NoOffset),
-                    Some(over) => batch.choose(points, touches, &over.offsets(time)),
+                match (&pair.overclosure, &friction) {
+                    (None, None) => batch.choose(points, touches, &NoOffset),
+                    (Some(over), None) => batch.choose(points, touches, &over.offsets(time)),
+                    (_, Some((now, eps_t, histories))) => with_law!(*now, law => {
+                        let friction = Friction { law, eps_t: *eps_t };
+                        batch.slide(points, touches, &friction, histories, pair.offsets(time))
+                    }),
                 }
             });
             let mut deepest = 0.0f64;
@@ -152,6 +167,32 @@ struct Batch<'a, P, L> {
     master: &'a RigidMaster<'a, P>,
     law: &'a L,
     u: &'a [f64],
+}
+
+impl<P: ClosestPoint> Batch<'_, P, Penalty> {
+    /// Evaluates every point with friction; surface and law of friction are types here.
+    fn slide<F: FrictionLaw>(
+        &self,
+        states: &mut [PointState],
+        touches: &mut [Result<Option<Touch>, PointFault>],
+        friction: &Friction<F>,
+        histories: &[PointHistory],
+        offsets: Option<Offsets>,
+    ) {
+        (self.pair.points.par_iter())
+            .zip(states.par_iter_mut())
+            .zip(touches.par_iter_mut())
+            .zip(histories)
+            .enumerate()
+            .with_min_len(64)
+            .for_each(|(i, (((p, s), out), history))| {
+                let x = self.model.point_position(p, self.u);
+                let law = history.law(self.law.eps_n, offsets.map_or(0.0, |o| o.at(i)));
+                let touch =
+                    (self.master).touch_with_friction(&x, &mut s.hint, &law, friction, history);
+                *out = touch.map(|t| t.map(|t| t.touch));
+            });
+    }
 }
 
 impl<P: ClosestPoint, L: NormalLaw + Copy> Batch<'_, P, L> {

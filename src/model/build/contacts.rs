@@ -1,6 +1,7 @@
 //! Contact pairs: slave points, masters, penalties.
 use super::super::averaged::SlaveNodes;
 use super::super::error::{At, number, text};
+use super::super::friction::{self, FrictionModel, LawModel};
 use super::super::master::{BodyMaster, Master};
 use super::super::self_contact::OwnFacets;
 use super::super::slave::slave_points;
@@ -136,6 +137,12 @@ impl Builder<'_> {
                 Some(nodes)
             }
         };
+        let friction = self.friction(name, contact, body, eps_n)?;
+        let first_history = friction.as_ref().map(|_| {
+            let first = self.histories;
+            self.histories += points.len();
+            first
+        });
         Ok(PairModel {
             name: name.to_owned(),
             slave: contact.slave.clone(),
@@ -154,7 +161,46 @@ impl Builder<'_> {
             element_size: size.edge,
             overclosure: None,
             averaged,
+            friction,
+            first_history,
         })
+    }
+
+    /// Friction of a contact with the normal penalty `eps_n`; none where the scene asks for none, or the coefficient is zero
+    /// throughout.
+    fn friction(
+        &mut self,
+        name: &str,
+        contact: &Contact,
+        body: usize,
+        eps_n: f64,
+    ) -> Result<Option<FrictionModel>, ModelError> {
+        let Some(friction) = &contact.friction else {
+            return Ok(None);
+        };
+        let law = LawModel::new(friction).at(|| format!("/contacts/{name}/friction"))?;
+        if law.is_none() {
+            self.notes.push(format!(
+                "contact `{name}`: the coefficient of friction is zero, so that there is no friction"
+            ));
+            return Ok(None);
+        }
+        let material = &self.scene.bodies[&self.bodies[body].name].material;
+        let automatic = friction::automatic_ratio(&self.scene.materials[material]);
+        let ratio = match contact.tangential_penalty {
+            Penalty::Auto => automatic,
+            Penalty::Value(v) => v / eps_n,
+            Penalty::Scaled(f) => f * automatic,
+        };
+        // The back pass of two has the friction of the first.
+        if self.scene.contacts.get(name) == Some(contact) {
+            self.notes.push(format!(
+                "contact `{name}`: tangential penalty {} (traction per elastic slip), {} of the normal one",
+                number(ratio * eps_n),
+                number(ratio)
+            ));
+        }
+        Ok(Some(FrictionModel { law, ratio }))
     }
 
     /// Size of the elements under some faces of a body, and the penalty that suits them.

@@ -36,6 +36,15 @@ pub(super) fn check(scene: &Scene, model: &Model) -> Result<(), ModelError> {
             })?;
         }
     }
+    for pair in &model.pairs {
+        if let Some(friction) = &pair.friction {
+            let pointer = || format!("/contacts/{}/friction", pair.name);
+            told(
+                times.iter().try_for_each(|&t| friction.law.at(t).map(drop)),
+                &pointer,
+            )?;
+        }
+    }
     let mut supports: BTreeMap<u32, Vec<(u32, &TimeFunction)>> = BTreeMap::new();
     let means = (model.means.iter()).map(|m| (m.support, m.free, &m.mean));
     for (support, dof, value) in (model.prescribed.iter())

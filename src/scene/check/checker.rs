@@ -147,7 +147,10 @@ impl<'a> Checker<'a> {
                     Some("write `[[t, value], ...]`".into()),
                 );
             }
-            ValueError::Number(_) | ValueError::NotFinite { .. } | ValueError::Eval(_) => {
+            ValueError::Number(_)
+            | ValueError::NotFinite { .. }
+            | ValueError::Eval(_)
+            | ValueError::Negative { .. } => {
                 self.add(at, message, None);
             }
         }

@@ -1,5 +1,6 @@
 //! Everything that can be wrong with a scene that has been read, without its mesh and CAD files being read.
 mod checker;
+mod friction;
 mod names;
 mod shapes;
 
@@ -126,14 +127,17 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
             );
         }
     }
-    match contact.penalty {
+    check_penalty(c, &format!("{at}/penalty"), contact.penalty);
+    friction::check(c, at, contact, scene);
+}
+
+fn check_penalty(c: &mut Checker, at: &str, penalty: Penalty) {
+    match penalty {
         Penalty::Auto => {}
-        Penalty::Value(p) => c.positive(&format!("{at}/penalty/value"), "the penalty", p),
-        Penalty::Scaled(p) => c.positive(
-            &format!("{at}/penalty/scaled"),
-            "the factor of the penalty",
-            p,
-        ),
+        Penalty::Value(p) => c.positive(&format!("{at}/value"), "the penalty", p),
+        Penalty::Scaled(p) => {
+            c.positive(&format!("{at}/scaled"), "the factor of the penalty", p);
+        }
     }
 }
 

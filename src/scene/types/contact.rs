@@ -1,4 +1,5 @@
 //! Contact pairs.
+use crate::scene::value::Value;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +31,20 @@ pub struct Contact {
     pub tangent: Tangent,
     #[serde(default)]
     pub initial_overclosure: InitialOverclosure,
+    /// Law of friction; default: none.
+    #[serde(default)]
+    pub friction: Option<Friction>,
+    /// Tangential penalty: traction per elastic slip (force / length^3); only with friction.
+    #[serde(default)]
+    pub tangential_penalty: Penalty,
+}
+
+/// Law of friction, written `{"coulomb": {"mu": 0.2}}`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Friction {
+    /// The traction is at most `mu` times the pressure. `mu` may vary in time.
+    Coulomb { mu: Value },
 }
 
 /// What becomes of slave points that start below the master.
@@ -98,11 +113,11 @@ pub enum Gap {
     Averaged,
 }
 
-/// Normal penalty: pressure per penetration (force / length^3).
+/// Penalty: traction per penetration or elastic slip (force / length^3).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Penalty {
-    /// From the stiffness of the slave's elements; its value is printed.
+    /// From the stiffness of the elements; its value is printed.
     #[default]
     Auto,
     /// Given value.

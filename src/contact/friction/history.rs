@@ -1,0 +1,51 @@
+//! What a slave point remembers between steps.
+use crate::contact::law::Augmented;
+use covact_geometry::{Hint, Vec3};
+
+/// Whether a point touches, and whether it slides there.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum PointStatus {
+    #[default]
+    Open,
+    /// In contact without sliding (or without friction).
+    Stick,
+    Slip,
+}
+
+/// History of a slave point. It changes when a step is accepted, and with the multipliers of an augmentation.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PointHistory {
+    /// On a master that deforms: the facet and its parameters that `base` and `lambda` are attached to. Nothing on a rigid
+    /// one.
+    pub place: Option<Hint>,
+    /// Attraction point that slip is measured from: in the own coordinates of a rigid surface; on a facet the components,
+    /// along `rho_1`, `rho_2` and `n` at `place`, of its distance from the facet (length).
+    pub base: Vec3,
+    /// Tangential traction when the base was set, or its multiplier, in the coordinates of `base` (force / length^2).
+    pub lambda: Vec3,
+    /// Multiplier of the normal traction, `<= 0` (force / length^2).
+    pub lambda_n: f64,
+    /// Gap at the last accepted step where the point was open (length, infinite where no foot was found), else zero.
+    pub approach: f64,
+    pub status: PointStatus,
+    /// Normal traction at the last accepted step, `<= 0` (force / length^2).
+    pub n: f64,
+    /// Tangential traction at the last accepted step, in space; the master pulls the slave by its negative.
+    pub t: Vec3,
+    /// Length of the path slid so far.
+    pub slip: f64,
+    /// Energy dissipated so far (force / length).
+    pub dissipated: f64,
+}
+
+impl PointHistory {
+    /// Law of the normal traction of the point, its gap measured from `z0` (length).
+    #[inline]
+    pub fn law(&self, eps_n: f64, z0: f64) -> Augmented {
+        Augmented {
+            eps_n,
+            z0,
+            lambda_n: self.lambda_n,
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Laws of friction: trial traction and pressure in, traction and derivatives out. Chosen outside every loop.
+use nalgebra::{Matrix3, Vector3};
+use num_dual::DualNum;
+
+/// What a law makes of a trial traction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slip<D = f64> {
+    /// Traction in the tangent plane (force / length^2).
+    pub t: Vector3<D>,
+    /// Its derivative with respect to the trial traction.
+    pub d_trial: Matrix3<D>,
+    /// With respect to the pressure `-N`.
+    pub d_pressure: Vector3<D>,
+    /// With respect to the unit normal, for laws that know directions; zero otherwise (force / length^2).
+    pub d_normal: Matrix3<D>,
+    pub slides: bool,
+}
+
+impl<D: DualNum<f64> + Copy> Slip<D> {
+    /// The trial traction as it is: the point sticks.
+    pub fn stick(trial: &Vector3<D>) -> Self {
+        Slip {
+            t: *trial,
+            d_trial: diagonal(D::one()),
+            d_pressure: Vector3::from_element(D::zero()),
+            d_normal: Matrix3::from_element(D::zero()),
+            slides: false,
+        }
+    }
+}
+
+/// `s I`.
+pub fn diagonal<D: DualNum<f64> + Copy>(s: D) -> Matrix3<D> {
+    let z = D::zero();
+    Matrix3::new(s, z, z, z, s, z, z, z, s)
+}
+
+/// A law of friction. Adding one takes a type that implements this, and a name in the scene.
+pub trait FrictionLaw: Sync + Copy {
+    /// Traction for a trial traction in the plane of `normal` (a unit vector) under `pressure > 0`, in the coordinates of
+    /// the master.
+    fn slip<D: DualNum<f64> + Copy>(
+        &self,
+        trial: &Vector3<D>,
+        normal: &Vector3<D>,
+        pressure: D,
+    ) -> Slip<D>;
+}
+
+/// Coulomb's law: the traction is at most `mu` times the pressure, and as the trial traction directs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coulomb {
+    /// Coefficient of friction.
+    pub mu: f64,
+}
+
+impl FrictionLaw for Coulomb {
+    #[inline]
+    fn slip<D: DualNum<f64> + Copy>(
+        &self,
+        trial: &Vector3<D>,
+        _normal: &Vector3<D>,
+        pressure: D,
+    ) -> Slip<D> {
+        let limit = pressure * self.mu;
+        let square = trial.dot(trial);
+        if square.re() <= limit.re() * limit.re() {
+            return Slip::stick(trial);
+        }
+        let norm = square.sqrt();
+        let direction = trial * norm.recip();
+        let scale = limit / norm;
+        Slip {
+            t: direction * limit,
+            d_trial: diagonal(scale) - direction * direction.transpose() * scale,
+            d_pressure: direction * D::from(self.mu),
+            d_normal: Matrix3::from_element(D::zero()),
+            slides: true,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coulomb_sticks_below_the_limit_and_slides_along_the_trial_above() {
+        let law = Coulomb { mu: 0.25 };
+        let n = Vector3::z();
+        let stick = law.slip(&Vector3::new(0.3, 0.4, 0.0), &n, 2.0);
+        assert!(!stick.slides && stick.t == Vector3::new(0.3, 0.4, 0.0));
+        let slip = law.slip(&Vector3::new(3.0, 4.0, 0.0), &n, 2.0);
+        assert!(slip.slides);
+        assert!((slip.t - Vector3::new(0.3, 0.4, 0.0)).norm() < 1e-15);
+        // A limit of zero leaves nothing.
+        let none = law.slip(&Vector3::new(3.0, 4.0, 0.0), &n, 0.0);
+        assert_eq!(none.t, Vector3::zeros());
+    }
+}

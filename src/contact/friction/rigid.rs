@@ -1,0 +1,74 @@
+//! Contact with friction on a rigid master.
+use super::history::PointHistory;
+use super::law::FrictionLaw;
+use super::trial::{Attraction, Traction};
+use crate::contact::closest::ClosestPoint;
+use crate::contact::fault::PointFault;
+use crate::contact::law::{Augmented, NormalLaw};
+use crate::contact::rigid::{Exact, RigidMaster, Touch, respond_rigid};
+use covact_geometry::{Hint, Vec3};
+
+/// Friction of a pair at the present time: a type per law, so that the law is chosen outside the loop over points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Friction<F> {
+    pub law: F,
+    /// Tangential penalty (force / length^3).
+    pub eps_t: f64,
+}
+
+/// A point in contact with friction, per unit area.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrictionTouch {
+    /// Residual and tangent with both tractions, in space. The tangent has no symmetry.
+    pub touch: Touch,
+    /// Tangential traction, in the surface's own coordinates.
+    pub traction: Traction,
+    /// The slave point in the surface's own coordinates.
+    pub local: Vec3,
+}
+
+impl PointHistory {
+    /// The attraction point of a rigid master, under a tangential penalty.
+    #[inline]
+    pub fn attraction(&self, eps_t: f64) -> Attraction {
+        Attraction {
+            eps_t,
+            base: self.base,
+            lambda: self.lambda,
+            approach: self.approach,
+        }
+    }
+}
+
+impl<P: ClosestPoint> RigidMaster<'_, P> {
+    /// Evaluates a slave point with friction; `None` where it is open. `hint` as for [`RigidMaster::touch`].
+    ///
+    /// # Errors
+    /// [`PointFault`] as there.
+    #[inline]
+    pub fn touch_with_friction<F: FrictionLaw>(
+        &self,
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        law: &Augmented,
+        friction: &Friction<F>,
+        history: &PointHistory,
+    ) -> Result<Option<FrictionTouch>, PointFault> {
+        let Some((local, geometry)) = self.contact_at(x, hint, law)? else {
+            return Ok(None);
+        };
+        let xi3 = geometry.xi3();
+        let normal = law.normal(xi3);
+        let (mut residual, mut k) = respond_rigid(&geometry, &normal, &Exact);
+        let attraction = history.attraction(friction.eps_t);
+        let (n, turn) = (geometry.normal(), geometry.turn());
+        let traction = attraction.traction(&friction.law, &local, &n, &turn, law.gap(xi3), &normal);
+        residual += traction.slip.t;
+        k += traction.tangent;
+        Ok(Some(FrictionTouch {
+            touch: self.in_space(&geometry, law, &normal, residual, k),
+            traction,
+            local,
+        }))
+    }
+}

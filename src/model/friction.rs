@@ -1,0 +1,97 @@
+//! Friction of a contact pair: its law over time, and its penalty.
+use super::penalty;
+use crate::contact::friction::law::Coulomb;
+use crate::scene::{Friction, Material, TIME, TimeFunction, ValueError};
+
+/// Friction of a pair.
+#[derive(Debug, Clone)]
+pub struct FrictionModel {
+    pub law: LawModel,
+    /// Tangential penalty as a multiple of the normal one, whatever that is at the time.
+    pub ratio: f64,
+}
+
+/// A law of friction whose coefficients may vary in time.
+#[derive(Debug, Clone)]
+pub enum LawModel {
+    Coulomb { mu: TimeFunction },
+}
+
+/// A law of friction at a time; [`with_law`](crate::with_law) compiles what runs over points for each.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LawNow {
+    Coulomb(Coulomb),
+}
+
+/// Evaluates an expression with the law of a [`LawNow`], compiled once for each kind.
+#[macro_export]
+macro_rules! with_law {
+    ($now:expr, $law:ident => $then:expr) => {
+        match $now {
+            $crate::model::friction::LawNow::Coulomb($law) => $then,
+        }
+    };
+}
+
+impl LawModel {
+    /// The law of a scene.
+    ///
+    /// # Errors
+    /// Coefficients that are no functions of time.
+    pub fn new(friction: &Friction) -> Result<Self, ValueError> {
+        match friction {
+            Friction::Coulomb { mu } => Ok(LawModel::Coulomb {
+                mu: mu.compile(&TIME)?,
+            }),
+        }
+    }
+
+    /// Whether the coefficients are zero at all times.
+    pub fn is_none(&self) -> bool {
+        let zero = |f: &TimeFunction| !f.depends_on_time() && f.eval(0.0).is_ok_and(|v| v == 0.0);
+        self.functions().into_iter().all(zero)
+    }
+
+    fn functions(&self) -> Vec<&TimeFunction> {
+        match self {
+            LawModel::Coulomb { mu } => vec![mu],
+        }
+    }
+
+    /// The law at time `t`.
+    ///
+    /// # Errors
+    /// A coefficient without a value at that time, or a negative one.
+    pub fn at(&self, t: f64) -> Result<LawNow, ValueError> {
+        let coefficient = |f: &TimeFunction| {
+            let mu = f.eval(t)?;
+            match mu >= 0.0 {
+                true => Ok(mu),
+                false => Err(ValueError::Negative {
+                    what: "the coefficient of friction",
+                    value: mu,
+                    time: t,
+                }),
+            }
+        };
+        match self {
+            LawModel::Coulomb { mu } => Ok(LawNow::Coulomb(Coulomb {
+                mu: coefficient(mu)?,
+            })),
+        }
+    }
+}
+
+impl FrictionModel {
+    /// What varies in time.
+    pub fn functions(&self) -> impl Iterator<Item = &TimeFunction> {
+        self.law.functions().into_iter()
+    }
+}
+
+/// Tangential penalty as a multiple of the normal one: the ratio of tangential to normal compliance of two elastic bodies
+/// in contact, `(1 - nu) / (1 - nu / 2)` (K. L. Johnson, Contact Mechanics, 1985, section 7.3).
+pub fn automatic_ratio(material: &Material) -> f64 {
+    let nu = penalty::poisson(material);
+    (1.0 - nu) / (1.0 - 0.5 * nu)
+}

@@ -1,0 +1,72 @@
+//! What can be wrong with the friction of a contact.
+use super::checker::Checker;
+use super::{Contact, Friction, Gap, Penalty, Points, Scene, TIME, Tangent, check_penalty};
+use crate::scene::Value;
+
+/// Problems of the friction of the contact at `at`.
+pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene) {
+    let Some(friction) = &contact.friction else {
+        if contact.tangential_penalty != Penalty::Auto {
+            c.add(
+                &format!("{at}/tangential_penalty"),
+                "a tangential penalty without friction",
+                Some("add `\"friction\": {\"coulomb\": {\"mu\": 0.2}}`, or leave it out".into()),
+            );
+        }
+        return;
+    };
+    check_penalty(
+        c,
+        &format!("{at}/tangential_penalty"),
+        contact.tangential_penalty,
+    );
+    match friction {
+        Friction::Coulomb { mu } => coefficient(c, &format!("{at}/friction/coulomb/mu"), mu),
+    }
+    // Histories belong to points that stay, gaps to points of their own, and the published forms are of normal contact.
+    let without = match contact {
+        Contact {
+            points: Points::Segments(_),
+            ..
+        } => Some((
+            "points",
+            "segments, which are cut anew at every step",
+            "take `{\"gauss\": n}`",
+        )),
+        Contact {
+            gap: Gap::Averaged, ..
+        } => Some(("gap", "averaged gaps", "take `pointwise`")),
+        Contact {
+            tangent: Tangent::Published { .. },
+            ..
+        } => Some(("tangent", "the published tangent", "take `exact`")),
+        _ => None,
+    };
+    if let Some((field, with, help)) = without {
+        c.add(
+            &format!("{at}/{field}"),
+            format!("friction does not go with {with}"),
+            Some(help.into()),
+        );
+    }
+    if !scene.surfaces.contains_key(&contact.master) && contact.master.contains('.') {
+        c.add(
+            &format!("{at}/friction"),
+            "friction is for masters that are rigid surfaces",
+            None,
+        );
+    }
+}
+
+fn coefficient(c: &mut Checker, at: &str, mu: &Value) {
+    c.value(at, mu, &TIME);
+    if let Value::Number(mu) = mu
+        && *mu < 0.0
+    {
+        c.add(
+            at,
+            format!("the coefficient of friction is {mu}"),
+            Some("it must not be negative".into()),
+        );
+    }
+}
