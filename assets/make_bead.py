@@ -1,15 +1,14 @@
-"""Writes the tools of `draw_bead`, lengths in mm: cad/bead.igs (upper tool, a round bead on a flat binder) and
-cad/groove.igs (lower tool, the groove with its two round shoulders), each of a line of exact patches (entity 128) in the
-order of x that join smoothly. Their flat parts lie in z = 0: the upper tool is above its surface, the lower one below.
+"""Writes the tools of `draw_bead`, lengths in mm, as lines of exact patches (entity 128) extruded along y, every other of
+them from its other end:
 
-      ------.          .------  z = 0       R, r   radii of bead and of its fillets
-             ) r    r (                     D      depth of the bead below the binder
-             '.  R   .'                     S      radius of the shoulders
-               '---'   -D                   B      half width of the groove
-      ------.           .-----  z = 0
-           S )         ( S
-             |         |
-             '---------'  -G
+cad/bead.igs    upper tool, what lies above the line: a round bead whose tip is in z = 0;
+cad/groove.igs  lower tool, what lies below the line: two round shoulders whose tops are in z = 0, the groove between them.
+
+    |       R       |  H                                  ____.----.             .----.____
+    |               |                                    /    S     '           '          \\
+     '.           .'                                    /           |           |
+       '._______.'     z = 0                                        '-----------'  -G
+            0                                                      -B     0     B
 """
 
 import math
@@ -20,48 +19,54 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from occt_iges import bezier, write
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-R, r, D = 8.0, 2.0, 5.0
-S, B, G = 8.0, 10.0, 12.0
-LENGTH = 75.0  # from the middle to the ends
-WIDTH = [-2.0, 6.0]
+R, H = 8.0, 20.0
+S, B, G = 8.0, 10.0, 16.0
+RAMP = 20.0  # length of the ramps outside
+WIDTH = [-2.0, 4.0]
 
 
 def line(p, q):
     return [(p, 1.0), (q, 1.0)]
 
 
-def arc(centre, radius, start, end):
-    """Angles in degrees from the x axis towards z, less than 180 apart."""
+def arc(x, z, radius, start, end):
+    """About (x, z); angles in degrees from the x axis towards z, less than 180 apart."""
     start, end = math.radians(start), math.radians(end)
-    middle, w = (start + end) / 2, math.cos((end - start) / 2)
-    at = lambda a, k: (centre[0] + k * radius * math.cos(a), centre[1] + k * radius * math.sin(a))
-    return [(at(start, 1.0), 1.0), (at(middle, 1.0 / w), w), (at(end, 1.0), 1.0)]
+    w = math.cos((end - start) / 2)
+    angles = ((start, 1.0), ((start + end) / 2, w), (end, 1.0))
+    return [((x + radius * math.cos(a) / k, z + radius * math.sin(a) / k), k) for a, k in angles]
 
 
-def tool(path, curves):
-    """Extrudes the curves along y; every other patch starts at its other end."""
+def tool(name, left, middle=()):
+    """`left` are the curves with x < 0 in the order of x, `middle` one that is its own mirror image."""
+    right = [[((-x, z), w) for (x, z), w in reversed(curve)] for curve in reversed(left)]
     surfaces = []
-    for k, curve in enumerate(curves):
+    for k, curve in enumerate([*left, *middle, *right]):
         curve = curve if k % 2 == 0 else curve[::-1]
-        rows = [[(x, y, z) for y in WIDTH] for (x, z), _ in curve]
-        surfaces.append(bezier(rows, [[w, w] for _, w in curve]))
-    write(os.path.join(HERE, "cad", path), surfaces)
-    print(f"{path}: {len(surfaces)} patches")
+        surfaces.append(bezier([[(x, y, z) for y in WIDTH] for (x, z), _ in curve], [[w, w] for _, w in curve]))
+    write(os.path.join(HERE, "cad", name), surfaces)
+    print(f"{name}: {len(surfaces)} patches")
 
 
 def bead():
-    # Bead and fillet touch where the line between their centres, a long, meets them.
-    up = R - D  # height of the centre of the bead
-    a = math.degrees(math.asin((up + r) / (R + r)))
-    x = (R + r) * math.cos(math.radians(a))
+    tool("bead.igs", [line((-R, H), (-R, R)), arc(0.0, R, R, 180.0, 270.0)])
+
+
+def groove():
+    c = math.sqrt(0.5)
+    start = (-B - S - c * S, -S + c * S)
     tool(
-        "bead.igs",
+        "groove.igs",
         [
-            line((-LENGTH, 0.0), (-x, 0.0)),
-            arc((-x, -r), r, 90.0, -a) if up + r < 0 else arc((-x, -r), r, 90.0, a),
+            line((start[0] - c * RAMP, start[1] - c * RAMP), start),
+            arc(-B - S, -S, S, 135.0, 90.0),
+            arc(-B - S, -S, S, 90.0, 0.0),
+            line((-B, -S), (-B, -G)),
         ],
+        [line((-B, -G), (B, -G))],
     )
 
 
 if __name__ == "__main__":
     bead()
+    groove()
