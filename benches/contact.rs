@@ -1,5 +1,8 @@
 //! Time per slave point: the whole way from position to force and tangent, and the kernel alone; then a table of both
 //! with ratios.
+use covact::contact::friction::history::PointHistory;
+use covact::contact::friction::law::Coulomb;
+use covact::contact::friction::rigid::Friction;
 use covact::contact::kernel::{Normal, normal_tangent, normal_tangent_rigid};
 use covact::contact::law::{NormalLaw, Penalty};
 use covact::contact::published::{self, Parts};
@@ -57,6 +60,25 @@ fn touch_all<T: RigidTangent>(master: &RigidMaster, queries: &[Query], tangent: 
     queries.iter().filter(|q| touch(q)).count()
 }
 
+/// Points with friction that have moved by `chord` since the base of their slip was set; how many slide.
+fn slide_all(master: &RigidMaster, queries: &[Query], chord: f64) -> usize {
+    let friction = Friction {
+        law: Coulomb { mu: 0.3 },
+        eps_t: LAW.eps_n,
+    };
+    let slides = |(x, hint): &Query| {
+        let mut hint = *hint;
+        let history = PointHistory {
+            base: x + Vec3::new(0.0, chord, 0.0),
+            ..PointHistory::default()
+        };
+        let law = history.law(LAW.eps_n, 0.0);
+        let touch = master.touch_with_friction(black_box(x), &mut hint, &law, &friction, &history);
+        black_box(touch).is_ok_and(|t| t.is_some_and(|t| t.traction.slip.slides))
+    };
+    queries.iter().filter(|q| slides(q)).count()
+}
+
 /// Named workloads of `COUNT` points each.
 fn workloads([set, six]: &[PatchSet; 2]) -> Vec<Workload<'_>> {
     let [master, six_master] = [set, six].map(|surface| RigidMaster {
@@ -86,6 +108,12 @@ fn workloads([set, six]: &[PatchSet; 2]) -> Vec<Workload<'_>> {
     let jets: Vec<_> = (closed.iter())
         .filter_map(|(x, hint)| Some(set.project(x, *hint, f64::INFINITY)?.jet))
         .collect();
+    // .01 deep: the limit is reached at a slip of .003.
+    assert_eq!(slide_all(&master, &closed, 1e-4), 0);
+    let slid = slide_all(&master, &closed, 0.1);
+    assert!(slid > COUNT / 2, "{slid}");
+    let (sixth, seventh) = (master.clone(), master.clone());
+    let (sticking, sliding) = (closed.clone(), closed.clone());
     let kernels = [frames.clone(), frames.clone(), frames.clone(), frames];
     let [k1, k2, k3, k4] = kernels;
     let other = master.clone();
@@ -107,6 +135,14 @@ fn workloads([set, six]: &[PatchSet; 2]) -> Vec<Workload<'_>> {
         (
             "point/closed, six biquartic",
             Box::new(move || _ = black_box(touch_all(&six_master, &six_closed, &Exact))),
+        ),
+        (
+            "point/closed, stick",
+            Box::new(move || _ = black_box(slide_all(&sixth, &sticking, 1e-4))),
+        ),
+        (
+            "point/closed, slip",
+            Box::new(move || _ = black_box(slide_all(&seventh, &sliding, 0.1))),
         ),
         (
             "point/open, near",

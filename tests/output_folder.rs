@@ -87,7 +87,7 @@ fn collections_list_every_part_at_every_time() {
             surface: &surface,
             at: &at,
         };
-        results.write(step, time, &bodies, &[state]).unwrap();
+        results.write(step, time, &bodies, &[state], &[]).unwrap();
     }
     let files = attributes(&pvd, "file");
     assert_eq!(
@@ -122,15 +122,15 @@ fn a_step_that_cannot_be_written_is_not_listed() {
     let good = body("good", &mesh, &u);
     let bad = body("bad", &mesh, &u[..7]);
     results
-        .write(1, 0.5, std::slice::from_ref(&good), &[])
+        .write(1, 0.5, std::slice::from_ref(&good), &[], &[])
         .unwrap();
     let error = results
-        .write(2, 1.0, &[good.clone(), bad], &[])
+        .write(2, 1.0, &[good.clone(), bad], &[], &[])
         .unwrap_err();
     assert!(matches!(error, OutputError::FieldLength { .. }));
     let pvd = folder.path().join("results.pvd");
     assert_eq!(attributes(&pvd, "timestep"), ["0.5"]);
-    results.write(2, 0.75, &[good], &[]).unwrap();
+    results.write(2, 0.75, &[good], &[], &[]).unwrap();
     assert_eq!(attributes(&pvd, "timestep"), ["0.5", "0.75"]);
 }
 

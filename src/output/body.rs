@@ -12,8 +12,10 @@ pub const STRESS_COMPONENTS: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 pub const NOT_A_SLAVE: u8 = 0;
 /// `contact_status` of a slave node that touches nothing.
 pub const OPEN: u8 = 1;
-/// `contact_status` of a slave node in contact.
+/// `contact_status` of a slave node in contact, with friction of one that does not slide.
 pub const CLOSED: u8 = 2;
+/// `contact_status` of a slave node in contact that slides under friction.
+pub const SLIP: u8 = 3;
 
 /// Tensor-product number of each node of VTK's hexahedron, which counts around the bottom, then around the top.
 const H8_TO_VTK: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
@@ -37,7 +39,7 @@ pub struct ContactFields<'a> {
     pub pressure: &'a [f64],
     /// Normal distance, negative in penetration (length). NaN where a node is no slave or finds no master.
     pub gap: &'a [f64],
-    /// [`NOT_A_SLAVE`], [`OPEN`] or [`CLOSED`].
+    /// [`NOT_A_SLAVE`], [`OPEN`], [`CLOSED`] or [`SLIP`]; of several slave points around a node the largest.
     pub status: &'a [u8],
 }
 

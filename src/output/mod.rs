@@ -3,7 +3,7 @@
 //! Every file is written whole or not at all ([`atomic`]); the history grows by whole lines. [`Results`] writes a folder:
 //!
 //! - `results.pvd` lists a `.vtu` file per accepted step for each body ([`BodyFields`]) and each rigid surface
-//!   ([`SurfaceOutput`]); `results_tessellated.pvd` is the same with rigid surfaces as flat quadrilaterals;
+//!   ([`SurfaceOutput`]), and on demand for the slave points of each contact with friction ([`PointCloud`]); `results_tessellated.pvd` is the same with rigid surfaces as flat quadrilaterals;
 //! - `history.csv` has one line per accepted step ([`History`], its columns are documented in [`COLUMNS`]);
 //! - `summary.json` says how the run went and what it cost ([`Summary`]).
 //!
@@ -14,6 +14,7 @@
 pub mod atomic;
 mod bezier;
 mod body;
+mod cloud;
 mod columns;
 mod error;
 mod history;
@@ -26,8 +27,9 @@ mod vtu;
 
 pub use bezier::{BezierError, MAX_DEGREE, SurfacePiece};
 pub use body::{
-    BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, STRESS_COMPONENTS, von_mises,
+    BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, SLIP, STRESS_COMPONENTS, von_mises,
 };
+pub use cloud::PointCloud;
 pub use columns::{COLUMNS, ColumnDoc, column_table, documented};
 pub use error::OutputError;
 pub use history::{History, Table, read_csv};

@@ -1,7 +1,7 @@
 //! A folder of results: one `.vtu` per part and step, listed with their times in `.pvd` collections.
 use super::atomic::{make_folder, write_whole};
 use super::vtu::escape;
-use super::{BodyFields, OutputError, SurfaceOutput};
+use super::{BodyFields, OutputError, PointCloud, SurfaceOutput};
 use nalgebra::Isometry3;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -58,6 +58,7 @@ impl Results {
         time: f64,
         bodies: &[BodyFields],
         surfaces: &[SurfaceState],
+        clouds: &[PointCloud],
     ) -> Result<(), OutputError> {
         let mut exact = self.exact.clone();
         let mut tessellated = self.tessellated.clone();
@@ -100,6 +101,19 @@ impl Results {
                 });
             }
         }
+        for cloud in clouds {
+            let part = self.stems.part(Kind::Cloud, &cloud.name);
+            let file = format!("{}_{step:04}.vtu", self.stems.of[part].stem);
+            write_whole(&self.folder.join(&file), &cloud.to_vtu()?)?;
+            let entry = Entry {
+                time,
+                part,
+                name: cloud.name.clone(),
+                file,
+            };
+            exact.push(entry.clone());
+            tessellated.push(entry);
+        }
         self.write_collections(&exact, &tessellated)?;
         self.exact = exact;
         self.tessellated = tessellated;
@@ -139,11 +153,12 @@ fn collection(entries: &[Entry]) -> String {
     text
 }
 
-/// Bodies and surfaces may share names.
+/// Bodies, surfaces and clouds of points may share names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Body,
     Surface,
+    Cloud,
 }
 
 #[derive(Debug)]
@@ -194,7 +209,7 @@ impl Stems {
     fn free(&self, kind: Kind, stem: &str) -> bool {
         let stem = stem.to_lowercase();
         let tessellated = format!("{stem}_tessellated");
-        !self.taken.contains(&stem) && (kind == Kind::Body || !self.taken.contains(&tessellated))
+        !self.taken.contains(&stem) && (kind != Kind::Surface || !self.taken.contains(&tessellated))
     }
 }
 

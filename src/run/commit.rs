@@ -50,28 +50,23 @@ pub fn start(model: &Model, state: &mut State) -> Result<(), Fault> {
         .for_each(|(i, ((history, p), point))| {
             let z0 = offsets.map_or(0.0, |o| o.at(i));
             let x = model.point_position(p, u);
-            *history = open(&master, &x, point.hint, z0, history);
+            release(&master, &x, point.hint, z0, history);
         });
     }
     Ok(())
 }
 
-/// History of an open point: slip is measured from where it is now, in the part of a step after it has touched.
-fn open(
+/// History of an open point: slip is measured from where it is now.
+fn release(
     master: &RigidMaster<'_, SurfaceSet>,
     x: &Vec3,
     hint: Option<Hint>,
     z0: f64,
-    before: &PointHistory,
-) -> PointHistory {
+    history: &mut PointHistory,
+) {
+    let local = (master.pose.inverse_transform_point(&Point3::from(*x))).coords;
     let foot = master.foot(x, hint, f64::INFINITY);
-    PointHistory {
-        base: (master.pose.inverse_transform_point(&Point3::from(*x))).coords,
-        approach: foot.map_or(f64::INFINITY, |f| (f.signed_distance - z0).max(0.0)),
-        slip: before.slip,
-        dissipated: before.dissipated,
-        ..PointHistory::default()
-    }
+    history.release(&local, foot.map(|f| f.signed_distance - z0));
 }
 
 /// Takes the state at the end of a step into the histories.
@@ -159,31 +154,14 @@ impl Batch<'_> {
                 at: [x.x, x.y, x.z],
                 fault,
             })?;
-        let turn = self.master.pose.rotation;
-        let Some(touch) = touch else {
-            *history = open(&self.master, &x, hint, z0, history);
-            return Ok(());
-        };
-        let t = touch.traction.slip.t;
-        let slid = touch.traction.slid(friction.eps_t);
-        let before = turn.inverse() * history.t;
-        let slides = touch.traction.slip.slides;
-        if slides {
-            // Of second order in the step, where the traction at its end alone would be of first.
-            history.dissipated += 0.5 * (before + t).dot(&slid);
-            history.slip += slid.norm();
+        match touch {
+            Some(touch) => {
+                let turn = &self.master.pose.rotation;
+                let (n, eps_t) = (touch.touch.n, friction.eps_t);
+                history.accept(&touch.local, &touch.traction, n, eps_t, turn);
+            }
+            None => release(&self.master, &x, hint, z0, history),
         }
-        if slides || history.approach > 0.0 {
-            history.base = touch.local;
-            history.lambda = t;
-        }
-        history.approach = 0.0;
-        history.status = match slides {
-            true => PointStatus::Slip,
-            false => PointStatus::Stick,
-        };
-        history.n = touch.touch.n;
-        history.t = turn * t;
         Ok(())
     }
 }

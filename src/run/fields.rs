@@ -1,7 +1,9 @@
 //! Fields of an accepted state, gathered on nodes for the output.
 use super::RunError;
 use super::averaged::{NodeNow, nodes_now};
+use super::friction_fields::{self, FrictionFields};
 use super::pieces::pieces;
+use crate::contact::friction::history::PointStatus;
 use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
@@ -9,6 +11,7 @@ use crate::output::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, Results, SurfaceOutput,
     SurfaceState,
 };
+use crate::scene::Output;
 use crate::shell::{ElementBlock, with_block};
 use covact_geometry::Vec3;
 
@@ -23,6 +26,9 @@ pub struct Fields {
     weight: Vec<f64>,
     /// Weighted pressure and gap of the pair at hand.
     sums: Vec<[f64; 2]>,
+    friction: FrictionFields,
+    /// Gaps of all slave points when last gathered, where clouds of points are written; else empty.
+    gaps: Vec<f64>,
     /// Per slave point: in front of its surface or in contact when last gathered.
     front: Vec<bool>,
     /// Per pair: points that were in front of the surface or in contact when last gathered, and now lie below it,
@@ -37,21 +43,22 @@ pub struct Fields {
 }
 
 impl Fields {
-    pub fn new(model: &Model, tessellation: u32) -> Result<Self, OutputError> {
+    /// Prepares what `output` asks for.
+    pub fn new(model: &Model, output: &Output) -> Result<Self, OutputError> {
         let mut notes = Vec::new();
         let mut surfaces = Vec::new();
         for surface in &model.surfaces {
-            let pieces = pieces(surface, tessellation);
-            let output = SurfaceOutput::new(&surface.name, pieces, tessellation)?;
-            if !output.left_out().is_empty() {
+            let pieces = pieces(surface, output.tessellation);
+            let written = SurfaceOutput::new(&surface.name, pieces, output.tessellation)?;
+            if !written.left_out().is_empty() {
                 notes.push(format!(
                     "surface `{}`: {} Bezier piece(s) have a degree too high for VTK and are in the tessellated \
                      copy only",
                     surface.name,
-                    output.left_out().len()
+                    written.left_out().len()
                 ));
             }
-            surfaces.push(output);
+            surfaces.push(written);
         }
         let n = model.nodes.len();
         Ok(Fields {
@@ -62,6 +69,11 @@ impl Fields {
             status: vec![NOT_A_SLAVE; n],
             weight: vec![0.0; n],
             sums: vec![[0.0; 2]; n],
+            friction: FrictionFields::new(model),
+            gaps: match output.contact_points {
+                true => vec![f64::NAN; model.contact_points()],
+                false => Vec::new(),
+            },
             front: vec![false; model.contact_points()],
             sunk: vec![0; model.pairs.len()],
             smallest_gap: f64::NAN,
@@ -78,7 +90,7 @@ impl Fields {
     /// Recovers pressure, gap and status at the nodes of all slave surfaces: averages over the slave points by their
     /// shape functions and areas, `p_I = sum w N_I p / sum w N_I`. With points at nodes that is the point's own
     /// pressure; as the areas are the modelled ones, it is right on symmetry planes too. Where gaps are averaged, they and
-    /// the pressures are the nodes' own.
+    /// the pressures are the nodes' own. Points with history have the pressure and the status that was solved for.
     pub fn gather(
         &mut self,
         model: &Model,
@@ -95,6 +107,10 @@ impl Fields {
         self.largest_pressure = 0.0;
         self.area = 0.0;
         self.sunk.fill(0);
+        self.friction.clear();
+        if !self.gaps.is_empty() {
+            self.gaps.resize(state.points.len(), f64::NAN);
+        }
         let mut first = 0;
         for (index, (pair, eps_n)) in model.pairs.iter().zip(penalties).enumerate() {
             let master = masters.at(model, index, &state.u, time)?;
@@ -112,23 +128,40 @@ impl Fields {
             }
             // Both passes of two see the same area.
             let share = if pair.half.is_some() { 0.5 } else { 1.0 };
-            let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+            let offsets = pair.offsets(time);
+            let histories = pair.history().map(|range| &state.histories[range]);
             for (i, ((p, s), front)) in points.iter().zip(states).zip(fronts).enumerate() {
-                let z0 = offsets.as_ref().map_or(0.0, |o| o.factor * o.z0[i]);
+                let z0 = offsets.map_or(0.0, |o| o.at(i));
                 let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
                 let seen = master.see(i, &x, s.hint);
                 let below = seen.is_some_and(|s| s.closed);
-                let closed = below && seen.is_some_and(|s| s.signed_distance < z0);
+                let mut closed = below && seen.is_some_and(|s| s.signed_distance < z0);
+                let history = histories.map(|h| &h[i]);
+                if let Some(history) = history {
+                    closed = history.status != PointStatus::Open;
+                }
                 let sunk = seen.is_some_and(|s| s.behind);
                 self.sunk[index] += usize::from(*front && sunk);
                 *front = below || seen.is_some_and(|s| s.signed_distance >= 0.0);
                 let gap = match &seen {
                     None => f64::NAN,
-                    Some(s) if below => s.signed_distance - z0,
+                    Some(s) if below || closed => s.signed_distance - z0,
                     Some(s) => s.distance,
                 };
-                let pressure = if closed { -eps_n * gap } else { 0.0 };
+                if let Some(kept) = self.gaps.get_mut(first + i) {
+                    *kept = gap;
+                }
+                let pressure = match history {
+                    Some(history) => -history.n,
+                    None if closed => -eps_n * gap,
+                    None => 0.0,
+                };
+                let status = match history {
+                    Some(history) => friction_fields::status(history),
+                    None if closed => CLOSED,
+                    None => OPEN,
+                };
                 if gap < self.smallest_gap {
                     self.smallest_gap = gap;
                 }
@@ -139,9 +172,11 @@ impl Fields {
                     self.weight[node] += w;
                     self.sums[node][0] += w * pressure;
                     self.sums[node][1] += w * gap;
-                    let status = if closed { CLOSED } else { OPEN };
                     self.status[node] = self.status[node].max(status);
                 }
+            }
+            if let (Some(_), Some(histories)) = (&pair.friction, histories) {
+                self.friction.gather(points, histories);
             }
             // Pressures of several surfaces on the same face add up; the nearest surface gives the gap.
             for (node, _) in points.iter().flat_map(|p| p.terms()) {
@@ -233,7 +268,7 @@ impl Fields {
                         gap: &self.gap[range.clone()],
                         status: &self.status[range],
                     }),
-                    fields: Vec::new(),
+                    fields: self.friction.of(model, i, body),
                 }
             })
             .collect();
@@ -243,7 +278,11 @@ impl Fields {
         let surfaces: Vec<SurfaceState> = (self.surfaces.iter().zip(&poses))
             .map(|(surface, at)| SurfaceState { surface, at })
             .collect();
-        results.write(step, time, &bodies, &surfaces)
+        let clouds = match self.gaps.is_empty() {
+            true => Vec::new(),
+            false => friction_fields::clouds(model, state, &self.gaps),
+        };
+        results.write(step, time, &bodies, &surfaces, &clouds)
     }
 }
 

@@ -90,7 +90,7 @@ impl<'a, 'm> March<'a, 'm> {
         let mut outputs = Outputs {
             results: Results::create(out)?,
             table: History::create(&out.join("history.csv"), history::columns(self.model))?,
-            fields: Fields::new(self.model, self.scene.output.tessellation)?,
+            fields: Fields::new(self.model, &self.scene.output)?,
             written: None,
         };
         for note in outputs.fields.notes() {

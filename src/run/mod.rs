@@ -4,6 +4,7 @@ mod check;
 mod commit;
 mod error;
 mod fields;
+mod friction_fields;
 mod history;
 mod march;
 mod pieces;

@@ -1,6 +1,8 @@
 //! What a slave point remembers between steps.
+use super::trial::Traction;
 use crate::contact::law::Augmented;
 use covact_geometry::{Hint, Vec3};
+use nalgebra::UnitQuaternion;
 
 /// Whether a point touches, and whether it slides there.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -47,5 +49,50 @@ impl PointHistory {
             z0,
             lambda_n: self.lambda_n,
         }
+    }
+
+    /// Takes over the end of an accepted step in which the point is in contact: at `local` and under `traction`, both in the
+    /// coordinates of the base, which `to_space` turns into those of space; `n` is the normal traction and `eps_t` the
+    /// tangential penalty. A point that slides, or has come into contact, is tied to where it is now, with the traction it
+    /// has; one that sticks keeps what it was tied to.
+    pub fn accept(
+        &mut self,
+        local: &Vec3,
+        traction: &Traction,
+        n: f64,
+        eps_t: f64,
+        to_space: &UnitQuaternion<f64>,
+    ) {
+        let (t, slides) = (traction.slip.t, traction.slip.slides);
+        if slides {
+            let slid = traction.slid(eps_t);
+            let before = to_space.inverse_transform_vector(&self.t);
+            // Of second order in the step, where the traction at its end alone would be of first.
+            self.dissipated += 0.5 * (before + t).dot(&slid);
+            self.slip += slid.norm();
+        }
+        if slides || self.approach > 0.0 {
+            self.base = *local;
+            self.lambda = t;
+        }
+        self.approach = 0.0;
+        self.status = match slides {
+            true => PointStatus::Slip,
+            false => PointStatus::Stick,
+        };
+        self.n = n;
+        self.t = to_space * t;
+    }
+
+    /// Takes over the end of an accepted step in which the point is open: slip will be measured from where it is, `local`, in
+    /// the part of a step after it has touched. `gap` is its distance (length), nothing where there is no foot.
+    pub fn release(&mut self, local: &Vec3, gap: Option<f64>) {
+        *self = PointHistory {
+            base: *local,
+            approach: gap.map_or(f64::INFINITY, |g| g.max(0.0)),
+            slip: self.slip,
+            dissipated: self.dissipated,
+            ..PointHistory::default()
+        };
     }
 }

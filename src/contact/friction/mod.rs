@@ -15,9 +15,10 @@
 //! return from a finite chord; the slip is the one at the slave point, to which the traction is conjugate at every `xi3`.
 //!
 //! - [`trial`]: from the position to the traction and its derivative;
-//! - [`law`]: Coulomb's law, and what any law has to give;
+//! - [`law`]: Coulomb's law, and what any law has to give; [`orthotropic`]: a law of two coefficients;
 //! - [`rigid`]: points on rigid masters.
 pub mod history;
 pub mod law;
+pub mod orthotropic;
 pub mod rigid;
 pub mod trial;

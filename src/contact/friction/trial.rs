@@ -1,5 +1,6 @@
 //! From the position of a slave point to its tangential traction.
-use super::law::{FrictionLaw, Slip};
+use super::law::{FrictionLaw, Slip, diagonal};
+use crate::contact::kernel::Normal;
 use nalgebra::{Matrix3, Vector3};
 use num_dual::DualNum;
 
@@ -41,7 +42,24 @@ impl<D: DualNum<f64> + Copy> Attraction<D> {
         n: &Vector3<D>,
         turn: &Matrix3<D>,
         gap: D,
-        normal: &super::super::kernel::Normal<D>,
+        normal: &Normal<D>,
+    ) -> Traction<D> {
+        self.traction_towards(law, x, n, n, turn, gap, normal)
+    }
+
+    /// [`Self::traction`] where the gap does not grow along the normal but along `gradient = dxi3/dx`: next to an edge or a
+    /// vertex, whose pseudo-normal stands in for the direction of the distance.
+    #[inline]
+    #[expect(clippy::too_many_arguments)]
+    pub fn traction_towards<F: FrictionLaw>(
+        &self,
+        law: &F,
+        x: &Vector3<D>,
+        n: &Vector3<D>,
+        gradient: &Vector3<D>,
+        turn: &Matrix3<D>,
+        gap: D,
+        normal: &Normal<D>,
     ) -> Traction<D> {
         let (phi, d_phi) = after_impact(self.approach, gap);
         let eps_t = D::from(self.eps_t);
@@ -52,11 +70,11 @@ impl<D: DualNum<f64> + Copy> Attraction<D> {
         let slip = law.slip(&trial, n, -normal.n);
         // dT_tr = P dv - (n.v) dn - n (v.dn)
         let project = |m: Matrix3<D>| m - n * (n.transpose() * m);
-        let mut moved = super::law::diagonal(eps_t * phi);
-        moved += chord * n.transpose() * (eps_t * d_phi);
+        let mut moved = diagonal(eps_t * phi);
+        moved += chord * gradient.transpose() * (eps_t * d_phi);
         let d_trial = project(moved) - turn * along - n * (v.transpose() * turn);
         let tangent = slip.d_trial * d_trial + slip.d_normal * turn
-            - slip.d_pressure * n.transpose() * normal.dn;
+            - slip.d_pressure * gradient.transpose() * normal.dn;
         Traction {
             trial,
             slip,

@@ -53,6 +53,13 @@ pub fn check(loaded: &LoadedScene) -> Vec<Problem> {
     }
     check_solution(&mut c, &scene.solution);
     c.whole("/output/tessellation", scene.output.tessellation, 1, 200);
+    if scene.output.contact_points && scene.contacts.values().all(|c| c.friction.is_none()) {
+        c.add(
+            "/output/contact_points",
+            "no contact has friction: there are no slave points with values of their own",
+            Some("leave it out, or give a contact `friction`".into()),
+        );
+    }
     c.finish()
 }
 

@@ -64,6 +64,8 @@ pub struct Output {
     pub every: u32,
     /// Subdivisions of a Bezier piece in the tessellated copy of rigid surfaces.
     pub tessellation: u32,
+    /// Write the slave points of contacts with friction too, with their values.
+    pub contact_points: bool,
 }
 
 impl Default for Solution {
@@ -105,6 +107,7 @@ impl Default for Output {
         Output {
             every: 1,
             tessellation: 16,
+            contact_points: false,
         }
     }
 }
