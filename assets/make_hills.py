@@ -125,7 +125,7 @@ def hills_one():
         file.write("\n")
 
 
-def half_ball(n=14, layers=2, radius=15.0, wall=5.0):
+def half_ball(n=12, layers=2, radius=15.0, wall=5.0):
     """Columns on the lower half of a cube, n x n below and n x n / 2 on each side, cast on the sphere."""
     numbers, nodes, elements = {}, [], []
     sides = {"outer": [], "inner": [], "rim": []}
