@@ -194,7 +194,7 @@ fn facet_error(facets: u32) -> f64 {
 
 /// Over a corner with the angle d between two facets `T2 / T1` is off by up to d^2 / 2 one way or the other, as points of
 /// one facet or of the other carry the line force, and by the third power of d where they share it: the mean while the
-/// belt slides by an element is of the second order.
+/// belt slides by an element is of the second order at least.
 #[test]
 fn facets_converge_with_the_square_of_their_length() {
     // What the element length leaves on the exact cylinder is 3e-5.
