@@ -6,6 +6,8 @@ mod draw_bead;
 mod drawn_scenes;
 mod driven;
 mod facets;
+mod friction;
+mod friction_kernel;
 mod hertz;
 mod hertz_bodies;
 mod hinged_roof;

@@ -1,10 +1,11 @@
 //! Rigid surfaces driven by force: the rows of their translation and rotation.
 //!
 //! A driven surface couples with every slave node of its pairs: a dense border of six rows, which the solver eliminates
-//! last. The blocks are summed over the points first and scattered once for each slave node.
+//! last. The blocks are summed over the points first and scattered once for each slave node. Friction takes the symmetry
+//! from the border and from the surface's own block.
 use super::{Assembler, Fault, Totals, put};
 use crate::assembly::{Pattern, PatternError};
-use crate::contact::carried::carried;
+use crate::contact::carried::{carried, carried_with_friction};
 use crate::model::driven::{Driven, press, turn};
 use crate::model::state::State;
 use crate::model::{Model, SurfaceModel};
@@ -34,6 +35,8 @@ pub(super) struct Border {
     own_map: Vec<u32>,
     /// Per slave node: blocks of its displacement with translation and spin.
     blocks: Vec<[Matrix3<f64>; 2]>,
+    /// With friction, what the blocks below the diagonal have over the transposed ones; else empty.
+    below: Vec<[Matrix3<f64>; 2]>,
     pub residual: Vector6<f64>,
     pub tangent: Matrix6<f64>,
     pub active: usize,
@@ -87,12 +90,14 @@ impl Border {
         let mut place = vec![u32::MAX; model.nodes.len()];
         let mut nodes = Vec::new();
         let mut element_size = f64::INFINITY;
+        let mut slides = false;
         for pair in model
             .pairs
             .iter()
             .filter(|p| p.rigid_master() == Some(surface))
         {
             element_size = element_size.min(pair.element_size);
+            slides |= pair.friction.is_some();
             for (node, _) in pair.points.iter().flat_map(|p| p.terms()) {
                 if place[node] == u32::MAX {
                     place[node] = nodes.len() as u32;
@@ -110,6 +115,10 @@ impl Border {
         Ok(Border {
             surface,
             blocks: vec![[Matrix3::zeros(); 2]; nodes.len()],
+            below: match slides {
+                true => vec![[Matrix3::zeros(); 2]; nodes.len()],
+                false => Vec::new(),
+            },
             nodes,
             place,
             maps,
@@ -133,6 +142,7 @@ impl Border {
 
     fn clear(&mut self) {
         self.blocks.fill([Matrix3::zeros(); 2]);
+        self.below.fill([Matrix3::zeros(); 2]);
         self.residual = Vector6::zeros();
         self.tangent = Matrix6::zeros();
         self.active = 0;
@@ -156,6 +166,7 @@ impl Assembler<'_> {
         let Some(surface) = pair.rigid_master() else {
             return Ok(());
         };
+        let slides = pair.friction.is_some();
         let center = self.model.surfaces[surface].center(time, u)?;
         let Some(border) = (self.borders.iter_mut()).find(|b| b.surface == surface) else {
             return Ok(());
@@ -164,14 +175,24 @@ impl Assembler<'_> {
             let Ok(Some(touch)) = touch else { continue };
             border.active += 1;
             let (r, k) = (touch.residual * p.area, touch.tangent * p.area);
-            let c = carried(&r, &k, &(self.model.point_position(p, u) - center));
+            let arm = self.model.point_position(p, u) - center;
+            let c = match slides {
+                true => carried_with_friction(&r, &k, &arm),
+                false => carried(&r, &k, &arm),
+            };
             press::add(&mut border.residual, &-r, &c.spin);
             if TANGENT {
-                press::add_tangent(&mut border.tangent, &k, &-c.point_spin, &c.spin_spin);
+                press::add_tangent(&mut border.tangent, &k, &c);
                 for (node, w) in p.terms() {
-                    let [translation, spin] = &mut border.blocks[border.place[node] as usize];
+                    let at = border.place[node] as usize;
+                    let [translation, spin] = &mut border.blocks[at];
                     *translation -= k * w;
                     *spin += c.point_spin * w;
+                    if slides {
+                        let [translation, spin] = &mut border.below[at];
+                        *translation -= (k - k.transpose()) * w;
+                        *spin += (c.spin_point - c.point_spin.transpose()) * w;
+                    }
                 }
             }
         }
@@ -195,8 +216,10 @@ impl Assembler<'_> {
                 return Err(Fault::untouched(surface, driven));
             }
             let (_, theta) = driven.motion(u);
-            let (r, k) =
-                press::in_rotation_vector(&border.residual, &border.tangent, &theta, driven.lever);
+            let (r, k) = match border.below.is_empty() {
+                true => press::in_rotation_vector,
+                false => press::in_rotation_vector_with_friction,
+            }(&border.residual, &border.tangent, &theta, driven.lever);
             border.residual = r;
             let at = driven.dof(0);
             for c in 0..6 {
@@ -214,6 +237,10 @@ impl Assembler<'_> {
                 let [translation, by_spin] = &border.blocks[i];
                 let by_vector = by_spin * spin;
                 let mut ke = [0.0; 81];
+                let mut over = [Matrix3::zeros(); 2];
+                if let Some([translation, spin_over]) = border.below.get(i) {
+                    over = [*translation, spin.tr_mul(spin_over)];
+                }
                 for column in 0..6 {
                     for row in 0..3 {
                         let value = match column < 3 {
@@ -224,7 +251,8 @@ impl Assembler<'_> {
                             ke[9 * (3 + column) + row] = value;
                         }
                         // The row is kept where prescribed displacements of the slave are still to come.
-                        ke[9 * row + 3 + column] = if free[column] { value } else { 0.0 };
+                        let below = value + over[column / 3][(column % 3, row)];
+                        ke[9 * row + 3 + column] = if free[column] { below } else { 0.0 };
                     }
                 }
                 let map = &border.maps[THREE * i..THREE * (i + 1)];
@@ -281,13 +309,16 @@ impl Assembler<'_> {
             let slope = turn::moment_slope(&theta, &moment) / (lever * lever);
             let mut k = border.tangent;
             let mut block = k.fixed_view_mut::<3, 3>(3, 3);
-            block -= (slope + slope.transpose()) * 0.5;
+            block -= match border.below.is_empty() {
+                true => (slope + slope.transpose()) * 0.5,
+                false => slope,
+            };
             let k = Matrix6::from_fn(|i, j| if free[i] && free[j] { k[(i, j)] } else { 0.0 });
             let mut own = k;
-            let eigen = SymmetricEigen::new(k);
-            let largest = eigen.eigenvalues.amax();
+            let (values, vectors) = resistances(&k, border.below.is_empty());
+            let largest = values.amax();
             for i in 0..6 {
-                let (value, v) = (eigen.eigenvalues[i], eigen.eigenvectors.column(i));
+                let (value, v) = (values[i], vectors.column(i));
                 let held = (0..6).all(|c| free[c] || v[c].abs() < 1e-6);
                 if value > NONE * largest || !held {
                     continue;
@@ -331,6 +362,21 @@ impl Assembler<'_> {
         let driven = surface.driven.as_ref()?;
         Some(Fault::unresisted(surface, driven, &worst.direction))
     }
+}
+
+/// Directions of a surface's motion, and how much stiffness it has along them. Without symmetry these are the singular
+/// values: the symmetric part of a tangent with points that slide has a negative eigenvalue along every direction in which
+/// friction grows with pressure, whereas what is loose moves without any force.
+fn resistances(k: &Matrix6<f64>, symmetric: bool) -> (Vector6<f64>, Matrix6<f64>) {
+    if symmetric {
+        let eigen = SymmetricEigen::new(*k);
+        return (eigen.eigenvalues, eigen.eigenvectors);
+    }
+    // Through `K^T K` a singular value would be known to half of the digits only; as its eigenvectors these directions are
+    // known well enough, and the stiffness along them follows from them.
+    let vectors = SymmetricEigen::new(k.transpose() * k).eigenvectors;
+    let values = Vector6::from_fn(|i, _| (k * vectors.column(i)).norm());
+    (values, vectors)
 }
 
 impl Fault {

@@ -1,6 +1,6 @@
 //! What a slave point remembers between steps.
 use super::trial::Traction;
-use crate::contact::law::Augmented;
+use crate::contact::law::{Augmented, Penalty};
 use covact_geometry::{Hint, Vec3};
 use nalgebra::UnitQuaternion;
 
@@ -23,7 +23,8 @@ pub struct PointHistory {
     /// Attraction point that slip is measured from: in the own coordinates of a rigid surface; on a facet the components,
     /// along `rho_1`, `rho_2` and `n` at `place`, of its distance from the facet (length).
     pub base: Vec3,
-    /// Tangential traction when the base was set, or its multiplier, in the coordinates of `base` (force / length^2).
+    /// Tangential traction when the base was set, or its multiplier, in the coordinates of `base` (force / length^2). What
+    /// of it lies along a normal that has turned since counts for nothing.
     pub lambda: Vec3,
     /// Multiplier of the normal traction, `<= 0` (force / length^2).
     pub lambda_n: f64,
@@ -45,36 +46,38 @@ impl PointHistory {
     #[inline]
     pub fn law(&self, eps_n: f64, z0: f64) -> Augmented {
         Augmented {
-            eps_n,
+            law: Penalty { eps_n },
             z0,
             lambda_n: self.lambda_n,
         }
     }
 
     /// Takes over the end of an accepted step in which the point is in contact: at `local` and under `traction`, both in the
-    /// coordinates of the base, which `to_space` turns into those of space; `n` is the normal traction and `eps_t` the
-    /// tangential penalty. A point that slides, or has come into contact, is tied to where it is now, with the traction it
-    /// has; one that sticks keeps what it was tied to.
+    /// coordinates of the base, which `to_space` turns into those of space; `first` is the traction that the law allowed at
+    /// the start of the step, `n` the normal traction now and `eps_t` the tangential penalty. The point is tied to where it is
+    /// now: with the traction it has where it slides or has come into contact, with what it was tied by where it sticks.
     pub fn accept(
         &mut self,
         local: &Vec3,
         traction: &Traction,
+        first: &Vec3,
         n: f64,
         eps_t: f64,
         to_space: &UnitQuaternion<f64>,
     ) {
         let (t, slides) = (traction.slip.t, traction.slip.slides);
         if slides {
+            // Of second order in the step also where the point stuck at its start, or slid the other way, or did not touch.
             let slid = traction.slid(eps_t);
-            let before = to_space.inverse_transform_vector(&self.t);
-            // Of second order in the step, where the traction at its end alone would be of first.
-            self.dissipated += 0.5 * (before + t).dot(&slid);
+            self.dissipated += 0.5 * (first + t).dot(&slid);
             self.slip += slid.norm();
         }
-        if slides || self.approach > 0.0 {
-            self.base = *local;
-            self.lambda = t;
-        }
+        // Where it sticks nothing changes by this, but that a later penalty works on later displacements only.
+        self.lambda = match slides || self.approach > 0.0 {
+            true => t,
+            false => self.attraction(eps_t).unprojected(local),
+        };
+        self.base = *local;
         self.approach = 0.0;
         self.status = match slides {
             true => PointStatus::Slip,
@@ -82,6 +85,32 @@ impl PointHistory {
         };
         self.n = n;
         self.t = to_space * t;
+    }
+
+    /// Takes over the end of an accepted step in which a point that was in contact has opened, at `local` in the coordinates
+    /// of the base and a distance `gap` from the master. It slides, and its traction falls to nothing, in the part of the
+    /// step before it opens: the normal traction is taken to pass evenly to what the penalty `eps_n` would make of the gap.
+    pub fn leave(
+        &mut self,
+        local: &Vec3,
+        gap: Option<f64>,
+        eps_n: f64,
+        eps_t: f64,
+        to_space: &UnitQuaternion<f64>,
+    ) {
+        if self.status != PointStatus::Open {
+            let before = to_space.inverse_transform_vector(&self.t);
+            let beyond = gap.map_or(f64::INFINITY, |g| self.lambda_n + eps_n * g);
+            let part = match beyond.is_finite() && beyond > self.n {
+                true => self.n / (self.n - beyond),
+                false => 0.0,
+            };
+            let trial = self.lambda + (local - self.base) * eps_t;
+            let slid = (before + (trial - before) * part) / eps_t;
+            self.dissipated += (0.5 * before.dot(&slid)).max(0.0);
+            self.slip += slid.norm();
+        }
+        self.release(local, gap);
     }
 
     /// Takes over the end of an accepted step in which the point is open: slip will be measured from where it is, `local`, in

@@ -19,7 +19,7 @@ pub struct Attraction<D = f64> {
 
 /// Part of a step that a point spends in contact, `g / (g - approach)` for a gap that passes evenly from `approach > 0` to
 /// `g < 0`, and its derivative with respect to `g`.
-fn after_impact<D: DualNum<f64> + Copy>(approach: f64, gap: D) -> (D, D) {
+pub(super) fn after_impact<D: DualNum<f64> + Copy>(approach: f64, gap: D) -> (D, D) {
     if approach == 0.0 {
         return (D::one(), D::zero());
     }
@@ -29,6 +29,13 @@ fn after_impact<D: DualNum<f64> + Copy>(approach: f64, gap: D) -> (D, D) {
     }
     let over = (gap - approach).recip();
     (gap * over, -over * over * approach)
+}
+
+impl Attraction {
+    /// Traction of a point at `x` before it is projected, in contact throughout the step.
+    pub fn unprojected(&self, x: &Vector3<f64>) -> Vector3<f64> {
+        self.lambda + (x - self.base) * self.eps_t
+    }
 }
 
 impl<D: DualNum<f64> + Copy> Attraction<D> {

@@ -2,10 +2,11 @@
 //! it. This is where a step starts from that the surface enters without contact; six unknowns, no system.
 use super::turn;
 use super::{Driven, Model, SurfaceModel};
-use crate::contact::carried::carried;
-use crate::contact::law::{Penalty, Shifted};
-use crate::contact::rigid::{Exact, PointFault, RigidMaster, behind, presses};
-use crate::model::overclosure::Overclosure;
+use crate::contact::carried::{Carried, carried, cross_matrix};
+use crate::contact::friction::history::PointHistory;
+use crate::contact::law::{Augmented, Penalty};
+use crate::contact::rigid::{Exact, PointFault, RigidMaster, behind, free};
+use crate::model::PairModel;
 use crate::model::surface::SurfaceSet;
 use crate::scene::ValueError;
 use covact_geometry::{Hint, Vec3};
@@ -53,29 +54,23 @@ pub struct Presser<'m> {
     surface: &'m SurfaceModel,
     driven: &'m Driven,
     pairs: Vec<PairAtRest<'m>>,
+    /// Whether any pair has friction, which resists what the normal tractions here do not.
+    slides: bool,
     /// Largest step: a fraction of an element and of the depth.
     stride: f64,
 }
 
 struct PairAtRest<'m> {
-    name: &'m str,
+    model: &'m PairModel,
     law: Penalty,
-    overclosure: Option<&'m Overclosure>,
     points: Vec<PointAtRest>,
-}
-
-impl PairAtRest<'_> {
-    /// Part of the points' offsets that is left at time `t`.
-    fn factor(&self, t: f64) -> f64 {
-        self.overclosure.map_or(0.0, |o| o.factor(t))
-    }
 }
 
 struct PointAtRest {
     x: Vec3,
     area: f64,
-    /// Offset of its gap at the start.
-    z0: f64,
+    /// Multiplier of its traction.
+    lambda_n: f64,
     hint: Option<Hint>,
 }
 
@@ -87,33 +82,38 @@ const GRAZE: f64 = 0.01;
 const STEPS: usize = 400;
 
 impl<'m> Presser<'m> {
-    /// The slave points of surface `index` at displacements `u`; penalties per pair of the model.
+    /// The slave points of surface `index` at displacements `u`; penalties per pair of the model, histories of all points
+    /// that have one, or none before there are any.
     pub fn new(
         model: &'m Model,
         (index, surface, driven): (usize, &'m SurfaceModel, &'m Driven),
         penalties: &[f64],
+        histories: &[PointHistory],
         u: &[f64],
     ) -> Self {
         let mut size = surface.depth;
+        let mut slides = false;
         let mut pairs = Vec::new();
         for (pair, &eps_n) in model.pairs.iter().zip(penalties) {
             if pair.rigid_master() != Some(index) {
                 continue;
             }
             size = size.min(pair.element_size);
+            slides |= pair.friction.is_some();
             let points = (pair.points.iter())
                 .enumerate()
                 .map(|(i, p)| PointAtRest {
                     x: model.point_position(p, u),
                     area: p.area,
-                    z0: pair.overclosure.as_ref().map_or(0.0, |o| o.z0[i]),
+                    lambda_n: (pair.first_history)
+                        .and_then(|first| histories.get(first + i))
+                        .map_or(0.0, |h| h.lambda_n),
                     hint: None,
                 })
                 .collect();
             pairs.push(PairAtRest {
-                name: &pair.name,
+                model: pair,
                 law: Penalty { eps_n },
-                overclosure: pair.overclosure.as_ref(),
                 points,
             });
         }
@@ -121,6 +121,7 @@ impl<'m> Presser<'m> {
             surface,
             driven,
             pairs,
+            slides,
             stride: STRIDE * size,
         }
     }
@@ -128,6 +129,11 @@ impl<'m> Presser<'m> {
     /// Whether any pair has the surface as its master.
     pub fn is_empty(&self) -> bool {
         self.pairs.iter().all(|p| p.points.is_empty())
+    }
+
+    /// Whether friction alone works against what drives the surface: no translation is free.
+    pub fn only_friction_resists(&self) -> bool {
+        self.slides && self.driven.free()[..3].iter().all(|free| !free)
     }
 
     fn parts(&self, q: &Vector6<f64>) -> (Vec3, Vec3) {
@@ -161,17 +167,21 @@ impl<'m> Presser<'m> {
             active: 0,
         };
         for pair in &mut self.pairs {
-            let (law, factor) = (pair.law, pair.factor(t));
-            let touches: Vec<_> = (pair.points.par_iter_mut())
+            let (law, offsets) = (pair.law, pair.model.offsets(t));
+            let touches: Vec<_> = (pair.points.par_iter_mut().enumerate())
                 .with_min_len(64)
-                .map(|p| {
-                    let z0 = factor * p.z0;
-                    master.touch(&p.x, &mut p.hint, &Shifted { law, z0 }, &Exact)
+                .map(|(i, p)| {
+                    let law = Augmented {
+                        law,
+                        z0: offsets.map_or(0.0, |o| o.at(i)),
+                        lambda_n: p.lambda_n,
+                    };
+                    master.touch(&p.x, &mut p.hint, &law, &Exact)
                 })
                 .collect();
             for (point, (touch, p)) in touches.into_iter().zip(&pair.points).enumerate() {
                 let touch = touch.map_err(|fault| PressFault::Point {
-                    pair: pair.name.to_owned(),
+                    pair: pair.model.name.clone(),
                     point,
                     at: p.x,
                     fault,
@@ -180,9 +190,10 @@ impl<'m> Presser<'m> {
                 let (r, k) = (touch.residual * p.area, touch.tangent * p.area);
                 let c = carried(&r, &k, &(p.x - center));
                 out.active += 1;
-                out.energy += 0.5 * touch.n * touch.gap * p.area;
+                // Its derivative is the traction.
+                out.energy += 0.5 * touch.n.powi(2) / pair.law.eps_n * p.area;
                 add(&mut out.residual, &-r, &c.spin);
-                add_tangent(&mut out.tangent, &k, &-c.point_spin, &c.spin_spin);
+                add_tangent(&mut out.tangent, &k, &c);
             }
         }
         (out.residual, out.tangent) =
@@ -197,18 +208,24 @@ impl<'m> Presser<'m> {
         let master = self.master(&prescribed, &moved, &theta);
         let (mut nearest, mut below) = (f64::INFINITY, false);
         for pair in &mut self.pairs {
-            let factor = pair.factor(t);
-            let found = (pair.points.par_iter_mut())
+            let offsets = pair.model.offsets(t);
+            let found = (pair.points.par_iter_mut().enumerate())
                 .with_min_len(64)
-                .filter_map(|p| {
+                .filter_map(|(i, p)| {
                     let foot = master.foot(&p.x, p.hint, f64::INFINITY)?;
                     p.hint = Some(Hint {
                         patch: foot.patch,
                         xi: foot.xi,
                     });
-                    let (gap, inside) = (foot.signed_distance - factor * p.z0, presses(&foot));
-                    let distance = if inside { gap.max(0.0) } else { foot.distance };
-                    let below = inside && gap < 0.0 && !behind(&foot, master.depth);
+                    let z0 = offsets.map_or(0.0, |o| o.at(i));
+                    let gap = foot.signed_distance - z0;
+                    // Past a free border or above an overclosure the surface itself is nearer than contact.
+                    let distance = match free(&foot) {
+                        true => foot.distance - z0.max(0.0),
+                        false => gap.min(foot.distance),
+                    };
+                    let distance = distance.max(0.0);
+                    let below = !free(&foot) && gap < 0.0 && !behind(&foot, master.depth);
                     Some((distance, below))
                 })
                 .reduce(|| (f64::INFINITY, false), |a, b| (a.0.min(b.0), a.1 || b.1));
@@ -318,7 +335,11 @@ impl<'m> Presser<'m> {
                     0.0
                 }
             };
-            let f = Vector6::from_fn(|c, _| force(c));
+            let mut f = Vector6::from_fn(|c, _| force(c));
+            if self.slides && now.active > 0 {
+                // What is left to friction is Newton's.
+                f = resisted(&now.tangent, &free, &f);
+            }
             if f.norm() <= 1e-6 * Vector6::from(forces).norm() && now.active > 0 {
                 return Ok(Placed::Held);
             }
@@ -374,6 +395,21 @@ fn modified_step(tangent: &Matrix6<f64>, free: &[bool; 6], f: &Vector6<f64>) -> 
     step
 }
 
+/// The part of forces that works along directions which have stiffness.
+fn resisted(tangent: &Matrix6<f64>, free: &[bool; 6], f: &Vector6<f64>) -> Vector6<f64> {
+    let masked = |i: usize, j: usize| match free[i] && free[j] {
+        true => tangent[(i, j)],
+        false => 0.0,
+    };
+    let eigen = SymmetricEigen::new(Matrix6::from_fn(masked));
+    let smallest = 1e-6 * eigen.eigenvalues.amax();
+    let stiff = (0..6).filter(|&i| eigen.eigenvalues[i].abs() > smallest);
+    stiff.fold(Vector6::zeros(), |sum, i| {
+        let v = eigen.eigenvectors.column(i);
+        sum + v * v.dot(f)
+    })
+}
+
 /// Adds translation and spin parts.
 pub fn add(out: &mut Vector6<f64>, translation: &Vec3, spin: &Vec3) {
     let mut part = out.fixed_rows_mut::<3>(0);
@@ -382,21 +418,16 @@ pub fn add(out: &mut Vector6<f64>, translation: &Vec3, spin: &Vec3) {
     part += spin;
 }
 
-/// Adds blocks of translation, translation and spin, spin.
-pub fn add_tangent(
-    out: &mut Matrix6<f64>,
-    translation: &nalgebra::Matrix3<f64>,
-    mixed: &nalgebra::Matrix3<f64>,
-    spin: &nalgebra::Matrix3<f64>,
-) {
+/// Adds the blocks of translation and spin of a point with tangent `k`.
+pub fn add_tangent(out: &mut Matrix6<f64>, k: &nalgebra::Matrix3<f64>, c: &Carried) {
     let mut block = out.fixed_view_mut::<3, 3>(0, 0);
-    block += translation;
+    block += k;
     let mut block = out.fixed_view_mut::<3, 3>(0, 3);
-    block += mixed;
+    block -= c.point_spin;
     let mut block = out.fixed_view_mut::<3, 3>(3, 0);
-    block += mixed.transpose();
+    block -= c.spin_point;
     let mut block = out.fixed_view_mut::<3, 3>(3, 3);
-    block += spin;
+    block += c.spin_spin;
 }
 
 /// Residual and symmetric tangent of translation and spin, as those of the degrees of freedom: the rotation vector times
@@ -424,6 +455,24 @@ pub fn in_rotation_vector(
     (r, k)
 }
 
+/// [`in_rotation_vector`] for a tangent without symmetry.
+pub fn in_rotation_vector_with_friction(
+    residual: &Vector6<f64>,
+    tangent: &Matrix6<f64>,
+    theta: &Vec3,
+    lever: f64,
+) -> (Vector6<f64>, Matrix6<f64>) {
+    let (r, mut k) = in_rotation_vector(residual, tangent, theta, lever);
+    let spin = turn::spin_of(theta);
+    let moment: Vec3 = residual.fixed_rows::<3>(3).into();
+    let mixed = spin.tr_mul(&tangent.fixed_view::<3, 3>(3, 0)) / lever;
+    k.fixed_view_mut::<3, 3>(3, 0).copy_from(&mixed);
+    let spin_spin = tangent.fixed_view::<3, 3>(3, 3).into();
+    (k.fixed_view_mut::<3, 3>(3, 3))
+        .copy_from(&whole_spin_block(&spin_spin, &moment, theta, lever));
+    (r, k)
+}
+
 /// The block of the rotation alone: the second derivative by spins on top of the present rotation is that by rotation
 /// vectors but for half of the moment's cross product (two turns do not commute) and the change of `T`.
 pub fn spin_block(
@@ -432,9 +481,18 @@ pub fn spin_block(
     theta: &Vec3,
     lever: f64,
 ) -> nalgebra::Matrix3<f64> {
-    let spin = turn::spin_of(theta);
-    let by_spin = spin_spin - crate::contact::carried::cross_matrix(moment) * 0.5;
-    let k =
-        (spin.transpose() * by_spin * spin + turn::moment_slope(theta, moment)) / (lever * lever);
+    let k = whole_spin_block(spin_spin, moment, theta, lever);
     (k + k.transpose()) * 0.5
+}
+
+/// [`spin_block`] before rounding is taken out of what is symmetric, or without symmetry.
+fn whole_spin_block(
+    spin_spin: &nalgebra::Matrix3<f64>,
+    moment: &Vec3,
+    theta: &Vec3,
+    lever: f64,
+) -> nalgebra::Matrix3<f64> {
+    let spin = turn::spin_of(theta);
+    let by_spin = spin_spin - cross_matrix(moment) * 0.5;
+    (spin.transpose() * by_spin * spin + turn::moment_slope(theta, moment)) / (lever * lever)
 }

@@ -7,7 +7,7 @@ use crate::scene::Scene;
 use nalgebra::Vector6;
 
 /// Moves every driven surface along its force (where it has none, about its moment) until it first touches, and notes
-/// how far.
+/// how far. One that is free to turn only, which friction alone resists, stays where it is.
 ///
 /// # Errors
 /// [`ModelError`] where it would never touch, has no contact at all, or nothing drives it at the end of the first step.
@@ -25,12 +25,15 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
         let (index, surface, driven) = entry;
         let name = &surface.name;
         let pointer = || format!("/surfaces/{name}/motion/free");
-        let mut presser = Presser::new(model, entry, &penalties, &u);
+        let mut presser = Presser::new(model, entry, &penalties, &[], &u);
         if presser.is_empty() {
             let message =
                 format!("surface `{name}` is driven by force, but takes part in no contact");
             return Err(text(pointer(), message)
                 .help("name it as `master` of a contact, or leave `free` out"));
+        }
+        if presser.only_friction_resists() {
+            continue;
         }
         let driving = driven.driving(first, &u).at(pointer)?;
         let Some(e) = Presser::direction(&driving) else {
