@@ -19,20 +19,20 @@ fn over_the_corner(file: &str) -> Outcome {
         format!("../../assets/cad/{file}"),
     );
     let panel = json!({
-        "radius": 12.5, "thickness": 5, "longitude": [110, 250], "latitude": [-60, 60], "elements": [10, 8]
+        "radius": 12.5, "thickness": 5, "longitude": [110, 250], "latitude": [-60, 60], "elements": [16, 12]
     });
     scene["bodies"]["ball"]["mesh"] = json!({ "sphere_panel": panel });
-    scene["bodies"]["ball"]["placement"] = json!({ "translation": [-1, 1, 16.2] });
+    scene["bodies"]["ball"]["placement"] = json!({ "translation": [-1, 1, 14.6] });
     let motion = json!({
         "x": { "table": [[0, 0], [1, 0], [4, 7]] },
         "y": { "table": [[0, 0], [1, 0], [4, 5]] },
-        "z": { "table": [[0, 0], [1, -2.2], [4, -2.2]] }
+        "z": { "table": [[0, 0], [1, -0.8], [4, -0.6]] }
     });
     scene["supports"] = json!({
         "hand": { "on": "ball.inner", "displacement": motion }
     });
     scene["solution"] = json!({
-        "end_time": 4, "newton": { "tolerance": 1e-12 },
+        "end_time": 4, "newton": { "tolerance": 1e-11 },
         "step": { "initial": 0.25, "max": 0.25, "adaptive": false }
     });
     scene["output"] = json!({ "every": 0 });
@@ -43,7 +43,10 @@ fn over_the_corner(file: &str) -> Outcome {
 /// forces, slip and dissipation know nothing of the borders.
 #[test]
 fn borders_of_patches_are_not_felt() {
-    let (many, one) = (over_the_corner("hills.igs"), over_the_corner("hills_one.json"));
+    let (many, one) = (
+        over_the_corner("hills.igs"),
+        over_the_corner("hills_one.json"),
+    );
     for outcome in [&many, &one] {
         let summary = &outcome.summary;
         assert_eq!(summary.status.name(), "done", "{:?}", summary.reason);
@@ -67,8 +70,14 @@ fn borders_of_patches_are_not_felt() {
         let (a, b) = (many.column(name), one.column(name));
         assert_eq!((a.len(), b.len()), (16, 16));
         let largest = b.iter().fold(0.0f64, |m, b| m.max(b.abs()));
-        let off = a.iter().zip(&b).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
-        println!("{name}: largest {largest:.6}, difference {:.1e} of it", off / largest);
+        let off = a
+            .iter()
+            .zip(&b)
+            .fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+        println!(
+            "{name}: largest {largest:.6}, difference {:.1e} of it",
+            off / largest
+        );
         assert!(largest > 1e-3, "{name}: {b:?}");
         assert!(off <= 1e-8 * largest, "{name}: {a:?} {b:?}");
     }
