@@ -7,6 +7,7 @@ mod facets;
 mod hertz;
 mod hertz_bodies;
 mod hinged_roof;
+mod ironing;
 mod loads;
 mod overclosure;
 mod placed;
