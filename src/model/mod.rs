@@ -1,4 +1,5 @@
 //! The model: what a scene becomes before anything is solved. All choices of effects are made here, once.
+pub mod augmentation;
 pub mod averaged;
 pub mod build;
 pub mod constraints;
@@ -25,6 +26,7 @@ use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
 use crate::scene::{Tangent, TimeFunction, ValueError};
 use crate::shell::{Block, ElementBlock};
+use augmentation::AugmentationModel;
 use averaged::SlaveNodes;
 use constraints::{MeanPrescribed, Prescribed};
 use covact_geometry::Vec3;
@@ -102,6 +104,10 @@ pub struct PairModel {
     pub element_size: f64,
     /// Offsets of the gaps where the scene asks for them.
     pub overclosure: Option<Overclosure>,
+    /// Distance from the master at which contact begins (length, `>= 0`).
+    pub offset: f64,
+    /// Multipliers where the scene asks for them.
+    pub augmentation: Option<AugmentationModel>,
     /// The slave's nodes, where gaps are averaged.
     pub averaged: Option<SlaveNodes>,
     /// Friction where the scene asks for it.
@@ -187,6 +193,16 @@ impl Model {
 }
 
 impl PairModel {
+    /// Share of the pair in the energy of its contact: both passes of two are one contact with two sides, whose energy is
+    /// the mean of both.
+    #[inline]
+    pub fn share(&self) -> f64 {
+        match self.half {
+            None => 1.0,
+            Some(_) => 0.5,
+        }
+    }
+
     /// Where the histories of the points are among all; none where the points have none.
     #[inline]
     pub fn history(&self) -> Option<std::ops::Range<usize>> {

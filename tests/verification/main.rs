@@ -2,8 +2,12 @@
 mod ball_by_weight;
 mod body_scenes;
 mod die;
+mod draw_bead;
+mod drawn_scenes;
 mod driven;
 mod facets;
+mod friction;
+mod friction_kernel;
 mod hertz;
 mod hertz_bodies;
 mod hinged_roof;

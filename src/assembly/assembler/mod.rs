@@ -2,14 +2,17 @@
 //!
 //! Elements and slave points are evaluated in parallel, a chunk at a time, and summed in order by one thread, so that
 //! the result is the same to the last bit for every number of threads.
+mod answer;
 mod averaged;
 mod couplings;
 mod driven;
 mod elements;
+mod links;
 mod loads;
 mod maps;
 mod moving;
 mod rigid;
+mod sliding;
 
 use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
@@ -25,11 +28,13 @@ use couplings::Couplings;
 use covact_geometry::Vec3;
 use maps::Maps;
 use moving::Meetings;
+use sliding::Sliding;
 
 use driven::Border;
 use elements::Systems;
 use std::sync::Arc;
 
+pub use answer::PointAnswer;
 pub use driven::Loose;
 
 /// What kept the model from being evaluated at a trial state. The step is cut.
@@ -105,6 +110,8 @@ pub struct Totals {
     pub changed: usize,
     /// Deepest penetration, >= 0, per pair.
     pub penetration: Vec<f64>,
+    /// Whether any point or node is in contact, per pair.
+    pub touching: Vec<bool>,
     /// Norm of the contact forces on nodes.
     pub contact_norm: f64,
     /// Motions of driven surfaces that the contact does not resist, found with the tangent.
@@ -130,11 +137,15 @@ pub struct Assembler<'m> {
     follower_maps: Vec<Vec<u32>>,
     systems: Systems,
     touches: Vec<Result<Option<Touch>, PointFault>>,
+    /// Per point with history, of pairs with friction or augmentation; nothing where it is open.
+    answers: Vec<Option<PointAnswer>>,
     /// The surfaces of masters that are bodies, at the last state evaluated.
     pub masters: Masters,
     /// Per pair whose master is a body: the nodes that the pattern couples, and the points at the last state.
     couplings: Vec<Option<Couplings>>,
     meetings: Vec<Meetings>,
+    /// Per pair with friction whose master is a body: the points at the last state.
+    sliding: Vec<Sliding>,
     /// Per pair with averaged gaps: its points and nodes at the last state.
     averaged: Vec<Option<Averaged>>,
     /// The pattern, until the solver has taken it.
@@ -170,9 +181,11 @@ impl<'m> Assembler<'m> {
             follower_maps: maps.followers,
             systems: Systems::new(model),
             touches: vec![Ok(None); most],
+            answers: vec![None; model.histories()],
             masters,
             couplings,
             meetings: model.pairs.iter().map(Meetings::new).collect(),
+            sliding: model.pairs.iter().map(Sliding::new).collect(),
             averaged: model.pairs.iter().map(Averaged::new).collect(),
             new_pattern: Some(pattern),
             rebuilds: 0,
@@ -192,6 +205,12 @@ impl<'m> Assembler<'m> {
     /// Times the pattern was built anew because points touched facets that it did not couple them with.
     pub fn rebuilds(&self) -> u32 {
         self.rebuilds
+    }
+
+    /// What points with history do at the state evaluated last, in the order of [`State::histories`]; nothing where they are
+    /// open.
+    pub fn answers(&self) -> &[Option<PointAnswer>] {
+        &self.answers
     }
 
     /// The tangent of the last [`Self::linearize`].

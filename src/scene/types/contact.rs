@@ -37,14 +37,47 @@ pub struct Contact {
     /// Tangential penalty: traction per elastic slip (force / length^3); only with friction.
     #[serde(default)]
     pub tangential_penalty: Penalty,
+    /// Multipliers beside the penalties; default: none.
+    #[serde(default)]
+    pub augmentation: Option<Augmentation>,
+    /// Contact begins at this distance in front of the master (length), for a thickness that is not modelled.
+    #[serde(default)]
+    pub offset: f64,
 }
 
-/// Law of friction, written `{"coulomb": {"mu": 0.2}}`.
+/// Augmentation: within every step the tractions become multipliers, until neither gaps nor elastic slip are left beyond
+/// the tolerances.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Augmentation {
+    /// Largest gap of a point in contact, as a part of the slave's element size.
+    pub gap: f64,
+    /// Largest elastic slip of a point that sticks, as a part of the slave's element size; only with friction.
+    pub slip: f64,
+    /// Augmentations of a step after which it is cut.
+    pub max: u32,
+}
+
+impl Default for Augmentation {
+    fn default() -> Self {
+        Augmentation {
+            gap: 1e-4,
+            slip: 1e-4,
+            max: 25,
+        }
+    }
+}
+
+/// Law of friction, written `{"coulomb": {"mu": 0.2}}` or `{"orthotropic": {"mu": [0.1, 0.3], "direction": [1, 0, 0]}}`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Friction {
     /// The traction is at most `mu` times the pressure. `mu` may vary in time.
     Coulomb { mu: Value },
+    /// Coulomb's law with two coefficients, along a direction of the master and across it: the traction stays within an
+    /// ellipse. The direction is given in the coordinates in which the master is given, turns with it, and is projected on
+    /// its tangent plane. Both coefficients may vary in time.
+    Orthotropic { mu: [Value; 2], direction: [f64; 3] },
 }
 
 /// What becomes of slave points that start below the master.
