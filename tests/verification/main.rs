@@ -11,6 +11,7 @@ mod friction_kernel;
 mod hertz;
 mod hertz_bodies;
 mod hinged_roof;
+mod ironing;
 mod loads;
 mod overclosure;
 mod placed;
