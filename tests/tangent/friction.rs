@@ -2,8 +2,8 @@
 //! dual numbers through closest point, attraction point, law and all.
 use crate::cases::{Case, Scheme, combine};
 use crate::pairs::{self, Master};
-use crate::surface::{Held, Surface};
 use crate::support::V;
+use crate::surface::{Held, Surface};
 use covact::contact::friction::anchor::Anchor;
 use covact::contact::friction::history::PointHistory;
 use covact::contact::friction::law::{Coulomb, FrictionLaw};
@@ -182,9 +182,7 @@ impl Sliding {
                 a => gap / (gap - a),
             };
             let place = history.place.expect("a history");
-            let at = case
-                .surface
-                .jet(place.patch, master, place.xi.map(D::from));
+            let at = case.surface.jet(place.patch, master, place.xi.map(D::from));
             let anchor = Anchor::new(&at).expect("regular");
             let [b, l] = [history.base, history.lambda].map(|c| {
                 let c = c.map(D::from);

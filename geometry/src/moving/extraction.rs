@@ -1,7 +1,7 @@
 //! Control points as linear combinations of nodes.
 
-use super::{CurvedRows, ShapeRows};
 use super::net::bernstein;
+use super::{CurvedRows, ShapeRows};
 use crate::surface::Vec3;
 
 /// The control points of a facet as combinations of its nodes: a sparse matrix by rows. Facets with the same matrix share

@@ -44,7 +44,8 @@ impl Meetings {
     /// Room for a pair; none is needed where the master is rigid, gaps are averaged, or there is friction
     /// ([`sliding::Sliding`]).
     pub fn new(pair: &PairModel) -> Self {
-        let (Some(master), None, None) = (pair.body_master(), &pair.averaged, &pair.friction) else {
+        let (Some(master), None, None) = (pair.body_master(), &pair.averaged, &pair.friction)
+        else {
             return Meetings::default();
         };
         let slave = pair.points.iter().map(|p| p.count as usize).max();
@@ -277,7 +278,11 @@ impl Assembler<'_> {
                 couplings.couple(&surface.facets, near.into_iter());
                 continue;
             };
-            near.extend(self.sliding[index].touched().map(|(i, facet, _)| (i, facet)));
+            near.extend(
+                self.sliding[index]
+                    .touched()
+                    .map(|(i, facet, _)| (i, facet)),
+            );
             let links = sliding::with_anchors(&mut near, &state.histories[histories]);
             couplings.couple(&surface.facets, near.into_iter());
             couplings.link(&surface.facets, links.into_iter());

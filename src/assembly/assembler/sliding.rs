@@ -233,7 +233,8 @@ impl Assembler<'_> {
                         nodes.assemble(&touch.response, p.area, form, &mut ke[..size * size]);
                     }
                 });
-            for ((&i, work), ke) in (chunk.iter().zip(work.iter())).zip(matrices.chunks_mut(*stride))
+            for ((&i, work), ke) in
+                (chunk.iter().zip(work.iter())).zip(matrices.chunks_mut(*stride))
             {
                 let Some(touch) = touch(i) else { continue };
                 let p = &points[i as usize];
@@ -353,7 +354,9 @@ pub(super) fn with_anchors(
         .filter_map(|&(i, facet)| Some((i, facet, anchor(i)?)))
         .collect();
     near.extend(held.iter().map(|&(i, _, anchor)| (i, anchor)));
-    held.iter().map(|&(_, facet, anchor)| (facet, anchor)).collect()
+    held.iter()
+        .map(|&(_, facet, anchor)| (facet, anchor))
+        .collect()
 }
 
 /// Whether the pattern holds what a point feels.

@@ -96,9 +96,8 @@ pub fn respond_with_friction<D: DualNum<f64> + Copy, F: FrictionLaw, M: Form>(
     let slip = law.slip(&trial, &n, -normal.n);
     let t = slip.t;
     let project = |m: &Columns<D>| m - n * (n.transpose() * m);
-    let d_trial = project(&(pull.along_gap * g3.transpose()))
-        - turn * along
-        - n * (v.transpose() * turn);
+    let d_trial =
+        project(&(pull.along_gap * g3.transpose())) - turn * along - n * (v.transpose() * turn);
     let dt = slip.d_trial * d_trial + slip.d_normal * turn
         - slip.d_pressure * g3.transpose() * normal.dn;
     let dt_anchor = slip.d_trial * project(&pull.columns);

@@ -64,7 +64,14 @@ impl MovingMaster<'_> {
                     },
                 )?;
                 let components = [&history.base, &history.lambda];
-                Pull::new(&anchor, components, friction.eps_t, history.approach, x, gap)
+                Pull::new(
+                    &anchor,
+                    components,
+                    friction.eps_t,
+                    history.approach,
+                    x,
+                    gap,
+                )
             }
         };
         let geometry = meeting.steady(NEAR * self.facets.size());

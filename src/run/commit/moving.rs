@@ -189,7 +189,10 @@ impl<'a> Batch<'a> {
     ) {
         let x = (self.model).point_position(&self.pair.points[i], self.u);
         let foot = (master.facets).project(&x, hint, f64::INFINITY, accept);
-        history.release(&x, foot.as_ref().map(|f| f.signed_distance - self.offset(i)));
+        history.release(
+            &x,
+            foot.as_ref().map(|f| f.signed_distance - self.offset(i)),
+        );
         master.attach(history, foot.map(|f| f.hint()));
     }
 
