@@ -156,7 +156,32 @@ impl Table {
                     "", ""
                 )]
             }
-            Event::Iteration { .. } | Event::Finished { .. } => Vec::new(),
+            Event::Augmented {
+                step,
+                augmentation,
+                contact,
+                gap,
+                slip,
+            } if self.iterations => vec![format!(
+                "{step:>5} {:>10} {:>10} after {augmentation} augmentation(s): contact `{contact}`, gap {gap:.3e}, elastic \
+                 slip {slip:.3e}",
+                "", ""
+            )],
+            Event::Iteration { .. } | Event::Augmented { .. } | Event::Finished { .. } => {
+                Vec::new()
+            }
+            Event::PenaltyRaised {
+                step,
+                contact,
+                penalty,
+                left,
+            } => vec![format!(
+                "{step:>5} {:>10} {:>10} contact `{contact}`: penalty raised to {penalty:.3e}, an augmentation left {:.0} % of \
+                 the gaps",
+                "",
+                "",
+                100.0 * left
+            )],
             Event::StepAccepted {
                 step,
                 time,

@@ -33,6 +33,17 @@ pub enum PointFault {
         xi: [f64; 2],
         xi3: f64,
     },
+    /// The traction of a point on an edge or a corner acts along its distance from it.
+    #[error(
+        "the traction on an edge or a corner has no direction, because the point has come too near to it \
+         ({piece}, xi = [{}, {}], xi3 = {xi3:e})",
+        xi[0], xi[1]
+    )]
+    NoDirection {
+        piece: Piece,
+        xi: [f64; 2],
+        xi3: f64,
+    },
     #[error("the master has no normal at {piece}, xi = [{}, {}]", xi[0], xi[1])]
     DegenerateFrame { piece: Piece, xi: [f64; 2] },
     #[error("the point's position is not finite")]

@@ -1,4 +1,5 @@
 //! Laws of normal contact: gap in, traction and stiffness out. Chosen outside every loop.
+use super::friction::history::PointHistory;
 use super::kernel::Normal;
 
 /// A law between the normal coordinate `xi3` (negative = penetration) and the normal traction.
@@ -12,10 +13,24 @@ pub trait NormalLaw: Sync {
         xi3
     }
 
+    /// Distance from an edge or a vertex within which the direction of the distance gives way to the pseudo-normal
+    /// ([`super::corner::steady`]), at most `small` (length): as far as the traction left at no distance reaches. Zero for
+    /// a penalty, whose force is smooth by itself.
+    #[inline]
+    fn steady_radius(&self, _small: f64) -> f64 {
+        0.0
+    }
+
     /// Whether a point at this normal coordinate is in contact.
     #[inline]
     fn closes(&self, xi3: f64) -> bool {
         xi3 < 0.0
+    }
+
+    /// Normal coordinate up to which a point may be in contact; zero or less: only below the surface (length).
+    #[inline]
+    fn reach(&self) -> f64 {
+        0.0
     }
 }
 
@@ -39,10 +54,13 @@ impl GapOffset for NoOffset {
     }
 }
 
-/// The gap of point `i` is `xi3 - factor z0[i]` with `z0 <= 0`, an overclosure that is not to be resolved.
+/// The gap of point `i` is `xi3 - base - factor z0[i]`: the surface is thicker than it is modelled, or an overclosure `z0 <= 0`
+/// is not to be resolved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Offsets<'a> {
-    /// Per point of the pair, zero or negative (length).
+    /// Distance from the surface at which contact begins (length, `>= 0`).
+    pub base: f64,
+    /// Per point of the pair, zero or negative (length); empty where all are zero.
     pub z0: &'a [f64],
     pub factor: f64,
 }
@@ -51,7 +69,7 @@ impl Offsets<'_> {
     /// What the gap of a point is measured from (length).
     #[inline]
     pub fn at(&self, index: usize) -> f64 {
-        self.factor * self.z0[index]
+        self.base + self.z0.get(index).map_or(0.0, |z0| self.factor * z0)
     }
 }
 
@@ -70,7 +88,7 @@ impl GapOffset for Offsets<'_> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shifted<L> {
     pub law: L,
-    /// Zero or negative (length).
+    /// Length; positive where contact begins in front of the surface.
     pub z0: f64,
 }
 
@@ -86,6 +104,35 @@ impl<L: NormalLaw> NormalLaw for Shifted<L> {
     #[inline]
     fn closes(&self, xi3: f64) -> bool {
         xi3 < self.z0
+    }
+    #[inline]
+    fn reach(&self) -> f64 {
+        self.z0
+    }
+    #[inline]
+    fn steady_radius(&self, small: f64) -> f64 {
+        let Normal { n, dn } = self.normal(0.0);
+        (n / dn).abs().min(small)
+    }
+}
+
+/// Points of a pair with normal multipliers, and what their gaps are measured from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Multipliers<'a> {
+    /// Per point of the pair.
+    pub histories: &'a [PointHistory],
+    pub offsets: Option<Offsets<'a>>,
+}
+
+impl GapOffset for Multipliers<'_> {
+    type Law<L: NormalLaw> = Augmented<L>;
+    #[inline]
+    fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Augmented<L> {
+        Augmented {
+            law: *law,
+            z0: self.offsets.map_or(0.0, |o| o.at(index)),
+            lambda_n: self.histories[index].lambda_n,
+        }
     }
 }
 
@@ -106,23 +153,24 @@ impl NormalLaw for Penalty {
     }
 }
 
-/// The penalty law of a point with history: `N = lambda_n + eps_n (xi3 - z0)`, open where that would pull.
+/// The law of a point with history: `N = lambda_n + N(xi3 - z0)`, open where that would pull. With a multiplier a point may
+/// be in contact slightly above the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Augmented {
-    /// Pressure per penetration (force / length^3).
-    pub eps_n: f64,
+pub struct Augmented<L = Penalty> {
+    pub law: L,
     /// What the gap is measured from (length).
     pub z0: f64,
     /// Multiplier of the normal traction, `<= 0`; zero without augmentation (force / length^2).
     pub lambda_n: f64,
 }
 
-impl NormalLaw for Augmented {
+impl<L: NormalLaw> NormalLaw for Augmented<L> {
     #[inline]
     fn normal(&self, xi3: f64) -> Normal {
+        let Normal { n, dn } = self.law.normal(xi3 - self.z0);
         Normal {
-            n: self.lambda_n + self.eps_n * (xi3 - self.z0),
-            dn: self.eps_n,
+            n: self.lambda_n + n,
+            dn,
         }
     }
     #[inline]
@@ -131,6 +179,16 @@ impl NormalLaw for Augmented {
     }
     #[inline]
     fn closes(&self, xi3: f64) -> bool {
-        self.lambda_n + self.eps_n * (xi3 - self.z0) < 0.0
+        self.normal(xi3).n < 0.0
+    }
+    #[inline]
+    fn reach(&self) -> f64 {
+        let Normal { n, dn } = self.law.normal(0.0);
+        self.z0 - (self.lambda_n + n) / dn
+    }
+    #[inline]
+    fn steady_radius(&self, small: f64) -> f64 {
+        let Normal { n, dn } = self.normal(0.0);
+        (n / dn).abs().min(small)
     }
 }

@@ -30,18 +30,13 @@ pub struct SlotTouch {
     pub residual: Slots,
     /// Their derivative, force / length^3.
     pub tangent: SlotMatrix,
-    /// Normal coordinate, negative.
+    /// Normal coordinate, negative below the surface.
     pub xi3: f64,
     /// Normal traction, negative.
     pub n: f64,
 }
 
 impl Meeting {
-    /// Whether the point is in contact.
-    pub fn presses(&self) -> bool {
-        self.xi3 < 0.0 && !self.free
-    }
-
     /// Refuses a point at or beyond a focal surface of the master, where the closest point is not unique and the
     /// tangent not finite. For points that carry traction; far on the outside of a hollow master such a point is none of
     /// contact's business.
@@ -81,11 +76,18 @@ impl Meeting {
         law: &L,
         tangent: &T,
     ) -> Result<Option<SlotTouch>, PointFault> {
-        if !self.presses() || !law.closes(self.xi3) {
+        if self.free || !law.closes(self.xi3) {
             return Ok(None);
         }
         self.check()?;
         let normal = law.normal(self.xi3);
+        if !self.geometry.directs(&normal) {
+            return Err(PointFault::NoDirection {
+                piece: self.piece,
+                xi: self.xi,
+                xi3: self.xi3,
+            });
+        }
         let (residual, tangent) = respond(&self.geometry, &normal, tangent);
         Ok(Some(SlotTouch {
             residual,

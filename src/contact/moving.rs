@@ -32,7 +32,7 @@ pub struct MovingTouch {
     pub residual: Slots,
     /// Their derivative, force / length^3.
     pub tangent: SlotMatrix,
-    /// Normal coordinate, negative.
+    /// Normal coordinate, negative below the surface.
     pub xi3: f64,
     /// Normal traction, negative.
     pub n: f64,
@@ -56,10 +56,12 @@ impl MovingMaster<'_> {
         tangent: &T,
         accept: impl Fn(u32) -> bool,
     ) -> Result<Option<MovingTouch>, PointFault> {
-        let Some(foot) = self.search(x, hint, self.depth, accept)? else {
+        let reach = self.depth.max(law.reach());
+        let Some(foot) = self.search(x, hint, reach, accept)? else {
             return Ok(None);
         };
-        if !presses(&foot, x) {
+        let xi3 = foot.signed_distance;
+        if xi3 < -self.depth || !law.closes(xi3) || free(&foot, x) {
             return Ok(None);
         }
         let meeting = self.at(x, &foot)?;

@@ -12,6 +12,10 @@ use covact_geometry::{Frame, Jet};
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use num_dual::DualNum;
 
+/// Largest stiffness across the distance from an edge or a vertex, `N / xi3`, as a multiple of the law's own: beyond it
+/// nothing is left of the digits of the rest.
+const STIFFEST: f64 = 1e4;
+
 /// Where the foot of a contact point lies and what the surface looks like there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PointGeometry<D = f64> {
@@ -31,8 +35,8 @@ pub enum PointGeometry<D = f64> {
     },
     /// At a vertex: distance vector and signed distance as on an edge.
     Vertex { d: Vector3<D>, xi3: D },
-    /// On a face where the parametrisation has no metric (the pole of a surface of revolution): only the unit normal is
-    /// known. The geometric part, smaller than the main part by `xi3 kappa`, is left out of the tangent.
+    /// Where the parametrisation has no metric and the surface no curvature (the tip of a cone): only the unit normal is
+    /// known. (At the pole of a smooth surface the curvature is that of the ways out of it, and the point one of a face.) The geometric part, smaller than the main part by `xi3 kappa`, is left out of the tangent.
     Pole { normal: Vector3<D>, xi3: D },
 }
 
@@ -139,6 +143,17 @@ impl<D: DualNum<f64> + Copy> PointGeometry<D> {
                 corner::vertex_tangent(xi3.recip()) - n * n.transpose() * xi3.recip()
             }
             PointGeometry::Pole { .. } => Matrix3::from_element(D::zero()),
+        }
+    }
+
+    /// Whether the traction has a direction: on an edge or a vertex that of the distance, which is lost where the traction
+    /// stays while the distance vanishes (an offset, a multiplier). Always under a plain penalty.
+    pub fn directs(&self, normal: &Normal<D>) -> bool {
+        match self {
+            PointGeometry::Edge { xi3, .. } | PointGeometry::Vertex { xi3, .. } => {
+                normal.n.re().abs() <= STIFFEST * (normal.dn.re() * xi3.re()).abs()
+            }
+            PointGeometry::Face { .. } | PointGeometry::Pole { .. } => true,
         }
     }
 

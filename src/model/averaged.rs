@@ -140,6 +140,6 @@ impl Share {
 impl PairModel {
     /// How far a slave point with an averaged gap looks for the master (length).
     pub fn reach(&self, model: &Model) -> f64 {
-        self.master.depth(model).max(REACH * self.element_size)
+        (self.master.depth(model)).max(REACH * self.element_size + self.offset)
     }
 }

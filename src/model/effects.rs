@@ -60,6 +60,14 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
             Tangent::Published { .. } => "contact.tangent.published",
         });
     }
+    for pair in &model.pairs {
+        if pair.augmentation.is_some() {
+            add("contact.augmentation");
+        }
+        if pair.offset > 0.0 {
+            add("contact.offset");
+        }
+    }
     for friction in model.pairs.iter().filter_map(|p| p.friction.as_ref()) {
         add(match friction.law {
             LawModel::Coulomb { .. } => "contact.friction.coulomb",

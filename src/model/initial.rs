@@ -71,7 +71,7 @@ fn initial_gaps(
             continue;
         };
         hint = Some(seen.hint);
-        let distance = seen.gap();
+        let distance = seen.gap(pair.offset);
         if distance < gap.smallest {
             gap.smallest = distance;
             gap.place = x;
@@ -91,8 +91,9 @@ fn initial_gaps(
             }
         }
         gap.largest = gap.largest.max(distance);
-        gap.touching += usize::from(seen.closed);
-        overclosures.push(if seen.closed { distance } else { 0.0 });
+        let closed = seen.closed(pair.offset);
+        gap.touching += usize::from(closed);
+        overclosures.push(if closed { distance } else { 0.0 });
         gap.behind += usize::from(seen.behind);
     }
     let least = facing.iter().fold(f64::INFINITY, |a, f| a.min(f.0));
@@ -230,7 +231,7 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
             let choice = (scene.contacts.get(&pair.name))
                 .map_or(InitialOverclosure::Strain, |c| c.initial_overclosure);
             let deepest = Deepest {
-                xi3: gap.smallest,
+                gap: gap.smallest,
                 at: gap.place,
             };
             let told = treat(model, index, choice, overclosures, deepest)?;

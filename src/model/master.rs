@@ -147,8 +147,6 @@ pub struct Seen {
     pub normal: Vec3,
     /// The foot lies on a free border and does not count.
     pub free: bool,
-    /// In contact: below the surface and no deeper than its depth.
-    pub closed: bool,
     /// Below the surface and deeper than its depth: not in contact, though not outside either.
     pub behind: bool,
 }
@@ -164,10 +162,20 @@ impl Master {
 }
 
 impl Seen {
-    /// Distance of a point as it is told: negative in contact only.
-    pub fn gap(&self) -> f64 {
-        if self.closed {
-            self.signed_distance
+    /// Whether the point faces the surface from the front, or from no deeper below it than its depth.
+    pub fn counts(&self) -> bool {
+        !self.free && !self.behind
+    }
+
+    /// Whether the point is in contact that begins at the normal coordinate `z0`.
+    pub fn closed(&self, z0: f64) -> bool {
+        self.counts() && self.signed_distance < z0
+    }
+
+    /// Distance of a point as it is told, from the normal coordinate `z0`: negative in contact only.
+    pub fn gap(&self, z0: f64) -> f64 {
+        if self.counts() {
+            self.signed_distance - z0
         } else {
             self.distance
         }
@@ -209,7 +217,6 @@ impl MasterNow<'_> {
                     signed_distance: foot.signed_distance,
                     normal: master.pose.rotation * foot.normal,
                     free: rigid::free(&foot),
-                    closed: rigid::presses(&foot) && !behind,
                     behind,
                 })
             }
@@ -240,7 +247,6 @@ impl MasterNow<'_> {
                     signed_distance: foot.signed_distance,
                     normal: foot.normal,
                     free: moving::free(&foot, x),
-                    closed: moving::presses(&foot, x) && !behind,
                     behind,
                 })
             }

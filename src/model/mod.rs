@@ -1,4 +1,5 @@
 //! The model: what a scene becomes before anything is solved. All choices of effects are made here, once.
+pub mod augmentation;
 pub mod averaged;
 pub mod build;
 pub mod constraints;
@@ -25,6 +26,7 @@ use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
 use crate::scene::{Tangent, TimeFunction, ValueError};
 use crate::shell::{Block, ElementBlock};
+use augmentation::AugmentationModel;
 use averaged::SlaveNodes;
 use constraints::{MeanPrescribed, Prescribed};
 use covact_geometry::Vec3;
@@ -102,6 +104,10 @@ pub struct PairModel {
     pub element_size: f64,
     /// Offsets of the gaps where the scene asks for them.
     pub overclosure: Option<Overclosure>,
+    /// Distance from the master at which contact begins (length, `>= 0`).
+    pub offset: f64,
+    /// Multipliers where the scene asks for them.
+    pub augmentation: Option<AugmentationModel>,
     /// The slave's nodes, where gaps are averaged.
     pub averaged: Option<SlaveNodes>,
     /// Friction where the scene asks for it.

@@ -8,7 +8,7 @@ use covact_geometry::Vec3;
 /// Offsets of the gaps of a pair's points: an overclosure at the start that counts as no gap.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Overclosure {
-    /// Normal coordinate at the start per slave point, zero where the point started open (length, `<= 0`).
+    /// Gap at the start per slave point, zero where the point started open (length, `<= 0`).
     pub z0: Vec<f64>,
     /// Time at which the offsets have shrunk to zero; `None`: they stay.
     pub until: Option<f64>,
@@ -19,27 +19,27 @@ impl Overclosure {
     pub fn factor(&self, t: f64) -> f64 {
         self.until.map_or(1.0, |end| (1.0 - t / end).max(0.0))
     }
-
-    /// The offsets at time `t`.
-    pub fn offsets(&self, t: f64) -> Offsets<'_> {
-        Offsets {
-            z0: &self.z0,
-            factor: self.factor(t),
-        }
-    }
 }
 
 impl PairModel {
     /// What the gaps of the points are measured from at time `t`; none where they are normal coordinates.
     pub fn offsets(&self, t: f64) -> Option<Offsets<'_>> {
-        self.overclosure.as_ref().map(|o| o.offsets(t))
+        if self.overclosure.is_none() && self.offset == 0.0 {
+            return None;
+        }
+        let over = self.overclosure.as_ref();
+        Some(Offsets {
+            base: self.offset,
+            z0: over.map_or(&[], |o| &o.z0),
+            factor: over.map_or(0.0, |o| o.factor(t)),
+        })
     }
 }
 
 /// A slave point's overclosure at the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Deepest {
-    pub xi3: f64,
+    pub gap: f64,
     pub at: Vec3,
 }
 
@@ -59,7 +59,7 @@ pub(super) fn treat(
     let told = format!(
         "contact `{}` starts with an overclosure of {} at {points} point(s), most near ({}, {}, {})",
         pair.name,
-        number(-deepest.xi3),
+        number(-deepest.gap),
         number(deepest.at.x),
         number(deepest.at.y),
         number(deepest.at.z)

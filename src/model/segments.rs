@@ -325,7 +325,7 @@ pub fn recut(
             |n| model.nodes[n as usize],
             |n| model.position(n as usize, &state.u),
             degree,
-            reach(body.depth, pair.element_size),
+            reach(body.depth, pair.element_size) + pair.offset,
         );
         let master = masters.at(model, index, &state.u, time)?;
         let mut hint = None;
@@ -334,7 +334,7 @@ pub fn recut(
             hint = seen.map(|s| s.hint).or(hint);
             points.push(PointState {
                 hint: seen.map(|s| s.hint),
-                closed: seen.is_some_and(|s| s.closed),
+                closed: seen.is_some_and(|s| s.closed(pair.offset)),
             });
         }
         state.cuts[index] = Some(Arc::from(made));

@@ -84,7 +84,15 @@ impl State {
         along(&self.elements, &before.elements, &mut out.elements);
         out.points.clone_from(&self.points);
         out.nodes.copy_from_slice(&self.nodes);
-        out.histories.copy_from_slice(&self.histories);
+        // Normal multipliers are the tractions of an equilibrium and follow the same path; all else is what was.
+        let histories =
+            (out.histories.iter_mut()).zip(self.histories.iter().zip(&before.histories));
+        for (o, (n, b)) in histories {
+            *o = PointHistory {
+                lambda_n: (n.lambda_n + ratio * (n.lambda_n - b.lambda_n)).min(0.0),
+                ..*n
+            };
+        }
         out.cuts.clone_from(&self.cuts);
     }
 

@@ -43,16 +43,16 @@ pub(super) fn nodes_now(
     time: f64,
     front: &mut [bool],
 ) -> (Vec<NodeNow>, usize) {
-    let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+    let offsets = pair.offsets(time);
     let reach = pair.reach(model);
     let mut sums = vec![Sums::default(); nodes.len()];
     let mut sunk = 0;
     for (i, (p, front)) in pair.points.iter().zip(front).enumerate() {
-        let z0 = offsets.as_ref().map_or(0.0, |o| o.factor * o.z0[i]);
+        let z0 = offsets.as_ref().map_or(0.0, |o| o.at(i));
         let x = model.point_position(p, &state.u);
         let seen = master.see(i, &x, state.points[first + i].hint);
         sunk += usize::from(*front && seen.is_some_and(|s| s.behind));
-        *front = seen.is_some_and(|s| s.closed || s.signed_distance >= 0.0);
+        *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
         let found = seen.map(|s| (s.signed_distance, s.free));
         let share = Share::new(found, z0, master.depth(), reach);
         let shown = match (share, &seen) {

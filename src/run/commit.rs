@@ -1,7 +1,7 @@
 //! What slave points with history remember of a step that is accepted.
 mod moving;
 
-use crate::assembly::Fault;
+use crate::assembly::{Assembler, Fault, PointAnswer};
 use crate::contact::friction::history::{PointHistory, PointStatus};
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::Friction;
@@ -30,15 +30,27 @@ pub struct Sliding {
 }
 
 impl Sliding {
-    /// Adds the points of a pair, of whose energies `share` counts.
-    fn add(&mut self, histories: &[PointHistory], points: &[SlavePoint], eps_t: f64, share: f64) {
-        for (history, p) in histories.iter().zip(points) {
+    /// Adds the points of a pair, of whose energies `share` counts. With multipliers the tangential penalty carries only what
+    /// `answers` say is elastic.
+    fn add(
+        &mut self,
+        histories: &[PointHistory],
+        answers: Option<&[Option<PointAnswer>]>,
+        points: &[SlavePoint],
+        eps_t: f64,
+        share: f64,
+    ) {
+        for (i, (history, p)) in histories.iter().zip(points).enumerate() {
             match history.status {
                 PointStatus::Open => {}
                 PointStatus::Stick => self.stick += 1,
                 PointStatus::Slip => self.slip += 1,
             }
-            self.stored += 0.5 * share * history.t.norm_squared() / eps_t * p.area;
+            let elastic = match answers {
+                Some(answers) => answers[i].as_ref().map_or(0.0, |a| a.elastic),
+                None => history.t.norm() / eps_t,
+            };
+            self.stored += 0.5 * share * eps_t * elastic.powi(2) * p.area;
             self.dissipated += share * history.dissipated * p.area;
         }
     }
@@ -54,7 +66,7 @@ pub fn start(model: &Model, masters: &mut Masters, state: &mut State) -> Result<
     for (index, pair) in model.pairs.iter().enumerate() {
         let points = first..first + state.slaves(model, index).len();
         first = points.end;
-        let Some(range) = pair.history() else {
+        let (Some(range), Some(_)) = (pair.history(), &pair.friction) else {
             continue;
         };
         let Master::Rigid(surface) = &pair.master else {
@@ -101,19 +113,24 @@ fn release(
 /// A point that cannot be evaluated, or a motion or a coefficient without a value at `time`.
 pub fn commit(
     model: &Model,
-    penalties: &[f64],
-    masters: &mut Masters,
+    assembler: &mut Assembler,
     state: &mut State,
     start: f64,
     time: f64,
 ) -> Result<Sliding, Fault> {
-    masters.update(model, &state.u);
+    assembler.masters.update(model, &state.u);
+    let (masters, answers) = (&assembler.masters, assembler.answers());
+    let penalties = &assembler.penalties;
     let mut total = Sliding::default();
     let mut first = 0;
     for (index, pair) in model.pairs.iter().enumerate() {
         let points = first..first + state.slaves(model, index).len();
         first = points.end;
-        let (Some(friction), Some(range)) = (&pair.friction, pair.history()) else {
+        let Some(range) = pair.history() else {
+            continue;
+        };
+        let Some(friction) = &pair.friction else {
+            press(&answers[range.clone()], &mut state.histories[range]);
             continue;
         };
         let (was, now) = (friction.law.at(start)?, friction.law.at(time)?);
@@ -126,7 +143,13 @@ pub fn commit(
                 let histories = &mut state.histories[range.clone()];
                 batch.commit(&state.points[points], histories, (now, eps_t), &limited)?;
             }
-            total.add(&state.histories[range], &pair.points, eps_t, pair.share());
+            total.add(
+                &state.histories[range],
+                None,
+                &pair.points,
+                eps_t,
+                pair.share(),
+            );
             continue;
         };
         let master = model.surfaces[surface].at(time, &state.u)?;
@@ -148,9 +171,35 @@ pub fn commit(
                     batch.accept(i, point.hint, &friction, &limited, history)
                 })?;
         });
-        total.add(&state.histories[range], &pair.points, eps_t, pair.share());
+        // What the tangential penalties carry beside the multipliers.
+        let elastic = match pair.augmentation {
+            Some(_) => Some(&answers[range.clone()]),
+            None => None,
+        };
+        total.add(
+            &state.histories[range],
+            elastic,
+            &pair.points,
+            eps_t,
+            pair.share(),
+        );
     }
     Ok(total)
+}
+
+/// Points without friction take their tractions as multipliers into the next step.
+fn press(answers: &[Option<PointAnswer>], histories: &mut [PointHistory]) {
+    for (history, answer) in histories.iter_mut().zip(answers) {
+        *history = match answer {
+            Some(answer) => PointHistory {
+                lambda_n: answer.n,
+                n: answer.n,
+                status: PointStatus::Stick,
+                ..PointHistory::default()
+            },
+            None => PointHistory::default(),
+        };
+    }
 }
 
 /// The points of a pair with a rigid master at an accepted state.
@@ -190,7 +239,15 @@ impl Batch<'_> {
                 let turn = &self.master.pose.rotation;
                 let (n, eps_t) = (touch.touch.n, friction.eps_t);
                 let first = limited(&touch.traction.trial, &touch.normal, -history.n);
+                let (base, tied) = (history.base, history.approach == 0.0);
                 history.accept(&touch.local, &touch.traction, &first, n, eps_t, turn);
+                if self.pair.augmentation.is_some() {
+                    history.lambda_n = n;
+                    if tied && history.status == PointStatus::Stick {
+                        // It stays tied to where it was, so that what elastic slip is left does not add up.
+                        (history.base, history.lambda) = (base, touch.traction.slip.t);
+                    }
+                }
             }
             None => {
                 let pose = &self.master.pose;

@@ -135,27 +135,19 @@ impl Fields {
                 let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
                 let seen = master.see(i, &x, s.hint);
-                let below = seen.is_some_and(|s| s.closed);
-                let mut closed = below && seen.is_some_and(|s| s.signed_distance < z0);
-                let history = histories.map(|h| &h[i]);
-                if let Some(history) = history {
-                    closed = history.status != PointStatus::Open;
-                }
                 let sunk = seen.is_some_and(|s| s.behind);
                 self.sunk[index] += usize::from(*front && sunk);
-                *front = below || seen.is_some_and(|s| s.signed_distance >= 0.0);
-                let gap = match &seen {
-                    None => f64::NAN,
-                    Some(s) if below || closed => s.signed_distance - z0,
-                    Some(s) => s.distance,
-                };
+                *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
+                let gap = seen.map_or(f64::NAN, |s| s.gap(z0));
                 if let Some(kept) = self.gaps.get_mut(first + i) {
                     *kept = gap;
                 }
-                let pressure = match history {
-                    Some(history) => -history.n,
-                    None if closed => -eps_n * gap,
-                    None => 0.0,
+                let history = histories.map(|h| &h[i]);
+                let (closed, pressure) = match history {
+                    // The step's own, which may be that of a point slightly above the surface.
+                    Some(history) => (history.status != PointStatus::Open, -history.n),
+                    None if gap < 0.0 => (true, -eps_n * gap),
+                    None => (false, 0.0),
                 };
                 let status = match history {
                     Some(history) => friction_fields::status(history),
@@ -229,7 +221,7 @@ impl Fields {
                 .enumerate()
             {
                 let seen = master.see(i, &model.point_position(p, &state.u), s.hint);
-                *front = seen.is_some_and(|s| s.closed || s.signed_distance >= 0.0);
+                *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
             }
         }
         Ok(())

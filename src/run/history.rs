@@ -68,6 +68,9 @@ pub fn columns(model: &Model) -> Vec<String> {
         ]
         .map(String::from),
     );
+    if augmented(model) {
+        names.push("augmentations".into());
+    }
     if frictional(model) {
         names.extend(
             [
@@ -136,11 +139,19 @@ pub fn row(r: &Record) -> Vec<f64> {
         totals.active as f64,
         changed as f64,
     ]);
+    if augmented(r.model) {
+        out.push(f64::from(r.converged.augmentations));
+    }
     if frictional(r.model) {
         let s = r.sliding;
         out.extend([s.stored, s.dissipated, s.stick as f64, s.slip as f64]);
     }
     out
+}
+
+/// Whether any contact has multipliers.
+fn augmented(model: &Model) -> bool {
+    model.pairs.iter().any(|p| p.augmentation.is_some())
 }
 
 /// Whether any contact has friction.

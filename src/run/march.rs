@@ -163,19 +163,11 @@ impl<'a, 'm> March<'a, 'm> {
                     if stepping.at_kink(end) {
                         before = None;
                     }
-                    stepping.accepted(converged.iterations);
-                    let Assembler {
-                        penalties, masters, ..
-                    } = &mut *self.assembler;
-                    let sliding = commit::commit(
-                        self.model,
-                        penalties,
-                        masters,
-                        committed,
-                        self.progress.time,
-                        end,
-                    )
-                    .map_err(|e| RunError::internal(&e))?;
+                    // Augmentations say nothing of how far a step may go.
+                    stepping.accepted(converged.iterations - converged.augmenting);
+                    let start = self.progress.time;
+                    let sliding = commit::commit(self.model, self.assembler, committed, start, end)
+                        .map_err(|e| RunError::internal(&e))?;
                     self.accept(step, end, &converged);
                     self.record(outputs, committed, dt, cuts, &converged, &sliding)?;
                     cuts = 0;
@@ -238,7 +230,7 @@ impl<'a, 'm> March<'a, 'm> {
         self.progress.time = end;
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let deepest = converged.totals.penetration[i];
-            let touching = deepest > 0.0;
+            let touching = converged.totals.touching[i];
             self.touched[i] |= touching;
             if std::mem::replace(&mut self.touching[i], touching) && !touching {
                 self.warn(format!(
@@ -248,7 +240,7 @@ impl<'a, 'm> March<'a, 'm> {
                 ));
             }
             let allowed = penalty::TOLERATED * pair.element_size;
-            if !pair.automatic && deepest > allowed {
+            if !pair.automatic && pair.augmentation.is_none() && deepest > allowed {
                 self.warn(format!(
                     "contact `{}`: penetration above 1 % of an element ({allowed:.3e}) under the given penalty",
                     pair.name

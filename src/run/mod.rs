@@ -1,4 +1,5 @@
 //! A scene from file to results: what `covact run` and `covact check` do, without the printing.
+mod augment;
 mod averaged;
 mod check;
 mod commit;

@@ -8,6 +8,7 @@
 //!    come out, and each stage starts from nearly the right ones.
 //!
 //! What fails all three is cut.
+use super::augment::{self, Left};
 use super::progress::Progress;
 use crate::assembly::{Assembler, Fault};
 use crate::model::driven::press::{Placed, Presser};
@@ -53,12 +54,35 @@ impl Attempts<'_, '_> {
         trial: &mut State,
     ) -> Result<Converged, StepFailure> {
         let penalties = self.assembler.penalties.clone();
+        let result = self.attempt(step, end, dt, before, trial, &penalties);
+        if result.is_err() {
+            self.assembler.penalties.copy_from_slice(&penalties);
+        }
+        result
+    }
+
+    fn attempt(
+        &mut self,
+        step: u32,
+        end: f64,
+        dt: f64,
+        before: Option<&(State, f64)>,
+        trial: &mut State,
+        penalties: &[f64],
+    ) -> Result<Converged, StepFailure> {
+        // Another start would not bring the tractions nearer to multipliers.
+        let another = |failure: &StepFailure| {
+            !matches!(
+                failure,
+                StepFailure::Interrupted | StepFailure::NotAugmented { .. }
+            )
+        };
         let touching = !self.model.pairs.is_empty();
         if let Some((state, size)) = before {
             self.committed.extrapolate(state, dt / size, trial);
             match self.converge(step, end, trial, Patience::Short) {
-                Err(failure) if failure != StepFailure::Interrupted => {
-                    self.again(step, "the last accepted state", &failure, &penalties);
+                Err(failure) if another(&failure) => {
+                    self.again(step, "the last accepted state", &failure, penalties);
                 }
                 other => return other,
             }
@@ -70,16 +94,12 @@ impl Attempts<'_, '_> {
             Patience::Long
         };
         match self.converge(step, end, trial, patience) {
-            Err(failure) if touching && failure != StepFailure::Interrupted => {
-                self.again(step, "a softened penalty", &failure, &penalties);
+            Err(failure) if touching && another(&failure) => {
+                self.again(step, "a softened penalty", &failure, penalties);
             }
             other => return other,
         }
-        let result = self.softened(step, end, trial, &penalties);
-        if result.is_err() {
-            self.assembler.penalties.copy_from_slice(&penalties);
-        }
-        result
+        self.softened(step, end, trial, penalties)
     }
 
     fn softened(
@@ -96,6 +116,7 @@ impl Attempts<'_, '_> {
             }
             if i == 0 {
                 self.restart(end, trial)?;
+                augment::forget(self.model, &mut trial.histories);
             }
             iterations += self.newton(step, end, trial, Patience::Long)?.iterations;
         }
@@ -121,7 +142,8 @@ impl Attempts<'_, '_> {
             let at = driven.dof(0)..driven.dof(6);
             let mut q = Vector6::from_column_slice(&trial.u[at.clone()]);
             let penalties = &self.assembler.penalties;
-            let mut presser = Presser::new(self.model, entry, penalties, &trial.u);
+            let mut presser =
+                Presser::new(self.model, entry, penalties, &trial.histories, &trial.u);
             if presser.only_friction_resists() || touches && presser.press(end, &q)?.active > 0 {
                 continue;
             }
@@ -147,9 +169,113 @@ impl Attempts<'_, '_> {
         });
     }
 
+    /// Equilibrium with multipliers where the scene asks for them.
+    fn converge(
+        &mut self,
+        step: u32,
+        end: f64,
+        trial: &mut State,
+        patience: Patience,
+    ) -> Result<Converged, StepFailure> {
+        let converged = self.penalized(step, end, trial, patience)?;
+        match self.model.pairs.iter().any(|p| p.augmentation.is_some()) {
+            true => self.augment(step, end, trial, patience, converged),
+            false => Ok(converged),
+        }
+    }
+
+    /// Makes multipliers of the tractions and solves again, until every pair is within its tolerances. Attraction points stay
+    /// where they were when the step began.
+    fn augment(
+        &mut self,
+        step: u32,
+        end: f64,
+        trial: &mut State,
+        patience: Patience,
+        mut converged: Converged,
+    ) -> Result<Converged, StepFailure> {
+        let (mut all, mut before) = (Vec::new(), Vec::<Left>::new());
+        let mut raising = true;
+        loop {
+            Left::all(self.model, self.assembler.answers(), &mut all);
+            let Some(worst) = (all.iter()).max_by(|a, b| a.relative.total_cmp(&b.relative)) else {
+                return Ok(converged);
+            };
+            self.observer.event(&Event::Augmented {
+                step,
+                augmentation: converged.augmentations,
+                contact: self.model.pairs[worst.pair].name.clone(),
+                gap: worst.gap,
+                slip: worst.slip,
+            });
+            let exhausted = |left: &&Left| {
+                let augmentation = &self.model.pairs[left.pair].augmentation;
+                let max = augmentation.map_or(0, |a| a.max);
+                left.relative > 1.0 && converged.augmentations >= max
+            };
+            if let Some(left) = all.iter().find(exhausted) {
+                return Err(left.failure(self.model, converged.augmentations));
+            }
+            if worst.relative <= 1.0 {
+                return Ok(converged);
+            }
+            augment::take(self.model, self.assembler.answers(), &mut trial.histories);
+            let penalties = self.assembler.penalties.clone();
+            if raising && self.raise(step, &all, &before) {
+                // A penalty that Newton's method cannot follow is taken back.
+                let kept = trial.clone();
+                let stiff = self.newton(step, end, trial, patience);
+                match stiff.and_then(|c| self.none_sunk(end, trial).map(|()| c)) {
+                    Ok(next) => converged.augmented(next),
+                    Err(StepFailure::Interrupted) => return Err(StepFailure::Interrupted),
+                    Err(failure) => {
+                        raising = false;
+                        self.again(
+                            step,
+                            "the penalty before it was raised",
+                            &failure,
+                            &penalties,
+                        );
+                        trial.copy_from(&kept);
+                    }
+                }
+            }
+            if self.assembler.penalties == penalties {
+                let next = self.newton(step, end, trial, patience)?;
+                self.none_sunk(end, trial)?;
+                converged.augmented(next);
+            }
+            std::mem::swap(&mut all, &mut before);
+        }
+    }
+
+    /// Raises the penalties of pairs whose last augmentation left too much, and tells; whether there were any.
+    fn raise(&mut self, step: u32, now: &[Left], before: &[Left]) -> bool {
+        let mut raised = false;
+        for (now, before) in now.iter().zip(before) {
+            let (pair, left) = (&self.model.pairs[now.pair], now.relative / before.relative);
+            let eps = self.assembler.penalties[now.pair];
+            if now.relative <= 1.0 {
+                continue;
+            }
+            let Some(penalty) = augment::stiffer(pair, eps, left) else {
+                continue;
+            };
+            self.assembler.penalties[now.pair] = penalty;
+            raised = true;
+            self.observer.event(&Event::PenaltyRaised {
+                step,
+                contact: pair.name.clone(),
+                penalty,
+                left,
+            });
+        }
+        raised
+    }
+
     /// Newton's method, and where an automatic penalty lets a point sink in too far, a stiffer one. A state in which a
     /// point fell through the surface is none, however well in equilibrium: contact was lost on the way.
-    fn converge(
+    fn penalized(
         &mut self,
         step: u32,
         end: f64,
@@ -238,7 +364,8 @@ impl Attempts<'_, '_> {
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let allowed = penalty::TOLERATED * pair.element_size;
             let deepest = converged.totals.penetration[i];
-            if !pair.automatic || deepest <= allowed {
+            // Augmentation resolves what a penalty leaves.
+            if !pair.automatic || pair.augmentation.is_some() || deepest <= allowed {
                 continue;
             }
             let eps = before[i] * 2.0 * deepest / allowed;

@@ -31,6 +31,27 @@ pub enum Event {
         /// Factor of the line search (1: full step).
         line_search: f64,
     },
+    /// Tractions have become multipliers, and the step is in equilibrium again.
+    Augmented {
+        step: u32,
+        /// Number of the augmentation within the step; 0 is the equilibrium before the first.
+        augmentation: u32,
+        /// The contact that is farthest from its tolerances.
+        contact: String,
+        /// Its largest gap of a point in contact (length).
+        gap: f64,
+        /// Its largest elastic slip of a point that sticks (length).
+        slip: f64,
+    },
+    /// An augmentation raised a penalty, because the gaps shrank too slowly under it.
+    PenaltyRaised {
+        step: u32,
+        contact: String,
+        /// The new penalty (force / length^3).
+        penalty: f64,
+        /// Part of the gaps that the last augmentation left.
+        left: f64,
+    },
     StepAccepted {
         step: u32,
         time: f64,

@@ -49,6 +49,18 @@ pub enum StepFailure {
         points: usize,
         depth: f64,
     },
+    #[error(
+        "contact `{pair}`: after {augmentations} augmentation(s) {what} of {left:.3e} is left, more than {allowed:.3e} \
+         (`augmentation`): take a larger penalty, smaller steps or a larger `max`"
+    )]
+    NotAugmented {
+        pair: String,
+        augmentations: u32,
+        /// A gap or an elastic slip, in words.
+        what: &'static str,
+        left: f64,
+        allowed: f64,
+    },
     #[error("interrupted")]
     Interrupted,
 }
@@ -57,6 +69,9 @@ pub enum StepFailure {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Converged {
     pub iterations: u32,
+    /// Augmentations, and those of the iterations that they took.
+    pub augmentations: u32,
+    pub augmenting: u32,
     pub totals: Totals,
     /// Relative residual and points whose status changed, per linearisation.
     pub history: Vec<(f64, usize)>,
@@ -64,6 +79,19 @@ pub struct Converged {
     pub floor: f64,
     /// The last factorization; none if the start was in equilibrium already.
     pub factorization: Option<Factorization>,
+}
+
+impl Converged {
+    /// Goes on from the state that these are of to `next`, by an augmentation.
+    pub fn augmented(&mut self, next: Converged) {
+        self.iterations += next.iterations;
+        self.augmenting += next.iterations;
+        self.augmentations += 1;
+        self.totals = next.totals;
+        self.history.extend(next.history);
+        self.floor = self.floor.max(next.floor);
+        self.factorization = next.factorization.or(self.factorization.take());
+    }
 }
 
 /// Work space of Newton's method: allocated once for a run.
@@ -179,6 +207,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 Verdict::Converged => {
                     return Ok(Converged {
                         iterations: iteration,
+                        augmentations: 0,
+                        augmenting: 0,
                         totals,
                         history,
                         floor,

@@ -11,7 +11,7 @@ use covact::contact::friction::moving::{Form, Full, Reduced};
 use covact::contact::friction::rigid::Friction;
 use covact::contact::friction::scatter::PointNodes;
 use covact::contact::friction::touch::MovingFrictionTouch;
-use covact::contact::law::Augmented;
+use covact::contact::law::{Augmented, Penalty};
 use covact::contact::moving::MovingMaster;
 use covact_geometry::{CurvedRows, Frame, Hint, MovingFacets, ShapeRows};
 use nalgebra::{DMatrix, DVector};
@@ -94,7 +94,7 @@ impl Sliding {
 
     fn law() -> Augmented {
         Augmented {
-            eps_n: EPS_N,
+            law: Penalty { eps_n: EPS_N },
             z0: -0.001,
             lambda_n: LAMBDA_N,
         }

@@ -108,11 +108,11 @@ impl Averaged {
             }
         };
         let (depth, reach) = (pair.master.depth(model), pair.reach(model));
-        let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+        let offsets = pair.offsets(time);
         self.gaps.fill(NodalGap::default());
         for (i, (p, met)) in pair.points.iter().zip(&self.met).enumerate() {
             let met = met.as_ref().map_err(|e| fault(i, *e))?;
-            let z0 = offsets.as_ref().map_or(0.0, |o| o.factor * o.z0[i]);
+            let z0 = offsets.as_ref().map_or(0.0, |o| o.at(i));
             let share = Share::new(met.map(|m| (m.xi3, m.free)), z0, depth, reach);
             for (at, shape) in nodes.terms(i, p) {
                 share.add_to(&mut self.gaps[at], shape, p.area);
@@ -164,6 +164,9 @@ impl Averaged {
             }
         }
         totals.penetration.push(deepest);
+        totals
+            .touching
+            .push((0..self.gaps.len()).any(|at| self.closed(at)));
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Elements and slave points are evaluated in parallel, a chunk at a time, and summed in order by one thread, so that
 //! the result is the same to the last bit for every number of threads.
+mod answer;
 mod averaged;
 mod couplings;
 mod driven;
@@ -33,6 +34,7 @@ use driven::Border;
 use elements::Systems;
 use std::sync::Arc;
 
+pub use answer::PointAnswer;
 pub use driven::Loose;
 
 /// What kept the model from being evaluated at a trial state. The step is cut.
@@ -108,6 +110,8 @@ pub struct Totals {
     pub changed: usize,
     /// Deepest penetration, >= 0, per pair.
     pub penetration: Vec<f64>,
+    /// Whether any point or node is in contact, per pair.
+    pub touching: Vec<bool>,
     /// Norm of the contact forces on nodes.
     pub contact_norm: f64,
     /// Motions of driven surfaces that the contact does not resist, found with the tangent.
@@ -133,6 +137,8 @@ pub struct Assembler<'m> {
     follower_maps: Vec<Vec<u32>>,
     systems: Systems,
     touches: Vec<Result<Option<Touch>, PointFault>>,
+    /// Per point with history, of pairs with friction or augmentation; nothing where it is open.
+    answers: Vec<Option<PointAnswer>>,
     /// The surfaces of masters that are bodies, at the last state evaluated.
     pub masters: Masters,
     /// Per pair whose master is a body: the nodes that the pattern couples, and the points at the last state.
@@ -175,6 +181,7 @@ impl<'m> Assembler<'m> {
             follower_maps: maps.followers,
             systems: Systems::new(model),
             touches: vec![Ok(None); most],
+            answers: vec![None; model.histories()],
             masters,
             couplings,
             meetings: model.pairs.iter().map(Meetings::new).collect(),
@@ -198,6 +205,12 @@ impl<'m> Assembler<'m> {
     /// Times the pattern was built anew because points touched facets that it did not couple them with.
     pub fn rebuilds(&self) -> u32 {
         self.rebuilds
+    }
+
+    /// What points with history do at the state evaluated last, in the order of [`State::histories`]; nothing where they are
+    /// open.
+    pub fn answers(&self) -> &[Option<PointAnswer>] {
+        &self.answers
     }
 
     /// The tangent of the last [`Self::linearize`].

@@ -1,12 +1,14 @@
 //! Contact with bodies: the slave points of a pair are evaluated in parallel, their matrices formed in parallel, and all
 //! is summed in order.
+use super::answer::PointAnswer;
 use super::averaged::Averaged;
 use super::couplings::Couplings;
 use super::driven::Border;
 use super::sliding;
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, maps, put};
+use crate::contact::friction::history::PointHistory;
 use crate::contact::kernel::assemble_force;
-use crate::contact::law::{GapOffset, NoOffset, NormalLaw, Offsets, Penalty};
+use crate::contact::law::{GapOffset, Multipliers, NoOffset, NormalLaw, Offsets, Penalty};
 use crate::contact::moving::{MovingMaster, MovingTouch};
 use crate::contact::point::FaceTangent;
 use crate::contact::points::SlavePoint;
@@ -117,7 +119,7 @@ fn near(
         body,
         surface: masters.surface(index),
     };
-    let reach = body.depth.max(pair.element_size);
+    let reach = body.depth.max(pair.element_size + pair.offset);
     (points.iter().enumerate())
         .filter_map(|(i, p)| {
             let x = model.point_position(p, u);
@@ -216,17 +218,29 @@ impl Assembler<'_> {
             let states = &mut state.points[range];
             let meetings = &mut self.meetings[index];
             let touches = &mut meetings.touches;
-            let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+            let offsets = pair.offsets(time);
             let offsets = offsets.as_ref();
+            let histories = match pair.augmentation {
+                Some(_) => pair.history().map(|range| &state.histories[range]),
+                None => None,
+            };
             match &master.own {
-                None => batch.offset(states, touches, offsets, &All),
+                None => batch.offset(states, touches, offsets, histories, &All),
                 Some(own) => {
                     let accept = Opposing {
                         own,
                         normals: &surface.normals,
                         position: |n: u32| self.model.position(n as usize, &state.u),
                     };
-                    batch.offset(states, touches, offsets, &accept);
+                    batch.offset(states, touches, offsets, histories, &accept);
+                }
+            }
+            if let (Some(_), Some(range)) = (histories, pair.history()) {
+                let answers = self.answers[range].iter_mut().zip(touches.iter());
+                for (i, (answer, touch)) in answers.enumerate() {
+                    let z0 = offsets.map_or(0.0, |o| o.at(i));
+                    let touch = touch.as_ref().ok().and_then(Option::as_ref);
+                    *answer = touch.map(|t| PointAnswer::without_friction(t.n, t.xi3 - z0));
                 }
             }
             meetings.active.clear();
@@ -349,7 +363,7 @@ impl Assembler<'_> {
         // Both passes of two are one contact with two sides, whose energy is the mean of both.
         let mut force = PairForce::default();
         let share = if half { 0.25 } else { 0.5 };
-        let offsets = pair.overclosure.as_ref().map(|o| o.offsets(time));
+        let offsets = pair.offsets(time);
         for chunk in active.chunks(CHUNK) {
             (chunk.par_iter())
                 .zip(rows.par_iter_mut())
@@ -376,12 +390,10 @@ impl Assembler<'_> {
             {
                 let Some(touch) = touch(i) else { continue };
                 let p = &points[i as usize];
-                let offset = offsets
-                    .as_ref()
-                    .map_or(0.0, |o| o.factor * o.z0[i as usize]);
+                let offset = offsets.map_or(0.0, |o| o.at(i as usize));
                 let gap = touch.xi3 - offset;
                 deepest = deepest.max(-gap);
-                totals.contact_energy += share * touch.n * gap * p.area;
+                totals.contact_energy += share * self.penalties[index] * gap * gap * p.area;
                 let r = touch.residual * p.area;
                 let mut add = |node: usize, f: &Vec3, side: &mut SurfaceForce| {
                     side.force -= f;
@@ -428,6 +440,7 @@ impl Assembler<'_> {
             }
         }
         totals.penetration.push(deepest);
+        totals.touching.push(!active.is_empty());
         match pair.half {
             Some(HalfPass { other, back: true }) => totals.pairs[other].master = force.slave,
             Some(_) => totals.pairs[index].slave = force.slave,
@@ -447,17 +460,23 @@ struct Batch<'a, L> {
 }
 
 impl<L: NormalLaw + Copy> Batch<'_, L> {
-    /// Evaluates every point with gaps measured from where the pair says.
+    /// Evaluates every point with gaps measured from where the pair says, and with multipliers where it has any.
     fn offset<A: Accept>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<MovingTouch>, PointFault>],
         offsets: Option<&Offsets>,
+        histories: Option<&[PointHistory]>,
         accept: &A,
     ) {
-        match offsets {
-            None => self.choose(states, touches, &NoOffset, accept),
-            Some(offsets) => self.choose(states, touches, offsets, accept),
+        match (histories, offsets) {
+            (None, None) => self.choose(states, touches, &NoOffset, accept),
+            (None, Some(offsets)) => self.choose(states, touches, offsets, accept),
+            (Some(histories), offsets) => {
+                let offsets = offsets.copied();
+                let multipliers = Multipliers { histories, offsets };
+                self.choose(states, touches, &multipliers, accept);
+            }
         }
     }
 

@@ -1,10 +1,11 @@
 //! Contact with rigid surfaces: the slave points of a pair are evaluated in parallel and summed in order.
+use super::answer::PointAnswer;
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
 use crate::contact::closest::ClosestPoint;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::Friction;
-use crate::contact::law::{GapOffset, NoOffset, NormalLaw, Offsets, Penalty};
+use crate::contact::law::{GapOffset, Multipliers, NoOffset, NormalLaw, Offsets, Penalty};
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
 use crate::model::master::Master;
@@ -77,16 +78,28 @@ impl Assembler<'_> {
                     law: &law,
                     u,
                 };
-                match (&pair.overclosure, &friction) {
+                match (pair.offsets(time), &friction) {
+                    (offsets, None) if pair.augmentation.is_some() => {
+                        let histories = &state.histories[pair.history().unwrap_or(0..0)];
+                        let multipliers = Multipliers { histories, offsets };
+                        batch.choose(points, touches, &multipliers);
+                        let answers = &mut self.answers[pair.history().unwrap_or(0..0)];
+                        for (answer, touch) in answers.iter_mut().zip(touches.iter()) {
+                            let touch = touch.as_ref().ok().and_then(Option::as_ref);
+                            *answer = touch.map(|t| PointAnswer::without_friction(t.n, t.gap));
+                        }
+                    }
                     (None, None) => batch.choose(points, touches, &NoOffset),
-                    (Some(over), None) => batch.choose(points, touches, &over.offsets(time)),
-                    (_, Some((now, eps_t, histories))) => with_law!(*now, law => {
+                    (Some(over), None) => batch.choose(points, touches, &over),
+                    (over, Some((now, eps_t, histories))) => with_law!(*now, law => {
                         let friction = Friction { law, eps_t: *eps_t };
-                        batch.slide(points, touches, &friction, histories, pair.offsets(time))
+                        let answers = &mut self.answers[pair.history().unwrap_or(0..0)];
+                        batch.slide(points, touches, answers, &friction, histories, over)
                     }),
                 }
             });
             let mut deepest = 0.0f64;
+            let before = totals.active;
             let mut ke = [0.0; 729];
             let mut at = 0;
             let maps = &self.point_maps[index];
@@ -112,7 +125,7 @@ impl Assembler<'_> {
                 let Some(touch) = touch else { continue };
                 totals.active += 1;
                 deepest = deepest.max(-touch.gap);
-                totals.contact_energy += 0.5 * touch.n * touch.gap * p.area;
+                totals.contact_energy += 0.5 * law.eps_n * touch.gap * touch.gap * p.area;
                 let force = touch.residual * p.area;
                 let on = &mut totals.surfaces[number];
                 on.force -= force;
@@ -149,6 +162,7 @@ impl Assembler<'_> {
                 }
             }
             totals.penetration.push(deepest);
+            totals.touching.push(totals.active > before);
             first += n;
             if surface.driven.is_some() {
                 self.carry::<TANGENT>(index, &state.u, time)?;
@@ -175,6 +189,7 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<Touch>, PointFault>],
+        answers: &mut [Option<PointAnswer>],
         friction: &Friction<F>,
         histories: &[PointHistory],
         offsets: Option<Offsets>,
@@ -182,14 +197,17 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
+            .zip(answers.par_iter_mut())
             .zip(histories)
             .enumerate()
             .with_min_len(64)
-            .for_each(|(i, (((p, s), out), history))| {
+            .for_each(|(i, ((((p, s), out), answer), history))| {
                 let x = self.model.point_position(p, self.u);
                 let law = history.law(self.law.eps_n, offsets.map_or(0.0, |o| o.at(i)));
                 let touch =
                     (self.master).touch_with_friction(&x, &mut s.hint, &law, friction, history);
+                *answer = (touch.as_ref().ok().and_then(Option::as_ref))
+                    .map(|t| PointAnswer::with_friction(t, history, friction.eps_t));
                 *out = touch.map(|t| t.map(|t| t.touch));
             });
     }

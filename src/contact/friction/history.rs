@@ -1,6 +1,6 @@
 //! What a slave point remembers between steps.
 use super::trial::Traction;
-use crate::contact::law::Augmented;
+use crate::contact::law::{Augmented, Penalty};
 use covact_geometry::{Hint, Vec3};
 use nalgebra::UnitQuaternion;
 
@@ -46,7 +46,7 @@ impl PointHistory {
     #[inline]
     pub fn law(&self, eps_n: f64, z0: f64) -> Augmented {
         Augmented {
-            eps_n,
+            law: Penalty { eps_n },
             z0,
             lambda_n: self.lambda_n,
         }

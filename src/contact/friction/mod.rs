@@ -19,11 +19,14 @@
 //! - [`rigid`]: points on rigid masters;
 //! - [`anchor`]: the attraction point on a facet that moves, [`moving`]: the response there in the slots,
 //!   [`touch`]: points on faces of bodies, [`scatter`]: from the slots to their nodes.
+//! - [`published`], [`evolution`]: the published tangents and the rate law in components, to compare with.
 pub mod anchor;
+pub mod evolution;
 pub mod history;
 pub mod law;
 pub mod moving;
 pub mod orthotropic;
+pub mod published;
 pub mod rigid;
 pub mod scatter;
 pub mod touch;

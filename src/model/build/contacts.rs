@@ -1,4 +1,5 @@
 //! Contact pairs: slave points, masters, penalties.
+use super::super::augmentation::AugmentationModel;
 use super::super::averaged::SlaveNodes;
 use super::super::error::{At, number, text};
 use super::super::friction::{self, FrictionModel, LawModel};
@@ -87,7 +88,7 @@ impl Builder<'_> {
                         .map(|&f| mesh.face_nodes(f).shifted(first_node))
                         .collect();
                     let position = |n: u32| self.nodes[n as usize];
-                    let reach = segments::reach(master.depth, size.edge);
+                    let reach = segments::reach(master.depth, size.edge) + contact.offset;
                     let facets = &master.facets;
                     points = segments::segments(&nodes, facets, position, position, degree, reach);
                 }
@@ -138,11 +139,16 @@ impl Builder<'_> {
             }
         };
         let friction = self.friction(name, contact, body, eps_n)?;
-        let first_history = friction.as_ref().map(|_| {
+        let augmentation = (contact.augmentation.as_ref())
+            .map(|asked| AugmentationModel::new(asked, size.edge, automatic));
+        let first_history = (friction.is_some() || augmentation.is_some()).then(|| {
             let first = self.histories;
             self.histories += points.len();
             first
         });
+        if self.scene.contacts.get(name) == Some(contact) {
+            self.tell_extent(name, contact, augmentation.as_ref(), rigid.is_none());
+        }
         Ok(PairModel {
             name: name.to_owned(),
             slave: contact.slave.clone(),
@@ -160,10 +166,45 @@ impl Builder<'_> {
             tangent: contact.tangent,
             element_size: size.edge,
             overclosure: None,
+            offset: contact.offset,
+            augmentation,
             averaged,
             friction,
             first_history,
         })
+    }
+
+    /// Notes where contact begins and how far its gaps are closed.
+    fn tell_extent(
+        &mut self,
+        name: &str,
+        contact: &Contact,
+        augmentation: Option<&AugmentationModel>,
+        moving: bool,
+    ) {
+        if contact.offset > 0.0 {
+            self.notes.push(format!(
+                "contact `{name}`: contact begins {} in front of `{}` (`offset`){}",
+                number(contact.offset),
+                contact.master,
+                if moving {
+                    ", which ends at the border of its faces"
+                } else {
+                    ""
+                }
+            ));
+        }
+        if let Some(augmentation) = augmentation {
+            self.notes.push(format!(
+                "contact `{name}`: tractions are augmented until gaps are below {}{}, with penalties up to {}",
+                number(augmentation.gap),
+                match contact.friction {
+                    Some(_) => format!(" and elastic slip below {}", number(augmentation.slip)),
+                    None => String::new(),
+                },
+                number(augmentation.stiffest)
+            ));
+        }
     }
 
     /// Friction of a contact with the normal penalty `eps_n`; none where the scene asks for none, or the coefficient is zero
@@ -293,7 +334,7 @@ impl Builder<'_> {
             .help("leave `passes` out, or give two sets without a common face"));
         }
         // As far as a point may sink in, through the wall and one more face.
-        let distance = 2.0 * master.depth + master.element_size;
+        let distance = 2.0 * master.depth + master.element_size + contact.offset;
         master.own = Some(OwnFacets::new(
             &body.mesh,
             body.first_node,

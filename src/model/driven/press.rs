@@ -3,9 +3,10 @@
 use super::turn;
 use super::{Driven, Model, SurfaceModel};
 use crate::contact::carried::{Carried, carried, cross_matrix};
-use crate::contact::law::{Penalty, Shifted};
-use crate::contact::rigid::{Exact, PointFault, RigidMaster, behind, presses};
-use crate::model::overclosure::Overclosure;
+use crate::contact::friction::history::PointHistory;
+use crate::contact::law::{Augmented, Penalty};
+use crate::contact::rigid::{Exact, PointFault, RigidMaster, behind, free};
+use crate::model::PairModel;
 use crate::model::surface::SurfaceSet;
 use crate::scene::ValueError;
 use covact_geometry::{Hint, Vec3};
@@ -60,24 +61,16 @@ pub struct Presser<'m> {
 }
 
 struct PairAtRest<'m> {
-    name: &'m str,
+    model: &'m PairModel,
     law: Penalty,
-    overclosure: Option<&'m Overclosure>,
     points: Vec<PointAtRest>,
-}
-
-impl PairAtRest<'_> {
-    /// Part of the points' offsets that is left at time `t`.
-    fn factor(&self, t: f64) -> f64 {
-        self.overclosure.map_or(0.0, |o| o.factor(t))
-    }
 }
 
 struct PointAtRest {
     x: Vec3,
     area: f64,
-    /// Offset of its gap at the start.
-    z0: f64,
+    /// Multiplier of its traction.
+    lambda_n: f64,
     hint: Option<Hint>,
 }
 
@@ -89,11 +82,13 @@ const GRAZE: f64 = 0.01;
 const STEPS: usize = 400;
 
 impl<'m> Presser<'m> {
-    /// The slave points of surface `index` at displacements `u`; penalties per pair of the model.
+    /// The slave points of surface `index` at displacements `u`; penalties per pair of the model, histories of all points
+    /// that have one, or none before there are any.
     pub fn new(
         model: &'m Model,
         (index, surface, driven): (usize, &'m SurfaceModel, &'m Driven),
         penalties: &[f64],
+        histories: &[PointHistory],
         u: &[f64],
     ) -> Self {
         let mut size = surface.depth;
@@ -110,14 +105,15 @@ impl<'m> Presser<'m> {
                 .map(|(i, p)| PointAtRest {
                     x: model.point_position(p, u),
                     area: p.area,
-                    z0: pair.overclosure.as_ref().map_or(0.0, |o| o.z0[i]),
+                    lambda_n: (pair.first_history)
+                        .and_then(|first| histories.get(first + i))
+                        .map_or(0.0, |h| h.lambda_n),
                     hint: None,
                 })
                 .collect();
             pairs.push(PairAtRest {
-                name: &pair.name,
+                model: pair,
                 law: Penalty { eps_n },
-                overclosure: pair.overclosure.as_ref(),
                 points,
             });
         }
@@ -171,17 +167,21 @@ impl<'m> Presser<'m> {
             active: 0,
         };
         for pair in &mut self.pairs {
-            let (law, factor) = (pair.law, pair.factor(t));
-            let touches: Vec<_> = (pair.points.par_iter_mut())
+            let (law, offsets) = (pair.law, pair.model.offsets(t));
+            let touches: Vec<_> = (pair.points.par_iter_mut().enumerate())
                 .with_min_len(64)
-                .map(|p| {
-                    let z0 = factor * p.z0;
-                    master.touch(&p.x, &mut p.hint, &Shifted { law, z0 }, &Exact)
+                .map(|(i, p)| {
+                    let law = Augmented {
+                        law,
+                        z0: offsets.map_or(0.0, |o| o.at(i)),
+                        lambda_n: p.lambda_n,
+                    };
+                    master.touch(&p.x, &mut p.hint, &law, &Exact)
                 })
                 .collect();
             for (point, (touch, p)) in touches.into_iter().zip(&pair.points).enumerate() {
                 let touch = touch.map_err(|fault| PressFault::Point {
-                    pair: pair.name.to_owned(),
+                    pair: pair.model.name.clone(),
                     point,
                     at: p.x,
                     fault,
@@ -190,7 +190,8 @@ impl<'m> Presser<'m> {
                 let (r, k) = (touch.residual * p.area, touch.tangent * p.area);
                 let c = carried(&r, &k, &(p.x - center));
                 out.active += 1;
-                out.energy += 0.5 * touch.n * touch.gap * p.area;
+                // Its derivative is the traction.
+                out.energy += 0.5 * touch.n.powi(2) / pair.law.eps_n * p.area;
                 add(&mut out.residual, &-r, &c.spin);
                 add_tangent(&mut out.tangent, &k, &c);
             }
@@ -207,18 +208,24 @@ impl<'m> Presser<'m> {
         let master = self.master(&prescribed, &moved, &theta);
         let (mut nearest, mut below) = (f64::INFINITY, false);
         for pair in &mut self.pairs {
-            let factor = pair.factor(t);
-            let found = (pair.points.par_iter_mut())
+            let offsets = pair.model.offsets(t);
+            let found = (pair.points.par_iter_mut().enumerate())
                 .with_min_len(64)
-                .filter_map(|p| {
+                .filter_map(|(i, p)| {
                     let foot = master.foot(&p.x, p.hint, f64::INFINITY)?;
                     p.hint = Some(Hint {
                         patch: foot.patch,
                         xi: foot.xi,
                     });
-                    let (gap, inside) = (foot.signed_distance - factor * p.z0, presses(&foot));
-                    let distance = if inside { gap.max(0.0) } else { foot.distance };
-                    let below = inside && gap < 0.0 && !behind(&foot, master.depth);
+                    let z0 = offsets.map_or(0.0, |o| o.at(i));
+                    let gap = foot.signed_distance - z0;
+                    // Past a free border or above an overclosure the surface itself is nearer than contact.
+                    let distance = match free(&foot) {
+                        true => foot.distance - z0.max(0.0),
+                        false => gap.min(foot.distance),
+                    };
+                    let distance = distance.max(0.0);
+                    let below = !free(&foot) && gap < 0.0 && !behind(&foot, master.depth);
                     Some((distance, below))
                 })
                 .reduce(|| (f64::INFINITY, false), |a, b| (a.0.min(b.0), a.1 || b.1));

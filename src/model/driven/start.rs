@@ -25,7 +25,7 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
         let (index, surface, driven) = entry;
         let name = &surface.name;
         let pointer = || format!("/surfaces/{name}/motion/free");
-        let mut presser = Presser::new(model, entry, &penalties, &u);
+        let mut presser = Presser::new(model, entry, &penalties, &[], &u);
         if presser.is_empty() {
             let message =
                 format!("surface `{name}` is driven by force, but takes part in no contact");

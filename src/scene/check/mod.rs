@@ -1,4 +1,5 @@
 //! Everything that can be wrong with a scene that has been read, without its mesh and CAD files being read.
+mod augmentation;
 mod checker;
 mod friction;
 mod names;
@@ -136,6 +137,7 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
     }
     check_penalty(c, &format!("{at}/penalty"), contact.penalty);
     friction::check(c, at, contact);
+    augmentation::check(c, at, contact);
 }
 
 fn check_penalty(c: &mut Checker, at: &str, penalty: Penalty) {

@@ -37,6 +37,35 @@ pub struct Contact {
     /// Tangential penalty: traction per elastic slip (force / length^3); only with friction.
     #[serde(default)]
     pub tangential_penalty: Penalty,
+    /// Multipliers beside the penalties; default: none.
+    #[serde(default)]
+    pub augmentation: Option<Augmentation>,
+    /// Contact begins at this distance in front of the master (length), for a thickness that is not modelled.
+    #[serde(default)]
+    pub offset: f64,
+}
+
+/// Augmentation: within every step the tractions become multipliers, until neither gaps nor elastic slip are left beyond
+/// the tolerances.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Augmentation {
+    /// Largest gap of a point in contact, as a part of the slave's element size.
+    pub gap: f64,
+    /// Largest elastic slip of a point that sticks, as a part of the slave's element size; only with friction.
+    pub slip: f64,
+    /// Augmentations of a step after which it is cut.
+    pub max: u32,
+}
+
+impl Default for Augmentation {
+    fn default() -> Self {
+        Augmentation {
+            gap: 1e-4,
+            slip: 1e-4,
+            max: 25,
+        }
+    }
 }
 
 /// Law of friction, written `{"coulomb": {"mu": 0.2}}`.

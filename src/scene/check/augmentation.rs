@@ -1,0 +1,63 @@
+//! What can be wrong with the augmentation and the offset of a contact.
+use super::checker::Checker;
+use super::{Contact, Gap, Passes, Points, Tangent};
+
+/// Problems of augmentation and offset of the contact at `at`.
+pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
+    let tangent = &format!("{at}/tangent");
+    if contact.offset != 0.0 {
+        let at = format!("{at}/offset");
+        c.positive(&at, "the offset", contact.offset);
+        published(c, tangent, contact, "an offset", "points lie far from it");
+    }
+    let Some(augmentation) = &contact.augmentation else {
+        return;
+    };
+    let at = format!("{at}/augmentation");
+    let tolerances = [("gap", augmentation.gap), ("slip", augmentation.slip)];
+    for (name, value) in tolerances {
+        c.positive(&format!("{at}/{name}"), "the tolerance", value);
+    }
+    c.whole(&format!("{at}/max"), augmentation.max.into(), 1, 1000);
+    // Multipliers belong to points that stay, and there is one traction for both sides.
+    let without = match contact {
+        Contact {
+            points: Points::Segments(_),
+            ..
+        } => Some((
+            "segments, which are cut anew at every step",
+            "take `{\"gauss\": n}`",
+        )),
+        Contact {
+            gap: Gap::Averaged, ..
+        } => Some(("averaged gaps", "take `\"gap\": \"pointwise\"`")),
+        Contact {
+            passes: Passes::TwoHalf,
+            ..
+        } => Some((
+            "two half passes, whose multipliers nothing would make agree",
+            "take `\"passes\": \"one\"`",
+        )),
+        _ => None,
+    };
+    if let Some((with, help)) = without {
+        c.add(
+            &at,
+            format!("augmentation does not go with {with}"),
+            Some(help.into()),
+        );
+    }
+    let reason = "tractions stay while gaps vanish";
+    published(c, tangent, contact, "augmentation", reason);
+}
+
+/// The published tangent leaves out what is small with the normal coordinate or with the traction.
+fn published(c: &mut Checker, at: &str, contact: &Contact, with: &str, reason: &str) {
+    if let Tangent::Published { .. } = contact.tangent {
+        c.add(
+            at,
+            format!("the published tangent, which is right on the surface, does not go with {with}: {reason}"),
+            Some("take `exact`".into()),
+        );
+    }
+}
