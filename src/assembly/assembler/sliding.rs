@@ -199,6 +199,7 @@ impl Assembler<'_> {
             state.closed = closed;
         }
         totals.active += active.len();
+        let eps_n = self.penalties[index];
         let mut deepest = 0.0f64;
         let mut force = PairForce::default();
         let share = if half { 0.25 } else { 0.5 };
@@ -239,7 +240,7 @@ impl Assembler<'_> {
                 let Some(touch) = touch(i) else { continue };
                 let p = &points[i as usize];
                 deepest = deepest.max(-touch.gap);
-                totals.contact_energy += share * touch.n * touch.gap * p.area;
+                totals.contact_energy += share * eps_n * touch.gap * touch.gap * p.area;
                 let nodes = &work.nodes;
                 for (k, (node, f)) in nodes.forces(&touch.response, p.area).enumerate() {
                     let node = node as usize;
@@ -281,6 +282,7 @@ impl Assembler<'_> {
             }
         }
         totals.penetration.push(deepest);
+        totals.touching.push(!active.is_empty());
         match pair.half {
             Some(HalfPass { other, back: true }) => totals.pairs[other].master = force.slave,
             Some(_) => totals.pairs[index].slave = force.slave,
