@@ -2,8 +2,7 @@
 //! Konyukhov & Schweizerhof, Comput. Mech. 35 (2005), eq. (4).
 use covact::contact::friction::evolution::CovariantTraction;
 use covact::contact::friction::history::{PointHistory, PointStatus};
-use covact::contact::friction::law::Coulomb;
-use covact::contact::friction::law::FrictionLaw;
+use covact::contact::friction::law::{Coulomb, FrictionLaw};
 use covact::contact::friction::rigid::Friction;
 use covact::contact::law::{Augmented, Penalty};
 use covact::contact::rigid::RigidMaster;
@@ -48,9 +47,10 @@ impl<'a> Driver<'a> {
             .expect("contact");
         let pose = self.master.pose.rotation;
         let eps_t = self.friction.eps_t;
-        let (law, trial) = (&self.friction.law, &touch.traction.trial);
-        let first = law.slip(trial, &touch.normal, -self.history.n).t;
-        let n = touch.touch.n;
+        let (trial, n) = (&touch.traction.trial, touch.touch.n);
+        let first = (self.friction.law)
+            .slip(trial, &touch.normal, -self.history.n)
+            .t;
         (self.history).accept(&touch.local, &touch.traction, &first, n, eps_t, &pose);
         self.history.t
     }
@@ -206,10 +206,6 @@ fn helix_over_four_patches() {
             assert!(apart < 1e-10, "{name}, {steps} steps: {apart:e}");
         }
         let dissipation = (reference.dissipated / exact - 1.0).abs();
-        println!(
-            "{steps} steps: dissipation {dissipation:e}, lag {} deg",
-            reference.lag.to_degrees()
-        );
         errors.push([dissipation, reference.lag]);
     }
     // Second order: a sixteenth at four times the steps.
@@ -293,14 +289,13 @@ fn parallel_transport_round_a_circle_of_latitude() {
             .map(|n| run(n))
             .map(|[angle, length]| [off(angle), (length - 1.0).abs()])
             .collect();
-        println!("{what}: {errors:?}");
         for pair in errors.windows(2) {
             let ratio = pair[0][0] / pair[1][0];
             assert!((ratio / 16.0 - 1.0).abs() < 0.1, "{what}: {errors:?}");
         }
         assert!(errors[2][0] < 1e-4, "{what}: {errors:?}");
         assert!(
-            errors.iter().all(|e| e[1] < 1e-6 || what == "patch"),
+            errors.iter().all(|e| e[1] < 1e-13 || what == "patch"),
             "{what}: {errors:?}"
         );
         assert!(errors[2][1] < 1e-5, "{what}: {errors:?}");
@@ -318,7 +313,6 @@ fn parallel_transport_round_a_circle_of_latitude() {
         });
         let map = Matrix2::from_fn(|i, j| axes[i].dot(&ends[j]));
         let kept = map.singular_values();
-        println!("{steps} steps of projection: {kept}");
         assert!((kept.max() - largest).abs() < 5e-5, "{steps}: {kept}");
         if steps == 20 {
             assert!((kept.min() - 0.698).abs() < 5e-4, "{kept}");
@@ -384,41 +378,48 @@ fn both(path: impl Fn(f64) -> [f64; 2], steps: usize, eps_t: f64, mu: f64) -> [V
 /// measures along the path, the attraction point along the chord.
 #[test]
 fn sticking_agrees_with_the_rate_law_to_second_order_in_the_length() {
-    let errors: Vec<f64> = ([0.2, 0.1, 0.05].into_iter())
+    let errors: Vec<f64> = ([0.05, 0.025, 0.0125].into_iter())
         .map(|length| {
             let [a, b] = both(path(length), 64, 10.0, 100.0);
-            assert!(b.norm() > 0.1);
+            assert!(b.norm() > 0.03);
             (a - b).norm() / b.norm()
         })
         .collect();
-    println!("stick {errors:?}");
     for pair in errors.windows(2) {
         let rate = (pair[0] / pair[1]).log2();
-        assert!((rate - 2.0).abs() < 0.25, "{errors:?}");
+        assert!((rate - 2.0).abs() < 0.15, "{errors:?}");
     }
 }
 
-/// While it slides with an elastic slip much shorter than the steps, both differ by second order in the step; each by itself
-/// lags behind a bent path by first order.
+/// While it slides both go to the same traction as the steps get shorter. The attraction point is set anew in every step, with the
+/// traction that is then projected on the next tangent plane: of second order in the step, and what adds up over the elastic slip
+/// of first. That is less than a millionth here; what both lag behind a bent path, of first order too, is percents.
 #[test]
-fn sliding_agrees_with_the_rate_law_to_second_order_in_the_step() {
+fn sliding_agrees_with_the_rate_law_to_first_order_in_the_step() {
+    let apart: Vec<f64> = ([64, 128, 256, 512].into_iter())
+        .map(|steps| {
+            let [a, b] = both(path(0.4), steps, 200.0, 0.3);
+            assert!((a.norm() - 0.3).abs() < 1e-9 && (b.norm() - 0.3).abs() < 1e-9);
+            (a - b).norm() / 0.3
+        })
+        .collect();
+    for pair in apart.windows(2) {
+        let rate = (pair[0] / pair[1]).log2();
+        assert!((rate - 1.0).abs() < 0.2, "{apart:?}");
+    }
+    assert!(apart[0] > 1e-8 && apart[0] < 1e-6, "{apart:?}");
     let along = |s: f64| {
         let h = 1e-6;
         let [a, b] = [path(0.4)(s + h), path(0.4)(s - h)].map(|xi| torus().point(xi));
         (a - b).normalize()
     };
-    let errors: Vec<[f64; 2]> = ([8, 16, 32, 64].into_iter())
-        .map(|steps| {
-            let [a, b] = both(path(0.4), steps, 1e5, 0.3);
-            assert!((a.norm() - 0.3).abs() < 1e-9 && (b.norm() - 0.3).abs() < 1e-9);
-            [(a - b).norm() / 0.3, (a / 0.3 - along(1.0)).norm()]
-        })
+    let lag: Vec<[f64; 2]> = ([16, 32, 64].into_iter())
+        .map(|steps| both(path(0.4), steps, 1e5, 0.3).map(|t| (t / 0.3 - along(1.0)).norm()))
         .collect();
-    println!("slip {errors:?}");
-    for pair in errors.windows(2).skip(1) {
-        for (i, order) in [2.0, 1.0].into_iter().enumerate() {
+    for pair in lag.windows(2) {
+        for i in 0..2 {
             let rate = (pair[0][i] / pair[1][i]).log2();
-            assert!((rate - order).abs() < 0.25, "{errors:?}");
+            assert!((rate - 1.0).abs() < 0.1, "{lag:?}");
         }
     }
 }

@@ -22,6 +22,20 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
     );
     match friction {
         Friction::Coulomb { mu } => coefficient(c, &format!("{at}/friction/coulomb/mu"), mu),
+        Friction::Orthotropic { mu, direction } => {
+            let at = format!("{at}/friction/orthotropic");
+            for (k, mu) in mu.iter().enumerate() {
+                coefficient(c, &format!("{at}/mu/{k}"), mu);
+            }
+            let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if !(length > 0.0 && length.is_finite()) {
+                c.add(
+                    &format!("{at}/direction"),
+                    "the direction has no length",
+                    Some("give a vector along which the first coefficient holds".into()),
+                );
+            }
+        }
     }
     // Histories belong to points that stay, gaps to points of their own, and the published forms are of normal contact.
     let without = match contact {

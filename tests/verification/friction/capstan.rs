@@ -3,10 +3,10 @@
 //!
 //! ```text
 //!      T1 <----- ,-----.         The belt is flat and stress-free before it is wrapped, and drawn so far that every
-//!              /    R    \       point in contact slides. Both tails are straight where they end, so that the wrap
-//!             |     +     |      angle theta is the angle between the two end forces, which the results hold: the
-//!              \         /       weight of no assumption on where the belt lifts off. The clamp at the drawn end
-//!      T2 <----- `-----'         turns its force by .3 degrees at most.
+//!              /    R    \       point in contact slides. The wrap angle theta is the angle between the two end forces,
+//!             |     +     |      wherever the belt lifts off: T1 is a dead load, and the direction of T2 is that of the
+//!              \         /       reaction (the clamp at the drawn end turns it by up to .3 degrees from the tangent,
+//!      T2 <----- `-----'         because the tail is straight only nearly where it is clamped).
 //! ```
 //!
 //! With the bending stiffness EI, the middle of the belt at `r = R + h/2` and `B = EI / 2 r^2`:
@@ -26,7 +26,7 @@ use std::f64::consts::{PI, TAU};
 const R: f64 = 50.0;
 const H: f64 = 0.5;
 const RM: f64 = R + 0.5 * H;
-const WIDTH: f64 = 2.0;
+const WIDTH: f64 = 20.0;
 /// Modulus in plane strain.
 const E: f64 = 2000.0 / (1.0 - 0.3 * 0.3);
 const B: f64 = E * H * H * H / 12.0 / (2.0 * RM * RM);
@@ -132,7 +132,7 @@ fn tensions_of_a_belt() {
     }
 }
 
-/// The shipped scene, wrapped by half a turn and drawn by twelve times the thickness of a hand: 24 elements.
+/// The shipped scene, wrapped by half a turn and drawn by 16 elements.
 #[test]
 fn the_shipped_belt() {
     let mut scene = scene_json("strip_drawn.json");
@@ -148,7 +148,7 @@ fn the_shipped_belt() {
     // While the belt is wrapped the friction holds it: it does not slide as a whole.
     let wrapped = row_at(&outcome, 1.0);
     assert!(stick[wrapped] > 0.5 * slip[wrapped + 20]);
-    let sliding: Vec<usize> = (0..times.len()).filter(|i| times[*i] > 1.15).collect();
+    let sliding: Vec<usize> = (0..times.len()).filter(|i| times[*i] > 1.2).collect();
     assert!(sliding.len() > 20);
     let mut worst = 0.0f64;
     for &row in &sliding {
