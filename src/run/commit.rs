@@ -143,9 +143,13 @@ pub fn commit(
                 let histories = &mut state.histories[range.clone()];
                 batch.commit(&state.points[points], histories, (now, eps_t), &limited)?;
             }
+            let elastic = match pair.augmentation {
+                Some(_) => Some(&answers[range.clone()]),
+                None => None,
+            };
             total.add(
                 &state.histories[range],
-                None,
+                elastic,
                 &pair.points,
                 eps_t,
                 pair.share(),

@@ -1,5 +1,6 @@
 //! Contact with friction between bodies: as [`super::moving`], with histories, and columns for the facets that hold the
 //! attraction points.
+use super::answer::PointAnswer;
 use super::links::Links;
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
 use crate::contact::friction::history::PointHistory;
@@ -73,6 +74,21 @@ impl Sliding {
             }
             _ => None,
         })
+    }
+
+    /// What an augmentation makes of the points evaluated last.
+    pub fn answer(
+        &self,
+        surface: &BodySurface,
+        histories: &[PointHistory],
+        eps_t: f64,
+        answers: &mut [Option<PointAnswer>],
+    ) {
+        let facets = &surface.facets;
+        for ((touch, history), answer) in self.touches.iter().zip(histories).zip(answers) {
+            let touch = touch.as_ref().ok().and_then(Option::as_ref);
+            *answer = touch.map(|t| PointAnswer::between(t, history, facets, eps_t));
+        }
     }
 
     /// Evaluates every point of a pair.
