@@ -104,7 +104,8 @@ fn a_block_that_slides_is_held_back_by_mu_times_its_load() {
 /// Largest difference of the `x` displacements of the free nodes of the interface from the exact state of two layers in
 /// shear that stick to each other, relative to the shift of the top.
 fn stick(points: u32, two_half: bool) -> f64 {
-    let shift = 0.002;
+    // A hundredth of the penetration: second order terms of a larger shear would act on the free sides.
+    let shift = 2e-5;
     let way = format!("{shift}*max(0, t-0.25)/0.75");
     let mut scene = layers([3, 3], [2, 2], "upper.bottom", 0.002, &way);
     let body = &mut scene["bodies"]["lower"]["mesh"]["block"];
@@ -147,7 +148,7 @@ fn meshes_that_do_not_match_stick_in_uniform_shear() {
     let exact = stick(3, true);
     let errors = [2, 3, 5, 10].map(|n| stick(n, false));
     println!("{exact:e} {errors:?}");
-    assert!(exact < 1e-10, "{exact:e}");
+    assert!(exact < 1e-5, "{exact:e}");
     assert!(errors.is_sorted_by(|a, b| a > b), "{errors:?}");
     assert!(
         errors[0] < 0.02 && errors[3] < 0.1 * errors[0],
@@ -218,14 +219,14 @@ fn sledge(bed: bool, folder: &std::path::Path) -> Outcome {
         "covact": 1,
         "materials": {"m": {"neo_hooke": {"E": 100, "nu": 0.3}}},
         "bodies": {"sledge": {"mesh": {"block": {
-            "min": [-1.2, 0.1, 10.24], "max": [-0.4, 0.9, 10.7], "elements": [4, 2, 2]
+            "min": [-1.2, 0.1, 10.26], "max": [-0.4, 0.9, 10.66], "elements": [4, 2, 2]
         }}, "material": "m"}},
         "contacts": {"rub": {
             "slave": "sledge.bottom", "master": "bed.outer", "points": {"gauss": 2},
             "penalty": {"value": 1000}, "friction": {"coulomb": {"mu": 0.2}}, "depth": 0.3
         }},
         "supports": {"push": {"on": "sledge.top", "displacement": {
-            "x": "1.6*max(0, t-0.2)/0.8", "y": 0, "z": "-0.1*min(1, t/0.2)"
+            "x": "1.5*max(0, t-0.2)/0.8", "y": 0, "z": "-0.06*min(1, t/0.2)"
         }}},
         "solution": {
             "step": {"initial": 0.1, "max": 0.1}, "newton": {"tolerance": 1e-11}, "threads": 1
@@ -333,4 +334,39 @@ fn walls_that_meet_may_rub() {
     let [a, b] = [&with, &without].map(|o| last(o, "force.push.z"));
     println!("{a} {b}");
     assert!((a - b).abs() < 1e-3 * b.abs(), "{a} {b}");
+}
+
+/// With multipliers a soft penalty leaves neither gap nor elastic slip, and the drag is that of a stiff one.
+#[test]
+fn augmentation_resolves_gap_and_elastic_slip_between_bodies() {
+    let run = |penalty: f64, augmented: bool| {
+        let mut scene = crate::sliding::slide(0.4, 4);
+        let press = &mut scene["contacts"]["press"];
+        press["friction"] = json!({"coulomb": {"mu": 0.4}});
+        press["penalty"] = json!({ "value": penalty });
+        if augmented {
+            press["augmentation"] = json!({"gap": 1e-4, "slip": 1e-4, "max": 25});
+        }
+        done(&scene)
+    };
+    let (soft, augmented, stiff) = (run(2e3, false), run(2e3, true), run(2e5, false));
+    let force = |o: &Outcome, c: &str| last(o, &format!("slave.force.press.{c}"));
+    for c in ["x", "z"] {
+        let [soft, augmented, stiff] = [&soft, &augmented, &stiff].map(|o| force(o, c));
+        println!("{c}: {soft} {augmented} {stiff}");
+        assert!(
+            (augmented / stiff - 1.0).abs() < 5e-3,
+            "{augmented} {stiff}"
+        );
+        assert!((augmented - stiff).abs() < 0.2 * (soft - stiff).abs());
+    }
+    let sunk = |o: &Outcome| {
+        o.column("penetration.max")
+            .iter()
+            .fold(0.0, |a: f64, b| a.max(*b))
+    };
+    println!("{:e} {:e}", sunk(&soft), sunk(&augmented));
+    // A ten thousandth of an element of side 0.25 at most.
+    assert!(sunk(&augmented) < 1e-4 && sunk(&soft) > 1e-3);
+    assert!(last(&augmented, "augmentations") > 0.0);
 }

@@ -31,6 +31,7 @@ impl MovingMaster<'_> {
     ///
     /// # Errors
     /// [`PointFault`] as there, and where the facet of the attraction point has degenerated.
+    #[expect(clippy::too_many_arguments)]
     pub fn touch_with_friction<F: FrictionLaw, M: Form>(
         &self,
         x: &Vec3,
