@@ -137,6 +137,8 @@ pub fn commit(
         let limited = |trial: &Vec3, normal: &Vec3, pressure: f64| with_law!(was, law => law.slip(trial, normal, pressure).t);
         let eps_n = penalties[index];
         let eps_t = friction.ratio * eps_n;
+        // What the tangential penalties carry beside the multipliers.
+        let elastic = pair.augmentation.map(|_| &answers[range.clone()]);
         let Master::Rigid(surface) = pair.master else {
             let batch = moving::Batch::new(model, masters, index, &state.u, time, eps_n);
             if let Some(batch) = batch {
@@ -145,7 +147,7 @@ pub fn commit(
             }
             total.add(
                 &state.histories[range],
-                None,
+                elastic,
                 &pair.points,
                 eps_t,
                 pair.share(),
@@ -171,11 +173,6 @@ pub fn commit(
                     batch.accept(i, point.hint, &friction, &limited, history)
                 })?;
         });
-        // What the tangential penalties carry beside the multipliers.
-        let elastic = match pair.augmentation {
-            Some(_) => Some(&answers[range.clone()]),
-            None => None,
-        };
         total.add(
             &state.histories[range],
             elastic,

@@ -1,5 +1,6 @@
 //! Contact with friction between bodies: as [`super::moving`], with histories, and columns for the facets that hold the
 //! attraction points.
+use super::answer::PointAnswer;
 use super::links::Links;
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
 use crate::contact::friction::history::PointHistory;
@@ -73,6 +74,21 @@ impl Sliding {
             }
             _ => None,
         })
+    }
+
+    /// What an augmentation makes of the points evaluated last.
+    pub fn answer(
+        &self,
+        surface: &BodySurface,
+        histories: &[PointHistory],
+        eps_t: f64,
+        answers: &mut [Option<PointAnswer>],
+    ) {
+        let facets = &surface.facets;
+        for ((touch, history), answer) in self.touches.iter().zip(histories).zip(answers) {
+            let touch = touch.as_ref().ok().and_then(Option::as_ref);
+            *answer = touch.map(|t| PointAnswer::between(t, history, facets, eps_t));
+        }
     }
 
     /// Evaluates every point of a pair.
@@ -199,6 +215,7 @@ impl Assembler<'_> {
             state.closed = closed;
         }
         totals.active += active.len();
+        let eps_n = self.penalties[index];
         let mut deepest = 0.0f64;
         let mut force = PairForce::default();
         let share = if half { 0.25 } else { 0.5 };
@@ -239,7 +256,7 @@ impl Assembler<'_> {
                 let Some(touch) = touch(i) else { continue };
                 let p = &points[i as usize];
                 deepest = deepest.max(-touch.gap);
-                totals.contact_energy += share * touch.n * touch.gap * p.area;
+                totals.contact_energy += share * eps_n * touch.gap * touch.gap * p.area;
                 let nodes = &work.nodes;
                 for (k, (node, f)) in nodes.forces(&touch.response, p.area).enumerate() {
                     let node = node as usize;
@@ -281,6 +298,7 @@ impl Assembler<'_> {
             }
         }
         totals.penetration.push(deepest);
+        totals.touching.push(!active.is_empty());
         match pair.half {
             Some(HalfPass { other, back: true }) => totals.pairs[other].master = force.slave,
             Some(_) => totals.pairs[index].slave = force.slave,
