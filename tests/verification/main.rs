@@ -1,4 +1,5 @@
 //! Verification against closed forms and published results, named by their source.
+mod augmentation;
 mod ball_by_weight;
 mod body_scenes;
 mod die;
@@ -8,6 +9,7 @@ mod hertz;
 mod hertz_bodies;
 mod hinged_roof;
 mod loads;
+mod offset;
 mod overclosure;
 mod placed;
 mod plate_under_ball;
