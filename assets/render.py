@@ -25,6 +25,8 @@ VIEWS = {
     "side": (0, 0),
     "top": (-90, 89.9),
 }
+# Values 0 to 3 of `contact_status`, and their colours.
+STATUS = {"no slave": "#8d97a3", "open": "#b8c4d2", "stick": "#2b6cb0", "slip": "#e8891c"}
 # Components of a symmetric tensor, as the result files name them.
 TENSOR = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"]
 
@@ -241,6 +243,10 @@ def main():
                "fmt": "%.4g", "n_labels": 6}
         style = {"scalars": "colour", "clim": args.range or [low, high], "cmap": args.cmap, "scalar_bar_args": bar,
                  "nan_color": "lightgrey"}
+        if args.field == "contact_status":
+            # Names in place of numbers; see `main` for the legend.
+            style |= {"cmap": list(STATUS.values()), "clim": [-0.5, 3.5], "n_colors": len(STATUS),
+                      "show_scalar_bar": False}
 
     plotter = pv.Plotter(off_screen=True, window_size=[2 * n for n in args.size])
     plotter.set_background("white", top="#e8eef5")
@@ -251,6 +257,9 @@ def main():
     plotter.render_window.SetAlphaBitPlanes(1)
     body_bounds = [b for grid in bodies for b in add_body(plotter, grid, args, style)]
     surface_bounds = [b for grid in surfaces for b in add_surface(plotter, grid, args)] if args.opacity > 0 else []
+    if args.field == "contact_status":
+        plotter.add_legend([list(entry) for entry in reversed(STATUS.items())], bcolor=None, face="rectangle",
+                           size=(0.16, 0.24), loc="center right")
     wanted = body_bounds if args.fit == "bodies" and body_bounds else body_bounds + surface_bounds
     if not wanted:
         sys.exit("nothing to draw")

@@ -62,7 +62,7 @@ pub use bezier::{BezierPiece, bezier_pieces};
 pub use curve::NurbsCurve;
 pub use facet::{Bilinear, Biquadratic, FacetMesh};
 pub use frame::Frame;
-pub use moving::{MovingError, MovingFacets, MovingFoot, MovingPlace, ShapeRows};
+pub use moving::{CurvedRows, MovingError, MovingFacets, MovingFoot, MovingPlace, ShapeRows};
 pub use patch::{NurbsPatch, PatchError, PatchShape};
 pub use project::{EdgeKind, Foot, Hint, Location, PatchSet, Status};
 pub use surface::{Jet, Jet3, Surface, Vec3};

@@ -233,6 +233,9 @@ fn meaning(effect: &str) -> &'static str {
         "material.st_venant_kirchhoff" => "linear stress-strain law for small strains",
         "material.neo_hooke" => "rubber-like law for large strains",
         "contact.normal.penalty" => "contact pressure = penalty times penetration",
+        "contact.friction.orthotropic" => {
+            "friction with two coefficients, along a direction of the master and across it"
+        }
         "contact.augmentation" => "multipliers beside the penalties, until gaps have vanished",
         "contact.offset" => "contact begins at a distance from the master",
         "contact.friction.coulomb" => "friction: at most `mu` times the pressure (Coulomb)",

@@ -1,5 +1,5 @@
 //! What contact asks of a rigid surface, whatever its patches are made of.
-use covact_geometry::{Foot, Hint, PatchSet, Surface, Vec3};
+use covact_geometry::{Foot, Hint, Jet, PatchSet, Surface, Vec3};
 
 /// A surface on which closest points can be found. Batches of contact points are compiled for each implementation, so
 /// that nothing is chosen inside their loop.
@@ -9,6 +9,12 @@ pub trait ClosestPoint: Sync {
 
     /// First and second derivative along an edge; see [`PatchSet::edge_derivatives`].
     fn edge_derivatives(&self, patch: u32, edge: u32, xi: [f64; 2]) -> Option<[Vec3; 2]>;
+
+    /// How the pseudo-normal of a foot turns along its edge; see [`PatchSet::normal_along`].
+    fn normal_along(&self, foot: &Foot, along: &Vec3) -> Vec3;
+
+    /// The surface around a foot on a pole; see [`PatchSet::pole_jet`].
+    fn pole_jet(&self, foot: &Foot) -> Option<Jet>;
 
     /// Length of the diagonal of a box around the surface.
     fn size(&self) -> f64;
@@ -23,6 +29,14 @@ impl<S: Surface> ClosestPoint for PatchSet<S> {
     #[inline]
     fn edge_derivatives(&self, patch: u32, edge: u32, xi: [f64; 2]) -> Option<[Vec3; 2]> {
         self.edge_derivatives(patch, edge, xi)
+    }
+
+    fn normal_along(&self, foot: &Foot, along: &Vec3) -> Vec3 {
+        self.normal_along(foot, along)
+    }
+
+    fn pole_jet(&self, foot: &Foot) -> Option<Jet> {
+        self.pole_jet(foot)
     }
 
     #[inline]

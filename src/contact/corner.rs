@@ -59,6 +59,62 @@ pub fn law_part<D: DualNum<f64> + Copy>(d: &Vector3<D>, xi3: D, normal: &Normal<
     n * n.transpose() * (normal.dn - normal.n / xi3)
 }
 
+/// A direction of traction next to an edge or a vertex, on a master that stands still.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steady<D = f64> {
+    /// Unit vector along which the normal traction acts.
+    pub n: Vector3<D>,
+    /// `dn/dr_s` (1 / length).
+    pub turn: Matrix3<D>,
+    /// `dxi3/dr_s`, the direction of the distance itself.
+    pub gradient: Vector3<D>,
+}
+
+/// The direction of a traction that does not vanish with the distance (a multiplier, an offset), within `radius` of an edge
+/// or a vertex, where `e = d / xi3` turns ever faster as the distance vanishes and is nothing at last:
+///
+/// ```text
+/// n = v / |v|     v = (1 - w) m + w e     w = q^2 (3 - 2 q),  q = |xi3| / radius
+/// ```
+///
+/// with the pseudo-normal `m`. At `radius` it goes over into `e` with its derivative; at the line itself it is `m`. `e` and
+/// `m` never oppose each other, for the side of `e` is that of `m`. `m_turn` is `dm/dr_s`, zero at a vertex, and
+/// `line` the first and second derivative of the edge, none at a vertex.
+pub fn steady<D: DualNum<f64> + Copy>(
+    d: &Vector3<D>,
+    xi3: D,
+    line: Option<(&Vector3<D>, &Vector3<D>)>,
+    m: &Vector3<D>,
+    m_turn: &Matrix3<D>,
+    radius: f64,
+) -> Steady<D> {
+    if xi3.re() == 0.0 {
+        return Steady {
+            n: *m,
+            turn: *m_turn,
+            gradient: *m,
+        };
+    }
+    let e = d * xi3.recip();
+    let mut across = vertex_tangent(D::one()) - e * e.transpose();
+    if let Some((rho_s, rho_ss)) = line {
+        across -= rho_s * rho_s.transpose() * curvature(d, rho_s, rho_ss).recip();
+    }
+    let q = xi3 * (xi3.re().signum() / radius);
+    let w = q * q * (-q * 2.0 + 3.0);
+    let v = m * (-w + 1.0) + e * w;
+    let shorter = v.dot(&v).sqrt().recip();
+    let n = v * shorter;
+    // dv = (1 - w) dm + w / xi3 (I - e x e - ..) + w' (e - m) x e
+    let slope = q * (-q + 1.0) * (6.0 * xi3.re().signum() / radius);
+    let dv = m_turn * (-w + 1.0) + across * (w / xi3) + (e - m) * e.transpose() * slope;
+    Steady {
+        n,
+        turn: (dv - n * (n.transpose() * dv)) * shorter,
+        gradient: e,
+    }
+}
+
 /// Residual `N d / xi3` of an edge or vertex point of unit weight in the nine slots.
 pub(super) fn slots_residual<D: DualNum<f64> + Copy>(
     d: &Vector3<D>,
@@ -83,6 +139,21 @@ pub(super) fn vertex_slots<D: DualNum<f64> + Copy>(
     k
 }
 
+/// `E` of an edge that moves: `ds = E . slots / (|rho'|^2 - rho'' . d)`.
+pub(super) fn along_edge<D: DualNum<f64> + Copy>(
+    d: &Vector3<D>,
+    direction: &[D; 2],
+    rho_s: &Vector3<D>,
+) -> Slots<D> {
+    let mut e = Slots::from_element(D::zero());
+    for k in 0..3 {
+        e[k] = rho_s[k];
+        e[3 + k] = d[k] * direction[0];
+        e[6 + k] = d[k] * direction[1];
+    }
+    e
+}
+
 /// Tangent at an edge that moves, in the nine slots.
 pub(super) fn edge_slots<D: DualNum<f64> + Copy>(
     d: &Vector3<D>,
@@ -92,12 +163,7 @@ pub(super) fn edge_slots<D: DualNum<f64> + Copy>(
     rho_ss: &Vector3<D>,
     normal: &Normal<D>,
 ) -> SlotMatrix<D> {
-    let mut e = Slots::from_element(D::zero());
-    for k in 0..3 {
-        e[k] = rho_s[k];
-        e[3 + k] = d[k] * direction[0];
-        e[6 + k] = d[k] * direction[1];
-    }
+    let e = along_edge(d, direction, rho_s);
     let scale = normal.n / (xi3 * curvature(d, rho_s, rho_ss));
     vertex_slots(d, xi3, normal) - e * e.transpose() * scale
 }

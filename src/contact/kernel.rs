@@ -42,11 +42,11 @@ pub struct Normal<D = f64> {
 }
 
 /// The row vectors of a contact point, exact at its `xi3`.
-struct Rows<D> {
-    g3: Slots<D>,
-    c: [Slots<D>; 2],
-    x: [Slots<D>; 2],
-    q: [Slots<D>; 2],
+pub(super) struct Rows<D> {
+    pub g3: Slots<D>,
+    pub c: [Slots<D>; 2],
+    pub x: [Slots<D>; 2],
+    pub q: [Slots<D>; 2],
 }
 
 pub(super) fn in_slot<D: DualNum<f64> + Copy>(slot: usize, v: &Vector3<D>) -> Slots<D> {
@@ -64,7 +64,7 @@ pub fn inverse_at_point<D: DualNum<f64> + Copy>(frame: &Frame<D>, xi3: D) -> [D;
     [m22 * inverse_det, -m12 * inverse_det, m11 * inverse_det]
 }
 
-fn rows<D: DualNum<f64> + Copy>(frame: &Frame<D>, xi3: D) -> Rows<D> {
+pub(super) fn rows<D: DualNum<f64> + Copy>(frame: &Frame<D>, xi3: D) -> Rows<D> {
     let inv = inverse_at_point(frame, xi3);
     let c = [in_slot(1, &frame.n), in_slot(2, &frame.n)];
     let full = [0, 1].map(|i| in_slot(0, &frame.rho_i[i]) + c[i] * xi3);

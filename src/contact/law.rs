@@ -13,6 +13,14 @@ pub trait NormalLaw: Sync {
         xi3
     }
 
+    /// Distance from an edge or a vertex within which the direction of the distance gives way to the pseudo-normal
+    /// ([`super::corner::steady`]), at most `small` (length): as far as the traction left at no distance reaches. Zero for
+    /// a penalty, whose force is smooth by itself.
+    #[inline]
+    fn steady_radius(&self, _small: f64) -> f64 {
+        0.0
+    }
+
     /// Whether a point at this normal coordinate is in contact.
     #[inline]
     fn closes(&self, xi3: f64) -> bool {
@@ -101,6 +109,11 @@ impl<L: NormalLaw> NormalLaw for Shifted<L> {
     fn reach(&self) -> f64 {
         self.z0
     }
+    #[inline]
+    fn steady_radius(&self, small: f64) -> f64 {
+        let Normal { n, dn } = self.normal(0.0);
+        (n / dn).abs().min(small)
+    }
 }
 
 /// Points of a pair with normal multipliers, and what their gaps are measured from.
@@ -172,5 +185,10 @@ impl<L: NormalLaw> NormalLaw for Augmented<L> {
     fn reach(&self) -> f64 {
         let Normal { n, dn } = self.law.normal(0.0);
         self.z0 - (self.lambda_n + n) / dn
+    }
+    #[inline]
+    fn steady_radius(&self, small: f64) -> f64 {
+        let Normal { n, dn } = self.normal(0.0);
+        (n / dn).abs().min(small)
     }
 }

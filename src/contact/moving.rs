@@ -95,7 +95,7 @@ impl MovingMaster<'_> {
         }
     }
 
-    fn search(
+    pub(super) fn search(
         &self,
         x: &Vec3,
         hint: &mut Option<Hint>,
@@ -119,7 +119,7 @@ impl MovingMaster<'_> {
         }
     }
 
-    fn at(&self, x: &Vec3, foot: &MovingFoot) -> Result<Meeting, PointFault> {
+    pub(super) fn at(&self, x: &Vec3, foot: &MovingFoot) -> Result<Meeting, PointFault> {
         Ok(Meeting {
             piece: Piece::Facet(foot.facet),
             xi: foot.xi,

@@ -35,8 +35,8 @@ pub enum PointGeometry<D = f64> {
     },
     /// At a vertex: distance vector and signed distance as on an edge.
     Vertex { d: Vector3<D>, xi3: D },
-    /// On a face where the parametrisation has no metric (the pole of a surface of revolution): only the unit normal is
-    /// known. The geometric part, smaller than the main part by `xi3 kappa`, is left out of the tangent.
+    /// Where the parametrisation has no metric and the surface no curvature (the tip of a cone): only the unit normal is
+    /// known. (At the pole of a smooth surface the curvature is that of the ways out of it, and the point one of a face.) The geometric part, smaller than the main part by `xi3 kappa`, is left out of the tangent.
     Pole { normal: Vector3<D>, xi3: D },
 }
 

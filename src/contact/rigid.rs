@@ -1,6 +1,6 @@
 //! Contact of slave points with a rigid surface: NURBS patches or facets, whatever finds closest points.
 use super::closest::ClosestPoint;
-use super::corner;
+use super::corner::{self, Steady};
 pub use super::fault::{Piece, PointFault};
 use super::kernel::{self, Normal};
 use super::law::NormalLaw;
@@ -48,6 +48,9 @@ pub struct RigidMaster<'a, P = PatchSet> {
 /// A foot on an edge or a crease whose distance vector leans along the line by more than this (relative to the size of
 /// the surface) is held along the line too.
 const HELD: f64 = 1e-9;
+/// Distance from an edge or a vertex (relative to the size of the surface) within which a traction that does not vanish
+/// there turns into the pseudo-normal. Much less than any gap that is resolved, and much more than rounding.
+const STEADY: f64 = 1e-6;
 
 /// A point in contact, per unit area and in space coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,15 +88,18 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         law: &L,
         tangent: &T,
     ) -> Result<Option<Touch>, PointFault> {
-        let Some((_, geometry)) = self.contact_at(x, hint, law)? else {
+        let Some((_, foot, geometry)) = self.contact_at(x, hint, law)? else {
             return Ok(None);
         };
         let normal = law.normal(geometry.xi3());
-        let (residual, k) = respond_rigid(&geometry, &normal, tangent);
+        let (residual, k) = match self.steady(&foot, &geometry, law) {
+            None => respond_rigid(&geometry, &normal, tangent),
+            Some(steady) => respond_steady(&steady, &normal),
+        };
         Ok(Some(self.in_space(&geometry, law, &normal, residual, k)))
     }
 
-    /// The slave point at `x` and what the surface looks like at its foot, in the surface's own coordinates; `None` where
+    /// The slave point at `x`, its foot and what the surface looks like there, in the surface's own coordinates; `None` where
     /// the point is open. `hint` as for [`Self::touch`].
     #[inline]
     pub(super) fn contact_at<L: NormalLaw>(
@@ -101,7 +107,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         x: &Vec3,
         hint: &mut Option<Hint>,
         law: &L,
-    ) -> Result<Option<(Vec3, PointGeometry)>, PointFault> {
+    ) -> Result<Option<(Vec3, Foot, PointGeometry)>, PointFault> {
         if !(x.x.is_finite() && x.y.is_finite() && x.z.is_finite()) {
             return Err(PointFault::NotFinite);
         }
@@ -130,11 +136,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
                 xi3,
             });
         }
-        if !geometry.directs(&law.normal(xi3)) {
-            let piece = Piece::Patch(patch);
-            return Err(PointFault::NoDirection { piece, xi, xi3 });
-        }
-        Ok(Some((local, geometry)))
+        Ok(Some((local, foot, geometry)))
     }
 
     /// A touch from residual and tangent in the surface's own coordinates.
@@ -218,16 +220,53 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
             Location::Crease { dir } => {
                 Ok(self.on_line(foot, along_side(foot, 1 - dir as usize), d))
             }
-            // The parametrisation has no metric here; the normal is known.
-            Location::Pole { .. } => Ok(PointGeometry::Pole {
-                normal: foot.normal,
-                xi3,
-            }),
+            // The parametrisation has no metric here; where the surface is smooth, its ways out of the pole tell the rest.
+            Location::Pole { .. } => {
+                let smooth = (self.surface.pole_jet(foot)).and_then(|jet| Frame::new(&jet, 1.0));
+                Ok(match smooth {
+                    Some(frame) => PointGeometry::Face { frame, xi3 },
+                    None => PointGeometry::Pole {
+                        normal: foot.normal,
+                        xi3,
+                    },
+                })
+            }
             _ => Ok(PointGeometry::Face {
                 frame: Frame::new(&foot.jet, foot.side).ok_or(degenerate)?,
                 xi3,
             }),
         }
+    }
+
+    /// The direction of the traction where it is not that of the distance: next to an edge or a vertex, under a law whose
+    /// traction does not vanish there.
+    #[inline]
+    pub(super) fn steady<L: NormalLaw>(
+        &self,
+        foot: &Foot,
+        geometry: &PointGeometry,
+        law: &L,
+    ) -> Option<Steady> {
+        let (d, xi3, line) = match geometry {
+            PointGeometry::Edge {
+                d,
+                xi3,
+                rho_s,
+                rho_ss,
+                ..
+            } => (d, *xi3, Some((rho_s, rho_ss))),
+            PointGeometry::Vertex { d, xi3 } => (d, *xi3, None),
+            _ => return None,
+        };
+        let radius = law.steady_radius(STEADY * self.surface.size());
+        if xi3.abs() >= radius {
+            return None;
+        }
+        let m_turn = line.map_or_else(Matrix3::zeros, |(rho_s, rho_ss)| {
+            let per_parameter = self.surface.normal_along(foot, rho_s);
+            per_parameter * rho_s.transpose() / corner::curvature(d, rho_s, rho_ss)
+        });
+        Some(corner::steady(d, xi3, line, &foot.normal, &m_turn, radius))
     }
 
     fn on_line(&self, foot: &Foot, [rho_s, rho_ss]: [Vec3; 2], d: &Vec3) -> PointGeometry {
@@ -277,6 +316,12 @@ pub(super) fn respond_rigid<T: RigidTangent>(
         }
         PointGeometry::Pole { normal: n, .. } => (n * normal.n, n * n.transpose() * normal.dn),
     }
+}
+
+/// Residual and tangent of normal contact whose direction is not that of the distance.
+pub(super) fn respond_steady(steady: &Steady, normal: &Normal) -> (Vec3, Matrix3<f64>) {
+    let k = steady.n * steady.gradient.transpose() * normal.dn + steady.turn * normal.n;
+    (steady.n * normal.n, k)
 }
 
 /// First and second derivatives along a line of parameter `along`.

@@ -71,6 +71,7 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
     for friction in model.pairs.iter().filter_map(|p| p.friction.as_ref()) {
         add(match friction.law {
             LawModel::Coulomb { .. } => "contact.friction.coulomb",
+            LawModel::Orthotropic { .. } => "contact.friction.orthotropic",
         });
     }
     if model

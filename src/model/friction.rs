@@ -1,7 +1,9 @@
 //! Friction of a contact pair: its law over time, and its penalty.
 use super::penalty;
 use crate::contact::friction::law::Coulomb;
+use crate::contact::friction::orthotropic::Orthotropic;
 use crate::scene::{Friction, Material, TIME, TimeFunction, ValueError};
+use nalgebra::{Unit, Vector3};
 
 /// Friction of a pair.
 #[derive(Debug, Clone)]
@@ -14,13 +16,20 @@ pub struct FrictionModel {
 /// A law of friction whose coefficients may vary in time.
 #[derive(Debug, Clone)]
 pub enum LawModel {
-    Coulomb { mu: TimeFunction },
+    Coulomb {
+        mu: TimeFunction,
+    },
+    Orthotropic {
+        mu: [TimeFunction; 2],
+        direction: Unit<Vector3<f64>>,
+    },
 }
 
 /// A law of friction at a time; [`with_law`](crate::with_law) compiles what runs over points for each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LawNow {
     Coulomb(Coulomb),
+    Orthotropic(Orthotropic),
 }
 
 /// Evaluates an expression with the law of a [`LawNow`], compiled once for each kind.
@@ -29,6 +38,7 @@ macro_rules! with_law {
     ($now:expr, $law:ident => $then:expr) => {
         match $now {
             $crate::model::friction::LawNow::Coulomb($law) => $then,
+            $crate::model::friction::LawNow::Orthotropic($law) => $then,
         }
     };
 }
@@ -43,6 +53,15 @@ impl LawModel {
             Friction::Coulomb { mu } => Ok(LawModel::Coulomb {
                 mu: mu.compile(&TIME)?,
             }),
+            Friction::Orthotropic {
+                mu: [along, across],
+                direction,
+            } => Ok(LawModel::Orthotropic {
+                mu: [along.compile(&TIME)?, across.compile(&TIME)?],
+                direction: Unit::try_new((*direction).into(), 0.0).ok_or(ValueError::NoLength {
+                    what: "the direction",
+                })?,
+            }),
         }
     }
 
@@ -55,6 +74,7 @@ impl LawModel {
     fn functions(&self) -> Vec<&TimeFunction> {
         match self {
             LawModel::Coulomb { mu } => vec![mu],
+            LawModel::Orthotropic { mu, .. } => mu.iter().collect(),
         }
     }
 
@@ -78,6 +98,10 @@ impl LawModel {
             LawModel::Coulomb { mu } => Ok(LawNow::Coulomb(Coulomb {
                 mu: coefficient(mu)?,
             })),
+            LawModel::Orthotropic { mu, direction } => {
+                let mu = [coefficient(&mu[0])?, coefficient(&mu[1])?];
+                Ok(LawNow::Orthotropic(Orthotropic::new(mu, *direction)))
+            }
         }
     }
 }

@@ -193,6 +193,16 @@ impl Model {
 }
 
 impl PairModel {
+    /// Share of the pair in the energy of its contact: both passes of two are one contact with two sides, whose energy is
+    /// the mean of both.
+    #[inline]
+    pub fn share(&self) -> f64 {
+        match self.half {
+            None => 1.0,
+            Some(_) => 0.5,
+        }
+    }
+
     /// Where the histories of the points are among all; none where the points have none.
     #[inline]
     pub fn history(&self) -> Option<std::ops::Range<usize>> {

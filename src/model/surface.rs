@@ -5,7 +5,7 @@ use crate::contact::closest::ClosestPoint;
 use crate::contact::rigid::RigidMaster;
 use crate::scene::{FacetKind, ValueError};
 use covact_geometry::project::{ComponentSide, EdgeReport, SideError};
-use covact_geometry::{Bilinear, Biquadratic, Foot, Hint, NurbsPatch, PatchSet, Vec3};
+use covact_geometry::{Bilinear, Biquadratic, Foot, Hint, Jet, NurbsPatch, PatchSet, Vec3};
 
 /// A rigid surface.
 #[derive(Debug)]
@@ -67,6 +67,14 @@ impl ClosestPoint for SurfaceSet {
 
     fn edge_derivatives(&self, patch: u32, edge: u32, xi: [f64; 2]) -> Option<[Vec3; 2]> {
         with_patches!(self, s => s.edge_derivatives(patch, edge, xi))
+    }
+
+    fn normal_along(&self, foot: &Foot, along: &Vec3) -> Vec3 {
+        with_patches!(self, s => s.normal_along(foot, along))
+    }
+
+    fn pole_jet(&self, foot: &Foot) -> Option<Jet> {
+        with_patches!(self, s => s.pole_jet(foot))
     }
 
     fn size(&self) -> f64 {

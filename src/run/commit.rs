@@ -1,10 +1,13 @@
 //! What slave points with history remember of a step that is accepted.
-use crate::assembly::{Fault, PointAnswer};
+mod moving;
+
+use crate::assembly::{Assembler, Fault, PointAnswer};
 use crate::contact::friction::history::{PointHistory, PointStatus};
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::Friction;
+use crate::contact::points::SlavePoint;
 use crate::contact::rigid::RigidMaster;
-use crate::model::master::Master;
+use crate::model::master::{Master, Masters};
 use crate::model::state::State;
 use crate::model::surface::SurfaceSet;
 use crate::model::{Model, PairModel};
@@ -26,18 +29,51 @@ pub struct Sliding {
     pub dissipated: f64,
 }
 
+impl Sliding {
+    /// Adds the points of a pair, of whose energies `share` counts. With multipliers the tangential penalty carries only what
+    /// `answers` say is elastic.
+    fn add(
+        &mut self,
+        histories: &[PointHistory],
+        answers: Option<&[Option<PointAnswer>]>,
+        points: &[SlavePoint],
+        eps_t: f64,
+        share: f64,
+    ) {
+        for (i, (history, p)) in histories.iter().zip(points).enumerate() {
+            match history.status {
+                PointStatus::Open => {}
+                PointStatus::Stick => self.stick += 1,
+                PointStatus::Slip => self.slip += 1,
+            }
+            let elastic = match answers {
+                Some(answers) => answers[i].as_ref().map_or(0.0, |a| a.elastic),
+                None => history.t.norm() / eps_t,
+            };
+            self.stored += 0.5 * share * eps_t * elastic.powi(2) * p.area;
+            self.dissipated += share * history.dissipated * p.area;
+        }
+    }
+}
+
 /// Sets the points that slip is measured from, before anything has moved.
 ///
 /// # Errors
 /// A motion without a value at time 0.
-pub fn start(model: &Model, state: &mut State) -> Result<(), Fault> {
+pub fn start(model: &Model, masters: &mut Masters, state: &mut State) -> Result<(), Fault> {
+    masters.update(model, &state.u);
     let mut first = 0;
     for (index, pair) in model.pairs.iter().enumerate() {
         let points = first..first + state.slaves(model, index).len();
         first = points.end;
-        let (Some(range), Some(_), Master::Rigid(surface)) =
-            (pair.history(), &pair.friction, &pair.master)
-        else {
+        let (Some(range), Some(_)) = (pair.history(), &pair.friction) else {
+            continue;
+        };
+        let Master::Rigid(surface) = &pair.master else {
+            let batch = moving::Batch::new(model, masters, index, &state.u, 0.0, 0.0);
+            if let Some(batch) = batch {
+                batch.start(&state.points[points], &mut state.histories[range]);
+            }
             continue;
         };
         let master = model.surfaces[*surface].at(0.0, &state.u)?;
@@ -77,12 +113,14 @@ fn release(
 /// A point that cannot be evaluated, or a motion or a coefficient without a value at `time`.
 pub fn commit(
     model: &Model,
-    penalties: &[f64],
-    answers: &[Option<PointAnswer>],
+    assembler: &mut Assembler,
     state: &mut State,
     start: f64,
     time: f64,
 ) -> Result<Sliding, Fault> {
+    assembler.masters.update(model, &state.u);
+    let (masters, answers) = (&assembler.masters, assembler.answers());
+    let penalties = &assembler.penalties;
     let mut total = Sliding::default();
     let mut first = 0;
     for (index, pair) in model.pairs.iter().enumerate() {
@@ -95,20 +133,26 @@ pub fn commit(
             press(&answers[range.clone()], &mut state.histories[range]);
             continue;
         };
-        let Master::Rigid(surface) = pair.master else {
-            continue;
-        };
-        // What the tangential penalties carry beside the multipliers.
-        let stretched = match pair.augmentation {
-            Some(_) => (answers[range.clone()].iter().zip(&pair.points))
-                .filter_map(|(answer, p)| Some(answer.as_ref()?.elastic.powi(2) * p.area))
-                .sum(),
-            None => 0.0,
-        };
-        let master = model.surfaces[surface].at(time, &state.u)?;
         let (was, now) = (friction.law.at(start)?, friction.law.at(time)?);
         let limited = |trial: &Vec3, normal: &Vec3, pressure: f64| with_law!(was, law => law.slip(trial, normal, pressure).t);
         let eps_n = penalties[index];
+        let eps_t = friction.ratio * eps_n;
+        let Master::Rigid(surface) = pair.master else {
+            let batch = moving::Batch::new(model, masters, index, &state.u, time, eps_n);
+            if let Some(batch) = batch {
+                let histories = &mut state.histories[range.clone()];
+                batch.commit(&state.points[points], histories, (now, eps_t), &limited)?;
+            }
+            total.add(
+                &state.histories[range],
+                None,
+                &pair.points,
+                eps_t,
+                pair.share(),
+            );
+            continue;
+        };
+        let master = model.surfaces[surface].at(time, &state.u)?;
         let batch = Batch {
             model,
             pair,
@@ -117,7 +161,6 @@ pub fn commit(
             time,
             eps_n,
         };
-        let eps_t = friction.ratio * eps_n;
         let histories = &mut state.histories[range.clone()];
         let hints = &state.points[points];
         with_law!(now, law => {
@@ -128,18 +171,18 @@ pub fn commit(
                     batch.accept(i, point.hint, &friction, &limited, history)
                 })?;
         });
-        for (history, p) in state.histories[range].iter().zip(&pair.points) {
-            match history.status {
-                PointStatus::Open => {}
-                PointStatus::Stick => total.stick += 1,
-                PointStatus::Slip => total.slip += 1,
-            }
-            if pair.augmentation.is_none() {
-                total.stored += 0.5 * history.t.norm_squared() / eps_t * p.area;
-            }
-            total.dissipated += history.dissipated * p.area;
-        }
-        total.stored += 0.5 * eps_t * stretched;
+        // What the tangential penalties carry beside the multipliers.
+        let elastic = match pair.augmentation {
+            Some(_) => Some(&answers[range.clone()]),
+            None => None,
+        };
+        total.add(
+            &state.histories[range],
+            elastic,
+            &pair.points,
+            eps_t,
+            pair.share(),
+        );
     }
     Ok(total)
 }

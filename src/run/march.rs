@@ -97,7 +97,8 @@ impl<'a, 'm> March<'a, 'm> {
             self.warn(note);
         }
         let mut committed = State::new(self.model);
-        commit::start(self.model, &mut committed).map_err(|e| RunError::internal(&e))?;
+        let masters = &mut self.assembler.masters;
+        commit::start(self.model, masters, &mut committed).map_err(|e| RunError::internal(&e))?;
         self.gather(&mut outputs, &committed, 0.0)?;
         self.write(&mut outputs, &committed)?;
         let ending = self.steps(&mut committed, &mut outputs);
@@ -164,11 +165,9 @@ impl<'a, 'm> March<'a, 'm> {
                     }
                     // Augmentations say nothing of how far a step may go.
                     stepping.accepted(converged.iterations - converged.augmenting);
-                    let (assembler, start) = (&self.assembler, self.progress.time);
-                    let (penalties, answers) = (&assembler.penalties, assembler.answers());
-                    let sliding =
-                        commit::commit(self.model, penalties, answers, committed, start, end)
-                            .map_err(|e| RunError::internal(&e))?;
+                    let start = self.progress.time;
+                    let sliding = commit::commit(self.model, self.assembler, committed, start, end)
+                        .map_err(|e| RunError::internal(&e))?;
                     self.accept(step, end, &converged);
                     self.record(outputs, committed, dt, cuts, &converged, &sliding)?;
                     cuts = 0;

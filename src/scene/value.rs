@@ -96,6 +96,8 @@ pub enum ValueError {
         value: f64,
         time: f64,
     },
+    #[error("{what} has no length")]
+    NoLength { what: &'static str },
 }
 
 /// A [`TimeFunction`] gave something infinite or no number.

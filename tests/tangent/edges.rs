@@ -16,7 +16,7 @@ fn valley(a: f64, b: f64, bend: f64) -> impl Fn(f64, f64) -> V<f64> {
 
 /// A slave face below the crossing: its middle under the vertex, its mid-sides under the creases, its corners under the
 /// facets.
-fn case(name: &str, order: usize, [a, b, bend]: [f64; 3], depth: f64) -> Case {
+pub fn case(name: &str, order: usize, [a, b, bend]: [f64; 3], depth: f64) -> Case {
     let (nodes, facets) = mesh(2, order, valley(a, b, bend));
     let facets = plain(&nodes, &facets, order);
     let (slave, _) = mesh(1, 2, |x, y| {

@@ -37,14 +37,14 @@ fn residual<D: DualNum<f64> + Copy>(
     out
 }
 
-fn node_rows(weights: &[f64; 16], xi: [f64; 2]) -> Vec<NodeRow> {
+pub fn node_rows(weights: &[f64; 16], xi: [f64; 2]) -> Vec<NodeRow> {
     let b = basis(weights, xi);
     let mut rows: Vec<NodeRow> = (0..16).map(|k| [-b[0][k], b[1][k], b[2][k]]).collect();
     rows.push([1.0, 0.0, 0.0]);
     rows
 }
 
-fn assemble(k9: &SlotMatrix, rows: &[NodeRow]) -> Vec<Vec<f64>> {
+pub fn assemble(k9: &SlotMatrix, rows: &[NodeRow]) -> Vec<Vec<f64>> {
     let n = rows.len();
     let mut k = vec![vec![0.0; 3 * n]; 3 * n];
     for (i, ri) in rows.iter().enumerate() {

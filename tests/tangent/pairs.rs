@@ -17,7 +17,7 @@ fn warped(x: f64, y: f64) -> V<f64> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Master {
+pub enum Master {
     Bilinear,
     Biquadratic,
     Smooth,
@@ -47,7 +47,7 @@ fn facets(master: Master) -> (Vec<V<f64>>, MovingFacets) {
     }
 }
 
-fn case(slave_order: usize, scheme: Scheme, master: Master) -> Case {
+pub fn case(slave_order: usize, scheme: Scheme, master: Master) -> Case {
     // A slave face that cuts 0.02 to 0.06 below the surface, turned against the facets.
     let (slave, nodes, surface) = if master == Master::Nurbs {
         let p = support::patch(Shape::Saddle);

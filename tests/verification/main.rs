@@ -5,6 +5,8 @@ mod body_scenes;
 mod die;
 mod driven;
 mod facets;
+mod friction;
+mod friction_kernel;
 mod hertz;
 mod hertz_bodies;
 mod hinged_roof;

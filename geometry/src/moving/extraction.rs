@@ -1,7 +1,7 @@
 //! Control points as linear combinations of nodes.
 
-use super::ShapeRows;
 use super::net::bernstein;
+use super::{CurvedRows, ShapeRows};
 use crate::surface::Vec3;
 
 /// The control points of a facet as combinations of its nodes: a sparse matrix by rows. Facets with the same matrix share
@@ -77,6 +77,26 @@ impl Operator {
                 out.n[k] += factor * b[0];
                 out.n_1[k] += factor * b[1];
                 out.n_2[k] += factor * b[2];
+            }
+        }
+    }
+
+    /// Second derivatives of the shape functions; `out.rows.count` says how many nodes there are.
+    #[inline]
+    pub fn second<const M: usize>(&self, xi: [f64; 2], out: &mut CurvedRows) {
+        let [u, v] = xi.map(bernstein::<f64, M>);
+        let count = out.rows.count;
+        out.n_11[..count].fill(0.0);
+        out.n_12[..count].fill(0.0);
+        out.n_22[..count].fill(0.0);
+        for (c, range) in self.starts.windows(2).enumerate() {
+            let (i, j) = (c % M, c / M);
+            let b = [u[2][i] * v[0][j], u[1][i] * v[1][j], u[0][i] * v[2][j]];
+            for &(k, factor) in &self.entries[range[0] as usize..range[1] as usize] {
+                let k = k as usize;
+                out.n_11[k] += factor * b[0];
+                out.n_12[k] += factor * b[1];
+                out.n_22[k] += factor * b[2];
             }
         }
     }

@@ -137,6 +137,30 @@ impl Default for ShapeRows {
     }
 }
 
+/// [`ShapeRows`] with second derivatives, for what acts on the slopes of a surface (friction at a distance from it).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurvedRows {
+    /// `N_k` and first derivatives.
+    pub rows: ShapeRows,
+    /// `N_k,11`.
+    pub n_11: [f64; MAX],
+    /// `N_k,12`.
+    pub n_12: [f64; MAX],
+    /// `N_k,22`.
+    pub n_22: [f64; MAX],
+}
+
+impl Default for CurvedRows {
+    fn default() -> Self {
+        Self {
+            rows: ShapeRows::default(),
+            n_11: [0.0; MAX],
+            n_12: [0.0; MAX],
+            n_22: [0.0; MAX],
+        }
+    }
+}
+
 /// Why moving facets could not be made. Facets are numbered as given.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MovingError {
@@ -258,6 +282,20 @@ impl MovingFacets {
             1 => operator.shape::<2>(xi, out),
             2 => operator.shape::<3>(xi, out),
             _ => operator.shape::<4>(xi, out),
+        }
+    }
+
+    /// [`shape`](Self::shape) with the second derivatives `N_k,11`, `N_k,12`, `N_k,22`.
+    pub fn curved_shape(&self, facet: u32, xi: [f64; 2], out: &mut CurvedRows) {
+        self.shape(facet, xi, &mut out.rows);
+        if out.rows.count == 0 {
+            return;
+        }
+        let operator = &self.operators[self.operator_of[facet as usize] as usize];
+        match self.degree {
+            1 => operator.second::<2>(xi, out),
+            2 => operator.second::<3>(xi, out),
+            _ => operator.second::<4>(xi, out),
         }
     }
 

@@ -28,6 +28,7 @@ mod topology;
 pub(crate) mod tree;
 mod trimmed;
 mod trimmed_search;
+mod turn;
 
 pub use batch::BatchError;
 pub use neighbour::Neighbour;

@@ -3,6 +3,7 @@
 //! A slave point couples its nodes with those of the facet that it touches, and the facet changes as the bodies slide.
 //! The pattern therefore holds more than what touches: every point that is in contact or near is coupled with its facet
 //! and the facets around. Only where a point touches a facet outside of that is the pattern built anew.
+use super::links::Links;
 use crate::contact::points::SlavePoint;
 use covact_geometry::MovingFacets;
 use std::collections::BTreeSet;
@@ -30,6 +31,8 @@ pub(super) struct Couplings {
     facets: Vec<Vec<Coupled>>,
     /// Block maps of the couplings that were asked for.
     maps: Vec<u32>,
+    /// Facets that are coupled with each other, for friction.
+    pub links: Links,
 }
 
 impl Couplings {
@@ -55,6 +58,7 @@ impl Couplings {
             starts,
             facets: vec![Vec::new(); cells],
             maps: Vec::new(),
+            links: Links::default(),
         }
     }
 
@@ -118,6 +122,12 @@ impl Couplings {
             self.facets[cell].push(Coupled { facet, map: NONE });
         }
         self.maps.clear();
+    }
+
+    /// Couples, besides the neighbours among the facets that are coupled with points, `pairs` of facets with each other.
+    pub fn link(&mut self, facets: &MovingFacets, pairs: impl Iterator<Item = (u32, u32)>) {
+        let coupled = self.pairs().map(|(_, facet)| facet).collect();
+        self.links.set(facets, &coupled, pairs);
     }
 
     /// Block map of the coupling of a point with a facet, made by `make` where it is asked for the first time on a

@@ -42,6 +42,11 @@ pub(super) fn pattern(
                 plain.extend_from_slice(master.facets.nodes(facet));
                 add(&plain);
             }
+            for facets in couplings.links.pairs() {
+                plain.clear();
+                plain.extend(facets.iter().flat_map(|&f| master.facets.nodes(f)));
+                add(&plain);
+            }
         }
         averaged::groups(pair, couplings.as_ref(), &mut add);
     }

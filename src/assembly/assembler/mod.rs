@@ -7,10 +7,12 @@ mod averaged;
 mod couplings;
 mod driven;
 mod elements;
+mod links;
 mod loads;
 mod maps;
 mod moving;
 mod rigid;
+mod sliding;
 
 use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
@@ -26,6 +28,7 @@ use couplings::Couplings;
 use covact_geometry::Vec3;
 use maps::Maps;
 use moving::Meetings;
+use sliding::Sliding;
 
 use driven::Border;
 use elements::Systems;
@@ -141,6 +144,8 @@ pub struct Assembler<'m> {
     /// Per pair whose master is a body: the nodes that the pattern couples, and the points at the last state.
     couplings: Vec<Option<Couplings>>,
     meetings: Vec<Meetings>,
+    /// Per pair with friction whose master is a body: the points at the last state.
+    sliding: Vec<Sliding>,
     /// Per pair with averaged gaps: its points and nodes at the last state.
     averaged: Vec<Option<Averaged>>,
     /// The pattern, until the solver has taken it.
@@ -180,6 +185,7 @@ impl<'m> Assembler<'m> {
             masters,
             couplings,
             meetings: model.pairs.iter().map(Meetings::new).collect(),
+            sliding: model.pairs.iter().map(Sliding::new).collect(),
             averaged: model.pairs.iter().map(Averaged::new).collect(),
             new_pattern: Some(pattern),
             rebuilds: 0,

@@ -4,6 +4,7 @@ use super::answer::PointAnswer;
 use super::averaged::Averaged;
 use super::couplings::Couplings;
 use super::driven::Border;
+use super::sliding;
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, maps, put};
 use crate::contact::friction::history::PointHistory;
 use crate::contact::kernel::assemble_force;
@@ -42,9 +43,11 @@ pub(super) struct Meetings {
 }
 
 impl Meetings {
-    /// Room for a pair; none is needed where the master is rigid or gaps are averaged.
+    /// Room for a pair; none is needed where the master is rigid, gaps are averaged, or there is friction
+    /// ([`sliding::Sliding`]).
     pub fn new(pair: &PairModel) -> Self {
-        let (Some(master), None) = (pair.body_master(), &pair.averaged) else {
+        let (Some(master), None, None) = (pair.body_master(), &pair.averaged, &pair.friction)
+        else {
             return Meetings::default();
         };
         let slave = pair.points.iter().map(|p| p.count as usize).max();
@@ -88,6 +91,9 @@ pub(super) fn first_couplings(model: &Model, masters: &Masters) -> Vec<Option<Co
             let mut couplings = Couplings::new(&pair.points);
             let near = near(model, masters, index, &pair.points, &zero, &[]);
             couplings.couple(&surface.facets, near.into_iter());
+            if pair.friction.is_some() {
+                couplings.link(&surface.facets, std::iter::empty());
+            }
             Some(couplings)
         })
         .collect()
@@ -173,6 +179,21 @@ impl Assembler<'_> {
                     }
                 }?;
                 missing |= averaged.touched().any(|(i, f)| !couplings.holds(i, f));
+                continue;
+            }
+            if let (Some(friction), Some(histories)) = (&pair.friction, pair.history()) {
+                let sliding = &mut self.sliding[index];
+                sliding.meet(
+                    self.model,
+                    pair,
+                    (master, surface),
+                    (friction, self.penalties[index]),
+                    &state.u,
+                    time,
+                    &mut state.points[range],
+                    &state.histories[histories],
+                )?;
+                missing |= (sliding.touched()).any(|t| !sliding::holds(couplings, t));
                 continue;
             }
             if !self.meetings[index].holds(&state.cuts[index]) {
@@ -267,7 +288,18 @@ impl Assembler<'_> {
                 }
             }
             near.extend(self.averaged[index].iter().flat_map(Averaged::touched));
+            let Some(histories) = self.model.pairs[index].history() else {
+                couplings.couple(&surface.facets, near.into_iter());
+                continue;
+            };
+            near.extend(
+                self.sliding[index]
+                    .touched()
+                    .map(|(i, facet, _)| (i, facet)),
+            );
+            let links = sliding::with_anchors(&mut near, &state.histories[histories]);
             couplings.couple(&surface.facets, near.into_iter());
+            couplings.link(&surface.facets, links.into_iter());
         }
         let pattern = std::sync::Arc::new(maps::pattern(self.model, self.dofs, &self.couplings)?);
         let maps = maps::Maps::new(self.model, self.dofs, &pattern)?;
@@ -296,6 +328,9 @@ impl Assembler<'_> {
         totals: &mut Totals,
     ) {
         let pair = &self.model.pairs[index];
+        if pair.friction.is_some() {
+            return self.slide::<TANGENT>(index, state, range, increments, residual, rhs, totals);
+        }
         let points = slaves(&state.cuts, self.model, index);
         let u = &state.u[..];
         let states = &mut state.points[range];

@@ -16,9 +16,18 @@
 //!
 //! - [`trial`]: from the position to the traction and its derivative;
 //! - [`law`]: Coulomb's law, and what any law has to give; [`orthotropic`]: a law of two coefficients;
-//! - [`rigid`]: points on rigid masters.
+//! - [`rigid`]: points on rigid masters;
+//! - [`anchor`]: the attraction point on a facet that moves, [`moving`]: the response there in the slots,
+//!   [`touch`]: points on faces of bodies, [`scatter`]: from the slots to their nodes.
+//! - [`published`], [`evolution`]: the published tangents and the rate law in components, to compare with.
+pub mod anchor;
+pub mod evolution;
 pub mod history;
 pub mod law;
+pub mod moving;
 pub mod orthotropic;
+pub mod published;
 pub mod rigid;
+pub mod scatter;
+pub mod touch;
 pub mod trial;

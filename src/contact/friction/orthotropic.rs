@@ -1,6 +1,6 @@
 //! Friction with two coefficients, along a direction of the master and across it.
 use super::law::{FrictionLaw, Slip};
-use nalgebra::Vector3;
+use nalgebra::{Unit, Vector3};
 use num_dual::DualNum;
 
 /// Sine of the angle between the direction and the normal below which the two coefficients approach each other.
@@ -30,7 +30,7 @@ pub struct Orthotropic {
     /// Coefficients of friction along and across the direction.
     pub mu: [f64; 2],
     /// Unit vector in the coordinates of the master.
-    direction: Vector3<f64>,
+    direction: Unit<Vector3<f64>>,
 }
 
 /// The friction tensor in its principal axes.
@@ -45,10 +45,9 @@ struct Axes<D> {
 }
 
 impl Orthotropic {
-    /// Coefficients along and across `direction`, in the coordinates of the master. `None` where it has no length.
-    pub fn new(mu: [f64; 2], direction: &Vector3<f64>) -> Option<Self> {
-        let direction = direction.try_normalize(0.0)?;
-        (direction.iter().all(|x| x.is_finite())).then_some(Orthotropic { mu, direction })
+    /// Coefficients along and across `direction`, in the coordinates of the master.
+    pub fn new(mu: [f64; 2], direction: Unit<Vector3<f64>>) -> Self {
+        Orthotropic { mu, direction }
     }
 
     fn axes<D: DualNum<f64> + Copy>(&self, n: &Vector3<D>) -> Axes<D> {
@@ -226,10 +225,11 @@ impl FrictionLaw for Orthotropic {
 mod tests {
     use super::super::law::Coulomb;
     use super::*;
+    use nalgebra::Matrix3;
     use num_dual::Dual64;
 
     fn law(mu: [f64; 2], direction: [f64; 3]) -> Orthotropic {
-        Orthotropic::new(mu, &Vector3::from(direction)).unwrap()
+        Orthotropic::new(mu, Unit::new_normalize(Vector3::from(direction)))
     }
 
     #[test]
@@ -314,7 +314,7 @@ mod tests {
             let trial = Vector3::new(1.5, -0.8, 0.5);
             let trial = trial - n * n.dot(&trial);
             for mu in [[0.1, 0.4], [0.5, 0.2], [0.3, 0.0]] {
-                let law = Orthotropic::new(mu, &e).unwrap();
+                let law = Orthotropic::new(mu, Unit::new_normalize(e));
                 let pressure = 1.3;
                 let slip = law.slip(&trial, &n, pressure);
                 assert!(slip.slides, "{what}");
@@ -354,7 +354,7 @@ mod tests {
     #[test]
     fn the_normal_may_pass_through_the_direction() {
         let e = Vector3::new(0.0, 0.0, 1.0);
-        let law = Orthotropic::new([0.1, 0.5], &e).unwrap();
+        let law = Orthotropic::new([0.1, 0.5], Unit::new_normalize(e));
         let at = |angle: f64, round: f64| {
             let n = Vector3::new(
                 angle.sin() * round.cos(),

@@ -3,9 +3,10 @@ use super::history::PointHistory;
 use super::law::FrictionLaw;
 use super::trial::{Attraction, Traction};
 use crate::contact::closest::ClosestPoint;
+use crate::contact::corner::Steady;
 use crate::contact::fault::PointFault;
 use crate::contact::law::{Augmented, NormalLaw};
-use crate::contact::rigid::{Exact, RigidMaster, Touch, respond_rigid};
+use crate::contact::rigid::{Exact, RigidMaster, Touch, respond_rigid, respond_steady};
 use covact_geometry::{Hint, Vec3};
 
 /// Friction of a pair at the present time: a type per law, so that the law is chosen outside the loop over points.
@@ -56,15 +57,35 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Result<Option<FrictionTouch>, PointFault> {
-        let Some((local, geometry)) = self.contact_at(x, hint, law)? else {
+        let Some((local, foot, geometry)) = self.contact_at(x, hint, law)? else {
             return Ok(None);
         };
         let xi3 = geometry.xi3();
         let normal = law.normal(xi3);
-        let (mut residual, mut k) = respond_rigid(&geometry, &normal, &Exact);
         let attraction = history.attraction(friction.eps_t);
-        let (n, turn) = (geometry.normal(), geometry.turn());
-        let traction = attraction.traction(&friction.law, &local, &n, &turn, law.gap(xi3), &normal);
+        let gap = law.gap(xi3);
+        let (mut residual, mut k, n, traction) = match self.steady(&foot, &geometry, law) {
+            None => {
+                let (residual, k) = respond_rigid(&geometry, &normal, &Exact);
+                let (n, turn) = (geometry.normal(), geometry.turn());
+                let friction = attraction.traction(&friction.law, &local, &n, &turn, gap, &normal);
+                (residual, k, n, friction)
+            }
+            Some(steady) => {
+                let (residual, k) = respond_steady(&steady, &normal);
+                let Steady { n, turn, gradient } = &steady;
+                let friction = attraction.traction_towards(
+                    &friction.law,
+                    &local,
+                    n,
+                    gradient,
+                    turn,
+                    gap,
+                    &normal,
+                );
+                (residual, k, *n, friction)
+            }
+        };
         residual += traction.slip.t;
         k += traction.tangent;
         Ok(Some(FrictionTouch {

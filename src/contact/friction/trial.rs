@@ -19,7 +19,7 @@ pub struct Attraction<D = f64> {
 
 /// Part of a step that a point spends in contact, `g / (g - approach)` for a gap that passes evenly from `approach > 0` to
 /// `g < 0`, and its derivative with respect to `g`.
-fn after_impact<D: DualNum<f64> + Copy>(approach: f64, gap: D) -> (D, D) {
+pub(super) fn after_impact<D: DualNum<f64> + Copy>(approach: f64, gap: D) -> (D, D) {
     if approach == 0.0 {
         return (D::one(), D::zero());
     }

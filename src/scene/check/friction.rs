@@ -1,10 +1,10 @@
 //! What can be wrong with the friction of a contact.
 use super::checker::Checker;
-use super::{Contact, Friction, Gap, Penalty, Points, Scene, TIME, Tangent, check_penalty};
+use super::{Contact, Friction, Gap, Penalty, Points, TIME, Tangent, check_penalty};
 use crate::scene::Value;
 
 /// Problems of the friction of the contact at `at`.
-pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene) {
+pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
     let Some(friction) = &contact.friction else {
         if contact.tangential_penalty != Penalty::Auto {
             c.add(
@@ -22,6 +22,20 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene)
     );
     match friction {
         Friction::Coulomb { mu } => coefficient(c, &format!("{at}/friction/coulomb/mu"), mu),
+        Friction::Orthotropic { mu, direction } => {
+            let at = format!("{at}/friction/orthotropic");
+            for (k, mu) in mu.iter().enumerate() {
+                coefficient(c, &format!("{at}/mu/{k}"), mu);
+            }
+            let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if !(length > 0.0 && length.is_finite()) {
+                c.add(
+                    &format!("{at}/direction"),
+                    "the direction has no length",
+                    Some("give a vector along which the first coefficient holds".into()),
+                );
+            }
+        }
     }
     // Histories belong to points that stay, gaps to points of their own, and the published forms are of normal contact.
     let without = match contact {
@@ -37,6 +51,14 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene)
             gap: Gap::Averaged, ..
         } => Some(("gap", "averaged gaps", "take `pointwise`")),
         Contact {
+            augmentation: Some(_),
+            ..
+        } if contact.master.contains('.') => Some((
+            "augmentation",
+            "augmentation where the master is a body",
+            "take a stiffer `penalty`",
+        )),
+        Contact {
             tangent: Tangent::Published { .. },
             ..
         } => Some(("tangent", "the published tangent", "take `exact`")),
@@ -47,13 +69,6 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene)
             &format!("{at}/{field}"),
             format!("friction does not go with {with}"),
             Some(help.into()),
-        );
-    }
-    if !scene.surfaces.contains_key(&contact.master) && contact.master.contains('.') {
-        c.add(
-            &format!("{at}/friction"),
-            "friction is for masters that are rigid surfaces",
-            None,
         );
     }
 }

@@ -136,7 +136,7 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
         }
     }
     check_penalty(c, &format!("{at}/penalty"), contact.penalty);
-    friction::check(c, at, contact, scene);
+    friction::check(c, at, contact);
     augmentation::check(c, at, contact);
 }
 

@@ -68,12 +68,16 @@ impl Default for Augmentation {
     }
 }
 
-/// Law of friction, written `{"coulomb": {"mu": 0.2}}`.
+/// Law of friction, written `{"coulomb": {"mu": 0.2}}` or `{"orthotropic": {"mu": [0.1, 0.3], "direction": [1, 0, 0]}}`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Friction {
     /// The traction is at most `mu` times the pressure. `mu` may vary in time.
     Coulomb { mu: Value },
+    /// Coulomb's law with two coefficients, along a direction of the master and across it: the traction stays within an
+    /// ellipse. The direction is given in the coordinates in which the master is given, turns with it, and is projected on
+    /// its tangent plane. Both coefficients may vary in time.
+    Orthotropic { mu: [Value; 2], direction: [f64; 3] },
 }
 
 /// What becomes of slave points that start below the master.

@@ -1,0 +1,218 @@
+//! How normals turn where a patch alone does not say it: pseudo-normals along edges and creases, normals about poles.
+
+use nalgebra::Matrix3;
+
+use super::set::PatchSet;
+use super::topology::{EdgeCurve, edge_point, nearest_on_edge};
+use super::{Foot, Location};
+use crate::frame::Frame;
+use crate::surface::{Jet, Surface, Vec3};
+
+/// Ways out of a pole that are asked for their curvature.
+const MERIDIANS: usize = 16;
+/// What the curvatures about a pole may miss those of a smooth surface by (relative), and the slope of a way out its
+/// tangent plane.
+const SMOOTH: f64 = 1e-6;
+
+impl<S: Surface> PatchSet<S> {
+    /// Derivative of the [pseudo-normal](Foot::normal) of a foot on an edge between faces or on a crease, as the foot moves
+    /// along it by `along` (a vector of space along the line). Zero at any other place.
+    #[cold]
+    #[inline(never)]
+    pub fn normal_along(&self, foot: &Foot, along: &Vec3) -> Vec3 {
+        let (mut sum, mut slope) = (Vec3::zeros(), Vec3::zeros());
+        let mut add = |jet: &Jet, side: f64| {
+            if let Some(frame) = Frame::new(jet, side) {
+                let (up, n_i) = (frame.rho_up(), frame.n_i());
+                sum += frame.n;
+                slope += n_i[0] * up[0].dot(along) + n_i[1] * up[1].dot(along);
+            }
+        };
+        match foot.location {
+            Location::Edge { edge, .. } => {
+                add(&foot.jet, foot.side);
+                let Some(index) = self.topology.index(foot.patch, edge) else {
+                    return Vec3::zeros();
+                };
+                let t = nearest_on_edge(self, &foot.jet.rho, &self.topology.edges[index]).t;
+                for (link, at) in self.behind(index, t, &foot.jet.rho) {
+                    let patch = self.topology.edges[link.edge].patch;
+                    add(&at.jet, self.sides[patch as usize]);
+                }
+            }
+            Location::Crease { dir } => {
+                let Some(patch) = self.patches.get(foot.patch as usize) else {
+                    return Vec3::zeros();
+                };
+                let dir = dir as usize;
+                let mut span = patch.find_span(foot.xi);
+                add(&patch.jet_in_span(span, foot.xi), foot.side);
+                let Some(before) = span[dir].checked_sub(1) else {
+                    return Vec3::zeros();
+                };
+                span[dir] = before;
+                add(&patch.jet_in_span(span, foot.xi), foot.side);
+            }
+            _ => {}
+        }
+        let length = sum.norm();
+        if length <= 1e-12 {
+            return Vec3::zeros();
+        }
+        (slope - foot.normal * foot.normal.dot(&slope)) / length
+    }
+
+    /// The surface around a foot on a pole, as a jet whose tangents are unit vectors across each other and the outward normal
+    /// `rho_1 x rho_2`: what the patch's own parameters do not give there. Its curvature is that of the ways out of the
+    /// pole, along which the patch is regular: the normal curvature in a direction is a quadratic form of it, of which three
+    /// directions tell all. `None` anywhere else, and where the ways out do not lie on a smooth surface (the tip of a cone).
+    #[cold]
+    #[inline(never)]
+    pub fn pole_jet(&self, foot: &Foot) -> Option<Jet> {
+        let Location::Pole { edge } = foot.location else {
+            return None;
+        };
+        let edge = &self.topology.edges[self.topology.index(foot.patch, edge)?];
+        let EdgeCurve::Side { dir, .. } = edge.curve else {
+            return None;
+        };
+        let n = foot.normal;
+        let across = Vec3::ith(n.iamin(), 1.0).cross(&n).try_normalize(0.0)?;
+        let axes = [across, n.cross(&across)];
+        let [a, b] = edge.interval;
+        let mut rows = [(Vec3::zeros(), 0.0); MERIDIANS];
+        let (mut normal, mut right) = (Matrix3::zeros(), Vec3::zeros());
+        for (k, row) in rows.iter_mut().enumerate() {
+            let t = a + (b - a) * (k as f64 + 0.5) / MERIDIANS as f64;
+            let jet = edge_point(self, edge, t).jet;
+            let (out, bend) = (jet.rho_i[dir], jet.rho_ij[2 * dir]);
+            let square = out.norm_squared();
+            if !(square > 0.0 && out.dot(&n).abs() <= SMOOTH * square.sqrt()) {
+                return None;
+            }
+            let [c, s] = axes.map(|e| e.dot(&out) / square.sqrt());
+            let along = Vec3::new(c * c, 2.0 * c * s, s * s);
+            let curvature = bend.dot(&n) / square;
+            *row = (along, curvature);
+            normal += along * along.transpose();
+            right += along * curvature;
+        }
+        let shape = normal.cholesky()?.solve(&right);
+        let miss = |row: &(Vec3, f64)| (row.0.dot(&shape) - row.1).abs();
+        let limit = SMOOTH * shape.amax() + 1e-9 / self.size;
+        let smooth = shape.iter().all(|x| x.is_finite()) && rows.iter().all(|r| miss(r) <= limit);
+        smooth.then(|| Jet {
+            rho: foot.jet.rho,
+            rho_i: axes,
+            rho_ij: [n * shape.x, n * shape.y, n * shape.z],
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::NurbsPatch;
+    use crate::primitives::sphere;
+
+    #[test]
+    fn poles_of_an_ellipsoid_have_its_curvatures() {
+        let ball = sphere(1.0, Vec3::zeros(), Vec3::z()).unwrap();
+        let (a, b, c) = (1.3, 0.8, 0.6);
+        let patch = (ball.transformed(&|x| Vec3::new(a * x.x, b * x.y, c * x.z))).unwrap();
+        let set = PatchSet::new(vec![patch], None).unwrap();
+        for (z, inside) in [(c, 0.9), (c, 1.2), (-c, 0.9)] {
+            let foot = set
+                .project(&Vec3::new(0.0, 0.0, z * inside), None, 1.0)
+                .unwrap();
+            assert!(matches!(foot.location, Location::Pole { .. }));
+            let jet = set.pole_jet(&foot).expect("smooth");
+            let frame = Frame::new(&jet, 1.0).unwrap();
+            assert!((frame.n - Vec3::new(0.0, 0.0, z.signum())).norm() < 1e-12);
+            let [low, high] = frame.principal_curvatures();
+            // z = c sqrt(1 - x^2/a^2 - y^2/b^2): c / a^2 and c / b^2.
+            assert!((low + c / (b * b)).abs() < 1e-9, "{low}");
+            assert!((high + c / (a * a)).abs() < 1e-9, "{high}");
+            let along = frame.rho_i[0] * frame.h[0] + frame.rho_i[1] * frame.h[1];
+            assert!(along.norm() > 0.1);
+        }
+        // Off the pole there is nothing to say.
+        let foot = set.project(&Vec3::new(0.3, 0.1, 0.4), None, 1.0).unwrap();
+        assert_eq!(set.pole_jet(&foot), None);
+    }
+
+    #[test]
+    fn the_tip_of_a_cone_has_no_curvature() {
+        // A quarter of a cone, tip up.
+        let w = 0.5f64.sqrt();
+        let arc = [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let mut points: Vec<Vec3> = arc.iter().map(|p| Vec3::new(p[0], p[1], 0.0)).collect();
+        points.extend([Vec3::new(0.0, 0.0, 0.5); 3]);
+        let knots = [vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]];
+        let weights = [1.0, w, 1.0, 1.0, w, 1.0];
+        let patch = NurbsPatch::new([2, 1], knots, [3, 2], &points, Some(&weights)).unwrap();
+        let set = PatchSet::new(vec![patch], None).unwrap();
+        let foot = set
+            .project(&Vec3::new(-0.01, -0.01, 0.7), None, 1.0)
+            .unwrap();
+        assert!(matches!(foot.location, Location::Pole { .. }), "{foot:?}");
+        assert_eq!(set.pole_jet(&foot), None);
+    }
+
+    #[test]
+    fn pseudo_normals_turn_along_edges_and_creases() {
+        // A curved roof, bent along its ridge: two biquadratic patches, and the same as one patch with a crease.
+        let side = |sign: f64| -> Vec<Vec3> {
+            (0..9)
+                .map(|k| (f64::from(k % 3) * 0.5, f64::from(k / 3) * 0.5 - 0.5))
+                .map(|(x, y)| {
+                    let z = 0.3 * y * y + 0.2 * x * x * (1.0 + y) - 0.6 * x + 0.2 * x * y * sign;
+                    Vec3::new(sign * (x + 0.1 * y * y), y, z)
+                })
+                .collect()
+        };
+        let bezier = || vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        let patch = |points: &[Vec3]| {
+            NurbsPatch::new([2, 2], [bezier(), bezier()], [3, 3], points, None).unwrap()
+        };
+        // The sides meet where x is 0 for both: bend them back together.
+        let right = side(1.0);
+        let left: Vec<Vec3> = (side(-1.0).into_iter().enumerate())
+            .map(|(k, p)| if k % 3 == 0 { right[k] } else { p })
+            .collect();
+        let two = PatchSet::new(vec![patch(&right), patch(&left)], None).unwrap();
+        let row = |j: usize| {
+            [
+                left[3 * j + 2],
+                left[3 * j + 1],
+                right[3 * j],
+                right[3 * j + 1],
+                right[3 * j + 2],
+            ]
+        };
+        let joined: Vec<Vec3> = (0..3).flat_map(row).collect();
+        let kink = vec![0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 2.0];
+        let one = NurbsPatch::new([2, 2], [kink, bezier()], [5, 3], &joined, None).unwrap();
+        let one = PatchSet::new(vec![one], None).unwrap();
+        for set in [&two, &one] {
+            let at = |y: f64| set.project(&Vec3::new(0.0, y, 0.6), None, 2.0).unwrap();
+            let foot = at(0.1);
+            assert!(
+                matches!(
+                    foot.location,
+                    Location::Edge { .. } | Location::Crease { .. }
+                ),
+                "{:?}",
+                foot.location
+            );
+            let step = 1e-5;
+            let (a, b) = (at(0.1 - step), at(0.1 + step));
+            let moved = b.jet.rho - a.jet.rho;
+            let slope = set.normal_along(&foot, &(moved / moved.norm()));
+            let reference = (b.normal - a.normal) / moved.norm();
+            assert!(reference.norm() > 0.1, "{reference}");
+            let error = (slope - reference).norm() / reference.norm();
+            assert!(error < 1e-6, "{error:e}: {slope} {reference}");
+        }
+    }
+}

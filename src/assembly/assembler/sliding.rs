@@ -1,0 +1,369 @@
+//! Contact with friction between bodies: as [`super::moving`], with histories, and columns for the facets that hold the
+//! attraction points.
+use super::links::Links;
+use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
+use crate::contact::friction::history::PointHistory;
+use crate::contact::friction::law::FrictionLaw;
+use crate::contact::friction::moving::{Form, Full, Reduced};
+use crate::contact::friction::rigid::Friction;
+use crate::contact::friction::scatter::PointNodes;
+use crate::contact::friction::touch::MovingFrictionTouch;
+use crate::contact::law::Offsets;
+use crate::contact::moving::MovingMaster;
+use crate::contact::rigid::PointFault;
+use crate::model::friction::FrictionModel;
+use crate::model::master::{BodyMaster, BodySurface};
+use crate::model::self_contact::{Accept, All, Opposing};
+use crate::model::state::{PointState, State};
+use crate::model::{HalfPass, Model, PairModel};
+use crate::with_law;
+use covact_geometry::{CurvedRows, ShapeRows};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Points whose matrices are formed before they are summed.
+const CHUNK: usize = 64;
+
+/// The slave points of a pair with friction at the state evaluated last, and room for their matrices.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Sliding {
+    touches: Vec<Result<Option<MovingFrictionTouch>, PointFault>>,
+    /// Points in contact, ascending.
+    active: Vec<u32>,
+    work: Vec<PointWork>,
+    matrices: Vec<f64>,
+    /// Numbers that the largest matrix has.
+    stride: usize,
+}
+
+/// What is looked up for a point.
+#[derive(Debug, Clone, Default)]
+struct PointWork {
+    nodes: PointNodes,
+    shape: CurvedRows,
+    anchor: ShapeRows,
+}
+
+impl Sliding {
+    /// Room for a pair; none is needed without friction, or where the master is rigid.
+    pub fn new(pair: &PairModel) -> Self {
+        let (Some(master), Some(_)) = (pair.body_master(), &pair.friction) else {
+            return Sliding::default();
+        };
+        let slave = pair.points.iter().map(|p| p.count as usize).max();
+        let facets = 0..master.facets.len() as u32;
+        let facet = facets.map(|f| master.facets.nodes(f).len()).max();
+        let stride = (3 * (slave.unwrap_or(0) + 2 * facet.unwrap_or(0))).pow(2);
+        let most = CHUNK.min(pair.points.len());
+        Sliding {
+            touches: vec![Ok(None); pair.points.len()],
+            active: Vec::with_capacity(pair.points.len()),
+            work: vec![PointWork::default(); most],
+            matrices: vec![0.0; most * stride],
+            stride,
+        }
+    }
+
+    /// Points in contact, with the facets at their feet and those of their attraction points.
+    pub fn touched(&self) -> impl Iterator<Item = (usize, u32, u32)> + '_ {
+        (self.active.iter()).filter_map(|&i| match &self.touches[i as usize] {
+            Ok(Some(t)) => {
+                let foot = t.foot.patch;
+                Some((i as usize, foot, t.anchor.map_or(foot, |a| a.patch)))
+            }
+            _ => None,
+        })
+    }
+
+    /// Evaluates every point of a pair.
+    #[allow(clippy::too_many_arguments)]
+    pub fn meet(
+        &mut self,
+        model: &Model,
+        pair: &PairModel,
+        (master, surface): (&BodyMaster, &BodySurface),
+        (friction, eps_n): (&FrictionModel, f64),
+        u: &[f64],
+        time: f64,
+        states: &mut [PointState],
+        histories: &[PointHistory],
+    ) -> Result<(), Fault> {
+        let batch = Batch {
+            model,
+            pair,
+            master: MovingMaster {
+                facets: &surface.facets,
+                depth: master.depth,
+            },
+            eps_n,
+            u,
+            histories,
+            offsets: pair.offsets(time),
+        };
+        let eps_t = friction.ratio * eps_n;
+        let touches = &mut self.touches;
+        with_law!(friction.law.at(time)?, law => {
+            let friction = Friction { law, eps_t };
+            match &master.own {
+                None => batch.choose(states, touches, &friction, &All),
+                Some(own) => {
+                    let accept = Opposing {
+                        own,
+                        normals: &surface.normals,
+                        position: |n: u32| model.position(n as usize, u),
+                    };
+                    batch.choose(states, touches, &friction, &accept);
+                }
+            }
+        });
+        self.active.clear();
+        for (i, touch) in self.touches.iter().enumerate() {
+            match touch {
+                Err(fault) => {
+                    let x = model.point_position(&pair.points[i], u);
+                    return Err(Fault::Contact {
+                        pair: pair.name.clone(),
+                        point: i,
+                        at: [x.x, x.y, x.z],
+                        fault: *fault,
+                    });
+                }
+                Ok(None) => {}
+                Ok(Some(_)) => self.active.push(i as u32),
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Assembler<'_> {
+    /// Sums up a pair with friction that [`Assembler::meet`] has evaluated.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn slide<const TANGENT: bool>(
+        &mut self,
+        index: usize,
+        state: &mut State,
+        range: Range<usize>,
+        increments: Option<&[f64]>,
+        residual: &mut [f64],
+        rhs: &mut [f64],
+        totals: &mut Totals,
+    ) {
+        // A half pass acts on its slave alone, so that the master's rows are not asked for.
+        match self.model.pairs[index].half {
+            None => self.slide_as::<TANGENT, _>(
+                index, state, range, increments, residual, rhs, totals, &Full,
+            ),
+            Some(_) => self.slide_as::<TANGENT, _>(
+                index, state, range, increments, residual, rhs, totals, &Reduced,
+            ),
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn slide_as<const TANGENT: bool, M: Form>(
+        &mut self,
+        index: usize,
+        state: &mut State,
+        range: Range<usize>,
+        increments: Option<&[f64]>,
+        residual: &mut [f64],
+        rhs: &mut [f64],
+        totals: &mut Totals,
+        form: &M,
+    ) {
+        let pair = &self.model.pairs[index];
+        let points = &pair.points;
+        let u = &state.u[..];
+        let half = pair.half.is_some();
+        let (Some(surface), Some(couplings)) =
+            (self.masters.surface(index), &mut self.couplings[index])
+        else {
+            return;
+        };
+        let facets = &surface.facets;
+        let Sliding {
+            touches,
+            active,
+            work,
+            matrices,
+            stride,
+        } = &mut self.sliding[index];
+        let touch = |i: u32| match &touches[i as usize] {
+            Ok(Some(touch)) => Some(touch),
+            _ => None,
+        };
+        for (state, touch) in state.points[range].iter_mut().zip(touches.iter()) {
+            let closed = matches!(touch, Ok(Some(_)));
+            totals.changed += usize::from(closed != state.closed);
+            state.closed = closed;
+        }
+        totals.active += active.len();
+        let mut deepest = 0.0f64;
+        let mut force = PairForce::default();
+        let share = if half { 0.25 } else { 0.5 };
+        for chunk in active.chunks(CHUNK) {
+            (chunk.par_iter())
+                .zip(work.par_iter_mut())
+                .zip(matrices.par_chunks_mut((*stride).max(1)))
+                .with_min_len(8)
+                .for_each(|((&i, work), ke)| {
+                    let Some(touch) = touch(i) else { return };
+                    let p = &points[i as usize];
+                    let PointWork {
+                        nodes,
+                        shape,
+                        anchor,
+                    } = work;
+                    let count = p.count as usize;
+                    nodes.start(&p.nodes[..count], &p.shape[..count]);
+                    match M::FULL {
+                        true => facets.curved_shape(touch.foot.patch, touch.foot.xi, shape),
+                        false => {
+                            facets.shape(touch.foot.patch, touch.foot.xi, &mut shape.rows);
+                        }
+                    }
+                    nodes.facet(facets.nodes(touch.foot.patch), shape, !half);
+                    if TANGENT {
+                        if let Some(at) = touch.anchor {
+                            facets.shape(at.patch, at.xi, anchor);
+                            nodes.anchor(facets.nodes(at.patch), anchor);
+                        }
+                        let size = 3 * nodes.nodes().len();
+                        nodes.assemble(&touch.response, p.area, form, &mut ke[..size * size]);
+                    }
+                });
+            for ((&i, work), ke) in
+                (chunk.iter().zip(work.iter())).zip(matrices.chunks_mut(*stride))
+            {
+                let Some(touch) = touch(i) else { continue };
+                let p = &points[i as usize];
+                deepest = deepest.max(-touch.gap);
+                totals.contact_energy += share * touch.n * touch.gap * p.area;
+                let nodes = &work.nodes;
+                for (k, (node, f)) in nodes.forces(&touch.response, p.area).enumerate() {
+                    let node = node as usize;
+                    let side: &mut SurfaceForce = match k < nodes.slave() {
+                        true => &mut force.slave,
+                        false => &mut force.master,
+                    };
+                    side.force -= f;
+                    side.moment -= self.model.position(node, u).cross(&f);
+                    for c in 0..3 {
+                        residual[3 * node + c] += f[c];
+                        self.contact[3 * node + c] += f[c];
+                    }
+                }
+                if TANGENT {
+                    let own = nodes.nodes();
+                    let n = own.len();
+                    let foot = touch.foot.patch;
+                    let key = [
+                        couplings.cell(i as usize) as u32,
+                        foot,
+                        touch.anchor.map_or(foot, |a| a.patch),
+                    ];
+                    let pattern = self.matrix.pattern();
+                    let map = (couplings.links)
+                        .map(key, |out| pattern.element_map(own, out))
+                        .expect("the pattern was built with every facet that a point feels");
+                    put(
+                        &mut self.matrix,
+                        self.dofs,
+                        &mut self.work,
+                        own,
+                        &map[..n * (n + 1) / 2],
+                        &mut ke[..9 * n * n],
+                        increments,
+                        rhs,
+                    );
+                }
+            }
+        }
+        totals.penetration.push(deepest);
+        match pair.half {
+            Some(HalfPass { other, back: true }) => totals.pairs[other].master = force.slave,
+            Some(_) => totals.pairs[index].slave = force.slave,
+            None => totals.pairs[index] = force,
+        }
+    }
+}
+
+/// The slave points of a pair at one trial state.
+struct Batch<'a> {
+    model: &'a Model,
+    pair: &'a PairModel,
+    master: MovingMaster<'a>,
+    eps_n: f64,
+    u: &'a [f64],
+    histories: &'a [PointHistory],
+    offsets: Option<Offsets<'a>>,
+}
+
+type Touches = [Result<Option<MovingFrictionTouch>, PointFault>];
+
+impl Batch<'_> {
+    /// Evaluates every point with the virtual work that the pair needs.
+    fn choose<F: FrictionLaw, A: Accept>(
+        &self,
+        states: &mut [PointState],
+        touches: &mut Touches,
+        friction: &Friction<F>,
+        accept: &A,
+    ) {
+        match self.pair.half {
+            None => self.evaluate(states, touches, friction, accept, &Full),
+            Some(_) => self.evaluate(states, touches, friction, accept, &Reduced),
+        }
+    }
+
+    /// Evaluates every point; law, form and the facets that exist are types here.
+    fn evaluate<F: FrictionLaw, A: Accept, M: Form>(
+        &self,
+        states: &mut [PointState],
+        touches: &mut Touches,
+        friction: &Friction<F>,
+        accept: &A,
+        form: &M,
+    ) {
+        (self.pair.points.par_iter())
+            .zip(states.par_iter_mut())
+            .zip(touches.par_iter_mut())
+            .zip(self.histories)
+            .enumerate()
+            .with_min_len(32)
+            .for_each(|(i, (((p, s), out), history))| {
+                let x = self.model.point_position(p, self.u);
+                let law = history.law(self.eps_n, self.offsets.map_or(0.0, |o| o.at(i)));
+                let at = accept.point(i);
+                let facet = |f| accept.facet(at, f);
+                let hint = &mut s.hint;
+                *out = (self.master)
+                    .touch_with_friction(&x, hint, &law, friction, history, form, facet);
+            });
+    }
+}
+
+/// Adds the facets of the attraction points to those at the feet of points, and links what occurs together.
+pub(super) fn with_anchors(
+    near: &mut Vec<(usize, u32)>,
+    histories: &[PointHistory],
+) -> Vec<(u32, u32)> {
+    let anchor = |i: usize| Some(histories.get(i)?.place?.patch);
+    let held: Vec<(usize, u32, u32)> = (near.iter())
+        .filter_map(|&(i, facet)| Some((i, facet, anchor(i)?)))
+        .collect();
+    near.extend(held.iter().map(|&(i, _, anchor)| (i, anchor)));
+    held.iter()
+        .map(|&(_, facet, anchor)| (facet, anchor))
+        .collect()
+}
+
+/// Whether the pattern holds what a point feels.
+pub(super) fn holds(
+    couplings: &super::couplings::Couplings,
+    (point, facet, anchor): (usize, u32, u32),
+) -> bool {
+    let links: &Links = &couplings.links;
+    couplings.holds(point, facet) && couplings.holds(point, anchor) && links.hold(facet, anchor)
+}

@@ -1,0 +1,119 @@
+//! Contact with friction on faces of a body.
+use super::anchor::{Anchor, Pull};
+use super::history::PointHistory;
+use super::law::FrictionLaw;
+use super::moving::{Form, Response, respond_with_friction};
+use super::rigid::Friction;
+use crate::contact::fault::{Piece, PointFault};
+use crate::contact::law::{Augmented, NormalLaw};
+use crate::contact::moving::MovingMaster;
+use covact_geometry::{Hint, Vec3};
+
+/// A point in contact with friction on faces of a body, per unit area and in space coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovingFrictionTouch {
+    /// Facet and parameters of the foot.
+    pub foot: Hint,
+    /// Facet and parameters of the attraction point, where there is one.
+    pub anchor: Option<Hint>,
+    pub response: Response,
+    /// Gap that the law sees, negative in a pure penalty (length).
+    pub gap: f64,
+    /// Normal traction, negative.
+    pub n: f64,
+    /// Outward unit vector that it acts along.
+    pub normal: Vec3,
+}
+
+/// How near the direction of the distance is lost on an edge or a vertex, relative to the size of the surface.
+const NEAR: f64 = 1e-12;
+
+impl MovingMaster<'_> {
+    /// Evaluates a slave point with friction; `None` where it is open. `hint` and `accept` as for
+    /// [`MovingMaster::touch`].
+    ///
+    /// # Errors
+    /// [`PointFault`] as there, and where the facet of the attraction point has degenerated.
+    pub fn touch_with_friction<F: FrictionLaw, M: Form>(
+        &self,
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        law: &Augmented,
+        friction: &Friction<F>,
+        history: &PointHistory,
+        form: &M,
+        accept: impl Fn(u32) -> bool,
+    ) -> Result<Option<MovingFrictionTouch>, PointFault> {
+        let Some(foot) = self.search(x, hint, self.depth, accept)? else {
+            return Ok(None);
+        };
+        let meeting = self.at(x, &foot)?;
+        if meeting.free || !law.closes(meeting.xi3) {
+            return Ok(None);
+        }
+        meeting.check()?;
+        let normal = law.normal(meeting.xi3);
+        let gap = law.gap(meeting.xi3);
+        let pull = match history.place {
+            None => Pull::none(),
+            Some(place) => {
+                let anchor = Anchor::new(&self.facets.jet(place.patch, place.xi)).ok_or(
+                    PointFault::DegenerateFrame {
+                        piece: Piece::Facet(place.patch),
+                        xi: place.xi,
+                    },
+                )?;
+                let components = [&history.base, &history.lambda];
+                Pull::new(
+                    &anchor,
+                    components,
+                    friction.eps_t,
+                    history.approach,
+                    x,
+                    gap,
+                )
+            }
+        };
+        let geometry = meeting.steady(NEAR * self.facets.size());
+        Ok(Some(MovingFrictionTouch {
+            foot: foot.hint(),
+            anchor: history.place,
+            response: respond_with_friction(&geometry, &normal, &friction.law, &pull, form),
+            gap,
+            n: normal.n,
+            normal: geometry.normal(),
+        }))
+    }
+
+    /// Attaches an attraction point and its traction, in space, to the surface at `foot`, to move with it from now on. Where
+    /// the facet has no normal there, the place is moved a little towards its middle; where it has none anywhere near,
+    /// or there is no foot, the point is attached to nothing and nothing pulls at it.
+    pub fn attach(&self, history: &mut PointHistory, foot: Option<Hint>) {
+        let found = foot.and_then(|Hint { patch, xi }| {
+            [0.0, 1e-3, 0.1].into_iter().find_map(|step| {
+                let xi = xi.map(|x| x * (1.0 - step));
+                let anchor = Anchor::new(&self.facets.jet(patch, xi))?;
+                Some((Hint { patch, xi }, anchor))
+            })
+        });
+        (history.place, history.base, history.lambda) = match found {
+            Some((place, anchor)) => (
+                Some(place),
+                anchor.components(&(history.base - anchor.rho)),
+                anchor.components(&history.lambda),
+            ),
+            None => (None, Vec3::zeros(), Vec3::zeros()),
+        };
+    }
+
+    /// Turns attraction point and traction of a history into those of space, where the surface is now; of a history without
+    /// a place the attraction point is `x`.
+    pub fn detach(&self, history: &mut PointHistory, x: &Vec3) {
+        let place = history.place.take();
+        let anchor = place.and_then(|p| Anchor::new(&self.facets.jet(p.patch, p.xi)));
+        (history.base, history.lambda) = match anchor {
+            Some(a) => (a.rho + a.vector(&history.base), a.vector(&history.lambda)),
+            None => (*x, Vec3::zeros()),
+        };
+    }
+}

@@ -1,0 +1,202 @@
+//! Slave points on faces of bodies: their attraction points are material points of these faces.
+use crate::assembly::Fault;
+use crate::contact::friction::history::PointHistory;
+use crate::contact::friction::law::FrictionLaw;
+use crate::contact::friction::moving::Reduced;
+use crate::contact::friction::rigid::Friction;
+use crate::contact::friction::trial::Traction;
+use crate::contact::moving::MovingMaster;
+use crate::model::friction::LawNow;
+use crate::model::master::{BodyMaster, BodySurface, Masters};
+use crate::model::self_contact::{Accept, All, Opposing};
+use crate::model::state::PointState;
+use crate::model::{Model, PairModel};
+use crate::with_law;
+use covact_geometry::{Hint, Vec3};
+use nalgebra::{Matrix3, UnitQuaternion};
+use rayon::prelude::*;
+
+/// The points of a pair whose master is a body, at an accepted state.
+pub(super) struct Batch<'a> {
+    model: &'a Model,
+    pair: &'a PairModel,
+    body: &'a BodyMaster,
+    surface: &'a BodySurface,
+    u: &'a [f64],
+    time: f64,
+    eps_n: f64,
+}
+
+impl<'a> Batch<'a> {
+    /// Of a pair, its master where [`Masters::update`] put it last; none where that is a rigid surface.
+    pub fn new(
+        model: &'a Model,
+        masters: &'a Masters,
+        index: usize,
+        u: &'a [f64],
+        time: f64,
+        eps_n: f64,
+    ) -> Option<Self> {
+        let pair = &model.pairs[index];
+        Some(Batch {
+            model,
+            pair,
+            body: pair.body_master()?,
+            surface: masters.surface(index)?,
+            u,
+            time,
+            eps_n,
+        })
+    }
+
+    /// Sets the points that slip is measured from, before anything has moved.
+    pub fn start(&self, points: &[PointState], histories: &mut [PointHistory]) {
+        match &self.body.own {
+            None => self.open_all(points, histories, &All),
+            Some(own) => self.open_all(points, histories, &self.opposing(own)),
+        }
+    }
+
+    fn open_all<A: Accept>(
+        &self,
+        points: &[PointState],
+        histories: &mut [PointHistory],
+        accept: &A,
+    ) {
+        let master = self.master();
+        (histories.par_iter_mut().zip(points).enumerate())
+            .with_min_len(64)
+            .for_each(|(i, (history, point))| {
+                let at = accept.point(i);
+                let facet = |f| accept.facet(at, f);
+                self.open(&master, i, point.hint, history, facet);
+            });
+    }
+
+    /// Takes the end of a step into the histories. `limited` is the traction that the law allowed at its start, for a
+    /// trial traction, a normal and a pressure.
+    ///
+    /// # Errors
+    /// A point that cannot be evaluated.
+    pub fn commit(
+        &self,
+        points: &[PointState],
+        histories: &mut [PointHistory],
+        (law, eps_t): (LawNow, f64),
+        limited: &(impl Fn(&Vec3, &Vec3, f64) -> Vec3 + Sync),
+    ) -> Result<(), Fault> {
+        with_law!(law, law => {
+            let friction = Friction { law, eps_t };
+            match &self.body.own {
+                None => self.accept(points, histories, &friction, limited, &All),
+                Some(own) => self.accept(points, histories, &friction, limited, &self.opposing(own)),
+            }
+        })
+    }
+
+    fn opposing(
+        &self,
+        own: &'a crate::model::self_contact::OwnFacets,
+    ) -> Opposing<'a, impl Fn(u32) -> Vec3 + Sync + 'a> {
+        let (model, u) = (self.model, self.u);
+        Opposing {
+            own,
+            normals: &self.surface.normals,
+            position: move |n: u32| model.position(n as usize, u),
+        }
+    }
+
+    fn master(&self) -> MovingMaster<'a> {
+        MovingMaster {
+            facets: &self.surface.facets,
+            depth: self.body.depth,
+        }
+    }
+
+    fn accept<F: FrictionLaw, A: Accept>(
+        &self,
+        points: &[PointState],
+        histories: &mut [PointHistory],
+        friction: &Friction<F>,
+        limited: &(impl Fn(&Vec3, &Vec3, f64) -> Vec3 + Sync),
+        accept: &A,
+    ) -> Result<(), Fault> {
+        let master = self.master();
+        (histories.par_iter_mut().zip(points).enumerate())
+            .with_min_len(32)
+            .try_for_each(|(i, (history, point))| {
+                let at = accept.point(i);
+                let facet = |f| accept.facet(at, f);
+                self.point(&master, i, point.hint, friction, limited, history, facet)
+            })
+    }
+
+    #[expect(clippy::too_many_arguments)]
+    fn point<F: FrictionLaw>(
+        &self,
+        master: &MovingMaster<'_>,
+        i: usize,
+        mut hint: Option<Hint>,
+        friction: &Friction<F>,
+        limited: &impl Fn(&Vec3, &Vec3, f64) -> Vec3,
+        history: &mut PointHistory,
+        accept: impl Fn(u32) -> bool + Copy,
+    ) -> Result<(), Fault> {
+        let x = (self.model).point_position(&self.pair.points[i], self.u);
+        let law = history.law(self.eps_n, self.offset(i));
+        let touch = master
+            .touch_with_friction(&x, &mut hint, &law, friction, history, &Reduced, accept)
+            .map_err(|fault| Fault::Contact {
+                pair: self.pair.name.clone(),
+                point: i,
+                at: [x.x, x.y, x.z],
+                fault,
+            })?;
+        // Where the master is now, its coordinates are those of space: what follows is as on a rigid master that does not
+        // move, until the point is attached again.
+        let still = UnitQuaternion::identity();
+        master.detach(history, &x);
+        let foot = match touch {
+            Some(touch) => {
+                let traction = Traction {
+                    trial: touch.response.trial,
+                    slip: touch.response.slip,
+                    tangent: Matrix3::zeros(),
+                };
+                let first = limited(&traction.trial, &touch.normal, -history.n);
+                history.accept(&x, &traction, &first, touch.n, friction.eps_t, &still);
+                Some(touch.foot)
+            }
+            None => {
+                let foot = (master.facets).project(&x, hint, f64::INFINITY, accept);
+                let gap = foot.as_ref().map(|f| f.signed_distance - self.offset(i));
+                history.leave(&x, gap, self.eps_n, friction.eps_t, &still);
+                foot.map(|f| f.hint())
+            }
+        };
+        master.attach(history, foot);
+        Ok(())
+    }
+
+    /// History of an open point at the start.
+    fn open(
+        &self,
+        master: &MovingMaster<'_>,
+        i: usize,
+        hint: Option<Hint>,
+        history: &mut PointHistory,
+        accept: impl Fn(u32) -> bool,
+    ) {
+        let x = (self.model).point_position(&self.pair.points[i], self.u);
+        let foot = (master.facets).project(&x, hint, f64::INFINITY, accept);
+        history.release(
+            &x,
+            foot.as_ref().map(|f| f.signed_distance - self.offset(i)),
+        );
+        master.attach(history, foot.map(|f| f.hint()));
+    }
+
+    fn offset(&self, i: usize) -> f64 {
+        (self.pair.offsets(self.time)).map_or(0.0, |o| o.at(i))
+    }
+}

@@ -1,0 +1,134 @@
+//! Surfaces driven by force that friction holds, turns and carries.
+use crate::friction::done;
+use crate::support::solve;
+use serde_json::{Value, json};
+
+const RADIUS: f64 = 2.0;
+
+/// A long cylinder on a strip whose nodes all move by `x`, a foundation of springs of modulus 1e4.
+///
+/// ```text
+///       ( cylinder )   F down, M about y or free to turn
+///   ====================   strip, every node moved by x(t)
+/// ```
+fn roller(x: Value, force: Value, moment: Value, mu: f64, steps: u32) -> Value {
+    let step = 1.0 / f64::from(steps);
+    json!({
+        "covact": 1,
+        "materials": { "stone": { "st_venant_kirchhoff": { "E": 1000, "nu": 0.2 } } },
+        "bodies": { "strip": {
+            "mesh": { "block": { "min": [-1.5, -0.1, -0.1], "max": [1.5, 0.1, 0], "elements": [150, 1, 1] } },
+            "material": "stone",
+            "element": "h8_displacement",
+            "sets": { "all": { "nodes_in_box": { "min": [-9, -9, -9], "max": [9, 9, 9] } } }
+        } },
+        "surfaces": { "roller": {
+            "cylinder": { "radius": RADIUS, "length": 1, "center": [0, 0, RADIUS], "axis": [0, 1, 0] },
+            "motion": { "free": {
+                "center": [0, 0, RADIUS], "force": { "z": force }, "moment": { "y": moment }
+            } }
+        } },
+        "contacts": { "roll": {
+            "slave": "strip.top", "master": "roller", "points": { "gauss": 2 },
+            "penalty": { "value": 1e4 }, "friction": { "coulomb": { "mu": mu } }
+        } },
+        "supports": { "moved": { "on": "strip.all", "displacement": { "x": x, "y": 0, "z": 0 } } },
+        "solution": {
+            "step": { "initial": step, "max": step, "adaptive": false },
+            "newton": { "tolerance": 1e-11 }, "threads": 1
+        },
+        "output": { "every": 0 }
+    })
+}
+
+/// Moved from t = 0.2 on.
+fn way(far: f64) -> Value {
+    json!({ "table": [[0, 0], [0.2, 0], [1, far]] })
+}
+
+#[test]
+fn a_cylinder_rolls_on_a_moving_sheet_without_slip() {
+    // Sunk by s, half a chord c: F = 2/3 eps (2 c) s width for the parabola of depth, c^2 = 2 R s.
+    let force = 0.5;
+    let outcome = done(&roller(way(1.0), json!(-force), json!(0), 0.5, 40));
+    println!("{:?}", outcome.summary);
+    let depth = outcome.at("penetration.max", 1.0);
+    assert!(depth > 1e-4 && depth < 2e-3, "{depth}");
+    for (t, x) in [(0.4, 0.25), (0.6, 0.5), (1.0, 1.0)] {
+        // Backwards about y: the strip takes its lowest line along x.
+        let turned = -outcome.at("rotation.roller.y", t).to_radians() * RADIUS;
+        println!(
+            "{t}: {turned} of {x}, force {:e}",
+            outcome.at("force.roller.x", t)
+        );
+        // The points stick at their own depth below the circle.
+        assert!(
+            (turned / x - 1.0).abs() < 2.0 * depth / RADIUS,
+            "{t}: {turned} {x}"
+        );
+        let left = outcome.at("moment_balance.roller.y", t);
+        assert!(left.abs() < 1e-9 * force * RADIUS, "{t}: {left:e}");
+        assert!((outcome.at("force.roller.z", t) / -force - 1.0).abs() < 1e-9);
+        // No moment, no friction in sum: what there is has the arm R at every point but for the depth.
+        assert!(outcome.at("force.roller.x", t).abs() < 0.5 * force * depth / RADIUS);
+    }
+}
+
+#[test]
+fn the_moment_of_friction_is_the_moment_applied() {
+    let (force, moment) = (0.5, 0.2);
+    let outcome = done(&roller(
+        json!(0),
+        json!(-force),
+        json!(format!("{moment}*t")),
+        0.5,
+        10,
+    ));
+    let depth = outcome.at("penetration.max", 1.0);
+    for t in [0.5, 1.0] {
+        assert!(outcome.at("moment_balance.roller.y", t).abs() < 1e-9 * moment);
+        // A turn about y by the given moment: the lowest line would go along -x, and pushes the strip there.
+        let f = outcome.at("force.roller.x", t);
+        println!("{t}: {f} {}", outcome.at("rotation.roller.y", t));
+        assert!(
+            (-f * RADIUS / (moment * t) - 1.0).abs() < 2.0 * depth / RADIUS,
+            "{f}"
+        );
+        assert!(outcome.at("rotation.roller.y", t) > 0.0);
+    }
+    assert!(outcome.at("points.stick", 1.0) > 0.0);
+}
+
+#[test]
+fn a_moment_that_friction_cannot_hold_is_named() {
+    let outcome = solve(&roller(json!(0), json!(-0.5), json!("0.8*t"), 0.5, 10));
+    let (summary, reason) = (&outcome.summary, outcome.summary.reason.clone());
+    println!("{summary:?}");
+    assert_eq!(summary.status.name(), "not_converged");
+    // mu F R = 0.5.
+    assert!(
+        summary.time > 0.55 && summary.time < 0.64,
+        "{}",
+        summary.time
+    );
+    let reason = reason.expect("a reason");
+    assert!(reason.contains("surface `roller` about y"), "{reason}");
+}
+
+#[test]
+fn a_roller_that_slides_turns_with_the_moment_of_full_friction() {
+    // A brake of M holds the roller back while the strip is drawn on: it rolls if M < mu F R.
+    for (moment, slides) in [(0.3, false), (0.45, false)] {
+        let outcome = done(&roller(way(0.6), json!(-0.5), json!(moment), 0.5, 40));
+        let depth = outcome.at("penetration.max", 1.0);
+        let f = outcome.at("force.roller.x", 1.0);
+        println!("{moment}: {f} {}", outcome.at("rotation.roller.y", 1.0));
+        assert!(
+            (-f * RADIUS / moment - 1.0).abs() < 2.0 * depth / RADIUS,
+            "{f}"
+        );
+        let turned = -outcome.at("rotation.roller.y", 1.0).to_radians() * RADIUS;
+        // Elastic creep apart, which Carter's rolling contact has too.
+        assert_eq!(slides, turned < 0.5, "{turned}");
+    }
+}

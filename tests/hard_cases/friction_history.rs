@@ -1,0 +1,380 @@
+//! What slave points remember under friction: nothing is lost, doubled or invented on the way.
+use crate::friction::{block, book, done, plane, table, work};
+use crate::support::Outcome;
+use covact::solve::event::Event;
+use covact_geometry::primitives::{self, sphere, sphere_without_poles};
+use covact_geometry::{NurbsPatch, Vec3};
+use serde_json::{Value, json};
+
+/// Pressed in until t = 0.25, then drawn along x and back.
+fn drawn() -> Value {
+    json!({
+        "x": { "table": [[0, 0], [0.25, 0], [0.75, 0.3], [1, 0.2]] }, "y": 0,
+        "z": { "table": [[0, 0], [0.25, -0.05], [1, -0.05]] }
+    })
+}
+
+/// Columns that friction shows in.
+const COLUMNS: [&str; 7] = [
+    "force.tool.x",
+    "force.tool.z",
+    "energy.internal",
+    "energy.contact",
+    "energy.friction",
+    "energy.dissipated",
+    "pressure.max",
+];
+
+/// Largest difference of the columns at equal steps, relative to the largest value of each.
+fn difference(a: &Outcome, b: &Outcome) -> f64 {
+    let mut largest = 0.0f64;
+    for name in COLUMNS {
+        let (a, b) = (a.column(name), b.column(name));
+        assert_eq!(a.len(), b.len());
+        let scale = a.iter().fold(0.0f64, |s, v| s.max(v.abs()));
+        assert!(scale > 0.0, "{name} is zero throughout");
+        for (a, b) in a.iter().zip(&b) {
+            largest = largest.max((a - b).abs() / scale);
+        }
+    }
+    largest
+}
+
+/// A patch as a face of a Kratos CAD file.
+fn face(id: usize, patch: &NurbsPatch) -> Value {
+    let points: Vec<Value> = (patch.points().iter().zip(patch.weights()).enumerate())
+        .map(|(i, (p, w))| json!([i + 1, [p.x, p.y, p.z, w]]))
+        .collect();
+    json!({
+        "brep_id": id,
+        "swapped_surface_normal": false,
+        "surface": {
+            "is_trimmed": false,
+            "is_rational": true,
+            "degrees": patch.degree(),
+            "knot_vectors": [patch.knots(0), patch.knots(1)],
+            "control_points": points,
+        },
+        "boundary_loops": [],
+    })
+}
+
+/// Runs the drawn block on patches from a file.
+fn on_patches(patches: &[NurbsPatch], changes: impl Fn(&mut Value)) -> Outcome {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let file = folder.path().join("tool.cad.json");
+    let faces: Vec<Value> = (patches.iter().enumerate().map(|(i, p)| face(i + 1, p))).collect();
+    let cad = json!({
+        "tolerances": { "model_tolerance": 1e-6 },
+        "version_number": "1.0",
+        "breps": [{ "brep_id": 100, "faces": faces, "edges": [], "vertices": [] }],
+    });
+    std::fs::write(&file, cad.to_string()).expect("writable");
+    let mut tool = json!({ "cad": { "file": file }, "side": { "point": [0, 0, 5] }, "depth": 0.4 });
+    changes(&mut tool);
+    done(&block(tool, drawn(), json!(0.3), 16))
+}
+
+#[test]
+fn borders_knots_and_poles_of_a_sphere_do_not_exist_for_friction() {
+    let center = Vec3::new(0.1, 0.05, -2.0);
+    let at = |axis: Vec3| sphere(2.0, center, axis).unwrap();
+    let reference = on_patches(&[at(Vec3::new(1.0, -2.0, 0.5))], |_| {});
+    assert!(reference.at("points.slip", 0.75) > 10.0);
+    let y = at(Vec3::y());
+    // The pole under the middle of the block, a seam and knots along its way.
+    let z = at(Vec3::z());
+    for (name, patches) in [
+        ("y", vec![y.clone()]),
+        ("swapped", vec![y.swapped().unwrap()]),
+        ("reversed", vec![y.reversed(0).unwrap()]),
+        ("pole", vec![z.clone()]),
+        ("pole, reversed", vec![z.reversed(1).unwrap()]),
+        (
+            "six",
+            sphere_without_poles(2.0, center, Vec3::new(1.0, 0.2, 1.0))
+                .unwrap()
+                .to_vec(),
+        ),
+    ] {
+        let d = difference(&reference, &on_patches(&patches, |_| {}));
+        println!("{name}: {d:.1e}");
+        assert!(d < 1e-8, "{name}: {d:e}");
+    }
+}
+
+#[test]
+fn borders_between_patches_and_facets_of_a_plane_do_not_exist_for_friction() {
+    let reference = done(&block(plane(), drawn(), json!(0.3), 16));
+    // Four rectangles that meet under the block, their parameters turned and reversed.
+    let piece =
+        |x: f64, y: f64| primitives::plane(Vec3::new(x, y, 0.0), Vec3::z(), [4.0, 4.0]).unwrap();
+    let patches = [
+        piece(-1.93, -1.98),
+        piece(2.07, -1.98).swapped().unwrap(),
+        piece(-1.93, 2.02).reversed(0).unwrap(),
+        piece(2.07, 2.02).swapped().unwrap().reversed(1).unwrap(),
+    ];
+    let four = on_patches(&patches, |_| {});
+    let d = difference(&reference, &four);
+    println!("four patches: {d:.1e}");
+    assert!(d < 1e-8, "{d:e}");
+    for kind in ["bilinear", "biquadratic", "smooth"] {
+        let mut tool = plane();
+        tool["facets"] = json!({ "kind": kind, "count": [57, 43] });
+        let facets = done(&block(tool, drawn(), json!(0.3), 16));
+        let d = difference(&reference, &facets);
+        println!("{kind}: {d:.1e}");
+        assert!(d < 1e-8, "{kind}: {d:e}");
+    }
+}
+
+#[test]
+fn a_crease_and_facet_edges_keep_the_book() {
+    // A shallow roof: a ridge under the block, across its way; and a cylinder made of few flat facets.
+    let slope = 0.1f64;
+    let half = |sign: f64| {
+        let n = Vec3::new(sign * slope, 0.0, 1.0).normalize();
+        let along = Vec3::new(n.z, 0.0, -n.x);
+        let middle = Vec3::new(0.11, 0.0, 0.0) + along * sign * 2.0;
+        primitives::plane(middle, n, [4.0, 4.0]).unwrap()
+    };
+    let roof = on_patches(&[half(1.0), half(-1.0)], |tool| {
+        tool["placement"] = json!({ "translation": [0, 0, 0.02] });
+    });
+    let mut few = json!({
+        "cylinder": { "radius": 2, "length": 4, "center": [0.03, 0, -2], "axis": [0, 1, 0] },
+        "facets": { "kind": "bilinear", "count": [40, 3] }
+    });
+    few["side"] = json!({ "point": [0, 0, 5] });
+    let facets = done(&block(few, drawn(), json!(0.3), 64));
+    for (name, outcome) in [("roof", roof), ("facets", facets)] {
+        let way = [[0.0, 0.0], [0.25, 0.0], [0.75, 0.3], [1.0, 0.2]];
+        let down = [[0.0, 0.0], [0.25, -0.05], [1.0, -0.05]];
+        let put_in = work(&outcome, &outcome.column("force.top.x"), |t| table(&way, t))
+            + work(&outcome, &outcome.column("force.top.z"), |t| {
+                table(&down, t)
+            });
+        let dissipated = outcome.at("energy.dissipated", 1.0);
+        let error = (put_in - book(&outcome)) / dissipated;
+        println!("{name}: {error:.1e} of {dissipated:.3e}");
+        assert!(error.abs() < 0.03, "{name}: {error}");
+    }
+}
+
+#[test]
+fn a_point_that_comes_back_starts_without_traction_and_keeps_its_path() {
+    // Pressed and drawn, lifted, moved on, put down again.
+    let top = json!({
+        "x": { "table": [[0, 0], [0.2, 0], [0.4, 0.1], [0.5, 0.1], [0.6, 0.2], [1, 0.2]] }, "y": 0,
+        "z": { "table": [[0, 0], [0.2, -0.02], [0.4, -0.02], [0.5, 0.05], [0.6, 0.05], [0.8, -0.02], [1, -0.02]] }
+    });
+    let mut scene = block(plane(), top, json!(0.3), 20);
+    scene["output"] = json!({ "every": 1 });
+    let outcome = done(&scene);
+    assert!(outcome.at("force.tool.x", 0.4).abs() > 0.1);
+    for t in [0.5, 0.55, 0.6, 0.65] {
+        assert_eq!(
+            outcome.at("points.stick", t) + outcome.at("points.slip", t),
+            0.0,
+            "{t}"
+        );
+        assert_eq!(outcome.at("force.tool.x", t), 0.0);
+        assert_eq!(outcome.at("energy.friction", t), 0.0);
+        assert_eq!(
+            outcome.at("energy.dissipated", t),
+            outcome.at("energy.dissipated", 0.5)
+        );
+    }
+    // Pressed alone, a block presses to all sides alike; what is left of the first time would show.
+    let (x, z) = (
+        outcome.at("force.tool.x", 1.0),
+        outcome.at("force.tool.z", 1.0),
+    );
+    assert!(z > 0.1 && x.abs() < 1e-8 * z, "{x:e} {z}");
+    let path = |step: u32| {
+        let file = outcome.body("block", step);
+        file.field("slip").iter().fold(0.0f64, |a, b| a.max(*b))
+    };
+    assert!(path(8) > 0.08 && path(8) < 0.1 + 1e-9, "{}", path(8));
+    // Lifting releases what was elastic, putting down adds a little sliding to the sides.
+    assert!(path(12) >= path(8) && path(12) < path(8) + 0.01);
+    assert!(path(20) >= path(12) && path(20) < path(12) + 0.01);
+}
+
+#[test]
+fn a_step_that_is_cut_leaves_no_trace_in_the_last_bit() {
+    let run = |steps: u32, iterations: u32| {
+        let mut scene = block(plane(), drawn(), json!(0.3), steps);
+        scene["solution"]["step"]["adaptive"] = json!(true);
+        scene["solution"]["newton"]["max_iterations"] = json!(iterations);
+        scene["solution"]["end_time"] = json!(0.5);
+        done(&scene)
+    };
+    // One step to the first kink is too much for that many iterations; the half is not.
+    let at_once = run(8, 25);
+    let cut = run(4, CUT_ITERATIONS);
+    let cuts = cut
+        .events
+        .iter()
+        .filter(|e| matches!(e, Event::StepCut { .. }))
+        .count();
+    println!(
+        "{cuts} cuts; {:?} and {:?}",
+        at_once.column("time"),
+        cut.column("time")
+    );
+    assert!(cuts > 0);
+    let first = cut.column("time")[0];
+    assert_eq!(first, at_once.column("time")[0]);
+    for name in &cut.history.columns {
+        if name != "cuts" {
+            let (a, b) = (at_once.at(name, first), cut.at(name, first));
+            assert!(a.to_bits() == b.to_bits(), "{name}: {a:e} {b:e}");
+        }
+    }
+}
+const CUT_ITERATIONS: u32 = 5;
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let run = |threads: u32| {
+        let mut scene = block(plane(), drawn(), json!(0.3), 8);
+        scene["bodies"]["block"]["mesh"]["block"]["elements"] = json!([9, 5, 1]);
+        scene["solution"]["threads"] = json!(threads);
+        let outcome = done(&scene);
+        assert!(outcome.at("points.slip", 0.75) > 0.0);
+        std::fs::read(outcome.folder.path().join("history.csv")).expect("history")
+    };
+    let one = run(1);
+    for threads in [2, 3] {
+        assert!(one == run(threads), "{threads} threads differ");
+    }
+}
+
+#[test]
+fn a_surface_that_turns_carries_what_sticks_to_it() {
+    // Pressed on until t = 0.2, then block and surface turn by 90 degrees and move on together.
+    for (axis, name) in [
+        ([0, 0, 1], "about the normal"),
+        ([0, 1, 0], "with the normal"),
+    ] {
+        let angle = json!({ "table": [[0, 0], [0.2, 0], [1, 90]] });
+        let mut tool = plane();
+        let moved = json!({ "table": [[0, 0], [0.2, 0], [1, 0.7]] });
+        tool["motion"] = json!({
+            "rotation": { "axis": axis, "angle": angle },
+            "translation": [moved, 0, 0]
+        });
+        // Radians of the turn, and how far the top was pressed and sheared before.
+        let a = "(max(t-0.2,0)/0.8*pi/2)";
+        let s = "(max(t-0.2,0)/0.8*0.7)";
+        let (dx, dz) = ("(0.002*min(t/0.2,1))", "(-0.02*min(t/0.2,1))");
+        let top = match name {
+            "about the normal" => json!({
+                "x": format!("cos({a})*(x+{dx}) - sin({a})*y - x + {s}"),
+                "y": format!("sin({a})*(x+{dx}) + cos({a})*y - y"),
+                "z": dz
+            }),
+            _ => json!({
+                "x": format!("cos({a})*(x+{dx}) + sin({a})*(z+{dz}) - x + {s}"),
+                "y": 0,
+                "z": format!("-sin({a})*(x+{dx}) + cos({a})*(z+{dz}) - z")
+            }),
+        };
+        let mut scene = block(tool, top, json!(0.8), 40);
+        scene["solution"]["stops"] = json!([0.2]);
+        let outcome = done(&scene);
+        let slid = outcome.at("energy.dissipated", 0.2);
+        for column in ["internal", "contact", "friction"] {
+            let name = format!("energy.{column}");
+            let (before, after) = (outcome.at(&name, 0.2), outcome.at(&name, 1.0));
+            assert!(
+                before > 0.0 && (after / before - 1.0).abs() < 1e-7,
+                "{name}: {before} {after}"
+            );
+        }
+        assert!(
+            outcome.at("energy.dissipated", 1.0) - slid
+                <= 1e-9 * outcome.at("energy.friction", 1.0)
+        );
+        let force = |t: f64| ["x", "y", "z"].map(|c| outcome.at(&format!("force.tool.{c}"), t));
+        let (b, e) = (force(0.2), force(1.0));
+        let turned = match name {
+            "about the normal" => [-b[1], b[0], b[2]],
+            _ => [b[2], b[1], -b[0]],
+        };
+        assert!(b[0].abs() > 1e-3 * b[2].abs(), "nothing is sheared");
+        println!("{name}: {b:?} {e:?}");
+        for c in 0..3 {
+            assert!(
+                (turned[c] - e[c]).abs() < 1e-7 * b[2].abs(),
+                "{name}: {turned:?} {e:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_raised_penalty_leaves_the_friction_of_before() {
+    // Pressed, sheared without sliding, then pressed on until the automatic penalty is raised.
+    let top = json!({
+        "x": { "table": [[0, 0], [0.2, 0], [0.4, 0.02], [1, 0.02]] }, "y": 0,
+        "z": { "table": [[0, 0], [0.2, -0.04], [0.4, -0.04], [1, -0.1]] }
+    });
+    let mut scene = block(plane(), top, json!(5.0), 40);
+    scene["contacts"]["slide"]["penalty"] = json!("auto");
+    let outcome = done(&scene);
+    let raised = outcome
+        .summary
+        .warnings
+        .iter()
+        .filter(|w| w.contains("penalty raised"))
+        .count();
+    let (times, force) = (outcome.column("time"), outcome.column("force.tool.x"));
+    println!("{raised} raises, {:?}", outcome.summary.warnings);
+    println!("{force:?}");
+    assert!(raised > 0);
+    let mut smooth = 0.0f64;
+    for (t, f) in times.windows(3).zip(force.windows(3)) {
+        if t[0] > 0.4 - 1e-9 {
+            smooth = smooth.max((f[2] - 2.0 * f[1] + f[0]).abs() / f[1].abs());
+        }
+    }
+    println!("largest kink {smooth:.1e}");
+    assert!(smooth < 5e-3, "{smooth}");
+}
+
+#[test]
+fn a_coefficient_that_falls_to_zero_lets_everything_go() {
+    let mu = json!({ "table": [[0, 0.3], [0.4, 0.3], [0.6, 0], [1, 0]] });
+    let top = json!({
+        "x": { "table": [[0, 0], [0.2, 0], [0.4, 0.05], [1, 0.05]] }, "y": 0,
+        "z": { "table": [[0, 0], [0.2, -0.02], [1, -0.02]] }
+    });
+    let outcome = done(&block(plane(), top, mu, 40));
+    assert!(outcome.at("force.tool.x", 0.4).abs() > 0.1);
+    let released = outcome.at("energy.dissipated", 0.6);
+    for t in [0.6, 0.7, 1.0] {
+        let (x, z) = (outcome.at("force.tool.x", t), outcome.at("force.tool.z", t));
+        assert!(x.abs() < 1e-8 * z, "{t}: {x:e}");
+        assert_eq!(outcome.at("energy.friction", t), 0.0);
+        assert!((outcome.at("energy.dissipated", t) - released).abs() < 1e-12 * released);
+    }
+    // What the block gives back from t = 0.4 on, where nothing moves it any more, is dissipated.
+    let stored = |t: f64| {
+        ["internal", "contact", "friction"]
+            .iter()
+            .map(|p| outcome.at(&format!("energy.{p}"), t))
+            .sum::<f64>()
+    };
+    let (gave, took) = (
+        stored(0.4) - stored(1.0),
+        released - outcome.at("energy.dissipated", 0.4),
+    );
+    println!("{gave:.6e} {took:.6e}");
+    assert!(
+        gave > 0.0 && (took / gave - 1.0).abs() < 0.02,
+        "{gave} {took}"
+    );
+}
