@@ -3,6 +3,8 @@ mod augmentation;
 mod ball_by_weight;
 mod body_scenes;
 mod die;
+mod draw_bead;
+mod drawn_scenes;
 mod driven;
 mod facets;
 mod friction;

@@ -150,7 +150,8 @@ impl<'a> Checker<'a> {
             ValueError::Number(_)
             | ValueError::NotFinite { .. }
             | ValueError::Eval(_)
-            | ValueError::Negative { .. } => {
+            | ValueError::Negative { .. }
+            | ValueError::NoLength { .. } => {
                 self.add(at, message, None);
             }
         }
