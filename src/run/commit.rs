@@ -137,6 +137,11 @@ pub fn commit(
         let limited = |trial: &Vec3, normal: &Vec3, pressure: f64| with_law!(was, law => law.slip(trial, normal, pressure).t);
         let eps_n = penalties[index];
         let eps_t = friction.ratio * eps_n;
+        // What the tangential penalties carry beside the multipliers.
+        let elastic = match pair.augmentation {
+            Some(_) => Some(&answers[range.clone()]),
+            None => None,
+        };
         let Master::Rigid(surface) = pair.master else {
             let batch = moving::Batch::new(model, masters, index, &state.u, time, eps_n);
             if let Some(batch) = batch {
@@ -145,7 +150,7 @@ pub fn commit(
             }
             total.add(
                 &state.histories[range],
-                None,
+                elastic,
                 &pair.points,
                 eps_t,
                 pair.share(),
@@ -171,11 +176,6 @@ pub fn commit(
                     batch.accept(i, point.hint, &friction, &limited, history)
                 })?;
         });
-        // What the tangential penalties carry beside the multipliers.
-        let elastic = match pair.augmentation {
-            Some(_) => Some(&answers[range.clone()]),
-            None => None,
-        };
         total.add(
             &state.histories[range],
             elastic,
@@ -239,14 +239,10 @@ impl Batch<'_> {
                 let turn = &self.master.pose.rotation;
                 let (n, eps_t) = (touch.touch.n, friction.eps_t);
                 let first = limited(&touch.traction.trial, &touch.normal, -history.n);
-                let (base, tied) = (history.base, history.approach == 0.0);
-                history.accept(&touch.local, &touch.traction, &first, n, eps_t, turn);
-                if self.pair.augmentation.is_some() {
-                    history.lambda_n = n;
-                    if tied && history.status == PointStatus::Stick {
-                        // It stays tied to where it was, so that what elastic slip is left does not add up.
-                        (history.base, history.lambda) = (base, touch.traction.slip.t);
-                    }
+                let (local, traction) = (&touch.local, &touch.traction);
+                match self.pair.augmentation {
+                    None => history.accept(local, traction, &first, n, eps_t, turn),
+                    Some(_) => history.accept_augmented(local, traction, &first, n, eps_t, turn),
                 }
             }
             None => {

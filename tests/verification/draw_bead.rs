@@ -177,7 +177,10 @@ fn pull_is_that_of_elasticas_between_wraps() {
     assert!((flexible / expected - 1.0).abs() > 2e-2);
     assert!(swing < 2e-3 * f, "{swing}");
     // Everything slides.
-    let (slip, active) = (outcome.column("points.slip"), outcome.column("points.active"));
+    let (slip, active) = (
+        outcome.column("points.slip"),
+        outcome.column("points.active"),
+    );
     assert!(slip.last() == active.last() && slip[169] > 40.0, "{slip:?}");
 
     // Work done from the closed tools on is dissipated or stored.
@@ -196,7 +199,9 @@ fn pull_is_that_of_elasticas_between_wraps() {
         .sum();
     let dissipated = change("energy.dissipated");
     let off = work - back - stored - dissipated;
-    println!("work {work}, against the back tension {back}, stored {stored}, dissipated {dissipated}, off {off}");
+    println!(
+        "work {work}, against the back tension {back}, stored {stored}, dissipated {dissipated}, off {off}"
+    );
     assert!(dissipated > 0.2 * work);
     assert!(off.abs() < 1e-3 * dissipated, "{off}");
 }

@@ -43,7 +43,10 @@ fn over_the_corner(file: &str) -> Outcome {
 /// forces, slip and dissipation know nothing of the borders.
 #[test]
 fn borders_of_patches_are_not_felt() {
-    let (many, one) = (over_the_corner("hills.igs"), over_the_corner("hills_one.json"));
+    let (many, one) = (
+        over_the_corner("hills.igs"),
+        over_the_corner("hills_one.json"),
+    );
     for outcome in [&many, &one] {
         let summary = &outcome.summary;
         assert_eq!(summary.status.name(), "done", "{:?}", summary.reason);
@@ -67,8 +70,14 @@ fn borders_of_patches_are_not_felt() {
         let (a, b) = (many.column(name), one.column(name));
         assert_eq!((a.len(), b.len()), (16, 16));
         let largest = b.iter().fold(0.0f64, |m, b| m.max(b.abs()));
-        let off = a.iter().zip(&b).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
-        println!("{name}: largest {largest:.6}, difference {:.1e} of it", off / largest);
+        let off = a
+            .iter()
+            .zip(&b)
+            .fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+        println!(
+            "{name}: largest {largest:.6}, difference {:.1e} of it",
+            off / largest
+        );
         assert!(largest > 1e-3, "{name}: {b:?}");
         assert!(off <= 1e-8 * largest, "{name}: {a:?} {b:?}");
     }

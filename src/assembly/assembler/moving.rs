@@ -193,6 +193,12 @@ impl Assembler<'_> {
                     &mut state.points[range],
                     &state.histories[histories],
                 )?;
+                if pair.augmentation.is_some() {
+                    let range = pair.history().unwrap_or(0..0);
+                    let eps_t = friction.ratio * self.penalties[index];
+                    let histories = &state.histories[range.clone()];
+                    sliding.answer(surface, histories, eps_t, &mut self.answers[range]);
+                }
                 missing |= (sliding.touched()).any(|t| !sliding::holds(couplings, t));
                 continue;
             }

@@ -1,7 +1,9 @@
 //! Contact with friction between bodies: as [`super::moving`], with histories, and columns for the facets that hold the
 //! attraction points.
+use super::answer::PointAnswer;
 use super::links::Links;
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
+use crate::contact::friction::anchor::Anchor;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::moving::{Form, Full, Reduced};
@@ -17,7 +19,7 @@ use crate::model::self_contact::{Accept, All, Opposing};
 use crate::model::state::{PointState, State};
 use crate::model::{HalfPass, Model, PairModel};
 use crate::with_law;
-use covact_geometry::{CurvedRows, ShapeRows};
+use covact_geometry::{CurvedRows, ShapeRows, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -73,6 +75,39 @@ impl Sliding {
             }
             _ => None,
         })
+    }
+
+    /// What the points evaluated last do, for the multipliers of their histories.
+    pub fn answer(
+        &self,
+        surface: &BodySurface,
+        histories: &[PointHistory],
+        eps_t: f64,
+        answers: &mut [Option<PointAnswer>],
+    ) {
+        for ((touch, history), answer) in self.touches.iter().zip(histories).zip(answers) {
+            *answer = touch.as_ref().ok().and_then(Option::as_ref).map(|touch| {
+                let t = touch.response.slip.t;
+                let anchor =
+                    (touch.anchor).and_then(|a| Anchor::new(&surface.facets.jet(a.patch, a.xi)));
+                // Without an attraction point nothing pulls.
+                let (t, stretched) = match &anchor {
+                    Some(anchor) => {
+                        let lambda: Vec3 = anchor.vector(&history.lambda);
+                        let n = &touch.normal;
+                        (anchor.components(&t), t - (lambda - n * n.dot(&lambda)))
+                    }
+                    None => (Vec3::zeros(), Vec3::zeros()),
+                };
+                PointAnswer {
+                    n: touch.n,
+                    t,
+                    gap: touch.gap,
+                    elastic: stretched.norm() / eps_t,
+                    slides: touch.response.slip.slides,
+                }
+            });
+        }
     }
 
     /// Evaluates every point of a pair.
@@ -239,7 +274,8 @@ impl Assembler<'_> {
                 let Some(touch) = touch(i) else { continue };
                 let p = &points[i as usize];
                 deepest = deepest.max(-touch.gap);
-                totals.contact_energy += share * touch.n * touch.gap * p.area;
+                let eps_n = self.penalties[index];
+                totals.contact_energy += share * eps_n * touch.gap * touch.gap * p.area;
                 let nodes = &work.nodes;
                 for (k, (node, f)) in nodes.forces(&touch.response, p.area).enumerate() {
                     let node = node as usize;
@@ -281,6 +317,7 @@ impl Assembler<'_> {
             }
         }
         totals.penetration.push(deepest);
+        totals.touching.push(!active.is_empty());
         match pair.half {
             Some(HalfPass { other, back: true }) => totals.pairs[other].master = force.slave,
             Some(_) => totals.pairs[index].slave = force.slave,

@@ -87,6 +87,25 @@ impl PointHistory {
         self.t = to_space * t;
     }
 
+    /// [`Self::accept`] with augmentation: both tractions become multipliers. A point that sticks stays tied to where it was,
+    /// so that what elastic slip is left of every step does not add up.
+    pub fn accept_augmented(
+        &mut self,
+        local: &Vec3,
+        traction: &Traction,
+        first: &Vec3,
+        n: f64,
+        eps_t: f64,
+        to_space: &UnitQuaternion<f64>,
+    ) {
+        let (base, tied) = (self.base, self.approach == 0.0);
+        self.accept(local, traction, first, n, eps_t, to_space);
+        self.lambda_n = n;
+        if tied && self.status == PointStatus::Stick {
+            (self.base, self.lambda) = (base, traction.slip.t);
+        }
+    }
+
     /// Takes over the end of an accepted step in which a point that was in contact has opened, at `local` in the coordinates
     /// of the base and a distance `gap` from the master. It slides, and its traction falls to nothing, in the part of the
     /// step before it opens: the normal traction is taken to pass evenly to what the penalty `eps_n` would make of the gap.

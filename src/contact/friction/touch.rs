@@ -44,11 +44,12 @@ impl MovingMaster<'_> {
         form: &M,
         accept: impl Fn(u32) -> bool,
     ) -> Result<Option<MovingFrictionTouch>, PointFault> {
-        let Some(foot) = self.search(x, hint, self.depth, accept)? else {
+        let reach = self.depth.max(law.reach());
+        let Some(foot) = self.search(x, hint, reach, accept)? else {
             return Ok(None);
         };
         let meeting = self.at(x, &foot)?;
-        if meeting.free || !law.closes(meeting.xi3) {
+        if meeting.free || meeting.xi3 < -self.depth || !law.closes(meeting.xi3) {
             return Ok(None);
         }
         meeting.check()?;

@@ -164,7 +164,11 @@ impl<'a> Batch<'a> {
                     tangent: Matrix3::zeros(),
                 };
                 let first = limited(&traction.trial, &touch.normal, -history.n);
-                history.accept(&x, &traction, &first, touch.n, friction.eps_t, &still);
+                let (n, eps_t) = (touch.n, friction.eps_t);
+                match self.pair.augmentation {
+                    None => history.accept(&x, &traction, &first, n, eps_t, &still),
+                    Some(_) => history.accept_augmented(&x, &traction, &first, n, eps_t, &still),
+                }
                 Some(touch.foot)
             }
             None => {
