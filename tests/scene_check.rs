@@ -45,6 +45,47 @@ fn the_scene_itself_is_right() {
 }
 
 #[test]
+fn augmentation_and_offset() {
+    check_all(&[
+        (
+            "\"points\": {\"gauss\": 2}",
+            "\"augmentation\": {\"gap\": 0}",
+            "14:87: the tolerance",
+        ),
+        (
+            "\"points\": {\"gauss\": 2}",
+            "\"augmentation\": {\"slip\": -1}",
+            "14:88: the tolerance",
+        ),
+        (
+            "\"points\": {\"gauss\": 2}",
+            "\"augmentation\": {\"max\": 0}",
+            "14:87: ",
+        ),
+        (
+            "\"points\": {\"gauss\": 2}",
+            "\"points\": {\"gauss\": 2}, \"gap\": \"averaged\", \"augmentation\": {}",
+            "14:122: augmentation does not go with averaged gaps",
+        ),
+        (
+            "\"points\": {\"gauss\": 2}",
+            "\"tangent\": {\"published\": {}}, \"augmentation\": {}",
+            "14:74: the published tangent, which is right on the surface, does not go with augmentation",
+        ),
+        (
+            "\"points\": {\"gauss\": 2}",
+            "\"tangent\": {\"published\": {}}, \"offset\": 0.5",
+            "14:74: the published tangent, which is right on the surface, does not go with an offset",
+        ),
+        (
+            "\"points\": {\"gauss\": 2}",
+            "\"offset\": -0.5",
+            "14:73: the offset",
+        ),
+    ]);
+}
+
+#[test]
 fn names_that_do_not_exist() {
     check_all(&[
         (

@@ -357,19 +357,91 @@ pub fn free(foot: &Foot) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::law::Penalty;
+    use crate::contact::law::{Augmented, Penalty, Shifted};
     use covact_geometry::NurbsPatch;
 
     /// The valley `z = |x| + |y|`, hollow along two creases that cross at the origin.
     fn valley() -> PatchSet {
+        creased(1.0)
+    }
+
+    /// `z = slope (|x| + |y|)`.
+    fn creased(slope: f64) -> PatchSet {
         let knots = || vec![0.0, 0.0, 0.5, 1.0, 1.0];
         let at = |i: usize| i as f64 - 1.0;
         let points: Vec<Vec3> = (0..9)
             .map(|k| (at(k % 3), at(k / 3)))
-            .map(|(x, y)| Vec3::new(x, y, x.abs() + y.abs()))
+            .map(|(x, y)| Vec3::new(x, y, slope * (x.abs() + y.abs())))
             .collect();
         let patch = NurbsPatch::new([1, 1], [knots(), knots()], [3, 3], &points, None);
         PatchSet::new(vec![patch.unwrap()], None).unwrap()
+    }
+
+    #[test]
+    fn an_offset_rounds_edges_and_vertices_off() {
+        let set = creased(-1.0);
+        let master = RigidMaster {
+            surface: &set,
+            pose: Isometry3::translation(0.3, 0.0, 0.0),
+            depth: 0.01,
+        };
+        let law = Shifted {
+            law: Penalty { eps_n: 5.0 },
+            z0: 0.5,
+        };
+        let touch = |x: Vec3| master.touch(&x, &mut None, &law, &Exact);
+        // Above the peak, a ridge and a face: pushed away from the vertex, the ridge, the face.
+        for (x, n) in [
+            (Vec3::new(0.32, 0.01, 0.4), Vec3::new(0.02, 0.01, 0.4)),
+            (Vec3::new(0.8, 0.02, -0.1), Vec3::new(0.2, 0.02, 0.2)),
+            (Vec3::new(0.8, 0.5, -0.7), Vec3::new(1.0, 1.0, 1.0)),
+        ] {
+            let at = touch(x).unwrap().expect("contact");
+            assert!(at.xi3 > 0.0 && (at.gap - (at.xi3 - 0.5)).abs() < 1e-15);
+            let error = (at.residual / at.n - n.normalize()).norm();
+            assert!(error < 1e-9, "{x:?}: {:?}", at.residual / at.n);
+            assert!((at.n - 5.0 * at.gap).abs() < 1e-12);
+            for c in 0..3 {
+                let mut step = Vec3::zeros();
+                step[c] = 1e-6;
+                let at_step = |s: f64| touch(x + step * s).unwrap().expect("contact").residual;
+                let slope = (at_step(1.0) - at_step(-1.0)) / 2e-6;
+                let error = (slope - at.tangent.column(c)).norm();
+                assert!(error < 1e-6, "{x:?}, direction {c}: {error:e}");
+            }
+        }
+        // Beyond the offset, and far past it: open. Deeper than the depth: open.
+        assert_eq!(touch(Vec3::new(0.3, 0.0, 0.501)), Ok(None));
+        assert_eq!(touch(Vec3::new(0.8, 0.5, -1.1)), Ok(None));
+        // On the vertex itself the traction has no direction.
+        let lost = touch(Vec3::new(0.3, 0.0, 1e-7));
+        assert!(
+            matches!(lost, Err(PointFault::NoDirection { .. })),
+            "{lost:?}"
+        );
+    }
+
+    #[test]
+    fn a_multiplier_holds_a_point_slightly_above_the_surface() {
+        let set = creased(-1.0);
+        let master = RigidMaster {
+            surface: &set,
+            pose: Isometry3::identity(),
+            depth: 1e-3,
+        };
+        let law = Augmented {
+            law: Penalty { eps_n: 5.0 },
+            z0: 0.0,
+            lambda_n: -0.1,
+        };
+        let normal = Vec3::new(1.0, 1.0, 1.0).normalize();
+        let foot = Vec3::new(0.4, 0.3, -0.7);
+        let touch = |gap: f64| master.touch(&(foot + normal * gap), &mut None, &law, &Exact);
+        let at = touch(0.019).unwrap().expect("held up to 0.1 / 5");
+        assert!((at.n + 0.005).abs() < 1e-12 && (at.gap - 0.019).abs() < 1e-12);
+        assert_eq!(touch(0.0201), Ok(None));
+        // Deeper than the depth nothing is held.
+        assert_eq!(touch(-0.002), Ok(None));
     }
 
     #[test]

@@ -226,6 +226,7 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
         }
         if let Some(number) = pair.rigid_master() {
             warnings.extend(too_coarse(model, index, &model.surfaces[number]));
+            warnings.extend(too_hollow(pair, &model.surfaces[number]));
         }
         if gap.smallest < -1e-9 * pair.element_size {
             let choice = (scene.contacts.get(&pair.name))
@@ -261,6 +262,23 @@ fn too_coarse(model: &Model, index: usize, surface: &SurfaceModel) -> Option<Str
             number(radius),
             surface.name,
             number(0.5 * radius)
+        )
+    })
+}
+
+/// A warning of an offset that a hollow does not leave room for.
+fn too_hollow(pair: &PairModel, surface: &SurfaceModel) -> Option<String> {
+    let [_, Some(radius)] = surface.radii() else {
+        return None;
+    };
+    (pair.offset > 0.0 && pair.offset >= radius).then(|| {
+        format!(
+            "contact `{}`: its offset {} is not smaller than the smallest hollow radius {} of surface `{}`: points there have \
+             no unique closest point, and steps fail",
+            pair.name,
+            number(pair.offset),
+            number(radius),
+            surface.name
         )
     })
 }

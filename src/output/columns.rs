@@ -106,9 +106,14 @@ pub const COLUMNS: &[ColumnDoc] = &[
         "energy stored in the contact penalties",
     ),
     doc(
+        "augmentations",
+        "-",
+        "times in the step that tractions became multipliers; only with augmentation",
+    ),
+    doc(
         "energy.friction",
         "energy",
-        "energy stored in the tangential penalties; only with friction",
+        "energy stored in the tangential penalties, beside what multipliers carry; only with friction",
     ),
     doc(
         "energy.dissipated",

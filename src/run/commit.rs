@@ -236,14 +236,10 @@ impl Batch<'_> {
                 let turn = &self.master.pose.rotation;
                 let (n, eps_t) = (touch.touch.n, friction.eps_t);
                 let first = limited(&touch.traction.trial, &touch.normal, -history.n);
-                let (base, tied) = (history.base, history.approach == 0.0);
-                history.accept(&touch.local, &touch.traction, &first, n, eps_t, turn);
-                if self.pair.augmentation.is_some() {
-                    history.lambda_n = n;
-                    if tied && history.status == PointStatus::Stick {
-                        // It stays tied to where it was, so that what elastic slip is left does not add up.
-                        (history.base, history.lambda) = (base, touch.traction.slip.t);
-                    }
+                let (local, traction) = (&touch.local, &touch.traction);
+                match self.pair.augmentation {
+                    None => history.accept(local, traction, &first, n, eps_t, turn),
+                    Some(_) => history.accept_augmented(local, traction, &first, n, eps_t, turn),
                 }
             }
             None => {

@@ -1,4 +1,5 @@
 //! Verification against closed forms and published results, named by their source.
+mod augmentation;
 mod ball_by_weight;
 mod body_scenes;
 mod die;
@@ -13,6 +14,7 @@ mod hertz_bodies;
 mod hinged_roof;
 mod ironing;
 mod loads;
+mod offset;
 mod overclosure;
 mod placed;
 mod plate_under_ball;

@@ -67,8 +67,12 @@ impl PointHistory {
     ) {
         let (t, slides) = (traction.slip.t, traction.slip.slides);
         if slides {
-            // Of second order in the step also where the point stuck at its start, or slid the other way, or did not touch.
+            // The mean of the tractions at both ends of the step; of a point that stuck at its start, or slid the other way, or
+            // did not touch, the traction at the start is the limit there. Either is of second order in the step.
             let slid = traction.slid(eps_t);
+            let before = to_space.inverse_transform_vector(&self.t);
+            let went_on = self.status == PointStatus::Slip && before.dot(&t) > 0.0;
+            let first = if went_on { &before } else { first };
             self.dissipated += 0.5 * (first + t).dot(&slid);
             self.slip += slid.norm();
         }
@@ -85,6 +89,25 @@ impl PointHistory {
         };
         self.n = n;
         self.t = to_space * t;
+    }
+
+    /// [`Self::accept`] with augmentation: both tractions become multipliers. A point that sticks stays tied to where it was,
+    /// so that what elastic slip is left of every step does not add up.
+    pub fn accept_augmented(
+        &mut self,
+        local: &Vec3,
+        traction: &Traction,
+        first: &Vec3,
+        n: f64,
+        eps_t: f64,
+        to_space: &UnitQuaternion<f64>,
+    ) {
+        let (base, tied) = (self.base, self.approach == 0.0);
+        self.accept(local, traction, first, n, eps_t, to_space);
+        self.lambda_n = n;
+        if tied && self.status == PointStatus::Stick {
+            (self.base, self.lambda) = (base, traction.slip.t);
+        }
     }
 
     /// Takes over the end of an accepted step in which a point that was in contact has opened, at `local` in the coordinates

@@ -49,7 +49,7 @@ fn slide(scene: &Value) -> (Outcome, Slide) {
     let outcome = solve(scene);
     let summary = &outcome.summary;
     assert_eq!(summary.status.name(), "done", "{:?}", summary.reason);
-    let mean = f64::from(summary.newton_iterations) / f64::from(summary.steps);
+    let mean = summary.newton_iterations as f64 / f64::from(summary.steps);
     println!(
         "{} steps, {mean:.2} iterations a step, {:.2} s",
         summary.steps, summary.wall_s
