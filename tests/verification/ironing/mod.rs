@@ -15,6 +15,7 @@
 //!   and the mean of H is zero;
 //! - the work of H is what is dissipated and what is stored;
 //! - forces are as smooth as the die is.
+mod deformable;
 mod rigid;
 
 use crate::support::Outcome;

@@ -29,7 +29,7 @@ fn scene(elements: f64, step: f64) -> Value {
 
 /// Quadratic elements, each as long as two linear ones, in a slab cut shorter for speed.
 fn quadratic(mut scene: Value) -> Value {
-    set(&mut scene, "/bodies/slab/element", "q18");
+    scene["bodies"]["slab"]["element"] = json!("q18");
     let block = &mut scene["bodies"]["slab"]["mesh"]["block"];
     *block = json!({ "min": [2.25, 0, -3], "max": [9.75, ELEMENT, 0], "elements": [10, 1, 2] });
     set(&mut scene, "/contacts/iron/points/gauss", 3);
@@ -44,7 +44,7 @@ fn frictionless(mut scene: Value) -> Value {
     scene
 }
 
-/// Runs it, without a step that is cut, and at most eight iterations a step on average.
+/// Runs it, at the shipped step with at most eight iterations a step on average.
 fn slide(scene: &Value) -> (Outcome, Slide) {
     let outcome = solve(scene);
     let summary = &outcome.summary;
@@ -54,7 +54,9 @@ fn slide(scene: &Value) -> (Outcome, Slide) {
         "{} steps, {mean:.2} iterations a step, {:.2} s",
         summary.steps, summary.wall_s
     );
-    assert!(mean < 8.0);
+    // At the shipped step; longer ones are there for the rate.
+    let shipped = scene["solution"]["step"]["max"] == json!(0.05);
+    assert!(!shipped || mean < 8.0);
     let slide = Slide::new(&outcome, PRESSED, ELEMENT);
     (outcome, slide)
 }
