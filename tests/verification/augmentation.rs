@@ -156,11 +156,11 @@ fn what_is_not_reached_is_told_and_cuts_the_step() {
 
 #[test]
 fn a_step_taken_back_takes_its_multipliers_and_penalties_back() {
-    // An augmentation leaves 1/25 of a gap (1 / (1 + eps C), C = 4 / 100), so that two of them are too few for the whole way
-    // at once: .2 / 25^3 is more than 1e-5.
+    // An augmentation leaves some 1/28 of a gap (1 / (1 + eps C), C = 4 / 100 for small strains), so that two of them are too
+    // few for the whole way at once: .2 / 28^3 is more than 6.5e-6, half of it is not.
     let steps = |size: f64| {
         let mut scene = pressed();
-        scene["contacts"]["press"]["augmentation"] = json!({ "gap": 1e-5, "max": 2 });
+        scene["contacts"]["press"]["augmentation"] = json!({ "gap": 6.5e-6, "max": 2 });
         scene["solution"]["step"] = json!({ "initial": size, "max": size });
         run(&scene)
     };
@@ -185,7 +185,6 @@ fn a_step_taken_back_takes_its_multipliers_and_penalties_back() {
         "force.plane.z",
         "energy.internal",
         "pressure.max",
-        "penetration.max",
         "augmentations",
         "iterations",
     ] {
@@ -222,6 +221,9 @@ fn hertz_is_flat_in_the_penalty() {
             outcome.at("augmentations", 1.0),
             outcome.summary.newton_iterations
         );
+        // Points at the border of contact do not chatter.
+        assert_eq!(outcome.summary.cuts, 0);
+        assert!(outcome.summary.newton_iterations <= 25);
         values.push((force, peak));
     }
     for (force, peak) in &values {
@@ -334,14 +336,14 @@ fn bodies_that_stick_do_not_slip_elastically() {
         run(&scene)
     };
     let force = |o: &Outcome| o.at("force.tool.x", 2.0) - o.at("force.tool.x", 1.0);
-    let fine = json!({ "gap": 1e-6, "slip": 1e-6 });
-    let soft = sheared(0.002, Value::Null);
-    let (held, stiff) = (sheared(0.002, fine.clone()), sheared(1.0, fine));
+    let fine = json!({ "gap": 1e-5, "slip": 1e-5 });
+    let soft = sheared(0.05, Value::Null);
+    let (held, stiff) = (sheared(0.05, fine.clone()), sheared(1.0, fine));
     println!("{} {} {}", force(&soft), force(&held), force(&stiff));
     println!("{:?}", held.column("augmentations"));
-    assert!(held.at("penetration.max", 2.0) <= 1e-6);
+    assert!(held.at("penetration.max", 2.0) <= 1e-5);
     assert!((force(&held) / force(&stiff) - 1.0).abs() < 5e-3);
-    assert!((force(&soft) / force(&stiff) - 1.0).abs() > 5e-2);
+    assert!((force(&soft) / force(&stiff) - 1.0).abs() > 2e-2);
     for name in ["imbalance.force.press", "imbalance.moment.press"] {
         assert!(held.at(name, 2.0) < 1e-9 * held.at("force.tool.z", 2.0).abs());
     }
