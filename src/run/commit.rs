@@ -138,10 +138,7 @@ pub fn commit(
         let eps_n = penalties[index];
         let eps_t = friction.ratio * eps_n;
         // What the tangential penalties carry beside the multipliers.
-        let elastic = match pair.augmentation {
-            Some(_) => Some(&answers[range.clone()]),
-            None => None,
-        };
+        let elastic = pair.augmentation.map(|_| &answers[range.clone()]);
         let Master::Rigid(surface) = pair.master else {
             let batch = moving::Batch::new(model, masters, index, &state.u, time, eps_n);
             if let Some(batch) = batch {

@@ -18,7 +18,7 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
     for (name, value) in tolerances {
         c.positive(&format!("{at}/{name}"), "the tolerance", value);
     }
-    c.whole(&format!("{at}/max"), augmentation.max.into(), 1, 1000);
+    c.whole(&format!("{at}/max"), augmentation.max, 1, 1000);
     // Multipliers belong to points that stay, and there is one traction for both sides.
     let without = match contact {
         Contact {
