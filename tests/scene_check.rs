@@ -257,6 +257,33 @@ fn numbers_out_of_range() {
 }
 
 #[test]
+fn friction_with_two_coefficients() {
+    let points = "\"points\": {\"gauss\": 2}";
+    let with = |friction: &str| {
+        let text = format!("{points}, \"friction\": {{\"orthotropic\": {friction}}}");
+        problems(&SCENE.replacen(points, &text, 1))
+    };
+    let right = r#"{"mu": [0.1, {"table": [[0, 0.2], [1, 0.3]]}], "direction": [1, 0, 0]}"#;
+    assert_eq!(with(right), Vec::<String>::new());
+    for (friction, expected) in [
+        (
+            r#"{"mu": [0.1, -0.3], "direction": [1, 0, 0]}"#,
+            "the coefficient of friction is -0.3",
+        ),
+        (
+            r#"{"mu": [0.1, 0.3], "direction": [0, 0, 0]}"#,
+            "the direction has no length",
+        ),
+    ] {
+        let found = with(friction);
+        assert!(
+            found.len() == 1 && found[0].contains(expected) && found[0].starts_with("15:"),
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
 fn values() {
     check_all(&[
         (

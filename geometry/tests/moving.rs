@@ -2,7 +2,9 @@
 
 mod moving_common;
 
-use covact_geometry::{EdgeKind, MovingError, MovingFacets, MovingPlace, ShapeRows, Status, Vec3};
+use covact_geometry::{
+    CurvedRows, EdgeKind, MovingError, MovingFacets, MovingPlace, ShapeRows, Status, Vec3,
+};
 use moving_common::*;
 use num_dual::Dual64;
 
@@ -310,7 +312,8 @@ fn refitting_is_as_good_as_building() {
 /// Shape functions of facets as given: they sum to one, make the jet, and are those of the finite elements.
 #[test]
 fn shape_functions_of_facets() {
-    let mut rows = ShapeRows::default();
+    let (mut rows, mut curved) = (ShapeRows::default(), CurvedRows::default());
+    let mut most = 0.0f64;
     for (_, mesh, mut set) in samples() {
         let moved = mesh.deformed(0.2, 0.05, 3);
         set.update(|k| moved[k as usize]);
@@ -318,9 +321,21 @@ fn shape_functions_of_facets() {
             for xi in [[0.3, -0.8], [-1.0, 1.0], [0.0, 0.45]] {
                 set.shape(facet, xi, &mut rows);
                 check_shape(&set, facet, xi, &rows, |k| moved[k as usize]);
+                set.curved_shape(facet, xi, &mut curved);
+                assert_eq!(curved.rows, rows);
+                let second = [&curved.n_11, &curved.n_12, &curved.n_22];
+                for (n, rho) in second.iter().zip(set.jet(facet, xi).rho_ij) {
+                    let sum = (set.nodes(facet).iter().zip(n.iter()))
+                        .fold(Vec3::zeros(), |s, (k, n)| s + moved[*k as usize] * *n);
+                    let largest = n.iter().fold(0.0f64, |m, n| m.max(n.abs()));
+                    assert!(n[..rows.count].iter().sum::<f64>().abs() < 1e-13);
+                    assert!((sum - rho).norm() < 1e-12 * set.size(), "{facet} {xi:?}");
+                    most = most.max(largest);
+                }
             }
         }
     }
+    assert!(most > 0.1);
     // Nine, six and four nodes in one set, against Lagrange polynomials with dual numbers.
     let lagrange = |count: u8, x: Dual64| -> Vec<Dual64> {
         let (half, one) = (Dual64::from(0.5), Dual64::from(1.0));

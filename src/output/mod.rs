@@ -3,7 +3,8 @@
 //! Every file is written whole or not at all ([`atomic`]); the history grows by whole lines. [`Results`] writes a folder:
 //!
 //! - `results.pvd` lists a `.vtu` file per accepted step for each body ([`BodyFields`]) and each rigid surface
-//!   ([`SurfaceOutput`]), and on demand for the slave points of each contact with friction ([`PointCloud`]); `results_tessellated.pvd` is the same with rigid surfaces as flat quadrilaterals;
+//!   ([`SurfaceOutput`]), and on demand for the slave points of each contact with friction ([`PointCloud`]);
+//!   `results_tessellated.pvd` is the same with rigid surfaces as flat quadrilaterals;
 //! - `history.csv` has one line per accepted step ([`History`], its columns are documented in [`COLUMNS`]);
 //! - `summary.json` says how the run went and what it cost ([`Summary`]).
 //!

@@ -3,7 +3,7 @@ use crate::blocks::done;
 use serde_json::{Value, json};
 
 /// A block of side 1 pressed into a long one and drawn along it by `way`.
-fn slide(way: f64, steps: u32) -> Value {
+pub fn slide(way: f64, steps: u32) -> Value {
     let step = 0.5 / f64::from(steps);
     json!({
         "covact": 1,

@@ -17,7 +17,7 @@ fn roller(x: Value, force: Value, moment: Value, mu: f64, steps: u32) -> Value {
         "covact": 1,
         "materials": { "stone": { "st_venant_kirchhoff": { "E": 1000, "nu": 0.2 } } },
         "bodies": { "strip": {
-            "mesh": { "block": { "min": [-1.5, -0.1, -0.1], "max": [1.5, 0.1, 0], "elements": [150, 1, 1] } },
+            "mesh": { "block": { "min": [-1.2, -0.1, -0.1], "max": [0.2, 0.1, 0], "elements": [70, 1, 1] } },
             "material": "stone",
             "element": "h8_displacement",
             "sets": { "all": { "nodes_in_box": { "min": [-9, -9, -9], "max": [9, 9, 9] } } }
@@ -34,7 +34,7 @@ fn roller(x: Value, force: Value, moment: Value, mu: f64, steps: u32) -> Value {
         } },
         "supports": { "moved": { "on": "strip.all", "displacement": { "x": x, "y": 0, "z": 0 } } },
         "solution": {
-            "step": { "initial": step, "max": step, "adaptive": false },
+            "step": { "initial": step, "max": step, "min": 0.02, "adaptive": false },
             "newton": { "tolerance": 1e-11 }, "threads": 1
         },
         "output": { "every": 0 }
@@ -53,7 +53,7 @@ fn a_cylinder_rolls_on_a_moving_sheet_without_slip() {
     let outcome = done(&roller(way(1.0), json!(-force), json!(0), 0.5, 40));
     println!("{:?}", outcome.summary);
     let depth = outcome.at("penetration.max", 1.0);
-    assert!(depth > 1e-4 && depth < 2e-3, "{depth}");
+    assert!(depth > 1e-4 && depth < 3e-3, "{depth}");
     for (t, x) in [(0.4, 0.25), (0.6, 0.5), (1.0, 1.0)] {
         // Backwards about y: the strip takes its lowest line along x.
         let turned = -outcome.at("rotation.roller.y", t).to_radians() * RADIUS;
@@ -112,23 +112,25 @@ fn a_moment_that_friction_cannot_hold_is_named() {
         summary.time
     );
     let reason = reason.expect("a reason");
-    assert!(reason.contains("surface `roller` about y"), "{reason}");
+    assert!(
+        reason.contains("surface `roller`") && reason.contains("about y"),
+        "{reason}"
+    );
 }
 
 #[test]
-fn a_roller_that_slides_turns_with_the_moment_of_full_friction() {
-    // A brake of M holds the roller back while the strip is drawn on: it rolls if M < mu F R.
-    for (moment, slides) in [(0.3, false), (0.45, false)] {
+fn a_braked_roller_rolls_as_long_as_friction_holds_the_brake() {
+    // A moment against the rolling, below mu F R = 0.5: friction carries it, and the roller lags by elastic creep only.
+    for moment in [0.3, 0.45] {
         let outcome = done(&roller(way(0.6), json!(-0.5), json!(moment), 0.5, 40));
         let depth = outcome.at("penetration.max", 1.0);
         let f = outcome.at("force.roller.x", 1.0);
-        println!("{moment}: {f} {}", outcome.at("rotation.roller.y", 1.0));
+        let turned = -outcome.at("rotation.roller.y", 1.0).to_radians() * RADIUS;
+        println!("{moment}: {f} {turned}");
         assert!(
             (-f * RADIUS / moment - 1.0).abs() < 2.0 * depth / RADIUS,
             "{f}"
         );
-        let turned = -outcome.at("rotation.roller.y", 1.0).to_radians() * RADIUS;
-        // Elastic creep apart, which Carter's rolling contact has too.
-        assert_eq!(slides, turned < 0.5, "{turned}");
+        assert!(turned < 0.6 && turned > 0.97 * 0.6, "{turned}");
     }
 }

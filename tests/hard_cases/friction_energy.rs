@@ -21,38 +21,44 @@ fn support(outcome: &Outcome) -> f64 {
     }) + work(outcome, &outcome.column("force.top.z"), |t| table(&DOWN, t))
 }
 
-/// The book's error relative to what was dissipated, for three numbers of steps, each twice the one before.
-fn errors(name: &str, scene: impl Fn(u32) -> Value, put_in: impl Fn(&Outcome) -> f64) -> [f64; 3] {
-    let errors = [32, 64, 128].map(|steps| {
+/// The book's errors relative to what was dissipated, for numbers of steps.
+fn errors(
+    name: &str,
+    steps: &[u32],
+    scene: impl Fn(u32) -> Value,
+    put_in: impl Fn(&Outcome) -> f64,
+) -> Vec<f64> {
+    let error = |steps: u32| {
         let outcome = done(&scene(steps));
         let dissipated = outcome.at("energy.dissipated", 1.0);
         assert!(dissipated > 0.0 && outcome.at("energy.friction", 1.0) > 0.0);
         let slides = outcome.column("points.slip");
         assert!(slides.iter().any(|n| *n > 0.0), "{name}: nothing slides");
         (put_in(&outcome) - book(&outcome)) / dissipated
-    });
-    let [a, b, c] = errors;
-    println!("{name}: {a:.2e} {b:.2e} {c:.2e}");
+    };
+    let errors: Vec<f64> = steps.iter().map(|n| error(*n)).collect();
+    println!("{name}: {errors:?}");
     errors
 }
 
-/// The error falls as the square of the step: by 16 over two halvings, single events inside a step left their share.
-fn second_order(name: &str, errors: [f64; 3], last: f64) {
-    assert!(errors[2].abs() < last, "{name}: {errors:?}");
-    assert!(
-        errors[2].abs() * 9.0 < errors[0].abs() || errors[2].abs() < 1e-6,
-        "{name}: {errors:?}"
-    );
+/// From the coarsest to the finest steps the error falls by 9 over two halvings, 27 over three, where the square of the step
+/// has 16 and 64: points that stick, slide or open somewhere inside a step leave shares of it that scatter.
+fn second_order(name: &str, errors: &[f64], last: f64) {
+    let (first, end) = (errors[0].abs(), errors[errors.len() - 1].abs());
+    let fall = if errors.len() == 3 { 9.0 } else { 27.0 };
+    assert!(end < last, "{name}: {errors:?}");
+    assert!(end * fall < first, "{name}: {errors:?}");
 }
 
 #[test]
 fn a_block_drawn_to_and_fro_on_a_plane() {
     let e = errors(
         "plane",
+        &[32, 64, 128],
         |n| block(plane(), tables(), json!(0.3), n),
         support,
     );
-    second_order("plane", e, 1e-3);
+    second_order("plane", &e, 1e-3);
 }
 
 #[test]
@@ -65,8 +71,13 @@ fn a_coefficient_that_varies_in_time() {
             json!({ "table": [[0, 0.2], [0.5, 0.6], [0.75, 0.1], [1, 0.3]] }),
         ),
     ] {
-        let e = errors(name, |n| block(plane(), tables(), mu.clone(), n), support);
-        second_order(name, e, 1e-3);
+        let e = errors(
+            name,
+            &[32, 64, 128],
+            |n| block(plane(), tables(), mu.clone(), n),
+            support,
+        );
+        second_order(name, &e, 1e-3);
     }
 }
 
@@ -79,13 +90,14 @@ fn a_block_pressed_on_a_sphere_that_moves() {
     let top = json!({ "x": 0, "y": 0, "z": { "table": [[0, 0], [0.25, -0.06], [1, -0.06]] } });
     let e = errors(
         "sphere",
+        &[32, 64, 128, 256],
         |n| block(sphere.clone(), top.clone(), json!(0.3), n),
         |o| {
             work(o, &o.column("force.tool.x"), |t| table(&ASIDE, t))
                 + work(o, &o.column("force.top.z"), |t| 3.0 * table(&DOWN, t))
         },
     );
-    second_order("sphere", e, 2e-3);
+    second_order("sphere", &e, 2e-3);
 }
 
 #[test]
@@ -99,6 +111,7 @@ fn a_cylinder_that_turns_under_a_block() {
     let top = json!({ "x": 0, "y": 0, "z": { "table": [[0, 0], [0.25, -0.06], [1, -0.06]] } });
     let e = errors(
         "cylinder",
+        &[32, 64, 128],
         |n| block(cylinder.clone(), top.clone(), json!(0.3), n),
         |o| {
             let (m, f) = (o.column("moment.tool.y"), o.column("force.tool.x"));
@@ -108,5 +121,5 @@ fn a_cylinder_that_turns_under_a_block() {
                 + work(o, &o.column("force.top.z"), |t| 3.0 * table(&DOWN, t))
         },
     );
-    second_order("cylinder", e, 2e-3);
+    second_order("cylinder", &e, 2e-3);
 }

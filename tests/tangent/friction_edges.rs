@@ -148,10 +148,38 @@ fn crossing() -> PatchSet {
     ])
 }
 
+/// Three plane faces that meet in a point, a pit.
+fn pit() -> PatchSet {
+    let ray = |k: usize| {
+        let angle = k as f64 * std::f64::consts::TAU / 3.0;
+        Vec3::new(angle.cos(), angle.sin(), 0.6)
+    };
+    let face = |k: usize| {
+        let (a, b) = (ray(k), ray(k + 1));
+        let knots = [bezier(1), bezier(1)];
+        NurbsPatch::new([1, 1], knots, [2, 2], &[Vec3::zeros(), a, b, a + b], None).unwrap()
+    };
+    let mut set = PatchSet::new((0..3).map(face).collect(), None).unwrap();
+    set.orient_towards(&[Vec3::new(0.0, 0.0, 0.5)]).unwrap();
+    set
+}
+
 #[test]
 fn exact_tangent_at_vertices() {
-    let set = crossing();
-    for x in [V::new(0.01, -0.02, -0.1), V::new(1e-4, 2e-4, -1e-3)] {
+    let corner = pit()
+        .project(&V::new(0.01, -0.02, -0.1), None, 1.0)
+        .unwrap();
+    assert!(
+        matches!(corner.location, Location::Corner { .. }),
+        "{:?}",
+        corner.location
+    );
+    assert!((corner.normal - Vec3::z()).norm() < 1e-12);
+    for (set, x) in [
+        (crossing(), V::new(0.01, -0.02, -0.1)),
+        (crossing(), V::new(1e-4, 2e-4, -1e-3)),
+        (pit(), V::new(0.01, -0.02, -0.1)),
+    ] {
         for (name, case) in Case::all(0.0) {
             let history = case.history(&x);
             for (mu, slides) in [(100.0, false), (0.02, true)] {
@@ -273,6 +301,7 @@ fn forces_next_to_edges_creases_and_vertices_are_continuous() {
             crossing(),
             Some(V::new(0.3, 0.2, -1.0).normalize()),
         ),
+        ("corner", pit(), Some(V::new(0.3, 0.1, -1.0).normalize())),
     ] {
         let radius = 1e-6 * set.size();
         let place = |share: f64| match at {
@@ -301,7 +330,8 @@ fn forces_next_to_edges_creases_and_vertices_are_continuous() {
             for share in [0.2, 0.7, 1.2, 3.0] {
                 let x = place(share);
                 let k = evaluate(&x).touch.tangent;
-                let h = 1e-3 * radius;
+                // Differences are off by (h / r)^2, and by rounding over h.
+                let h = 2e-4 * radius;
                 let r = pose().rotation.to_rotation_matrix();
                 let slopes = Matrix3::from_columns(&[0, 1, 2].map(|c| {
                     let step = Vector3::ith(c, h);

@@ -33,8 +33,8 @@ fn forces<D: DualNum<f64> + Copy>(
     let up = [i11 * t[0] + i12 * t[1], i12 * t[0] + i22 * t[1]];
     let along = frame.rho_i[0] * up[0] + frame.rho_i[1] * up[1];
     let mut out = Vec::with_capacity(51);
-    for k in 0..16 {
-        let f = frame.n * (xi3 * (up[0] * b[1][k] + up[1] * b[2][k])) - along * b[0][k];
+    for (n, (n_1, n_2)) in b[0].iter().zip(b[1].iter().zip(&b[2])) {
+        let f = frame.n * (xi3 * (up[0] * *n_1 + up[1] * *n_2)) - along * *n;
         (0..3).for_each(|c| out.push(f[c]));
     }
     (0..3).for_each(|c| out.push(along[c]));

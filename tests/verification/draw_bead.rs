@@ -124,13 +124,16 @@ fn pull(mu: f64, tail: f64, head: f64) -> f64 {
     end(h, head).1
 }
 
-/// The shipped scene up to 8.4 mm of the stroke.
-fn draw(mu: f64) -> Outcome {
+/// The shipped scene up to 7.2 mm of the stroke, in steps of this length (0.01 is shipped).
+fn draw(mu: f64, step: f64) -> Outcome {
     let mut scene = scene_json("draw_bead.json");
     for side in ["above", "below"] {
         scene["contacts"][side]["friction"] = json!({ "coulomb": { "mu": mu } });
     }
-    scene["solution"]["end_time"] = json!(1.7);
+    scene["solution"]["end_time"] = json!(1.6);
+    scene["solution"]["step"]["initial"] = json!(step);
+    scene["solution"]["step"]["max"] = json!(step);
+    scene["output"]["every"] = json!((0.1 / step).round() as u32);
     let outcome = solve(&scene);
     let summary = &outcome.summary;
     assert_eq!(summary.status.name(), "done", "{:?}", summary.reason);
@@ -164,57 +167,63 @@ fn tail(outcome: &Outcome, step: u32) -> f64 {
 
 #[test]
 fn pull_is_that_of_elasticas_between_wraps() {
-    let outcome = draw(0.15);
+    let outcome = draw(0.15, 0.01);
     let (f, swing) = mean(&outcome);
-    let [from, to] = [100, 170].map(|step| tail(&outcome, step));
+    let to = tail(&outcome, 160);
     // Hinges midway through the last six elements.
-    let head = 32.0 + 12.0 * 0.45 - ACROSS[0];
+    let head = 32.0 + 12.0 * 0.35 - ACROSS[0];
     let expected = pull(0.15, 80.0 - ACROSS[0] - to, head);
     let flexible = BACK_TENSION * (0.15 * R / RM * flexible_wrap()).exp();
     println!("pull {f} +- {swing}, chain {expected}, without bending stiffness {flexible}");
     assert!((f / expected - 1.0).abs() < 5e-3);
     // What the test can see: bending is 3 % of the pull.
     assert!((flexible / expected - 1.0).abs() > 2e-2);
-    assert!(swing < 2e-3 * f, "{swing}");
+    assert!(swing < 1.5e-3 * f, "{swing}");
     // Everything slides.
     let (slip, active) = (
         outcome.column("points.slip"),
         outcome.column("points.active"),
     );
-    assert!(slip.last() == active.last() && slip[169] > 40.0, "{slip:?}");
+    assert!(slip.last() == active.last() && slip[159] > 40.0, "{slip:?}");
 
-    // Work done from the closed tools on is dissipated or stored.
+    // Measured: .0092 and .0025 of what is dissipated (.0006 at half the step).
+    let (coarse, fine) = (lost(&draw(0.15, 0.02)), lost(&outcome));
+    println!(
+        "work not found: {coarse}, {fine}, rate {}",
+        (coarse / fine).log2()
+    );
+    assert!(fine < 3e-3 && (coarse / fine).log2() > 1.7);
+}
+
+/// Work done since everything slides that is neither stored nor dissipated, as a part of what is dissipated.
+fn lost(outcome: &Outcome) -> f64 {
     let (force, time) = (outcome.column("force.pull.x"), outcome.column("time"));
-    let work: f64 = (100..170)
+    let last = time.len() - 1;
+    let first =
+        (time.iter().position(|t| (t - 1.1).abs() < 1e-9)).expect("a step that ends at 1.1");
+    let work: f64 = (first + 1..=last)
         .map(|i| 0.5 * (force[i] + force[i - 1]) * 12.0 * (time[i] - time[i - 1]))
         .sum();
-    let back = 2.0 * BACK_TENSION * (to - from);
+    let [from, to] = [first, last].map(|row| tail(outcome, row as u32 + 1));
     let change = |name: &str| {
         let column = outcome.column(name);
-        column[169] - column[99]
+        column[last] - column[first]
     };
-    let stored: f64 = ["energy.internal", "energy.contact", "energy.friction"]
-        .map(change)
-        .iter()
-        .sum();
+    let stored = ["energy.internal", "energy.contact", "energy.friction"].map(change);
     let dissipated = change("energy.dissipated");
-    let off = work - back - stored - dissipated;
-    println!(
-        "work {work}, against the back tension {back}, stored {stored}, dissipated {dissipated}, off {off}"
-    );
     assert!(dissipated > 0.2 * work);
-    assert!(off.abs() < 1e-3 * dissipated, "{off}");
+    (work - WIDTH * BACK_TENSION * (to - from) - stored.iter().sum::<f64>()) / dissipated - 1.0
 }
 
 #[test]
 fn an_elastic_sheet_without_friction_is_not_held_back() {
-    let (f, swing) = mean(&draw(0.0));
-    let expected = pull(0.0, 50.0, 32.0 + 12.0 * 0.45 - ACROSS[0]);
+    let (f, swing) = mean(&draw(0.0, 0.01));
+    let expected = pull(0.0, 50.0, 32.0 + 12.0 * 0.35 - ACROSS[0]);
     println!("pull {f} +- {swing}, chain {expected}");
     // Both hinges pull at a slant, by less than this.
     assert!((expected / BACK_TENSION - 1.0).abs() < 1e-3, "{expected}");
-    assert!((f / expected - 1.0).abs() < 1e-3, "{f}");
-    assert!(swing < 3e-3 * f, "{swing}");
+    assert!((f / expected - 1.0).abs() < 2e-4, "{f}");
+    assert!(swing < 1.5e-3 * f, "{swing}");
 }
 
 /// Wrap of a sheet without bending stiffness, rollers together.

@@ -3,24 +3,25 @@
 use covact::contact::friction::evolution::CovariantTraction;
 use covact::contact::friction::history::{PointHistory, PointStatus};
 use covact::contact::friction::law::{Coulomb, FrictionLaw};
+use covact::contact::friction::orthotropic::Orthotropic;
 use covact::contact::friction::rigid::Friction;
 use covact::contact::law::{Augmented, Penalty};
 use covact::contact::rigid::RigidMaster;
 use covact_geometry::{Frame, Hint, Jet, NurbsPatch, PatchSet, Vec3, primitives};
-use nalgebra::{Isometry3, Matrix2, Rotation3, SMatrix, SVector};
+use nalgebra::{Isometry3, Matrix2, Rotation3, SMatrix, SVector, Unit};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Drives a slave point and keeps its history as a program would.
-struct Driver<'a> {
+struct Driver<'a, F> {
     master: RigidMaster<'a>,
     law: Augmented,
-    friction: Friction<Coulomb>,
+    friction: Friction<F>,
     history: PointHistory,
     hint: Option<Hint>,
 }
 
-impl<'a> Driver<'a> {
-    fn new(set: &'a PatchSet, law: Augmented, friction: Friction<Coulomb>, start: &Vec3) -> Self {
+impl<'a, F: FrictionLaw> Driver<'a, F> {
+    fn new(set: &'a PatchSet, law: Augmented, friction: Friction<F>, start: &Vec3) -> Self {
         let mut history = PointHistory {
             lambda_n: law.lambda_n,
             ..PointHistory::default()
@@ -210,9 +211,8 @@ fn helix_over_four_patches() {
     }
     // Second order: a sixteenth at four times the steps.
     for pair in errors.windows(2) {
-        for i in 0..2 {
-            let ratio = pair[0][i] / pair[1][i];
-            assert!((ratio / 16.0 - 1.0).abs() < 0.1, "{errors:?}");
+        for (coarse, fine) in pair[0].iter().zip(&pair[1]) {
+            assert!((coarse / fine / 16.0 - 1.0).abs() < 0.1, "{errors:?}");
         }
     }
     assert!(
@@ -286,7 +286,7 @@ fn parallel_transport_round_a_circle_of_latitude() {
         ("patch", &by_patch),
     ] {
         let errors: Vec<[f64; 2]> = ([40, 160, 640].into_iter())
-            .map(|n| run(n))
+            .map(run)
             .map(|[angle, length]| [off(angle), (length - 1.0).abs()])
             .collect();
         for pair in errors.windows(2) {
@@ -417,9 +417,56 @@ fn sliding_agrees_with_the_rate_law_to_first_order_in_the_step() {
         .map(|steps| both(path(0.4), steps, 1e5, 0.3).map(|t| (t / 0.3 - along(1.0)).norm()))
         .collect();
     for pair in lag.windows(2) {
-        for i in 0..2 {
-            let rate = (pair[0][i] / pair[1][i]).log2();
+        for (coarse, fine) in pair[0].iter().zip(&pair[1]) {
+            let rate = (coarse / fine).log2();
             assert!((rate - 1.0).abs() < 0.1, "{lag:?}");
         }
+    }
+}
+
+/// Slip normal to an ellipse of friction (the associated rule): a point that slides along `v` has the traction
+/// `p M v / sqrt(v . M v)`, `M = mu_1^2 a a + mu_2^2 b b`, and dissipates `p sqrt(v . M v)` per length.
+#[test]
+fn sliding_under_two_coefficients() {
+    let plane = primitives::plane(Vec3::zeros(), Vec3::z(), [4.0, 4.0]).unwrap();
+    let mut set = PatchSet::new(vec![plane], None).unwrap();
+    set.set_side_as_given(false);
+    let mu = [0.1, 0.3];
+    let (turn, pressure) = (0.4f64, 2.0);
+    // The direction is projected on the plane, so what it has along the normal says nothing.
+    let direction = Vec3::new(turn.cos(), turn.sin(), 0.7);
+    let law = Orthotropic::new(mu, Unit::new_normalize(direction));
+    for k in 0..7 {
+        let angle = 0.1 + 0.5 * f64::from(k);
+        let v = Vec3::new(angle.cos(), angle.sin(), 0.0);
+        let start = v * -0.4 - Vec3::z() * (pressure / EPS);
+        let normal = Augmented {
+            law: Penalty { eps_n: EPS },
+            z0: 0.0,
+            lambda_n: 0.0,
+        };
+        let mut point = Driver::new(&set, normal, Friction { law, eps_t: EPS }, &start);
+        let mut t = Vec3::zeros();
+        for step in 1..=100 {
+            t = point.step(&(start + v * (0.008 * f64::from(step))));
+        }
+        let half = point.history.dissipated;
+        for step in 101..=200 {
+            t = point.step(&(start + v * (0.008 * f64::from(step))));
+        }
+        let [along, across] = [(angle - turn).cos() * mu[0], (angle - turn).sin() * mu[1]];
+        let limit = pressure * along.hypot(across);
+        let a = Vec3::new(turn.cos(), turn.sin(), 0.0);
+        let b = Vec3::new(-turn.sin(), turn.cos(), 0.0);
+        let expected = (a * (along * mu[0]) + b * (across * mu[1])) * (pressure * pressure / limit);
+        assert!(
+            (t - expected).norm() < 1e-10,
+            "{angle}: {t} instead of {expected}"
+        );
+        let dissipated = point.history.dissipated - half;
+        assert!(
+            (dissipated - limit * 0.8).abs() < 1e-9,
+            "{angle}: {dissipated}"
+        );
     }
 }

@@ -12,6 +12,7 @@ mod friction_kernel;
 mod hertz;
 mod hertz_bodies;
 mod hinged_roof;
+mod ironing;
 mod loads;
 mod offset;
 mod overclosure;

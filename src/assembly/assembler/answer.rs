@@ -1,7 +1,9 @@
 //! What slave points with history do at a state: what an augmentation makes multipliers of.
+use crate::contact::friction::anchor::Anchor;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::rigid::FrictionTouch;
-use covact_geometry::Vec3;
+use crate::contact::friction::touch::MovingFrictionTouch;
+use covact_geometry::{MovingFacets, Vec3};
 
 /// Tractions of a point in contact, and what its penalties leave open.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +29,27 @@ impl PointAnswer {
             gap,
             elastic: 0.0,
             slides: false,
+        }
+    }
+
+    /// That of a point on `facets` of a body.
+    pub fn between(
+        touch: &MovingFrictionTouch,
+        history: &PointHistory,
+        facets: &MovingFacets,
+        eps_t: f64,
+    ) -> Self {
+        let (t, n) = (touch.response.slip.t, &touch.normal);
+        let anchor = (history.place).and_then(|p| Anchor::new(&facets.jet(p.patch, p.xi)));
+        // The multiplier turns with the facet that it is attached to, and with the tangent plane.
+        let lambda = anchor.map_or_else(Vec3::zeros, |a| a.vector(&history.lambda));
+        let lambda = lambda - n * n.dot(&lambda);
+        PointAnswer {
+            n: touch.n,
+            t: anchor.map_or_else(Vec3::zeros, |a| a.components(&t)),
+            gap: touch.gap,
+            elastic: (t - lambda).norm() / eps_t,
+            slides: touch.response.slip.slides,
         }
     }
 

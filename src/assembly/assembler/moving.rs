@@ -191,13 +191,12 @@ impl Assembler<'_> {
                     &state.u,
                     time,
                     &mut state.points[range],
-                    &state.histories[histories],
+                    &state.histories[histories.clone()],
                 )?;
                 if pair.augmentation.is_some() {
-                    let range = pair.history().unwrap_or(0..0);
                     let eps_t = friction.ratio * self.penalties[index];
-                    let histories = &state.histories[range.clone()];
-                    sliding.answer(surface, histories, eps_t, &mut self.answers[range]);
+                    let known = &state.histories[histories.clone()];
+                    sliding.answer(surface, known, eps_t, &mut self.answers[histories]);
                 }
                 missing |= (sliding.touched()).any(|t| !sliding::holds(couplings, t));
                 continue;
@@ -294,15 +293,13 @@ impl Assembler<'_> {
                 }
             }
             near.extend(self.averaged[index].iter().flat_map(Averaged::touched));
-            let Some(histories) = self.model.pairs[index].history() else {
+            let pair = &self.model.pairs[index];
+            let (Some(_), Some(histories)) = (&pair.friction, pair.history()) else {
                 couplings.couple(&surface.facets, near.into_iter());
                 continue;
             };
-            near.extend(
-                self.sliding[index]
-                    .touched()
-                    .map(|(i, facet, _)| (i, facet)),
-            );
+            let touched = self.sliding[index].touched();
+            near.extend(touched.map(|(i, facet, _)| (i, facet)));
             let links = sliding::with_anchors(&mut near, &state.histories[histories]);
             couplings.couple(&surface.facets, near.into_iter());
             couplings.link(&surface.facets, links.into_iter());

@@ -3,7 +3,6 @@
 use super::answer::PointAnswer;
 use super::links::Links;
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
-use crate::contact::friction::anchor::Anchor;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::moving::{Form, Full, Reduced};
@@ -19,7 +18,7 @@ use crate::model::self_contact::{Accept, All, Opposing};
 use crate::model::state::{PointState, State};
 use crate::model::{HalfPass, Model, PairModel};
 use crate::with_law;
-use covact_geometry::{CurvedRows, ShapeRows, Vec3};
+use covact_geometry::{CurvedRows, ShapeRows};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -77,7 +76,7 @@ impl Sliding {
         })
     }
 
-    /// What the points evaluated last do, for the multipliers of their histories.
+    /// What an augmentation makes of the points evaluated last.
     pub fn answer(
         &self,
         surface: &BodySurface,
@@ -85,28 +84,10 @@ impl Sliding {
         eps_t: f64,
         answers: &mut [Option<PointAnswer>],
     ) {
+        let facets = &surface.facets;
         for ((touch, history), answer) in self.touches.iter().zip(histories).zip(answers) {
-            *answer = touch.as_ref().ok().and_then(Option::as_ref).map(|touch| {
-                let t = touch.response.slip.t;
-                let anchor =
-                    (touch.anchor).and_then(|a| Anchor::new(&surface.facets.jet(a.patch, a.xi)));
-                // Without an attraction point nothing pulls.
-                let (t, stretched) = match &anchor {
-                    Some(anchor) => {
-                        let lambda: Vec3 = anchor.vector(&history.lambda);
-                        let n = &touch.normal;
-                        (anchor.components(&t), t - (lambda - n * n.dot(&lambda)))
-                    }
-                    None => (Vec3::zeros(), Vec3::zeros()),
-                };
-                PointAnswer {
-                    n: touch.n,
-                    t,
-                    gap: touch.gap,
-                    elastic: stretched.norm() / eps_t,
-                    slides: touch.response.slip.slides,
-                }
-            });
+            let touch = touch.as_ref().ok().and_then(Option::as_ref);
+            *answer = touch.map(|t| PointAnswer::between(t, history, facets, eps_t));
         }
     }
 
@@ -234,6 +215,7 @@ impl Assembler<'_> {
             state.closed = closed;
         }
         totals.active += active.len();
+        let eps_n = self.penalties[index];
         let mut deepest = 0.0f64;
         let mut force = PairForce::default();
         let share = if half { 0.25 } else { 0.5 };
@@ -274,7 +256,6 @@ impl Assembler<'_> {
                 let Some(touch) = touch(i) else { continue };
                 let p = &points[i as usize];
                 deepest = deepest.max(-touch.gap);
-                let eps_n = self.penalties[index];
                 totals.contact_energy += share * eps_n * touch.gap * touch.gap * p.area;
                 let nodes = &work.nodes;
                 for (k, (node, f)) in nodes.forces(&touch.response, p.area).enumerate() {

@@ -67,8 +67,12 @@ impl PointHistory {
     ) {
         let (t, slides) = (traction.slip.t, traction.slip.slides);
         if slides {
-            // Of second order in the step also where the point stuck at its start, or slid the other way, or did not touch.
+            // The mean of the tractions at both ends of the step; of a point that stuck at its start, or slid the other way, or
+            // did not touch, the traction at the start is the limit there. Either is of second order in the step.
             let slid = traction.slid(eps_t);
+            let before = to_space.inverse_transform_vector(&self.t);
+            let went_on = self.status == PointStatus::Slip && before.dot(&t) > 0.0;
+            let first = if went_on { &before } else { first };
             self.dissipated += 0.5 * (first + t).dot(&slid);
             self.slip += slid.norm();
         }

@@ -118,12 +118,12 @@ pub fn respond_with_friction<D: DualNum<f64> + Copy, F: FrictionLaw, M: Form>(
         let second = |j: usize, k: usize| &frame.rho_ij[j + k];
         for i in 0..2 {
             let mut dtau: Slots<D> = dt.transpose() * up[i];
-            for j in 0..2 {
+            for (j, tau) in tau.iter().enumerate() {
                 let mut stretch = in_slot(1 + j, &up[i]);
                 for (k, x) in travel.iter().enumerate() {
                     stretch += x * up[i].dot(second(j, k));
                 }
-                dtau -= stretch * tau[j];
+                dtau -= stretch * *tau;
             }
             add_rows(&mut residual, 1 + i, &(n * (*xi3 * tau[i])));
             let rows = n * (g3 * tau[i] + dtau * *xi3).transpose() + turn * (*xi3 * tau[i]);

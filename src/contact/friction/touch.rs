@@ -6,7 +6,7 @@ use super::moving::{Form, Response, respond_with_friction};
 use super::rigid::Friction;
 use crate::contact::fault::{Piece, PointFault};
 use crate::contact::law::{Augmented, NormalLaw};
-use crate::contact::moving::MovingMaster;
+use crate::contact::moving::{MovingMaster, free};
 use covact_geometry::{Hint, Vec3};
 
 /// A point in contact with friction on faces of a body, per unit area and in space coordinates.
@@ -25,15 +25,13 @@ pub struct MovingFrictionTouch {
     pub normal: Vec3,
 }
 
-/// How near the direction of the distance is lost on an edge or a vertex, relative to the size of the surface.
-const NEAR: f64 = 1e-12;
-
 impl MovingMaster<'_> {
     /// Evaluates a slave point with friction; `None` where it is open. `hint` and `accept` as for
     /// [`MovingMaster::touch`].
     ///
     /// # Errors
     /// [`PointFault`] as there, and where the facet of the attraction point has degenerated.
+    #[expect(clippy::too_many_arguments)]
     pub fn touch_with_friction<F: FrictionLaw, M: Form>(
         &self,
         x: &Vec3,
@@ -48,12 +46,20 @@ impl MovingMaster<'_> {
         let Some(foot) = self.search(x, hint, reach, accept)? else {
             return Ok(None);
         };
-        let meeting = self.at(x, &foot)?;
-        if meeting.free || meeting.xi3 < -self.depth || !law.closes(meeting.xi3) {
+        let xi3 = foot.signed_distance;
+        if xi3 < -self.depth || !law.closes(xi3) || free(&foot, x) {
             return Ok(None);
         }
+        let meeting = self.at(x, &foot)?;
         meeting.check()?;
         let normal = law.normal(meeting.xi3);
+        if !meeting.geometry.directs(&normal) {
+            return Err(PointFault::NoDirection {
+                piece: meeting.piece,
+                xi: meeting.xi,
+                xi3: meeting.xi3,
+            });
+        }
         let gap = law.gap(meeting.xi3);
         let pull = match history.place {
             None => Pull::none(),
@@ -75,11 +81,11 @@ impl MovingMaster<'_> {
                 )
             }
         };
-        let geometry = meeting.steady(NEAR * self.facets.size());
+        let geometry = &meeting.geometry;
         Ok(Some(MovingFrictionTouch {
             foot: foot.hint(),
             anchor: history.place,
-            response: respond_with_friction(&geometry, &normal, &friction.law, &pull, form),
+            response: respond_with_friction(geometry, &normal, &friction.law, &pull, form),
             gap,
             n: normal.n,
             normal: geometry.normal(),

@@ -155,6 +155,8 @@ impl<'a> Batch<'a> {
         // Where the master is now, its coordinates are those of space: what follows is as on a rigid master that does not
         // move, until the point is attached again.
         let still = UnitQuaternion::identity();
+        let (place, base, tied) = (history.place, history.base, history.approach == 0.0);
+        let mut stays = None;
         master.detach(history, &x);
         let foot = match touch {
             Some(touch) => {
@@ -164,10 +166,10 @@ impl<'a> Batch<'a> {
                     tangent: Matrix3::zeros(),
                 };
                 let first = limited(&traction.trial, &touch.normal, -history.n);
-                let (n, eps_t) = (touch.n, friction.eps_t);
-                match self.pair.augmentation {
-                    None => history.accept(&x, &traction, &first, n, eps_t, &still),
-                    Some(_) => history.accept_augmented(&x, &traction, &first, n, eps_t, &still),
+                history.accept(&x, &traction, &first, touch.n, friction.eps_t, &still);
+                if self.pair.augmentation.is_some() {
+                    history.lambda_n = touch.n;
+                    stays = (tied && !traction.slip.slides).then_some(traction.slip.t);
                 }
                 Some(touch.foot)
             }
@@ -178,7 +180,14 @@ impl<'a> Batch<'a> {
                 foot.map(|f| f.hint())
             }
         };
-        master.attach(history, foot);
+        if let (Some(t), Some(at)) = (stays, place) {
+            // It stays tied to where it was, so that what elastic slip is left does not add up.
+            history.lambda = t;
+            master.attach(history, Some(at));
+            (history.place, history.base) = (place, base);
+        } else {
+            master.attach(history, foot);
+        }
         Ok(())
     }
 

@@ -51,14 +51,6 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
             gap: Gap::Averaged, ..
         } => Some(("gap", "averaged gaps", "take `pointwise`")),
         Contact {
-            augmentation: Some(_),
-            ..
-        } if contact.master.contains('.') => Some((
-            "augmentation",
-            "augmentation where the master is a body",
-            "take a stiffer `penalty`",
-        )),
-        Contact {
             tangent: Tangent::Published { .. },
             ..
         } => Some(("tangent", "the published tangent", "take `exact`")),

@@ -102,6 +102,26 @@ fn nafems_wedge() {
     }
 }
 
+/// The same by augmentation, with a penalty a thousand times softer than the automatic one.
+#[test]
+fn nafems_wedge_augmented() {
+    for mu in [0.1, 0.2, 0.3] {
+        let mut scene = guided(mu, 0.5);
+        scene["contacts"]["slide"]["penalty"] = json!({"scaled": 1e-3});
+        scene["contacts"]["slide"]["augmentation"] = json!({"gap": 1e-5, "slip": 1e-5});
+        let outcome = solve(&scene);
+        let exact = (TAN + mu) / (1.0 - mu * TAN);
+        let measured = ratio(&outcome, 2.0);
+        let deepest = outcome.at("penetration.max", 2.0);
+        println!("mu {mu}: F / G {measured:.9}, exact {exact:.9}, penetration {deepest:.1e}");
+        assert!((measured / exact - 1.0).abs() < 1e-6, "{measured}");
+        // Of elements of .5: the augmentation did its work.
+        assert!(deepest < 0.5e-5);
+        assert!(outcome.at("augmentations", 2.0) > 0.0);
+        assert_eq!(outcome.at("points.stick", 2.0), 0.0);
+    }
+}
+
 /// Pulled back after the push, the block sticks at first and then slides down: `F / G = (tan a - mu) / (1 + mu tan a)`.
 #[test]
 fn the_wedge_pulled_back() {
