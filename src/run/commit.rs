@@ -61,6 +61,9 @@ impl Sliding {
 /// # Errors
 /// A motion without a value at time 0.
 pub fn start(model: &Model, masters: &mut Masters, state: &mut State) -> Result<(), Fault> {
+    if model.histories() == 0 {
+        return Ok(());
+    }
     masters.update(model, &state.u);
     let mut first = 0;
     for (index, pair) in model.pairs.iter().enumerate() {
@@ -118,6 +121,9 @@ pub fn commit(
     start: f64,
     time: f64,
 ) -> Result<Sliding, Fault> {
+    if model.histories() == 0 {
+        return Ok(Sliding::default());
+    }
     assembler.masters.update(model, &state.u);
     let (masters, answers) = (&assembler.masters, assembler.answers());
     let penalties = &assembler.penalties;
@@ -225,12 +231,7 @@ impl Batch<'_> {
         let law = history.law(self.eps_n, z0);
         let touch = (self.master)
             .touch_with_friction(&x, &mut hint, &law, friction, history)
-            .map_err(|fault| Fault::Contact {
-                pair: self.pair.name.clone(),
-                point: i,
-                at: [x.x, x.y, x.z],
-                fault,
-            })?;
+            .map_err(|fault| Fault::contact(self.pair, i, &x, fault))?;
         match touch {
             Some(touch) => {
                 let turn = &self.master.pose.rotation;
@@ -246,8 +247,8 @@ impl Batch<'_> {
                 let pose = &self.master.pose;
                 let local = (pose.inverse_transform_point(&Point3::from(x))).coords;
                 let foot = self.master.foot(&x, hint, f64::INFINITY);
-                let gap = foot.map(|f| f.signed_distance - z0);
-                history.leave(&local, gap, self.eps_n, friction.eps_t, &pose.rotation);
+                let foot = foot.map(|f| (f.signed_distance - z0, f.normal));
+                history.leave(&local, foot, self.eps_n, friction.eps_t, &pose.rotation);
             }
         }
         Ok(())
