@@ -5,6 +5,7 @@ use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::moving::Reduced;
 use crate::contact::friction::rigid::Friction;
 use crate::contact::friction::trial::Traction;
+use crate::contact::law::Offsets;
 use crate::contact::moving::MovingMaster;
 use crate::model::friction::LawNow;
 use crate::model::master::{BodyMaster, BodySurface, Masters};
@@ -23,7 +24,7 @@ pub(super) struct Batch<'a> {
     body: &'a BodyMaster,
     surface: &'a BodySurface,
     u: &'a [f64],
-    time: f64,
+    offsets: Option<Offsets<'a>>,
     eps_n: f64,
 }
 
@@ -44,7 +45,7 @@ impl<'a> Batch<'a> {
             body: pair.body_master()?,
             surface: masters.surface(index)?,
             u,
-            time,
+            offsets: pair.offsets(time),
             eps_n,
         })
     }
@@ -206,6 +207,6 @@ impl<'a> Batch<'a> {
     }
 
     fn offset(&self, i: usize) -> f64 {
-        (self.pair.offsets(self.time)).map_or(0.0, |o| o.at(i))
+        self.offsets.map_or(0.0, |o| o.at(i))
     }
 }
