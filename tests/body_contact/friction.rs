@@ -368,5 +368,19 @@ fn augmentation_resolves_gap_and_elastic_slip_between_bodies() {
     println!("{:e} {:e}", sunk(&soft), sunk(&augmented));
     // A ten thousandth of an element of side 0.25 at most.
     assert!(sunk(&augmented) < 1e-4 && sunk(&soft) > 1e-3);
-    assert!(last(&augmented, "augmentations") > 0.0);
+    assert!(augmented.column("augmentations").iter().sum::<f64>() > 0.0);
+}
+
+/// The direction of an orthotropic law is one of space, which faces of a body would leave behind.
+#[test]
+fn orthotropic_friction_between_bodies_is_refused() {
+    let mut scene = layers([2, 2], [7, 3], "upper.bottom", 0.002, "0");
+    scene["contacts"]["rub"]["friction"] =
+        json!({"orthotropic": {"mu": [0.1, 0.3], "direction": [1, 0, 0]}});
+    let loaded = covact::scene::parse(&scene.to_string(), "scene.json").expect("a scene");
+    let told: Vec<String> = (covact::scene::check(&loaded).iter())
+        .map(|p| p.to_string())
+        .collect();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].contains("would not turn with a body"), "{told:?}");
 }

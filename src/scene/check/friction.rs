@@ -24,6 +24,13 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
         Friction::Coulomb { mu } => coefficient(c, &format!("{at}/friction/coulomb/mu"), mu),
         Friction::Orthotropic { mu, direction } => {
             let at = format!("{at}/friction/orthotropic");
+            if contact.master.contains('.') {
+                c.add(
+                    &at,
+                    "orthotropic friction is for masters that are rigid surfaces: its direction would not turn with a body",
+                    Some("take `coulomb`".into()),
+                );
+            }
             for (k, mu) in mu.iter().enumerate() {
                 coefficient(c, &format!("{at}/mu/{k}"), mu);
             }

@@ -76,7 +76,7 @@ pub enum Friction {
     Coulomb { mu: Value },
     /// Coulomb's law with two coefficients, along a direction of the master and across it: the traction stays within an
     /// ellipse. The direction is given in the coordinates in which the master is given, turns with it, and is projected on
-    /// its tangent plane. Both coefficients may vary in time.
+    /// its tangent plane. Both coefficients may vary in time. On rigid surfaces only.
     Orthotropic { mu: [Value; 2], direction: [f64; 3] },
 }
 
