@@ -409,8 +409,7 @@ fn exact_tangent_at_a_pole() {
                 let xi3 = (x - V::new(u[0], u[1], z)).dot(&n);
                 case.residual(&history.base, x, &n, xi3, coulomb(mu))
             });
-            // The normal is the mean of those around the pole, a little off it: exact to 2e-11, and so the rest.
-            compare(&what, &at, &reference, 1e-9);
+            compare(&what, &at, &reference, 1e-11);
         }
     }
 }

@@ -76,23 +76,29 @@ impl<S: Surface> PatchSet<S> {
         let EdgeCurve::Side { dir, .. } = edge.curve else {
             return None;
         };
-        let n = foot.normal;
-        let across = Vec3::ith(n.iamin(), 1.0).cross(&n).try_normalize(0.0)?;
-        let axes = [across, n.cross(&across)];
         let [a, b] = edge.interval;
-        let mut rows = [(Vec3::zeros(), 0.0); MERIDIANS];
-        let (mut normal, mut right) = (Matrix3::zeros(), Vec3::zeros());
-        for (k, row) in rows.iter_mut().enumerate() {
+        let ways: [[Vec3; 2]; MERIDIANS] = std::array::from_fn(|k| {
             let t = a + (b - a) * (k as f64 + 0.5) / MERIDIANS as f64;
             let jet = edge_point(self, edge, t).jet;
             let (out, bend) = (jet.rho_i[dir], jet.rho_ij[2 * dir]);
-            let square = out.norm_squared();
-            if !(square > 0.0 && out.dot(&n).abs() <= SMOOTH * square.sqrt()) {
+            [out / out.norm(), bend / out.norm_squared()]
+        });
+        // Across all ways out; the mean of normals around the pole is off it by what they turn within a little of it.
+        let across = |pair: &[[Vec3; 2]]| pair[0][0].cross(&pair[1][0]);
+        let sum: Vec3 = ways.windows(2).map(across).sum();
+        let n = sum.try_normalize(0.0)? * sum.dot(&foot.normal).signum();
+        let first = Vec3::ith(n.iamin(), 1.0).cross(&n).try_normalize(0.0)?;
+        let axes = [first, n.cross(&first)];
+        let mut rows = [(Vec3::zeros(), 0.0); MERIDIANS];
+        let (mut normal, mut right) = (Matrix3::zeros(), Vec3::zeros());
+        for (row, [out, bend]) in rows.iter_mut().zip(&ways) {
+            // Not for the tip of a cone, nor for what is not finite.
+            if !(out.dot(&n).abs() <= SMOOTH && out.dot(&foot.normal).abs() <= SMOOTH) {
                 return None;
             }
-            let [c, s] = axes.map(|e| e.dot(&out) / square.sqrt());
+            let [c, s] = axes.map(|e| e.dot(out));
             let along = Vec3::new(c * c, 2.0 * c * s, s * s);
-            let curvature = bend.dot(&n) / square;
+            let curvature = bend.dot(&n);
             *row = (along, curvature);
             normal += along * along.transpose();
             right += along * curvature;
