@@ -193,7 +193,7 @@ pub fn master_row(shape: &ShapeRows, k: usize) -> NodeRow {
 }
 
 /// Whether the foot of `x` means contact: below the surface and not past a free border, where nothing stands in the way.
-pub fn presses(foot: &MovingFoot, x: &Vec3) -> bool {
+fn presses(foot: &MovingFoot, x: &Vec3) -> bool {
     foot.signed_distance < 0.0 && !free(foot, x)
 }
 

@@ -336,7 +336,7 @@ pub fn behind(foot: &Foot, depth: f64) -> bool {
 
 /// Whether a foot means contact. A foot on a free border is not: the point hangs past the border, beside the surface
 /// or below it, and nothing of the surface stands in its way.
-pub fn presses(foot: &Foot) -> bool {
+fn presses(foot: &Foot) -> bool {
     foot.signed_distance < 0.0 && !free(foot)
 }
 

@@ -4,7 +4,7 @@ use super::answer::PointAnswer;
 use super::averaged::Averaged;
 use super::couplings::Couplings;
 use super::driven::Border;
-use super::sliding;
+use super::links;
 use super::touched::{self, Touched};
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, maps, put};
 use crate::contact::friction::history::PointHistory;
@@ -43,7 +43,7 @@ pub(super) struct Meetings {
 
 impl Meetings {
     /// Room for a pair; none is needed where the master is rigid, gaps are averaged, or there is friction
-    /// ([`sliding::Sliding`]).
+    /// ([`super::sliding::Sliding`]).
     pub fn new(pair: &PairModel) -> Self {
         let (Some(master), None, None) = (pair.body_master(), &pair.averaged, &pair.friction)
         else {
@@ -200,7 +200,7 @@ impl Assembler<'_> {
                     let known = &state.histories[histories.clone()];
                     sliding.answer(surface, known, eps_t, &mut self.answers[histories]);
                 }
-                missing |= (sliding.touched()).any(|t| !sliding::holds(couplings, t));
+                missing |= (sliding.touched()).any(|t| !links::holds(couplings, t));
                 continue;
             }
             if !self.meetings[index].holds(&state.cuts[index]) {
@@ -282,7 +282,7 @@ impl Assembler<'_> {
             };
             let touched = self.sliding[index].touched();
             near.extend(touched.map(|(i, facet, _)| (i, facet)));
-            let links = sliding::with_anchors(&mut near, &state.histories[histories]);
+            let links = links::with_anchors(&mut near, &state.histories[histories]);
             couplings.couple(&surface.facets, near.into_iter());
             couplings.link(&surface.facets, links.into_iter());
         }

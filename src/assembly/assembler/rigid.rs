@@ -189,6 +189,7 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
         histories: &[PointHistory],
         offsets: Option<Offsets>,
     ) {
+        let augmented = self.pair.augmentation.is_some();
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
@@ -201,8 +202,10 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
                 let law = history.law(self.law.eps_n, offsets.map_or(0.0, |o| o.at(i)));
                 let touch =
                     (self.master).touch_with_friction(&x, &mut s.hint, &law, friction, history);
-                *answer = touched::of(&touch)
-                    .map(|t| PointAnswer::with_friction(t, history, friction.eps_t));
+                if augmented {
+                    *answer = touched::of(&touch)
+                        .map(|t| PointAnswer::with_friction(t, history, friction.eps_t));
+                }
                 *out = touch.map(|t| t.map(|t| t.touch));
             });
     }

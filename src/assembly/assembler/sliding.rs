@@ -1,7 +1,6 @@
 //! Contact with friction between bodies: as [`super::moving`], with histories, and columns for the facets that hold the
 //! attraction points.
 use super::answer::PointAnswer;
-use super::links::Links;
 use super::touched::{self, Touched};
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
 use crate::contact::friction::history::PointHistory;
@@ -328,28 +327,4 @@ impl Batch<'_> {
                     .touch_with_friction(&x, hint, &law, friction, history, form, facet);
             });
     }
-}
-
-/// Adds the facets of the attraction points to those at the feet of points, and links what occurs together.
-pub(super) fn with_anchors(
-    near: &mut Vec<(usize, u32)>,
-    histories: &[PointHistory],
-) -> Vec<(u32, u32)> {
-    let anchor = |i: usize| Some(histories.get(i)?.place?.patch);
-    let held: Vec<(usize, u32, u32)> = (near.iter())
-        .filter_map(|&(i, facet)| Some((i, facet, anchor(i)?)))
-        .collect();
-    near.extend(held.iter().map(|&(i, _, anchor)| (i, anchor)));
-    held.iter()
-        .map(|&(_, facet, anchor)| (facet, anchor))
-        .collect()
-}
-
-/// Whether the pattern holds what a point feels.
-pub(super) fn holds(
-    couplings: &super::couplings::Couplings,
-    (point, facet, anchor): (usize, u32, u32),
-) -> bool {
-    let links: &Links = &couplings.links;
-    couplings.holds(point, facet) && couplings.holds(point, anchor) && links.hold(facet, anchor)
 }

@@ -155,3 +155,50 @@ impl PointHistory {
         };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point that half of the step takes to open: `N` from -1 to 1.
+    fn left(traction: Vec3, to: Vec3) -> PointHistory {
+        let mut history = PointHistory {
+            lambda: traction,
+            t: traction,
+            n: -1.0,
+            status: PointStatus::Stick,
+            ..PointHistory::default()
+        };
+        let foot = Some((to.z, Vec3::z()));
+        history.leave(&to, foot, 1.0 / to.z, 1.0, &UnitQuaternion::identity());
+        assert_eq!((history.base, history.approach), (to, to.z));
+        assert_eq!((history.lambda, history.t), (Vec3::zeros(), Vec3::zeros()));
+        history
+    }
+
+    #[test]
+    fn a_point_that_leaves_slides_along_the_surface_only() {
+        let up = left(Vec3::zeros(), Vec3::new(0.0, 0.0, 0.5));
+        assert_eq!((up.slip, up.dissipated), (0.0, 0.0));
+        // Half of the way, without a traction.
+        let aside = left(Vec3::zeros(), Vec3::new(0.2, 0.0, 0.5));
+        assert!((aside.slip - 0.1).abs() < 1e-15 && aside.dissipated == 0.0);
+        // What was elastic too, under half of the traction in the mean.
+        let held = left(Vec3::new(0.3, 0.0, 0.0), Vec3::new(0.2, 0.0, 0.5));
+        assert!((held.slip - 0.4).abs() < 1e-15 && (held.dissipated - 0.06).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_point_that_is_gone_lets_go_of_what_was_elastic() {
+        let mut history = PointHistory {
+            t: Vec3::new(0.0, 0.3, 0.0),
+            n: -1.0,
+            status: PointStatus::Slip,
+            ..PointHistory::default()
+        };
+        let still = UnitQuaternion::identity();
+        history.leave(&Vec3::new(5.0, 0.0, 9.0), None, 2.0, 1.0, &still);
+        assert!((history.slip - 0.3).abs() < 1e-15 && (history.dissipated - 0.045).abs() < 1e-15);
+        assert!(history.approach.is_infinite() && history.status == PointStatus::Open);
+    }
+}
