@@ -51,8 +51,11 @@ pub fn done(scene: &Value) -> Outcome {
 
 /// What is stored and dissipated at the end of a run.
 pub fn book(outcome: &Outcome) -> f64 {
+    let columns = &outcome.history.columns;
     ["internal", "contact", "friction", "dissipated"]
         .iter()
+        // Without friction the last two are not there.
+        .filter(|part| columns.contains(&format!("energy.{part}")))
         .map(|part| outcome.column(&format!("energy.{part}")).last().copied())
         .map(|v| v.expect("a step"))
         .sum()

@@ -49,12 +49,16 @@ fn difference(a: &Outcome, b: &Outcome) -> f64 {
 
 /// Runs the drawn block on patches from a file.
 fn on_patches(patches: &[NurbsPatch], changes: impl Fn(&mut Value)) -> Outcome {
+    on_patches_with(patches, 0.3, changes)
+}
+
+fn on_patches_with(patches: &[NurbsPatch], mu: f64, changes: impl Fn(&mut Value)) -> Outcome {
     let folder = tempfile::tempdir().expect("temporary folder");
     let file = folder.path().join("tool.cad.json");
     cad_file(patches, &file);
     let mut tool = json!({ "cad": { "file": file }, "side": { "point": [0, 0, 5] }, "depth": 0.4 });
     changes(&mut tool);
-    done(&block(tool, drawn(), json!(0.3), 40))
+    done(&block(tool, drawn(), json!(mu), 40))
 }
 
 #[test]
@@ -111,8 +115,10 @@ fn borders_between_patches_and_facets_of_a_plane_do_not_exist_for_friction() {
     }
 }
 
+/// Forces that lean over a convex edge turn at once as a point passes it; the block jumps, with friction or without, and what it
+/// had stored for that is gone (the same for all steps: 1.5 % of the dissipation with 40 facets). Friction must lose no more.
 #[test]
-fn a_crease_and_facet_edges_keep_the_book() {
+fn friction_loses_nothing_at_a_crease_and_at_facet_edges() {
     // A shallow roof: a ridge under the block, across its way; and a cylinder made of few flat facets.
     let slope = 0.1f64;
     let half = |sign: f64| {
@@ -121,26 +127,35 @@ fn a_crease_and_facet_edges_keep_the_book() {
         let middle = Vec3::new(0.11, 0.0, 0.0) + along * sign * 2.0;
         primitives::plane(middle, n, [4.0, 4.0]).unwrap()
     };
-    let roof = on_patches(&[half(1.0), half(-1.0)], |tool| {
-        tool["placement"] = json!({ "translation": [0, 0, 0.02] });
-    });
-    let mut few = json!({
-        "cylinder": { "radius": 2, "length": 4, "center": [0.03, 0, -2], "axis": [0, 1, 0] },
-        "facets": { "kind": "bilinear", "count": [40, 3] }
-    });
-    few["side"] = json!({ "point": [0, 0, 5] });
-    let facets = done(&block(few, drawn(), json!(0.3), 64));
-    for (name, outcome) in [("roof", roof), ("facets", facets)] {
+    let roof = |mu: f64| {
+        on_patches_with(&[half(1.0), half(-1.0)], mu, |tool| {
+            tool["placement"] = json!({ "translation": [0, 0, 0.02] });
+        })
+    };
+    let facets = |mu: f64| {
+        let tool = json!({
+            "cylinder": { "radius": 2, "length": 4, "center": [0.03, 0, -2], "axis": [0, 1, 0] },
+            "facets": { "kind": "bilinear", "count": [40, 3] },
+            "side": { "point": [0, 0, 5] }
+        });
+        done(&block(tool, drawn(), json!(mu), 128))
+    };
+    let lost = |outcome: &Outcome| {
         let way = [[0.0, 0.0], [0.75, 0.3], [1.0, 0.25]];
         let down = [[0.0, 0.0], [0.25, -0.05], [1.0, -0.05]];
-        let put_in = work(&outcome, &outcome.column("force.top.x"), |t| table(&way, t))
-            + work(&outcome, &outcome.column("force.top.z"), |t| {
-                table(&down, t)
-            });
-        let dissipated = outcome.at("energy.dissipated", 1.0);
-        let error = (put_in - book(&outcome)) / dissipated;
-        println!("{name}: {error:.1e} of {dissipated:.3e}");
-        assert!(error.abs() < 0.03, "{name}: {error}");
+        let put_in = work(outcome, &outcome.column("force.top.x"), |t| table(&way, t))
+            + work(outcome, &outcome.column("force.top.z"), |t| table(&down, t));
+        put_in - book(outcome)
+    };
+    for (name, with, without) in [
+        ("roof", roof(0.3), roof(0.0)),
+        ("facets", facets(0.3), facets(0.0)),
+    ] {
+        let dissipated = with.at("energy.dissipated", 1.0);
+        let [with, without] = [lost(&with), lost(&without)].map(|e| e / dissipated);
+        println!("{name}: {with:.1e} of {dissipated:.3e}, {without:.1e} without friction");
+        assert!(dissipated > 0.1);
+        assert!((with - without).abs() < 5e-3, "{name}: {with} {without}");
     }
 }
 
