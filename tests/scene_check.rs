@@ -277,7 +277,7 @@ fn friction_with_two_coefficients() {
     ] {
         let found = with(friction);
         assert!(
-            found.len() == 1 && found[0].contains(expected) && found[0].starts_with("15:"),
+            found.len() == 1 && found[0].contains(expected) && found[0].starts_with("14:"),
             "{found:?}"
         );
     }

@@ -54,7 +54,7 @@ fn second_order(name: &str, errors: &[f64], last: f64) {
 fn a_block_drawn_to_and_fro_on_a_plane() {
     let e = errors(
         "plane",
-        &[32, 64, 128],
+        &[32, 64, 128, 256],
         |n| block(plane(), tables(), json!(0.3), n),
         support,
     );
