@@ -65,17 +65,17 @@ fn augmentation_and_offset() {
         (
             "\"points\": {\"gauss\": 2}",
             "\"points\": {\"gauss\": 2}, \"gap\": \"averaged\", \"augmentation\": {}",
-            "14:122: augmentation does not go with averaged gaps",
+            "14:106: augmentation does not go with averaged gaps",
         ),
         (
             "\"points\": {\"gauss\": 2}",
             "\"tangent\": {\"published\": {}}, \"augmentation\": {}",
-            "14:74: the published tangent, which is right on the surface, does not go with augmentation",
+            "14:63: the published tangent, which is right on the surface, does not go with augmentation",
         ),
         (
             "\"points\": {\"gauss\": 2}",
             "\"tangent\": {\"published\": {}}, \"offset\": 0.5",
-            "14:74: the published tangent, which is right on the surface, does not go with an offset",
+            "14:63: the published tangent, which is right on the surface, does not go with an offset",
         ),
         (
             "\"points\": {\"gauss\": 2}",

@@ -1,6 +1,6 @@
 //! Where a slave point meets a master surface, before any law is asked.
 use super::fault::{Piece, PointFault};
-use super::kernel::{SlotMatrix, Slots};
+use super::kernel::{Normal, SlotMatrix, Slots};
 use super::law::NormalLaw;
 use super::point::{FaceTangent, PointGeometry, respond};
 use covact_geometry::Vec3;
@@ -69,6 +69,24 @@ impl Meeting {
         }
     }
 
+    /// Normal traction of a point in contact under a law.
+    ///
+    /// # Errors
+    /// [`PointFault`] as for [`Self::check`], and where the traction has no direction.
+    #[inline]
+    pub(super) fn pressed<L: NormalLaw>(&self, law: &L) -> Result<Normal, PointFault> {
+        self.check()?;
+        let normal = law.normal(self.xi3);
+        match self.geometry.directs(&normal) {
+            true => Ok(normal),
+            false => Err(PointFault::NoDirection {
+                piece: self.piece,
+                xi: self.xi,
+                xi3: self.xi3,
+            }),
+        }
+    }
+
     /// Residual and tangent under a law; `None` where the point is open.
     #[inline]
     pub fn respond<L: NormalLaw, T: FaceTangent>(
@@ -79,15 +97,7 @@ impl Meeting {
         if self.free || !law.closes(self.xi3) {
             return Ok(None);
         }
-        self.check()?;
-        let normal = law.normal(self.xi3);
-        if !self.geometry.directs(&normal) {
-            return Err(PointFault::NoDirection {
-                piece: self.piece,
-                xi: self.xi,
-                xi3: self.xi3,
-            });
-        }
+        let normal = self.pressed(law)?;
         let (residual, tangent) = respond(&self.geometry, &normal, tangent);
         Ok(Some(SlotTouch {
             residual,

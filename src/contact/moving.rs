@@ -56,15 +56,9 @@ impl MovingMaster<'_> {
         tangent: &T,
         accept: impl Fn(u32) -> bool,
     ) -> Result<Option<MovingTouch>, PointFault> {
-        let reach = self.depth.max(law.reach());
-        let Some(foot) = self.search(x, hint, reach, accept)? else {
+        let Some((foot, meeting)) = self.contact_at(x, hint, law, accept)? else {
             return Ok(None);
         };
-        let xi3 = foot.signed_distance;
-        if xi3 < -self.depth || !law.closes(xi3) || free(&foot, x) {
-            return Ok(None);
-        }
-        let meeting = self.at(x, &foot)?;
         let touch = meeting.respond(law, tangent)?;
         Ok(touch.map(|t| MovingTouch {
             facet: foot.facet,
@@ -75,6 +69,28 @@ impl MovingMaster<'_> {
             n: t.n,
             normal: meeting.geometry.normal(),
         }))
+    }
+
+    /// The foot of a slave point and what the surface looks like there; `None` where the point is open. `hint` and `accept`
+    /// as for [`Self::touch`].
+    #[inline]
+    pub(super) fn contact_at<L: NormalLaw>(
+        &self,
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        law: &L,
+        accept: impl Fn(u32) -> bool,
+    ) -> Result<Option<(MovingFoot, Meeting)>, PointFault> {
+        let reach = self.depth.max(law.reach());
+        let Some(foot) = self.search(x, hint, reach, accept)? else {
+            return Ok(None);
+        };
+        let xi3 = foot.signed_distance;
+        if xi3 < -self.depth || !law.closes(xi3) || free(&foot, x) {
+            return Ok(None);
+        }
+        let meeting = self.at(x, &foot)?;
+        Ok(Some((foot, meeting)))
     }
 
     /// The closest point within `reach` on either side, for what needs more than [`Self::touch`], such as an averaged
@@ -95,7 +111,7 @@ impl MovingMaster<'_> {
         }
     }
 
-    pub(super) fn search(
+    fn search(
         &self,
         x: &Vec3,
         hint: &mut Option<Hint>,
@@ -119,7 +135,7 @@ impl MovingMaster<'_> {
         }
     }
 
-    pub(super) fn at(&self, x: &Vec3, foot: &MovingFoot) -> Result<Meeting, PointFault> {
+    fn at(&self, x: &Vec3, foot: &MovingFoot) -> Result<Meeting, PointFault> {
         Ok(Meeting {
             piece: Piece::Facet(foot.facet),
             xi: foot.xi,
@@ -177,7 +193,7 @@ pub fn master_row(shape: &ShapeRows, k: usize) -> NodeRow {
 }
 
 /// Whether the foot of `x` means contact: below the surface and not past a free border, where nothing stands in the way.
-pub fn presses(foot: &MovingFoot, x: &Vec3) -> bool {
+fn presses(foot: &MovingFoot, x: &Vec3) -> bool {
     foot.signed_distance < 0.0 && !free(foot, x)
 }
 

@@ -192,17 +192,21 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
                     "move one of the bodies, or take the faces that face each other",
                 ),
             };
+            let (deep, smaller) = match pair.offset > 0.0 {
+                false => ("deep inside", ""),
+                true => ("within the `offset` of", "; or take a smaller `offset`"),
+            };
             return Err(text(
                 pointer,
                 format!(
-                    "{start} {} deep inside body `{}` (contact `{}`), more than half an element, {}",
+                    "{start} {} {deep} body `{}` (contact `{}`), more than half an element, {}",
                     number(-gap.smallest),
                     model.bodies[pair.body].name,
                     pair.name,
                     number(limit)
                 ),
             )
-            .help(help));
+            .help(format!("{help}{smaller}")));
         }
         if gap.turned_away {
             warnings.push(format!(

@@ -5,6 +5,7 @@ use crate::assembly::{Assembler, Fault, PointAnswer};
 use crate::contact::friction::history::{PointHistory, PointStatus};
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::Friction;
+use crate::contact::law::Offsets;
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::RigidMaster;
 use crate::model::master::{Master, Masters};
@@ -18,7 +19,7 @@ use rayon::prelude::*;
 
 /// Energies and counts of all points with history at an accepted step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Sliding {
+pub struct FrictionTotals {
     /// Points that stick.
     pub stick: usize,
     /// Points that slide.
@@ -29,7 +30,7 @@ pub struct Sliding {
     pub dissipated: f64,
 }
 
-impl Sliding {
+impl FrictionTotals {
     /// Adds the points of a pair, of whose energies `share` counts. With multipliers the tangential penalty carries only what
     /// `answers` say is elastic.
     fn add(
@@ -61,6 +62,9 @@ impl Sliding {
 /// # Errors
 /// A motion without a value at time 0.
 pub fn start(model: &Model, masters: &mut Masters, state: &mut State) -> Result<(), Fault> {
+    if model.histories() == 0 {
+        return Ok(());
+    }
     masters.update(model, &state.u);
     let mut first = 0;
     for (index, pair) in model.pairs.iter().enumerate() {
@@ -117,11 +121,14 @@ pub fn commit(
     state: &mut State,
     start: f64,
     time: f64,
-) -> Result<Sliding, Fault> {
+) -> Result<FrictionTotals, Fault> {
+    if model.histories() == 0 {
+        return Ok(FrictionTotals::default());
+    }
     assembler.masters.update(model, &state.u);
     let (masters, answers) = (&assembler.masters, assembler.answers());
     let penalties = &assembler.penalties;
-    let mut total = Sliding::default();
+    let mut total = FrictionTotals::default();
     let mut first = 0;
     for (index, pair) in model.pairs.iter().enumerate() {
         let points = first..first + state.slaves(model, index).len();
@@ -139,47 +146,34 @@ pub fn commit(
         let eps_t = friction.ratio * eps_n;
         // What the tangential penalties carry beside the multipliers.
         let elastic = pair.augmentation.map(|_| &answers[range.clone()]);
-        let Master::Rigid(surface) = pair.master else {
-            let batch = moving::Batch::new(model, masters, index, &state.u, time, eps_n);
-            if let Some(batch) = batch {
-                let histories = &mut state.histories[range.clone()];
-                batch.commit(&state.points[points], histories, (now, eps_t), &limited)?;
+        let (hints, histories) = (&state.points[points], &mut state.histories[range]);
+        match pair.master {
+            Master::Rigid(surface) => {
+                let batch = Batch {
+                    model,
+                    pair,
+                    master: model.surfaces[surface].at(time, &state.u)?,
+                    u: &state.u,
+                    offsets: pair.offsets(time),
+                    eps_n,
+                };
+                with_law!(now, law => {
+                    let friction = Friction { law, eps_t };
+                    (histories.par_iter_mut().zip(hints).enumerate())
+                        .with_min_len(64)
+                        .try_for_each(|(i, (history, point))| {
+                            batch.accept(i, point.hint, &friction, &limited, history)
+                        })?;
+                });
             }
-            total.add(
-                &state.histories[range],
-                elastic,
-                &pair.points,
-                eps_t,
-                pair.share(),
-            );
-            continue;
-        };
-        let master = model.surfaces[surface].at(time, &state.u)?;
-        let batch = Batch {
-            model,
-            pair,
-            master,
-            u: &state.u,
-            time,
-            eps_n,
-        };
-        let histories = &mut state.histories[range.clone()];
-        let hints = &state.points[points];
-        with_law!(now, law => {
-            let friction = Friction { law, eps_t };
-            (histories.par_iter_mut().zip(hints).enumerate())
-                .with_min_len(64)
-                .try_for_each(|(i, (history, point))| {
-                    batch.accept(i, point.hint, &friction, &limited, history)
-                })?;
-        });
-        total.add(
-            &state.histories[range],
-            elastic,
-            &pair.points,
-            eps_t,
-            pair.share(),
-        );
+            Master::Body(_) => {
+                let batch = moving::Batch::new(model, masters, index, &state.u, time, eps_n);
+                if let Some(batch) = batch {
+                    batch.commit(hints, histories, (now, eps_t), &limited)?;
+                }
+            }
+        }
+        total.add(histories, elastic, &pair.points, eps_t, pair.share());
     }
     Ok(total)
 }
@@ -205,7 +199,7 @@ struct Batch<'a> {
     pair: &'a PairModel,
     master: RigidMaster<'a, SurfaceSet>,
     u: &'a [f64],
-    time: f64,
+    offsets: Option<Offsets<'a>>,
     eps_n: f64,
 }
 
@@ -221,16 +215,11 @@ impl Batch<'_> {
         history: &mut PointHistory,
     ) -> Result<(), Fault> {
         let x = (self.model).point_position(&self.pair.points[i], self.u);
-        let z0 = self.pair.offsets(self.time).map_or(0.0, |o| o.at(i));
+        let z0 = self.offsets.map_or(0.0, |o| o.at(i));
         let law = history.law(self.eps_n, z0);
         let touch = (self.master)
             .touch_with_friction(&x, &mut hint, &law, friction, history)
-            .map_err(|fault| Fault::Contact {
-                pair: self.pair.name.clone(),
-                point: i,
-                at: [x.x, x.y, x.z],
-                fault,
-            })?;
+            .map_err(|fault| Fault::contact(self.pair, i, &x, fault))?;
         match touch {
             Some(touch) => {
                 let turn = &self.master.pose.rotation;
@@ -246,8 +235,8 @@ impl Batch<'_> {
                 let pose = &self.master.pose;
                 let local = (pose.inverse_transform_point(&Point3::from(x))).coords;
                 let foot = self.master.foot(&x, hint, f64::INFINITY);
-                let gap = foot.map(|f| f.signed_distance - z0);
-                history.leave(&local, gap, self.eps_n, friction.eps_t, &pose.rotation);
+                let foot = foot.map(|f| (f.signed_distance - z0, f.normal));
+                history.leave(&local, foot, self.eps_n, friction.eps_t, &pose.rotation);
             }
         }
         Ok(())

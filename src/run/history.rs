@@ -1,5 +1,5 @@
 //! Rows of `history.csv`.
-use super::commit::Sliding;
+use super::commit::FrictionTotals;
 use super::fields::Fields;
 use crate::assembly::PairForce;
 use crate::model::{Model, PairModel};
@@ -14,7 +14,7 @@ pub struct Record<'a> {
     pub dt: f64,
     pub cuts: u32,
     pub converged: &'a Converged,
-    pub sliding: &'a Sliding,
+    pub sliding: &'a FrictionTotals,
     /// Residual at all degrees of freedom: reactions at the constrained ones.
     pub residual: &'a [f64],
     /// Displacements, 3 per node.

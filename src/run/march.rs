@@ -1,6 +1,6 @@
 //! The march through time: steps, roll-back, output.
 use super::RunError;
-use super::commit::{self, Sliding};
+use super::commit::{self, FrictionTotals};
 use super::fields::Fields;
 use super::history;
 use super::progress::Progress;
@@ -314,7 +314,7 @@ impl<'a, 'm> March<'a, 'm> {
         dt: f64,
         cuts: u32,
         converged: &Converged,
-        sliding: &Sliding,
+        sliding: &FrictionTotals,
     ) -> Result<(), RunError> {
         let (step, time) = (self.progress.steps, self.progress.time);
         self.phases.start("output");

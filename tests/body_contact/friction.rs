@@ -317,6 +317,97 @@ fn a_sledge_on_a_soft_bed_balances_in_force_and_moment() {
     }
 }
 
+/// The blocks of [`layers`] as one body of two parts, in an Abaqus file at `path`.
+fn both_blocks(path: &std::path::Path, upper: [usize; 2], lower: [usize; 2]) {
+    let mut text = String::new();
+    let mut surfaces = String::new();
+    let (mut nodes, mut elements) = (0, 0);
+    for (name, [nx, ny], min, max) in [
+        ("lower", lower, [-1.0, -0.1, -0.5], [3.0, 1.1, 0.0]),
+        ("upper", upper, [0.0, 0.0, 0.0], [1.0, 1.0, 0.5]),
+    ] {
+        let id = |i: usize, j: usize, k: usize| nodes + 1 + i + (nx + 1) * (j + (ny + 1) * k);
+        text += "*NODE\n";
+        for (k, j, i) in
+            (0..2).flat_map(|k| (0..=ny).flat_map(move |j| (0..=nx).map(move |i| (k, j, i))))
+        {
+            let at = |c: usize, share: f64| min[c] + (max[c] - min[c]) * share;
+            let [x, y] = [at(0, i as f64 / nx as f64), at(1, j as f64 / ny as f64)];
+            text += &format!("{}, {x:e}, {y:e}, {:e}\n", id(i, j, k), at(2, k as f64));
+        }
+        text += &format!("*ELEMENT, TYPE=C3D8, ELSET={name}\n");
+        for (j, i) in (0..ny).flat_map(|j| (0..nx).map(move |i| (j, i))) {
+            elements += 1;
+            let ring = |k| {
+                [
+                    id(i, j, k),
+                    id(i + 1, j, k),
+                    id(i + 1, j + 1, k),
+                    id(i, j + 1, k),
+                ]
+            };
+            let all: Vec<String> = [ring(0), ring(1)]
+                .concat()
+                .iter()
+                .map(ToString::to_string)
+                .collect();
+            text += &format!("{elements}, {}\n", all.join(", "));
+        }
+        surfaces += &format!("*SURFACE, NAME={name}_bottom, TYPE=ELEMENT\n{name}, S1\n");
+        surfaces += &format!("*SURFACE, NAME={name}_top, TYPE=ELEMENT\n{name}, S2\n");
+        nodes = id(nx, ny, 1);
+    }
+    std::fs::write(path, text + &surfaces).expect("a mesh file");
+}
+
+/// Two blocks are one body of two parts: contact of the body with itself, and friction as between two.
+#[test]
+fn a_body_slides_on_itself_as_on_another() {
+    let (upper, lower) = ([2, 2], [7, 3]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("both.inp");
+    both_blocks(&path, upper.map(|n| n as usize), lower.map(|n| n as usize));
+    for slave in ["upper.bottom", "lower.top"] {
+        let mut two = layers(upper, lower, slave, 0.002, "0.4*max(0, t-0.25)");
+        for body in ["upper", "lower"] {
+            two["bodies"][body]["element"] = json!("h8_displacement");
+        }
+        let mut one = two.clone();
+        one["bodies"] = json!({"both": {
+            "mesh": {"file": {"path": path}}, "material": "m", "element": "h8_displacement"
+        }});
+        let named = |set: &Value| {
+            let set = set.as_str().expect("a set").replace('.', "_");
+            json!(format!("both.{set}"))
+        };
+        for side in ["slave", "master"] {
+            one["contacts"]["rub"][side] = named(&two["contacts"]["rub"][side]);
+        }
+        for support in ["ground", "face", "sole", "push"] {
+            one["supports"][support]["on"] = named(&two["supports"][support]["on"]);
+        }
+        let (two, one) = (done(&two), done(&one));
+        assert!(last(&one, "points.slip") > 10.0 && last(&one, "energy.dissipated") > 0.1);
+        for column in [
+            "slave.force.rub.x",
+            "slave.force.rub.z",
+            "master.force.rub.x",
+            "energy.internal",
+            "energy.friction",
+            "energy.dissipated",
+            "points.stick",
+            "points.slip",
+        ] {
+            let (a, b) = (two.column(column), one.column(column));
+            let scale = a.iter().fold(0.0f64, |s, x| s.max(x.abs()));
+            assert!(a.len() == b.len() && (scale > 0.0 || column == "points.stick"));
+            for (a, b) in a.iter().zip(&b) {
+                assert!((a - b).abs() <= 1e-9 * scale, "{slave}, {column}: {a} {b}");
+            }
+        }
+    }
+}
+
 /// The walls of a pinched tube rub on each other: by symmetry nothing slides, and the force is that without friction.
 #[test]
 fn walls_that_meet_may_rub() {

@@ -1,5 +1,6 @@
 //! The scene that the tests change.
 use crate::support::{Outcome, scene_json, solve};
+use covact_geometry::NurbsPatch;
 use serde_json::{Value, json};
 
 /// A quarter of the clamped plate under a ball on `n` x `n` elements with slave points at Gauss points, pushed in by `depth`
@@ -69,4 +70,34 @@ pub fn difference(a: &Outcome, b: &Outcome, factor: impl Fn(&str) -> f64) -> f64
         }
     }
     largest
+}
+
+/// A patch as a face of a Kratos CAD file.
+fn face(id: usize, patch: &NurbsPatch) -> Value {
+    let points: Vec<Value> = (patch.points().iter().zip(patch.weights()).enumerate())
+        .map(|(i, (p, w))| json!([i + 1, [p.x, p.y, p.z, w]]))
+        .collect();
+    json!({
+        "brep_id": id,
+        "swapped_surface_normal": false,
+        "surface": {
+            "is_trimmed": false,
+            "is_rational": true,
+            "degrees": patch.degree(),
+            "knot_vectors": [patch.knots(0), patch.knots(1)],
+            "control_points": points,
+        },
+        "boundary_loops": [],
+    })
+}
+
+/// Writes patches as a Kratos CAD file.
+pub fn cad_file(patches: &[NurbsPatch], path: &std::path::Path) {
+    let faces: Vec<Value> = (patches.iter().enumerate().map(|(i, p)| face(i + 1, p))).collect();
+    let cad = json!({
+        "tolerances": { "model_tolerance": 1e-6 },
+        "version_number": "1.0",
+        "breps": [{ "brep_id": 100, "faces": faces, "edges": [], "vertices": [] }],
+    });
+    std::fs::write(path, cad.to_string()).expect("writable");
 }

@@ -1,4 +1,5 @@
 //! What slave points remember under friction: nothing is lost, doubled or invented on the way.
+use crate::common::cad_file;
 use crate::friction::{block, book, done, plane, table, work};
 use crate::support::Outcome;
 use covact::solve::event::Event;
@@ -46,36 +47,11 @@ fn difference(a: &Outcome, b: &Outcome) -> f64 {
     largest
 }
 
-/// A patch as a face of a Kratos CAD file.
-fn face(id: usize, patch: &NurbsPatch) -> Value {
-    let points: Vec<Value> = (patch.points().iter().zip(patch.weights()).enumerate())
-        .map(|(i, (p, w))| json!([i + 1, [p.x, p.y, p.z, w]]))
-        .collect();
-    json!({
-        "brep_id": id,
-        "swapped_surface_normal": false,
-        "surface": {
-            "is_trimmed": false,
-            "is_rational": true,
-            "degrees": patch.degree(),
-            "knot_vectors": [patch.knots(0), patch.knots(1)],
-            "control_points": points,
-        },
-        "boundary_loops": [],
-    })
-}
-
 /// Runs the drawn block on patches from a file.
 fn on_patches(patches: &[NurbsPatch], changes: impl Fn(&mut Value)) -> Outcome {
     let folder = tempfile::tempdir().expect("temporary folder");
     let file = folder.path().join("tool.cad.json");
-    let faces: Vec<Value> = (patches.iter().enumerate().map(|(i, p)| face(i + 1, p))).collect();
-    let cad = json!({
-        "tolerances": { "model_tolerance": 1e-6 },
-        "version_number": "1.0",
-        "breps": [{ "brep_id": 100, "faces": faces, "edges": [], "vertices": [] }],
-    });
-    std::fs::write(&file, cad.to_string()).expect("writable");
+    cad_file(patches, &file);
     let mut tool = json!({ "cad": { "file": file }, "side": { "point": [0, 0, 5] }, "depth": 0.4 });
     changes(&mut tool);
     done(&block(tool, drawn(), json!(0.3), 40))

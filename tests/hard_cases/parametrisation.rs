@@ -1,28 +1,9 @@
 //! The master's parametrisation is nobody's business: the same sphere swapped, reversed, stretched, from six patches.
-use crate::common::{difference, done, plate};
+use crate::common::{cad_file, difference, done, plate};
 use crate::support::Outcome;
 use covact_geometry::primitives::{sphere, sphere_without_poles};
 use covact_geometry::{NurbsPatch, Vec3};
-use serde_json::{Value, json};
-
-/// A patch as a face of a Kratos CAD file.
-fn face(id: usize, patch: &NurbsPatch) -> Value {
-    let points: Vec<Value> = (patch.points().iter().zip(patch.weights()).enumerate())
-        .map(|(i, (p, w))| json!([i + 1, [p.x, p.y, p.z, w]]))
-        .collect();
-    json!({
-        "brep_id": id,
-        "swapped_surface_normal": false,
-        "surface": {
-            "is_trimmed": false,
-            "is_rational": true,
-            "degrees": patch.degree(),
-            "knot_vectors": [patch.knots(0), patch.knots(1)],
-            "control_points": points,
-        },
-        "boundary_loops": [],
-    })
-}
+use serde_json::json;
 
 /// The same patch with its parameters mapped affinely.
 fn stretched(patch: &NurbsPatch) -> NurbsPatch {
@@ -44,13 +25,7 @@ fn stretched(patch: &NurbsPatch) -> NurbsPatch {
 fn run(patches: &[NurbsPatch]) -> Outcome {
     let folder = tempfile::tempdir().expect("temporary folder");
     let file = folder.path().join("ball.cad.json");
-    let faces: Vec<Value> = (patches.iter().enumerate().map(|(i, p)| face(i + 1, p))).collect();
-    let cad = json!({
-        "tolerances": { "model_tolerance": 1e-6 },
-        "version_number": "1.0",
-        "breps": [{ "brep_id": 100, "faces": faces, "edges": [], "vertices": [] }],
-    });
-    std::fs::write(&file, cad.to_string()).expect("writable");
+    cad_file(patches, &file);
     let mut scene = plate(8, 5.0, 4);
     let ball = scene["surfaces"]["ball"]
         .as_object_mut()

@@ -83,7 +83,7 @@ fn a_body_that_leaves_and_returns_starts_anew() {
     let force = |t: f64| outcome.at("force.plane.z", t);
     assert!((force(1.0) / -uniform(0.2) - 1.0).abs() < 2e-6);
     assert_eq!(force(2.0), 0.0);
-    assert_eq!(outcome.at("energy.internal", 2.0), 0.0);
+    assert!(outcome.at("energy.internal", 2.0) < 1e-20);
     assert!((force(3.0) / force(1.0) - 1.0).abs() < 2e-6);
     let opened = |w: &String| w.contains("opened at step");
     assert_eq!(
@@ -156,33 +156,40 @@ fn what_is_not_reached_is_told_and_cuts_the_step() {
 
 #[test]
 fn a_step_taken_back_takes_its_multipliers_and_penalties_back() {
-    // The first two steps need more iterations than they may take, and are cut after augmentations have begun.
-    let ball = |initial: f64, iterations: u32| {
-        let mut scene = scene_json("ball_on_plate.json");
-        scene["bodies"]["plate"]["mesh"]["plate"]["elements"] = json!([8, 8]);
-        scene["contacts"]["press"]["augmentation"] = json!({ "gap": 1e-6 });
-        scene["contacts"]["press"]["penalty"] = json!({ "scaled": 0.02 });
-        scene["solution"]["step"] = json!({ "initial": initial, "max": initial });
-        scene["solution"]["newton"] = json!({ "max_iterations": iterations });
-        scene["output"] = json!({ "every": 0 });
+    // An augmentation leaves some 1/28 of a gap (1 / (1 + eps C), C = 4 / 100 for small strains), so that two of them are too
+    // few for the whole way at once: .2 / 28^3 is more than 6.5e-6, half of it is not.
+    let steps = |size: f64| {
+        let mut scene = pressed();
+        scene["contacts"]["press"]["augmentation"] = json!({ "gap": 6.5e-6, "max": 2 });
+        scene["solution"]["step"] = json!({ "initial": size, "max": size });
         run(&scene)
     };
-    let (small, large) = (ball(1.0 / 16.0, 25), ball(1.0, 7));
-    assert_eq!(small.summary.cuts, 0);
-    assert!(large.summary.cuts >= 1, "{} cuts", large.summary.cuts);
-    let cut_after_augmenting = large.events.windows(2).enumerate().any(|(i, w)| {
-        matches!(w[1], Event::StepCut { .. })
-            && large.events[..i]
-                .iter()
-                .rev()
-                .take_while(|e| !matches!(e, Event::StepStarted { .. }))
-                .any(|e| matches!(e, Event::Augmented { .. }))
-    });
-    println!("cut after augmenting: {cut_after_augmenting}");
-    for name in ["force.ball.z", "energy.internal", "pressure.max"] {
-        let (a, b) = (small.at(name, 1.0), large.at(name, 1.0));
-        println!("{name} {a} {b}");
-        assert!(a != 0.0 && (b / a - 1.0).abs() < 1e-5, "{name}: {a} {b}");
+    let (whole, halves) = (steps(1.0), steps(0.5));
+    assert_eq!((whole.summary.cuts, halves.summary.cuts), (1, 0));
+    let cut = (whole.events.iter())
+        .position(|e| matches!(e, Event::StepCut { .. }))
+        .unwrap();
+    let taken = |e: &&Event| {
+        matches!(
+            e,
+            Event::Augmented {
+                augmentation: 2,
+                ..
+            }
+        )
+    };
+    assert_eq!(whole.events[..cut].iter().filter(taken).count(), 1);
+    // Nothing is left of what was tried: the run is the one that took the half from the start.
+    assert_eq!(whole.column("time"), [0.5, 1.0]);
+    for name in [
+        "force.plane.z",
+        "energy.internal",
+        "pressure.max",
+        "augmentations",
+        "iterations",
+    ] {
+        assert_eq!(whole.column(name), halves.column(name), "{name}");
+        assert!(whole.at(name, 1.0) != 0.0, "{name}");
     }
 }
 
@@ -214,6 +221,9 @@ fn hertz_is_flat_in_the_penalty() {
             outcome.at("augmentations", 1.0),
             outcome.summary.newton_iterations
         );
+        // Points at the border of contact do not chatter.
+        assert_eq!(outcome.summary.cuts, 0);
+        assert!(outcome.summary.newton_iterations <= 25);
         values.push((force, peak));
     }
     for (force, peak) in &values {
@@ -257,7 +267,7 @@ fn wedge(mu: f64, augmentation: Value) -> Value {
 #[test]
 fn nafems_wedge_augmented() {
     for mu in [0.1, 0.2, 0.3] {
-        let outcome = run(&wedge(mu, json!({})));
+        let outcome = run(&wedge(mu, json!({ "gap": 1e-7, "slip": 1e-7 })));
         let ratio = outcome.at("force.push.x", 2.0) / outcome.at("force.incline.z", 2.0);
         let exact = (0.1 + mu) / (1.0 - 0.1 * mu);
         println!(
@@ -265,6 +275,7 @@ fn nafems_wedge_augmented() {
             outcome.column("augmentations")
         );
         assert_eq!(outcome.at("points.stick", 2.0), 0.0);
+        assert!(outcome.column("augmentations").iter().sum::<f64>() > 0.0);
         assert!((ratio / exact - 1.0).abs() < 1e-6, "{mu}: {ratio} {exact}");
     }
 }
@@ -292,4 +303,48 @@ fn points_that_stick_do_not_slip_elastically() {
     assert!((force(&soft) / force(&stiff) - 1.0).abs() > 5e-2);
     // What the tangential penalties still carry is nothing beside what the soft ones store.
     assert!(held.at("energy.friction", 2.0) < 1e-4 * soft.at("energy.friction", 2.0));
+}
+
+#[test]
+fn bodies_that_stick_do_not_slip_elastically() {
+    // One block pressed on another and sheared along it, with a coefficient that holds everything.
+    let sheared = |ratio: f64, augmentation: Value| {
+        let mut scene = pressed();
+        scene["bodies"]["upper"] = json!({
+            "mesh": { "block": { "min": [-0.5, -0.5, 4], "max": [2.5, 2.5, 6], "elements": [3, 3, 2] } },
+            "material": "foam"
+        });
+        scene["bodies"]["block"]["mesh"]["block"]["elements"] = json!([2, 2, 3]);
+        scene["surfaces"] = json!({});
+        let contact = &mut scene["contacts"]["press"];
+        contact["master"] = json!("upper.bottom");
+        contact["points"] = json!({ "gauss": 2 });
+        contact["penalty"] = json!("auto");
+        contact["friction"] = json!({ "coulomb": { "mu": 5 } });
+        contact["tangential_penalty"] = json!({ "scaled": ratio });
+        contact["augmentation"] = augmentation;
+        scene["supports"] = json!({
+            "floor": { "on": "block.bottom", "fixed": true },
+            "tool": { "on": "upper.top", "displacement": {
+                "x": { "table": [[0, 0], [1, 0], [2, 0.02]] }, "y": 0,
+                "z": { "table": [[0, 0], [1, -0.2], [2, -0.2]] }
+            } }
+        });
+        scene["solution"]["end_time"] = json!(2);
+        scene["solution"]["step"] = json!({ "initial": 0.5, "max": 0.5 });
+        scene["solution"]["newton"]["tolerance"] = json!(1e-9);
+        run(&scene)
+    };
+    let force = |o: &Outcome| o.at("force.tool.x", 2.0) - o.at("force.tool.x", 1.0);
+    let fine = json!({ "gap": 1e-5, "slip": 1e-5 });
+    let soft = sheared(0.05, Value::Null);
+    let (held, stiff) = (sheared(0.05, fine.clone()), sheared(1.0, fine));
+    println!("{} {} {}", force(&soft), force(&held), force(&stiff));
+    println!("{:?}", held.column("augmentations"));
+    assert!(held.at("penetration.max", 2.0) <= 1e-5);
+    assert!((force(&held) / force(&stiff) - 1.0).abs() < 5e-3);
+    assert!((force(&soft) / force(&stiff) - 1.0).abs() > 2e-2);
+    for name in ["imbalance.force.press", "imbalance.moment.press"] {
+        assert!(held.at(name, 2.0) < 1e-9 * held.at("force.tool.z", 2.0).abs());
+    }
 }

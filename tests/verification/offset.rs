@@ -106,7 +106,7 @@ fn block(apart: f64, offset: f64, body: bool) -> Value {
     if body {
         scene["bodies"]["tool"] = json!({
             "mesh": { "block": {
-                "min": [0, 0, 4.0 + apart], "max": [2, 2, 6.0 + apart], "elements": [2, 2, 2]
+                "min": [0, 0, 4.0 + apart], "max": [2, 2, 6.0 + apart], "elements": [3, 3, 2]
             } },
             "material": "foam"
         });

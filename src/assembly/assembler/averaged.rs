@@ -99,13 +99,12 @@ impl Averaged {
                 *out = find(i, &model.point_position(p, u), &mut s.hint);
             });
         let fault = |point: usize, fault: PointFault| {
-            let x = model.point_position(&pair.points[point], u);
-            Fault::Contact {
-                pair: pair.name.clone(),
+            Fault::contact(
+                pair,
                 point,
-                at: [x.x, x.y, x.z],
+                &model.point_position(&pair.points[point], u),
                 fault,
-            }
+            )
         };
         let (depth, reach) = (pair.master.depth(model), pair.reach(model));
         let offsets = pair.offsets(time);

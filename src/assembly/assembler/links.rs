@@ -3,6 +3,8 @@
 //! A slave point with friction feels the facet at its foot and the one that holds its attraction point, and pushes the
 //! former. Mostly they are one or neighbours, so the pattern holds all neighbours among the facets that it couples with
 //! slave points, and beyond these the pairs that points have at the time.
+use super::couplings::Couplings;
+use crate::contact::friction::history::PointHistory;
 use covact_geometry::MovingFacets;
 use std::collections::{BTreeSet, HashMap};
 
@@ -69,4 +71,26 @@ impl Links {
         };
         Ok(&self.maps[start..])
     }
+}
+
+/// Adds the facets of the attraction points to those at the feet of points, and links what occurs together.
+pub(super) fn with_anchors(
+    near: &mut Vec<(usize, u32)>,
+    histories: &[PointHistory],
+) -> Vec<(u32, u32)> {
+    let anchor = |i: usize| Some(histories.get(i)?.place?.patch);
+    let held: Vec<(usize, u32, u32)> = (near.iter())
+        .filter_map(|&(i, facet)| Some((i, facet, anchor(i)?)))
+        .collect();
+    near.extend(held.iter().map(|&(i, _, anchor)| (i, anchor)));
+    held.iter()
+        .map(|&(_, facet, anchor)| (facet, anchor))
+        .collect()
+}
+
+/// Whether the pattern holds what a point feels.
+pub(super) fn holds(couplings: &Couplings, (point, facet, anchor): (usize, u32, u32)) -> bool {
+    couplings.holds(point, facet)
+        && couplings.holds(point, anchor)
+        && couplings.links.hold(facet, anchor)
 }

@@ -13,14 +13,15 @@ mod maps;
 mod moving;
 mod rigid;
 mod sliding;
+mod touched;
 
 use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
 use crate::contact::rigid::{PointFault, Touch};
-use crate::model::Model;
 use crate::model::driven::press::PressFault;
 use crate::model::master::Masters;
 use crate::model::state::State;
+use crate::model::{Model, PairModel};
 use crate::scene::ValueError;
 use crate::shell::ElementFault;
 use averaged::Averaged;
@@ -69,6 +70,18 @@ pub enum Fault {
     /// The system has grown too large.
     #[error(transparent)]
     Pattern(#[from] PatternError),
+}
+
+impl Fault {
+    /// Of slave point `point` of a pair, which is at `x`.
+    pub(crate) fn contact(pair: &PairModel, point: usize, x: &Vec3, fault: PointFault) -> Self {
+        Fault::Contact {
+            pair: pair.name.clone(),
+            point,
+            at: [x.x, x.y, x.z],
+            fault,
+        }
+    }
 }
 
 /// What acts on one side of a contact: that of a rigid surface on the bodies, or of one body on the other.

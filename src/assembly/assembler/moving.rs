@@ -4,7 +4,8 @@ use super::answer::PointAnswer;
 use super::averaged::Averaged;
 use super::couplings::Couplings;
 use super::driven::Border;
-use super::sliding;
+use super::links;
+use super::touched::{self, Touched};
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, maps, put};
 use crate::contact::friction::history::PointHistory;
 use crate::contact::kernel::assemble_force;
@@ -18,7 +19,7 @@ use crate::contact::scatter::{assemble_point, keep_slave_rows};
 use crate::model::master::{MasterNow, Masters};
 use crate::model::self_contact::{Accept, All, Opposing};
 use crate::model::state::{PointState, State, slaves};
-use crate::model::{HalfPass, Model, PairModel};
+use crate::model::{Model, PairModel};
 use crate::scene::Tangent;
 use covact_geometry::{ShapeRows, Vec3};
 use rayon::prelude::*;
@@ -31,9 +32,7 @@ const CHUNK: usize = 64;
 /// The slave points of a pair at the state evaluated last, and room for their matrices.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Meetings {
-    touches: Vec<Result<Option<MovingTouch>, PointFault>>,
-    /// Points in contact, ascending.
-    active: Vec<u32>,
+    touched: Touched<MovingTouch>,
     rows: Vec<ShapeRows>,
     matrices: Vec<f64>,
     /// Numbers that the largest matrix has.
@@ -44,7 +43,7 @@ pub(super) struct Meetings {
 
 impl Meetings {
     /// Room for a pair; none is needed where the master is rigid, gaps are averaged, or there is friction
-    /// ([`sliding::Sliding`]).
+    /// ([`super::sliding::Sliding`]).
     pub fn new(pair: &PairModel) -> Self {
         let (Some(master), None, None) = (pair.body_master(), &pair.averaged, &pair.friction)
         else {
@@ -64,12 +63,15 @@ impl Meetings {
     /// Room for another number of points.
     fn resize(&mut self, points: usize) {
         let most = CHUNK.min(points);
-        self.touches.clear();
-        self.touches.resize(points, Ok(None));
-        self.active.clear();
-        self.active.reserve(points);
+        self.touched.resize(points);
         self.rows.resize(most, ShapeRows::default());
         self.matrices.resize(most * self.stride, 0.0);
+    }
+
+    /// Points in contact, with the facets at their feet.
+    fn touched(&self) -> impl Iterator<Item = (usize, u32)> + '_ {
+        let facet = |i: u32| Some((i as usize, self.touched.get(i)?.facet));
+        self.touched.active.iter().filter_map(move |&i| facet(i))
     }
 
     /// Whether the points are those of `cut`.
@@ -198,7 +200,7 @@ impl Assembler<'_> {
                     let known = &state.histories[histories.clone()];
                     sliding.answer(surface, known, eps_t, &mut self.answers[histories]);
                 }
-                missing |= (sliding.touched()).any(|t| !sliding::holds(couplings, t));
+                missing |= (sliding.touched()).any(|t| !links::holds(couplings, t));
                 continue;
             }
             if !self.meetings[index].holds(&state.cuts[index]) {
@@ -222,7 +224,7 @@ impl Assembler<'_> {
             };
             let states = &mut state.points[range];
             let meetings = &mut self.meetings[index];
-            let touches = &mut meetings.touches;
+            let touches = &mut meetings.touched.all;
             let offsets = pair.offsets(time);
             let offsets = offsets.as_ref();
             let histories = match pair.augmentation {
@@ -244,29 +246,13 @@ impl Assembler<'_> {
                 let answers = self.answers[range].iter_mut().zip(touches.iter());
                 for (i, (answer, touch)) in answers.enumerate() {
                     let z0 = offsets.map_or(0.0, |o| o.at(i));
-                    let touch = touch.as_ref().ok().and_then(Option::as_ref);
-                    *answer = touch.map(|t| PointAnswer::without_friction(t.n, t.xi3 - z0));
+                    *answer =
+                        touched::of(touch).map(|t| PointAnswer::without_friction(t.n, t.xi3 - z0));
                 }
             }
-            meetings.active.clear();
-            for (i, touch) in touches.iter().enumerate() {
-                match touch {
-                    Err(fault) => {
-                        let x = self.model.point_position(&points[i], &state.u);
-                        return Err(Fault::Contact {
-                            pair: pair.name.clone(),
-                            point: i,
-                            at: [x.x, x.y, x.z],
-                            fault: *fault,
-                        });
-                    }
-                    Ok(None) => {}
-                    Ok(Some(touch)) => {
-                        meetings.active.push(i as u32);
-                        missing |= !couplings.holds(i, touch.facet);
-                    }
-                }
-            }
+            let position = |i: usize| self.model.point_position(&points[i], &state.u);
+            meetings.touched.settle(pair, position)?;
+            missing |= (meetings.touched()).any(|(i, facet)| !couplings.holds(i, facet));
         }
         if TANGENT && missing {
             self.couple_anew(state)?;
@@ -287,11 +273,7 @@ impl Assembler<'_> {
                 continue;
             };
             let mut near = near(self.model, &self.masters, index, points, &state.u, states);
-            for &i in &self.meetings[index].active {
-                if let Ok(Some(touch)) = &self.meetings[index].touches[i as usize] {
-                    near.push((i as usize, touch.facet));
-                }
-            }
+            near.extend(self.meetings[index].touched());
             near.extend(self.averaged[index].iter().flat_map(Averaged::touched));
             let pair = &self.model.pairs[index];
             let (Some(_), Some(histories)) = (&pair.friction, pair.history()) else {
@@ -300,7 +282,7 @@ impl Assembler<'_> {
             };
             let touched = self.sliding[index].touched();
             near.extend(touched.map(|(i, facet, _)| (i, facet)));
-            let links = sliding::with_anchors(&mut near, &state.histories[histories]);
+            let links = links::with_anchors(&mut near, &state.histories[histories]);
             couplings.couple(&surface.facets, near.into_iter());
             couplings.link(&surface.facets, links.into_iter());
         }
@@ -345,35 +327,25 @@ impl Assembler<'_> {
         };
         let facets = &surface.facets;
         let Meetings {
-            touches,
-            active,
+            touched,
             rows,
             matrices,
             stride,
             ..
         } = &mut self.meetings[index];
-        let touch = |i: u32| match &touches[i as usize] {
-            Ok(Some(touch)) => Some(touch),
-            _ => None,
-        };
-        for (state, touch) in states.iter_mut().zip(touches.iter()) {
-            let closed = matches!(touch, Ok(Some(_)));
-            totals.changed += usize::from(closed != state.closed);
-            state.closed = closed;
-        }
-        totals.active += active.len();
+        touched.note(states, totals);
         let mut deepest = 0.0f64;
         // Both passes of two are one contact with two sides, whose energy is the mean of both.
         let mut force = PairForce::default();
         let share = if half { 0.25 } else { 0.5 };
         let offsets = pair.offsets(time);
-        for chunk in active.chunks(CHUNK) {
+        for chunk in touched.active.chunks(CHUNK) {
             (chunk.par_iter())
                 .zip(rows.par_iter_mut())
                 .zip(matrices.par_chunks_mut((*stride).max(1)))
                 .with_min_len(8)
                 .for_each(|((&i, rows), ke)| {
-                    let Some(touch) = touch(i) else { return };
+                    let Some(touch) = touched.get(i) else { return };
                     let p = &points[i as usize];
                     facets.shape(touch.facet, touch.xi, rows);
                     if TANGENT {
@@ -391,7 +363,9 @@ impl Assembler<'_> {
                 .zip(rows.iter())
                 .zip(matrices.chunks_mut(*stride))
             {
-                let Some(touch) = touch(i) else { continue };
+                let Some(touch) = touched.get(i) else {
+                    continue;
+                };
                 let p = &points[i as usize];
                 let offset = offsets.map_or(0.0, |o| o.at(i as usize));
                 let gap = touch.xi3 - offset;
@@ -442,13 +416,8 @@ impl Assembler<'_> {
                 }
             }
         }
-        totals.penetration.push(deepest);
-        totals.touching.push(!active.is_empty());
-        match pair.half {
-            Some(HalfPass { other, back: true }) => totals.pairs[other].master = force.slave,
-            Some(_) => totals.pairs[index].slave = force.slave,
-            None => totals.pairs[index] = force,
-        }
+        let touching = !touched.active.is_empty();
+        totals.end_pair((index, pair), force, deepest, touching);
     }
 }
 
@@ -526,8 +495,7 @@ impl<L: NormalLaw + Copy> Batch<'_, L> {
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
                 let law = offsets.law(i, self.law);
-                let touch = (self.master).touch(&x, &mut s.hint, &law, tangent, facet);
-                *out = touch.map(|t| t.filter(|t| law.closes(t.xi3)));
+                *out = (self.master).touch(&x, &mut s.hint, &law, tangent, facet);
             });
     }
 }

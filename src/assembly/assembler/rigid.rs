@@ -1,6 +1,6 @@
 //! Contact with rigid surfaces: the slave points of a pair are evaluated in parallel and summed in order.
 use super::answer::PointAnswer;
-use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
+use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put, touched};
 use crate::contact::closest::ClosestPoint;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::FrictionLaw;
@@ -85,8 +85,8 @@ impl Assembler<'_> {
                         batch.choose(points, touches, &multipliers);
                         let answers = &mut self.answers[pair.history().unwrap_or(0..0)];
                         for (answer, touch) in answers.iter_mut().zip(touches.iter()) {
-                            let touch = touch.as_ref().ok().and_then(Option::as_ref);
-                            *answer = touch.map(|t| PointAnswer::without_friction(t.n, t.gap));
+                            *answer = touched::of(touch)
+                                .map(|t| PointAnswer::without_friction(t.n, t.gap));
                         }
                     }
                     (None, None) => batch.choose(points, touches, &NoOffset),
@@ -111,12 +111,7 @@ impl Assembler<'_> {
                 let touch = match &touches[i] {
                     Err(fault) => {
                         let x = self.model.point_position(p, u);
-                        return Err(Fault::Contact {
-                            pair: pair.name.clone(),
-                            point: i,
-                            at: [x.x, x.y, x.z],
-                            fault: *fault,
-                        });
+                        return Err(Fault::contact(pair, i, &x, *fault));
                     }
                     Ok(touch) => touch,
                 };
@@ -194,6 +189,7 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
         histories: &[PointHistory],
         offsets: Option<Offsets>,
     ) {
+        let augmented = self.pair.augmentation.is_some();
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
@@ -206,8 +202,10 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
                 let law = history.law(self.law.eps_n, offsets.map_or(0.0, |o| o.at(i)));
                 let touch =
                     (self.master).touch_with_friction(&x, &mut s.hint, &law, friction, history);
-                *answer = (touch.as_ref().ok().and_then(Option::as_ref))
-                    .map(|t| PointAnswer::with_friction(t, history, friction.eps_t));
+                if augmented {
+                    *answer = touched::of(&touch)
+                        .map(|t| PointAnswer::with_friction(t, history, friction.eps_t));
+                }
                 *out = touch.map(|t| t.map(|t| t.touch));
             });
     }

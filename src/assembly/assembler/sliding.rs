@@ -1,7 +1,7 @@
 //! Contact with friction between bodies: as [`super::moving`], with histories, and columns for the facets that hold the
 //! attraction points.
 use super::answer::PointAnswer;
-use super::links::Links;
+use super::touched::{self, Touched};
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::FrictionLaw;
@@ -16,7 +16,7 @@ use crate::model::friction::FrictionModel;
 use crate::model::master::{BodyMaster, BodySurface};
 use crate::model::self_contact::{Accept, All, Opposing};
 use crate::model::state::{PointState, State};
-use crate::model::{HalfPass, Model, PairModel};
+use crate::model::{Model, PairModel};
 use crate::with_law;
 use covact_geometry::{CurvedRows, ShapeRows};
 use rayon::prelude::*;
@@ -28,9 +28,7 @@ const CHUNK: usize = 64;
 /// The slave points of a pair with friction at the state evaluated last, and room for their matrices.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sliding {
-    touches: Vec<Result<Option<MovingFrictionTouch>, PointFault>>,
-    /// Points in contact, ascending.
-    active: Vec<u32>,
+    touched: Touched<MovingFrictionTouch>,
     work: Vec<PointWork>,
     matrices: Vec<f64>,
     /// Numbers that the largest matrix has.
@@ -56,9 +54,10 @@ impl Sliding {
         let facet = facets.map(|f| master.facets.nodes(f).len()).max();
         let stride = (3 * (slave.unwrap_or(0) + 2 * facet.unwrap_or(0))).pow(2);
         let most = CHUNK.min(pair.points.len());
+        let mut touched = Touched::default();
+        touched.resize(pair.points.len());
         Sliding {
-            touches: vec![Ok(None); pair.points.len()],
-            active: Vec::with_capacity(pair.points.len()),
+            touched,
             work: vec![PointWork::default(); most],
             matrices: vec![0.0; most * stride],
             stride,
@@ -67,12 +66,10 @@ impl Sliding {
 
     /// Points in contact, with the facets at their feet and those of their attraction points.
     pub fn touched(&self) -> impl Iterator<Item = (usize, u32, u32)> + '_ {
-        (self.active.iter()).filter_map(|&i| match &self.touches[i as usize] {
-            Ok(Some(t)) => {
-                let foot = t.foot.patch;
-                Some((i as usize, foot, t.anchor.map_or(foot, |a| a.patch)))
-            }
-            _ => None,
+        (self.touched.active.iter()).filter_map(|&i| {
+            let t = self.touched.get(i)?;
+            let foot = t.foot.patch;
+            Some((i as usize, foot, t.anchor.map_or(foot, |a| a.patch)))
         })
     }
 
@@ -85,9 +82,8 @@ impl Sliding {
         answers: &mut [Option<PointAnswer>],
     ) {
         let facets = &surface.facets;
-        for ((touch, history), answer) in self.touches.iter().zip(histories).zip(answers) {
-            let touch = touch.as_ref().ok().and_then(Option::as_ref);
-            *answer = touch.map(|t| PointAnswer::between(t, history, facets, eps_t));
+        for ((touch, history), answer) in self.touched.all.iter().zip(histories).zip(answers) {
+            *answer = touched::of(touch).map(|t| PointAnswer::between(t, history, facets, eps_t));
         }
     }
 
@@ -117,7 +113,7 @@ impl Sliding {
             offsets: pair.offsets(time),
         };
         let eps_t = friction.ratio * eps_n;
-        let touches = &mut self.touches;
+        let touches = &mut self.touched.all;
         with_law!(friction.law.at(time)?, law => {
             let friction = Friction { law, eps_t };
             match &master.own {
@@ -132,23 +128,7 @@ impl Sliding {
                 }
             }
         });
-        self.active.clear();
-        for (i, touch) in self.touches.iter().enumerate() {
-            match touch {
-                Err(fault) => {
-                    let x = model.point_position(&pair.points[i], u);
-                    return Err(Fault::Contact {
-                        pair: pair.name.clone(),
-                        point: i,
-                        at: [x.x, x.y, x.z],
-                        fault: *fault,
-                    });
-                }
-                Ok(None) => {}
-                Ok(Some(_)) => self.active.push(i as u32),
-            }
-        }
-        Ok(())
+        (self.touched).settle(pair, |i| model.point_position(&pair.points[i], u))
     }
 }
 
@@ -199,33 +179,23 @@ impl Assembler<'_> {
         };
         let facets = &surface.facets;
         let Sliding {
-            touches,
-            active,
+            touched,
             work,
             matrices,
             stride,
         } = &mut self.sliding[index];
-        let touch = |i: u32| match &touches[i as usize] {
-            Ok(Some(touch)) => Some(touch),
-            _ => None,
-        };
-        for (state, touch) in state.points[range].iter_mut().zip(touches.iter()) {
-            let closed = matches!(touch, Ok(Some(_)));
-            totals.changed += usize::from(closed != state.closed);
-            state.closed = closed;
-        }
-        totals.active += active.len();
+        touched.note(&mut state.points[range], totals);
         let eps_n = self.penalties[index];
         let mut deepest = 0.0f64;
         let mut force = PairForce::default();
         let share = if half { 0.25 } else { 0.5 };
-        for chunk in active.chunks(CHUNK) {
+        for chunk in touched.active.chunks(CHUNK) {
             (chunk.par_iter())
                 .zip(work.par_iter_mut())
                 .zip(matrices.par_chunks_mut((*stride).max(1)))
                 .with_min_len(8)
                 .for_each(|((&i, work), ke)| {
-                    let Some(touch) = touch(i) else { return };
+                    let Some(touch) = touched.get(i) else { return };
                     let p = &points[i as usize];
                     let PointWork {
                         nodes,
@@ -253,7 +223,9 @@ impl Assembler<'_> {
             for ((&i, work), ke) in
                 (chunk.iter().zip(work.iter())).zip(matrices.chunks_mut(*stride))
             {
-                let Some(touch) = touch(i) else { continue };
+                let Some(touch) = touched.get(i) else {
+                    continue;
+                };
                 let p = &points[i as usize];
                 deepest = deepest.max(-touch.gap);
                 totals.contact_energy += share * eps_n * touch.gap * touch.gap * p.area;
@@ -297,13 +269,8 @@ impl Assembler<'_> {
                 }
             }
         }
-        totals.penetration.push(deepest);
-        totals.touching.push(!active.is_empty());
-        match pair.half {
-            Some(HalfPass { other, back: true }) => totals.pairs[other].master = force.slave,
-            Some(_) => totals.pairs[index].slave = force.slave,
-            None => totals.pairs[index] = force,
-        }
+        let touching = !touched.active.is_empty();
+        totals.end_pair((index, pair), force, deepest, touching);
     }
 }
 
@@ -360,28 +327,4 @@ impl Batch<'_> {
                     .touch_with_friction(&x, hint, &law, friction, history, form, facet);
             });
     }
-}
-
-/// Adds the facets of the attraction points to those at the feet of points, and links what occurs together.
-pub(super) fn with_anchors(
-    near: &mut Vec<(usize, u32)>,
-    histories: &[PointHistory],
-) -> Vec<(u32, u32)> {
-    let anchor = |i: usize| Some(histories.get(i)?.place?.patch);
-    let held: Vec<(usize, u32, u32)> = (near.iter())
-        .filter_map(|&(i, facet)| Some((i, facet, anchor(i)?)))
-        .collect();
-    near.extend(held.iter().map(|&(i, _, anchor)| (i, anchor)));
-    held.iter()
-        .map(|&(_, facet, anchor)| (facet, anchor))
-        .collect()
-}
-
-/// Whether the pattern holds what a point feels.
-pub(super) fn holds(
-    couplings: &super::couplings::Couplings,
-    (point, facet, anchor): (usize, u32, u32),
-) -> bool {
-    let links: &Links = &couplings.links;
-    couplings.holds(point, facet) && couplings.holds(point, anchor) && links.hold(facet, anchor)
 }

@@ -68,10 +68,11 @@ impl PointHistory {
         let (t, slides) = (traction.slip.t, traction.slip.slides);
         if slides {
             // The mean of the tractions at both ends of the step; of a point that stuck at its start, or slid the other way, or
-            // did not touch, the traction at the start is the limit there. Either is of second order in the step.
+            // did not touch, the traction at the start is the limit there. Either is of second order in the step, and neither
+            // gives energy back.
             let slid = traction.slid(eps_t);
             let before = to_space.inverse_transform_vector(&self.t);
-            let went_on = self.status == PointStatus::Slip && before.dot(&t) > 0.0;
+            let went_on = self.status == PointStatus::Slip && before.dot(&slid) > 0.0;
             let first = if went_on { &before } else { first };
             self.dissipated += 0.5 * (first + t).dot(&slid);
             self.slip += slid.norm();
@@ -111,29 +112,35 @@ impl PointHistory {
     }
 
     /// Takes over the end of an accepted step in which a point that was in contact has opened, at `local` in the coordinates
-    /// of the base and a distance `gap` from the master. It slides, and its traction falls to nothing, in the part of the
-    /// step before it opens: the normal traction is taken to pass evenly to what the penalty `eps_n` would make of the gap.
+    /// of the base. `foot` is its gap (length) and the unit normal at its foot, nothing where there is none. It slides, and its
+    /// traction falls to nothing, in the part of the step before it opens: the normal traction is taken to pass evenly to
+    /// what the penalty `eps_n` would make of the gap.
     pub fn leave(
         &mut self,
         local: &Vec3,
-        gap: Option<f64>,
+        foot: Option<(f64, Vec3)>,
         eps_n: f64,
         eps_t: f64,
         to_space: &UnitQuaternion<f64>,
     ) {
         if self.status != PointStatus::Open {
             let before = to_space.inverse_transform_vector(&self.t);
-            let beyond = gap.map_or(f64::INFINITY, |g| self.lambda_n + eps_n * g);
-            let part = match beyond.is_finite() && beyond > self.n {
-                true => self.n / (self.n - beyond),
-                false => 0.0,
-            };
-            let trial = self.lambda + (local - self.base) * eps_t;
-            let slid = (before + (trial - before) * part) / eps_t;
+            // Without a foot the point has gone at once.
+            let mut trial = before;
+            if let Some((gap, normal)) = foot {
+                let beyond = self.lambda_n + eps_n * gap;
+                if beyond > self.n {
+                    let part = self.n / (self.n - beyond);
+                    let v = self.attraction(eps_t).unprojected(local);
+                    // Going away from the surface is no slip.
+                    trial += (v - normal * normal.dot(&v) - before) * part;
+                }
+            }
+            let slid = trial / eps_t;
             self.dissipated += (0.5 * before.dot(&slid)).max(0.0);
             self.slip += slid.norm();
         }
-        self.release(local, gap);
+        self.release(local, foot.map(|(gap, _)| gap));
     }
 
     /// Takes over the end of an accepted step in which the point is open: slip will be measured from where it is, `local`, in
@@ -146,5 +153,52 @@ impl PointHistory {
             dissipated: self.dissipated,
             ..PointHistory::default()
         };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point that half of the step takes to open: `N` from -1 to 1.
+    fn left(traction: Vec3, to: Vec3) -> PointHistory {
+        let mut history = PointHistory {
+            lambda: traction,
+            t: traction,
+            n: -1.0,
+            status: PointStatus::Stick,
+            ..PointHistory::default()
+        };
+        let foot = Some((to.z, Vec3::z()));
+        history.leave(&to, foot, 1.0 / to.z, 1.0, &UnitQuaternion::identity());
+        assert_eq!((history.base, history.approach), (to, to.z));
+        assert_eq!((history.lambda, history.t), (Vec3::zeros(), Vec3::zeros()));
+        history
+    }
+
+    #[test]
+    fn a_point_that_leaves_slides_along_the_surface_only() {
+        let up = left(Vec3::zeros(), Vec3::new(0.0, 0.0, 0.5));
+        assert_eq!((up.slip, up.dissipated), (0.0, 0.0));
+        // Half of the way, without a traction.
+        let aside = left(Vec3::zeros(), Vec3::new(0.2, 0.0, 0.5));
+        assert!((aside.slip - 0.1).abs() < 1e-15 && aside.dissipated == 0.0);
+        // What was elastic too, under half of the traction in the mean.
+        let held = left(Vec3::new(0.3, 0.0, 0.0), Vec3::new(0.2, 0.0, 0.5));
+        assert!((held.slip - 0.4).abs() < 1e-15 && (held.dissipated - 0.06).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_point_that_is_gone_lets_go_of_what_was_elastic() {
+        let mut history = PointHistory {
+            t: Vec3::new(0.0, 0.3, 0.0),
+            n: -1.0,
+            status: PointStatus::Slip,
+            ..PointHistory::default()
+        };
+        let still = UnitQuaternion::identity();
+        history.leave(&Vec3::new(5.0, 0.0, 9.0), None, 2.0, 1.0, &still);
+        assert!((history.slip - 0.3).abs() < 1e-15 && (history.dissipated - 0.045).abs() < 1e-15);
+        assert!(history.approach.is_infinite() && history.status == PointStatus::Open);
     }
 }

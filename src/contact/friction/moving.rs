@@ -70,13 +70,6 @@ pub struct Response<D = f64> {
     pub slip: Slip<D>,
 }
 
-impl Response<f64> {
-    /// What of the motion since the base was set is slip (length, a vector in the tangent plane).
-    pub fn slid(&self, eps_t: f64) -> Vector3<f64> {
-        (self.trial - self.slip.t) / eps_t
-    }
-}
-
 /// Residual and exact tangent of a contact point with friction. `pull` is what the history makes of its position.
 #[inline]
 pub fn respond_with_friction<D: DualNum<f64> + Copy, F: FrictionLaw, M: Form>(

@@ -6,7 +6,7 @@ use super::moving::{Form, Response, respond_with_friction};
 use super::rigid::Friction;
 use crate::contact::fault::{Piece, PointFault};
 use crate::contact::law::{Augmented, NormalLaw};
-use crate::contact::moving::{MovingMaster, free};
+use crate::contact::moving::MovingMaster;
 use covact_geometry::{Hint, Vec3};
 
 /// A point in contact with friction on faces of a body, per unit area and in space coordinates.
@@ -42,24 +42,10 @@ impl MovingMaster<'_> {
         form: &M,
         accept: impl Fn(u32) -> bool,
     ) -> Result<Option<MovingFrictionTouch>, PointFault> {
-        let reach = self.depth.max(law.reach());
-        let Some(foot) = self.search(x, hint, reach, accept)? else {
+        let Some((foot, meeting)) = self.contact_at(x, hint, law, accept)? else {
             return Ok(None);
         };
-        let xi3 = foot.signed_distance;
-        if xi3 < -self.depth || !law.closes(xi3) || free(&foot, x) {
-            return Ok(None);
-        }
-        let meeting = self.at(x, &foot)?;
-        meeting.check()?;
-        let normal = law.normal(meeting.xi3);
-        if !meeting.geometry.directs(&normal) {
-            return Err(PointFault::NoDirection {
-                piece: meeting.piece,
-                xi: meeting.xi,
-                xi3: meeting.xi3,
-            });
-        }
+        let normal = meeting.pressed(law)?;
         let gap = law.gap(meeting.xi3);
         let pull = match history.place {
             None => Pull::none(),

@@ -5,6 +5,7 @@ use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::moving::Reduced;
 use crate::contact::friction::rigid::Friction;
 use crate::contact::friction::trial::Traction;
+use crate::contact::law::Offsets;
 use crate::contact::moving::MovingMaster;
 use crate::model::friction::LawNow;
 use crate::model::master::{BodyMaster, BodySurface, Masters};
@@ -12,7 +13,7 @@ use crate::model::self_contact::{Accept, All, Opposing};
 use crate::model::state::PointState;
 use crate::model::{Model, PairModel};
 use crate::with_law;
-use covact_geometry::{Hint, Vec3};
+use covact_geometry::{Hint, MovingFoot, Vec3};
 use nalgebra::{Matrix3, UnitQuaternion};
 use rayon::prelude::*;
 
@@ -23,7 +24,7 @@ pub(super) struct Batch<'a> {
     body: &'a BodyMaster,
     surface: &'a BodySurface,
     u: &'a [f64],
-    time: f64,
+    offsets: Option<Offsets<'a>>,
     eps_n: f64,
 }
 
@@ -44,7 +45,7 @@ impl<'a> Batch<'a> {
             body: pair.body_master()?,
             surface: masters.surface(index)?,
             u,
-            time,
+            offsets: pair.offsets(time),
             eps_n,
         })
     }
@@ -146,12 +147,7 @@ impl<'a> Batch<'a> {
         let law = history.law(self.eps_n, self.offset(i));
         let touch = master
             .touch_with_friction(&x, &mut hint, &law, friction, history, &Reduced, accept)
-            .map_err(|fault| Fault::Contact {
-                pair: self.pair.name.clone(),
-                point: i,
-                at: [x.x, x.y, x.z],
-                fault,
-            })?;
+            .map_err(|fault| Fault::contact(self.pair, i, &x, fault))?;
         // Where the master is now, its coordinates are those of space: what follows is as on a rigid master that does not
         // move, until the point is attached again.
         let still = UnitQuaternion::identity();
@@ -175,8 +171,9 @@ impl<'a> Batch<'a> {
             }
             None => {
                 let foot = (master.facets).project(&x, hint, f64::INFINITY, accept);
-                let gap = foot.as_ref().map(|f| f.signed_distance - self.offset(i));
-                history.leave(&x, gap, self.eps_n, friction.eps_t, &still);
+                let gap = |f: &MovingFoot| f.signed_distance - self.offset(i);
+                let left = foot.as_ref().map(|f| (gap(f), f.normal));
+                history.leave(&x, left, self.eps_n, friction.eps_t, &still);
                 foot.map(|f| f.hint())
             }
         };
@@ -210,6 +207,6 @@ impl<'a> Batch<'a> {
     }
 
     fn offset(&self, i: usize) -> f64 {
-        (self.pair.offsets(self.time)).map_or(0.0, |o| o.at(i))
+        self.offsets.map_or(0.0, |o| o.at(i))
     }
 }

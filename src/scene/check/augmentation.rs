@@ -20,32 +20,23 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
     }
     c.whole(&format!("{at}/max"), augmentation.max, 1, 1000);
     // Multipliers belong to points that stay, and there is one traction for both sides.
-    let without = match contact {
-        Contact {
-            points: Points::Segments(_),
-            ..
-        } => Some((
-            "segments, which are cut anew at every step",
-            "take `{\"gauss\": n}`",
-        )),
-        Contact {
-            gap: Gap::Averaged, ..
-        } => Some(("averaged gaps", "take `\"gap\": \"pointwise\"`")),
-        Contact {
-            passes: Passes::TwoHalf,
-            ..
-        } => Some((
-            "two half passes, whose multipliers nothing would make agree",
-            "take `\"passes\": \"one\"`",
-        )),
-        _ => None,
-    };
-    if let Some((with, help)) = without {
+    let mut without = |with: &str, help: &str| {
         c.add(
             &at,
             format!("augmentation does not go with {with}"),
             Some(help.into()),
         );
+    };
+    if let Points::Segments(_) = contact.points {
+        let with = "segments, which are cut anew at every step";
+        without(with, "take `{\"gauss\": n}`");
+    }
+    if contact.gap == Gap::Averaged {
+        without("averaged gaps", "take `\"gap\": \"pointwise\"`");
+    }
+    if contact.passes == Passes::TwoHalf {
+        let with = "two half passes, whose multipliers nothing would make agree";
+        without(with, "take `\"passes\": \"one\"`");
     }
     let reason = "tractions stay while gaps vanish";
     published(c, tangent, contact, "augmentation", reason);

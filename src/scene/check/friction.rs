@@ -45,30 +45,22 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
         }
     }
     // Histories belong to points that stay, gaps to points of their own, and the published forms are of normal contact.
-    let without = match contact {
-        Contact {
-            points: Points::Segments(_),
-            ..
-        } => Some((
-            "points",
-            "segments, which are cut anew at every step",
-            "take `{\"gauss\": n}`",
-        )),
-        Contact {
-            gap: Gap::Averaged, ..
-        } => Some(("gap", "averaged gaps", "take `pointwise`")),
-        Contact {
-            tangent: Tangent::Published { .. },
-            ..
-        } => Some(("tangent", "the published tangent", "take `exact`")),
-        _ => None,
-    };
-    if let Some((field, with, help)) = without {
+    let mut without = |field: &str, with: &str, help: &str| {
         c.add(
             &format!("{at}/{field}"),
             format!("friction does not go with {with}"),
             Some(help.into()),
         );
+    };
+    if let Points::Segments(_) = contact.points {
+        let with = "segments, which are cut anew at every step";
+        without("points", with, "take `{\"gauss\": n}`");
+    }
+    if contact.gap == Gap::Averaged {
+        without("gap", "averaged gaps", "take `pointwise`");
+    }
+    if let Tangent::Published { .. } = contact.tangent {
+        without("tangent", "the published tangent", "take `exact`");
     }
 }
 
