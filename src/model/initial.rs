@@ -1,5 +1,6 @@
 //! How the contact pairs stand before anything moves.
 use super::error::{number, text};
+use super::friction::LawNow;
 use super::master::{Master, Masters};
 use super::overclosure::{Deepest, treat};
 use super::{Model, ModelError, PairModel, SurfaceModel};
@@ -231,6 +232,7 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
         if let Some(number) = pair.rigid_master() {
             warnings.extend(too_coarse(model, index, &model.surfaces[number]));
             warnings.extend(too_hollow(pair, &model.surfaces[number]));
+            warnings.extend(without_direction(model, index, &model.surfaces[number]));
         }
         if gap.smallest < -1e-9 * pair.element_size {
             let choice = (scene.contacts.get(&pair.name))
@@ -283,6 +285,30 @@ fn too_hollow(pair: &PairModel, surface: &SurfaceModel) -> Option<String> {
             number(pair.offset),
             number(radius),
             surface.name
+        )
+    })
+}
+
+/// A warning of friction with a direction that means nothing where the body lies on the surface.
+fn without_direction(model: &Model, index: usize, surface: &SurfaceModel) -> Option<String> {
+    let pair = &model.pairs[index];
+    let LawNow::Orthotropic(law) = pair.friction.as_ref()?.law.at(0.0).ok()? else {
+        return None;
+    };
+    let zero = vec![0.0; 3 * model.nodes.len()];
+    let master = surface.at(0.0, &zero).ok()?;
+    let mut hint = None;
+    let blurred = pair.points.iter().filter(|p| {
+        let foot = master.foot(&model.point_position(p, &zero), hint, f64::INFINITY);
+        hint = foot.as_ref().map(|f| f.hint()).or(hint);
+        foot.is_some_and(|f| law.blurs(&f.normal))
+    });
+    let (blurred, all) = (blurred.count(), pair.points.len());
+    (2 * blurred > all).then(|| {
+        format!(
+            "contact `{}`: the `direction` of its friction is nearly that of the normal of surface `{}` at {blurred} of {all} \
+             slave points: there the two coefficients are brought nearer to each other",
+            pair.name, surface.name
         )
     })
 }

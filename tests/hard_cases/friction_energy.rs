@@ -58,7 +58,7 @@ fn a_block_drawn_to_and_fro_on_a_plane() {
         |n| block(plane(), tables(), json!(0.3), n),
         support,
     );
-    second_order("plane", &e, 1e-3);
+    second_order("plane", &e, 1e-4);
 }
 
 #[test]

@@ -50,6 +50,12 @@ impl Orthotropic {
         Orthotropic { mu, direction }
     }
 
+    /// Whether the direction is so near to this unit normal (coordinates of the master) that the coefficients are brought
+    /// nearer to each other.
+    pub fn blurs(&self, normal: &Vector3<f64>) -> bool {
+        normal.cross(&self.direction).norm() < STEEP
+    }
+
     fn axes<D: DualNum<f64> + Copy>(&self, n: &Vector3<D>) -> Axes<D> {
         let e = self.direction.map(D::from);
         let up = n.dot(&e);
