@@ -92,6 +92,18 @@ def colours(grid, field, component):
     return data[:, lookup[component.lower()]], signs
 
 
+def element_status(grid):
+    """`contact_status` of each element: what most of its touching nodes do, else whether any is a slave."""
+    status = np.rint(grid.point_data["contact_status"]).astype(int)
+    cells, ends = grid.cell_connectivity, grid.offset
+    values = np.zeros(grid.n_cells)
+    for e in range(grid.n_cells):
+        own = status[cells[ends[e]:ends[e + 1]]]
+        touching = own[own >= 2]
+        values[e] = np.rint(touching.mean() + 1e-9) if touching.size else own.max()
+    return values
+
+
 def mirrored(grid, axes, signs):
     """The grid with its mirror images over the planes through the origin."""
     images = [grid]
@@ -130,7 +142,10 @@ def clipped(grid, sides):
 def add_body(plotter, grid, args, style):
     grid = grid.copy()
     signs = [1, 1, 1]
-    if args.field and args.field in grid.point_data:
+    if args.field == "contact_status" and args.field in grid.point_data:
+        # Between nodes there are no states in between.
+        grid.cell_data["colour"] = element_status(grid)
+    elif args.field and args.field in grid.point_data:
         grid.point_data["colour"], signs = colours(grid, args.field, args.component)
     grid.points = grid.points + args.warp * grid.point_data["displacement"]
     bounds = []
@@ -140,7 +155,7 @@ def add_body(plotter, grid, args, style):
             continue
         surface = shown.extract_surface(algorithm="dataset_surface")
         bounds.append(surface.bounds)
-        look = style if "colour" in surface.point_data else {"color": "lightsteelblue"}
+        look = style if "colour" in surface.array_names else {"color": "lightsteelblue"}
         plotter.add_mesh(surface, show_edges=not args.no_edges, edge_color="#404040", line_width=1.6,
                          edge_opacity=0.45, ambient=0.25, diffuse=0.75, specular=0.1, **look)
         outline = surface.extract_feature_edges(feature_angle=50, manifold_edges=False, non_manifold_edges=False)
@@ -259,7 +274,7 @@ def main():
     surface_bounds = [b for grid in surfaces for b in add_surface(plotter, grid, args)] if args.opacity > 0 else []
     if args.field == "contact_status":
         plotter.add_legend([list(entry) for entry in reversed(STATUS.items())], bcolor=None, face="rectangle",
-                           size=(0.16, 0.24), loc="center right")
+                           size=(0.16, 0.24), loc="upper right")
     wanted = body_bounds if args.fit == "bodies" and body_bounds else body_bounds + surface_bounds
     if not wanted:
         sys.exit("nothing to draw")

@@ -61,7 +61,7 @@ fn a_symmetric_factorization_of_an_unsymmetric_system() {
             &[
                 &format!("`{solver}` is for symmetric systems, and this one is not"),
                 "the follower pressure `blow` acts on faces whose border is free to move",
-                "help: take `auto` or `lu`, or hold the border of the faces",
+                "help: take `auto` or `lu`",
             ],
         );
     }

@@ -32,8 +32,8 @@ pub struct Slide {
 }
 
 impl Slide {
-    /// From time `start` on, in which the die moves by `speed` along x.
-    pub fn new(outcome: &Outcome, start: f64, speed: f64) -> Slide {
+    /// From time `start` on, in which `driver`, a surface or a support, moves by `speed` along x.
+    pub fn new(outcome: &Outcome, driver: &str, start: f64, speed: f64) -> Slide {
         let time = outcome.column("time");
         let first =
             (time.iter().position(|t| (t - start).abs() < 1e-9)).expect("start of the slide");
@@ -51,8 +51,8 @@ impl Slide {
         }
         Slide {
             x: (time[first..].iter().map(|t| speed * (t - start))).collect(),
-            h: column("force.die.x"),
-            v: (column("force.die.z").iter().map(|f| -f)).collect(),
+            h: column(&format!("force.{driver}.x")),
+            v: (column(&format!("force.{driver}.z")).iter().map(|f| -f)).collect(),
             stored,
             dissipated: or_zero("energy.dissipated"),
         }
@@ -72,6 +72,21 @@ impl Slide {
         let mean = |f: &[f64]| f.iter().sum::<f64>() / f.len() as f64;
         let rows = self.middle();
         (mean(&self.h[rows.clone()]), mean(&self.v[rows]))
+    }
+
+    /// Means of both forces over the last `way` of the slide, by the trapezoidal rule.
+    pub fn mean_of_last(&self, way: f64) -> (f64, f64) {
+        let first = self.x[self.x.len() - 1] - way;
+        let (mut h, mut v) = (0.0, 0.0);
+        for i in 1..self.x.len() {
+            let all = self.x[i] - self.x[i - 1];
+            // The part of the step that counts, and how far into the step its middle is.
+            let dx = (self.x[i] - first).clamp(0.0, all);
+            let t = 1.0 - 0.5 * dx / all;
+            h += (self.h[i - 1] + t * (self.h[i] - self.h[i - 1])) * dx;
+            v += (self.v[i - 1] + t * (self.v[i] - self.v[i - 1])) * dx;
+        }
+        (h / way, v / way)
     }
 
     /// Mean of |H| over the middle half, relative to the mean of V.

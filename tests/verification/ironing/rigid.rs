@@ -57,7 +57,7 @@ fn slide(scene: &Value) -> (Outcome, Slide) {
     // At the shipped step; longer ones are there for the rate.
     let shipped = scene["solution"]["step"]["max"] == json!(0.05);
     assert!(!shipped || mean < 8.0);
-    let slide = Slide::new(&outcome, PRESSED, ELEMENT);
+    let slide = Slide::new(&outcome, "die", PRESSED, ELEMENT);
     (outcome, slide)
 }
 
