@@ -16,12 +16,13 @@
 //! |---|---|---|---|---|---|---|---|---|
 //! | 1 | 313.7 | 65.6 | 398.4 | 153.4 | 398.1 | 139.1 | 128 to 153 | 688, 1 |
 //! | 2 | 314.6 | 66.3 | 399.4 | 133.7 | 399.7 | 136.7 | 133 to 141 | 858, 0 |
+//! | 3 | 314.9 | 66.1 | 399.7 | 136.5 | 400.3 | 135.1 | 133 to 138 | 1791, 13 |
 //! | 4 | 314.8 | 65.9 | 400.2 | 137.4 | 400.4 | 134.4 | 132 to 138 | 1955, 6 |
 //!
-//! V has settled to .2 %; the mean of H still falls by 1.7 % with the last refinement. H goes up and down as the foot passes
-//! the nodes of the foundation, the less the finer it is: the means are over the half millimetre before t = 1.5, an element
-//! of the coarsest foundation. Steps half
-//! as long (n = 1) or twice as long (n = 2) change H by .1 at most, and V by nothing that is shown.
+//! V has settled to .2 %; the mean of H still falls, by .5 % from 3 to 4. H goes up and down as the foot passes the nodes of
+//! the foundation, the less the finer it is: the means are over the half millimetre before t = 1.5, an element of the
+//! coarsest foundation. Steps are of .05, .025, .05 and .025 mm; half as long (n = 1) or twice as long (n = 2) they change
+//! these forces by .1 at most.
 //!
 //! The foot, the small and the stiff side, is the slave: its points stay on the foundation wherever it goes, and few of the
 //! points of the foundation would ever touch. The foundation is a smooth master: it is folded around the corners of the foot,
@@ -38,8 +39,7 @@ const E: f64 = 689.6;
 const WIDTH: f64 = 0.25;
 /// Slide until t = 1.5 (mm).
 const WAY: f64 = 5.0;
-/// How much finer the mesh is than the coarsest: the sequence above is of 1, 2 and 4 (3, 12 and 140 s in the
-/// dev profile).
+/// How much finer the mesh is than the coarsest: the sequence above is of 1 to 4 (3 to 140 s in the dev profile).
 const FINENESS: usize = 1;
 
 /// The block, 1.2 wide, .9 high at its sides and 1.2 in the middle, .2 above the foundation: `n` x `n` elements.
@@ -86,7 +86,7 @@ fn ironed(fineness: usize) -> (Outcome, Slide) {
     let plane = |z: f64, normal: [f64; 3], y: f64| json!({ "nodes_near_plane": { "point": [0, y, z], "normal": normal, "tolerance": 1e-6 } });
     let end = 1.0 + WAY;
     let ratio = 0.71f64.powf(1.0 / fineness as f64);
-    let step = if fineness == 1 { 0.05 } else { 0.025 };
+    let step = if fineness % 2 == 1 { 0.05 } else { 0.025 };
     let scene = json!({
         "covact": 1,
         "materials": {
@@ -178,6 +178,6 @@ fn a_block_is_pressed_in_and_drawn_within_the_published_band() {
     assert!((floor[0][rows - 1] + h * WIDTH).abs() < 1e-5 * v * WIDTH);
     assert!((floor[1][rows - 1] - v * WIDTH).abs() < 1e-5 * v * WIDTH);
     // The work of the slide is dissipated or stored; the trapezoidal rule misses some of it where the corner of the foot
-    // passes a node.
+    // passes a node (n = 1: -.2 %, and .6 % where nothing cancels).
     assert!(sum.abs() < 0.005 && absolute < 0.015);
 }
