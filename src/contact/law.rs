@@ -132,6 +132,30 @@ impl GapOffset for Multipliers<'_> {
             law: *law,
             z0: self.offsets.map_or(0.0, |o| o.at(index)),
             lambda_n: self.histories[index].lambda_n,
+            held: false,
+        }
+    }
+}
+
+/// Points that stay in contact wherever they are, for a first linearisation; what their gaps are measured from is as ever.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Held<'a> {
+    /// Per point of the pair.
+    pub held: &'a [bool],
+    /// Per point of the pair; empty without multipliers.
+    pub histories: &'a [PointHistory],
+    pub offsets: Option<Offsets<'a>>,
+}
+
+impl GapOffset for Held<'_> {
+    type Law<L: NormalLaw> = Augmented<L>;
+    #[inline]
+    fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Augmented<L> {
+        Augmented {
+            law: *law,
+            z0: self.offsets.map_or(0.0, |o| o.at(index)),
+            lambda_n: self.histories.get(index).map_or(0.0, |h| h.lambda_n),
+            held: self.held[index],
         }
     }
 }
@@ -162,6 +186,8 @@ pub struct Augmented<L = Penalty> {
     pub z0: f64,
     /// Multiplier of the normal traction, `<= 0`; zero without augmentation (force / length^2).
     pub lambda_n: f64,
+    /// The point is in contact even where it is pulled: its first linearisation brings it back to the surface.
+    pub held: bool,
 }
 
 impl<L: NormalLaw> NormalLaw for Augmented<L> {
@@ -179,7 +205,7 @@ impl<L: NormalLaw> NormalLaw for Augmented<L> {
     }
     #[inline]
     fn closes(&self, xi3: f64) -> bool {
-        self.normal(xi3).n < 0.0
+        self.held || self.normal(xi3).n < 0.0
     }
     #[inline]
     fn reach(&self) -> f64 {

@@ -430,6 +430,7 @@ mod tests {
             law: Penalty { eps_n: 5.0 },
             z0: 0.0,
             lambda_n: -0.1,
+            held: false,
         };
         let normal = Vec3::new(1.0, 1.0, 1.0).normalize();
         let foot = Vec3::new(0.4, 0.3, -0.7);

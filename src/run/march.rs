@@ -119,7 +119,7 @@ impl<'a, 'm> March<'a, 'm> {
         let mut trial = committed.clone();
         // The state before the last accepted step and that step's size, while the path is smooth.
         let mut before: Option<(State, f64)> = None;
-        let mut cuts = 0;
+        let (mut cuts, mut hold) = (0, false);
         let segmented = self.model.pairs.iter().any(|p| p.segments.is_some());
         while !stepping.done(self.progress.time) {
             let end = stepping.next(self.progress.time);
@@ -148,6 +148,9 @@ impl<'a, 'm> March<'a, 'm> {
                 interrupt: self.interrupt,
                 observer: self.observer,
                 progress: &mut self.progress,
+                first: None,
+                hold: &mut hold,
+                opened: false,
             }
             .solve(step, end, dt, before.as_ref(), &mut trial);
             let failure = match result {

@@ -2,7 +2,9 @@
 //!
 //! 1. The path so far, continued: rotations are then right to second order, and a smooth path takes three or four
 //!    iterations.
-//! 2. The last accepted state.
+//!    Points that were in contact and that it takes off a rigid surface are kept in contact by the first linearisation:
+//!    where the path fails as it is, and in the steps after one that needed it.
+//! 2. The last accepted state. With friction the first linearisations take secants.
 //! 3. The last accepted state under a soft penalty that is stiffened in stages. A flat tool on a flat sheet touches at
 //!    hundreds of points of which a handful stay: under a stiff penalty the points chatter, under a soft one the few
 //!    come out, and each stage starts from nearly the right ones.
@@ -18,12 +20,18 @@ use crate::output::Phases;
 use crate::scene;
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::LinearSolver;
-use crate::solve::newton::{Converged, Newton, Patience, StepFailure, Workspace};
+use crate::solve::newton::{Converged, First, Newton, Patience, StepFailure, Workspace};
 use nalgebra::Vector6;
 use std::sync::atomic::AtomicBool;
 
 /// Stages of a softened start, as multiples of the penalty.
 const STAGES: [f64; 3] = [1e-3, 1e-2, 1e-1];
+/// First linearisations from the last accepted state, which knows nothing of where points slide to. Softened stages do without:
+/// their own tangents serve them better.
+const SECANTS: Option<First> = Some(First {
+    hold: false,
+    secants: true,
+});
 /// Times an automatic penalty may be raised within a step.
 const RAISES: usize = 4;
 
@@ -40,6 +48,12 @@ pub(super) struct Attempts<'a, 'm> {
     pub interrupt: &'a AtomicBool,
     pub observer: &'a mut (dyn Observer + Send),
     pub progress: &'a mut Progress,
+    /// For the first Newton iterations of a start.
+    pub first: Option<First>,
+    /// Whether the last step needed its points kept.
+    pub hold: &'a mut bool,
+    /// Whether the last start opened points that were in contact.
+    pub opened: bool,
 }
 
 impl Attempts<'_, '_> {
@@ -79,15 +93,30 @@ impl Attempts<'_, '_> {
         };
         let touching = !self.model.pairs.is_empty();
         if let Some((state, size)) = before {
-            self.committed.extrapolate(state, dt / size, trial);
-            match self.converge(step, end, trial, Patience::Short) {
-                Err(failure) if another(&failure) => {
+            for hold in [*self.hold, true] {
+                self.committed.extrapolate(state, dt / size, trial);
+                self.first = Some(First {
+                    hold,
+                    secants: false,
+                });
+                let failure = match self.converge(step, end, trial, Patience::Short) {
+                    Err(failure) if another(&failure) => failure,
+                    other => {
+                        *self.hold = hold && self.opened;
+                        return other;
+                    }
+                };
+                if hold || !self.opened {
                     self.again(step, "the last accepted state", &failure, penalties);
+                    break;
                 }
-                other => return other,
+                let start = "the continued path with the points kept that it opens";
+                self.again(step, start, &failure, penalties);
             }
         }
+        *self.hold = false;
         self.restart(end, trial)?;
+        self.first = SECANTS;
         let patience = if touching {
             Patience::Short
         } else {
@@ -341,6 +370,7 @@ impl Attempts<'_, '_> {
         trial: &mut State,
         patience: Patience,
     ) -> Result<Converged, StepFailure> {
+        let first = self.first.take();
         let mut newton = Newton {
             model: self.model,
             assembler: self.assembler,
@@ -348,11 +378,16 @@ impl Attempts<'_, '_> {
             workspace: self.workspace,
             settings: self.settings,
             patience,
+            first: first.unwrap_or_default(),
+            opened: false,
             phases: self.phases,
             interrupt: self.interrupt,
             iterations: 0,
         };
         let result = newton.solve(step, end, trial, self.observer);
+        if first.is_some() {
+            self.opened = newton.opened;
+        }
         self.progress.iterations += u64::from(newton.iterations);
         result
     }

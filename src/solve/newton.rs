@@ -6,7 +6,7 @@
 use super::convergence::{Norms, Verdict};
 use super::event::{Event, Observer};
 use super::linear::{Factorization, LinearError, LinearSolver, Method};
-use crate::assembly::{Assembler, Fault, Totals};
+use crate::assembly::{Assembler, Fault, Manner, Totals};
 use crate::model::Model;
 use crate::model::state::State;
 use crate::output::Phases;
@@ -137,6 +137,16 @@ pub enum Patience {
     Long,
 }
 
+/// What the first linearisations of a start make of contact.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct First {
+    /// Where points that were in contact are open at the start, the first linearisation keeps them, and secants follow. A path
+    /// that is continued straight past a curved tool leaves it by more than a stiff penalty lets points sink in.
+    pub hold: bool,
+    /// The first linearisations take secants of friction: the start knows nothing of where points slide to.
+    pub secants: bool,
+}
+
 /// One step of Newton's method.
 pub struct Newton<'a, 'm, S: LinearSolver + ?Sized> {
     pub model: &'m Model,
@@ -145,12 +155,17 @@ pub struct Newton<'a, 'm, S: LinearSolver + ?Sized> {
     pub workspace: &'a mut Workspace,
     pub settings: &'a scene::Newton,
     pub patience: Patience,
+    pub first: First,
     pub phases: &'a mut Phases,
     pub interrupt: &'a AtomicBool,
     /// Iterations done, also by a solve that failed.
     pub iterations: u32,
+    /// Whether points that were in contact were open at the start.
+    pub opened: bool,
 }
 
+/// Linearisations that take secants of friction.
+const SECANTS: u32 = 2;
 /// Iterations without headway after which the line search is switched on.
 const UNTIL_SEARCH: u32 = 6;
 /// Iterations without headway after which a start is given up where another is at hand. A thin shell may take six to
@@ -169,6 +184,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         trial: &mut State,
         observer: &mut dyn Observer,
     ) -> Result<Converged, StepFailure> {
+        self.opened = false;
         let w = &mut *self.workspace;
         let outstanding = (self.model)
             .increments(&trial.u, time, &mut w.increments)
@@ -180,7 +196,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let mut first_energy = 0.0;
         let mut factor = 1.0;
         let mut energy = 0.0;
-        let mut totals = self.linearize(trial, time, pending)?;
+        let (mut totals, secants) = self.begin(trial, time, pending)?;
         for iteration in 0.. {
             if self.interrupt.load(Ordering::Relaxed) {
                 return Err(StepFailure::Interrupted);
@@ -188,8 +204,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             let norms = self.norms(trial, &totals);
             floor = floor.max(norms.floor / norms.force.max(f64::MIN_POSITIVE));
             history.push((norms.relative(), totals.changed));
+            let held = self.assembler.manner.hold;
             // The state before the first solve may be converged as it stands only if nothing was prescribed to move.
-            let settled = !pending && (iteration == 0 || totals.changed == 0);
+            let settled = !pending && !held && (iteration == 0 || totals.changed == 0);
             observer.event(&Event::Iteration {
                 step,
                 iteration,
@@ -230,13 +247,19 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                     oscillation: oscillation(&history),
                 });
             }
-            if norms.residual < best {
+            if held {
+                // Not the residual of this state.
+            } else if norms.residual < best {
                 (best, since_best) = (norms.residual, 0);
             } else {
                 since_best += 1;
             }
             factorization = Some(self.solve_linear(pending)?);
             self.iterations += 1;
+            self.assembler.manner = Manner {
+                hold: false,
+                secant: iteration + 1 < secants,
+            };
             let search = self.settings.line_search && !pending && since_best >= UNTIL_SEARCH;
             (totals, factor) = self.advance(trial, time, search)?;
             energy = dot(&self.workspace.du, &self.workspace.rhs).abs();
@@ -246,6 +269,32 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             pending = false;
         }
         unreachable!("the loop ends by its own limit")
+    }
+
+    /// The first linearisation, and the number of those that take secants.
+    fn begin(
+        &mut self,
+        trial: &mut State,
+        time: f64,
+        pending: bool,
+    ) -> Result<(Totals, u32), Fault> {
+        let secants = if self.first.secants { SECANTS } else { 0 };
+        self.assembler.manner = Manner {
+            hold: false,
+            secant: secants > 0,
+        };
+        self.workspace.base.points.clone_from(&trial.points);
+        let totals = self.linearize(trial, time, pending)?;
+        self.opened = totals.opened > 0;
+        if !self.first.hold || !self.opened {
+            return Ok((totals, secants));
+        }
+        trial.points.copy_from_slice(&self.workspace.base.points);
+        self.assembler.manner = Manner {
+            hold: true,
+            secant: true,
+        };
+        Ok((self.linearize(trial, time, pending)?, SECANTS))
     }
 
     fn linearize(&mut self, trial: &mut State, time: f64, pending: bool) -> Result<Totals, Fault> {

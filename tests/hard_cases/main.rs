@@ -3,6 +3,7 @@ mod common;
 mod convergence;
 mod cost;
 mod far;
+mod first_iterates;
 mod friction;
 mod friction_driven;
 mod friction_energy;

@@ -121,6 +121,8 @@ pub struct Totals {
     pub active: usize,
     /// Points or nodes whose status differs from the one in the state when the evaluation began.
     pub changed: usize,
+    /// Points closed in the state when the evaluation began that are open, of those that [`Manner::hold`] would keep closed.
+    pub opened: usize,
     /// Deepest penetration, >= 0, per pair.
     pub penetration: Vec<f64>,
     /// Whether any point or node is in contact, per pair.
@@ -136,6 +138,16 @@ enum Kind {
     Free,
     Prescribed,
     Tied,
+}
+
+/// How contact is linearised where the state is far from equilibrium: the first iterates of a step.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Manner {
+    /// Points that are closed in the state stay so wherever they are, on rigid surfaces that are not driven by force. The
+    /// residual is then not that of the state.
+    pub hold: bool,
+    /// Sliding points have the tangent of their secant. The residual is that of the state.
+    pub secant: bool,
 }
 
 /// Evaluates the model into a sparse system.
@@ -171,6 +183,8 @@ pub struct Assembler<'m> {
     borders: Vec<Border>,
     /// Penalty per pair; an automatic one may be raised in the course of a run.
     pub penalties: Vec<f64>,
+    /// How contact is linearised.
+    pub manner: Manner,
 }
 
 impl<'m> Assembler<'m> {
@@ -207,6 +221,7 @@ impl<'m> Assembler<'m> {
             contact: vec![0.0; n],
             borders,
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
+            manner: Manner::default(),
         })
     }
 

@@ -189,7 +189,7 @@ impl Assembler<'_> {
                     self.model,
                     pair,
                     (master, surface),
-                    (friction, self.penalties[index]),
+                    (friction, self.penalties[index], self.manner.secant),
                     &state.u,
                     time,
                     &mut state.points[range],

@@ -1,11 +1,13 @@
 //! Contact with rigid surfaces: the slave points of a pair are evaluated in parallel and summed in order.
 use super::answer::PointAnswer;
-use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put, touched};
+use super::{Assembler, Fault, Manner, PairForce, SurfaceForce, Totals, put, touched};
 use crate::contact::closest::ClosestPoint;
 use crate::contact::friction::history::PointHistory;
-use crate::contact::friction::law::FrictionLaw;
+use crate::contact::friction::law::{FrictionLaw, Secant};
 use crate::contact::friction::rigid::Friction;
-use crate::contact::law::{GapOffset, Multipliers, NoOffset, NormalLaw, Offsets, Penalty};
+use crate::contact::law::{
+    Augmented, GapOffset, Held, Multipliers, NoOffset, NormalLaw, Offsets, Penalty,
+};
 use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
 use crate::model::master::Master;
@@ -53,6 +55,13 @@ impl Assembler<'_> {
             let master = surface.at(time, &state.u)?;
             let n = pair.points.len();
             let points = &mut state.points[first..first + n];
+            let Manner { hold, secant } = self.manner;
+            // A surface driven by force follows the points as they are.
+            let hold = hold && surface.driven.is_none();
+            let held: Vec<bool> = match hold && pair.friction.is_none() {
+                true => points.iter().map(|p| p.closed).collect(),
+                false => Vec::new(),
+            };
             let touches = &mut self.touches[..n];
             let u = &state.u;
             let law = Penalty {
@@ -79,6 +88,12 @@ impl Assembler<'_> {
                     u,
                 };
                 match (pair.offsets(time), &friction) {
+                    (offsets, None) if hold => {
+                        let augmented = pair.history().filter(|_| pair.augmentation.is_some());
+                        let histories = &state.histories[augmented.unwrap_or(0..0)];
+                        let held = Held { held: &held, histories, offsets };
+                        batch.choose(points, touches, &held);
+                    }
                     (offsets, None) if pair.augmentation.is_some() => {
                         let histories = &state.histories[pair.history().unwrap_or(0..0)];
                         let multipliers = Multipliers { histories, offsets };
@@ -92,9 +107,10 @@ impl Assembler<'_> {
                     (None, None) => batch.choose(points, touches, &NoOffset),
                     (Some(over), None) => batch.choose(points, touches, &over),
                     (over, Some((now, eps_t, histories))) => with_law!(*now, law => {
+                        let law = Secant { law, on: secant };
                         let friction = Friction { law, eps_t: *eps_t };
                         let answers = &mut self.answers[pair.history().unwrap_or(0..0)];
-                        batch.slide(points, touches, answers, &friction, histories, over)
+                        batch.slide(points, touches, answers, &friction, histories, over, hold)
                     }),
                 }
             });
@@ -116,6 +132,8 @@ impl Assembler<'_> {
                     Ok(touch) => touch,
                 };
                 totals.changed += usize::from(touch.is_some() != points[i].closed);
+                totals.opened +=
+                    usize::from(points[i].closed && touch.is_none() && surface.driven.is_none());
                 points[i].closed = touch.is_some();
                 let Some(touch) = touch else { continue };
                 totals.active += 1;
@@ -179,7 +197,8 @@ struct Batch<'a, P, L> {
 }
 
 impl<P: ClosestPoint> Batch<'_, P, Penalty> {
-    /// Evaluates every point with friction; surface and law of friction are types here.
+    /// Evaluates every point with friction; surface and law of friction are types here. `hold` keeps closed points closed.
+    #[allow(clippy::too_many_arguments)]
     fn slide<F: FrictionLaw>(
         &self,
         states: &mut [PointState],
@@ -188,6 +207,7 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
         friction: &Friction<F>,
         histories: &[PointHistory],
         offsets: Option<Offsets>,
+        hold: bool,
     ) {
         let augmented = self.pair.augmentation.is_some();
         (self.pair.points.par_iter())
@@ -199,7 +219,10 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
             .with_min_len(64)
             .for_each(|(i, ((((p, s), out), answer), history))| {
                 let x = self.model.point_position(p, self.u);
-                let law = history.law(self.law.eps_n, offsets.map_or(0.0, |o| o.at(i)));
+                let law = Augmented {
+                    held: hold && s.closed,
+                    ..history.law(self.law.eps_n, offsets.map_or(0.0, |o| o.at(i)))
+                };
                 let touch =
                     (self.master).touch_with_friction(&x, &mut s.hint, &law, friction, history);
                 if augmented {

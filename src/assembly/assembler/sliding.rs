@@ -4,7 +4,7 @@ use super::answer::PointAnswer;
 use super::touched::{self, Touched};
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
 use crate::contact::friction::history::PointHistory;
-use crate::contact::friction::law::FrictionLaw;
+use crate::contact::friction::law::{FrictionLaw, Secant};
 use crate::contact::friction::moving::{Form, Full, Reduced};
 use crate::contact::friction::rigid::Friction;
 use crate::contact::friction::scatter::PointNodes;
@@ -94,7 +94,7 @@ impl Sliding {
         model: &Model,
         pair: &PairModel,
         (master, surface): (&BodyMaster, &BodySurface),
-        (friction, eps_n): (&FrictionModel, f64),
+        (friction, eps_n, secant): (&FrictionModel, f64, bool),
         u: &[f64],
         time: f64,
         states: &mut [PointState],
@@ -115,6 +115,7 @@ impl Sliding {
         let eps_t = friction.ratio * eps_n;
         let touches = &mut self.touched.all;
         with_law!(friction.law.at(time)?, law => {
+            let law = Secant { law, on: secant };
             let friction = Friction { law, eps_t };
             match &master.own {
                 None => batch.choose(states, touches, &friction, &All),

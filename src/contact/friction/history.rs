@@ -49,6 +49,7 @@ impl PointHistory {
             law: Penalty { eps_n },
             z0,
             lambda_n: self.lambda_n,
+            held: false,
         }
     }
 

@@ -80,9 +80,54 @@ impl FrictionLaw for Coulomb {
     }
 }
 
+/// A law with the tangent of its secant where a point slides: `dT/dT_tr = |T| / |T_tr|` in all directions. A traction that slides
+/// offers no resistance along its direction, so that Newton's method overshoots points that should stick, whose range is as
+/// small as the penalty is stiff, and sends them to and fro. The secant holds all points until it shows which way they go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Secant<F> {
+    pub law: F,
+    /// Off: the law as it is.
+    pub on: bool,
+}
+
+impl<F: FrictionLaw> FrictionLaw for Secant<F> {
+    #[inline]
+    fn slip<D: DualNum<f64> + Copy>(
+        &self,
+        trial: &Vector3<D>,
+        normal: &Vector3<D>,
+        pressure: D,
+    ) -> Slip<D> {
+        let slip = self.law.slip(trial, normal, pressure);
+        if !self.on || !slip.slides {
+            return slip;
+        }
+        let norm = |v: &Vector3<D>| v.map(|x| x.re()).norm();
+        Slip {
+            d_trial: diagonal(D::from(norm(&slip.t) / norm(trial))),
+            ..slip
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn secant_leaves_the_traction_and_resists_along_it() {
+        let law = Coulomb { mu: 0.25 };
+        let (n, trial) = (Vector3::z(), Vector3::new(3.0, 4.0, 0.0));
+        let exact = law.slip(&trial, &n, 2.0);
+        assert_eq!(Secant { law, on: false }.slip(&trial, &n, 2.0), exact);
+        let secant = Secant { law, on: true };
+        let slip = secant.slip(&trial, &n, 2.0);
+        assert_eq!((slip.t, slip.d_pressure), (exact.t, exact.d_pressure));
+        assert!((exact.d_trial * trial).norm() < 1e-15);
+        assert!((slip.d_trial * trial - slip.t).norm() < 1e-15);
+        let sticks = Vector3::new(0.3, 0.4, 0.0);
+        assert_eq!(secant.slip(&sticks, &n, 2.0), law.slip(&sticks, &n, 2.0));
+    }
 
     #[test]
     fn coulomb_sticks_below_the_limit_and_slides_along_the_trial_above() {

@@ -5,6 +5,7 @@ use super::trial::{Attraction, Traction};
 use crate::contact::closest::ClosestPoint;
 use crate::contact::corner::Steady;
 use crate::contact::fault::PointFault;
+use crate::contact::kernel::Normal;
 use crate::contact::law::{Augmented, NormalLaw};
 use crate::contact::rigid::{Exact, RigidMaster, Touch, respond_rigid, respond_steady};
 use covact_geometry::{Hint, Vec3};
@@ -62,13 +63,21 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         };
         let xi3 = geometry.xi3();
         let normal = law.normal(xi3);
+        // The pressure of a point that is held is nothing to go by: it is far from the surface.
+        let limit = match law.held {
+            true => Normal {
+                n: history.n,
+                dn: 0.0,
+            },
+            false => normal,
+        };
         let attraction = history.attraction(friction.eps_t);
         let gap = law.gap(xi3);
         let (mut residual, mut k, n, traction) = match self.steady(&foot, &geometry, law) {
             None => {
                 let (residual, k) = respond_rigid(&geometry, &normal, &Exact);
                 let (n, turn) = (geometry.normal(), geometry.turn());
-                let friction = attraction.traction(&friction.law, &local, &n, &turn, gap, &normal);
+                let friction = attraction.traction(&friction.law, &local, &n, &turn, gap, &limit);
                 (residual, k, n, friction)
             }
             Some(steady) => {
@@ -81,7 +90,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
                     gradient,
                     turn,
                     gap,
-                    &normal,
+                    &limit,
                 );
                 (residual, k, *n, friction)
             }

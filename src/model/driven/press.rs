@@ -175,6 +175,7 @@ impl<'m> Presser<'m> {
                         law,
                         z0: offsets.map_or(0.0, |o| o.at(i)),
                         lambda_n: p.lambda_n,
+                        held: false,
                     };
                     master.touch(&p.x, &mut p.hint, &law, &Exact)
                 })
