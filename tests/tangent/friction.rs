@@ -97,6 +97,7 @@ impl Sliding {
             law: Penalty { eps_n: EPS_N },
             z0: -0.001,
             lambda_n: LAMBDA_N,
+            held: false,
         }
     }
 

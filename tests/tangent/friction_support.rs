@@ -69,6 +69,7 @@ impl Case {
             law: Penalty { eps_n: EPS_N },
             z0: self.z0,
             lambda_n: self.lambda_n,
+            held: false,
         }
     }
 

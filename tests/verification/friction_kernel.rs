@@ -159,6 +159,7 @@ fn spiral(set: &PatchSet, steps: usize) -> Spiral {
         law: Penalty { eps_n: EPS },
         z0: 0.0,
         lambda_n: 0.0,
+        held: false,
     };
     let friction = Friction {
         law: Coulomb { mu: MU },
@@ -343,6 +344,7 @@ fn both(path: impl Fn(f64) -> [f64; 2], steps: usize, eps_t: f64, mu: f64) -> [V
         law: Penalty { eps_n: 1.0 },
         z0: 0.0,
         lambda_n: -1.0,
+        held: false,
     };
     let friction = Friction {
         law: Coulomb { mu },
@@ -444,6 +446,7 @@ fn sliding_under_two_coefficients() {
             law: Penalty { eps_n: EPS },
             z0: 0.0,
             lambda_n: 0.0,
+            held: false,
         };
         let mut point = Driver::new(&set, normal, Friction { law, eps_t: EPS }, &start);
         let mut t = Vec3::zeros();
