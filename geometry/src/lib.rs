@@ -51,6 +51,7 @@ pub mod curve;
 pub mod facet;
 pub mod frame;
 pub mod io;
+pub mod memory;
 pub mod moving;
 pub mod patch;
 pub mod primitives;

@@ -1,4 +1,5 @@
 //! The sparsity pattern: which pairs of nodes have a 3 x 3 block.
+use crate::limits::{self, Shortage};
 
 /// Why a pattern could not be built or does not fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -13,6 +14,13 @@ pub enum PatternError {
     /// More blocks or nodes than 32-bit indices can count.
     #[error("{nodes} nodes with {blocks} coupled pairs are more than 32-bit indices can count")]
     TooLarge { nodes: usize, blocks: usize },
+    /// The matrix on it does not fit in memory.
+    #[error("the matrix of {nodes} nodes with {blocks} coupled pairs: {shortage}")]
+    Memory {
+        nodes: usize,
+        blocks: usize,
+        shortage: Shortage,
+    },
     /// Two nodes of an element are not coupled in the pattern.
     #[error("nodes {row} and {column} are not coupled in the pattern")]
     NotCoupled { row: u32, column: u32 },
@@ -111,6 +119,20 @@ impl Pattern {
         self.border = nodes.min(self.nodes() as u32);
         self.id ^= u64::from(self.border).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         self
+    }
+
+    /// Whether there is memory for a matrix on this pattern.
+    ///
+    /// # Errors
+    /// [`PatternError::Memory`].
+    pub fn fits(&self, symmetric: bool) -> Result<(), PatternError> {
+        let each = if symmetric { 72 } else { 144 };
+        let bytes = limits::times(self.blocks() as u64, each);
+        limits::ask(bytes).map_err(|shortage| PatternError::Memory {
+            nodes: self.nodes(),
+            blocks: self.blocks(),
+            shortage,
+        })
     }
 
     /// Number of nodes at the end that are to be eliminated last.

@@ -1,5 +1,6 @@
 //! `covact check`.
 use super::{CheckArgs, print, print_json, report};
+use crate::limits::Size;
 use crate::model::error::number;
 use crate::run::{self, BodyReport, CheckReport, PairReport, SurfaceReport};
 use crate::scene::{self, LoadedScene, SceneError};
@@ -57,6 +58,18 @@ fn listing(found: &CheckReport) -> String {
         "{} elements, {} nodes, {} unknown displacements (dofs), {} contact points; lengths in {}",
         found.elements, found.nodes, found.dofs, found.contact_points, found.unit
     ));
+    let m = &found.memory;
+    out.head("memory of a run, estimated");
+    out.line("at most", &format!("about {}", Size(m.total)));
+    let parts = [
+        ("elements", m.elements),
+        ("contact", m.contact),
+        ("surfaces", m.surfaces),
+        ("matrix", m.matrix),
+        ("factorization", m.factor),
+    ];
+    let parts = parts.map(|(name, bytes)| format!("{name} {}", Size(bytes)));
+    out.line("of it", &parts.join(", "));
     for b in &found.bodies {
         body(&mut out, b, notes(found, "body", &b.name));
     }

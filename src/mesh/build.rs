@@ -49,7 +49,7 @@ fn read_file(
         Some("inp") => read_inp,
         _ => return Err(MeshError::UnknownFormat { path }),
     };
-    let bytes = match std::fs::read(&path) {
+    let bytes = match covact_geometry::io::read_whole(&path) {
         Ok(bytes) => bytes,
         Err(source) => return Err(MeshError::Io { path, source }),
     };

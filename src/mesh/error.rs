@@ -1,4 +1,5 @@
 //! Errors of mesh generators, readers, checks and sets.
+use crate::limits::Shortage;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -55,6 +56,13 @@ pub enum MeshError {
     /// More nodes than [`MAX_NODES`].
     #[error("{what}: {nodes} nodes are more than the limit of {MAX_NODES}")]
     TooManyNodes { what: &'static str, nodes: u128 },
+    /// The mesh does not fit in memory.
+    #[error("{what} of {nodes} nodes: {shortage}")]
+    Memory {
+        what: &'static str,
+        nodes: u64,
+        shortage: Shortage,
+    },
     /// The elements cannot be spaced as asked.
     #[error("spacing along {axis}: {reason}")]
     Spacing { axis: String, reason: String },

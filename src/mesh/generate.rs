@@ -4,6 +4,7 @@
 use super::error::MAX_NODES;
 use super::spacing::positions;
 use super::{ElementKind, Face, Mesh, MeshError};
+use crate::limits;
 use crate::scene::{Block, CylinderPanel, Plate, Spacing, SpherePanel};
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
@@ -201,6 +202,14 @@ impl Grid {
         if nodes > u128::from(MAX_NODES) {
             return Err(MeshError::TooManyNodes { what, nodes });
         }
+        let elements: u64 = counts.into_iter().map(u64::from).product();
+        limits::ask(limits::mesh(nodes as u64, elements, kind)).map_err(|shortage| {
+            MeshError::Memory {
+                what,
+                nodes: nodes as u64,
+                shortage,
+            }
+        })?;
         Ok(Grid {
             kind,
             counts: counts.map(|n| n as usize),

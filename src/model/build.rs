@@ -12,16 +12,21 @@ use super::loads::{DeadLoad, FollowerPressure, load_points};
 use super::motion::pose;
 use super::slave::slave_points;
 use super::{BodyModel, Model, ModelError, SurfaceModel};
+use crate::limits;
 use crate::mesh::{self, Face, Mesh};
 use crate::scene::{
     self, InitialOverclosure, LoadedScene, MeshSource, POSITION_AND_TIME, Scene, TIME,
     TimeFunction, Value,
 };
-use crate::shell::{Block, Law};
+use crate::shell::{Block, Law, bytes_per_element};
 use covact_geometry::Vec3;
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 use std::path::Path;
+
+/// What to do where memory is short.
+pub(crate) const FEWER: &str =
+    "take fewer elements, or a coarser mesh away from the contact (`spacing`), or a machine with more memory";
 
 /// What is being collected while the model is built.
 struct Builder<'s> {
@@ -162,10 +167,47 @@ fn mesh_error(body: &str, source: &MeshSource, error: mesh::MeshError) -> ModelE
                 false => text(format!("{pointer}/file/path"), format!("{path}: {message}")),
             }
         }
-        _ => text(pointer, message),
+        _ => match error {
+            mesh::MeshError::Memory { .. } | mesh::MeshError::TooManyNodes { .. } => {
+                return text(elements_key(body, source), message).help(FEWER);
+            }
+            _ => text(pointer, message),
+        },
     };
     error.help = help.map(str::to_owned);
     error
+}
+
+/// Whether a run on the mesh of a body fits in memory, as far as its counts of elements tell before it is made.
+fn room(name: &str, body: &scene::Body) -> Result<(), ModelError> {
+    let counts = match &body.mesh {
+        MeshSource::Plate(p) => [p.elements[0], p.elements[1], p.layers],
+        MeshSource::CylinderPanel(p) => [p.elements[0], p.elements[1], p.layers],
+        MeshSource::SpherePanel(p) => [p.elements[0], p.elements[1], p.layers],
+        MeshSource::Block(b) => b.elements,
+        MeshSource::File(_) => return Ok(()),
+    };
+    let element = body.element;
+    let grid = limits::Grid { element, counts };
+    // Half of the estimate, which may be wrong by so much: the rest is checked when the system is known.
+    limits::ask(grid.bytes(true) / 2).map_err(|mut shortage| {
+        shortage.needed = grid.bytes(true);
+        let [r, s, t] = counts;
+        let message = format!("body `{name}` with {r} x {s} x {t} elements: {shortage}");
+        text(elements_key(name, &body.mesh), message).help(FEWER)
+    })
+}
+
+/// The field that says how many elements a body has.
+pub(crate) fn elements_key(body: &str, source: &MeshSource) -> String {
+    let field = match source {
+        MeshSource::Plate(_) => "plate/elements",
+        MeshSource::CylinderPanel(_) => "cylinder_panel/elements",
+        MeshSource::SpherePanel(_) => "sphere_panel/elements",
+        MeshSource::Block(_) => "block/elements",
+        MeshSource::File(_) => "file/path",
+    };
+    format!("/bodies/{body}/mesh/{field}")
 }
 
 /// Puts a mesh where the scene wants it.
@@ -198,6 +240,7 @@ impl<'s> Builder<'s> {
     fn bodies(&mut self) -> Result<(), ModelError> {
         for (name, body) in &self.scene.bodies {
             let at = || format!("/bodies/{name}/mesh");
+            room(name, body)?;
             let (mut mesh, report) = mesh::build(&body.mesh, body.element.into(), self.dir)
                 .map_err(|e| mesh_error(name, &body.mesh, e))?;
             place(&mut mesh, &body.placement);
@@ -210,6 +253,12 @@ impl<'s> Builder<'s> {
             (self.notes).extend(report.notes.iter().map(|n| format!("body `{name}`: {n}")));
             let material = self.material(name, &body.material)?;
             let law = Law::new(&material).at(|| format!("/bodies/{name}/material"))?;
+            let elements = mesh.elements() as u64;
+            let each: usize = bytes_per_element(body.element).iter().sum();
+            limits::ask(limits::times(elements, each as u64)).map_err(|shortage| {
+                let message = format!("body `{name}` with its {elements} elements: {shortage}");
+                text(elements_key(name, &body.mesh), message).help(FEWER)
+            })?;
             let block = Block::new(&mesh, body.element, law).at(at)?;
             let first_node = u32::try_from(self.nodes.len())
                 .map_err(|_| text(at(), "too many nodes: more than 2^32"))?;

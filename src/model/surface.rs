@@ -128,6 +128,17 @@ impl SurfaceSet {
 }
 
 impl SurfaceModel {
+    /// Number of polynomial pieces: spans of patches, or facets.
+    pub fn pieces(&self) -> usize {
+        match &self.set {
+            SurfaceSet::Nurbs(set) => {
+                let spans = |p: &NurbsPatch| p.spans(0).len() * p.spans(1).len();
+                set.patches().iter().map(spans).sum()
+            }
+            other => other.count(),
+        }
+    }
+
     /// The surface at its position of time `t` and, where forces drive it, of the displacements `u` of the system.
     pub fn at(&self, t: f64, u: &[f64]) -> Result<RigidMaster<'_, SurfaceSet>, ValueError> {
         Ok(RigidMaster {

@@ -1,5 +1,6 @@
 //! `covact check`: everything up to the first solve, and nothing of it.
 use super::RunError;
+use crate::limits::Estimate;
 use crate::mesh::Range;
 use crate::model::error::number;
 use crate::model::initial::{initial_gap, point_spacing};
@@ -20,6 +21,8 @@ pub struct CheckReport {
     pub dofs: usize,
     /// Slave points of all contacts.
     pub contact_points: usize,
+    /// Memory that a run takes at its largest, estimated.
+    pub memory: Estimate,
     pub bodies: Vec<BodyReport>,
     pub surfaces: Vec<SurfaceReport>,
     pub pairs: Vec<PairReport>,
@@ -169,6 +172,7 @@ pub struct LoadReport {
 /// [`RunError::Scene`] with the place of what is wrong.
 pub fn check(scene: &LoadedScene) -> Result<CheckReport, RunError> {
     let model = model::build::build(scene).map_err(|e| RunError::model(scene, e))?;
+    let memory = super::memory::estimate(scene, &model)?;
     let mut pairs = Vec::new();
     for index in 0..model.pairs.len() {
         pairs
@@ -185,6 +189,7 @@ pub fn check(scene: &LoadedScene) -> Result<CheckReport, RunError> {
         elements: model.bodies.iter().map(|b| b.block.elements()).sum(),
         dofs: model.unknowns(),
         contact_points: model.contact_points(),
+        memory,
         bodies,
         surfaces: (model.surfaces.iter())
             .map(|s| surface_report(scene, s))

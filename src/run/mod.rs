@@ -8,6 +8,7 @@ mod fields;
 mod friction_fields;
 mod history;
 mod march;
+mod memory;
 mod pieces;
 mod progress;
 mod step;
@@ -81,13 +82,15 @@ fn solve(
     for text in &model.warnings {
         observer.event(&Event::Warning { text: text.clone() });
     }
+    memory::flat_copies(loaded, &model)?;
     phases.start("analysis");
-    let mut assembler = Assembler::new(&model, &model.dofs).map_err(|e| RunError::internal(&e))?;
+    let mut assembler =
+        Assembler::new(&model, &model.dofs).map_err(|e| memory::pattern(loaded, &e))?;
     let mut solver = solver(&loaded.scene, model.symmetric, threads);
     if let Some(pattern) = assembler.take_new_pattern() {
         solver
             .analyze(&pattern)
-            .map_err(|e| RunError::internal(&e))?;
+            .map_err(|e| memory::analysis(loaded, &e))?;
     }
     phases.stop("analysis");
     let mut march = March::new(

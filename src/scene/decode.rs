@@ -2,8 +2,8 @@
 //!
 //! serde's derived code tells a deserializer the keys and variants it knows, so unknown ones are found here, all of
 //! them, before the derived code would stop at the first.
-use super::json::{Fault, Kind, Member, Node, shorten};
-use super::problem::{nearest, suggestion};
+use super::json::{Fault, Kind, MORE, Member, Node};
+use super::problem::{MOST_PROBLEMS, nearest, shorten, suggestion};
 use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Unexpected, Visitor};
 use std::cell::RefCell;
 use std::fmt;
@@ -157,12 +157,15 @@ impl<'de, 'f> Decoder<'de, 'f> {
         visitor: V,
     ) -> Result<V::Value, Stop> {
         let mut meant: Vec<&str> = Vec::new();
+        let mut unused = known.to_vec();
+        if members.iter().any(|m| !known.contains(&m.key.as_str())) {
+            unused.retain(|k| !members.iter().any(|m| m.key == *k));
+        }
         for m in members.iter().filter(|m| !known.contains(&m.key.as_str())) {
-            let unused = known
-                .iter()
-                .copied()
-                .filter(|k| !members.iter().any(|m| m.key == *k));
-            meant.extend(nearest(&m.key, unused));
+            if self.faults.borrow().len() >= MOST_PROBLEMS {
+                return Err(Stop::new(MORE).at(&m.key_span));
+            }
+            meant.extend(nearest(&m.key, unused.iter().copied()));
             let stop = unknown_key(&m.key, known);
             self.faults.borrow_mut().push(Fault {
                 message: stop.message,

@@ -2,10 +2,16 @@
 //!
 //! A scene is written by hand, so what matters is to say precisely what is wrong and where. Strict JSON (RFC 8259):
 //! no comments, no trailing commas; a key may be given once.
+use super::problem::{MOST_PROBLEMS, shorten};
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// Values may be nested this deep; scenes need less than ten.
 const MAX_DEPTH: usize = 64;
+/// Objects of more keys than this keep a table of them while they are read.
+const FEW_KEYS: usize = 32;
+/// Said instead of the problems beyond the number that is told.
+pub(super) const MORE: &str = "there are more problems, which are not listed";
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Node {
@@ -132,14 +138,6 @@ pub(super) fn escape(token: &str) -> String {
     token.replace('~', "~0").replace('/', "~1")
 }
 
-/// At most 40 characters of a text.
-pub(super) fn shorten(text: &str) -> String {
-    match text.char_indices().nth(40) {
-        Some((i, _)) => format!("{}...", &text[..i]),
-        None => text.to_string(),
-    }
-}
-
 struct Reader<'a> {
     text: &'a str,
     at: usize,
@@ -256,6 +254,8 @@ impl Reader<'_> {
     fn object(&mut self) -> Result<Kind, Fault> {
         let open = self.at;
         let mut members: Vec<Member> = Vec::new();
+        // Where keys are, once there are more than a search through all of them is good for.
+        let mut places: HashMap<String, usize> = HashMap::new();
         self.at += 1;
         self.skip_space()?;
         if self.peek() == Some('}') {
@@ -287,7 +287,17 @@ impl Reader<'_> {
             }
             self.skip_space()?;
             let value = self.value()?;
-            match members.iter().find(|m| m.key == key) {
+            if members.len() == FEW_KEYS {
+                places.extend(members.iter().enumerate().map(|(i, m)| (m.key.clone(), i)));
+            }
+            let first = match members.len() < FEW_KEYS {
+                true => members.iter().find(|m| m.key == key),
+                false => places.get(&key).map(|&i| &members[i]),
+            };
+            match first {
+                Some(_) if self.faults.len() >= MOST_PROBLEMS => {
+                    return Err(self.fault(key_span, MORE, None));
+                }
                 Some(first) => {
                     let line = 1 + self.text[..first.key_span.start].matches('\n').count();
                     self.faults.push(Fault {
@@ -296,11 +306,16 @@ impl Reader<'_> {
                         span: key_span,
                     });
                 }
-                None => members.push(Member {
-                    key,
-                    key_span,
-                    value,
-                }),
+                None => {
+                    if members.len() >= FEW_KEYS {
+                        places.insert(key.clone(), members.len());
+                    }
+                    members.push(Member {
+                        key,
+                        key_span,
+                        value,
+                    });
+                }
             }
             if self.end_of_item(open, '}', "object")? {
                 return Ok(Kind::Object(members));

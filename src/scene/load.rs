@@ -3,6 +3,7 @@ use super::decode::decode;
 use super::json::{self, Fault, Kind, Node};
 use super::problem::{Lines, Place, Problem, SceneError, nearest};
 use super::types::Scene;
+use covact_geometry::io::read_within;
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -36,24 +37,19 @@ pub fn load(path: impl AsRef<Path>) -> Result<LoadedScene, SceneError> {
             path: path.to_path_buf(),
             nearest: nearest_file(path),
         },
+        io::ErrorKind::FileTooLarge => SceneError::Io {
+            path: path.to_path_buf(),
+            reason: format!(
+                "it is larger than {} MB, too large for a scene",
+                MAX_BYTES >> 20
+            ),
+        },
         _ => SceneError::Io {
             path: path.to_path_buf(),
             reason: e.to_string(),
         },
     };
-    let meta = std::fs::metadata(path).map_err(failed)?;
-    if meta.is_dir() || meta.len() > MAX_BYTES {
-        let reason = match meta.is_dir() {
-            true => "it is a folder".to_string(),
-            false => format!(
-                "it is larger than {} MB, too large for a scene",
-                MAX_BYTES >> 20
-            ),
-        };
-        let path = path.to_path_buf();
-        return Err(SceneError::Io { path, reason });
-    }
-    let bytes = std::fs::read(path).map_err(failed)?;
+    let bytes = read_within(path, MAX_BYTES).map_err(failed)?;
     let name = path.display().to_string();
     let text = String::from_utf8(bytes).map_err(|e| not_utf8(&name, &e))?;
     let mut loaded = parse(&text, &name)?;

@@ -121,6 +121,11 @@ impl Lines {
     }
 }
 
+/// Names beyond this many are counted in messages, not listed.
+const MOST_LISTED: usize = 30;
+/// Problems beyond this many are not looked for.
+pub(super) const MOST_PROBLEMS: usize = 200;
+
 /// The candidate closest to what was written, if one is close enough to be meant.
 pub fn nearest<'a>(
     written: &str,
@@ -132,6 +137,12 @@ pub fn nearest<'a>(
         .into_iter()
         .filter_map(|c| {
             let other = c.to_lowercase();
+            // Lengths that differ by more than is allowed need no table as large as their product.
+            if length.abs_diff(other.chars().count()) > 3 {
+                let part = length.min(other.len()) >= 3
+                    && (other.contains(&lower) || lower.contains(&other));
+                return part.then_some((length.abs_diff(other.chars().count()), c));
+            }
             let distance = strsim::damerau_levenshtein(&lower, &other);
             // A part of the right name (`slave` for `slaves`, `E-modulus` for `E` is not) also counts.
             let part = length >= 3
@@ -150,17 +161,34 @@ pub(super) fn suggestion<'a>(
     what: &str,
     candidates: impl IntoIterator<Item = &'a str> + Clone,
 ) -> String {
-    let list: Vec<String> = candidates
-        .clone()
-        .into_iter()
-        .map(|c| format!("`{c}`"))
-        .collect();
+    let list = listed(candidates.clone());
     let known = match list.is_empty() {
         true => format!("there are no {what}"),
-        false => format!("{what}: {}", list.join(", ")),
+        false => format!("{what}: {list}"),
     };
     match nearest(written, candidates) {
         Some(near) => format!("did you mean `{near}`? {known}"),
         None => known,
+    }
+}
+
+/// Names for a message, the first ones where there are many: "`a`, `b`".
+pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let mut names = names.into_iter();
+    let mut list: Vec<String> = (names.by_ref().take(MOST_LISTED))
+        .map(|name| format!("`{}`", shorten(name)))
+        .collect();
+    match names.count() {
+        0 => {}
+        more => list.push(format!("and {more} more")),
+    }
+    list.join(", ")
+}
+
+/// At most 40 characters of a text.
+pub(super) fn shorten(text: &str) -> String {
+    match text.char_indices().nth(40) {
+        Some((i, _)) => format!("{}...", &text[..i]),
+        None => text.to_string(),
     }
 }

@@ -1,12 +1,26 @@
 //! The elements of a body, whatever their shape: one trait for the loops, one enum for the body.
 use super::error::{ElementFault, ShellError};
-use super::h8::{H8Block, H8System};
+use super::h8::{Formulation, H8Block, H8System};
 use super::material::Law;
 use super::q18::{DOFS, Q18Block, Q18System};
 use super::stress::{extrapolate, extrapolate_quadratic};
 use crate::mesh::Mesh;
 use crate::scene::Element;
 use covact_geometry::Vec3;
+
+/// States of a run that are held at the same time: committed, trial, the one before, and those of Newton's method and of
+/// the attempts at a step.
+pub const STATES: usize = 5;
+
+/// Bytes that an element of this kind takes: what is worked out once about its shape, and its states in a run.
+pub const fn bytes_per_element(element: Element) -> [usize; 2] {
+    let (shape, state) = match element {
+        Element::H8 => (H8Block::BYTES, Formulation::Eas7.state_len()),
+        Element::H8Displacement => (H8Block::BYTES, Formulation::Displacement.state_len()),
+        Element::Q18 => (Q18Block::BYTES, Q18Block::STATE_LEN),
+    };
+    [shape, STATES * 8 * state]
+}
 
 /// What a loop over the elements of a body needs: elements of `N` nodes, 3 dofs each, numbered `3 node + axis`. Loops are
 /// generic over it, so that the shape is chosen once per body.

@@ -33,6 +33,11 @@ impl Formulation {
             Formulation::Eas0 | Formulation::Displacement => 0,
         }
     }
+
+    /// Numbers of state per element.
+    pub(super) const fn state_len(self) -> usize {
+        tangent::state_len(self.modes())
+    }
 }
 
 impl Formulation {
@@ -96,6 +101,9 @@ macro_rules! with_law {
 }
 
 impl H8Block {
+    /// Bytes of an element here.
+    pub(super) const BYTES: usize = size_of::<Reference>() + size_of::<[u32; 8]>();
+
     /// Sets up the elements of a mesh.
     ///
     /// # Errors

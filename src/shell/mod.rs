@@ -32,7 +32,7 @@ mod tangent;
 mod tests;
 
 pub(crate) use block::with_block;
-pub use block::{Block, ElementBlock, ElementSystem};
+pub use block::{Block, ElementBlock, ElementSystem, STATES, bytes_per_element};
 pub use error::{ElementFault, FaultCause, ShellError};
 pub use face::{Quad, tributary_areas};
 pub use h8::{Formulation, H8Block, H8System};

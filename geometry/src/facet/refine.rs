@@ -6,6 +6,7 @@ use super::deviation::{Cell, deviation, shares};
 use super::lines::{Lines, along, carry};
 use super::{Bilinear, Biquadratic, FacetError, FacetMesh};
 use crate::project::PatchSet;
+use crate::memory::available;
 use crate::surface::{Surface, Vec3};
 
 /// How finely a surface is cut.
@@ -131,20 +132,21 @@ fn facets<S: Surface, const N: usize>(
         }
     }
     let degree = if N == 4 { 1 } else { 2 };
+    let most = LIMIT.min((available().bytes / bytes_of_facet::<N>()) as usize);
     let mut last = 0.0;
     loop {
         let too_many = FacetError::TooMany {
-            limit: LIMIT,
+            limit: most,
             deviation: last,
             tolerance: tolerance.unwrap_or(0.0),
         };
         // Counted first: numbers alone must not fill the memory.
-        if total(counts.iter().map(|c| c.each_ref().map(|c| c.iter().sum()))) > LIMIT {
+        if total(counts.iter().map(|c| c.each_ref().map(|c| c.iter().sum()))) > most {
             return Err(too_many);
         }
         let mut lines = lines_of(patches, &counts);
-        carry(patches, &set.edges().joints, &mut lines, LIMIT);
-        if total(lines.iter().map(|l| l.each_ref().map(Vec::len))) > LIMIT {
+        carry(patches, &set.edges().joints, &mut lines, most);
+        if total(lines.iter().map(|l| l.each_ref().map(Vec::len))) > most {
             return Err(too_many);
         }
         let (mut out, cells) = build::<S, N>(set, &lines, degree);
@@ -182,6 +184,11 @@ fn facets<S: Surface, const N: usize>(
             .collect();
         refine(patches, &mut counts, &wanted, allowed, degree);
     }
+}
+
+/// Bytes of a facet while it is made: nodes with their positions, its corners, cell, origin and distance.
+const fn bytes_of_facet<const N: usize>() -> u64 {
+    (N * (4 + 24 + 24) + 200) as u64
 }
 
 /// Facets of a grid of that many cells or lines per patch.

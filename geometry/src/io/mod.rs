@@ -5,6 +5,7 @@
 //! [`Skipped`] with its reason, and what was tolerated although the standard does not allow it is in the notes.
 
 mod error;
+mod file;
 mod iges;
 mod json;
 mod report;
@@ -12,6 +13,7 @@ mod stl;
 mod unit;
 
 pub use error::CadError;
+pub use file::{MOST_BYTES, not_regular, read_whole, read_within};
 pub use iges::{
     BasePatch, BaseSurface, Border, IgesCurve, IgesGeometry, IgesSurface, ParameterMap,
     Reparametrise, Unbounded, entity_name, read_iges, read_iges_geometry,
@@ -32,7 +34,7 @@ use std::path::Path;
 /// and [`CadError::Format`] when it is neither IGES nor JSON (a STEP file, for one).
 pub fn read_path(path: &Path) -> Result<CadFile, CadError> {
     let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|source| CadError::Read {
+    let bytes = read_whole(path).map_err(|source| CadError::Read {
         path: name.clone(),
         source,
     })?;

@@ -119,7 +119,7 @@ type Record = [Vec3; 4];
 /// See [`StlError`].
 pub fn read_stl_path(path: &std::path::Path, merge: Option<f64>) -> Result<Stl, StlError> {
     let name = path.display().to_string();
-    match std::fs::read(path) {
+    match super::read_whole(path) {
         Ok(bytes) => read_stl(&bytes, &name, merge),
         Err(source) => Err(StlError::Read { path: name, source }),
     }

@@ -193,6 +193,7 @@ impl<'m> Assembler<'m> {
         let masters = Masters::new(model);
         let couplings = moving::first_couplings(model, &masters);
         let pattern = Arc::new(maps::pattern(model, dofs, &couplings)?);
+        pattern.fits(model.symmetric)?;
         let maps = Maps::new(model, dofs, &pattern)?;
         let rigid = model.pairs.iter().filter(|p| p.rigid_master().is_some());
         let most = rigid.map(|p| p.points.len()).max().unwrap_or(0);
@@ -223,6 +224,17 @@ impl<'m> Assembler<'m> {
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             manner: Manner::default(),
         })
+    }
+
+    /// The pattern of a model under its constraints at the start, and nothing else of an assembler.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn pattern_of(model: &Model, dofs: &DofMap) -> Result<Pattern, PatternError> {
+        let couplings = moving::first_couplings(model, &Masters::new(model));
+        let pattern = maps::pattern(model, dofs, &couplings)?;
+        pattern.fits(model.symmetric)?;
+        Ok(pattern)
     }
 
     /// The pattern, if it is another than when it was last taken: the solver has to analyse it.

@@ -9,6 +9,7 @@ use super::super::slave::slave_points;
 use super::super::{HalfPass, ModelError, PairModel, SurfaceModel, penalty, segments};
 use super::{Builder, master_faces};
 use crate::contact::points::SlavePoint;
+use crate::limits;
 use crate::mesh::Face;
 use crate::scene::{Contact, Gap, MasterSurface, Passes, Penalty, Points};
 use covact_geometry::MovingFacets;
@@ -71,6 +72,19 @@ impl Builder<'_> {
         let (body, faces) = self.faces(&contact.slave, &pointer("slave"))?;
         let model = &self.bodies[body];
         let first_node = model.first_node;
+        let per_face = match contact.points {
+            Points::Nodes => 1,
+            Points::Gauss(n) | Points::Lobatto(n) => u64::from(n) * u64::from(n),
+            Points::Segments(n) => u64::from(n / 2 + 1).pow(2),
+        };
+        let bytes = limits::slave_points(limits::times(faces.len() as u64, per_face));
+        limits::ask(bytes).map_err(|shortage| {
+            let message = format!(
+                "contact `{name}`: {per_face} slave points on each of {} faces: {shortage}",
+                faces.len()
+            );
+            text(pointer("points"), message).help("take fewer points per face, or fewer elements")
+        })?;
         let mut points = slave_points(&model.mesh, &faces, contact.points, first_node)
             .at(|| pointer("points"))?;
         let (size, mut automatic) = self.stiffness(body, &faces);

@@ -3,6 +3,7 @@ use super::super::ModelError;
 use super::super::error::{At, cause, number, text};
 use super::super::surface::{FacetModel, SurfaceSet};
 use super::Builder;
+use crate::limits;
 use crate::scene::{self, FacetKind};
 use covact_geometry::PatchSet;
 use covact_geometry::facet::{
@@ -40,21 +41,32 @@ impl Builder<'_> {
         exact.set_side_as_given(false);
         let range = exact.curvature_range();
         let told = |e| facet_error(name, wanted, labels, e);
+        let room = |count: usize| {
+            let bytes = limits::facet_bytes(Some(wanted.kind));
+            limits::ask(limits::times(count as u64, bytes)).map_err(|shortage| {
+                let message = format!("surface `{name}` as {count} facets: {shortage}");
+                let at = format!("/surfaces/{name}/facets/{}", fineness(wanted));
+                text(at, message).help("ask for coarser facets")
+            })
+        };
         let (set, made) = match wanted.kind {
             FacetKind::Bilinear => {
                 let made = bilinear_facets(&exact, refinement).map_err(told)?;
+                room(made.mesh.facets.len())?;
                 let facets = made.mesh.surfaces().map_err(told)?;
                 let set = PatchSet::new(facets, None).at(here)?;
                 (SurfaceSet::Bilinear(set), Made::of(&made))
             }
             FacetKind::Biquadratic => {
                 let made = biquadratic_facets(&exact, refinement).map_err(told)?;
+                room(made.mesh.facets.len())?;
                 let facets = made.mesh.surfaces().map_err(told)?;
                 let set = PatchSet::new(facets, None).at(here)?;
                 (SurfaceSet::Biquadratic(set), Made::of(&made))
             }
             FacetKind::Smooth => {
                 let mut made = bilinear_facets(&exact, refinement).map_err(told)?;
+                room(made.mesh.facets.len())?;
                 let patches = smooth_patches(&made.mesh).map_err(told)?;
                 made.deviation = distance_from(&exact, &patches);
                 let set = PatchSet::new(patches, None).at(here)?;
@@ -151,6 +163,12 @@ impl Builder<'_> {
             return Err(text(field("cad/entities"), message).help("leave out `entities`"));
         }
         self.stl_account(name, stl, &shown.to_string());
+        let bytes = limits::facet_bytes(Some(FacetKind::Bilinear));
+        limits::ask(limits::times(3 * stl.triangles.len() as u64, bytes)).map_err(|shortage| {
+            let count = stl.triangles.len();
+            let message = format!("{shown} with {count} triangles: {shortage}");
+            text(field("cad/file"), message).help("export a coarser STL file")
+        })?;
         let mut mesh = stl.facets();
         for node in &mut mesh.nodes {
             *node *= surface.placement.scale;
@@ -241,6 +259,15 @@ fn refinement(facets: &scene::Facets) -> Option<Refinement> {
         .or(facets.count.map(Refinement::PerPatch))
 }
 
+/// The field that says how fine facets are.
+fn fineness(wanted: &scene::Facets) -> &'static str {
+    match (wanted.chord, wanted.size) {
+        (Some(_), _) => "chord",
+        (_, Some(_)) => "size",
+        _ => "count",
+    }
+}
+
 /// Why facets cannot be made, with the place and what to do.
 fn facet_error(
     name: &str,
@@ -248,11 +275,7 @@ fn facet_error(
     labels: &[String],
     error: FacetError,
 ) -> ModelError {
-    let field = match (wanted.chord, wanted.size) {
-        (Some(_), _) => "chord",
-        (_, Some(_)) => "size",
-        _ => "count",
-    };
+    let field = fineness(wanted);
     let at = |f: &str| format!("/surfaces/{name}/facets/{f}");
     match error {
         FacetError::Trimmed(patch) => {

@@ -1,7 +1,9 @@
 //! Collects problems; the rules that many fields share.
 use crate::scene::load::{LoadedScene, nearest_file, pointer};
-use crate::scene::problem::{Problem, suggestion};
+use crate::scene::json::MORE;
+use crate::scene::problem::{MOST_PROBLEMS, Problem, shorten, suggestion};
 use crate::scene::value::{Value, ValueError};
+use covact_geometry::io::not_regular;
 use std::fs::File;
 use std::path::Path;
 
@@ -25,12 +27,25 @@ impl<'a> Checker<'a> {
 
     /// The problems in the order of the file.
     pub fn finish(mut self) -> Vec<Problem> {
+        let more = self.problems.len() > MOST_PROBLEMS;
+        self.problems.truncate(MOST_PROBLEMS);
         self.problems.sort_by_key(|p| p.span.start);
+        if more {
+            self.problems.push(self.loaded.problem("", MORE, None));
+        }
         self.problems
     }
 
     pub fn add(&mut self, at: &str, message: impl Into<String>, help: Option<String>) {
+        if self.full() {
+            return;
+        }
         self.problems.push(self.loaded.problem(at, message, help));
+    }
+
+    /// Nothing that is found now will be told.
+    pub fn full(&self) -> bool {
+        self.problems.len() > MOST_PROBLEMS
     }
 
     pub fn positive(&mut self, at: &str, what: &str, value: f64) {
@@ -119,14 +134,17 @@ impl<'a> Checker<'a> {
         name: &str,
         known: impl Iterator<Item = &'n String> + Clone,
     ) {
-        if !known.clone().any(|k| k == name) {
+        if !self.full() && !known.clone().any(|k| k == name) {
             let help = suggestion(name, section, known.map(String::as_str));
-            self.add(at, format!("there is no {what} `{name}`"), Some(help));
+            self.add(at, format!("there is no {what} `{}`", shorten(name)), Some(help));
         }
     }
 
     /// The value compiles with these variables.
     pub fn value(&mut self, at: &str, value: &Value, variables: &[&str]) {
+        if self.full() {
+            return;
+        }
         let Err(error) = value.compile(variables) else {
             return;
         };
@@ -168,7 +186,12 @@ impl<'a> Checker<'a> {
             Ok(meta) if meta.is_dir() => {
                 return self.add(at, format!("`{shown}` is a folder, not a file"), None);
             }
-            Ok(_) => {}
+            // Not even opened: a pipe may block for ever.
+            Ok(meta) => {
+                if let Some(what) = not_regular(&meta) {
+                    return self.add(at, format!("cannot read `{shown}`: {what}"), None);
+                }
+            }
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
                 let near = nearest_file(&full).map(|n| format!("did you mean `{n}`?"));
                 let help = near.unwrap_or_else(|| "paths are relative to the scene file".into());

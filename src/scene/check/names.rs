@@ -1,8 +1,11 @@
 //! Names, and what refers to them.
 use super::checker::{Checker, path};
-use crate::scene::problem::{nearest, suggestion};
+use crate::scene::problem::{listed, nearest, shorten, suggestion};
 use crate::scene::types::*;
 use std::collections::BTreeMap;
+
+/// Bytes of a name.
+const MOST_IN_NAME: usize = 200;
 
 /// Names can be used in `body.set`, in columns of the history and in file names.
 pub(super) fn check(c: &mut Checker, scene: &Scene) {
@@ -57,6 +60,11 @@ pub(super) fn check(c: &mut Checker, scene: &Scene) {
 fn check_name(c: &mut Checker, at: &str, name: &str, body: bool) {
     if name.trim().is_empty() {
         return c.add(at, "a name is empty", None);
+    }
+    if name.len() > MOST_IN_NAME {
+        let message = format!("the name `{}` is longer than {MOST_IN_NAME} bytes", shorten(name));
+        let help = "names become columns of the history and parts of file names";
+        return c.add(at, message, Some(help.into()));
     }
     let bad = |ch: char| ch.is_control() || matches!(ch, ',' | '"' | ';') || (body && ch == '.');
     if let Some(ch) = name.chars().find(|ch| bad(*ch)) {
@@ -156,6 +164,9 @@ impl<'a> Sets<'a> {
 
     /// `reference` is `body.set` of a body and, where that is known, of one of its sets; `user` needs faces.
     pub fn check(&self, c: &mut Checker, at: &str, reference: &str, faces: bool, user: &str) {
+        if c.full() {
+            return;
+        }
         let Some((body, set)) = reference.split_once('.') else {
             return c.add(
                 at,
@@ -184,7 +195,7 @@ impl<'a> Sets<'a> {
                     c.add(
                         at,
                         message,
-                        Some(format!("face sets of `{body}`: {}", with.join(", "))),
+                        Some(format!("face sets of `{body}`: {}", listed(with))),
                     );
                 }
             }
@@ -205,8 +216,7 @@ impl<'a> Sets<'a> {
     }
 
     fn list(&self) -> String {
-        let names: Vec<String> = self.bodies.keys().map(|b| format!("`{b}`")).collect();
-        names.join(", ")
+        listed(self.bodies.keys().copied())
     }
 
     fn form(&self, reference: &str) -> String {

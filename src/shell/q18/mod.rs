@@ -69,6 +69,8 @@ macro_rules! with_law {
 }
 
 impl Q18Block {
+    /// Bytes of an element here.
+    pub(super) const BYTES: usize = size_of::<Reference>() + size_of::<[u32; 18]>();
     /// Numbers of state per element.
     pub const STATE_LEN: usize = tangent::STATE;
     /// Numbers of enhanced strains per element, at the start of its state.

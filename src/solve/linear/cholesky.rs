@@ -7,7 +7,8 @@ use super::{
     first_not_finite, reserved, same_pattern,
 };
 use crate::assembly::{Pattern, SystemMatrix};
-use faer::dyn_stack::{MemBuffer, MemStack};
+use crate::limits;
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::{ldlt::factor::LdltError, llt::factor::LltError};
 use faer::sparse::linalg::cholesky::supernodal;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
@@ -35,6 +36,14 @@ impl DirectSolver {
     /// The settings.
     pub fn options(&self) -> &SolverOptions {
         &self.options
+    }
+
+    /// What an analysis of a pattern finds, the memory above all; nothing is prepared or kept.
+    ///
+    /// # Errors
+    /// [`LinearError::TooLarge`], [`LinearError::OutOfMemory`], [`LinearError::Metis`].
+    pub fn plan(pattern: &Pattern, options: &SolverOptions) -> Result<Analysis, LinearError> {
+        Plan::new(pattern, options).map(|plan| plan.analysis)
     }
 
     /// What the last analysis found.
@@ -210,13 +219,21 @@ struct Prepared {
     factor: Option<Method>,
 }
 
-impl Prepared {
-    fn new(pattern: &Arc<Pattern>, options: &SolverOptions) -> Result<Self, LinearError> {
+/// What the symbolic analysis decides, before anything of the factor's size is allocated.
+struct Plan {
+    analysis: Analysis,
+    symbolic: supernodal::SymbolicSupernodalCholesky<u32>,
+    order: NodeOrder,
+    scratch: StackReq,
+    par: Par,
+}
+
+impl Plan {
+    fn new(pattern: &Pattern, options: &SolverOptions) -> Result<Self, LinearError> {
         let order = ordering::order(pattern, options.ordering)?;
         let n = pattern.dofs();
         let (mut analysis, par) = Analysis::of(&order, options);
         let symbolic = symbolic::of_dofs(pattern, &order)?;
-        let matrix = PermutedMatrix::new(pattern, order);
         let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
             &symbolic,
             par,
@@ -227,14 +244,37 @@ impl Prepared {
             f64,
         >(&symbolic, par, Default::default()))
         .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
-        let bytes = scratch.size_bytes();
-        let memory = buffer(scratch)?;
         analysis.stored = symbolic.len_val();
-        let factor_values = reserved(analysis.stored)?;
-        analysis.memory_bytes = bytes
-            + 8 * (analysis.stored + matrix.values.len() + n)
-            + 4 * (matrix.dof_rows.len() + matrix.dof_starts.len() + matrix.blocks.sources.len())
+        let entries = 9 * pattern.blocks();
+        analysis.memory_bytes = scratch.size_bytes()
+            + 8 * (analysis.stored + entries + n)
+            + 4 * (entries + n + 1 + pattern.blocks())
             + 4 * (symbolic.row_idx().len() + 4 * symbolic.n_supernodes());
+        let plan = Plan {
+            analysis,
+            symbolic,
+            order,
+            scratch,
+            par,
+        };
+        Ok(plan)
+    }
+}
+
+impl Prepared {
+    fn new(pattern: &Arc<Pattern>, options: &SolverOptions) -> Result<Self, LinearError> {
+        let Plan {
+            analysis,
+            symbolic,
+            order,
+            scratch,
+            par,
+        } = Plan::new(pattern, options)?;
+        limits::ask(analysis.memory_bytes as u64).map_err(LinearError::Memory)?;
+        let n = pattern.dofs();
+        let matrix = PermutedMatrix::new(pattern, order);
+        let memory = buffer(scratch)?;
+        let factor_values = reserved(analysis.stored)?;
         Ok(Self {
             pattern: Arc::clone(pattern),
             analysis,

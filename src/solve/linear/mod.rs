@@ -14,6 +14,7 @@ pub use cholesky::DirectSolver;
 pub use lu::LuSolver;
 
 use crate::assembly::{Pattern, SystemMatrix};
+use crate::limits::Shortage;
 use faer::Par;
 use ordering::NodeOrder;
 use std::fmt;
@@ -24,7 +25,7 @@ pub trait LinearSolver {
     /// Prepares for matrices on `pattern`; what was prepared and factorized before is dropped.
     ///
     /// # Errors
-    /// [`LinearError::TooLarge`], [`LinearError::OutOfMemory`], [`LinearError::Metis`].
+    /// [`LinearError::TooLarge`], [`LinearError::Memory`], [`LinearError::OutOfMemory`], [`LinearError::Metis`].
     fn analyze(&mut self, pattern: &Arc<Pattern>) -> Result<&Analysis, LinearError>;
 
     /// Factorizes a matrix on the analysed pattern.
@@ -289,6 +290,9 @@ pub enum LinearError {
     TooLarge,
     #[error("not enough memory for {bytes} bytes of the factorization")]
     OutOfMemory { bytes: usize },
+    /// Found out before the factorization took anything.
+    #[error("the factorization of the system: {0}")]
+    Memory(Shortage),
     #[error("METIS found no ordering (code {code})")]
     Metis { code: i32 },
     #[error("the matrix has a value that is not finite in the block of nodes {row} and {column}")]

@@ -14,6 +14,7 @@ use super::{
     reserved, same_pattern,
 };
 use crate::assembly::{Pattern, SystemMatrix};
+use crate::limits;
 use dense::Pivots;
 use factor::{Factor, Source, Work};
 use faer::Par;
@@ -51,6 +52,14 @@ impl LuSolver {
             options,
             prepared: None,
         }
+    }
+
+    /// What an analysis of a pattern finds, the memory above all; nothing is prepared or kept.
+    ///
+    /// # Errors
+    /// [`LinearError::TooLarge`], [`LinearError::OutOfMemory`], [`LinearError::Metis`].
+    pub fn plan(pattern: &Pattern, options: &SolverOptions) -> Result<Analysis, LinearError> {
+        Plan::new(pattern, options).map(|plan| plan.analysis)
     }
 
     /// What the last analysis found.
@@ -129,8 +138,16 @@ struct Prepared {
     par: Par,
 }
 
-impl Prepared {
-    fn new(pattern: &Arc<Pattern>, options: &SolverOptions) -> Result<Self, LinearError> {
+/// What the symbolic analysis decides, before anything of the factors' size is allocated.
+struct Plan {
+    analysis: Analysis,
+    blocks: PermutedBlocks,
+    structure: Structure,
+    par: Par,
+}
+
+impl Plan {
+    fn new(pattern: &Pattern, options: &SolverOptions) -> Result<Self, LinearError> {
         let order = ordering::order(pattern, options.ordering)?;
         let n = pattern.dofs();
         let (mut analysis, par) = Analysis::of(&order, options);
@@ -143,15 +160,34 @@ impl Prepared {
         let structure = Structure::new(&symbolic, &blocks);
         drop(symbolic);
         analysis.stored = structure.values();
+        let index = 4 * (blocks.rows.len() + blocks.sources.len() + blocks.starts.len() + 4 * n);
+        let vectors = 8 * (8 * n + structure.below);
+        analysis.memory_bytes =
+            8 * (analysis.stored + structure.product) + structure.bytes() + index + vectors;
+        Ok(Plan {
+            analysis,
+            blocks,
+            structure,
+            par,
+        })
+    }
+}
+
+impl Prepared {
+    fn new(pattern: &Arc<Pattern>, options: &SolverOptions) -> Result<Self, LinearError> {
+        let Plan {
+            analysis,
+            blocks,
+            structure,
+            par,
+        } = Plan::new(pattern, options)?;
+        limits::ask(analysis.memory_bytes as u64).map_err(LinearError::Memory)?;
+        let n = pattern.dofs();
         let factor = Factor {
             values: reserved(analysis.stored)?,
             swaps: vec![0; n],
         };
         let work = Work::new(&structure, reserved(structure.product)?);
-        let index = 4 * (blocks.rows.len() + blocks.sources.len() + blocks.starts.len() + 4 * n);
-        let vectors = 8 * (8 * n + structure.below);
-        analysis.memory_bytes =
-            8 * (analysis.stored + structure.product) + structure.bytes() + index + vectors;
         Ok(Self {
             pattern: Arc::clone(pattern),
             analysis,

@@ -1,0 +1,96 @@
+//! What is refused before a run for want of memory, and what a run is expected to take.
+use super::RunError;
+use crate::assembly::{Assembler, PatternError};
+use crate::limits::{self, Estimate};
+use crate::model::Model;
+use crate::model::build::{FEWER, elements_key};
+use crate::scene::{self, LoadedScene};
+use crate::solve::linear::{DirectSolver, LinearError, LuSolver, SolverOptions};
+
+/// The flat copies of surfaces for the output fit in memory.
+///
+/// # Errors
+/// [`RunError::Scene`] at the tessellation.
+pub(super) fn flat_copies(loaded: &LoadedScene, model: &Model) -> Result<(), RunError> {
+    let n = loaded.scene.output.tessellation;
+    let Err(shortage) = limits::ask(limits::tessellation(model, n)) else {
+        return Ok(());
+    };
+    let pieces: usize = model.surfaces.iter().map(|s| s.pieces()).sum();
+    let message = format!("{n} x {n} quadrilaterals for each of {pieces} pieces of surfaces: {shortage}");
+    Err(at(loaded, "/output/tessellation", message, "take a smaller number"))
+}
+
+/// An error of the pattern as that of the scene, where memory is short.
+pub(super) fn pattern(loaded: &LoadedScene, error: &PatternError) -> RunError {
+    match error {
+        PatternError::Memory { .. } | PatternError::TooLarge { .. } => {
+            at(loaded, &largest(loaded), error.to_string(), FEWER)
+        }
+        other => RunError::internal(other),
+    }
+}
+
+/// An error of the symbolic analysis as that of the scene, where memory is short.
+pub(super) fn analysis(loaded: &LoadedScene, error: &LinearError) -> RunError {
+    match error {
+        LinearError::Memory(_) | LinearError::OutOfMemory { .. } | LinearError::TooLarge => {
+            at(loaded, &largest(loaded), error.to_string(), FEWER)
+        }
+        other => RunError::internal(other),
+    }
+}
+
+/// What a run of this model takes, from its pattern and the symbolic analysis of its system.
+///
+/// # Errors
+/// [`RunError::Scene`] where it does not fit.
+pub(super) fn estimate(loaded: &LoadedScene, model: &Model) -> Result<Estimate, RunError> {
+    flat_copies(loaded, model)?;
+    let pattern_ = Assembler::pattern_of(model, &model.dofs).map_err(|e| pattern(loaded, &e))?;
+    let options = SolverOptions::default();
+    let lu = !model.symmetric || loaded.scene.solution.linear_solver == scene::LinearSolver::Lu;
+    let found = match lu {
+        true => LuSolver::plan(&pattern_, &options),
+        false => DirectSolver::plan(&pattern_, &options),
+    };
+    let found = found.map_err(|e| analysis(loaded, &e))?;
+    let elements: Vec<_> = (model.bodies.iter())
+        .filter_map(|b| Some(loaded.scene.bodies.get(&b.name)?.element))
+        .collect();
+    let tessellation = loaded.scene.output.tessellation;
+    let estimate = Estimate::new(model, &elements, &pattern_, &found, tessellation);
+    let rest = estimate.matrix.saturating_add(estimate.factor);
+    match limits::ask(rest) {
+        Ok(()) => Ok(estimate),
+        Err(shortage) => analysis_short(loaded, shortage),
+    }
+}
+
+fn analysis_short(loaded: &LoadedScene, shortage: limits::Shortage) -> Result<Estimate, RunError> {
+    Err(analysis(loaded, &LinearError::Memory(shortage)))
+}
+
+/// The field of the body with most elements that says how many they are; of a file where there is one.
+fn largest(loaded: &LoadedScene) -> String {
+    use scene::MeshSource::{Block, CylinderPanel, File, Plate, SpherePanel};
+    let count = |body: &scene::Body| match &body.mesh {
+        Plate(p) => p.elements.iter().map(|n| f64::from(*n)).product::<f64>() * f64::from(p.layers),
+        CylinderPanel(p) => p.elements.iter().map(|n| f64::from(*n)).product(),
+        SpherePanel(p) => p.elements.iter().map(|n| f64::from(*n)).product(),
+        Block(b) => b.elements.iter().map(|n| f64::from(*n)).product(),
+        File(_) => f64::INFINITY,
+    };
+    (loaded.scene.bodies.iter())
+        .max_by(|a, b| count(a.1).total_cmp(&count(b.1)))
+        .map_or_else(|| "/bodies".to_owned(), |(name, body)| elements_key(name, &body.mesh))
+}
+
+fn at(loaded: &LoadedScene, pointer: &str, message: String, help: &str) -> RunError {
+    RunError::Scene {
+        message,
+        place: Some(loaded.place_of(pointer)),
+        pointer: pointer.to_owned(),
+        help: Some(help.to_owned()),
+    }
+}
