@@ -6,6 +6,16 @@ use std::path::PathBuf;
 /// Largest number of nodes a generator or reader makes; beyond it the input is taken for a mistake.
 pub const MAX_NODES: u64 = 50_000_000;
 
+/// Members that the sets of a file may have in all, for each of its nodes and elements: short files must not grow
+/// without bound by sets of sets.
+pub const MEMBERS: u64 = 64;
+
+/// Members that the sets of a file with so many nodes and elements may have in all; a few more, so that small files may
+/// do what they like.
+pub(super) fn most_members(nodes: usize, elements: usize) -> u64 {
+    MEMBERS * (nodes + elements) as u64 + 10_000
+}
+
 /// Place in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Position {
@@ -63,6 +73,9 @@ pub enum MeshError {
         nodes: u64,
         shortage: Shortage,
     },
+    /// Named sets of a file are so long that their lines must be wrong: sets of sets, again and again.
+    #[error("{}: its sets hold more than {most} members in all, {MEMBERS} for each node and element", path.display())]
+    LongSets { path: PathBuf, most: u64 },
     /// The elements cannot be spaced as asked.
     #[error("spacing along {axis}: {reason}")]
     Spacing { axis: String, reason: String },

@@ -113,6 +113,9 @@ impl OutputError {
             io::ErrorKind::NotADirectory => "a part of the path is a file, not a folder",
             io::ErrorKind::FileTooLarge => "the file is larger than the system allows",
             io::ErrorKind::NotFound => "no such file or folder",
+            io::ErrorKind::InvalidFilename => {
+                "a name in the path is too long, or holds what file names cannot"
+            }
             io::ErrorKind::WriteZero => "the file takes no more data",
             _ => "",
         };

@@ -86,6 +86,11 @@ impl History {
             push_number(&mut self.line, x);
         }
         self.line.push('\n');
+        // A file that was removed takes rows that nobody will ever see.
+        if removed(&self.file) {
+            let gone = io::Error::new(io::ErrorKind::NotFound, "it was removed during the run");
+            return Err(OutputError::io("write", &self.path, gone));
+        }
         match append(&mut self.file, self.line.as_bytes(), self.length) {
             Ok(()) => {
                 self.length += self.line.len() as u64;
@@ -93,6 +98,20 @@ impl History {
             }
             Err(e) => Err(OutputError::io("write", &self.path, e)),
         }
+    }
+}
+
+/// Whether an open file has no name any more.
+fn removed(file: &File) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        file.metadata().is_ok_and(|meta| meta.nlink() == 0)
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = file;
+        false
     }
 }
 

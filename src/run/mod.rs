@@ -140,11 +140,11 @@ fn solve(
     };
     let path = out.join("summary.json");
     let written = summary.write(&path);
+    // Where not even that could be written, an earlier run's summary must not pass for this one's.
+    if written.is_err() && path.is_file() {
+        let _ = std::fs::remove_file(&path);
+    }
     if let Some(failure) = failure {
-        // Where not even that could be written, an earlier run's summary must not pass for this one's.
-        if written.is_err() {
-            let _ = std::fs::remove_file(&path);
-        }
         return Err(failure);
     }
     written?;

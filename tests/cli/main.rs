@@ -6,6 +6,7 @@ mod bad_text;
 mod check;
 mod convert;
 mod inspect;
+mod limits;
 mod output;
 mod project;
 mod run;

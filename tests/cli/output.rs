@@ -117,6 +117,133 @@ fn a_device_that_takes_no_more() {
     }
 }
 
+/// Runs a scene with a limit on the size of files, in blocks of 512 bytes (POSIX) or 1024 (bash).
+#[cfg(unix)]
+fn limited(folder: &Path, blocks: u32) -> std::process::Output {
+    let program = env!("CARGO_BIN_EXE_covact");
+    let script =
+        format!("trap '' XFSZ; ulimit -f {blocks}; exec {program} run scene.json -o out --quiet");
+    let mut shell = std::process::Command::new("sh");
+    shell.current_dir(folder).args(["-c", &script]);
+    shell.output().unwrap()
+}
+
+/// Full in the middle of a run, at one kind of file after the other: what was written before is whole, and the message
+/// names the file.
+#[cfg(unix)]
+#[test]
+fn a_device_that_fills_during_a_run() {
+    let steps = |every: u32, size: f64| {
+        [
+            ("/solution/step/initial", serde_json::json!(size)),
+            ("/solution/step/max", serde_json::json!(size)),
+            ("/output", serde_json::json!({ "every": every, "tessellation": 1 })),
+            ("/bodies/plate/mesh/plate/elements", serde_json::json!([2, 2])),
+        ]
+    };
+    // The table: rows are small, and no fields are written.
+    let folder = tempfile::tempdir().unwrap();
+    write_plate(folder.path(), &steps(0, 0.01));
+    let output = limited(folder.path(), 8);
+    assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
+    let message = "error: cannot write `out/history.csv`: the file is larger than the system allows";
+    assert_parts(&stderr(&output), &[message]);
+    let out = folder.path().join("out");
+    let table = covact::output::read_csv(&out.join("history.csv")).unwrap();
+    let rows = table.rows.len();
+    assert!((2..100).contains(&rows), "{rows}");
+    let steps_ = table.column("step").unwrap();
+    assert!(steps_.iter().enumerate().all(|(i, s)| *s == (i + 1) as f64));
+    let summary: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(out.join("summary.json")).unwrap()).unwrap();
+    assert_eq!(summary["status"], "failed");
+    assert!(summary["reason"].as_str().unwrap().contains("history.csv"));
+    // The listing of fields: files of each step are small, the listing grows.
+    let folder = tempfile::tempdir().unwrap();
+    write_plate(folder.path(), &steps(1, 0.02));
+    let whole = covact(folder.path(), &["run", "scene.json", "-o", "whole", "--quiet"]);
+    assert_eq!(whole.status.code(), Some(0), "{}", stderr(&whole));
+    let sizes = contents(&folder.path().join("whole"));
+    let largest = |end: &str| {
+        let of = sizes.iter().filter(|(name, _)| name.ends_with(end));
+        of.map(|(_, bytes)| bytes.len()).max().unwrap()
+    };
+    let (fields, table) = (largest(".vtu"), sizes["history.csv"].len());
+    let listing = sizes["results.pvd"].len();
+    println!("fields {fields}, table {table}, listing {listing}");
+}
+
+/// The summary cannot be written: that of an earlier run must not pass for this one's.
+#[cfg(unix)]
+#[test]
+fn a_summary_that_does_not_fit() {
+    let folder = tempfile::tempdir().unwrap();
+    write_plate(folder.path(), &[("/output", serde_json::json!({ "every": 0 }))]);
+    std::fs::create_dir(folder.path().join("out")).unwrap();
+    let whole = covact(folder.path(), &["run", "scene.json", "-o", "out", "--quiet"]);
+    assert_eq!(whole.status.code(), Some(0), "{}", stderr(&whole));
+    let before = contents(&folder.path().join("out"));
+    println!("summary {}, table {}", before["summary.json"].len(), before["history.csv"].len());
+    let output = limited(folder.path(), 1);
+    assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
+    println!("{}", stderr(&output));
+    let after = contents(&folder.path().join("out"));
+    assert!(!after.contains_key("summary.json"), "{:?}", after.keys());
+}
+
+/// Somebody removes the folder, or the table, while the program runs.
+#[cfg(unix)]
+#[test]
+fn results_removed_during_a_run() {
+    use std::io::BufRead;
+    for what in ["out", "out/history.csv"] {
+        let folder = tempfile::tempdir().unwrap();
+        let steps = [
+            ("/solution/step/initial", serde_json::json!(0.002)),
+            ("/solution/step/max", serde_json::json!(0.002)),
+            ("/output", serde_json::json!({ "every": 0 })),
+        ];
+        write_plate(folder.path(), &steps);
+        let mut run = command(folder.path(), &["run", "scene.json", "-o", "out", "--json"]);
+        let mut child = run
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = std::io::BufReader::new(child.stdout.take().unwrap()).lines();
+        // The first step is under way: the folder is there.
+        let begun = lines.by_ref().any(|l| l.unwrap().contains("step_accepted"));
+        assert!(begun);
+        let path = folder.path().join(what);
+        match path.is_dir() {
+            true => std::fs::remove_dir_all(&path).unwrap(),
+            false => std::fs::remove_file(&path).unwrap(),
+        }
+        lines.for_each(drop);
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
+        let message = "cannot write `out/history.csv`: no such file or folder (it was removed during the run)";
+        assert_parts(&stderr(&output), &[message]);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn places_that_take_no_results() {
+    let folder = tempfile::tempdir().unwrap();
+    write_plate(folder.path(), &[]);
+    let long = "x".repeat(300);
+    for (out, reason) in [
+        (long.as_str(), "a name in the path is too long"),
+        ("/proc/results", "cannot create the folder `/proc/results`: "),
+        ("/dev/null", "cannot create the folder `/dev/null`: "),
+    ] {
+        let output = covact(folder.path(), &["run", "scene.json", "-o", out, "--quiet"]);
+        assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
+        assert_parts(&stderr(&output), &[reason]);
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_standard_output() {

@@ -2,8 +2,10 @@
 use super::Block;
 use super::cursor::{Cursor, quoted};
 use crate::mesh::MeshError;
+use crate::mesh::error::most_members;
 use crate::mesh::raw::RawMesh;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 const DIMENSIONS: [&str; 4] = ["point", "curve", "surface", "volume"];
 
@@ -87,8 +89,15 @@ impl Groups {
     }
 
     /// Node sets and surfaces of all groups.
-    pub fn sets(&self, blocks: &[Block], raw: &mut RawMesh) {
+    ///
+    /// # Errors
+    /// [`MeshError::LongSets`] where entities are in so many groups that the sets would be far longer than the file.
+    pub fn sets(&self, blocks: &[Block], raw: &mut RawMesh, path: &Path) -> Result<(), MeshError> {
         let mut filled = std::collections::BTreeSet::new();
+        let mut left_out: BTreeMap<(&str, String, &str), usize> = BTreeMap::new();
+        let elements = blocks.iter().map(|b| b.count).sum();
+        let most = most_members(raw.nodes.len(), elements);
+        let mut members = 0;
         for block in blocks.iter().filter(|b| b.count > 0) {
             let groups = self.members.get(&(block.dim, block.entity));
             for &group in groups.into_iter().flatten() {
@@ -105,11 +114,13 @@ impl Groups {
                         key.1
                     ));
                 }
+                members += block.nodes.len() as u64 + 1;
+                if members > most {
+                    let path = path.to_path_buf();
+                    return Err(MeshError::LongSets { path, most });
+                }
                 if block.nodes.is_empty() {
-                    raw.notes.push(format!(
-                        "physical {kind} `{name}`: {} {} were left out",
-                        block.count, block.kind.name
-                    ));
+                    *left_out.entry((kind, name, block.kind.name)).or_default() += block.count;
                     continue;
                 }
                 let nodes = raw.node_sets.entry(name.clone()).or_default();
@@ -123,6 +134,9 @@ impl Groups {
                     raw.surfaces.entry(name).or_default().extend(quads);
                 }
             }
+        }
+        for ((kind, name, elements), count) in left_out {
+            (raw.notes).push(format!("physical {kind} `{name}`: {count} {elements} were left out"));
         }
         for (key, name) in &self.names {
             if !filled.contains(key) {
@@ -138,6 +152,7 @@ impl Groups {
                     .to_string(),
             );
         }
+        Ok(())
     }
 }
 

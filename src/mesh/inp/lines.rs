@@ -67,11 +67,12 @@ impl Field<'_> {
 pub(super) fn fields(line: &str, number: usize) -> impl Iterator<Item = Field<'_>> {
     let line = line.trim_end();
     let line = line.strip_suffix(',').unwrap_or(line);
+    // Counted on, as lines may be long.
     let mut start = 0;
     line.split(',').map(move |part| {
-        let blanks = part.len() - part.trim_start().len();
-        let column = line[..start + blanks].chars().count() + 1;
-        start += part.len() + 1;
+        let blanks = part.chars().take_while(|c| c.is_whitespace()).count();
+        let column = start + blanks + 1;
+        start += part.chars().count() + 1;
         Field {
             text: part.trim(),
             line: number,

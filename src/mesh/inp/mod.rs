@@ -6,7 +6,7 @@
 mod lines;
 mod quadratic;
 
-use super::error::MAX_NODES;
+use super::error::{MAX_NODES, most_members};
 use super::raw::RawMesh;
 use super::{Face, Mesh, MeshError, MeshReport};
 use covact_geometry::Vec3;
@@ -110,9 +110,24 @@ struct Reader<'a> {
     /// Element types and keywords that were passed over.
     types: BTreeSet<String>,
     skipped: BTreeSet<String>,
+    /// Members of sets so far, and numbers looked at to find them.
+    members: u64,
 }
 
 impl<'a> Reader<'a> {
+    /// Counts members of sets.
+    fn grow(&mut self, members: usize) -> Result<(), MeshError> {
+        self.members += members as u64;
+        let most = most_members(self.nodes.len(), self.items.len());
+        match self.members > most {
+            true => Err(MeshError::LongSets {
+                path: self.path.to_path_buf(),
+                most,
+            }),
+            false => Ok(()),
+        }
+    }
+
     fn new(path: &'a Path) -> Reader<'a> {
         Reader {
             path,
@@ -127,6 +142,7 @@ impl<'a> Reader<'a> {
             last: (1, 1),
             types: BTreeSet::new(),
             skipped: BTreeSet::new(),
+            members: 0,
         }
     }
 
@@ -141,6 +157,11 @@ impl<'a> Reader<'a> {
             }
         };
         let generate = keyword.get("GENERATE").is_some();
+        if let (Some(file), true) = (keyword.get("INPUT"), keyword.name != "*INCLUDE") {
+            let what = format!("{} with its data in another file (INPUT)", keyword.name);
+            let help = "put the data into this file";
+            return Err(file.unsupported(path, what, help));
+        }
         self.mode = match keyword.name.as_str() {
             "*NODE" => {
                 if let Some(system) = keyword.get("SYSTEM").filter(|s| s.text != "R") {
@@ -276,6 +297,7 @@ impl<'a> Reader<'a> {
             Mode::NodeSet { set, generate } => {
                 let mut found = self.raw.node_sets.remove(set).unwrap_or_default();
                 for (tag, field) in self.numbers(list, *generate)? {
+                    let before = found.len();
                     match tag.and_then(|tag| self.nodes.get(&tag)) {
                         Some(&node) => found.push(node),
                         None => match self.named(field.text).map(|s| self.raw.node_sets.get(s)) {
@@ -283,12 +305,14 @@ impl<'a> Reader<'a> {
                             _ => return Err(self.not_above(field, tag, "node")),
                         },
                     }
+                    self.grow(found.len() - before)?;
                 }
                 self.raw.node_sets.insert(set.clone(), found);
             }
             Mode::ElementSet { set, generate } => {
                 let mut found = self.element_sets.remove(set).unwrap_or_default();
                 for (tag, field) in self.numbers(list, *generate)? {
+                    let mut others = 1;
                     match tag.map(|tag| self.items.get(&tag)) {
                         Some(Some(&item)) => {
                             found.insert(item);
@@ -296,10 +320,14 @@ impl<'a> Reader<'a> {
                         // A number of an element that was passed over.
                         Some(None) if !self.types.is_empty() => {}
                         _ => match self.named(field.text).map(|s| self.element_sets.get(s)) {
-                            Some(Some(other)) => found.extend(other),
+                            Some(Some(other)) => {
+                                others = other.len();
+                                found.extend(other);
+                            }
                             _ => return Err(self.not_above(field, tag, "element")),
                         },
                     }
+                    self.grow(others)?;
                 }
                 self.element_sets.insert(set.clone(), found);
             }
@@ -317,7 +345,7 @@ impl<'a> Reader<'a> {
 
     /// Numbers of a line of a set: as they are, or `first, last, step`. A name has no number.
     fn numbers<'l>(
-        &self,
+        &mut self,
         mut list: impl Iterator<Item = Field<'l>>,
         generate: bool,
     ) -> Result<Vec<(Option<u64>, Field<'l>)>, MeshError> {
@@ -343,6 +371,8 @@ impl<'a> Reader<'a> {
             let found = format!("{first}, {last}, {step}");
             return Err(field.syntax_found(self.path, expected, &found));
         }
+        // Looking a number up costs little beside keeping it.
+        self.grow((((last - first) / step).min(most) / 64) as usize)?;
         // Numbers of passed-over elements are not known, so only those that exist are taken.
         let known = |tag: &u64| {
             self.types.is_empty() || self.items.contains_key(tag) || self.nodes.contains_key(tag)
@@ -484,6 +514,7 @@ impl<'a> Reader<'a> {
                 FACES.get(number.checked_sub(1)?).copied()
             }
         });
+        self.grow(items.len())?;
         for item in items {
             match (item, face) {
                 (Item::Solid(element), Some(face)) => {

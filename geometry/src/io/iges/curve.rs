@@ -177,6 +177,7 @@ fn read_in(
         notes,
         // A curve that uses its members twice is odd, one that uses them more often is damage that would take for ever.
         budget: 2 * model.sections.parameter.len() + 2,
+        depth: 0,
     };
     let parts = reader.read(entry, outer)?;
     if parts.is_empty() {
@@ -185,6 +186,9 @@ fn read_in(
     Ok(CurveChain { parts })
 }
 
+/// Composite curves of composite curves and offsets of offsets may be this deep; it bounds the stack.
+const MAX_DEPTH: usize = 16;
+
 /// What the readers of all entities need.
 pub struct Reader<'a, 'n> {
     pub model: &'a Model<'a>,
@@ -192,6 +196,8 @@ pub struct Reader<'a, 'n> {
     notes: &'n mut Vec<String>,
     /// Parameter records that may still be read.
     budget: usize,
+    /// Curves that the one being read is a member or the base of.
+    depth: usize,
 }
 
 impl<'a> Reader<'a, '_> {
@@ -217,6 +223,17 @@ impl<'a> Reader<'a, '_> {
             return Err(Stop::Reason(reason));
         };
         self.budget = left;
+        if self.depth == MAX_DEPTH {
+            let reason = format!("curves within curves, more than {MAX_DEPTH} deep");
+            return Err(Stop::Reason(reason));
+        }
+        self.depth += 1;
+        let read = self.read_one(entry, outer);
+        self.depth -= 1;
+        read
+    }
+
+    fn read_one(&mut self, entry: &Entry, outer: &Affine) -> Result<Vec<CurvePart>, Stop> {
         let map = outer.after(&matrix_of(self.model, entry, self.notes)?);
         if entry.type_number == 102 {
             return self.composite(entry, &map);
