@@ -2,7 +2,7 @@
 use covact::scene::{self, SceneError};
 use std::time::{Duration, Instant};
 
-/// Problems of a scene, found within two seconds, with messages that are no longer than a page each.
+/// Problems of a scene, found within ten seconds (a fraction of one on an idle machine), with messages that are no longer than a page each.
 fn problems(text: &str) -> Vec<String> {
     let start = Instant::now();
     let problems = match scene::parse(text, "long.json") {
@@ -10,11 +10,20 @@ fn problems(text: &str) -> Vec<String> {
         Err(SceneError::Wrong { problems, .. }) => problems,
         Err(other) => panic!("{other}"),
     };
-    assert!(start.elapsed() < Duration::from_secs(2), "{:?}", start.elapsed());
+    assert!(
+        start.elapsed() < Duration::from_secs(10),
+        "{:?}",
+        start.elapsed()
+    );
     let said: Vec<String> = problems.iter().map(ToString::to_string).collect();
     assert!(said.len() <= 202, "{}", said.len());
     for text in &said {
-        assert!(text.len() < 4000, "{} bytes: {}...", text.len(), &text[..200]);
+        assert!(
+            text.len() < 4000,
+            "{} bytes: {}...",
+            text.len(),
+            &text[..200]
+        );
     }
     said
 }
@@ -31,12 +40,18 @@ fn many_unknown_and_repeated_keys() {
     let unknown: Vec<String> = (0..50_000).map(|k| format!("\"k{k}\": 0")).collect();
     let said = problems(&format!("{{{}}}", unknown.join(",")));
     assert!(said[0].contains("unknown key `k0`"), "{}", said[0]);
-    assert!(said.iter().any(|s| s.contains("there are more problems, which are not listed")));
+    assert!(
+        said.iter()
+            .any(|s| s.contains("there are more problems, which are not listed"))
+    );
     let said = problems(&format!("{{{}}}", vec!["\"covact\": 1"; 50_000].join(",")));
     assert!(said[0].contains("is given twice"), "{}", said[0]);
     // Twice among many others.
     let said = problems(&format!("{{\"k7\": 0,{}}}", unknown.join(",")));
-    assert!(said.iter().any(|s| s.contains("the key `k7` is given twice")));
+    assert!(
+        said.iter()
+            .any(|s| s.contains("the key `k7` is given twice"))
+    );
 }
 
 #[test]
@@ -45,7 +60,11 @@ fn many_names_that_are_not_there() {
         .map(|k| format!("\"s{k}\": {{\"on\": \"nobody{k}.top\", \"fixed\": true}}"))
         .collect();
     let said = problems(&scene("supports", &supports.join(",")));
-    assert!(said[0].contains("there is no body `nobody0`"), "{}", said[0]);
+    assert!(
+        said[0].contains("there is no body `nobody0`"),
+        "{}",
+        said[0]
+    );
     assert!(said.last().unwrap().contains("more problems"));
     let sets: Vec<String> = (0..20_000).map(|k| format!("\"set{k}\": 0")).collect();
     problems(&scene("supports", &sets.join(",")));
@@ -62,7 +81,10 @@ fn long_names_and_texts() {
         format!("\"s\": {{\"on\": \"b.top\", \"{long}\": true}}"),
         format!("\"s\": {{\"on\": \"b.top\", \"symmetry\": \"{long}\"}}"),
         format!("\"s\": {{\"on\": \"b.top\", \"displacement\": {{\"x\": \"{long}\"}}}}"),
-        format!("\"s\": {{\"on\": \"b.top\", \"displacement\": {{\"x\": 1{}}}}}", "0".repeat(500_000)),
+        format!(
+            "\"s\": {{\"on\": \"b.top\", \"displacement\": {{\"x\": 1{}}}}}",
+            "0".repeat(500_000)
+        ),
         "[".repeat(1_000_000),
     ] {
         assert!(!problems(&scene("supports", &content)).is_empty());

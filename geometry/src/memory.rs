@@ -78,7 +78,10 @@ pub fn available() -> Available {
             least = Available { bytes, limit };
         }
     };
-    see(read("/proc/meminfo").and_then(|t| machine(&t)), Limit::Machine);
+    see(
+        read("/proc/meminfo").and_then(|t| machine(&t)),
+        Limit::Machine,
+    );
     let groups = read("/proc/self/cgroup").unwrap_or_default();
     let (memberships, root) = (memberships(&groups), Path::new("/sys/fs/cgroup"));
     see(control_groups(&memberships, root), Limit::ControlGroup);
@@ -92,7 +95,12 @@ pub fn available() -> Available {
 /// Bytes of a line such as `MemAvailable:  123 kB`.
 fn kilobytes(text: &str, key: &str) -> Option<u64> {
     let line = text.lines().find_map(|l| l.strip_prefix(key))?;
-    let number: u64 = line.trim_start_matches(':').split_whitespace().next()?.parse().ok()?;
+    let number: u64 = line
+        .trim_start_matches(':')
+        .split_whitespace()
+        .next()?
+        .parse()
+        .ok()?;
     number.checked_mul(1024)
 }
 
@@ -121,7 +129,11 @@ fn control_groups(memberships: &[(bool, PathBuf)], root: &Path) -> Option<u64> {
     let left = |second: bool, folder: &Path| {
         let (limit, usage, cache) = match second {
             true => ("memory.max", "memory.current", "inactive_file"),
-            false => ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+            false => (
+                "memory.limit_in_bytes",
+                "memory.usage_in_bytes",
+                "total_inactive_file",
+            ),
         };
         let read = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
         // "max" is no number; version 1 writes a number near 2^63 instead.
@@ -134,7 +146,11 @@ fn control_groups(memberships: &[(bool, PathBuf)], root: &Path) -> Option<u64> {
         (limit < 1 << 60).then(|| limit.saturating_sub(used.saturating_sub(cached)))
     };
     let all = memberships.iter().flat_map(|(second, path)| {
-        let top = if *second { root.to_owned() } else { root.join("memory") };
+        let top = if *second {
+            root.to_owned()
+        } else {
+            root.join("memory")
+        };
         // Inside a container the path may be that of the host; then the top alone is there.
         (path.ancestors().map(|p| top.join(p)))
             .filter_map(|folder| left(*second, &folder))
@@ -196,7 +212,10 @@ mod tests {
     fn the_limit_of_the_process() {
         let limits = "Limit                     Soft Limit           Hard Limit           Units\n\
                       Max address space         4096000              unlimited            bytes\n";
-        assert_eq!(address_space(limits, "VmSize:\t    1000 kB\n"), Some(4096000 - 1024000));
+        assert_eq!(
+            address_space(limits, "VmSize:\t    1000 kB\n"),
+            Some(4096000 - 1024000)
+        );
         let none = limits.replace("4096000", "unlimited");
         assert_eq!(address_space(&none, "VmSize: 1 kB\n"), None);
     }

@@ -11,8 +11,12 @@ use crate::shell::{STATES, bytes_per_element};
 use crate::solve::linear::Analysis;
 use serde::Serialize;
 
-/// Bytes of the program before it has read anything: code, tables, threads.
-const PROGRAM: u64 = 8 << 20;
+/// Bytes of the program before it has read anything: code, tables, threads; more without optimisation.
+const PROGRAM: u64 = if cfg!(debug_assertions) {
+    16 << 20
+} else {
+    8 << 20
+};
 /// Bytes of a slave point beside its own and those of its states: its place in the system, its last touch, what is written.
 const POINT: u64 = 600;
 /// Bytes of the faces of an element in the table that finds shared ones.
@@ -63,11 +67,21 @@ impl Estimate {
             + times(model.contact_points() as u64, POINT);
         let surfaces = tessellation(model, tessellation_)
             + (model.surfaces.iter())
-                .map(|s| times(s.set.count() as u64, facet_bytes(s.facets.as_ref().map(|f| f.kind))))
+                .map(|s| {
+                    times(
+                        s.set.count() as u64,
+                        facet_bytes(s.facets.as_ref().map(|f| f.kind)),
+                    )
+                })
                 .sum::<u64>();
         let blocks = pattern.blocks() as u64;
-        let matrix = blocks * if model.symmetric { 72 + 4 } else { 144 + 4 };
-        let factor = analysis.memory_bytes as u64;
+        let mut matrix = blocks * if model.symmetric { 72 + 4 } else { 144 + 4 };
+        let mut factor = analysis.memory_bytes as u64;
+        if model.pairs.iter().any(|p| p.body_master().is_some()) {
+            // Couplings are added as points come to further facets: half as much again, measured.
+            matrix += matrix / 2;
+            factor += factor / 2;
+        }
         Self {
             elements,
             contact,

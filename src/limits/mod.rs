@@ -28,7 +28,11 @@ pub struct Shortage {
 impl fmt::Display for Shortage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let needed = Size(self.needed);
-        write!(f, "about {needed} of memory are needed, but {}", self.available)
+        write!(
+            f,
+            "about {needed} of memory are needed, but {}",
+            self.available
+        )
     }
 }
 impl std::error::Error for Shortage {}
@@ -66,7 +70,10 @@ mod tests {
         let shortage = ask(u64::MAX).unwrap_err();
         assert_eq!(shortage.needed, u64::MAX);
         let text = shortage.to_string();
-        assert!(text.starts_with("about 18.4 EB of memory are needed, but "), "{text}");
+        assert!(
+            text.starts_with("about 18.4 EB of memory are needed, but "),
+            "{text}"
+        );
         assert_eq!(times(u64::MAX, 2), u64::MAX);
     }
 }

@@ -25,8 +25,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// What to do where memory is short.
-pub(crate) const FEWER: &str =
-    "take fewer elements, or a coarser mesh away from the contact (`spacing`), or a machine with more memory";
+pub(crate) const FEWER: &str = "take fewer elements, or a coarser mesh away from the contact (`spacing`), or a machine with more memory";
 
 /// What is being collected while the model is built.
 struct Builder<'s> {

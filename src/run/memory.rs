@@ -17,8 +17,14 @@ pub(super) fn flat_copies(loaded: &LoadedScene, model: &Model) -> Result<(), Run
         return Ok(());
     };
     let pieces: usize = model.surfaces.iter().map(|s| s.pieces()).sum();
-    let message = format!("{n} x {n} quadrilaterals for each of {pieces} pieces of surfaces: {shortage}");
-    Err(at(loaded, "/output/tessellation", message, "take a smaller number"))
+    let message =
+        format!("{n} x {n} quadrilaterals for each of {pieces} pieces of surfaces: {shortage}");
+    Err(at(
+        loaded,
+        "/output/tessellation",
+        message,
+        "take a smaller number",
+    ))
 }
 
 /// An error of the pattern as that of the scene, where memory is short.
@@ -83,7 +89,10 @@ fn largest(loaded: &LoadedScene) -> String {
     };
     (loaded.scene.bodies.iter())
         .max_by(|a, b| count(a.1).total_cmp(&count(b.1)))
-        .map_or_else(|| "/bodies".to_owned(), |(name, body)| elements_key(name, &body.mesh))
+        .map_or_else(
+            || "/bodies".to_owned(),
+            |(name, body)| elements_key(name, &body.mesh),
+        )
 }
 
 fn at(loaded: &LoadedScene, pointer: &str, message: String, help: &str) -> RunError {

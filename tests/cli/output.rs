@@ -137,8 +137,14 @@ fn a_device_that_fills_during_a_run() {
         [
             ("/solution/step/initial", serde_json::json!(size)),
             ("/solution/step/max", serde_json::json!(size)),
-            ("/output", serde_json::json!({ "every": every, "tessellation": 1 })),
-            ("/bodies/plate/mesh/plate/elements", serde_json::json!([2, 2])),
+            (
+                "/output",
+                serde_json::json!({ "every": every, "tessellation": 1 }),
+            ),
+            (
+                "/bodies/plate/mesh/plate/elements",
+                serde_json::json!([2, 2]),
+            ),
         ]
     };
     // The table: rows are small, and no fields are written.
@@ -146,7 +152,8 @@ fn a_device_that_fills_during_a_run() {
     write_plate(folder.path(), &steps(0, 0.01));
     let output = limited(folder.path(), 8);
     assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
-    let message = "error: cannot write `out/history.csv`: the file is larger than the system allows";
+    let message =
+        "error: cannot write `out/history.csv`: the file is larger than the system allows";
     assert_parts(&stderr(&output), &[message]);
     let out = folder.path().join("out");
     let table = covact::output::read_csv(&out.join("history.csv")).unwrap();
@@ -158,19 +165,61 @@ fn a_device_that_fills_during_a_run() {
         serde_json::from_slice(&std::fs::read(out.join("summary.json")).unwrap()).unwrap();
     assert_eq!(summary["status"], "failed");
     assert!(summary["reason"].as_str().unwrap().contains("history.csv"));
-    // The listing of fields: files of each step are small, the listing grows.
+}
+
+/// Starts a run and returns when its first step is done, with what it goes on to print.
+#[cfg(unix)]
+fn begun(folder: &Path) -> (std::process::Child, impl Iterator<Item = String> + use<>) {
+    use std::io::BufRead;
+    let mut child = command(folder, &["run", "scene.json", "-o", "out", "--json"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let lines = std::io::BufReader::new(child.stdout.take().unwrap()).lines();
+    let mut lines = lines.map(Result::unwrap);
+    assert!(lines.any(|l| l.contains("step_accepted")));
+    (child, lines)
+}
+
+/// Small steps, and fields after so many of them.
+#[cfg(unix)]
+fn small_steps(every: u32) -> [(&'static str, serde_json::Value); 3] {
+    [
+        ("/solution/step/initial", serde_json::json!(0.002)),
+        ("/solution/step/max", serde_json::json!(0.002)),
+        ("/output", serde_json::json!({ "every": every })),
+    ]
+}
+
+/// The listing of fields cannot be replaced any more: fields and rows until then are whole.
+#[cfg(unix)]
+#[test]
+fn a_listing_that_cannot_be_written() {
     let folder = tempfile::tempdir().unwrap();
-    write_plate(folder.path(), &steps(1, 0.02));
-    let whole = covact(folder.path(), &["run", "scene.json", "-o", "whole", "--quiet"]);
-    assert_eq!(whole.status.code(), Some(0), "{}", stderr(&whole));
-    let sizes = contents(&folder.path().join("whole"));
-    let largest = |end: &str| {
-        let of = sizes.iter().filter(|(name, _)| name.ends_with(end));
-        of.map(|(_, bytes)| bytes.len()).max().unwrap()
-    };
-    let (fields, table) = (largest(".vtu"), sizes["history.csv"].len());
-    let listing = sizes["results.pvd"].len();
-    println!("fields {fields}, table {table}, listing {listing}");
+    write_plate(folder.path(), &small_steps(1));
+    let (child, lines) = begun(folder.path());
+    let out = folder.path().join("out");
+    std::fs::remove_file(out.join("results.pvd")).unwrap();
+    std::fs::create_dir(out.join("results.pvd")).unwrap();
+    lines.for_each(drop);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
+    let message = "cannot write `out/results.pvd`: it exists and is not a regular file";
+    assert_parts(&stderr(&output), &[message]);
+    let table = covact::output::read_csv(&out.join("history.csv")).unwrap();
+    assert!(!table.rows.is_empty());
+    for step in 0..=table.rows.len() {
+        let fields = std::fs::read_to_string(out.join(format!("plate_{step:04}.vtu"))).unwrap();
+        assert!(fields.trim_end().ends_with("</VTKFile>"), "step {step}");
+    }
+    let left = std::fs::read_dir(&out)
+        .unwrap()
+        .map(|e| e.unwrap().file_name());
+    assert!(
+        left.into_iter()
+            .all(|f| !f.to_string_lossy().contains(".tmp"))
+    );
 }
 
 /// The summary cannot be written: that of an earlier run must not pass for this one's.
@@ -178,12 +227,22 @@ fn a_device_that_fills_during_a_run() {
 #[test]
 fn a_summary_that_does_not_fit() {
     let folder = tempfile::tempdir().unwrap();
-    write_plate(folder.path(), &[("/output", serde_json::json!({ "every": 0 }))]);
+    write_plate(
+        folder.path(),
+        &[("/output", serde_json::json!({ "every": 0 }))],
+    );
     std::fs::create_dir(folder.path().join("out")).unwrap();
-    let whole = covact(folder.path(), &["run", "scene.json", "-o", "out", "--quiet"]);
+    let whole = covact(
+        folder.path(),
+        &["run", "scene.json", "-o", "out", "--quiet"],
+    );
     assert_eq!(whole.status.code(), Some(0), "{}", stderr(&whole));
     let before = contents(&folder.path().join("out"));
-    println!("summary {}, table {}", before["summary.json"].len(), before["history.csv"].len());
+    println!(
+        "summary {}, table {}",
+        before["summary.json"].len(),
+        before["history.csv"].len()
+    );
     let output = limited(folder.path(), 1);
     assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
     println!("{}", stderr(&output));
@@ -195,25 +254,10 @@ fn a_summary_that_does_not_fit() {
 #[cfg(unix)]
 #[test]
 fn results_removed_during_a_run() {
-    use std::io::BufRead;
     for what in ["out", "out/history.csv"] {
         let folder = tempfile::tempdir().unwrap();
-        let steps = [
-            ("/solution/step/initial", serde_json::json!(0.002)),
-            ("/solution/step/max", serde_json::json!(0.002)),
-            ("/output", serde_json::json!({ "every": 0 })),
-        ];
-        write_plate(folder.path(), &steps);
-        let mut run = command(folder.path(), &["run", "scene.json", "-o", "out", "--json"]);
-        let mut child = run
-            .stdout(std::process::Stdio::piped())
-            .stderr(std::process::Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut lines = std::io::BufReader::new(child.stdout.take().unwrap()).lines();
-        // The first step is under way: the folder is there.
-        let begun = lines.by_ref().any(|l| l.unwrap().contains("step_accepted"));
-        assert!(begun);
+        write_plate(folder.path(), &small_steps(0));
+        let (child, lines) = begun(folder.path());
         let path = folder.path().join(what);
         match path.is_dir() {
             true => std::fs::remove_dir_all(&path).unwrap(),
@@ -235,7 +279,10 @@ fn places_that_take_no_results() {
     let long = "x".repeat(300);
     for (out, reason) in [
         (long.as_str(), "a name in the path is too long"),
-        ("/proc/results", "cannot create the folder `/proc/results`: "),
+        (
+            "/proc/results",
+            "cannot create the folder `/proc/results`: ",
+        ),
         ("/dev/null", "cannot create the folder `/dev/null`: "),
     ] {
         let output = covact(folder.path(), &["run", "scene.json", "-o", out, "--quiet"]);

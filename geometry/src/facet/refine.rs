@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::deviation::{Cell, deviation, shares};
 use super::lines::{Lines, along, carry};
 use super::{Bilinear, Biquadratic, FacetError, FacetMesh};
-use crate::project::PatchSet;
 use crate::memory::available;
+use crate::project::PatchSet;
 use crate::surface::{Surface, Vec3};
 
 /// How finely a surface is cut.

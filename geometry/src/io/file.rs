@@ -30,7 +30,11 @@ pub fn read_within(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     }
     let length = meta.len();
     if length > most {
-        let text = format!("it has {}, more than the {} that can be read here", Size(length), Size(most));
+        let text = format!(
+            "it has {}, more than the {} that can be read here",
+            Size(length),
+            Size(most)
+        );
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, text));
     }
     let mut bytes = Vec::new();

@@ -136,7 +136,9 @@ impl Groups {
             }
         }
         for ((kind, name, elements), count) in left_out {
-            (raw.notes).push(format!("physical {kind} `{name}`: {count} {elements} were left out"));
+            (raw.notes).push(format!(
+                "physical {kind} `{name}`: {count} {elements} were left out"
+            ));
         }
         for (key, name) in &self.names {
             if !filled.contains(key) {

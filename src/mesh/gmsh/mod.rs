@@ -459,7 +459,8 @@ impl Reader<'_> {
                     .push(format!("{n} {} were left out", kind.name));
             }
         }
-        self.groups.sets(&self.blocks, &mut self.raw, self.cursor.path)?;
+        self.groups
+            .sets(&self.blocks, &mut self.raw, self.cursor.path)?;
         Ok(self.raw)
     }
 }

@@ -1,6 +1,6 @@
 //! Collects problems; the rules that many fields share.
-use crate::scene::load::{LoadedScene, nearest_file, pointer};
 use crate::scene::json::MORE;
+use crate::scene::load::{LoadedScene, nearest_file, pointer};
 use crate::scene::problem::{MOST_PROBLEMS, Problem, shorten, suggestion};
 use crate::scene::value::{Value, ValueError};
 use covact_geometry::io::not_regular;
@@ -136,7 +136,11 @@ impl<'a> Checker<'a> {
     ) {
         if !self.full() && !known.clone().any(|k| k == name) {
             let help = suggestion(name, section, known.map(String::as_str));
-            self.add(at, format!("there is no {what} `{}`", shorten(name)), Some(help));
+            self.add(
+                at,
+                format!("there is no {what} `{}`", shorten(name)),
+                Some(help),
+            );
         }
     }
 

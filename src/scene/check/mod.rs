@@ -6,7 +6,7 @@ mod names;
 mod shapes;
 
 use super::load::LoadedScene;
-use super::problem::{Problem, suggestion};
+use super::problem::{Problem, shorten, suggestion};
 use super::types::*;
 use super::value::{POSITION_AND_TIME, TIME};
 use checker::{Checker, path};
@@ -205,7 +205,7 @@ fn check_master(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, set
                 scene.surfaces.keys().map(String::as_str),
             );
             help += "; a face set of a body is written `body.set`";
-            let message = format!("there is no surface `{}`", contact.master);
+            let message = format!("there is no surface `{}`", shorten(&contact.master));
             c.add(&pointer, message, Some(help));
         }
     }

@@ -62,7 +62,10 @@ fn check_name(c: &mut Checker, at: &str, name: &str, body: bool) {
         return c.add(at, "a name is empty", None);
     }
     if name.len() > MOST_IN_NAME {
-        let message = format!("the name `{}` is longer than {MOST_IN_NAME} bytes", shorten(name));
+        let message = format!(
+            "the name `{}` is longer than {MOST_IN_NAME} bytes",
+            shorten(name)
+        );
         let help = "names become columns of the history and parts of file names";
         return c.add(at, message, Some(help.into()));
     }
@@ -170,13 +173,20 @@ impl<'a> Sets<'a> {
         let Some((body, set)) = reference.split_once('.') else {
             return c.add(
                 at,
-                format!("`{reference}` does not name a set"),
+                format!("`{}` does not name a set", shorten(reference)),
                 Some(self.form(reference)),
             );
         };
         let Some(known) = self.bodies.get(body) else {
-            let help = match nearest(body, self.bodies.keys().copied()) {
-                Some(near) => format!("did you mean `{near}.{set}`? bodies: {}", self.list()),
+            let (body, set) = (shorten(body), shorten(set));
+            let help = match nearest(&body, self.bodies.keys().copied()) {
+                Some(near) => {
+                    format!(
+                        "did you mean `{}.{set}`? bodies: {}",
+                        shorten(near),
+                        self.list()
+                    )
+                }
                 None => format!("bodies: {}", self.list()),
             };
             return c.add(at, format!("there is no body `{body}`"), Some(help));
@@ -184,8 +194,10 @@ impl<'a> Sets<'a> {
         match known.sets.get(set) {
             Some(has_faces) => {
                 if faces && !has_faces {
-                    let message =
-                        format!("`{reference}` is a set of nodes, but {user} needs faces");
+                    let message = format!(
+                        "`{}` is a set of nodes, but {user} needs faces",
+                        shorten(reference)
+                    );
                     let with: Vec<&str> = known
                         .sets
                         .iter()
@@ -195,7 +207,11 @@ impl<'a> Sets<'a> {
                     c.add(
                         at,
                         message,
-                        Some(format!("face sets of `{body}`: {}", listed(with))),
+                        Some(format!(
+                            "face sets of `{}`: {}",
+                            shorten(body),
+                            listed(with)
+                        )),
                     );
                 }
             }
@@ -203,12 +219,12 @@ impl<'a> Sets<'a> {
             None => {
                 let help = suggestion(
                     set,
-                    &format!("sets of `{body}`"),
+                    &format!("sets of `{}`", shorten(body)),
                     known.sets.keys().copied(),
                 );
                 c.add(
                     at,
-                    format!("the body `{body}` has no set `{set}`"),
+                    format!("the body `{}` has no set `{}`", shorten(body), shorten(set)),
                     Some(help),
                 );
             }
@@ -223,7 +239,11 @@ impl<'a> Sets<'a> {
         match self.bodies.get(reference) {
             Some(body) => {
                 let set = body.sets.keys().next().copied().unwrap_or("set");
-                format!("write body and set, as in `{reference}.{set}`")
+                format!(
+                    "write body and set, as in `{}.{}`",
+                    shorten(reference),
+                    shorten(set)
+                )
             }
             None => format!("write `body.set`; bodies: {}", self.list()),
         }
