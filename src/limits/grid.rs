@@ -17,8 +17,8 @@ pub struct Grid {
 const NODE: u64 = 24 + 6 * 24 + 100;
 /// Bytes of a pair of coupled nodes: nine numbers, their copy in the order of elimination, the indices of both.
 const BLOCK: u64 = 72 + 72 + 36 + 12;
-/// What orderings of real programs and the zeros of supernodes add to ideal dissection: 1.3 times for shells, 1.8 times for
-/// solids (measured); the mean.
+/// What orderings of real programs and the zeros of supernodes add to ideal dissection, measured: nothing for narrow strips
+/// (.9 times), 1.3 times for shells, 1.8 times for solids. Half is added, so that all are within a factor of two.
 const REAL: [u64; 2] = [3, 2];
 /// Up to so many nodes are eliminated at once in [`fill`].
 const LEAF: u64 = 16;
@@ -166,7 +166,7 @@ mod tests {
             let stored = solver.analyze(&pattern).unwrap().stored as f64;
             let ratio = 9.0 * grid.factor_blocks() as f64 / stored;
             println!("{counts:?}: estimated / stored {ratio:.2}");
-            assert!((0.6..1.7).contains(&ratio), "{counts:?}: {ratio}");
+            assert!((0.5..2.0).contains(&ratio), "{counts:?}: {ratio}");
         }
     }
 

@@ -44,11 +44,11 @@ fn more_elements_than_memory() {
         refused_at(&[(KEY, elements)], KEY, parts);
     }
     let block =
-        json!({ "block": { "min": [0, 0, 0], "max": [1, 1, 1], "elements": [400, 400, 400] } });
+        json!({ "block": { "min": [0, 0, 0], "max": [1, 1, 1], "elements": [300, 300, 300] } });
     refused_at(
         &[("/bodies/plate/mesh", block)],
         "/bodies/plate/mesh/block/elements",
-        &["body `plate` with 400 x 400 x 400 elements: about "],
+        &["body `plate` with 300 x 300 x 300 elements: about "],
     );
 }
 
