@@ -2,6 +2,7 @@
 
 pub mod assembly;
 pub mod contact;
+pub mod gauntlet;
 pub mod limits;
 pub mod mesh;
 pub mod model;
@@ -9,6 +10,7 @@ pub mod output;
 pub mod run;
 pub mod scene;
 pub mod shell;
+pub mod soak;
 pub mod solve;
 
 #[cfg(feature = "cli")]

@@ -222,7 +222,7 @@ fn a_listing_that_cannot_be_written() {
     );
 }
 
-/// The summary cannot be written: that of an earlier run must not pass for this one's.
+/// Nothing fits, not even the summary: that of an earlier run must not pass for this one's.
 #[cfg(unix)]
 #[test]
 fn a_summary_that_does_not_fit() {
@@ -237,15 +237,9 @@ fn a_summary_that_does_not_fit() {
         &["run", "scene.json", "-o", "out", "--quiet"],
     );
     assert_eq!(whole.status.code(), Some(0), "{}", stderr(&whole));
-    let before = contents(&folder.path().join("out"));
-    println!(
-        "summary {}, table {}",
-        before["summary.json"].len(),
-        before["history.csv"].len()
-    );
+    assert!(folder.path().join("out/summary.json").is_file());
     let output = limited(folder.path(), 1);
     assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
-    println!("{}", stderr(&output));
     let after = contents(&folder.path().join("out"));
     assert!(!after.contains_key("summary.json"), "{:?}", after.keys());
 }
@@ -259,9 +253,12 @@ fn results_removed_during_a_run() {
         write_plate(folder.path(), &small_steps(0));
         let (child, lines) = begun(folder.path());
         let path = folder.path().join(what);
-        match path.is_dir() {
-            true => std::fs::remove_dir_all(&path).unwrap(),
-            false => std::fs::remove_file(&path).unwrap(),
+        // The program may just be writing its summary there.
+        while path.exists() {
+            let _ = match path.is_dir() {
+                true => std::fs::remove_dir_all(&path),
+                false => std::fs::remove_file(&path),
+            };
         }
         lines.for_each(drop);
         let output = child.wait_with_output().unwrap();
