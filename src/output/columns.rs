@@ -127,6 +127,17 @@ pub const COLUMNS: &[ColumnDoc] = &[
     ),
     doc("points.slip", "-", "slave points that slide"),
     doc(
+        "energy.stabilization",
+        "energy",
+        "energy dissipated by stabilisation since the start; only with it",
+    ),
+    doc(
+        "stabilization.share",
+        "-",
+        "forces of the stabilisation (sum of their magnitudes at nodes) relative to those of loads, supports or contacts, \
+         whichever are largest",
+    ),
+    doc(
         "penetration.max",
         "length",
         "largest penetration of a slave point; 0 without contact",

@@ -15,6 +15,8 @@ pub struct Record<'a> {
     pub cuts: u32,
     pub converged: &'a Converged,
     pub sliding: &'a FrictionTotals,
+    /// Energy that stabilisation has dissipated since the start, and the share of its forces in this step.
+    pub stabilized: (f64, f64),
     /// Residual at all degrees of freedom: reactions at the constrained ones.
     pub residual: &'a [f64],
     /// Displacements, 3 per node.
@@ -82,6 +84,9 @@ pub fn columns(model: &Model) -> Vec<String> {
             .map(String::from),
         );
     }
+    if model.stabilization.is_some() {
+        names.extend(["energy.stabilization", "stabilization.share"].map(String::from));
+    }
     names
 }
 
@@ -145,6 +150,9 @@ pub fn row(r: &Record) -> Vec<f64> {
     if frictional(r.model) {
         let s = r.sliding;
         out.extend([s.stored, s.dissipated, s.stick as f64, s.slip as f64]);
+    }
+    if r.model.stabilization.is_some() {
+        out.extend([r.stabilized.0, r.stabilized.1]);
     }
     out
 }

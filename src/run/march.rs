@@ -5,7 +5,7 @@ use super::fields::Fields;
 use super::history;
 use super::progress::Progress;
 use super::step::Attempts;
-use crate::assembly::Assembler;
+use crate::assembly::{Assembler, Drag};
 use crate::model::error::number;
 use crate::model::state::State;
 use crate::model::{Model, penalty, segments};
@@ -31,7 +31,7 @@ pub(super) struct Ending {
 /// A run under way.
 pub(super) struct March<'a, 'm> {
     scene: &'a Scene,
-    model: &'m Model,
+    pub(super) model: &'m Model,
     pub assembler: &'a mut Assembler<'m>,
     solver: &'a mut dyn LinearSolver,
     pub workspace: Workspace,
@@ -137,6 +137,8 @@ impl<'a, 'm> March<'a, 'm> {
                 time: end,
                 dt,
             });
+            (self.assembler).begin_step(&committed.u, self.progress.time, end);
+            self.workspace.unstable = None;
             let result = Attempts {
                 model: self.model,
                 committed,
@@ -163,6 +165,8 @@ impl<'a, 'm> March<'a, 'm> {
                         None => before = Some((committed.clone(), dt)),
                     }
                     committed.copy_from(&trial);
+                    let drag = (self.assembler).drag(&committed.u, self.workspace.residual());
+                    committed.stabilized += drag.work;
                     if stepping.at_kink(end) {
                         before = None;
                     }
@@ -172,8 +176,13 @@ impl<'a, 'm> March<'a, 'm> {
                     let sliding = commit::commit(self.model, self.assembler, committed, start, end)
                         .map_err(|e| RunError::internal(&e))?;
                     self.accept(step, end, &converged);
-                    self.record(outputs, committed, dt, cuts, &converged, &sliding)?;
+                    self.record(outputs, committed, dt, cuts, &converged, &sliding, &drag)?;
                     cuts = 0;
+                    if let Some(ending) =
+                        self.stabilized(committed, &drag, &converged, stepping.done(end))
+                    {
+                        return Ok(ending);
+                    }
                     continue;
                 }
                 Err(failure) => failure,
@@ -188,10 +197,13 @@ impl<'a, 'm> March<'a, 'm> {
             self.progress.cuts += 1;
             let reason = failure.to_string();
             let Some(next_dt) = stepping.failed(dt) else {
+                let unstable = self.workspace.unstable.map_or_else(String::new, |u| {
+                    format!("; {}", u.words(self.model, self.assembler.stabilizes()))
+                });
                 return Ok(Ending {
                     status: RunStatus::NotConverged,
                     reason: Some(format!(
-                        "step {step} from time {} failed at the smallest step size: {reason}",
+                        "step {step} from time {} failed at the smallest step size: {reason}{unstable}",
                         self.progress.time
                     )),
                 });
@@ -310,6 +322,7 @@ impl<'a, 'm> March<'a, 'm> {
     }
 
     /// The row of an accepted step, and its fields where they are wanted.
+    #[allow(clippy::too_many_arguments)]
     fn record(
         &mut self,
         outputs: &mut Outputs,
@@ -318,6 +331,7 @@ impl<'a, 'm> March<'a, 'm> {
         cuts: u32,
         converged: &Converged,
         sliding: &FrictionTotals,
+        drag: &Drag,
     ) -> Result<(), RunError> {
         let (step, time) = (self.progress.steps, self.progress.time);
         self.phases.start("output");
@@ -341,6 +355,7 @@ impl<'a, 'm> March<'a, 'm> {
             cuts,
             converged,
             sliding,
+            stabilized: (state.stabilized, drag.share),
             residual: self.workspace.residual(),
             u: &state.u,
             fields: &outputs.fields,
@@ -355,7 +370,7 @@ impl<'a, 'm> March<'a, 'm> {
     }
 
     /// Reports a warning once.
-    fn warn(&mut self, text: String) {
+    pub(super) fn warn(&mut self, text: String) {
         if !self.progress.warnings.contains(&text) {
             self.observer.event(&Event::Warning { text: text.clone() });
             self.progress.warnings.push(text);

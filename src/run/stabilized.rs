@@ -1,0 +1,63 @@
+//! What a run says of its stabilisation.
+use super::march::{Ending, March};
+use crate::assembly::Drag;
+use crate::model::error::number;
+use crate::model::stabilization::{DISSIPATES, RESTS};
+use crate::model::state::State;
+use crate::output::RunStatus;
+use crate::solve::newton::{Converged, StepFailure};
+
+impl March<'_, '_> {
+    /// Ends a run whose body runs away, and says at the end whether the answer rests on the stabilisation.
+    pub(super) fn stabilized(
+        &mut self,
+        state: &State,
+        drag: &Drag,
+        converged: &Converged,
+        last: bool,
+    ) -> Option<Ending> {
+        let model = self.model.stabilization.as_ref()?;
+        if drag.share > RESTS
+            && let Some((piece, way)) = model.run_away(&state.u)
+        {
+            let failure = StepFailure::RunsAway {
+                body: piece.motion.body.clone(),
+                motion: piece.motion.motion.clone(),
+                reached: format!(
+                    "at time {} it is ({}, {}, {}) away from where it started, {:.0} times the size of the model; \
+                     stabilization alone slows it",
+                    number(self.progress.time),
+                    number(way.x),
+                    number(way.y),
+                    number(way.z),
+                    way.norm() / model.size
+                ),
+            };
+            return Some(Ending {
+                status: RunStatus::NotConverged,
+                reason: Some(failure.to_string()),
+            });
+        }
+        if !last {
+            return None;
+        }
+        let stored = converged.totals.internal_energy;
+        if state.stabilized > DISSIPATES * stored {
+            self.warn(format!(
+                "stabilization has dissipated {}, more than {:.0} % of the strain energy {} at the end: something snapped or \
+                 moved freely, or its `factor` is too large",
+                number(state.stabilized),
+                100.0 * DISSIPATES,
+                number(stored)
+            ));
+        }
+        if drag.share > RESTS {
+            self.warn(format!(
+                "the answer rests on the stabilization: at the end its forces are {:.2e} of the others, more than {RESTS}: \
+                 something still moves; give it time to come to rest, hold it, or take a smaller `factor`",
+                drag.share
+            ));
+        }
+        None
+    }
+}
