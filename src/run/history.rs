@@ -1,6 +1,7 @@
 //! Rows of `history.csv`.
 use super::commit::FrictionTotals;
 use super::fields::Fields;
+use super::watch::Watch;
 use crate::assembly::PairForce;
 use crate::model::{Model, PairModel};
 use crate::solve::newton::Converged;
@@ -20,6 +21,7 @@ pub struct Record<'a> {
     /// Displacements, 3 per node.
     pub u: &'a [f64],
     pub fields: &'a Fields,
+    pub watch: &'a Watch,
 }
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -82,6 +84,7 @@ pub fn columns(model: &Model) -> Vec<String> {
             .map(String::from),
         );
     }
+    names.extend(["energy.external", "energy.adjusted", "energy.imbalance"].map(String::from));
     names
 }
 
@@ -146,6 +149,7 @@ pub fn row(r: &Record) -> Vec<f64> {
         let s = r.sliding;
         out.extend([s.stored, s.dissipated, s.stick as f64, s.slip as f64]);
     }
+    out.extend([r.watch.external, r.watch.adjusted, r.watch.imbalance]);
     out
 }
 

@@ -11,6 +11,7 @@ mod march;
 mod pieces;
 mod progress;
 mod step;
+pub mod watch;
 
 pub use check::{
     BodyReport, CheckReport, LoadReport, PairReport, SupportReport, SurfaceReport, check,
