@@ -118,7 +118,10 @@ fn first_touch_flush(trial: &mut Trial) -> Result<(), Broken> {
 
 fn slides_off(trial: &mut Trial) -> Result<(), Broken> {
     let outcome = trial.run(&cube(0.0, [grown(3.1), json!(0), grown(-10.0)], 0.3))?;
-    trial.holds("does not end", outcome.summary.status.name() == "not_converged");
+    trial.holds(
+        "does not end",
+        outcome.summary.status.name() == "not_converged",
+    );
     trial.says(outcome.reason(), &["cube", "runs away", "along x"]);
     Ok(())
 }

@@ -159,6 +159,23 @@ pub const COLUMNS: &[ColumnDoc] = &[
         "-",
         "most slave points that switched their status in one iteration of the step",
     ),
+    doc(
+        "energy.external",
+        "energy",
+        "work of supports, loads, rigid surfaces and shrinking overclosures since the start (trapezoidal rule)",
+    ),
+    doc(
+        "energy.adjusted",
+        "energy",
+        "energy put in since the start by what changes in contact itself: overclosures that the first step resolves, \
+         raised penalties, multipliers",
+    ),
+    doc(
+        "energy.imbalance",
+        "energy",
+        "external and adjusted less stored (internal, contact, friction) and dissipated energy: the error of the rule, of \
+         second order in the step, or a jump of the path",
+    ),
 ];
 
 /// True when `column` is one of [`COLUMNS`].

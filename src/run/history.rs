@@ -1,6 +1,7 @@
 //! Rows of `history.csv`.
 use super::commit::FrictionTotals;
 use super::fields::Fields;
+use super::watch::Watch;
 use crate::assembly::PairForce;
 use crate::model::{Model, PairModel};
 use crate::solve::newton::Converged;
@@ -22,6 +23,7 @@ pub struct Record<'a> {
     /// Displacements, 3 per node.
     pub u: &'a [f64],
     pub fields: &'a Fields,
+    pub watch: &'a Watch,
 }
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -87,6 +89,7 @@ pub fn columns(model: &Model) -> Vec<String> {
     if model.stabilization.is_some() {
         names.extend(["energy.stabilization", "stabilization.share"].map(String::from));
     }
+    names.extend(["energy.external", "energy.adjusted", "energy.imbalance"].map(String::from));
     names
 }
 
@@ -154,6 +157,7 @@ pub fn row(r: &Record) -> Vec<f64> {
     if r.model.stabilization.is_some() {
         out.extend([r.stabilized.0, r.stabilized.1]);
     }
+    out.extend([r.watch.external, r.watch.adjusted, r.watch.imbalance]);
     out
 }
 

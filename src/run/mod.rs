@@ -12,6 +12,7 @@ mod pieces;
 mod progress;
 mod stabilized;
 mod step;
+pub mod watch;
 
 pub use check::{
     BodyReport, CheckReport, LoadReport, PairReport, SupportReport, SurfaceReport, check,

@@ -7,6 +7,10 @@ use crate::model::state::State;
 use crate::output::RunStatus;
 use crate::solve::newton::{Converged, StepFailure};
 
+/// Part of the size of the model that a body without supports may move in the time of a run and still be at rest, and the
+/// part of [`RESTS`] that the stabilisation has to carry for it to be told.
+const MOVES: f64 = 0.05;
+
 impl March<'_, '_> {
     /// Ends a run whose body runs away, and says at the end whether the answer rests on the stabilisation.
     pub(super) fn stabilized(
@@ -51,7 +55,23 @@ impl March<'_, '_> {
                 number(stored)
             ));
         }
-        if drag.share > RESTS {
+        let moving = model.free.iter().find_map(|piece| {
+            let velocity = self.assembler.velocity(&state.u, &piece.motion.nodes);
+            let way = velocity * self.scene.solution.end_time;
+            let slides = way.norm() > MOVES * model.size && drag.share > MOVES * RESTS;
+            slides.then_some((piece, velocity))
+        });
+        if let Some((piece, v)) = moving {
+            self.warn(format!(
+                "the answer rests on the stabilization: body `{}` still moves at the end, at ({}, {}, {}) in a unit of time, \
+                 and no support hinders it {}: hold it, or read what follows as one moment of its way",
+                piece.motion.body,
+                number(v.x),
+                number(v.y),
+                number(v.z),
+                piece.motion.motion
+            ));
+        } else if drag.share > RESTS {
             self.warn(format!(
                 "the answer rests on the stabilization: at the end its forces are {:.2e} of the others, more than {RESTS}: \
                  something still moves; give it time to come to rest, hold it, or take a smaller `factor`",

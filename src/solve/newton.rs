@@ -39,7 +39,8 @@ pub enum StepFailure {
     #[error("linear solver: {error}; {words}")]
     Singular { error: LinearError, words: String },
     #[error(
-        "body `{body}` runs away: loads drive it {motion}, where neither a support nor contact stops it ({reached})"
+        "body `{body}` runs away: loads drive it on, no support hinders it {motion}, and contact does not stop it ({reached}): \
+         add a support or a contact, more friction, or turn the loads"
     )]
     RunsAway {
         body: String,

@@ -67,7 +67,11 @@ fn falls_and_rests() {
 #[test]
 fn incline() {
     for (mu, pull) in [(0.3, 2.9), (0.3, 3.1)] {
-        let outcome = solve(&cube(0.0, [json!(format!("{pull}*t")), json!(0), json!(-10)], Some(mu)));
+        let outcome = solve(&cube(
+            0.0,
+            [json!(format!("{pull}*t")), json!(0), json!(-10)],
+            Some(mu),
+        ));
         show(&outcome);
     }
 }

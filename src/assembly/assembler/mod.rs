@@ -303,6 +303,23 @@ impl<'m> Assembler<'m> {
         self.stabilize::<false>(&state.u, residual);
         Ok(totals)
     }
+
+    /// What contact alone adds to the residual, and its totals.
+    ///
+    /// # Errors
+    /// A point that cannot be evaluated, or a motion without a value at `time`.
+    pub fn contact(
+        &mut self,
+        state: &mut State,
+        time: f64,
+        residual: &mut [f64],
+    ) -> Result<Totals, Fault> {
+        self.meet::<false>(state, time)?;
+        residual.fill(0.0);
+        let mut totals = Totals::default();
+        self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
+        Ok(totals)
+    }
 }
 
 /// A zero system, symmetric where the model is.

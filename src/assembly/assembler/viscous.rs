@@ -2,6 +2,7 @@
 //! tangent. Linear, so exact. Nothing is allocated where the scene does not ask for it.
 use super::Assembler;
 use crate::model::Model;
+use covact_geometry::Vec3;
 
 /// The step that is being stabilised.
 pub(super) struct Viscous {
@@ -60,6 +61,18 @@ impl Assembler<'_> {
                 self.matrix.add_diagonal(dof, stiffness);
             }
         }
+    }
+
+    /// Mean velocity of some nodes in the present step, which ends at `u`.
+    pub fn velocity(&self, u: &[f64], nodes: &[u32]) -> Vec3 {
+        let Some(viscous) = &self.viscous else {
+            return Vec3::zeros();
+        };
+        let sum = nodes.iter().fold(Vec3::zeros(), |s, &n| {
+            let way = |c: usize| u[3 * n as usize + c] - viscous.base[3 * n as usize + c];
+            s + Vec3::new(way(0), way(1), way(2))
+        });
+        sum * (viscous.rate / nodes.len() as f64)
     }
 
     /// What the stabilisation did in the step whose last evaluation was at `u`; `residual` is that of all degrees of freedom.
