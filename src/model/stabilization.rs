@@ -24,6 +24,8 @@ use nalgebra::{Matrix3, SymmetricEigen};
 
 /// Part of the depth of the masters that a free body moves in one iteration at most: no point may pass a surface unseen.
 const STRIDE: f64 = 0.5;
+/// Part of its own size that it moves at most: an increment that turns a body farther inflates it.
+const TURN: f64 = 0.25;
 /// Sizes of the model that a free body may move before it has run away.
 const FAR: f64 = 10.0;
 /// Part of the forces that the stabilisation may be before the answer rests on it.
@@ -128,7 +130,7 @@ pub fn stabilization(
         until: until.unwrap_or(f64::INFINITY),
         weights,
         free,
-        size: size(&model.nodes[..model.body_nodes()]),
+        size: size(model.nodes[..model.body_nodes()].iter()),
     };
     Ok(Some((stabilization, note)))
 }
@@ -149,10 +151,9 @@ fn piece(model: &Model, motion: FreeMotion) -> Result<FreePiece, ModelError> {
         let help = "add a support or a contact";
         return Err(text(format!("/bodies/{}", motion.body), message).help(help));
     }
-    Ok(FreePiece {
-        motion,
-        stride: STRIDE * depth,
-    })
+    let nodes = motion.nodes.iter().map(|n| &model.nodes[*n as usize]);
+    let stride = (STRIDE * depth).min(TURN * size(nodes));
+    Ok(FreePiece { motion, stride })
 }
 
 /// Volume of every node of a body: each element's shared among its nodes, evenly for eight nodes, as Simpson's rule in the
@@ -193,13 +194,10 @@ fn bending(body: &BodyModel, volumes: &[f64]) -> Bending {
     }
 }
 
-fn size(nodes: &[Vec3]) -> f64 {
-    let low = nodes
-        .iter()
-        .fold(Vec3::repeat(f64::INFINITY), |a, x| a.inf(x));
-    let high = nodes
-        .iter()
-        .fold(Vec3::repeat(f64::NEG_INFINITY), |a, x| a.sup(x));
+/// Diagonal of the box around nodes.
+fn size<'a>(nodes: impl Iterator<Item = &'a Vec3>) -> f64 {
+    let start = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+    let (low, high) = nodes.fold(start, |(low, high), x| (low.inf(x), high.sup(x)));
     (high - low).norm()
 }
 

@@ -42,7 +42,7 @@ impl Unstable {
         format!(
             "{pivots}: {} gives way along {axis}, where it may buckle or snap through: {}",
             place(model, self.node),
-            remedy(stabilized)
+            remedy(model, stabilized)
         )
     }
 }
@@ -68,7 +68,7 @@ pub fn singular(model: &Model, error: &LinearError, stabilized: bool) -> Option<
     Some(format!(
         "nothing resists {} along {axis}{loose}: {}",
         place(model, node),
-        remedy(stabilized)
+        remedy(model, stabilized)
     ))
 }
 
@@ -85,11 +85,14 @@ fn place(model: &Model, node: usize) -> String {
     )
 }
 
-fn remedy(stabilized: bool) -> &'static str {
-    match stabilized {
-        false => {
+fn remedy(model: &Model, stabilized: bool) -> &'static str {
+    match (stabilized, &model.stabilization) {
+        (true, _) => "take a larger `factor` of `solution.stabilization`, or a smaller `step.min`",
+        (false, Some(_)) => {
+            "let `solution.stabilization` act for longer (`until`), or hold it with a support"
+        }
+        (false, None) => {
             "ask for `solution.stabilization`, hold it with a support, or prescribe its displacement instead of a force"
         }
-        true => "take a larger `factor` of `solution.stabilization`, or a smaller `step.min`",
     }
 }
