@@ -51,12 +51,12 @@ fn stabilization() {
         (
             given,
             "\"stabilization\": {\"viscous\": {\"factor\": 0}}",
-            "17:57: the factor is 0: it must be positive",
+            "17:56: the factor is 0: it must be positive",
         ),
         (
             given,
             "\"stabilization\": {\"viscous\": {\"until\": -1}}",
-            "17:56: the time is -1",
+            "17:55: the time is -1",
         ),
     ]);
     let free = SCENE.replacen(given, "\"stabilization\": \"none\"", 1);

@@ -89,7 +89,8 @@ impl Jump {
         format!(
             "step {step} (time {}) {did} an energy of {:.3e} that {what} nowhere, {:.1} % of the work so far, and more than its \
              size explains: the path jumped (snap-through, contact lost, another equilibrium). Take smaller steps, drive the \
-             motion by displacements instead of forces, ask for `solution.stabilization`, or read what follows as the state after the jump",
+             motion by displacements instead of forces, ask for `solution.stabilization`, or read what follows as the state \
+             after the jump",
             number(time),
             self.lost.abs(),
             100.0 * self.part
@@ -114,14 +115,7 @@ impl Watch {
             surfaces: vec![SurfaceForce::default(); model.surfaces.len()],
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             pressed: vec![0.0; model.pairs.len()],
-            tractions: vec![
-                [0.0; 2];
-                if augmented(model) {
-                    model.histories()
-                } else {
-                    0
-                }
-            ],
+            tractions: vec![[0.0; 2]; if augmented(model) { model.histories() } else { 0 }],
             ..Watch::default()
         }
     }
