@@ -1,5 +1,5 @@
 //! Equilibria that are lost, and bodies that nothing holds until they touch.
-use super::{Broken, Case, Group, Outcome, Trial};
+use super::{Broken, Case, Group, Trial};
 use serde_json::{Value, json};
 
 pub const GROUP: Group = Group {
@@ -93,11 +93,11 @@ fn rests_on_contact_alone(trial: &mut Trial) -> Result<(), Broken> {
     trial.iterations(250);
     let dead = [json!(0), json!(0), json!(-10)];
     let outcome = trial.done(&cube(0.2, dead.clone(), 0.0))?;
-    trial.equal("floor force", outcome.last("force.floor.z")?, 10.0, 1e-8);
+    trial.equal("floor force", outcome.last("force.floor.z")?, 10.0, 1e-7);
     let share = outcome.last("stabilization.share")?;
-    trial.within("stabilisation at the end", share, 1e-8);
-    let jumps = outcome.warnings("went nowhere").len();
-    trial.holds("a fall in one step is told", jumps == 1);
+    trial.within("stabilisation at the end", share, 1e-7);
+    let told = outcome.warnings("stabilization has dissipated").len();
+    trial.holds("the fall is told", told == 1);
     // Slow enough for the fall and the settling to be followed: all of the energy but an error of first order is dissipated.
     for n in [40, 80] {
         let mut scene = cube(0.2, dead.clone(), 0.0);
@@ -123,19 +123,19 @@ fn pulled(pull: f64) -> Value {
 }
 
 fn first_touch_flush(trial: &mut Trial) -> Result<(), Broken> {
-    trial.iterations(110);
+    trial.iterations(200);
     let outcome = trial.done(&pulled(2.9))?;
-    trial.equal("floor force", outcome.last("force.floor.z")?, 10.0, 1e-8);
+    trial.equal("floor force", outcome.last("force.floor.z")?, 10.0, 1e-7);
     let friction = outcome.last("force.floor.x")?;
-    trial.equal("friction force", friction, -2.9, 1e-8);
+    trial.equal("friction force", friction, -2.9, 1e-7);
     let share = outcome.last("stabilization.share")?;
-    trial.within("stabilisation at the end", share, 1e-8);
+    trial.within("stabilisation at the end", share, 1e-7);
     trial.holds("nothing to warn of", outcome.summary.warnings.is_empty());
     Ok(())
 }
 
 fn slides_off(trial: &mut Trial) -> Result<(), Broken> {
-    trial.iterations(450);
+    trial.iterations(250);
     let outcome = trial.solve(&pulled(6.0))?;
     let status = outcome.summary.status.name();
     trial.holds("ends early", status == "not_converged");
@@ -286,7 +286,7 @@ fn roof(n: u32, thickness: f64) -> Value {
 }
 
 fn snap_under_dead_load(trial: &mut Trial) -> Result<(), Broken> {
-    trial.iterations(1200);
+    trial.iterations(700);
     let mut prescribed = roof(4, 12.7);
     prescribed["supports"]["push"] = json!({
         "on": "roof.crown", "mid_surface": true, "displacement": { "z": "-29.37*t" }
@@ -306,6 +306,16 @@ fn snap_under_dead_load(trial: &mut Trial) -> Result<(), Broken> {
         "the jump is told",
         landed.warnings("went nowhere").len() == 1,
     );
+    // Past the limit point (about 554) in small steps without help.
+    let mut alone = scene.clone();
+    alone["loads"]["push"]["force"][2] = json!({ "table": [[0, 0], [0.5, -545], [1, -575]] });
+    alone["solution"] = json!({
+        "step": { "initial": 0.02, "max": 0.02, "min": 0.01 }, "newton": { "tolerance": 1e-10 }
+    });
+    let outcome = trial.solve(&alone)?;
+    let remedy = "`solution.stabilization`";
+    let words = ["negative pivot", "body `roof` near", "along z", remedy];
+    trial.says(outcome.reason(), &words);
     // Slow enough for the snap to be followed.
     let mut left = [0.0; 2];
     for (left, n) in left.iter_mut().zip([60, 120]) {
@@ -328,7 +338,7 @@ fn snap_under_dead_load(trial: &mut Trial) -> Result<(), Broken> {
 }
 
 fn snap_under_tool(trial: &mut Trial) -> Result<(), Broken> {
-    trial.iterations(500);
+    trial.iterations(400);
     let mut scene = roof(8, 6.35);
     scene["surfaces"] = json!({ "tool": {
         "cylinder": { "radius": 100, "length": 800, "center": [0, 0, 100] },

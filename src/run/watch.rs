@@ -115,7 +115,14 @@ impl Watch {
             surfaces: vec![SurfaceForce::default(); model.surfaces.len()],
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             pressed: vec![0.0; model.pairs.len()],
-            tractions: vec![[0.0; 2]; if augmented(model) { model.histories() } else { 0 }],
+            tractions: vec![
+                [0.0; 2];
+                if augmented(model) {
+                    model.histories()
+                } else {
+                    0
+                }
+            ],
             ..Watch::default()
         }
     }
