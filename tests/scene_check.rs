@@ -51,7 +51,7 @@ fn stabilization() {
         (
             given,
             "\"stabilization\": {\"viscous\": {\"factor\": 0}}",
-            "17:56: the factor is 0: it must be positive",
+            "17:56: the factor is 0",
         ),
         (
             given,
