@@ -47,7 +47,16 @@ cases!(instability:
 
 cases!(friction:);
 
-cases!(invariance: threads);
+cases!(
+    invariance: placed_elsewhere,
+    carried_along,
+    mirrored,
+    renumbered,
+    order_of_pairs,
+    threads,
+    swapped_and_reversed,
+    elevated_and_refined,
+);
 
 cases!(elements:);
 
