@@ -45,6 +45,25 @@ fn the_scene_itself_is_right() {
 }
 
 #[test]
+fn stabilization() {
+    let given = "\"step\": {\"initial\": 0.1}";
+    check_all(&[
+        (
+            given,
+            "\"stabilization\": {\"viscous\": {\"factor\": 0}}",
+            "17:56: the factor is 0",
+        ),
+        (
+            given,
+            "\"stabilization\": {\"viscous\": {\"until\": -1}}",
+            "17:55: the time is -1",
+        ),
+    ]);
+    let free = SCENE.replacen(given, "\"stabilization\": \"none\"", 1);
+    assert_eq!(problems(&free), Vec::<String>::new());
+}
+
+#[test]
 fn augmentation_and_offset() {
     check_all(&[
         (

@@ -220,6 +220,16 @@ impl SystemMatrix {
         scale
     }
 
+    /// Adds to an entry of the diagonal.
+    ///
+    /// # Panics
+    /// If the dof does not exist.
+    #[inline]
+    pub fn add_diagonal(&mut self, dof: usize, value: f64) {
+        let at = self.diagonal_index(dof);
+        self.values[at] += value;
+    }
+
     /// Entry at (row, column) dof, zero where the pattern has no block. For tests and messages; it searches.
     pub fn get(&self, row: usize, column: usize) -> f64 {
         let Some(block) = self.pattern.block((row / 3) as u32, (column / 3) as u32) else {

@@ -15,8 +15,8 @@ use super::{BodyModel, Model, ModelError, SurfaceModel};
 use crate::limits;
 use crate::mesh::{self, Face, Mesh};
 use crate::scene::{
-    self, InitialOverclosure, LoadedScene, MeshSource, POSITION_AND_TIME, Scene, TIME,
-    TimeFunction, Value,
+    self, InitialOverclosure, LoadedScene, MeshSource, POSITION_AND_TIME, Scene, Stabilization,
+    TIME, TimeFunction, Value,
 };
 use crate::shell::{Block, Law, bytes_per_element};
 use covact_geometry::Vec3;
@@ -76,6 +76,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         dead_loads,
         follower_loads,
         dofs: supports.dofs,
+        stabilization: None,
         symmetric: true,
         effects: Vec::new(),
         notes: builder.notes,
@@ -86,17 +87,35 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     model.effects = super::effects::effects(scene, &model);
     model.kinks = kinks(scene, &model);
     values::check(scene, &model)?;
-    if let Some(free) = super::free_motion::free_motions(&model).first() {
+    stabilize(scene, &mut model)?;
+    super::initial::check(&mut model, scene)?;
+    super::driven::start::approach(&mut model, scene)?;
+    Ok(model)
+}
+
+/// Bodies have to be held by supports, or by contact with the help of a stabilisation.
+fn stabilize(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
+    let free = super::free_motion::free_motions(model);
+    if let (Stabilization::None, Some(free)) = (scene.solution.stabilization, free.first()) {
         let message = format!(
             "body `{}` can move freely {}: no support hinders it",
             free.body, free.motion
         );
-        let help = "add or extend a support until the body is held; contact and loads do not hold it before it touches";
+        let help = "add or extend a support until the body is held, or ask for `solution.stabilization` where contact is to \
+                    hold it: contact and loads alone do not hold it before it touches";
         return Err(text(format!("/bodies/{}", free.body), message).help(help));
     }
-    super::initial::check(&mut model, scene)?;
-    super::driven::start::approach(&mut model, scene)?;
-    Ok(model)
+    if let Some((stabilization, note)) = super::stabilization::stabilization(scene, model, free)? {
+        for piece in &stabilization.free {
+            model.notes.push(format!(
+                "body `{}`: no support hinders it {}; contact has to, and stabilization until it does",
+                piece.motion.body, piece.motion.motion
+            ));
+        }
+        model.notes.push(note);
+        model.stabilization = Some(stabilization);
+    }
+    Ok(())
 }
 
 /// Decides whether the system is symmetric, and whether the linear solver that was asked for can solve it.
@@ -143,6 +162,10 @@ fn kinks(scene: &Scene, model: &Model) -> Vec<f64> {
         )
         .flat_map(TimeFunction::breakpoints)
         .chain(shrunk)
+        .chain(match scene.solution.stabilization {
+            Stabilization::Viscous { until, .. } => until,
+            Stabilization::None => None,
+        })
         .filter(|t| *t > 0.0 && *t < end)
         .collect();
     times.sort_by(f64::total_cmp);

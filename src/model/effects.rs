@@ -2,7 +2,7 @@
 use super::Model;
 use super::friction::LawModel;
 use crate::scene::{
-    Element, FacetKind, Gap, MasterSurface, Material, Passes, Points, Scene, Tangent,
+    Element, FacetKind, Gap, MasterSurface, Material, Passes, Points, Scene, Stabilization, Tangent,
 };
 use std::collections::BTreeSet;
 
@@ -89,6 +89,9 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
     }
     if !model.follower_loads.is_empty() {
         add("load.follower_pressure");
+    }
+    if let Stabilization::Viscous { .. } = scene.solution.stabilization {
+        add("stabilization.viscous");
     }
     if !model.symmetric {
         add("system.unsymmetric");

@@ -11,6 +11,8 @@ pub struct FreeMotion {
     pub count: usize,
     /// In words: along and about which axes they go.
     pub motion: String,
+    /// Nodes of the piece that moves, in the model.
+    pub nodes: Vec<u32>,
 }
 
 /// Checks every connected piece of every body.
@@ -104,6 +106,7 @@ fn free_motion(model: &Model, first: u32, piece: &[u32]) -> Option<FreeMotion> {
         body: String::new(),
         count: free,
         motion: describe(&std::array::from_fn(along), free),
+        nodes: piece.iter().map(|n| first + n).collect(),
     })
 }
 

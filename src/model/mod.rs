@@ -17,6 +17,7 @@ pub mod penalty;
 pub mod segments;
 pub mod self_contact;
 pub mod slave;
+pub mod stabilization;
 pub mod state;
 pub mod surface;
 pub mod symmetry;
@@ -35,6 +36,7 @@ use friction::FrictionModel;
 use loads::{DeadLoad, FollowerPressure};
 use master::Master;
 use overclosure::Overclosure;
+use stabilization::StabilizationModel;
 
 pub use error::ModelError;
 pub use surface::SurfaceModel;
@@ -57,6 +59,8 @@ pub struct Model {
     pub follower_loads: Vec<(String, FollowerPressure)>,
     /// Which degrees of freedom are unknown.
     pub dofs: DofMap,
+    /// Viscous stabilisation where the scene asks for it.
+    pub stabilization: Option<StabilizationModel>,
     /// Whether the tangent is symmetric ([`symmetry::unsymmetric_effects`]).
     pub symmetric: bool,
     /// Effects that are on, by name.

@@ -22,6 +22,11 @@ impl Overclosure {
 }
 
 impl PairModel {
+    /// The overclosure of the pair, where it shrinks over time.
+    pub fn shrinking(&self) -> Option<&Overclosure> {
+        self.overclosure.as_ref().filter(|o| o.until.is_some())
+    }
+
     /// What the gaps of the points are measured from at time `t`; none where they are normal coordinates.
     pub fn offsets(&self, t: f64) -> Option<Offsets<'_>> {
         if self.overclosure.is_none() && self.offset == 0.0 {

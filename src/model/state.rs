@@ -29,6 +29,8 @@ pub struct State {
     /// Per pair, the slave points of its integration segments since they were last cut; none where the points are those
     /// of the model.
     pub cuts: Vec<Option<Arc<[SlavePoint]>>>,
+    /// Energy that stabilisation has dissipated since the start.
+    pub stabilized: f64,
 }
 
 impl State {
@@ -51,6 +53,7 @@ impl State {
             nodes: vec![false; nodes.sum()],
             histories: vec![PointHistory::default(); model.histories()],
             cuts: vec![None; model.pairs.len()],
+            stabilized: 0.0,
         }
     }
 
@@ -68,6 +71,7 @@ impl State {
         self.nodes.copy_from_slice(&other.nodes);
         self.histories.copy_from_slice(&other.histories);
         self.cuts.clone_from(&other.cuts);
+        self.stabilized = other.stabilized;
     }
 
     /// Continues the change from `before` to `self` by `ratio` into `out`: a start for the next step that has the
@@ -94,6 +98,7 @@ impl State {
             };
         }
         out.cuts.clone_from(&self.cuts);
+        out.stabilized = self.stabilized;
     }
 
     /// Bytes that this state occupies.

@@ -127,6 +127,17 @@ pub const COLUMNS: &[ColumnDoc] = &[
     ),
     doc("points.slip", "-", "slave points that slide"),
     doc(
+        "energy.stabilization",
+        "energy",
+        "energy dissipated by stabilisation since the start; only with it",
+    ),
+    doc(
+        "stabilization.share",
+        "-",
+        "forces of the stabilisation (sum of their magnitudes at nodes) relative to those of loads, supports or contacts, \
+         whichever are largest",
+    ),
+    doc(
         "penetration.max",
         "length",
         "largest penetration of a slave point; 0 without contact",
@@ -147,6 +158,23 @@ pub const COLUMNS: &[ColumnDoc] = &[
         "points.changed",
         "-",
         "most slave points that switched their status in one iteration of the step",
+    ),
+    doc(
+        "energy.external",
+        "energy",
+        "work of supports, loads, rigid surfaces and shrinking overclosures since the start (trapezoidal rule)",
+    ),
+    doc(
+        "energy.adjusted",
+        "energy",
+        "energy put in since the start by what changes in contact itself: overclosures that the first step resolves, \
+         raised penalties, multipliers",
+    ),
+    doc(
+        "energy.imbalance",
+        "energy",
+        "external and adjusted less stored (internal, contact, friction) and dissipated energy: the error of the rule, of \
+         second order in the step, or a jump of the path",
     ),
 ];
 

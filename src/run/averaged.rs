@@ -17,6 +17,8 @@ pub(super) struct NodeNow {
     pub pressure: f64,
     /// `m_A` of a closed node.
     pub area: f64,
+    /// Normal traction by the overclosures that shrink around the node and their areas (energy).
+    pub pressed: f64,
 }
 
 /// Sums of a node over its points.
@@ -26,6 +28,8 @@ struct Sums {
     /// Weighted distances as they are shown, and all of the weight.
     shown: f64,
     area: f64,
+    /// Weighted overclosures that shrink.
+    shrinking: f64,
 }
 
 /// The nodes of a pair in an accepted state; `hints` starts the search of its points at number `first` of the state's,
@@ -45,6 +49,7 @@ pub(super) fn nodes_now(
 ) -> (Vec<NodeNow>, usize) {
     let offsets = pair.offsets(time);
     let reach = pair.reach(model);
+    let shrinking = pair.shrinking();
     let mut sums = vec![Sums::default(); nodes.len()];
     let mut sunk = 0;
     for (i, (p, front)) in pair.points.iter().zip(front).enumerate() {
@@ -64,16 +69,21 @@ pub(super) fn nodes_now(
             share.add_to(&mut sums[at].gap, shape, p.area);
             sums[at].shown += shape * p.area * shown;
             sums[at].area += shape * p.area;
+            if let (Some(over), Share::Gap(_)) = (shrinking, share) {
+                sums[at].shrinking += shape * p.area * over.z0[i];
+            }
         }
     }
     let law = Penalty { eps_n };
     let now = nodes.nodes().iter().zip(&sums).map(|(&node, s)| {
         let closed = s.gap.gap().filter(|g| *g < 0.0);
+        let n = s.gap.normal(&law).n;
         NodeNow {
             node: node as usize,
             closed: closed.is_some(),
             gap: closed.unwrap_or(s.shown / s.area),
-            pressure: -s.gap.normal(&law).n,
+            pressure: -n,
+            pressed: n * s.shrinking,
             area: closed.map_or(0.0, |_| s.gap.area),
         }
     });

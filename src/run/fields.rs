@@ -40,6 +40,8 @@ pub struct Fields {
     pub largest_pressure: f64,
     /// Slave area in contact.
     pub area: f64,
+    /// Per pair whose overclosure shrinks: sum of normal traction, overclosure at the start and area (energy).
+    pub pressed: Vec<f64>,
 }
 
 impl Fields {
@@ -79,6 +81,7 @@ impl Fields {
             smallest_gap: f64::NAN,
             largest_pressure: 0.0,
             area: 0.0,
+            pressed: vec![0.0; model.pairs.len()],
         })
     }
 
@@ -107,6 +110,7 @@ impl Fields {
         self.largest_pressure = 0.0;
         self.area = 0.0;
         self.sunk.fill(0);
+        self.pressed.fill(0.0);
         self.friction.clear();
         if !self.gaps.is_empty() {
             self.gaps.resize(state.points.len(), f64::NAN);
@@ -122,6 +126,7 @@ impl Fields {
                     model, pair, nodes, *eps_n, &master, state, first, time, fronts,
                 );
                 self.sunk[index] += sunk;
+                self.pressed[index] = now.iter().map(|n| n.pressed).sum();
                 now.iter().for_each(|n| self.take(n));
                 first += points.len();
                 continue;
@@ -129,6 +134,7 @@ impl Fields {
             // Both passes of two see the same area.
             let share = if pair.half.is_some() { 0.5 } else { 1.0 };
             let offsets = pair.offsets(time);
+            let shrinking = pair.shrinking();
             let histories = pair.history().map(|range| &state.histories[range]);
             for (i, ((p, s), front)) in points.iter().zip(states).zip(fronts).enumerate() {
                 let z0 = offsets.map_or(0.0, |o| o.at(i));
@@ -159,6 +165,9 @@ impl Fields {
                 }
                 self.largest_pressure = self.largest_pressure.max(pressure);
                 self.area += if closed { share * p.area } else { 0.0 };
+                if let Some(over) = shrinking {
+                    self.pressed[index] -= share * pressure * over.z0[i] * p.area;
+                }
                 for (node, n) in p.terms() {
                     let w = n * p.area;
                     self.weight[node] += w;

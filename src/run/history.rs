@@ -1,6 +1,7 @@
 //! Rows of `history.csv`.
 use super::commit::FrictionTotals;
 use super::fields::Fields;
+use super::watch::Watch;
 use crate::assembly::PairForce;
 use crate::model::{Model, PairModel};
 use crate::solve::newton::Converged;
@@ -15,11 +16,14 @@ pub struct Record<'a> {
     pub cuts: u32,
     pub converged: &'a Converged,
     pub sliding: &'a FrictionTotals,
+    /// Energy that stabilisation has dissipated since the start, and the share of its forces in this step.
+    pub stabilized: (f64, f64),
     /// Residual at all degrees of freedom: reactions at the constrained ones.
     pub residual: &'a [f64],
     /// Displacements, 3 per node.
     pub u: &'a [f64],
     pub fields: &'a Fields,
+    pub watch: &'a Watch,
 }
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -82,6 +86,10 @@ pub fn columns(model: &Model) -> Vec<String> {
             .map(String::from),
         );
     }
+    if model.stabilization.is_some() {
+        names.extend(["energy.stabilization", "stabilization.share"].map(String::from));
+    }
+    names.extend(["energy.external", "energy.adjusted", "energy.imbalance"].map(String::from));
     names
 }
 
@@ -146,6 +154,10 @@ pub fn row(r: &Record) -> Vec<f64> {
         let s = r.sliding;
         out.extend([s.stored, s.dissipated, s.stick as f64, s.slip as f64]);
     }
+    if r.model.stabilization.is_some() {
+        out.extend([r.stabilized.0, r.stabilized.1]);
+    }
+    out.extend([r.watch.external, r.watch.adjusted, r.watch.imbalance]);
     out
 }
 

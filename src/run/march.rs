@@ -5,7 +5,8 @@ use super::fields::Fields;
 use super::history;
 use super::progress::Progress;
 use super::step::Attempts;
-use crate::assembly::Assembler;
+use super::watch::{Span, Watch, Work};
+use crate::assembly::{Assembler, Drag};
 use crate::model::error::number;
 use crate::model::state::State;
 use crate::model::{Model, penalty, segments};
@@ -30,8 +31,8 @@ pub(super) struct Ending {
 
 /// A run under way.
 pub(super) struct March<'a, 'm> {
-    scene: &'a Scene,
-    model: &'m Model,
+    pub(super) scene: &'a Scene,
+    pub(super) model: &'m Model,
     pub assembler: &'a mut Assembler<'m>,
     solver: &'a mut dyn LinearSolver,
     pub workspace: Workspace,
@@ -43,6 +44,7 @@ pub(super) struct March<'a, 'm> {
     touched: Vec<bool>,
     /// Pairs that are in contact at the last accepted step.
     touching: Vec<bool>,
+    pub watch: Watch,
 }
 
 /// Folder, table and fields of a run.
@@ -82,6 +84,7 @@ impl<'a, 'm> March<'a, 'm> {
                 .map(|p| p.overclosure.is_some())
                 .collect(),
             touching: vec![false; model.pairs.len()],
+            watch: Watch::new(model),
         }
     }
 
@@ -101,6 +104,10 @@ impl<'a, 'm> March<'a, 'm> {
         commit::start(self.model, masters, &mut committed).map_err(|e| RunError::internal(&e))?;
         self.gather(&mut outputs, &committed, 0.0)?;
         self.write(&mut outputs, &committed)?;
+        if outputs.fields.smallest_gap < 0.0 {
+            // A point that cannot be evaluated fails the first step, and is named there.
+            let _ = (self.watch).start(self.model, self.assembler, &committed);
+        }
         let ending = self.steps(&mut committed, &mut outputs);
         if self.scene.output.every > 0 && outputs.written != Some(self.progress.steps) {
             self.write(&mut outputs, &committed)?;
@@ -137,6 +144,8 @@ impl<'a, 'm> March<'a, 'm> {
                 time: end,
                 dt,
             });
+            (self.assembler).begin_step(&committed.u, self.progress.time, end);
+            self.workspace.unstable = None;
             let result = Attempts {
                 model: self.model,
                 committed,
@@ -155,6 +164,22 @@ impl<'a, 'm> March<'a, 'm> {
             .solve(step, end, dt, before.as_ref(), &mut trial);
             let failure = match result {
                 Ok(converged) => {
+                    let start = self.progress.time;
+                    let span = Span {
+                        from: (committed, start),
+                        to: (&trial, end),
+                    };
+                    let residual = self.workspace.residual();
+                    let drag = self.assembler.drag(&trial.u, residual);
+                    let work = (self.watch)
+                        .work(
+                            self.model,
+                            self.assembler,
+                            residual,
+                            &converged.totals,
+                            &span,
+                        )
+                        .map_err(|e| RunError::internal(&e))?;
                     match &mut before {
                         Some((state, size)) => {
                             std::mem::swap(state, committed);
@@ -163,17 +188,30 @@ impl<'a, 'm> March<'a, 'm> {
                         None => before = Some((committed.clone(), dt)),
                     }
                     committed.copy_from(&trial);
+                    committed.stabilized += drag.work;
                     if stepping.at_kink(end) {
                         before = None;
                     }
                     // Augmentations say nothing of how far a step may go.
                     stepping.accepted(converged.iterations - converged.augmenting);
-                    let start = self.progress.time;
                     let sliding = commit::commit(self.model, self.assembler, committed, start, end)
                         .map_err(|e| RunError::internal(&e))?;
                     self.accept(step, end, &converged);
-                    self.record(outputs, committed, dt, cuts, &converged, &sliding)?;
+                    self.record(
+                        outputs,
+                        committed,
+                        [start, end],
+                        cuts,
+                        &converged,
+                        &sliding,
+                        (work, drag),
+                    )?;
                     cuts = 0;
+                    if let Some(ending) =
+                        self.stabilized(committed, &drag, &converged, stepping.done(end))
+                    {
+                        return Ok(ending);
+                    }
                     continue;
                 }
                 Err(failure) => failure,
@@ -188,10 +226,13 @@ impl<'a, 'm> March<'a, 'm> {
             self.progress.cuts += 1;
             let reason = failure.to_string();
             let Some(next_dt) = stepping.failed(dt) else {
+                let unstable = self.workspace.unstable.map_or_else(String::new, |u| {
+                    format!("; {}", u.words(self.model, self.assembler.stabilizes()))
+                });
                 return Ok(Ending {
                     status: RunStatus::NotConverged,
                     reason: Some(format!(
-                        "step {step} from time {} failed at the smallest step size: {reason}",
+                        "step {step} from time {} failed at the smallest step size: {reason}{unstable}",
                         self.progress.time
                     )),
                 });
@@ -310,14 +351,16 @@ impl<'a, 'm> March<'a, 'm> {
     }
 
     /// The row of an accepted step, and its fields where they are wanted.
+    #[allow(clippy::too_many_arguments)]
     fn record(
         &mut self,
         outputs: &mut Outputs,
         state: &State,
-        dt: f64,
+        span: [f64; 2],
         cuts: u32,
         converged: &Converged,
         sliding: &FrictionTotals,
+        (work, drag): (Work, Drag),
     ) -> Result<(), RunError> {
         let (step, time) = (self.progress.steps, self.progress.time);
         self.phases.start("output");
@@ -333,17 +376,27 @@ impl<'a, 'm> March<'a, 'm> {
                 ));
             }
         }
+        let totals = &converged.totals;
+        let stored = totals.internal_energy + totals.contact_energy + sliding.stored;
+        let energy = stored + sliding.dissipated + state.stabilized;
+        let pressed = &outputs.fields.pressed;
+        let jump = (self.watch).close(self.model, (step, span), work, pressed, energy);
+        if let Some(jump) = jump {
+            self.warn(jump.told(step, time));
+        }
         let row = history::row(&history::Record {
             model: self.model,
             step,
             time,
-            dt,
+            dt: span[1] - span[0],
             cuts,
             converged,
             sliding,
+            stabilized: (state.stabilized, drag.share),
             residual: self.workspace.residual(),
             u: &state.u,
             fields: &outputs.fields,
+            watch: &self.watch,
         });
         outputs.table.push(&row)?;
         self.phases.stop("output");
@@ -355,7 +408,7 @@ impl<'a, 'm> March<'a, 'm> {
     }
 
     /// Reports a warning once.
-    fn warn(&mut self, text: String) {
+    pub(super) fn warn(&mut self, text: String) {
         if !self.progress.warnings.contains(&text) {
             self.observer.event(&Event::Warning { text: text.clone() });
             self.progress.warnings.push(text);

@@ -11,7 +11,9 @@ mod march;
 mod memory;
 mod pieces;
 mod progress;
+mod stabilized;
 mod step;
+pub mod watch;
 
 pub use check::{
     BodyReport, CheckReport, LoadReport, PairReport, SupportReport, SurfaceReport, check,

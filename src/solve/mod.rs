@@ -4,3 +4,4 @@ pub mod event;
 pub mod linear;
 pub mod newton;
 pub mod stepping;
+pub mod unstable;

@@ -6,6 +6,7 @@
 use super::convergence::{Norms, Verdict};
 use super::event::{Event, Observer};
 use super::linear::{Factorization, LinearError, LinearSolver, Method};
+use super::unstable::{Unstable, singular};
 use crate::assembly::{Assembler, Fault, Manner, Totals};
 use crate::model::Model;
 use crate::model::state::State;
@@ -34,6 +35,20 @@ pub enum StepFailure {
     Fault(#[from] Fault),
     #[error("linear solver: {0}")]
     Solve(#[from] LinearError),
+    /// Nothing resists a motion of a body.
+    #[error("linear solver: {error}; {words}")]
+    Singular { error: LinearError, words: String },
+    #[error(
+        "body `{body}` runs away: loads drive it on, no support hinders it {motion}, and contact does not stop it ({reached}): \
+         add a support or a contact, more friction, or turn the loads"
+    )]
+    RunsAway {
+        body: String,
+        /// Its free motions, in words.
+        motion: String,
+        /// How far it has got, in words.
+        reached: String,
+    },
     #[error(
         "the penetration stays above 1 % of an element although the automatic penalty was raised"
     )]
@@ -103,6 +118,8 @@ pub struct Workspace {
     scratch: Vec<f64>,
     absolute: Vec<f64>,
     base: State,
+    /// The last tangent with negative pivots, since this was last reset.
+    pub unstable: Option<Unstable>,
     /// Factorizations made so far, of failed attempts too.
     pub factorizations: BTreeMap<Method, u64>,
 }
@@ -118,6 +135,7 @@ impl Workspace {
             scratch: vec![0.0; n],
             absolute: vec![0.0; n],
             base: State::new(model),
+            unstable: None,
             factorizations: BTreeMap::new(),
         }
     }
@@ -237,6 +255,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             }
             let stuck = self.patience == Patience::Short && since_best >= UNTIL_GIVEN_UP;
             if iteration >= self.settings.max_iterations || stuck {
+                if let Some(failure) = self.runs_away() {
+                    return Err(failure);
+                }
                 let negligible = norms.target(self.settings.tolerance);
                 if let Some(fault) = self.assembler.runs_away(&totals.loose, negligible) {
                     return Err(fault.into());
@@ -261,12 +282,11 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 secant: iteration + 1 < secants,
             };
             let search = self.settings.line_search && !pending && since_best >= UNTIL_SEARCH;
-            (totals, factor) = self.advance(trial, time, search)?;
+            (totals, factor, pending) = self.advance(trial, time, search, pending)?;
             energy = dot(&self.workspace.du, &self.workspace.rhs).abs();
             if iteration == 0 {
                 first_energy = energy;
             }
-            pending = false;
         }
         unreachable!("the loop ends by its own limit")
     }
@@ -331,43 +351,77 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         solved?;
         let g = pending.then_some(&w.increments[..]);
         self.model.dofs.expand(&mut w.du, g);
+        w.unstable = Unstable::of(self.model, &factored, &w.du).or(w.unstable);
         Ok(factored)
     }
 
-    /// What a matrix that cannot be factorized means: in the terms of the scene where a surface driven by force is not
-    /// held.
+    /// What a matrix that cannot be factorized means: in the terms of the scene where a surface driven by force or a body is
+    /// not held.
     fn unsolvable(&self, error: LinearError) -> StepFailure {
         match &error {
             LinearError::NonPositivePivot { dof }
             | LinearError::ZeroPivot { dof }
             | LinearError::TinyPivot { dof, .. } => {
-                (self.assembler.unheld(dof.dof())).map_or(error.into(), StepFailure::Fault)
+                if let Some(fault) = self.assembler.unheld(dof.dof()) {
+                    return StepFailure::Fault(fault);
+                }
             }
-            _ => error.into(),
+            _ => {}
+        }
+        match singular(self.model, &error, self.assembler.stabilizes()) {
+            Some(words) => StepFailure::Singular { error, words },
+            None => error.into(),
         }
     }
 
+    /// A free body that the iterations ended with holding back.
+    fn runs_away(&self) -> Option<StepFailure> {
+        let (part, piece) = self
+            .model
+            .stabilization
+            .as_ref()?
+            .stride(&self.workspace.du);
+        let motion = &piece?.motion;
+        Some(StepFailure::RunsAway {
+            body: motion.body.clone(),
+            motion: motion.motion.clone(),
+            reached: format!(
+                "the last iteration wanted {:.1e} times the way that an iteration may go",
+                1.0 / part
+            ),
+        })
+    }
+
     /// Moves `trial` along the increment and linearises there; halves the step where an element or a contact point
-    /// cannot follow, and searches along it where asked to.
+    /// cannot follow, and searches along it where asked to. A body that nothing holds yet goes a part of the way only.
+    /// Returns the factor and whether prescribed displacements are still to come.
     fn advance(
         &mut self,
         trial: &mut State,
         time: f64,
         search: bool,
-    ) -> Result<(Totals, f64), StepFailure> {
+        pending: bool,
+    ) -> Result<(Totals, f64, bool), StepFailure> {
         self.workspace.base.copy_from(trial);
         let slope = dot(&self.workspace.du, &self.workspace.rhs);
-        let mut s = 1.0;
-        if search {
+        let stabilization = self.model.stabilization.as_ref();
+        let mut s = stabilization.map_or(1.0, |m| m.stride(&self.workspace.du).0);
+        if search && s == 1.0 {
             s = self.line_search(trial, time, slope)?;
         }
+        let smallest = s * SMALLEST;
         loop {
             self.apply(trial, s);
+            let left = pending && s < 1.0;
+            if left {
+                let increments = &mut self.workspace.increments;
+                (self.model.increments(&trial.u, time, increments)).map_err(Fault::from)?;
+            }
             // Changes of status count from where the iteration began, whatever was tried in between.
             trial.points.copy_from_slice(&self.workspace.base.points);
-            match self.linearize(trial, time, false) {
-                Ok(totals) => return Ok((totals, s)),
-                Err(_) if s > SMALLEST => s *= 0.5,
+            match self.linearize(trial, time, left) {
+                Ok(totals) => return Ok((totals, s, left)),
+                Err(_) if s > smallest => s *= 0.5,
                 Err(fault) => return Err(fault.into()),
             }
         }

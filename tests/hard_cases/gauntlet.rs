@@ -34,7 +34,16 @@ cases!(motion:);
 
 cases!(conditioning:);
 
-cases!(instability:);
+cases!(instability:
+    rests_on_contact_alone,
+    first_touch_flush,
+    slides_off,
+    refused_without,
+    between_tools,
+    soft_support,
+    snap_under_dead_load,
+    snap_under_tool,
+);
 
 cases!(friction:);
 

@@ -13,6 +13,7 @@ mod gauntlet;
 mod lost;
 mod parametrisation;
 mod rollback;
+mod stabilization;
 #[path = "../verification/support.rs"]
 #[allow(dead_code)]
 mod support;

@@ -14,6 +14,7 @@ mod moving;
 mod rigid;
 mod sliding;
 mod touched;
+mod viscous;
 
 use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
@@ -30,6 +31,7 @@ use covact_geometry::Vec3;
 use maps::Maps;
 use moving::Meetings;
 use sliding::Sliding;
+use viscous::Viscous;
 
 use driven::Border;
 use elements::Systems;
@@ -37,6 +39,7 @@ use std::sync::Arc;
 
 pub use answer::PointAnswer;
 pub use driven::Loose;
+pub use viscous::Drag;
 
 /// What kept the model from being evaluated at a trial state. The step is cut.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -181,6 +184,8 @@ pub struct Assembler<'m> {
     external: Vec<f64>,
     contact: Vec<f64>,
     borders: Vec<Border>,
+    /// Where the scene asks for stabilisation.
+    viscous: Option<Viscous>,
     /// Penalty per pair; an automatic one may be raised in the course of a run.
     pub penalties: Vec<f64>,
     /// How contact is linearised.
@@ -221,6 +226,7 @@ impl<'m> Assembler<'m> {
             external: vec![0.0; n],
             contact: vec![0.0; n],
             borders,
+            viscous: Viscous::new(model),
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             manner: Manner::default(),
         })
@@ -263,7 +269,7 @@ impl<'m> Assembler<'m> {
         &self.external
     }
 
-    /// Residual `f_int + f_contact - f_ext` at all degrees of freedom (reactions included) and the tangent; the element
+    /// Residual `f_int + f_contact - f_ext` (and what stabilises) at all degrees of freedom (reactions included) and the tangent; the element
     /// states receive what their condensation needs, the point states where their search ended. `increments` are
     /// prescribed displacements still to come: the returned right-hand side is `-residual - K increments`.
     pub fn linearize(
@@ -283,6 +289,7 @@ impl<'m> Assembler<'m> {
         self.elements(state, increments, residual, rhs, &mut totals)?;
         self.contacts::<true>(state, time, increments, residual, rhs, &mut totals)?;
         self.loads::<true>(state, time, increments, residual, rhs)?;
+        self.stabilize::<true>(&state.u, residual);
         self.own_blocks(&state.u, time, residual, &mut totals)?;
         for (b, r) in rhs.iter_mut().zip(residual.iter()) {
             *b -= r;
@@ -305,6 +312,24 @@ impl<'m> Assembler<'m> {
         self.element_forces(state, residual, &mut totals)?;
         self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
         self.loads::<false>(state, time, None, residual, &mut [])?;
+        self.stabilize::<false>(&state.u, residual);
+        Ok(totals)
+    }
+
+    /// What contact alone adds to the residual, and its totals.
+    ///
+    /// # Errors
+    /// A point that cannot be evaluated, or a motion without a value at `time`.
+    pub fn contact(
+        &mut self,
+        state: &mut State,
+        time: f64,
+        residual: &mut [f64],
+    ) -> Result<Totals, Fault> {
+        self.meet::<false>(state, time)?;
+        residual.fill(0.0);
+        let mut totals = Totals::default();
+        self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
         Ok(totals)
     }
 }

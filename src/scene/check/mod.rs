@@ -387,5 +387,12 @@ fn check_solution(c: &mut Checker, solution: &Solution) {
         let help = "a part of the largest force: between 0 and 1, usually 1e-8";
         c.add("/solution/newton/tolerance", message, Some(help.into()));
     }
+    if let Stabilization::Viscous { factor, until } = solution.stabilization {
+        let at = "/solution/stabilization/viscous";
+        c.positive(&format!("{at}/factor"), "the factor", factor);
+        if let Some(until) = until {
+            c.positive(&format!("{at}/until"), "the time", until);
+        }
+    }
     c.whole("/solution/threads", solution.threads, 0, 4096);
 }

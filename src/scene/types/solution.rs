@@ -13,6 +13,7 @@ pub struct Solution {
     pub step: Step,
     pub newton: Newton,
     pub linear_solver: LinearSolver,
+    pub stabilization: Stabilization,
     /// Threads; 0 takes what the machine has.
     pub threads: u32,
 }
@@ -56,6 +57,31 @@ pub enum LinearSolver {
     Lu,
 }
 
+/// Stabilisation, written `"none"` or `{"viscous": {"factor": 1e-3, "until": 0.5}}`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Stabilization {
+    /// Equilibrium without help: a body must be held by its supports, and a structure that snaps fails.
+    #[default]
+    None,
+    /// Every unknown of a body feels a force `c m (u - u_start) / dt` in every step, `m` being the volume of its node and
+    /// `c = factor * end_time * E (h / L)^2 / L^2` (force time / length^4) of the body that bends most easily: E Young's
+    /// modulus, L its length, h its mean thickness. A motion spread over the whole run meets forces of about `factor` times
+    /// those that bend that body as far. Bodies may then be held by contact alone, and structures snap through.
+    Viscous {
+        /// Positive; large enough to hold, small enough to dissipate little (which is told).
+        #[serde(default = "default_factor")]
+        factor: f64,
+        /// Steps that start at this time or later are not stabilised.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        until: Option<f64>,
+    },
+}
+
+fn default_factor() -> f64 {
+    1e-3
+}
+
 /// What is written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -76,6 +102,7 @@ impl Default for Solution {
             step: Step::default(),
             newton: Newton::default(),
             linear_solver: LinearSolver::Auto,
+            stabilization: Stabilization::None,
             threads: 0,
         }
     }

@@ -1,0 +1,110 @@
+//! Viscous stabilisation: a force on every unknown of a body along its way since the start of the step, and a diagonal of the
+//! tangent. Linear, so exact. Nothing is allocated where the scene does not ask for it.
+use super::Assembler;
+use crate::model::Model;
+use covact_geometry::Vec3;
+
+/// The step that is being stabilised.
+pub(super) struct Viscous {
+    /// Displacements at its start.
+    base: Vec<f64>,
+    /// One over its length; zero where nothing is stabilised.
+    rate: f64,
+}
+
+/// What the stabilisation did in a step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Drag {
+    /// Energy dissipated.
+    pub work: f64,
+    /// Its forces (sum of the magnitudes at nodes) relative to those of loads, supports or contacts, whichever are largest.
+    pub share: f64,
+}
+
+impl Viscous {
+    pub fn new(model: &Model) -> Option<Viscous> {
+        model.stabilization.as_ref().map(|_| Viscous {
+            base: vec![0.0; 3 * model.nodes.len()],
+            rate: 0.0,
+        })
+    }
+}
+
+impl Assembler<'_> {
+    /// Tells that a step from `start` to `end` begins at the displacements `u`.
+    pub fn begin_step(&mut self, u: &[f64], start: f64, end: f64) {
+        if let (Some(viscous), Some(model)) = (&mut self.viscous, &self.model.stabilization) {
+            viscous.base.copy_from_slice(u);
+            viscous.rate = match model.acts(start) {
+                true => 1.0 / (end - start),
+                false => 0.0,
+            };
+        }
+    }
+
+    /// Whether the present step is stabilised.
+    pub fn stabilizes(&self) -> bool {
+        self.viscous.as_ref().is_some_and(|v| v.rate > 0.0)
+    }
+
+    pub(super) fn stabilize<const TANGENT: bool>(&mut self, u: &[f64], residual: &mut [f64]) {
+        let (Some(viscous), Some(model)) = (&self.viscous, &self.model.stabilization) else {
+            return;
+        };
+        if viscous.rate == 0.0 {
+            return;
+        }
+        for (dof, weight) in model.weights.iter().enumerate() {
+            let stiffness = weight * viscous.rate;
+            residual[dof] += stiffness * (u[dof] - viscous.base[dof]);
+            if TANGENT && stiffness > 0.0 {
+                self.matrix.add_diagonal(dof, stiffness);
+            }
+        }
+    }
+
+    /// Mean velocity of some nodes in the present step, which ends at `u`.
+    pub fn velocity(&self, u: &[f64], nodes: &[u32]) -> Vec3 {
+        let Some(viscous) = &self.viscous else {
+            return Vec3::zeros();
+        };
+        let sum = nodes.iter().fold(Vec3::zeros(), |s, &n| {
+            let way = |c: usize| u[3 * n as usize + c] - viscous.base[3 * n as usize + c];
+            s + Vec3::new(way(0), way(1), way(2))
+        });
+        sum * (viscous.rate / nodes.len() as f64)
+    }
+
+    /// What the stabilisation did in the step whose last evaluation was at `u`; `residual` is that of all degrees of freedom.
+    pub fn drag(&self, u: &[f64], residual: &[f64]) -> Drag {
+        let (Some(viscous), Some(model)) = (&self.viscous, &self.model.stabilization) else {
+            return Drag::default();
+        };
+        let mut out = Drag::default();
+        let (mut own, mut forces, mut held) = (0.0, [0.0f64; 3], 0);
+        let removed: Vec<u32> = self.dofs.removed().collect();
+        for first in (0..u.len()).step_by(3) {
+            let (mut drag, mut node) = (0.0, [0.0f64; 3]);
+            for dof in first..first + 3 {
+                let way = u[dof] - viscous.base[dof];
+                let force = model.weights[dof] * viscous.rate * way;
+                out.work += force * way;
+                drag += force * force;
+                node[0] += self.external[dof].powi(2);
+                node[1] += self.contact[dof].powi(2);
+                if removed.get(held) == Some(&(dof as u32)) {
+                    held += 1;
+                    node[2] += residual[dof].powi(2);
+                }
+            }
+            own += drag.sqrt();
+            (0..3).for_each(|i| forces[i] += node[i].sqrt());
+        }
+        let largest = forces.iter().fold(0.0f64, |a, f| a.max(*f));
+        out.share = match own > 0.0 {
+            true => own / largest.max(f64::MIN_POSITIVE),
+            false => 0.0,
+        };
+        out
+    }
+}

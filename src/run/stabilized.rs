@@ -1,0 +1,83 @@
+//! What a run says of its stabilisation.
+use super::march::{Ending, March};
+use crate::assembly::Drag;
+use crate::model::error::number;
+use crate::model::stabilization::{DISSIPATES, RESTS};
+use crate::model::state::State;
+use crate::output::RunStatus;
+use crate::solve::newton::{Converged, StepFailure};
+
+/// Part of the size of the model that a body without supports may move in the time of a run and still be at rest, and the
+/// part of [`RESTS`] that the stabilisation has to carry for it to be told.
+const MOVES: f64 = 0.05;
+
+impl March<'_, '_> {
+    /// Ends a run whose body runs away, and says at the end whether the answer rests on the stabilisation.
+    pub(super) fn stabilized(
+        &mut self,
+        state: &State,
+        drag: &Drag,
+        converged: &Converged,
+        last: bool,
+    ) -> Option<Ending> {
+        let model = self.model.stabilization.as_ref()?;
+        if drag.share > RESTS
+            && let Some((piece, way)) = model.run_away(&state.u)
+        {
+            let failure = StepFailure::RunsAway {
+                body: piece.motion.body.clone(),
+                motion: piece.motion.motion.clone(),
+                reached: format!(
+                    "at time {} it is ({}, {}, {}) away from where it started, {:.0} times the size of the model; \
+                     stabilization alone slows it",
+                    number(self.progress.time),
+                    number(way.x),
+                    number(way.y),
+                    number(way.z),
+                    way.norm() / model.size
+                ),
+            };
+            return Some(Ending {
+                status: RunStatus::NotConverged,
+                reason: Some(failure.to_string()),
+            });
+        }
+        if !last {
+            return None;
+        }
+        let stored = converged.totals.internal_energy;
+        if state.stabilized > DISSIPATES * stored {
+            self.warn(format!(
+                "stabilization has dissipated {}, more than {:.0} % of the strain energy {} at the end: something snapped or \
+                 moved freely, or its `factor` is too large",
+                number(state.stabilized),
+                100.0 * DISSIPATES,
+                number(stored)
+            ));
+        }
+        let moving = model.free.iter().find_map(|piece| {
+            let velocity = self.assembler.velocity(&state.u, &piece.motion.nodes);
+            let way = velocity * self.scene.solution.end_time;
+            let slides = way.norm() > MOVES * model.size && drag.share > MOVES * RESTS;
+            slides.then_some((piece, velocity))
+        });
+        if let Some((piece, v)) = moving {
+            self.warn(format!(
+                "the answer rests on the stabilization: body `{}` still moves at the end, at ({}, {}, {}) in a unit of time, \
+                 and no support hinders it {}: hold it, or read what follows as one moment of its way",
+                piece.motion.body,
+                number(v.x),
+                number(v.y),
+                number(v.z),
+                piece.motion.motion
+            ));
+        } else if drag.share > RESTS {
+            self.warn(format!(
+                "the answer rests on the stabilization: at the end its forces are {:.2e} of the others, more than {RESTS}: \
+                 something still moves; give it time to come to rest, hold it, or take a smaller `factor`",
+                drag.share
+            ));
+        }
+        None
+    }
+}

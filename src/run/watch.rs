@@ -1,0 +1,396 @@
+//! What a run watches of its energies.
+//!
+//! The work done on the bodies since the start is summed over the accepted steps by the trapezoidal rule: reactions at
+//! supports and loads on the displacements of the step, the force and the moment of every rigid surface on the motion of
+//! the surface, and the pressure of contacts whose overclosure shrinks on what the offset shrinks by. Forces at the start of
+//! a step are those in equilibrium there, so that what is suddenly there with a step counts as growing evenly over it.
+//!
+//! Penalties put in energy of their own where they change under points that are pressed: an overclosure at the start,
+//! a penalty that is raised, a multiplier that takes over from one. The first two are treated as a change before anything
+//! moves: what the change stores at once counts, and the forces at the start of the step are those after the change.
+//! A point with a multiplier does the work of its tractions; what of that the penalty does not hold counts, with its sign.
+//!
+//! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
+use crate::assembly::{Assembler, Fault, PointAnswer, SurfaceForce, Totals};
+use crate::model::error::number;
+use crate::model::state::State;
+use crate::model::{Model, SurfaceModel};
+use crate::scene::ValueError;
+use covact_geometry::Vec3;
+use nalgebra::Isometry3;
+
+/// Share of the work turned over so far above which a step that no trapezoid explains is told.
+const JUMP: f64 = 0.01;
+/// Share of the work turned over above which the sum of all steps is told.
+const DRIFT: f64 = 0.05;
+
+/// Sums since the start, and what acts at the last accepted state: all that the watch needs to go on.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Watch {
+    /// Work of supports, loads, rigid surfaces and shrinking overclosures (energy).
+    pub external: f64,
+    /// Energy that penalties and multipliers put in by changing (energy).
+    pub adjusted: f64,
+    /// `external + adjusted - stored - dissipated` (energy).
+    pub imbalance: f64,
+    /// Sum of the sizes of all works, whatever their signs (energy).
+    pub turnover: f64,
+    /// The largest change of the imbalance in one step, and that step.
+    pub worst: f64,
+    pub worst_step: u32,
+    /// Reactions and loads, 3 per node of the bodies (force).
+    reactions: Vec<f64>,
+    loads: Vec<f64>,
+    /// What the rigid surfaces exert.
+    surfaces: Vec<SurfaceForce>,
+    /// Penalty per pair.
+    penalties: Vec<f64>,
+    /// Per pair whose overclosure shrinks: sum of normal traction, overclosure at the start and area (energy).
+    pressed: Vec<f64>,
+    /// Normal traction and gap per point with multipliers.
+    tractions: Vec<[f64; 2]>,
+}
+
+/// Work of one step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Work {
+    pub external: f64,
+    pub adjusted: f64,
+    /// Largest error of the trapezoidal rule where every force changes in one direction over the step.
+    pub coarse: f64,
+    turnover: f64,
+}
+
+impl Work {
+    /// Adds what changes from `a` to `b` at the ends of the step in a linear way.
+    fn add(&mut self, a: f64, b: f64) {
+        self.external += 0.5 * (a + b);
+        self.turnover += 0.5 * (a + b).abs();
+        self.coarse += 0.5 * (b - a).abs();
+    }
+}
+
+/// A step whose energies do not balance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jump {
+    /// Energy that the step lost, negative where it gained some.
+    pub lost: f64,
+    /// The same as a part of the work turned over so far.
+    pub part: f64,
+}
+
+impl Jump {
+    /// What the user is told.
+    pub fn told(&self, step: u32, time: f64) -> String {
+        let (did, what) = match self.lost > 0.0 {
+            true => ("lost", "went"),
+            false => ("gained", "came"),
+        };
+        format!(
+            "step {step} (time {}) {did} an energy of {:.3e} that {what} nowhere, {:.1} % of the work so far, and more than its \
+             size explains: the path jumped (snap-through, contact lost, another equilibrium). Take smaller steps, drive the \
+             motion by displacements instead of forces, ask for `solution.stabilization`, or read what follows as the state \
+             after the jump",
+            number(time),
+            self.lost.abs(),
+            100.0 * self.part
+        )
+    }
+}
+
+/// Ends of a step.
+#[derive(Debug, Clone, Copy)]
+pub struct Span<'a> {
+    pub from: (&'a State, f64),
+    pub to: (&'a State, f64),
+}
+
+impl Watch {
+    /// Nothing has acted yet.
+    pub fn new(model: &Model) -> Self {
+        let n = 3 * model.body_nodes();
+        Watch {
+            reactions: vec![0.0; n],
+            loads: vec![0.0; n],
+            surfaces: vec![SurfaceForce::default(); model.surfaces.len()],
+            penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
+            pressed: vec![0.0; model.pairs.len()],
+            tractions: vec![
+                [0.0; 2];
+                if augmented(model) {
+                    model.histories()
+                } else {
+                    0
+                }
+            ],
+            ..Watch::default()
+        }
+    }
+
+    /// Takes over what contact stores and exerts before anything has moved, where points start below their surface.
+    ///
+    /// # Errors
+    /// A point that cannot be evaluated, or a motion without a value at the start.
+    pub fn start(
+        &mut self,
+        model: &Model,
+        assembler: &mut Assembler,
+        state: &State,
+    ) -> Result<(), Fault> {
+        let mut forces = vec![0.0; 3 * model.nodes.len()];
+        let totals = assembler.contact(&mut state.clone(), 0.0, &mut forces)?;
+        let n = self.reactions.len();
+        self.reactions.copy_from_slice(&forces[..n]);
+        self.surfaces.copy_from_slice(&totals.surfaces);
+        self.adjusted = totals.contact_energy;
+        self.keep_tractions(assembler.answers());
+        Ok(())
+    }
+
+    /// Work of an accepted step, and what acts at its end. `residual` is that of all degrees of freedom; the assembler has
+    /// evaluated the end of the step.
+    ///
+    /// # Errors
+    /// A motion of a surface without a value at an end of the step, or a point that cannot be evaluated.
+    pub fn work(
+        &mut self,
+        model: &Model,
+        assembler: &mut Assembler,
+        residual: &[f64],
+        totals: &Totals,
+        span: &Span,
+    ) -> Result<Work, Fault> {
+        let mut work = Work::default();
+        let (from, to) = (span.from.0, span.to.0);
+        let n = self.reactions.len();
+        let (was, now) = (&from.u[..n], &to.u[..n]);
+        for (at, end) in [
+            (&mut self.reactions, residual),
+            (&mut self.loads, assembler.external()),
+        ] {
+            let [mut a, mut b] = [0.0; 2];
+            for (i, (a_i, b_i)) in at.iter().zip(end).enumerate() {
+                let du = now[i] - was[i];
+                a += a_i * du;
+                b += b_i * du;
+            }
+            work.add(a, b);
+            at.copy_from_slice(&end[..n]);
+        }
+        let twists = Twist::all(model, span)?;
+        for ((twist, was), now) in twists.iter().zip(&self.surfaces).zip(&totals.surfaces) {
+            if let Some(twist) = twist {
+                work.add(twist.power(was), twist.power(now));
+            }
+        }
+        self.surfaces.copy_from_slice(&totals.surfaces);
+        work.adjusted += self.multipliers(model, assembler);
+        if self.penalties != assembler.penalties {
+            work.adjusted += self.raised(model, assembler, span, &twists)?;
+            self.penalties.copy_from_slice(&assembler.penalties);
+        }
+        Ok(work)
+    }
+
+    /// Closes the balance of a step. `pressed` are the sums of this name at its end, `energy` what is stored and what has been
+    /// dissipated since the start; the step went from time `from` to `to`.
+    pub fn close(
+        &mut self,
+        model: &Model,
+        (step, [from, to]): (u32, [f64; 2]),
+        mut work: Work,
+        pressed: &[f64],
+        energy: f64,
+    ) -> Option<Jump> {
+        for ((pair, was), now) in model.pairs.iter().zip(&mut self.pressed).zip(pressed) {
+            if let Some(over) = &pair.overclosure {
+                let shrunk = over.factor(from) - over.factor(to);
+                work.add(*was * shrunk, now * shrunk);
+            }
+            *was = *now;
+        }
+        self.external += work.external;
+        self.adjusted += work.adjusted;
+        self.turnover += work.turnover;
+        let before = self.imbalance;
+        self.imbalance = self.external + self.adjusted - energy;
+        let lost = self.imbalance - before;
+        if lost.abs() > self.worst.abs() {
+            (self.worst, self.worst_step) = (lost, step);
+        }
+        let part = lost.abs() / self.turnover.max(energy.abs());
+        (lost.abs() > work.coarse && part > JUMP).then_some(Jump { lost, part })
+    }
+
+    /// The part of the work turned over that the energies at the end are out of balance by, where it is too large.
+    pub fn drift(&self) -> Option<f64> {
+        let part = self.imbalance.abs() / self.turnover;
+        (part > DRIFT).then_some(part)
+    }
+
+    /// Work of the normal tractions of points with multipliers that their penalties do not store.
+    fn multipliers(&mut self, model: &Model, assembler: &Assembler) -> f64 {
+        let answers = assembler.answers();
+        let mut adjusted = 0.0;
+        for (index, pair) in model.pairs.iter().enumerate() {
+            let (Some(_), Some(range)) = (&pair.augmentation, pair.history()) else {
+                continue;
+            };
+            let half = [self.penalties[index], assembler.penalties[index]].map(|eps| 0.5 * eps);
+            let mut sum = 0.0;
+            for ((p, was), now) in (pair.points.iter())
+                .zip(&self.tractions[range.clone()])
+                .zip(&answers[range])
+            {
+                let [n, g] = traction(now);
+                let stored = half[1] * g * g - half[0] * was[1] * was[1];
+                sum += (stored - 0.5 * (n + was[0]) * (g - was[1])) * p.area;
+            }
+            adjusted += pair.share() * sum;
+        }
+        self.keep_tractions(answers);
+        adjusted
+    }
+
+    fn keep_tractions(&mut self, answers: &[Option<PointAnswer>]) {
+        for (kept, answer) in self.tractions.iter_mut().zip(answers) {
+            *kept = traction(answer);
+        }
+    }
+
+    /// Energy that penalties put in which were raised in the step, as if they had been at its start.
+    fn raised(
+        &self,
+        model: &Model,
+        assembler: &mut Assembler,
+        span: &Span,
+        twists: &[Option<Twist>],
+    ) -> Result<f64, Fault> {
+        let raised = assembler.penalties.clone();
+        let ((from, start), (to, end)) = (span.from, span.to);
+        // Points with multipliers are accounted for already.
+        let mut mixed = raised.clone();
+        let mut adjusted = 0.0;
+        for (index, pair) in model.pairs.iter().enumerate() {
+            let was = self.penalties[index];
+            if pair.augmentation.is_some() {
+                mixed[index] = was;
+            } else if let (Some(friction), Some(range)) = (&pair.friction, pair.history()) {
+                let compliance = (1.0 / raised[index] - 1.0 / was) / friction.ratio;
+                let points = pair.points.iter().zip(&from.histories[range]);
+                let sum: f64 = points.map(|(p, h)| h.t.norm_squared() * p.area).sum();
+                adjusted += 0.5 * pair.share() * compliance * sum;
+            }
+        }
+        let mut forces = vec![0.0; from.u.len()];
+        let mut sign = -1.0;
+        for penalties in [&self.penalties, &mixed] {
+            assembler.penalties.copy_from_slice(penalties);
+            let totals = assembler.contact(&mut from.clone(), start, &mut forces);
+            assembler.penalties.copy_from_slice(&raised);
+            let totals = totals?;
+            let mut work = 0.0;
+            for ((f, b), a) in (forces.iter().zip(&to.u).zip(&from.u)).take(self.reactions.len()) {
+                work += f * (b - a);
+            }
+            for (twist, on) in twists.iter().zip(&totals.surfaces) {
+                work += twist.as_ref().map_or(0.0, |t| t.power(on));
+            }
+            adjusted += sign * (totals.contact_energy + 0.5 * work);
+            sign = 1.0;
+        }
+        // What is known of the points is that of the end again.
+        assembler.contact(&mut to.clone(), end, &mut forces)?;
+        Ok(adjusted)
+    }
+}
+
+/// Normal traction and gap of a point with multipliers; nothing where it is open.
+fn traction(answer: &Option<PointAnswer>) -> [f64; 2] {
+    answer.as_ref().map_or([0.0; 2], |a| [a.n, a.gap])
+}
+
+fn augmented(model: &Model) -> bool {
+    model.pairs.iter().any(|p| p.augmentation.is_some())
+}
+
+/// Motion of a rigid surface over a step as the screw that leads from one position to the other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Twist {
+    /// Displacement of the point of the surface that passes the origin (length).
+    velocity: Vec3,
+    /// Rotation vector.
+    spin: Vec3,
+}
+
+impl Twist {
+    /// Per surface; none where it stands still.
+    fn all(model: &Model, span: &Span) -> Result<Vec<Option<Twist>>, ValueError> {
+        let ((from, start), (to, end)) = (span.from, span.to);
+        let between = |s: &SurfaceModel| {
+            let (a, b) = (s.pose(start, &from.u)?, s.pose(end, &to.u)?);
+            Ok((a != b).then(|| Twist::between(&a, &b)))
+        };
+        model.surfaces.iter().map(between).collect()
+    }
+
+    /// The logarithm of the motion (R. M. Murray, Z. Li, S. S. Sastry, "A Mathematical Introduction to Robotic Manipulation",
+    /// 1994, proposition 2.9), by the displacement of a point near the surface: positions may be far from the origin.
+    fn between(a: &Isometry3<f64>, b: &Isometry3<f64>) -> Twist {
+        let turn = b.rotation * a.rotation.inverse();
+        let spin = turn.scaled_axis();
+        let angle = spin.norm();
+        let moved = b.translation.vector - a.translation.vector;
+        // (1 - (angle / 2) cot(angle / 2)) / angle^2, and its limit.
+        let half = 0.5 * angle;
+        let second = match angle > 1e-3 {
+            true => (1.0 - half / half.tan()) / (angle * angle),
+            false => 1.0 / 12.0 + angle * angle / 720.0,
+        };
+        let across = spin.cross(&moved);
+        let velocity = moved - 0.5 * across + second * spin.cross(&across);
+        Twist {
+            velocity: velocity - spin.cross(&a.translation.vector),
+            spin,
+        }
+    }
+
+    /// Work of force and moment on the motion.
+    fn power(&self, on: &SurfaceForce) -> f64 {
+        self.velocity.dot(&on.force) + self.spin.dot(&on.moment)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Point3, Translation3, UnitQuaternion};
+
+    /// The screw through two positions takes points of the one to the other.
+    #[test]
+    fn screws_lead_from_one_position_to_the_other() {
+        for angle in [0.0, 1e-9, 1e-4, 0.3, 3.0] {
+            let turn = |v: Vec3| UnitQuaternion::from_scaled_axis(v);
+            let a = Isometry3::from_parts(
+                Translation3::new(3.0, -2.0, 5.0),
+                turn(Vec3::new(0.2, 0.5, -0.9)),
+            );
+            let spin = Vec3::new(2.0, -1.0, 2.0) * (angle / 3.0);
+            let step = Isometry3::from_parts(Translation3::new(0.1, 0.7, -0.4), turn(spin));
+            let twist = Twist::between(&a, &(step * a));
+            // By steps along the field of velocities, of fourth order.
+            let field = |x: Vec3| twist.velocity + twist.spin.cross(&x);
+            let mut x = Vec3::new(1.0, 2.0, 3.0);
+            let to = (step * Point3::from(x)).coords;
+            let h = 1.0 / 400.0;
+            for _ in 0..400 {
+                let k1 = field(x);
+                let k2 = field(x + k1 * (0.5 * h));
+                let k3 = field(x + k2 * (0.5 * h));
+                let k4 = field(x + k3 * h);
+                x += (k1 + k2 * 2.0 + k3 * 2.0 + k4) * (h / 6.0);
+            }
+            assert!((x - to).norm() < 1e-8, "{angle}: {x} {to}");
+        }
+    }
+}

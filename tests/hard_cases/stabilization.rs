@@ -1,0 +1,163 @@
+//! Viscous stabilisation: its tangent, its scale, what it costs where it is off. What it does to bodies that only contact
+//! holds and to structures that snap is in the group `instability` of the gauntlet.
+use crate::support::solve;
+use covact::assembly::Assembler;
+use covact::model::Model;
+use covact::model::build::build;
+use covact::model::state::State;
+use covact::scene::parse;
+use serde_json::{Value, json};
+
+/// A block of `size` held by one face, E = 100, without contact.
+fn block(size: [f64; 3], stabilization: Value) -> Value {
+    json!({
+        "covact": 1,
+        "materials": {"m": {"neo_hooke": {"E": 100, "nu": 0.3}}},
+        "bodies": {"block": {
+            "mesh": {"block": {"min": [0, 0, 0], "max": size, "elements": [2, 3, 2]}}, "material": "m"
+        }},
+        "supports": {"held": {"on": "block.x_min", "fixed": true}},
+        "loads": {"pull": {"on": "block.x_max", "force": ["3*t", "t", 0]}},
+        "solution": {"end_time": 2, "step": {"initial": 0.5, "max": 0.5}, "stabilization": stabilization, "threads": 1},
+        "output": {"every": 0}
+    })
+}
+
+fn model(scene: &Value) -> Model {
+    build(&parse(&scene.to_string(), "scene.json").expect("a scene")).expect("a model")
+}
+
+/// The residual gains `c m (u - base) / dt` and the tangent its derivative: to rounding, and nothing else changes.
+#[test]
+fn force_and_tangent_are_those_of_the_formula() {
+    let size = [2.0, 1.0, 0.5];
+    let (factor, end, dt) = (0.02, 2.0, 0.25);
+    let plain = model(&block(size, json!("none")));
+    assert!(plain.stabilization.is_none());
+    let helped = model(&block(size, json!({"viscous": {"factor": factor}})));
+    let own = helped.stabilization.as_ref().expect("stabilisation");
+    // Second moments of the nodal volumes about the longest axis: 0, 1, 2 with 1/4, 1/2, 1/4.
+    let length = (12.0f64 * 0.5).sqrt();
+    let thickness = 2.0 * (2.0 * 1.0 * 0.5) / (2.0 * (2.0 * 1.0 + 1.0 * 0.5 + 2.0 * 0.5));
+    let c = factor * end * 100.0 * (thickness / length).powi(2) / length.powi(2);
+    assert!(
+        (own.coefficient / c - 1.0).abs() < 1e-12,
+        "{} {c}",
+        own.coefficient
+    );
+
+    let linearize = |model: &Model, way: f64| {
+        let mut assembler = Assembler::new(model, &model.dofs).expect("a pattern");
+        let mut state = State::new(model);
+        assembler.begin_step(&state.u, 0.5, 0.5 + dt);
+        for (i, u) in state.u.iter_mut().enumerate() {
+            *u = way * (1e-3 * i as f64).sin();
+        }
+        for dof in model.dofs.removed() {
+            state.u[dof as usize] = 0.0;
+        }
+        let n = state.u.len();
+        let (mut residual, mut rhs) = (vec![0.0; n], vec![0.0; n]);
+        (assembler.linearize(&mut state, 0.75, None, &mut residual, &mut rhs))
+            .expect("an evaluation");
+        let drag = assembler.drag(&state.u, &residual);
+        (state.u, residual, assembler.matrix().clone(), drag)
+    };
+    let (u, r0, k0, none) = linearize(&plain, 0.1);
+    let (_, r1, k1, drag) = linearize(&helped, 0.1);
+    assert_eq!(none, covact::assembly::Drag::default());
+    let (mut volume, mut work) = (0.0, 0.0);
+    for dof in 0..u.len() {
+        let w = own.weights[dof];
+        volume += w / c;
+        work += w * u[dof] * u[dof] / dt;
+        let free = !helped.dofs.removed().any(|d| d as usize == dof);
+        assert_eq!(w > 0.0, free);
+        let force = w * u[dof] / dt;
+        assert!((r1[dof] - r0[dof] - force).abs() < 1e-12, "{dof}");
+        if free {
+            let gained = k1.get(dof, dof) - k0.get(dof, dof);
+            assert!((gained - w / dt).abs() < 1e-12 * k0.get(dof, dof), "{dof}");
+            for other in (0..dof).filter(|o| o / 3 == dof / 3) {
+                assert_eq!(k1.get(dof, other), k0.get(dof, other));
+            }
+        }
+    }
+    // The nodes of the face that is held have a quarter of the volume.
+    assert!((volume / (3.0 * 0.75) - 1.0).abs() < 1e-12, "{volume}");
+    assert!(work > 0.0 && (drag.work / work - 1.0).abs() < 1e-12);
+    assert!(drag.share > 0.0);
+}
+
+/// Lengths times 1000, modulus times 1e-3, the time of the run times 7: the same part of the forces.
+#[test]
+fn scales_with_the_units() {
+    let run = |length: f64, modulus: f64, time: f64| {
+        let scale = |x: f64| x * length;
+        let mut scene = block([2.0, 1.0, 0.5].map(scale), json!({"viscous": {}}));
+        scene["materials"]["m"]["neo_hooke"]["E"] = json!(100.0 * modulus);
+        let force = modulus * length * length;
+        scene["loads"]["pull"]["force"] = json!([
+            format!("3*{force}*t/{time}"),
+            format!("{force}*t/{time}"),
+            0
+        ]);
+        scene["solution"]["end_time"] = json!(2.0 * time);
+        scene["solution"]["step"] = json!({"initial": 0.5 * time, "max": 0.5 * time});
+        scene["solution"]["newton"] = json!({"tolerance": 1e-11});
+        solve(&scene)
+    };
+    let (a, b) = (run(1.0, 1.0, 1.0), run(1e3, 1e-3, 7.0));
+    let energy = 1e-3 * 1e9;
+    for (name, unit) in [
+        ("energy.stabilization", energy),
+        ("stabilization.share", 1.0),
+        ("energy.internal", energy),
+    ] {
+        let (a, b) = (a.column(name), b.column(name));
+        assert_eq!(a.len(), 4);
+        for (a, b) in a.iter().zip(&b) {
+            assert!(
+                *a > 0.0 && (b / unit / a - 1.0).abs() < 1e-7,
+                "{name}: {a} {b}"
+            );
+        }
+    }
+    // What it takes from a body that is only loaded is far below what is stored, and nothing is told.
+    let part = a.column("energy.stabilization")[3] / a.column("energy.internal")[3];
+    println!("dissipated: {part:.1e} of the strain energy");
+    assert!(part < 0.01, "{part}");
+    assert_eq!(a.summary.warnings, Vec::<String>::new());
+    assert!(
+        a.summary
+            .effects
+            .iter()
+            .any(|e| e == "stabilization.viscous")
+    );
+}
+
+/// After `until` the run is that without: the state forgets what held it.
+#[test]
+fn until_ends_it() {
+    let limited = solve(&block(
+        [2.0, 1.0, 0.5],
+        json!({"viscous": {"factor": 0.1, "until": 0.7}}),
+    ));
+    let plain = solve(&block([2.0, 1.0, 0.5], json!("none")));
+    assert!(
+        limited
+            .column("time")
+            .iter()
+            .any(|t| (t - 0.7).abs() < 1e-12)
+    );
+    let share = limited.column("stabilization.share");
+    for (t, s) in limited.column("time").iter().zip(&share) {
+        assert_eq!(*s > 0.0, *t < 0.7 + 1e-9, "{t} {s}");
+    }
+    let (a, b) = (
+        limited.at("energy.internal", 2.0),
+        plain.at("energy.internal", 2.0),
+    );
+    assert!((a / b - 1.0).abs() < 1e-7, "{a} {b}");
+    assert!(plain.history.column("energy.stabilization").is_none());
+}
