@@ -8,6 +8,7 @@ mod fields;
 mod friction_fields;
 mod history;
 mod march;
+mod passed;
 mod pieces;
 mod progress;
 mod step;
@@ -108,6 +109,7 @@ fn solve(
         warnings,
         iterations,
         cuts,
+        ping_pongs,
         steps,
         time,
     } = march.progress;
@@ -131,6 +133,7 @@ fn solve(
             .collect(),
         steps,
         cuts,
+        ping_pongs,
         pattern_rebuilds,
         effects: model.effects.clone(),
         warnings,

@@ -1,6 +1,8 @@
 //! Newton's method with incremental loading on a sparse direct solver.
 pub mod convergence;
+mod cycle;
 pub mod event;
 pub mod linear;
 pub mod newton;
+pub mod place;
 pub mod stepping;
