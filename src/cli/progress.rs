@@ -182,6 +182,17 @@ impl Table {
                 "",
                 100.0 * left
             )],
+            Event::PingPong {
+                step,
+                contact,
+                points,
+                period,
+                broken,
+                ..
+            } => vec![format!(
+                "{step:>5} {:>10} {:>10} contact `{contact}`: {points} point(s) switch every {period} iterations the same; {broken}",
+                "", ""
+            )],
             Event::StepAccepted {
                 step,
                 time,

@@ -22,9 +22,20 @@ impl Overclosure {
 }
 
 impl PairModel {
-    /// The overclosure of the pair, where it shrinks over time.
-    pub fn shrinking(&self) -> Option<&Overclosure> {
-        self.overclosure.as_ref().filter(|o| o.until.is_some())
+    /// Whether the first step resolves an overclosure at the start. (Segments are cut anew with every step: their points are
+    /// others then.)
+    pub fn strains(&self) -> bool {
+        self.overclosure.is_none() && self.segments.is_none()
+    }
+
+    /// Overclosures of the points that are being resolved: those that shrink over time, or those of the start in `start`, where
+    /// the pair's begin at `first`; none where nothing is resolved.
+    pub fn resolved<'a>(&'a self, start: &'a [f64], first: usize) -> Option<&'a [f64]> {
+        match &self.overclosure {
+            Some(over) => over.until.map(|_| &over.z0[..]),
+            None if start.is_empty() || self.segments.is_some() => None,
+            None => start.get(first..first + self.points.len()),
+        }
     }
 
     /// What the gaps of the points are measured from at time `t`; none where they are normal coordinates.

@@ -10,6 +10,34 @@ pub const FACTOR: f64 = 20.0;
 /// Penetration that an automatic penalty tolerates, as a fraction of the slave's element size.
 pub const TOLERATED: f64 = 0.01;
 
+/// Multiple of the elements' stiffness above which a given penalty is warned of: rounding then takes more digits of a
+/// displacement than contact asks for.
+pub const WARNED: f64 = 1e4;
+
+/// Multiple of the elements' stiffness above which a given penalty is refused: of sixteen digits seven are gone, and what is
+/// left carries no stress of a thin shell.
+pub const REFUSED: f64 = 1e7;
+
+/// What is to be said of a given penalty.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Given {
+    Fine,
+    /// So many times the stiffness of the elements, which costs digits.
+    Stiff(f64),
+    /// So many times their stiffness, which leaves none.
+    TooStiff(f64),
+}
+
+/// Judges a given penalty by the automatic one (force / length^3).
+pub fn judge(given: f64, automatic: f64) -> Given {
+    let multiple = FACTOR * given / automatic;
+    match multiple {
+        m if m > REFUSED => Given::TooStiff(m),
+        m if m > WARNED => Given::Stiff(m),
+        _ => Given::Fine,
+    }
+}
+
 /// Young's modulus of a material.
 pub fn modulus(material: &Material) -> f64 {
     match material {

@@ -162,13 +162,12 @@ pub const COLUMNS: &[ColumnDoc] = &[
     doc(
         "energy.external",
         "energy",
-        "work of supports, loads, rigid surfaces and shrinking overclosures since the start (trapezoidal rule)",
+        "work of supports, loads, rigid surfaces and overclosures that are resolved, since the start (trapezoidal rule)",
     ),
     doc(
         "energy.adjusted",
         "energy",
-        "energy put in since the start by what changes in contact itself: overclosures that the first step resolves, \
-         raised penalties, multipliers",
+        "energy put in since the start by what changes in contact itself: raised penalties, multipliers",
     ),
     doc(
         "energy.imbalance",

@@ -69,6 +69,9 @@ pub struct Summary {
     pub steps: u32,
     /// Attempts that failed and were rolled back.
     pub cuts: u32,
+    /// Times that contact points switched between open and closed round and round, and were stopped.
+    #[serde(default)]
+    pub ping_pongs: u32,
     /// Times the system's structure was set up anew because slave points had come to faces of a body that it did not
     /// hold yet.
     #[serde(default)]

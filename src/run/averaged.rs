@@ -46,10 +46,11 @@ pub(super) fn nodes_now(
     first: usize,
     time: f64,
     front: &mut [bool],
+    start: &[f64],
 ) -> (Vec<NodeNow>, usize) {
     let offsets = pair.offsets(time);
     let reach = pair.reach(model);
-    let shrinking = pair.shrinking();
+    let shrinking = pair.resolved(start, first);
     let mut sums = vec![Sums::default(); nodes.len()];
     let mut sunk = 0;
     for (i, (p, front)) in pair.points.iter().zip(front).enumerate() {
@@ -69,8 +70,8 @@ pub(super) fn nodes_now(
             share.add_to(&mut sums[at].gap, shape, p.area);
             sums[at].shown += shape * p.area * shown;
             sums[at].area += shape * p.area;
-            if let (Some(over), Share::Gap(_)) = (shrinking, share) {
-                sums[at].shrinking += shape * p.area * over.z0[i];
+            if let (Some(z0), Share::Gap(_)) = (shrinking, share) {
+                sums[at].shrinking += shape * p.area * z0[i];
             }
         }
     }

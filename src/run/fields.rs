@@ -40,8 +40,12 @@ pub struct Fields {
     pub largest_pressure: f64,
     /// Slave area in contact.
     pub area: f64,
-    /// Per pair whose overclosure shrinks: sum of normal traction, overclosure at the start and area (energy).
+    /// Per pair whose overclosure shrinks, or is resolved by the first step and in its row only: sum of normal traction,
+    /// overclosure at the start and area (energy).
     pub pressed: Vec<f64>,
+    /// Gaps at the start where they are negative, between the first two times of gathering; empty where none are.
+    start: Vec<f64>,
+    gathered: bool,
 }
 
 impl Fields {
@@ -82,6 +86,8 @@ impl Fields {
             largest_pressure: 0.0,
             area: 0.0,
             pressed: vec![0.0; model.pairs.len()],
+            start: Vec::new(),
+            gathered: false,
         })
     }
 
@@ -111,6 +117,7 @@ impl Fields {
         self.area = 0.0;
         self.sunk.fill(0);
         self.pressed.fill(0.0);
+        let start = std::mem::take(&mut self.start);
         self.friction.clear();
         if !self.gaps.is_empty() {
             self.gaps.resize(state.points.len(), f64::NAN);
@@ -123,10 +130,20 @@ impl Fields {
             let fronts = &mut self.front[first..first + points.len()];
             if let Some(nodes) = &pair.averaged {
                 let (now, sunk) = nodes_now(
-                    model, pair, nodes, *eps_n, &master, state, first, time, fronts,
+                    model, pair, nodes, *eps_n, &master, state, first, time, fronts, &start,
                 );
                 self.sunk[index] += sunk;
                 self.pressed[index] = now.iter().map(|n| n.pressed).sum();
+                if !self.gathered && pair.strains() && now.iter().any(|n| n.closed) {
+                    self.start.resize(state.points.len(), 0.0);
+                    let offsets = pair.offsets(time);
+                    for (i, p) in points.iter().enumerate() {
+                        let x = model.point_position(p, &state.u);
+                        let z0 = offsets.map_or(0.0, |o| o.at(i));
+                        let seen = master.see(i, &x, states[i].hint);
+                        self.start[first + i] = seen.map_or(0.0, |s| s.gap(z0).min(0.0));
+                    }
+                }
                 now.iter().for_each(|n| self.take(n));
                 first += points.len();
                 continue;
@@ -134,7 +151,7 @@ impl Fields {
             // Both passes of two see the same area.
             let share = if pair.half.is_some() { 0.5 } else { 1.0 };
             let offsets = pair.offsets(time);
-            let shrinking = pair.shrinking();
+            let shrinking = pair.resolved(&start, first);
             let histories = pair.history().map(|range| &state.histories[range]);
             for (i, ((p, s), front)) in points.iter().zip(states).zip(fronts).enumerate() {
                 let z0 = offsets.map_or(0.0, |o| o.at(i));
@@ -165,8 +182,12 @@ impl Fields {
                 }
                 self.largest_pressure = self.largest_pressure.max(pressure);
                 self.area += if closed { share * p.area } else { 0.0 };
-                if let Some(over) = shrinking {
-                    self.pressed[index] -= share * pressure * over.z0[i] * p.area;
+                if let Some(z0) = shrinking {
+                    self.pressed[index] -= share * pressure * z0[i] * p.area;
+                }
+                if !self.gathered && gap < 0.0 && pair.strains() {
+                    self.start.resize(state.points.len(), 0.0);
+                    self.start[first + i] = gap;
                 }
                 for (node, n) in p.terms() {
                     let w = n * p.area;
@@ -190,6 +211,7 @@ impl Fields {
             }
             first += points.len();
         }
+        self.gathered = true;
         if self.smallest_gap == f64::INFINITY {
             self.smallest_gap = f64::NAN;
         }

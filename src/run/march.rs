@@ -104,11 +104,10 @@ impl<'a, 'm> March<'a, 'm> {
         commit::start(self.model, masters, &mut committed).map_err(|e| RunError::internal(&e))?;
         self.gather(&mut outputs, &committed, 0.0)?;
         self.write(&mut outputs, &committed)?;
-        if outputs.fields.smallest_gap < 0.0 {
-            // A point that cannot be evaluated fails the first step, and is named there.
-            let _ = (self.watch).start(self.model, self.assembler, &committed);
-        }
         let ending = self.steps(&mut committed, &mut outputs);
+        if let Some(text) = self.watch.drift(self.model) {
+            self.warn(text);
+        }
         if self.scene.output.every > 0 && outputs.written != Some(self.progress.steps) {
             self.write(&mut outputs, &committed)?;
         }
@@ -380,9 +379,10 @@ impl<'a, 'm> March<'a, 'm> {
         let stored = totals.internal_energy + totals.contact_energy + sliding.stored;
         let energy = stored + sliding.dissipated + state.stabilized;
         let pressed = &outputs.fields.pressed;
-        let jump = (self.watch).close(self.model, (step, span), work, pressed, energy);
-        if let Some(jump) = jump {
-            self.warn(jump.told(step, time));
+        let softened = converged.softened;
+        let told = (self.watch).close(self.model, (step, span), work, pressed, energy, softened);
+        if let Some(text) = told {
+            self.warn(text);
         }
         let row = history::row(&history::Record {
             model: self.model,

@@ -9,6 +9,7 @@ mod friction_fields;
 mod history;
 mod march;
 mod memory;
+mod passed;
 mod pieces;
 mod progress;
 mod stabilized;
@@ -112,6 +113,7 @@ fn solve(
         warnings,
         iterations,
         cuts,
+        ping_pongs,
         steps,
         time,
     } = march.progress;
@@ -135,6 +137,7 @@ fn solve(
             .collect(),
         steps,
         cuts,
+        ping_pongs,
         pattern_rebuilds,
         effects: model.effects.clone(),
         warnings,

@@ -7,6 +7,8 @@ pub(super) struct Progress {
     /// Newton iterations, those of failed attempts included.
     pub iterations: u64,
     pub cuts: u32,
+    /// Cycles of contact points that were broken.
+    pub ping_pongs: u32,
     pub steps: u32,
     pub time: f64,
 }

@@ -11,7 +11,9 @@
 //!
 //! What fails all three is cut.
 use super::augment::{self, Left};
+use super::passed;
 use super::progress::Progress;
+use super::watch::Span;
 use crate::assembly::{Assembler, Fault};
 use crate::model::driven::press::{Placed, Presser};
 use crate::model::state::State;
@@ -21,6 +23,7 @@ use crate::scene;
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::LinearSolver;
 use crate::solve::newton::{Converged, First, Newton, Patience, StepFailure, Workspace};
+use crate::solve::place;
 use nalgebra::Vector6;
 use std::sync::atomic::AtomicBool;
 
@@ -69,10 +72,16 @@ impl Attempts<'_, '_> {
     ) -> Result<Converged, StepFailure> {
         let penalties = self.assembler.penalties.clone();
         let result = self.attempt(step, end, dt, before, trial, &penalties);
-        if result.is_err() {
+        result.map_err(|failure| {
             self.assembler.penalties.copy_from_slice(&penalties);
-        }
-        result
+            let StepFailure::Fault(Fault::Value(error)) = failure else {
+                return failure;
+            };
+            match place::without_value(self.model, self.committed, end, &error) {
+                Some(pointer) => StepFailure::NoValue { pointer, error },
+                None => StepFailure::Fault(Fault::Value(error)),
+            }
+        })
     }
 
     fn attempt(
@@ -157,6 +166,7 @@ impl Attempts<'_, '_> {
         self.assembler.penalties.copy_from_slice(penalties);
         let mut converged = self.converge(step, end, trial, Patience::Long)?;
         converged.iterations += iterations;
+        converged.softened = true;
         Ok(converged)
     }
 
@@ -336,7 +346,7 @@ impl Attempts<'_, '_> {
     }
 
     /// Fails where a point that was in contact in the last accepted state lies below the surface, deeper than its
-    /// depth.
+    /// depth, or where one that was in front of it has passed through it.
     fn none_sunk(&mut self, end: f64, trial: &State) -> Result<(), StepFailure> {
         let masters = &mut self.assembler.masters;
         masters.update(self.model, &trial.u);
@@ -365,7 +375,11 @@ impl Attempts<'_, '_> {
                 });
             }
         }
-        Ok(())
+        let span = Span {
+            from: (self.committed, self.progress.time),
+            to: (trial, end),
+        };
+        passed::none_passed(self.model, masters, &span)
     }
 
     fn newton(
@@ -385,6 +399,7 @@ impl Attempts<'_, '_> {
             patience,
             first: first.unwrap_or_default(),
             opened: false,
+            ping_pongs: 0,
             phases: self.phases,
             interrupt: self.interrupt,
             iterations: 0,
@@ -393,6 +408,7 @@ impl Attempts<'_, '_> {
         if first.is_some() {
             self.opened = newton.opened;
         }
+        self.progress.ping_pongs += newton.ping_pongs;
         self.progress.iterations += u64::from(newton.iterations);
         result
     }

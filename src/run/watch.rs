@@ -5,10 +5,9 @@
 //! the surface, and the pressure of contacts whose overclosure shrinks on what the offset shrinks by. Forces at the start of
 //! a step are those in equilibrium there, so that what is suddenly there with a step counts as growing evenly over it.
 //!
-//! Penalties put in energy of their own where they change under points that are pressed: an overclosure at the start,
-//! a penalty that is raised, a multiplier that takes over from one. The first two are treated as a change before anything
-//! moves: what the change stores at once counts, and the forces at the start of the step are those after the change.
-//! A point with a multiplier does the work of its tractions; what of that the penalty does not hold counts, with its sign.
+//! An overclosure at the start that the first step resolves counts as one that shrinks in it. Penalties put in energy of
+//! their own where they change under points that are pressed. One that is raised is treated as raised before anything
+//! moves: what that stores at once counts, and the forces at the start of the step are those under the new penalty. A point with a multiplier does the work of its tractions; what of that the penalty does not hold counts, with its sign.
 //!
 //! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
 use crate::assembly::{Assembler, Fault, PointAnswer, SurfaceForce, Totals};
@@ -21,13 +20,17 @@ use nalgebra::Isometry3;
 
 /// Share of the work turned over so far above which a step that no trapezoid explains is told.
 const JUMP: f64 = 0.01;
+/// The same of a step that was solved from a softened penalty only.
+const OTHER: f64 = 1e-3;
+/// Multiple of the speed of the last step above which such a step is told.
+const FASTER: f64 = 10.0;
 /// Share of the work turned over above which the sum of all steps is told.
 const DRIFT: f64 = 0.05;
 
 /// Sums since the start, and what acts at the last accepted state: all that the watch needs to go on.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Watch {
-    /// Work of supports, loads, rigid surfaces and shrinking overclosures (energy).
+    /// Work of supports, loads, rigid surfaces and overclosures (energy).
     pub external: f64,
     /// Energy that penalties and multipliers put in by changing (energy).
     pub adjusted: f64,
@@ -38,6 +41,8 @@ pub struct Watch {
     /// The largest change of the imbalance in one step, and that step.
     pub worst: f64,
     pub worst_step: u32,
+    /// Largest displacement of a node by the time it took, in the last step and in the one before.
+    pub speed: [f64; 2],
     /// Reactions and loads, 3 per node of the bodies (force).
     reactions: Vec<f64>,
     loads: Vec<f64>,
@@ -80,17 +85,22 @@ pub struct Jump {
 }
 
 impl Jump {
-    /// What the user is told.
-    pub fn told(&self, step: u32, time: f64) -> String {
+    /// What the user is told; `softened` says that the step was solved from a softened penalty only.
+    fn told(&self, step: u32, time: f64, softened: bool) -> String {
         let (did, what) = match self.lost > 0.0 {
             true => ("lost", "went"),
             false => ("gained", "came"),
         };
+        let why = match softened {
+            true => {
+                "it was solved from a softened penalty only, and may have come to another equilibrium"
+            }
+            false => "the path jumped (snap-through, or contact lost)",
+        };
         format!(
-            "step {step} (time {}) {did} an energy of {:.3e} that {what} nowhere, {:.1} % of the work so far, and more than its \
-             size explains: the path jumped (snap-through, contact lost, another equilibrium). Take smaller steps, drive the \
-             motion by displacements instead of forces, ask for `solution.stabilization`, or read what follows as the state \
-             after the jump",
+            "step {step} (time {}) {did} an energy of {:.3e} that {what} nowhere, {:.1} % of the work so far and more than the \
+             size of the step explains: {why}. Take smaller steps, drive by displacements what is driven by \
+             forces, or ask for `solution.stabilization`; otherwise what follows is one of several states that are possible after the jump",
             number(time),
             self.lost.abs(),
             100.0 * self.part
@@ -127,26 +137,6 @@ impl Watch {
         }
     }
 
-    /// Takes over what contact stores and exerts before anything has moved, where points start below their surface.
-    ///
-    /// # Errors
-    /// A point that cannot be evaluated, or a motion without a value at the start.
-    pub fn start(
-        &mut self,
-        model: &Model,
-        assembler: &mut Assembler,
-        state: &State,
-    ) -> Result<(), Fault> {
-        let mut forces = vec![0.0; 3 * model.nodes.len()];
-        let totals = assembler.contact(&mut state.clone(), 0.0, &mut forces)?;
-        let n = self.reactions.len();
-        self.reactions.copy_from_slice(&forces[..n]);
-        self.surfaces.copy_from_slice(&totals.surfaces);
-        self.adjusted = totals.contact_energy;
-        self.keep_tractions(assembler.answers());
-        Ok(())
-    }
-
     /// Work of an accepted step, and what acts at its end. `residual` is that of all degrees of freedom; the assembler has
     /// evaluated the end of the step.
     ///
@@ -177,6 +167,9 @@ impl Watch {
             work.add(a, b);
             at.copy_from_slice(&end[..n]);
         }
+        let moved = was.iter().zip(now).map(|(a, b)| (b - a).abs());
+        let speed = moved.fold(0.0, f64::max) / (span.to.1 - span.from.1);
+        self.speed = [speed, self.speed[0]];
         let twists = Twist::all(model, span)?;
         for ((twist, was), now) in twists.iter().zip(&self.surfaces).zip(&totals.surfaces) {
             if let Some(twist) = twist {
@@ -201,13 +194,18 @@ impl Watch {
         mut work: Work,
         pressed: &[f64],
         energy: f64,
-    ) -> Option<Jump> {
+        softened: bool,
+    ) -> Option<String> {
         for ((pair, was), now) in model.pairs.iter().zip(&mut self.pressed).zip(pressed) {
-            if let Some(over) = &pair.overclosure {
-                let shrunk = over.factor(from) - over.factor(to);
-                work.add(*was * shrunk, now * shrunk);
+            match &pair.overclosure {
+                Some(over) => {
+                    let shrunk = over.factor(from) - over.factor(to);
+                    work.add(*was * shrunk, now * shrunk);
+                    *was = *now;
+                }
+                // What the first step resolves has shrunk in it from all to nothing.
+                None => work.add(0.0, *now),
             }
-            *was = *now;
         }
         self.external += work.external;
         self.adjusted += work.adjusted;
@@ -219,13 +217,36 @@ impl Watch {
             (self.worst, self.worst_step) = (lost, step);
         }
         let part = lost.abs() / self.turnover.max(energy.abs());
-        (lost.abs() > work.coarse && part > JUMP).then_some(Jump { lost, part })
+        let limit = if softened { OTHER } else { JUMP };
+        if lost.abs() > work.coarse && part > limit {
+            return Some(Jump { lost, part }.told(step, to, softened));
+        }
+        let [speed, last] = self.speed;
+        (softened && last > 0.0 && speed > FASTER * last).then(|| {
+            format!(
+                "step {step} (time {}) was solved from a softened penalty only, and moved {:.0} times as fast as the step \
+                 before: it may have come to another equilibrium. Take smaller steps",
+                number(to),
+                speed / last
+            )
+        })
     }
 
-    /// The part of the work turned over that the energies at the end are out of balance by, where it is too large.
-    pub fn drift(&self) -> Option<f64> {
+    /// What is said of a run with friction whose energies are out of balance at its end. Without friction a state does not
+    /// depend on the steps that led to it, only the sums of this watch do.
+    pub fn drift(&self, model: &Model) -> Option<String> {
+        let slides = model.pairs.iter().any(|p| p.friction.is_some());
         let part = self.imbalance.abs() / self.turnover;
-        (part > DRIFT).then_some(part)
+        (slides && part > DRIFT).then(|| {
+            format!(
+                "the energies are out of balance by {:.3e} at the end, {:.1} % of the work, most of it in step {} ({:.3e}): the \
+                 steps are too large for what happens in them, or the path jumped there. Take a smaller `solution.step.max`",
+                self.imbalance,
+                100.0 * part,
+                self.worst_step,
+                self.worst
+            )
+        })
     }
 
     /// Work of the normal tractions of points with multipliers that their penalties do not store.

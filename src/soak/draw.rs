@@ -48,7 +48,7 @@ pub enum Tool {
         normal: [f64; 3],
     },
     /// One patch from a CAD file.
-    Patch(NurbsPatch),
+    Patch(Box<NurbsPatch>),
 }
 
 /// Displacement of the tool over time, and its turn about the z axis in degrees.

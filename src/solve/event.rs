@@ -59,6 +59,21 @@ pub enum Event {
         active: usize,
         penetration: f64,
     },
+    /// Contact points switched between open and closed round and round; the next iterations break the cycle.
+    PingPong {
+        step: u32,
+        iteration: u32,
+        /// The contact with most of them.
+        contact: String,
+        /// Their number.
+        points: usize,
+        /// Iterations after which all was as it was.
+        period: usize,
+        /// Where one of them is.
+        at: [f64; 3],
+        /// How the cycle is broken, in words.
+        broken: String,
+    },
     /// An attempt at a step failed, everything was rolled back, and the step is tried again from another start.
     StepRetried {
         step: u32,

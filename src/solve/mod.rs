@@ -1,7 +1,9 @@
 //! Newton's method with incremental loading on a sparse direct solver.
 pub mod convergence;
+mod cycle;
 pub mod event;
 pub mod linear;
 pub mod newton;
+pub mod place;
 pub mod stepping;
 pub mod unstable;

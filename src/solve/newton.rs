@@ -4,14 +4,16 @@
 //! before it falls, and a search that forbids the jump would crawl. The line search (on the slope of the energy along
 //! the increment, which also covers steps an element cannot take) comes in where full steps fail to make headway.
 use super::convergence::{Norms, Verdict};
+use super::cycle::{Cycle, PingPong};
 use super::event::{Event, Observer};
 use super::linear::{Factorization, LinearError, LinearSolver, Method};
+use super::place;
 use super::unstable::{Unstable, singular};
 use crate::assembly::{Assembler, Fault, Manner, Totals};
 use crate::model::Model;
-use crate::model::state::State;
+use crate::model::state::{PointState, State};
 use crate::output::Phases;
-use crate::scene;
+use crate::scene::{self, ValueError};
 use crate::shell::{ElementBlock, with_block};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -26,15 +28,30 @@ pub enum StepFailure {
     TooManyIterations {
         iterations: u32,
         residual: f64,
-        /// Empty, or a word on points that switch status at every iteration.
+        /// Empty, or a word on points that switch status round and round.
         oscillation: String,
     },
-    #[error("the residual is not finite at iteration {iteration}")]
-    NotFinite { iteration: u32 },
+    #[error("not a finite number at iteration {iteration}: {place}")]
+    NotFinite {
+        iteration: u32,
+        /// What is not finite, in words: an element, a slave point, a load.
+        place: String,
+    },
+    /// Something in the scene has no value.
+    #[error("`{pointer}`: {error}")]
+    NoValue {
+        /// JSON pointer of what has none.
+        pointer: String,
+        error: ValueError,
+    },
     #[error("{0}")]
     Fault(#[from] Fault),
-    #[error("linear solver: {0}")]
-    Solve(#[from] LinearError),
+    #[error("linear solver: {error}{place}")]
+    Solve {
+        error: LinearError,
+        /// Body and place of the node that it names, or nothing.
+        place: String,
+    },
     /// Nothing resists a motion of a body.
     #[error("linear solver: {error}; {words}")]
     Singular { error: LinearError, words: String },
@@ -62,6 +79,19 @@ pub enum StepFailure {
         /// The master, in words.
         master: String,
         points: usize,
+        depth: f64,
+    },
+    #[error(
+        "contact `{pair}`: {points} point(s), one of them at ({:.6e}, {:.6e}, {:.6e}), passed through {master} within the \
+         step, deeper than its `depth` {depth:.6e}: take smaller steps or a larger `depth`", at[0], at[1], at[2]
+    )]
+    PassedThrough {
+        pair: String,
+        /// The master, in words.
+        master: String,
+        points: usize,
+        /// Where one of them ended.
+        at: [f64; 3],
         depth: f64,
     },
     #[error(
@@ -94,6 +124,8 @@ pub struct Converged {
     pub floor: f64,
     /// The last factorization; none if the start was in equilibrium already.
     pub factorization: Option<Factorization>,
+    /// The step was solved from a softened penalty only.
+    pub softened: bool,
 }
 
 impl Converged {
@@ -180,6 +212,8 @@ pub struct Newton<'a, 'm, S: LinearSolver + ?Sized> {
     pub iterations: u32,
     /// Whether points that were in contact were open at the start.
     pub opened: bool,
+    /// Cycles of contact points that were broken.
+    pub ping_pongs: u32,
 }
 
 /// Linearisations that take secants of friction.
@@ -215,6 +249,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let mut factor = 1.0;
         let mut energy = 0.0;
         let (mut totals, secants) = self.begin(trial, time, pending)?;
+        let (mut cycle, mut round, mut damped) = (Cycle::default(), None::<PingPong>, 0u32);
         for iteration in 0.. {
             if self.interrupt.load(Ordering::Relaxed) {
                 return Err(StepFailure::Interrupted);
@@ -248,9 +283,14 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                         history,
                         floor,
                         factorization,
+                        softened: false,
                     });
                 }
-                Verdict::Diverged => return Err(StepFailure::NotFinite { iteration }),
+                Verdict::Diverged => {
+                    let residual = &self.workspace.residual;
+                    let place = place::not_finite(self.model, self.assembler, trial, residual);
+                    return Err(StepFailure::NotFinite { iteration, place });
+                }
                 Verdict::Continue => {}
             }
             let stuck = self.patience == Patience::Short && since_best >= UNTIL_GIVEN_UP;
@@ -265,7 +305,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 return Err(StepFailure::TooManyIterations {
                     iterations: iteration,
                     residual: norms.relative(),
-                    oscillation: oscillation(&history),
+                    oscillation: round.map_or_else(|| oscillation(&history), |r| r.to_string()),
                 });
             }
             if held {
@@ -275,6 +315,21 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             } else {
                 since_best += 1;
             }
+            if totals.changed == 0 || held {
+                cycle.clear();
+            } else if let Some(period) = cycle.add(&trial.points, &trial.nodes)
+                && let Some(found) =
+                    PingPong::find(self.model, &self.workspace.base.points, trial, period)
+            {
+                // Kept in contact for once, then approached by half of the way.
+                let hold = self.ping_pongs.is_multiple_of(2) && self.keep(trial, time)?;
+                damped = if hold { 0 } else { period as u32 };
+                observer.event(&found.event(step, iteration, hold));
+                self.ping_pongs += 1;
+                since_best = 0;
+                cycle.clear();
+                round = Some(found);
+            }
             factorization = Some(self.solve_linear(pending)?);
             self.iterations += 1;
             self.assembler.manner = Manner {
@@ -282,7 +337,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 secant: iteration + 1 < secants,
             };
             let search = self.settings.line_search && !pending && since_best >= UNTIL_SEARCH;
-            (totals, factor, pending) = self.advance(trial, time, search, pending)?;
+            let largest = if damped > 0 { 0.5 } else { 1.0 };
+            damped = damped.saturating_sub(1);
+            (totals, factor, pending) = self.advance(trial, time, search, pending, largest)?;
             energy = dot(&self.workspace.du, &self.workspace.rhs).abs();
             if iteration == 0 {
                 first_energy = energy;
@@ -317,6 +374,33 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         Ok((self.linearize(trial, time, pending)?, SECANTS))
     }
 
+    /// Linearises with the points that switched in the last iteration kept in contact; whether that could be done, on rigid
+    /// surfaces.
+    fn keep(&mut self, trial: &mut State, time: f64) -> Result<bool, Fault> {
+        let now: Vec<PointState> = trial.points.clone();
+        for (point, before) in trial.points.iter_mut().zip(&self.workspace.base.points) {
+            point.closed |= before.closed;
+        }
+        if trial.points == now {
+            return Ok(false);
+        }
+        let manner = self.assembler.manner;
+        self.assembler.manner = Manner {
+            hold: true,
+            secant: true,
+        };
+        match self.linearize(trial, time, false) {
+            Ok(_) => Ok(true),
+            // A point that cannot be kept: all as it was.
+            Err(_) => {
+                trial.points = now;
+                self.assembler.manner = manner;
+                self.linearize(trial, time, false)?;
+                Ok(false)
+            }
+        }
+    }
+
     fn linearize(&mut self, trial: &mut State, time: f64, pending: bool) -> Result<Totals, Fault> {
         let w = &mut *self.workspace;
         self.phases.start("assembly");
@@ -333,7 +417,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             self.phases.start("analysis");
             let analyzed = self.solver.analyze(&pattern).map(drop);
             self.phases.stop("analysis");
-            analyzed?;
+            analyzed.map_err(|error| self.unsolvable(error))?;
         }
         self.phases.start("factorization");
         let factored = self.solver.factorize(self.assembler.matrix());
@@ -348,7 +432,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         w.du.copy_from_slice(&w.rhs);
         let solved = (self.solver).solve_with(self.assembler.matrix(), &mut w.du);
         self.phases.stop("solve");
-        solved?;
+        solved.map_err(|error| self.unsolvable(error))?;
+        let w = &mut *self.workspace;
         let g = pending.then_some(&w.increments[..]);
         self.model.dofs.expand(&mut w.du, g);
         w.unstable = Unstable::of(self.model, &factored, &w.du).or(w.unstable);
@@ -358,20 +443,18 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
     /// What a matrix that cannot be factorized means: in the terms of the scene where a surface driven by force or a body is
     /// not held.
     fn unsolvable(&self, error: LinearError) -> StepFailure {
-        match &error {
-            LinearError::NonPositivePivot { dof }
-            | LinearError::ZeroPivot { dof }
-            | LinearError::TinyPivot { dof, .. } => {
-                if let Some(fault) = self.assembler.unheld(dof.dof()) {
-                    return StepFailure::Fault(fault);
-                }
-            }
-            _ => {}
+        if let LinearError::NonPositivePivot { dof }
+        | LinearError::ZeroPivot { dof }
+        | LinearError::TinyPivot { dof, .. } = &error
+            && let Some(fault) = self.assembler.unheld(dof.dof())
+        {
+            return StepFailure::Fault(fault);
         }
-        match singular(self.model, &error, self.assembler.stabilizes()) {
-            Some(words) => StepFailure::Singular { error, words },
-            None => error.into(),
+        if let Some(words) = singular(self.model, &error, self.assembler.stabilizes()) {
+            return StepFailure::Singular { error, words };
         }
+        let place = place::of_linear(self.model, &error);
+        StepFailure::Solve { error, place }
     }
 
     /// A free body that the iterations ended with holding back.
@@ -401,6 +484,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         time: f64,
         search: bool,
         pending: bool,
+        largest: f64,
     ) -> Result<(Totals, f64, bool), StepFailure> {
         self.workspace.base.copy_from(trial);
         let slope = dot(&self.workspace.du, &self.workspace.rhs);
@@ -409,6 +493,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         if search && s == 1.0 {
             s = self.line_search(trial, time, slope)?;
         }
+        s = s.min(largest);
         let smallest = s * SMALLEST;
         loop {
             self.apply(trial, s);

@@ -22,3 +22,5 @@ mod threads;
 mod trimmed;
 mod two_surfaces;
 mod units;
+mod watchdog_energy;
+mod watchdogs;

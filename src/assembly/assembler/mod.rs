@@ -269,6 +269,11 @@ impl<'m> Assembler<'m> {
         &self.external
     }
 
+    /// Contact forces at all degrees of freedom of the last evaluation, as they stand in the residual.
+    pub fn contact_forces(&self) -> &[f64] {
+        &self.contact
+    }
+
     /// Residual `f_int + f_contact - f_ext` (and what stabilises) at all degrees of freedom (reactions included) and the tangent; the element
     /// states receive what their condensation needs, the point states where their search ended. `increments` are
     /// prescribed displacements still to come: the returned right-hand side is `-residual - K increments`.

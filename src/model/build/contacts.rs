@@ -127,6 +127,9 @@ impl Builder<'_> {
             ),
             Penalty::Scaled(f) => format!("{} of the automatic {auto}", number(f)),
         };
+        if !is_automatic {
+            self.limit(name, contact, "penalty", eps_n, automatic)?;
+        }
         // The back pass of two has the penalty of the first.
         let told = format!("contact `{name}`: penalty {value} (pressure per penetration), {how}");
         if self.scene.contacts.get(name) == Some(contact) {
@@ -152,7 +155,7 @@ impl Builder<'_> {
                 Some(nodes)
             }
         };
-        let friction = self.friction(name, contact, body, eps_n)?;
+        let friction = self.friction(name, contact, body, eps_n, automatic)?;
         let augmentation = (contact.augmentation.as_ref())
             .map(|asked| AugmentationModel::new(asked, size.edge, automatic));
         let first_history = (friction.is_some() || augmentation.is_some()).then(|| {
@@ -229,6 +232,7 @@ impl Builder<'_> {
         contact: &Contact,
         body: usize,
         eps_n: f64,
+        suitable: f64,
     ) -> Result<Option<FrictionModel>, ModelError> {
         let Some(friction) = &contact.friction else {
             return Ok(None);
@@ -247,6 +251,10 @@ impl Builder<'_> {
             Penalty::Value(v) => v / eps_n,
             Penalty::Scaled(f) => f * automatic,
         };
+        if contact.tangential_penalty != Penalty::Auto {
+            let (given, suitable) = (ratio * eps_n, automatic * suitable);
+            self.limit(name, contact, "tangential_penalty", given, suitable)?;
+        }
         // The back pass of two has the friction of the first.
         if self.scene.contacts.get(name) == Some(contact) {
             self.notes.push(format!(
@@ -256,6 +264,49 @@ impl Builder<'_> {
             ));
         }
         Ok(Some(FrictionModel { law, ratio }))
+    }
+
+    /// Warns of a given penalty that costs too many digits, and refuses one that leaves none; `automatic` is what suits the
+    /// elements.
+    fn limit(
+        &mut self,
+        name: &str,
+        contact: &Contact,
+        field: &str,
+        given: f64,
+        automatic: f64,
+    ) -> Result<(), ModelError> {
+        let what = field.replace('_', " ");
+        match penalty::judge(given, automatic) {
+            penalty::Given::Fine => {}
+            // The back pass of two has the penalty of the first.
+            penalty::Given::Stiff(multiple) => {
+                if self.scene.contacts.get(name) == Some(contact) {
+                    self.warnings.push(format!(
+                        "contact `{name}`: the {what} {} is {multiple:.1e} times the stiffness of the elements: it costs \
+                         digits and iterations; with `augmentation` a {what} near the automatic {} gives the same gaps",
+                        number(given),
+                        number(automatic)
+                    ));
+                }
+            }
+            penalty::Given::TooStiff(multiple) => {
+                return Err(text(
+                    format!("/contacts/{name}/{field}"),
+                    format!(
+                        "the {what} {} is {multiple:.1e} times the stiffness of the elements: rounding would be all that is \
+                         left of the pressures (at most {:.0e} times are possible)",
+                        number(given),
+                        penalty::REFUSED
+                    ),
+                )
+                .help(format!(
+                    "leave it out (the automatic one is {}), and take `augmentation` where gaps are to be smaller",
+                    number(automatic)
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// Size of the elements under some faces of a body, and the penalty that suits them.

@@ -1,0 +1,123 @@
+//! Points that a step takes through their master without ever being in contact.
+use super::watch::Span;
+use crate::assembly::Fault;
+use crate::model::master::{Master, MasterNow, Masters};
+use crate::model::state::State;
+use crate::model::{Model, SurfaceModel};
+use crate::solve::newton::StepFailure;
+use covact_geometry::Vec3;
+use nalgebra::{Isometry3, Point3};
+
+/// Places along the path of a point that are looked at beside its end.
+const BETWEEN: u32 = 7;
+
+/// Fails where a point that was open in front of its master at the start of the step has passed through it: it lies below the
+/// master at the end, deeper than the depth, or did so on the way past a rigid surface. Only points that have moved farther
+/// than the depth, relative to the master, are looked at. A point beyond a free border may go anywhere. Leaves the masters at
+/// the end of the step.
+pub(super) fn none_passed(
+    model: &Model,
+    masters: &mut Masters,
+    span: &Span,
+) -> Result<(), StepFailure> {
+    let ((from, start), (to, end)) = (span.from, span.to);
+    let mut first = 0;
+    for (index, pair) in model.pairs.iter().enumerate() {
+        let slaves = to.slaves(model, index);
+        let offset = first;
+        first += slaves.len();
+        let depth = pair.master.depth(model);
+        let (way, poses) = match &pair.master {
+            Master::Rigid(surface) => {
+                let surface = &model.surfaces[*surface];
+                let poses = [surface.pose(start, &from.u), surface.pose(end, &to.u)];
+                let [a, b] = poses;
+                let (a, b) = (a.map_err(Fault::from)?, b.map_err(Fault::from)?);
+                (farthest(surface, &a, &b), Some((a, b)))
+            }
+            Master::Body(body) => {
+                let facets = 0..body.facets.len() as u32;
+                let nodes = facets.flat_map(|f| body.facets.nodes(f));
+                let moved = nodes.map(|&n| moved(model, n as usize, from, to).norm());
+                (moved.fold(0.0, f64::max), None)
+            }
+        };
+        let suspects: Vec<usize> = (slaves.iter().enumerate())
+            .filter(|(i, p)| {
+                let open = !from.points[offset + i].closed && !to.points[offset + i].closed;
+                let own = || {
+                    (p.terms()).fold(Vec3::zeros(), |v, (n, w)| v + moved(model, n, from, to) * w)
+                };
+                open && own().norm() + way > depth
+            })
+            .map(|(i, _)| i)
+            .collect();
+        if suspects.is_empty() {
+            continue;
+        }
+        masters.update(model, &from.u);
+        let master = masters
+            .at(model, index, &from.u, start)
+            .map_err(Fault::from)?;
+        let front: Vec<usize> = (suspects.into_iter())
+            .filter(|&i| {
+                let x = model.point_position(&slaves[i], &from.u);
+                let seen = master.see(i, &x, from.points[offset + i].hint);
+                seen.is_some_and(|s| !s.free && s.signed_distance >= 0.0)
+            })
+            .collect();
+        masters.update(model, &to.u);
+        let master = masters.at(model, index, &to.u, end).map_err(Fault::from)?;
+        let (mut points, mut at) = (0, Vec3::zeros());
+        for i in front {
+            let ends = [from, to].map(|s| model.point_position(&slaves[i], &s.u));
+            let hint = to.points[offset + i].hint;
+            let behind = (master.see(i, &ends[1], hint)).is_some_and(|s| s.behind);
+            if behind || on_the_way(&master, i, ends, poses.as_ref()) {
+                points += 1;
+                at = ends[1];
+            }
+        }
+        if points > 0 {
+            return Err(StepFailure::PassedThrough {
+                pair: pair.name.clone(),
+                master: pair.master_words(model),
+                points,
+                at: at.into(),
+                depth,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Displacement of a node over the step.
+fn moved(model: &Model, node: usize, from: &State, to: &State) -> Vec3 {
+    model.position(node, &to.u) - model.position(node, &from.u)
+}
+
+/// How far a point of the surface's box moves at most.
+fn farthest(surface: &SurfaceModel, a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
+    if a == b {
+        return 0.0;
+    }
+    let bounds = surface.set.bounds();
+    let corners = (0..8).map(|k| Point3::from(Vec3::from_fn(|c, _| bounds[k >> c & 1][c])));
+    corners.map(|p| (b * p - a * p).norm()).fold(0.0, f64::max)
+}
+
+/// Whether a point is deep below a rigid surface somewhere along its straight path as the surface sees it.
+fn on_the_way(
+    master: &MasterNow,
+    point: usize,
+    ends: [Vec3; 2],
+    poses: Option<&(Isometry3<f64>, Isometry3<f64>)>,
+) -> bool {
+    let Some((a, b)) = poses else { return false };
+    let start = (b * a.inverse_transform_point(&Point3::from(ends[0]))).coords;
+    (1..=BETWEEN).any(|k| {
+        let s = f64::from(k) / f64::from(BETWEEN + 1);
+        let x = start + (ends[1] - start) * s;
+        (master.see(point, &x, None)).is_some_and(|s| s.behind)
+    })
+}

@@ -1,0 +1,168 @@
+//! The energies of a run: what is put in against what is stored and dissipated, and paths that jump.
+use crate::common::{done, plate};
+use crate::support::Outcome;
+use serde_json::{Value, json};
+
+/// Half of a shallow clamped arch in plane strain, top at x = 0: radius 100, thickness 1, 12 degrees to its end.
+fn arch(angle: f64, elements: u32, dt: f64) -> Value {
+    json!({
+        "covact": 1,
+        "materials": { "m": { "st_venant_kirchhoff": { "E": 1000, "nu": 0.3 } } },
+        "bodies": { "arch": { "material": "m", "mesh": { "cylinder_panel": {
+            "radius": 100, "thickness": 1, "angles": [0, angle], "y": [0, 5], "elements": [elements, 1]
+        } } } },
+        "supports": {
+            "top": { "on": "arch.phi_min", "symmetry": "x" },
+            "end": { "on": "arch.phi_max", "fixed": true },
+            "a": { "on": "arch.y_min", "symmetry": "y" },
+            "b": { "on": "arch.y_max", "symmetry": "y" }
+        },
+        "solution": { "step": { "initial": dt, "max": dt }, "threads": 1 },
+        "output": { "every": 0 }
+    })
+}
+
+fn told(outcome: &Outcome) -> Vec<String> {
+    let all = outcome.summary.warnings.iter();
+    all.filter(|w| w.contains("an energy of"))
+        .cloned()
+        .collect()
+}
+
+/// Under a dead load the arch snaps through in one step, in which load does more work than the arch takes up. The step is
+/// told, and no other; before it the sums balance to the error of the rule.
+#[test]
+fn an_arch_that_snaps_through_is_told() {
+    let mut scene = arch(12.0, 12, 0.05);
+    scene["loads"] = json!({ "press": { "on": "arch.outer", "pressure": "0.1*t" } });
+    let outcome = done(&scene);
+    let [lost, stored] = ["energy.imbalance", "energy.internal"].map(|c| outcome.column(c));
+    let jump = (1..stored.len())
+        .max_by(|&a, &b| (stored[a] - stored[a - 1]).total_cmp(&(stored[b] - stored[b - 1])));
+    let jump = jump.expect("steps");
+    assert!(stored[jump] > 5.0 * stored[jump - 1]);
+    for (i, e) in lost[..jump].iter().enumerate() {
+        assert!(e.abs() < 0.02 * stored[i], "{i}: {e}");
+    }
+    assert!(lost[jump] > 0.1 * stored[jump]);
+    let told = told(&outcome);
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(
+        told[0].starts_with(&format!("step {} (", jump + 1)) && told[0].contains("snap-through"),
+        "{told:?}"
+    );
+}
+
+/// Pressed by a ball instead, it goes the same way without a jump, though the force falls on it; what is left of the balance
+/// falls with the square of the step.
+#[test]
+fn an_arch_led_by_a_tool_balances_to_second_order() {
+    let run = |dt: f64| {
+        let mut scene = arch(20.0, 20, dt);
+        scene["surfaces"] = json!({ "ball": {
+            "sphere": { "radius": 5, "center": [0, 0, 105.6] }, "motion": { "translation": [0, 0, "-14*t"] }
+        } });
+        scene["contacts"] = json!({ "press": { "slave": "arch.outer", "master": "ball" } });
+        scene["solution"]["end_time"] = json!(0.5);
+        let outcome = done(&scene);
+        assert!(told(&outcome).is_empty(), "{:?}", told(&outcome));
+        let force = outcome.column("force.ball.z");
+        let largest = force.iter().fold(0.0f64, |a, f| a.max(-f));
+        assert!(-force[force.len() - 1] < 0.6 * largest);
+        outcome.at("energy.imbalance", 0.5) - outcome.at("energy.imbalance", 0.25)
+    };
+    let [coarse, fine] = [run(0.05), run(0.025)];
+    assert!(
+        coarse.abs() > 1e-4 && (3.5..4.5).contains(&(coarse / fine)),
+        "{coarse} {fine}"
+    );
+}
+
+/// A ball that bends a plate slides past its end: what the plate held is lost in a step that is named.
+#[test]
+fn contact_that_is_lost_is_told_by_its_energy() {
+    let scene = json!({
+        "covact": 1,
+        "materials": { "m": { "st_venant_kirchhoff": { "E": 1000, "nu": 0.3 } } },
+        "bodies": { "plate": { "material": "m", "mesh": { "plate": {
+            "size": [20, 4], "thickness": 0.5, "elements": [10, 2]
+        } } } },
+        "surfaces": { "ball": { "sphere": { "radius": 2, "center": [18, 2, 2.3] }, "motion": { "translation": [
+            { "table": [[0, 0], [0.5, 0], [1, 6]] }, 0, { "table": [[0, 0], [0.5, -1], [1, -1]] }
+        ] } } },
+        "contacts": { "press": { "slave": "plate.top", "master": "ball", "points": { "gauss": 2 } } },
+        "supports": { "end": { "on": "plate.x_min", "fixed": true } },
+        "solution": { "step": { "initial": 0.05, "max": 0.05 }, "threads": 1 },
+        "output": { "every": 0 }
+    });
+    let outcome = done(&scene);
+    let [stored, lost] = ["energy.internal", "energy.imbalance"].map(|c| outcome.column(c));
+    let most = stored.iter().fold(0.0f64, |a, e| a.max(*e));
+    // The plate ends at rest, and most of what it held is gone without work.
+    assert!(stored[stored.len() - 1] < 1e-6 * most && lost[lost.len() - 1] > 0.1 * most);
+    let told = told(&outcome);
+    assert!(
+        !told.is_empty() && told[0].contains("contact lost"),
+        "{:?}",
+        outcome.summary.warnings
+    );
+}
+
+/// The relative imbalance at the end of a run.
+fn left(scene: &Value) -> (f64, Outcome) {
+    let outcome = done(scene);
+    let [external, imbalance] =
+        ["energy.external", "energy.imbalance"].map(|c| *outcome.column(c).last().expect("a row"));
+    assert!(external > 0.0);
+    (imbalance.abs() / external, outcome)
+}
+
+/// Overclosures put in the same energy whether they shrink over time or are resolved at once, and the sums balance; the
+/// equilibrium at the end is the same.
+#[test]
+fn overclosures_do_work() {
+    for gap in ["pointwise", "averaged"] {
+        let run = |choice: Value, dt: f64| {
+            let mut scene = plate(6, 0.0, 1);
+            scene["surfaces"]["ball"]["sphere"]["center"] = json!([0, 0, 25.9]);
+            scene["contacts"]["press"]["gap"] = json!(gap);
+            scene["contacts"]["press"]["initial_overclosure"] = choice;
+            scene["solution"]["step"] = json!({ "initial": dt, "max": dt });
+            left(&scene)
+        };
+        let (coarse, _) = run(json!({ "shrink": { "until": 1 } }), 0.25);
+        let (fine, shrunk) = run(json!({ "shrink": { "until": 1 } }), 0.0625);
+        let (_, strained) = run(json!("strain"), 1.0);
+        assert!(fine < 0.01 && fine < 0.5 * coarse, "{coarse} {fine}");
+        let [a, b] =
+            [&shrunk, &strained].map(|o| *o.column("energy.internal").last().expect("a row"));
+        assert!((a - b).abs() < 1e-6 * a, "{a} {b}");
+        let external = *strained.column("energy.external").last().expect("a row");
+        assert!((external / a - 1.0).abs() < 0.35, "{external} {a}");
+    }
+}
+
+/// A penalty that is raised in the course of a run and multipliers put in what `energy.adjusted` says: with it the balance is
+/// that of a run under a penalty that stays, without it worse.
+#[test]
+fn changing_penalties_and_multipliers_are_accounted_for() {
+    let with = |contact: Value| {
+        let mut scene = plate(6, 4.0, 16);
+        for (key, value) in contact.as_object().expect("an object") {
+            scene["contacts"]["press"][key] = value.clone();
+        }
+        left(&scene)
+    };
+    let (plain, _) = with(json!({}));
+    let (augmented, multipliers) =
+        with(json!({ "penalty": { "value": 600 }, "augmentation": { "gap": 1e-4 } }));
+    let adjusted = *multipliers.column("energy.adjusted").last().expect("a row");
+    assert!(adjusted != 0.0);
+    assert!(augmented < 2.0 * plain + 1e-3, "{plain} {augmented}");
+    let (raised, automatic) = with(json!({ "penalty": "auto" }));
+    assert!(
+        raised < 2.0 * plain + 1e-3,
+        "{plain} {raised} {:?}",
+        automatic.summary.warnings
+    );
+}

@@ -1,0 +1,144 @@
+//! What a run watches: penalties, numbers that are none, points that switch round and round, points that pass through.
+use crate::common::{done, plate};
+use crate::support::{Outcome, solve};
+use covact::solve::event::Event;
+use serde_json::{Value, json};
+
+fn warned(outcome: &Outcome, words: &str) -> usize {
+    let all = outcome.summary.warnings.iter();
+    all.filter(|w| w.contains(words)).count()
+}
+
+/// The penalty of a plate under a ball as a multiple of the elements' stiffness; 20 times that is the automatic one.
+fn with_penalty(field: &str, multiple: f64) -> Value {
+    let mut scene = plate(4, 0.5, 1);
+    scene["contacts"]["press"] = json!({
+        "slave": "plate.top", "master": "ball", "points": { "gauss": 2 },
+        "friction": { "coulomb": { "mu": 0.1 } }
+    });
+    scene["contacts"]["press"][field] = json!({ "scaled": multiple / 20.0 });
+    scene
+}
+
+#[test]
+fn stiff_penalties_are_warned_of_and_stiffer_ones_refused() {
+    for (field, words) in [
+        ("penalty", "the penalty"),
+        ("tangential_penalty", "the tangential penalty"),
+    ] {
+        let [below, above] = [0.99e4, 1.01e4].map(|m| check(&with_penalty(field, m)).unwrap());
+        assert!(
+            !below
+                .iter()
+                .any(|w| w.contains("times the stiffness of the elements"))
+        );
+        let told: Vec<_> = above
+            .iter()
+            .filter(|w| w.contains("1.0e4 times the stiffness of the elements"))
+            .collect();
+        assert_eq!(told.len(), 1, "{above:?}");
+        assert!(
+            told[0].contains("contact `press`") && told[0].contains(words),
+            "{}",
+            told[0]
+        );
+        assert!(check(&with_penalty(field, 0.99e7)).is_ok());
+        let (pointer, message, help) = check(&with_penalty(field, 1.01e7)).unwrap_err();
+        assert_eq!(pointer, format!("/contacts/press/{field}"));
+        assert!(
+            message.contains(words) && message.contains("1.0e7 times the stiffness"),
+            "{message}"
+        );
+        assert!(help.contains("augmentation"), "{help}");
+    }
+}
+
+/// The warnings of a model, or pointer, message and help of its error.
+fn check(scene: &Value) -> Result<Vec<String>, (String, String, String)> {
+    let mut loaded = covact::scene::parse(&scene.to_string(), "scene.json").expect("a scene");
+    loaded.dir = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes");
+    match covact::model::build::build(&loaded) {
+        Ok(model) => Ok(model.warnings),
+        Err(e) => Err((e.pointer.clone(), e.to_string(), e.help.unwrap_or_default())),
+    }
+}
+
+/// A run that stops where an expression has no value names the field, and keeps what was before.
+#[test]
+fn expressions_without_a_value_are_named() {
+    let cases: [(&str, Value, &str); 4] = [
+        (
+            "/surfaces/ball/motion/translation",
+            json!([0, 0, "-t*sqrt(.5-t)"]),
+            "/surfaces/ball/motion",
+        ),
+        (
+            "/supports/clamped_x",
+            json!({ "on": "plate.x_max", "displacement": { "z": "1e-9/(t-.5)" } }),
+            "/supports/clamped_x",
+        ),
+        (
+            "/loads",
+            json!({ "push": { "on": "plate.top", "pressure": "ln(.5-t)" } }),
+            "/loads/push",
+        ),
+        (
+            "/loads",
+            json!({ "push": { "on": "plate.top", "pressure": "sqrt(.5-t)", "follower": true } }),
+            "/loads/push/pressure",
+        ),
+    ];
+    for (at, value, pointer) in cases {
+        let mut scene = plate(4, 0.5, 4);
+        let (parent, key) = at.rsplit_once('/').unwrap();
+        match scene.pointer_mut(parent) {
+            Some(parent) => parent[key] = value,
+            None => panic!("{parent}"),
+        }
+        scene["solution"]["step"]["min"] = json!(0.1);
+        let outcome = solve(&scene);
+        assert_eq!(outcome.summary.status.name(), "not_converged", "{at}");
+        let reason = outcome.summary.reason.clone().unwrap_or_default();
+        assert!(reason.contains(&format!("`{pointer}`")), "{reason}");
+        assert!(outcome.summary.time > 0.2 && outcome.summary.time < 0.51);
+    }
+}
+
+/// A support that tears the plate away by more than a double holds: the element is named.
+#[test]
+fn forces_that_are_not_finite_are_placed() {
+    let mut scene = plate(4, 0.5, 1);
+    scene["supports"]["clamped_x"] =
+        json!({ "on": "plate.x_max", "displacement": { "x": "1e200*t", "y": 0, "z": 0 } });
+    scene["solution"]["step"]["min"] = json!(0.5);
+    let outcome = solve(&scene);
+    assert_eq!(outcome.summary.status.name(), "not_converged");
+    let reason = outcome.summary.reason.clone().unwrap_or_default();
+    assert!(reason.contains("body `plate`"), "{reason}");
+}
+
+/// The ball passes the plate within the first step as far as its ends are looked at; smaller steps catch it.
+#[test]
+fn a_tool_that_would_pass_through_is_caught_by_smaller_steps() {
+    let mut scene = plate(4, 0.5, 1);
+    scene["surfaces"]["ball"]["motion"]["translation"] =
+        json!([0, 0, { "table": [[0, 0], [1, -2.5]] }]);
+    scene["surfaces"]["ball"]["depth"] = json!(1.0);
+    let outcome = done(&scene);
+    assert_eq!(warned(&outcome, "passed through"), 0);
+    assert!(outcome.summary.cuts > 0);
+    let cut = outcome.events.iter().find_map(|e| match e {
+        Event::StepCut { reason, .. } => Some(reason.clone()),
+        _ => None,
+    });
+    let reason = cut.unwrap_or_default();
+    assert!(
+        reason.contains("contact `press`") && reason.contains("passed through surface `ball`"),
+        "{reason}"
+    );
+    let mut small = scene.clone();
+    small["solution"]["step"] = json!({ "initial": 0.25, "max": 0.25 });
+    let small = done(&small);
+    let [a, b] = [&outcome, &small].map(|o| o.at("force.ball.z", 1.0));
+    assert!(a < -100.0 && (a - b).abs() < 1e-7 * a.abs(), "{a} {b}");
+}
