@@ -198,7 +198,7 @@ fn tool(rng: &mut Rng) -> Tool {
                 normal: [tilt[0], tilt[1], -1.0],
             }
         }
-        _ => Tool::Patch(hills(rng)),
+        _ => Tool::Patch(Box::new(hills(rng))),
     }
 }
 
@@ -245,7 +245,7 @@ fn place(rng: &mut Rng, tool: &mut Tool, body: &BodyKind, gap: f64) -> [f64; 3] 
     match tool {
         Tool::Patch(patch) => {
             if let Ok(moved) = patch.transformed(&|p| p + Vec3::new(0.0, 0.0, up)) {
-                *patch = moved;
+                **patch = moved;
             }
         }
         _ => center[2] += up,

@@ -203,7 +203,7 @@ impl RandomScene {
             ),
             Tool::Patch(patch) => (
                 json!({ "cad": { "file": "tool.json" } }),
-                vec![patch.clone()],
+                vec![(**patch).clone()],
             ),
         };
         tool["placement"] = frame.placement(self.center);

@@ -101,7 +101,7 @@ fn mirror(scene: &RandomScene) -> Result<RandomScene, Broken> {
             let flipped = patch.transformed(&|p| Vec3::new(-p.x, p.y, p.z));
             // Turned round, so that its normal is the image of the normal.
             let flipped = flipped.and_then(|p| p.reversed(0));
-            *patch = flipped.map_err(|e| Broken::new(e.to_string()))?;
+            **patch = flipped.map_err(|e| Broken::new(e.to_string()))?;
         }
     }
     Ok(image)

@@ -14,7 +14,7 @@ fn changed(trial: &mut Trial, changes: &[(&str, Change)]) -> Result<(), Broken> 
         let given = run(trial, &scene, &Frame::default())?;
         for (name, change) in changes {
             let other = change(&patch).map_err(|e| Broken::new(e.to_string()))?;
-            scene.tool = Tool::Patch(other);
+            scene.tool = Tool::Patch(Box::new(other));
             let off = difference(&given, &run(trial, &scene, &Frame::default())?, still)?;
             trial.within(
                 format!("seed {}, {name}: difference", scene.seed),
