@@ -398,6 +398,36 @@ mod tests {
     }
 
     #[test]
+    fn tractions_next_to_a_pole_keep_their_digits() {
+        let radius = 0.5;
+        let at = Vec3::new(0.3, -0.2, 1.0);
+        let ball = covact_geometry::primitives::sphere(radius, at, Vec3::z()).unwrap();
+        let set = PatchSet::new(vec![ball], None).unwrap();
+        let master = RigidMaster {
+            surface: &set,
+            pose: Isometry3::identity(),
+            depth: 0.1,
+        };
+        let law = Penalty { eps_n: 5.0 };
+        for away in [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 3e-6, 1e-5, 1e-3] {
+            for turn in [0.0f64, 0.7, 2.0, 4.0] {
+                let beside = Vec3::new(turn.cos(), turn.sin(), 0.0) * away;
+                let x = at + beside - Vec3::z() * (radius - 1e-3);
+                let touch = master.touch(&x, &mut None, &law, &Exact).unwrap();
+                let touch = touch.expect("contact");
+                let n = (x - at).normalize();
+                let gap = (x - at).norm() - radius;
+                let error = (touch.residual / touch.n - n).norm();
+                assert!(error < 1e-11, "{away:e}, {turn}: {error:e}");
+                let across = Matrix3::identity() - n * n.transpose();
+                let exact = n * n.transpose() * 5.0 + across * (5.0 * gap / (radius + gap));
+                let error = (touch.tangent - exact).norm();
+                assert!(error < 1e-6, "{away:e}, {turn}: {error:e}");
+            }
+        }
+    }
+
+    #[test]
     fn an_offset_rounds_edges_and_vertices_off() {
         let set = creased(-1.0);
         let master = RigidMaster {

@@ -313,6 +313,12 @@ mod tests {
                 let aside = (0.5 * gap - x.abs()).max(0.0);
                 assert!((foot.distance - height.hypot(aside)).abs() < 1e-15);
             }
+            // Points of the plane have no side, over the gap either.
+            let mut set = set;
+            let points = [[0.0, 0.1], [0.1, 0.1]].map(|[x, y]| Vec3::new(x, y, 0.0));
+            let found = set.orient_towards(&points).unwrap();
+            let undecided = crate::project::SideOutcome::Undecided { ignored: 2 };
+            assert_eq!(found[0].outcome, undecided);
         }
     }
 

@@ -79,7 +79,7 @@ fn gaps(trial: &mut Trial) -> Result<(), Broken> {
         &told,
         &["`tool`", "0.000848528", "(0, 0, 0.5)", "`cad.tolerance`"],
     );
-    trial.iterations(100);
+    trial.iterations(90);
     Ok(())
 }
 
@@ -152,7 +152,7 @@ fn trim(trial: &mut Trial) -> Result<(), Broken> {
             1e-9,
         );
     }
-    trial.iterations(80);
+    trial.iterations(60);
     Ok(())
 }
 
@@ -173,6 +173,6 @@ fn free_edge(trial: &mut Trial) -> Result<(), Broken> {
     trial.holds("contact", open.last("force.tool.z")? < -1.0);
     trial.within("difference", difference(&open, &closed)?, 1e-9);
     trial.within("force along x", open.last("force.tool.x")?, 1e-9);
-    trial.iterations(60);
+    trial.iterations(30);
     Ok(())
 }

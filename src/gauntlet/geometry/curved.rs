@@ -67,7 +67,7 @@ fn flat_cylinder(trial: &mut Trial) -> Result<(), Broken> {
     let bent = off(patch.last("force.tool.z")?)?;
     trial.equal("loss of force of the patch", bent, 8e-7, 0.5);
     trial.within("whole and patch", difference(&patch, &whole)?, 1e-8);
-    trial.iterations(30);
+    trial.iterations(28);
     Ok(())
 }
 

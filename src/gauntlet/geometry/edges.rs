@@ -84,7 +84,7 @@ fn crease(trial: &mut Trial) -> Result<(), Broken> {
         let side = one.last("force.tool.x")? / one.last("force.tool.z")?;
         trial.within(format!("force to the side, {name}"), side, 1e-9);
     }
-    trial.iterations(200);
+    trial.iterations(110);
     Ok(())
 }
 
@@ -236,7 +236,7 @@ fn concave_edge(trial: &mut Trial) -> Result<(), Broken> {
     let [x, z] = [nodes.last("force.tool.x")?, nodes.last("force.tool.z")?];
     trial.equal("with points on the edge", x, z, 1e-9);
     trial.equal("their force", x, pressure, 2e-3);
-    trial.iterations(30);
+    trial.iterations(25);
     Ok(())
 }
 
@@ -287,7 +287,7 @@ fn corner(trial: &mut Trial) -> Result<(), Broken> {
     trial.holds("contact", force < -0.5);
     trial.within("difference", difference(&one, &other)?, 1e-9);
     trial.within("force to the side", one.last("force.tool.y")? / force, 1e-9);
-    trial.iterations(100);
+    trial.iterations(50);
     Ok(())
 }
 

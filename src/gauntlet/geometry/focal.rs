@@ -102,7 +102,7 @@ fn focal(trial: &mut Trial) -> Result<(), Broken> {
             trial.equal(what, other.last(name)?, plain.last(name)?, 1e-8);
         }
     }
-    trial.iterations(70);
+    trial.iterations(60);
     Ok(())
 }
 
@@ -145,6 +145,6 @@ fn beyond_focal(trial: &mut Trial) -> Result<(), Broken> {
         &message,
         &["`press`", "`bore`", "`tube`", "a smaller `offset`"],
     );
-    trial.iterations(40);
+    trial.iterations(30);
     Ok(())
 }
