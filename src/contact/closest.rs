@@ -13,8 +13,8 @@ pub trait ClosestPoint: Sync {
     /// How the pseudo-normal of a foot turns along its edge; see [`PatchSet::normal_along`].
     fn normal_along(&self, foot: &Foot, along: &Vec3) -> Vec3;
 
-    /// The surface around a foot on a pole; see [`PatchSet::pole_jet`].
-    fn pole_jet(&self, foot: &Foot) -> Option<Jet>;
+    /// The surface around the foot of `q` on a pole or next to one; see [`PatchSet::pole_jet`].
+    fn pole_jet(&self, foot: &Foot, q: &Vec3) -> Option<Jet>;
 
     /// Length of the diagonal of a box around the surface.
     fn size(&self) -> f64;
@@ -35,8 +35,8 @@ impl<S: Surface> ClosestPoint for PatchSet<S> {
         self.normal_along(foot, along)
     }
 
-    fn pole_jet(&self, foot: &Foot) -> Option<Jet> {
-        self.pole_jet(foot)
+    fn pole_jet(&self, foot: &Foot, q: &Vec3) -> Option<Jet> {
+        self.pole_jet(foot, q)
     }
 
     #[inline]

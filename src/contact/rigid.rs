@@ -7,7 +7,7 @@ use super::law::NormalLaw;
 use super::meeting::Meeting;
 use super::point::PointGeometry;
 use super::published::{self, Parts};
-use covact_geometry::{EdgeKind, Foot, Frame, Hint, Location, PatchSet, Status, Vec3};
+use covact_geometry::{EdgeKind, Foot, Frame, Hint, Jet, Location, PatchSet, Status, Vec3};
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3};
 
 /// Which tangent a batch uses: a type, so that the choice is made outside the loop over points.
@@ -51,6 +51,9 @@ const HELD: f64 = 1e-9;
 /// Distance from an edge or a vertex (relative to the size of the surface) within which a traction that does not vanish
 /// there turns into the pseudo-normal. Much less than any gap that is resolved, and much more than rounding.
 const STEADY: f64 = 1e-6;
+
+/// Ratio of the lengths of the tangents below which a pole is looked for.
+const UNEVEN: f64 = 2e-5;
 
 /// A point in contact, per unit area and in space coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -189,7 +192,10 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
             rho: (self.pose.transform_point(&Point3::from(foot.jet.rho))).coords,
             geometry: geometry.moved(&self.pose),
             xi3: foot.signed_distance,
-            normal: self.pose.rotation * foot.normal,
+            normal: match &geometry {
+                PointGeometry::Face { frame, .. } => self.pose.rotation * frame.n,
+                _ => self.pose.rotation * foot.normal,
+            },
             free: free(&foot),
         }))
     }
@@ -221,21 +227,28 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
                 Ok(self.on_line(foot, along_side(foot, 1 - dir as usize), d))
             }
             // The parametrisation has no metric here; where the surface is smooth, its ways out of the pole tell the rest.
-            Location::Pole { .. } => {
-                let smooth = (self.surface.pole_jet(foot)).and_then(|jet| Frame::new(&jet, 1.0));
-                Ok(match smooth {
-                    Some(frame) => PointGeometry::Face { frame, xi3 },
-                    None => PointGeometry::Pole {
-                        normal: foot.normal,
-                        xi3,
-                    },
-                })
-            }
-            _ => Ok(PointGeometry::Face {
-                frame: Frame::new(&foot.jet, foot.side).ok_or(degenerate)?,
-                xi3,
+            Location::Pole { .. } => Ok(match self.around_pole(foot, d) {
+                Some(frame) => PointGeometry::Face { frame, xi3 },
+                None => PointGeometry::Pole {
+                    normal: foot.normal,
+                    xi3,
+                },
             }),
+            _ => {
+                let near = (next_to_pole(&foot.jet)).then(|| self.around_pole(foot, d));
+                let frame = match near.flatten() {
+                    Some(frame) => frame,
+                    None => Frame::new(&foot.jet, foot.side).ok_or(degenerate)?,
+                };
+                Ok(PointGeometry::Face { frame, xi3 })
+            }
         }
+    }
+
+    /// The frame of a foot on a pole, or next to one, where the surface is smooth.
+    fn around_pole(&self, foot: &Foot, d: &Vec3) -> Option<Frame> {
+        let jet = self.surface.pole_jet(foot, &(foot.jet.rho + d))?;
+        Frame::new(&jet, 1.0)
     }
 
     /// The direction of the traction where it is not that of the distance: next to an edge or a vertex, under a law whose
@@ -324,6 +337,13 @@ pub(super) fn respond_steady(steady: &Steady, normal: &Normal) -> (Vec3, Matrix3
     (steady.n * normal.n, k)
 }
 
+/// Whether one tangent is so much shorter than the other that a pole may be next to the point.
+#[inline]
+fn next_to_pole(jet: &Jet) -> bool {
+    let [a, b] = [0, 1].map(|k| jet.rho_i[k].norm_squared());
+    a.min(b) < UNEVEN * UNEVEN * a.max(b)
+}
+
 /// First and second derivatives along a line of parameter `along`.
 fn along_side(foot: &Foot, along: usize) -> [Vec3; 2] {
     [foot.jet.rho_i[along], foot.jet.rho_ij[2 * along]]
@@ -375,6 +395,36 @@ mod tests {
             .collect();
         let patch = NurbsPatch::new([1, 1], [knots(), knots()], [3, 3], &points, None);
         PatchSet::new(vec![patch.unwrap()], None).unwrap()
+    }
+
+    #[test]
+    fn tractions_next_to_a_pole_keep_their_digits() {
+        let radius = 0.5;
+        let at = Vec3::new(0.3, -0.2, 1.0);
+        let ball = covact_geometry::primitives::sphere(radius, at, Vec3::z()).unwrap();
+        let set = PatchSet::new(vec![ball], None).unwrap();
+        let master = RigidMaster {
+            surface: &set,
+            pose: Isometry3::identity(),
+            depth: 0.1,
+        };
+        let law = Penalty { eps_n: 5.0 };
+        for away in [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 3e-6, 1e-5, 1e-3] {
+            for turn in [0.0f64, 0.7, 2.0, 4.0] {
+                let beside = Vec3::new(turn.cos(), turn.sin(), 0.0) * away;
+                let x = at + beside - Vec3::z() * (radius - 1e-3);
+                let touch = master.touch(&x, &mut None, &law, &Exact).unwrap();
+                let touch = touch.expect("contact");
+                let n = (x - at).normalize();
+                let gap = (x - at).norm() - radius;
+                let error = (touch.residual / touch.n - n).norm();
+                assert!(error < 1e-11, "{away:e}, {turn}: {error:e}");
+                let across = Matrix3::identity() - n * n.transpose();
+                let exact = n * n.transpose() * 5.0 + across * (5.0 * gap / (radius + gap));
+                let error = (touch.tangent - exact).norm();
+                assert!(error < 1e-6, "{away:e}, {turn}: {error:e}");
+            }
+        }
     }
 
     #[test]

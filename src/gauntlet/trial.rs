@@ -14,7 +14,7 @@ use tempfile::TempDir;
 /// Why a case could not go on, in words.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
-pub struct Broken(String);
+pub struct Broken(pub(super) String);
 
 impl Broken {
     pub fn new(text: impl Into<String>) -> Self {

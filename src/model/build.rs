@@ -2,6 +2,7 @@
 mod contacts;
 mod facets;
 mod master_faces;
+mod seams;
 mod supports;
 mod surfaces;
 mod values;

@@ -73,8 +73,8 @@ impl ClosestPoint for SurfaceSet {
         with_patches!(self, s => s.normal_along(foot, along))
     }
 
-    fn pole_jet(&self, foot: &Foot) -> Option<Jet> {
-        with_patches!(self, s => s.pole_jet(foot))
+    fn pole_jet(&self, foot: &Foot, q: &Vec3) -> Option<Jet> {
+        with_patches!(self, s => s.pole_jet(foot, q))
     }
 
     fn size(&self) -> f64 {

@@ -28,7 +28,26 @@ macro_rules! cases {
     };
 }
 
-cases!(geometry:);
+cases!(
+    geometry: pole,
+    seam,
+    weights,
+    short_span,
+    sliver,
+    reversed_patch,
+    flat_cylinder,
+    small_radius,
+    focal,
+    beyond_focal,
+    crease,
+    convex_edge,
+    concave_edge,
+    corner,
+    thin_tool,
+    gaps,
+    trim,
+    free_edge,
+);
 
 cases!(motion:);
 

@@ -44,7 +44,13 @@ impl<S: Surface> PatchSet<S> {
             _ => self.pseudo_normal(&best, location),
         };
         let distance = best.d2.sqrt();
-        let signed_distance = if d.dot(&normal) < 0.0 {
+        let along = d.dot(&normal);
+        let held = best.at != [0, 0] || best.trim.is_some();
+        let signed_distance = if location == Location::Face && held {
+            // The gap of a joint through which the surface goes on smoothly may hold the point aside: it is none of the
+            // surface's, nor of the distance from it.
+            along
+        } else if along < 0.0 {
             -distance
         } else {
             distance
@@ -269,6 +275,63 @@ fn focal(s: &Local) -> bool {
             let product = (f[0] * f[2] - f[1] * f[1]) / det;
             let half = (mean * mean - product).max(0.0).sqrt();
             flat(mean - half, mean + half)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::NurbsPatch;
+
+    /// Parts of the plane z = 0, x from -1 to `a` and from `b` to 1.
+    fn two_parts(a: f64, b: f64) -> PatchSet {
+        let part = |a: f64, b: f64| {
+            let points = [[a, -1.0], [b, -1.0], [a, 1.0], [b, 1.0]];
+            let points = points.map(|[x, y]| Vec3::new(x, y, 0.0));
+            let knots = || vec![0.0, 0.0, 1.0, 1.0];
+            NurbsPatch::new([1, 1], [knots(), knots()], [2, 2], &points, None).unwrap()
+        };
+        PatchSet::new(vec![part(-1.0, a), part(b, 1.0)], None).unwrap()
+    }
+
+    #[test]
+    fn a_gap_that_is_joined_does_not_count_as_distance() {
+        for gap in [1e-7, 1e-5, 2e-4] {
+            let set = two_parts(-0.5 * gap, 0.5 * gap);
+            assert_eq!(set.edges().smooth, 1);
+            for (x, height) in [
+                (0.0, 1e-4),
+                (0.2 * gap, -1e-4),
+                (-0.4 * gap, 1e-6),
+                (0.3, -0.1),
+            ] {
+                let q = Vec3::new(x, 0.3, height);
+                let foot = set.project(&q, None, 1.0).unwrap();
+                assert_eq!(foot.location, Location::Face);
+                assert!((foot.signed_distance - height).abs() < 1e-16, "{foot:?}");
+                let aside = (0.5 * gap - x.abs()).max(0.0);
+                assert!((foot.distance - height.hypot(aside)).abs() < 1e-15);
+            }
+            // Points of the plane have no side, over the gap either.
+            let mut set = set;
+            let points = [[0.0, 0.1], [0.1, 0.1]].map(|[x, y]| Vec3::new(x, y, 0.0));
+            let found = set.orient_towards(&points).unwrap();
+            let undecided = crate::project::SideOutcome::Undecided { ignored: 2 };
+            assert_eq!(found[0].outcome, undecided);
+        }
+    }
+
+    #[test]
+    fn patches_that_run_over_each_other_are_no_fold() {
+        for overlap in [1e-7, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 1e-2, 0.3] {
+            let set = two_parts(0.5 * overlap, -0.5 * overlap);
+            assert_eq!(set.sides(), [1.0, 1.0]);
+            for x in [-0.7, -0.1 * overlap, 0.0, 0.4 * overlap, 0.7] {
+                let foot = set.project(&Vec3::new(x, 0.3, -1e-3), None, 1.0).unwrap();
+                assert_eq!(foot.location, Location::Face, "{overlap} {x}");
+                assert!((foot.signed_distance + 1e-3).abs() < 1e-15);
+            }
         }
     }
 }

@@ -114,7 +114,8 @@ pub struct Foot {
     pub side: f64,
     /// Euclidean distance, >= 0.
     pub distance: f64,
-    /// Distance with sign: positive outside, decided by the pseudo-normal at edges and corners.
+    /// Distance with sign: positive outside, decided by the pseudo-normal at edges and corners. Over the gap between patches
+    /// that join smoothly its part along the normal.
     pub signed_distance: f64,
     /// Outward unit normal; the angle-weighted pseudo-normal at sharp edges and corners.
     pub normal: Vec3,

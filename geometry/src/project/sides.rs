@@ -119,7 +119,7 @@ impl<S: Surface> PatchSet<S> {
             };
             hint = Some(foot.hint());
             let component = self.topology.component_of[foot.patch as usize];
-            if beside(&foot) || foot.distance <= ON_SURFACE * self.size {
+            if beside(&foot) || foot.signed_distance.abs() <= ON_SURFACE * self.size {
                 ignored[component] += 1;
                 continue;
             }

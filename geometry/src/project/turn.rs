@@ -1,6 +1,6 @@
 //! How normals turn where a patch alone does not say it: pseudo-normals along edges and creases, normals about poles.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix3, Vector2};
 
 use super::set::PatchSet;
 use super::topology::{EdgeCurve, edge_point, nearest_on_edge};
@@ -13,6 +13,9 @@ const MERIDIANS: usize = 16;
 /// What the curvatures about a pole may miss those of a smooth surface by (relative), and the slope of a way out its
 /// tangent plane.
 const SMOOTH: f64 = 1e-6;
+/// A foot this close to a pole (relative to the size of the set) takes its surface from there: what that leaves out is of the
+/// order of its square, what a tangent next to the pole has lost in rounding grows with its inverse.
+const NEXT_TO: f64 = 3e-6;
 
 impl<S: Surface> PatchSet<S> {
     /// Derivative of the [pseudo-normal](Foot::normal) of a foot on an edge between faces or on a crease, as the foot moves
@@ -62,21 +65,35 @@ impl<S: Surface> PatchSet<S> {
         (slope - foot.normal * foot.normal.dot(&slope)) / length
     }
 
-    /// The surface around a foot on a pole, as a jet whose tangents are unit vectors across each other and the outward normal
-    /// `rho_1 x rho_2`: what the patch's own parameters do not give there. Its curvature is that of the ways out of the
-    /// pole, along which the patch is regular: the normal curvature in a direction is a quadratic form of it, of which three
-    /// directions tell all. `None` anywhere else, and where the ways out do not lie on a smooth surface (the tip of a cone).
+    /// The surface around the foot of `q` on a pole or right next to one (3e-6 of the size), as a jet whose tangents are unit
+    /// vectors across each other and the outward normal `rho_1 x rho_2`: what the patch's own parameters do not give there, or
+    /// only with the digits that are left of a tangent that vanishes. The curvature is that of the ways out of the pole, along
+    /// which the patch is regular: the normal curvature in a direction is a quadratic form of it, of which three directions
+    /// tell all. `None` anywhere else, and where the ways out do not lie on a smooth surface (the tip of a cone).
     #[cold]
     #[inline(never)]
-    pub fn pole_jet(&self, foot: &Foot) -> Option<Jet> {
-        let Location::Pole { edge } = foot.location else {
-            return None;
+    pub fn pole_jet(&self, foot: &Foot, q: &Vec3) -> Option<Jet> {
+        let on_pole = matches!(foot.location, Location::Pole { .. });
+        let edge = match foot.location {
+            Location::Pole { edge } => {
+                &self.topology.edges[self.topology.index(foot.patch, edge)?]
+            }
+            Location::Face => {
+                let poles = self
+                    .topology
+                    .of(foot.patch)
+                    .iter()
+                    .filter(|e| e.kind.is_none());
+                let near = |rho: &Vec3| (rho - foot.jet.rho).norm() <= NEXT_TO * self.size;
+                poles.into_iter().find(|e| near(&e.samples[0].point))?
+            }
+            _ => return None,
         };
-        let edge = &self.topology.edges[self.topology.index(foot.patch, edge)?];
         let EdgeCurve::Side { dir, .. } = edge.curve else {
             return None;
         };
         let [a, b] = edge.interval;
+        let pole = edge_point(self, edge, 0.5 * (a + b)).jet.rho;
         let ways: [[Vec3; 2]; MERIDIANS] = std::array::from_fn(|k| {
             let t = a + (b - a) * (k as f64 + 0.5) / MERIDIANS as f64;
             let jet = edge_point(self, edge, t).jet;
@@ -93,7 +110,8 @@ impl<S: Surface> PatchSet<S> {
         let (mut normal, mut right) = (Matrix3::zeros(), Vec3::zeros());
         for (row, [out, bend]) in rows.iter_mut().zip(&ways) {
             // Not for the tip of a cone, nor for what is not finite.
-            if !(out.dot(&n).abs() <= SMOOTH && out.dot(&foot.normal).abs() <= SMOOTH) {
+            let flat = out.dot(&n).abs() <= SMOOTH;
+            if !(flat && (!on_pole || out.dot(&foot.normal).abs() <= SMOOTH)) {
                 return None;
             }
             let [c, s] = axes.map(|e| e.dot(out));
@@ -107,9 +125,27 @@ impl<S: Surface> PatchSet<S> {
         let miss = |row: &(Vec3, f64)| (row.0.dot(&shape) - row.1).abs();
         let limit = SMOOTH * shape.amax() + 1e-9 / self.size;
         let smooth = shape.iter().all(|x| x.is_finite()) && rows.iter().all(|r| miss(r) <= limit);
-        smooth.then(|| Jet {
-            rho: foot.jet.rho,
-            rho_i: axes,
+        if !smooth {
+            return None;
+        }
+        // Where the foot really is, (1 - xi3 h) s = what `q` lies beside the pole, and how the normal has turned on the way.
+        let d = q - pole;
+        let h = Matrix2::new(shape.x, shape.y, shape.y, shape.z);
+        let beside = Vector2::new(axes[0].dot(&d), axes[1].dot(&d));
+        // A pole that holds the point, as a corner does, is the foot itself.
+        let s = (Matrix2::identity() - h * n.dot(&d))
+            .try_inverse()
+            .map(|m| m * beside);
+        let s = s
+            .filter(|s| s.norm() <= NEXT_TO * self.size)
+            .unwrap_or_default();
+        let bend = h * s;
+        let n = (n - axes[0] * bend.x - axes[1] * bend.y).normalize();
+        let first = (axes[0] - n * n.dot(&axes[0])).normalize();
+        let rise = n * (0.5 * s.dot(&bend));
+        Some(Jet {
+            rho: pole + axes[0] * s.x + axes[1] * s.y + rise,
+            rho_i: [first, n.cross(&first)],
             rho_ij: [n * shape.x, n * shape.y, n * shape.z],
         })
     }
@@ -128,11 +164,10 @@ mod tests {
         let patch = (ball.transformed(&|x| Vec3::new(a * x.x, b * x.y, c * x.z))).unwrap();
         let set = PatchSet::new(vec![patch], None).unwrap();
         for (z, inside) in [(c, 0.9), (c, 1.2), (-c, 0.9)] {
-            let foot = set
-                .project(&Vec3::new(0.0, 0.0, z * inside), None, 1.0)
-                .unwrap();
+            let q = Vec3::new(0.0, 0.0, z * inside);
+            let foot = set.project(&q, None, 1.0).unwrap();
             assert!(matches!(foot.location, Location::Pole { .. }));
-            let jet = set.pole_jet(&foot).expect("smooth");
+            let jet = set.pole_jet(&foot, &q).expect("smooth");
             let frame = Frame::new(&jet, 1.0).unwrap();
             assert!((frame.n - Vec3::new(0.0, 0.0, z.signum())).norm() < 1e-12);
             let [low, high] = frame.principal_curvatures();
@@ -143,8 +178,38 @@ mod tests {
             assert!(along.norm() > 0.1);
         }
         // Off the pole there is nothing to say.
-        let foot = set.project(&Vec3::new(0.3, 0.1, 0.4), None, 1.0).unwrap();
-        assert_eq!(set.pole_jet(&foot), None);
+        let q = Vec3::new(0.3, 0.1, 0.4);
+        let foot = set.project(&q, None, 1.0).unwrap();
+        assert_eq!(set.pole_jet(&foot, &q), None);
+    }
+
+    #[test]
+    fn normals_next_to_a_pole_keep_their_digits() {
+        let (a, b, c) = (1.3, 0.8, 0.6);
+        let ball = sphere(1.0, Vec3::zeros(), Vec3::z()).unwrap();
+        let patch = (ball.transformed(&|x| Vec3::new(a * x.x, b * x.y, c * x.z))).unwrap();
+        let set = PatchSet::new(vec![patch], None).unwrap();
+        let mut next_to = 0;
+        for away in [1e-12, 1e-10, 1e-9, 1e-8, 3e-8, 1e-7, 4e-7, 1e-6, 1e-5] {
+            for (direction, gap) in [([1.0, 0.0], -1e-3), ([0.3, -0.8], 1e-3), ([0.0, 1.0], -0.1)] {
+                // A point of the ellipsoid, its normal, and a point above it.
+                let (x, y) = (away * direction[0], away * direction[1]);
+                let z = c * (1.0 - (x / a).powi(2) - (y / b).powi(2)).sqrt();
+                let n = Vec3::new(x / (a * a), y / (b * b), z / (c * c)).normalize();
+                let q = Vec3::new(x, y, z) + n * gap;
+                let foot = set.project(&q, None, 1.0).unwrap();
+                let jet = set.pole_jet(&foot, &q);
+                next_to += usize::from(jet.is_some() && foot.location == Location::Face);
+                let frame = Frame::new(&jet.unwrap_or(foot.jet), 1.0).unwrap();
+                let error = (frame.n - n).norm();
+                assert!(error < 2e-11, "{away:e} {gap:e}: {error:e}");
+                if let Some(jet) = jet {
+                    let error = (jet.rho - Vec3::new(x, y, z)).norm();
+                    assert!(error < 1e-13, "{away:e} {gap:e}: {error:e}");
+                }
+            }
+        }
+        assert!(next_to >= 9, "{next_to}");
     }
 
     #[test]
@@ -158,11 +223,10 @@ mod tests {
         let weights = [1.0, w, 1.0, 1.0, w, 1.0];
         let patch = NurbsPatch::new([2, 1], knots, [3, 2], &points, Some(&weights)).unwrap();
         let set = PatchSet::new(vec![patch], None).unwrap();
-        let foot = set
-            .project(&Vec3::new(-0.01, -0.01, 0.7), None, 1.0)
-            .unwrap();
+        let q = Vec3::new(-0.01, -0.01, 0.7);
+        let foot = set.project(&q, None, 1.0).unwrap();
         assert!(matches!(foot.location, Location::Pole { .. }), "{foot:?}");
-        assert_eq!(set.pole_jet(&foot), None);
+        assert_eq!(set.pole_jet(&foot, &q), None);
     }
 
     #[test]

@@ -56,6 +56,7 @@ impl Builder<'_> {
             let own: Vec<&PairModel> = (pairs.iter())
                 .filter(|p| p.rigid_master() == Some(index))
                 .collect();
+            self.seams(name, &surfaces[index], &labels[index]);
             let model = (&mut surfaces[index], labels[index].as_slice());
             self.orient(name, surface, model, &own)?;
         }

@@ -212,6 +212,11 @@ pub(super) fn link(
     let mut joined = vec![false; edges.len()];
     let mut branching = vec![false; edges.len()];
     for pair in &pairs {
+        // Patches that run over each other a little: their sides meet in part, each turned back onto the other. Joining them
+        // there would take one of the patches for the back of the other.
+        if pair.angle > FOLDED && !pair.full[0] && !pair.full[1] {
+            continue;
+        }
         // A part that is taken already is not linked again.
         let taken = |k: usize| {
             let edge = &edges[pair.edges[k]];
