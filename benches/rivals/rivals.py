@@ -14,7 +14,7 @@ import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
-CASES = ["patch", "hertz", "plate", "friction_limit", "cyclic", "units"]
+CASES = ["patch", "hertz", "plate", "ironing", "friction_limit", "first_touch", "cyclic", "units"]
 PROGRAMS = ["covact", "calculix", "getfem"]
 NAMES = {"covact": "covact", "calculix": "CalculiX", "getfem": "GetFEM"}
 #: Processor seconds a run may take; on a busy machine it may last four times as long.
@@ -87,6 +87,11 @@ def measure(case, program, variant, folder):
     return row
 
 
+HEAD = """# Results
+
+Written by `run.sh`; cases, right answers, limits and settings: [README.md](README.md); every row: [results.csv](results.csv). Best setting of each program: verdict, error, processor seconds on one thread, how many of the settings tried are right.
+
+"""
 RANK = {"right": 0, "inaccurate": 1, "stopped, said why": 2, "stopped without a message": 3, "stopped": 3, "no end": 4, "wrong, silently": 5}
 
 
@@ -116,8 +121,16 @@ def table(rows, versions):
                 continue
             b = best(mine)
             error = percent(b["error"])
-            cells.append(f"{b['verdict']}{': ' + error if error else ''} ({b['wall_s']} s)")
+            right = sum(r["verdict"] == "right" for r in mine)
+            tried = f"; {right} of {len(mine)} settings" if len(mine) > 1 else ""
+            cells.append(f"{b['verdict']}{', ' + error if error else ''} ({b['cpu_s']} s{tried})")
         lines.append(f"| {module.TITLE} | " + " | ".join(cells) + " |")
+    others = [r for r in rows if r["verdict"] != "right"]
+    if others:
+        lines += ["", "Settings that are not right:", "", "| case | program | setting | verdict | answer | what it said |", "|---|---|---|---|---|---|"]
+        for r in others:
+            cells = [r[k] for k in ("case", "program", "setting", "verdict", "answer", "said")]
+            lines.append("| " + " | ".join(str(c).replace("|", "/")[:160] for c in cells) + " |")
     return lines
 
 
@@ -145,15 +158,8 @@ def main(arguments):
     versions = {"covact": covact.version(), "CalculiX": "", "GetFEM": gf.version()}
     said = subprocess.run(["ccx", "-v"], capture_output=True, text=True).stdout.split()
     versions["CalculiX"] = said[-1] if said else ""
-    # Rows of earlier runs stay for what is not run now.
-    old = []
-    if os.path.exists(write + ".csv"):
-        with open(write + ".csv") as file:
-            old = list(csv.DictReader(file))
-    for row in old:
-        row["error"] = float(row["error"]) if row["error"] else None
     work = keep or tempfile.mkdtemp()
-    rows = [r for r in old if r["case"] in CASES and not (r["case"] in cases and r["program"] in [NAMES[p] for p in programs])]
+    rows = []
     for case in cases:
         module = importlib.import_module(f"cases.{case}")
         for program in programs:
@@ -164,6 +170,13 @@ def main(arguments):
                 row["version"] = versions[NAMES[program]]
                 rows.append(row)
                 print(f"{case:15} {NAMES[program]:9} {variant:32} {row['verdict']:22} {row['answer']}  [{row['iterations']} its, {row['increments']} incs, {row['wall_s']} s] {row['said'][:150]}", flush=True)
+    # Rows of earlier runs stay for what was not run now.
+    if os.path.exists(write + ".csv"):
+        with open(write + ".csv") as file:
+            for row in csv.DictReader(file):
+                row["error"] = float(row["error"]) if row["error"] else None
+                if row["case"] in CASES and not (row["case"] in cases and row["program"] in [NAMES[p] for p in programs]):
+                    rows.append(row)
     order = lambda r: (CASES.index(r["case"]), [NAMES[p] for p in PROGRAMS].index(r["program"]))
     rows.sort(key=order)
     columns = ["case", "program", "version", "setting", "answer", "error", "verdict", "said", "iterations", "increments", "wall_s", "cpu_s"]
@@ -175,7 +188,7 @@ def main(arguments):
             writer.writerow({**{c: row.get(c, "") for c in columns}, "error": "" if error is None else f"{error:.3g}"})
     lines = table(rows, versions)
     with open(write + ".md", "w") as file:
-        file.write("\n".join(lines) + "\n")
+        file.write(HEAD + "\n".join(lines) + "\n")
     print("\n".join(lines))
     if not keep:
         shutil.rmtree(work)
