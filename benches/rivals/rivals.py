@@ -1,4 +1,5 @@
-"""Runs the cases; called by run.sh. `rivals.py` all, `rivals.py NAME ...` some, `--program P` one program."""
+"""Runs the cases; called by run.sh. `rivals.py` all, `rivals.py NAME ...` some, `--program P` one program,
+`--setting TEXT` the settings whose name contains it, `--keep FOLDER` keeps what the programs read and wrote."""
 import csv
 import importlib
 import json
@@ -75,7 +76,8 @@ def measure(case, program, variant, folder):
     elif not found["finished"]:
         if not said and program == "covact":
             said = next((l for l in found["screen"].splitlines() if l.strip()), "")
-        row.update(verdict="stopped, said why" if said else "stopped without a message", said=said)
+        signal_ = f"ended by signal {-found['code']}" if found.get("code", 0) < 0 else ""
+        row.update(verdict="stopped, said why" if said else "stopped without a message", said=said or signal_)
     elif found["error"] is None or not math.isfinite(found["error"]):
         row.update(verdict="wrong, silently", said="converged")
     elif found["error"] <= module.LIMIT:
@@ -134,6 +136,12 @@ def table(rows, versions):
     return lines
 
 
+def variants(case, program):
+    """The settings of a program, by its name in the table."""
+    key = next(k for k, name in NAMES.items() if name == program)
+    return importlib.import_module(f"cases.{case}").VARIANTS[key]
+
+
 def main(arguments):
     if arguments[:1] == ["--worker"]:
         return worker(*arguments[1:])
@@ -141,6 +149,11 @@ def main(arguments):
     if "--program" in arguments:
         at = arguments.index("--program")
         programs = [arguments[at + 1]]
+        del arguments[at : at + 2]
+    setting = ""
+    if "--setting" in arguments:
+        at = arguments.index("--setting")
+        setting = arguments[at + 1]
         del arguments[at : at + 2]
     keep = None
     if "--keep" in arguments:
@@ -164,6 +177,8 @@ def main(arguments):
         module = importlib.import_module(f"cases.{case}")
         for program in programs:
             for n, variant in enumerate(module.VARIANTS[program]):
+                if setting not in variant:
+                    continue
                 folder = os.path.join(work, case, f"{program}_{n}")
                 shutil.rmtree(folder, ignore_errors=True)
                 row = measure(case, program, variant, folder)
@@ -175,9 +190,12 @@ def main(arguments):
         with open(write + ".csv") as file:
             for row in csv.DictReader(file):
                 row["error"] = float(row["error"]) if row["error"] else None
-                if row["case"] in CASES and not (row["case"] in cases and row["program"] in [NAMES[p] for p in programs]):
+                known = row["case"] in CASES and row["setting"] in variants(row["case"], row["program"])
+                if known and not any(all(row[k] == r[k] for k in ("case", "program", "setting")) for r in rows):
                     rows.append(row)
-    order = lambda r: (CASES.index(r["case"]), [NAMES[p] for p in PROGRAMS].index(r["program"]))
+    order = lambda r: (
+        CASES.index(r["case"]), list(NAMES.values()).index(r["program"]), variants(r["case"], r["program"]).index(r["setting"])
+    )
     rows.sort(key=order)
     columns = ["case", "program", "version", "setting", "answer", "error", "verdict", "said", "iterations", "increments", "wall_s", "cpu_s"]
     with open(write + ".csv", "w", newline="") as file:

@@ -4,6 +4,7 @@
 #   benches/rivals/run.sh                      all cases, all programs
 #   benches/rivals/run.sh hertz units          these cases
 #   benches/rivals/run.sh --program calculix   one program (covact, calculix, getfem)
+#   benches/rivals/run.sh hertz --setting mortar   settings whose name holds this
 #   benches/rivals/run.sh --keep FOLDER        keep scenes, decks and what every program wrote
 #
 # RIVALS_LIMIT: processor seconds a run may take (180). COVACT: the program (target/release/covact).

@@ -14,7 +14,7 @@ DEEP, CLEAR, STROKES = 5.0, 1.0, 20
 VARIANTS = {
     "covact": ["H8 12 x 12"],
     "calculix": ["C3D8I 12 x 12, surface, K = 5 E", "C3D8I 12 x 12, node, K = 5 E"],
-    "getfem": ["Q2 6 x 6"],
+    "getfem": ["Q2 6 x 6", "Q2 6 x 6, eighths of a stroke"],
 }
 
 
@@ -65,7 +65,7 @@ def getfem(folder, variant):
     for stroke in range(1, 2 * STROKES + 1):
         goal = -DEEP if stroke % 2 else CLEAR
         begin = z
-        done, more, _ = tools.march(m, newton, lambda t: place(begin + t * (goal - begin)))
+        done, more, _ = tools.march(m, newton, lambda t: place(begin + t * (goal - begin)), step=0.125 if "eighths" in variant else 1.0)
         steps, z = steps + more, goal
         if not done:
             break

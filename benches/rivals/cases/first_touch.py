@@ -66,11 +66,7 @@ def calculix(folder, variant):
     ref, turn = deck.node("NREF", (0, 0, R + GAP)), deck.node("NROT", (0, 0, R + GAP))
     if "spring" in variant:
         deck.add(f"*ELEMENT, TYPE=SPRING1, ELSET=ESPRING\n{deck.elements + 1}, {ref}\n*SPRING, ELSET=ESPRING\n3\n{SPRING / 4}")
-    if "node" in variant:
-        deck.nodes_where("NSLAVE", "BLOCK", lambda x, y, z: z > -1e-9)
-        deck.add("*SURFACE, NAME=SLAVE, TYPE=NODE\nNSLAVE")
-    else:
-        deck.surface("SLAVE", "BLOCK", block, "z_max")
+    deck.surface("SLAVE", "BLOCK", block, "z_max")
     deck.surface("MASTER", "CAP", cap, "z_min")
     deck.nodes_where("NFLOOR", "BLOCK", lambda x, y, z: z < 1e-9 - SIDE)
     deck.nodes_where("NX", "BLOCK", lambda x, y, z: x < 1e-9 and z > 1e-9 - SIDE)

@@ -106,7 +106,7 @@ def calculix(folder, variant):
     deck.add(f"*MATERIAL, NAME=SOLID\n*ELASTIC\n{E}, {NU}")
     deck.add("*SOLID SECTION, ELSET=EBLOCK, MATERIAL=SOLID\n*SOLID SECTION, ELSET=ECAP, MATERIAL=SOLID")
     if "mortar" in variant:
-        deck.add("*SURFACE INTERACTION, NAME=SI\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD")
+        deck.add(f"*SURFACE INTERACTION, NAME=SI\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{50 * E}")
         deck.add("*CONTACT PAIR, INTERACTION=SI, TYPE=MORTAR\nSLAVE, MASTER")
     else:
         k = float(variant.split("K = ")[1].split()[0]) * E

@@ -76,11 +76,7 @@ def calculix(folder, variant):
     deck = ccx.Deck()
     deck.body("SLAB", body, kind)
     deck.body("DIE", die, "C3D20R" if "20" in kind else "C3D8")
-    if "node" in variant:
-        deck.nodes_where("NSLAVE", "SLAB", lambda x, y, z: z > -1e-9)
-        deck.add("*SURFACE, NAME=SLAVE, TYPE=NODE\nNSLAVE")
-    else:
-        deck.surface("SLAVE", "SLAB", body, "z_max")
+    deck.surface("SLAVE", "SLAB", body, "z_max")
     deck.surface("MASTER", "DIE", die, "z_min")
     deck.nodes_where("NFLOOR", "SLAB", lambda x, y, z: z < 1e-9 - SIZE[2])
     deck.nodes_where("NSIDE", "SLAB", lambda x, y, z: z > 1e-9 - SIZE[2] and (y < 1e-9 or y > SIZE[1] - 1e-9))

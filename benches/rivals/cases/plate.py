@@ -68,11 +68,7 @@ def deck(kind, elements, node, stiffness=5):
     d = ccx.Deck()
     d.body("PLATE", plate, kind)
     d.body("BALL", ball, "C3D20R" if "20" in kind else "C3D8")
-    if node:
-        d.nodes_where("NSLAVE", "PLATE", lambda x, y, z: z > T / 2 - 1e-9)
-        d.add("*SURFACE, NAME=SLAVE, TYPE=NODE\nNSLAVE")
-    else:
-        d.surface("SLAVE", "PLATE", plate, "z_max")
+    d.surface("SLAVE", "PLATE", plate, "z_max")
     d.surface("MASTER", "BALL", ball, "z_min")
     d.nodes_where("NHELD", "PLATE", lambda x, y, z: x > SIDE - 1e-9 or y > SIDE - 1e-9)
     d.nodes_where("NX", "PLATE", lambda x, y, z: x < 1e-9 and y < SIDE - 1e-9)
