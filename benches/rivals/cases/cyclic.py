@@ -14,7 +14,7 @@ DEEP, CLEAR, STROKES = 5.0, 1.0, 20
 VARIANTS = {
     "covact": ["H8 12 x 12"],
     "calculix": ["C3D8I 12 x 12, surface, K = 5 E", "C3D8I 12 x 12, node, K = 5 E"],
-    "getfem": ["Q2 6 x 6", "Q2 6 x 6, eighths of a stroke"],
+    "getfem": ["Q2 6 x 6", "Q2 6 x 6, line search `simplest`"],
 }
 
 
@@ -59,13 +59,14 @@ def getfem(folder, variant):
     from lib import gf as tools
 
     m, force = plate.model(int(variant.split()[1]))
-    newton = tools.Newton(m, max_iter=60, max_res=1e-6)
+    search = {"lsearch": "simplest"} if "simplest" in variant else {}
+    newton = tools.Newton(m, max_iter=60, max_res=1e-6, **search)
     place = lambda z: m.set_variable("c", [0, 0, plate.R + plate.T / 2 + z])
     forces, steps, z, done = {}, 0, 0.0, True
     for stroke in range(1, 2 * STROKES + 1):
         goal = -DEEP if stroke % 2 else CLEAR
         begin = z
-        done, more, _ = tools.march(m, newton, lambda t: place(begin + t * (goal - begin)), step=0.125 if "eighths" in variant else 1.0)
+        done, more, _ = tools.march(m, newton, lambda t: place(begin + t * (goal - begin)))
         steps, z = steps + more, goal
         if not done:
             break
