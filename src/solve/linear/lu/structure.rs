@@ -143,8 +143,12 @@ impl Structure {
         while from < rows.len() {
             let end = self.begins[self.owner[rows[from] as usize] as usize + 1];
             let columns = rows[from..].partition_point(|&r| r < end);
-            let height = 3 * (rows.len() - from);
-            largest = largest.max(height * 3 * columns.min(Self::columns_at_once(height)));
+            // With the rows of the columns themselves, and with those behind them: fewer rows may be taken with so many more
+            // columns at once that their product is the larger one.
+            let height = rows.len() - from;
+            for height in [3 * height, 3 * (height - columns)] {
+                largest = largest.max(product_values(height, columns));
+            }
             from += columns;
         }
         largest
@@ -164,5 +168,21 @@ impl Structure {
             }
         }
         targets
+    }
+}
+
+/// Values of the largest product of `height` rows with some of `columns` nodes' columns.
+fn product_values(height: usize, columns: usize) -> usize {
+    height * 3 * columns.min(Structure::columns_at_once(height))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::product_values;
+
+    #[test]
+    fn fewer_rows_may_need_more_room() {
+        let (all, behind) = (product_values(3 * 227, 40), product_values(3 * 208, 40));
+        assert!(behind > all, "{behind} {all}");
     }
 }
