@@ -10,6 +10,7 @@ mod history;
 mod march;
 mod pieces;
 mod progress;
+mod sound;
 mod step;
 
 pub use check::{

@@ -12,6 +12,7 @@
 //! What fails all three is cut.
 use super::augment::{self, Left};
 use super::progress::Progress;
+use super::sound;
 use crate::assembly::{Assembler, Fault};
 use crate::model::driven::press::{Placed, Presser};
 use crate::model::state::State;
@@ -67,6 +68,10 @@ impl Attempts<'_, '_> {
         before: Option<&(State, f64)>,
         trial: &mut State,
     ) -> Result<Converged, StepFailure> {
+        let turned = sound::turns(self.model, end - dt, end).map_err(Fault::from)?;
+        if let Some(failure) = turned {
+            return Err(failure);
+        }
         let penalties = self.assembler.penalties.clone();
         let result = self.attempt(step, end, dt, before, trial, &penalties);
         if result.is_err() {
@@ -384,11 +389,14 @@ impl Attempts<'_, '_> {
             interrupt: self.interrupt,
             iterations: 0,
         };
-        let result = newton.solve(step, end, trial, self.observer);
+        let mut result = newton.solve(step, end, trial, self.observer);
         if first.is_some() {
             self.opened = newton.opened;
         }
         self.progress.iterations += u64::from(newton.iterations);
+        if result.is_ok() {
+            result = sound::inside_out(self.model, trial).and(result);
+        }
         result
     }
 

@@ -30,13 +30,14 @@ macro_rules! cases {
 
 cases!(geometry:);
 
-cases!(motion:);
+cases!(motion: borders, open_edges, fillet, sharp_corner, full_turn, cam, turned_together,
+    through_in_one_step, mirrored_elements, reversal, fifty_times);
 
 cases!(conditioning:);
 
 cases!(instability:);
 
-cases!(friction:);
+cases!(friction: mu_0_to_2, slip_front, hysteresis, wedge, pole, closing_again, mu_in_time, fast_turn, sled);
 
 cases!(invariance: threads);
 
