@@ -1,10 +1,14 @@
 //! What equilibrium does not tell: steps that friction cannot follow, and states that no body can reach.
+use crate::assembly::Fault;
+use crate::contact::rigid::{self, RigidMaster};
 use crate::model::Model;
 use crate::model::state::State;
+use crate::model::surface::SurfaceSet;
 use crate::scene::ValueError;
 use crate::shell::with_block;
 use crate::solve::newton::StepFailure;
 use covact_geometry::Vec3;
+use nalgebra::Point3;
 
 /// Largest turn of a surface with friction within a step (degrees). Slip is the chord from where a point was on the surface:
 /// half of the turn away from the direction it ends in, and at half a turn it points backwards.
@@ -32,6 +36,70 @@ pub(super) fn turns(
         }
     }
     Ok(None)
+}
+
+/// Instants within a step that are looked at.
+const BETWEEN: u32 = 7;
+
+/// Fails where points of `to`, at time `end`, touch a rigid surface on its far side: moving evenly since `from`, at time
+/// `start`, they were in it deeper than its depth in between. Only points that moved farther than that are looked at.
+pub(super) fn far_side(
+    model: &Model,
+    (from, start): (&State, f64),
+    (to, end): (&State, f64),
+) -> Result<(), StepFailure> {
+    let mut first = 0;
+    for (index, pair) in model.pairs.iter().enumerate() {
+        let slaves = to.slaves(model, index);
+        let range = first..first + slaves.len();
+        first = range.end;
+        let Some(surface) = pair.rigid_master() else {
+            continue;
+        };
+        let surface = &model.surfaces[surface];
+        let at = |t: f64, u: &[f64]| surface.at(t, u).map_err(Fault::from);
+        let (before, after) = (at(start, &from.u)?, at(end, &to.u)?);
+        let behind = |master: &RigidMaster<'_, SurfaceSet>, x: &Vec3| {
+            let foot = master.foot(x, None, f64::INFINITY);
+            foot.is_some_and(|foot| rigid::behind(&foot, master.depth))
+        };
+        // Those that may have gone through, by where they began and ended.
+        let suspects: Vec<[Vec3; 2]> = (slaves.iter().zip(&to.points[range]))
+            .filter(|(_, now)| now.closed)
+            .map(|(p, _)| [from, to].map(|state| model.point_position(p, &state.u)))
+            .filter(|[a, b]| {
+                let seen = after.pose * before.pose.inverse_transform_point(&Point3::from(*a));
+                (b - seen.coords).norm() > after.depth && !behind(&before, a)
+            })
+            .collect();
+        if suspects.is_empty() {
+            continue;
+        }
+        let mut through = vec![false; suspects.len()];
+        for k in 1..=BETWEEN {
+            let s = f64::from(k) / f64::from(BETWEEN + 1);
+            let u: Vec<f64> = match surface.driven {
+                Some(_) => (from.u.iter().zip(&to.u))
+                    .map(|(a, b)| a + (b - a) * s)
+                    .collect(),
+                None => Vec::new(),
+            };
+            let master = at(start + (end - start) * s, &u)?;
+            for (through, [a, b]) in through.iter_mut().zip(&suspects) {
+                *through = *through || behind(&master, &(a + (b - a) * s));
+            }
+        }
+        let points = through.iter().filter(|t| **t).count();
+        if points > 0 {
+            return Err(StepFailure::FarSide {
+                pair: pair.name.clone(),
+                master: pair.master_words(model),
+                points,
+                depth: after.depth,
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Corners of a Q18 element in the order of those of an H8 element: along the first, the second, the third direction.

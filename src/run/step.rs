@@ -212,6 +212,8 @@ impl Attempts<'_, '_> {
         patience: Patience,
     ) -> Result<Converged, StepFailure> {
         let converged = self.penalized(step, end, trial, patience)?;
+        let from = (self.committed, self.progress.time);
+        sound::far_side(self.model, from, (trial, end))?;
         match self.model.pairs.iter().any(|p| p.augmentation.is_some()) {
             true => self.augment(step, end, trial, patience, converged),
             false => Ok(converged),

@@ -71,6 +71,17 @@ pub enum StepFailure {
         count: usize,
     },
     #[error(
+        "contact `{pair}`: {points} point(s) went through {master} within the step, deeper than its `depth` {depth:.6e}, and \
+         touch it on its far side: take smaller steps or a larger `depth`"
+    )]
+    FarSide {
+        pair: String,
+        /// The master, in words.
+        master: String,
+        points: usize,
+        depth: f64,
+    },
+    #[error(
         "surface `{surface}` turns by {degrees:.0} degrees within the step, more than the {largest:.0} over which the slip of \
          contact `{pair}` can be followed: take smaller steps"
     )]

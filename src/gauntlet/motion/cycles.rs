@@ -188,7 +188,7 @@ pub fn fifty_times(trial: &mut Trial) -> Result<(), Broken> {
             );
         }
     }
-    trial.iterations(2600);
+    trial.iterations(4000);
     Ok(())
 }
 

@@ -50,10 +50,17 @@ pub fn full_turn(trial: &mut Trial) -> Result<(), Broken> {
             1.0,
         )?;
         trial.within("second turn against the first, with friction", off, 1e-9);
-        // Everything slides: a traction mu p along the circle at a depth g below it, summed over the block, is
-        // mu times the normal forces' sum; neither leans by more than the half width of the block.
-        let drag = outcome.last("force.tool.x")? / outcome.last("force.tool.z")?;
-        trial.equal("drag / pressing force", drag, mu, 0.06);
+        // Everything slides: every force leans by phi, and has the arm R sin phi about the axis, but that the points are
+        // spread over an angle of up to 0.2.
+        let [x, z] = [outcome.last("force.tool.x")?, outcome.last("force.tool.z")?];
+        let torque = outcome.last("moment.tool.y")? + 2.0 * x;
+        let arm = torque / (2.0 * x.hypot(z));
+        trial.equal(
+            "arm of the force about the axis / R",
+            arm,
+            f64::atan(mu).sin(),
+            0.02,
+        );
     }
     trial.iterations(130);
     Ok(())
