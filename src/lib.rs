@@ -9,6 +9,7 @@ pub mod output;
 pub mod run;
 pub mod scene;
 pub mod shell;
+pub mod soak;
 pub mod solve;
 
 #[cfg(feature = "cli")]

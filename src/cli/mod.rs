@@ -9,6 +9,7 @@ mod progress;
 mod project;
 mod report;
 mod run;
+mod soak;
 
 use clap::{Args, Parser, Subcommand};
 use std::io::Write;
@@ -56,6 +57,8 @@ enum Command {
     Convert(ConvertArgs),
     /// Run hard cases with known answers, and show how each came out
     Gauntlet(GauntletArgs),
+    /// Run random scenes, each in a process of its own, and audit what they report
+    Soak(SoakArgs),
     /// Print the JSON schema of scenes
     Schema,
     /// Write a scene to start from
@@ -152,6 +155,25 @@ struct GauntletArgs {
 }
 
 #[derive(Debug, Args)]
+struct SoakArgs {
+    /// First seed; a seed is a scene
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Scenes
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    count: u64,
+    /// Seconds that a scene may take
+    #[arg(long, value_name = "SECONDS", default_value_t = 300)]
+    limit: u64,
+    /// Folder for scenes and results, a folder per seed
+    #[arg(short, long, value_name = "FOLDER")]
+    out: PathBuf,
+    /// Print the account as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
 struct NewArgs {
     /// Name of the scene; `NAME.json` is written
     name: String,
@@ -176,6 +198,7 @@ pub fn main() -> ExitCode {
         Command::Project(args) => project::project(&args),
         Command::Convert(args) => convert::convert(&args),
         Command::Gauntlet(args) => gauntlet::gauntlet(&args),
+        Command::Soak(args) => soak::soak(&args),
         Command::Schema => print(&crate::scene::schema()),
         Command::New(args) => new::new(&args),
     });

@@ -39,7 +39,16 @@ cases!(instability:);
 
 cases!(friction: mu_0_to_2, slip_front, hysteresis, wedge, pole, closing_again, mu_in_time, fast_turn, sled);
 
-cases!(invariance: threads);
+cases!(
+    invariance: placed_elsewhere,
+    carried_along,
+    mirrored,
+    renumbered,
+    order_of_pairs,
+    threads,
+    swapped_and_reversed,
+    elevated_and_refined,
+);
 
 cases!(elements:);
 

@@ -1,0 +1,109 @@
+//! Is a result what it says? From its history and summary alone.
+use super::RandomScene;
+use crate::output::{RunStatus, Summary, Table};
+
+/// Something that is wrong with a result and that the run did not tell.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Finding(pub String);
+
+/// Largest sum of all forces relative to the largest one.
+const BALANCE: f64 = 1e-6;
+/// Part of the external work by which the energies may differ before that has to be told.
+const ENERGY: f64 = 0.1;
+/// Part of the slave's element size that points may sink in before that has to be told.
+const SUNK: f64 = 0.05;
+
+/// Looks for what is wrong with the result of a scene.
+///
+/// # Errors
+/// The first thing found.
+pub fn audit(scene: &RandomScene, summary: &Summary, history: &Table) -> Result<(), Finding> {
+    let fail = |text: String| Err(Finding(text));
+    let told = |words: &[&str]| {
+        let found = |w: &String| words.iter().any(|word| w.contains(word));
+        summary.warnings.iter().any(found)
+    };
+    if summary.status != RunStatus::Done && summary.reason.as_ref().is_none_or(String::is_empty) {
+        return fail(format!(
+            "ended as {} without a reason",
+            summary.status.name()
+        ));
+    }
+    for row in &history.rows {
+        if let Some(i) = row.iter().position(|x| !x.is_finite()) {
+            return fail(format!("{} is {}", history.columns[i], row[i]));
+        }
+    }
+    let largest = balance(history)?;
+    let column = |name: &str| {
+        let found = history.column(name);
+        found.ok_or_else(|| Finding(format!("no column {name}")))
+    };
+    let energies = [column("energy.external")?, column("energy.imbalance")?];
+    let scale = energies[0].iter().fold(0.0f64, |a, x| a.max(x.abs()));
+    let off = energies[1].iter().fold(0.0f64, |a, x| a.max(x.abs()));
+    if off > ENERGY * scale && !told(&["energy"]) {
+        return fail(format!(
+            "the energies differ by {off:.2e} of {scale:.2e}, and nothing was told"
+        ));
+    }
+    let deepest = column("penetration.max")?.into_iter().fold(0.0, f64::max);
+    let size = scene.element_size();
+    if deepest > SUNK * size && !told(&["penetration", "sank", "passed through"]) {
+        return fail(format!(
+            "points sank in by {deepest:.2e} of an element of {size:.2e}, and nothing was told"
+        ));
+    }
+    if summary.status != RunStatus::Done {
+        return Ok(());
+    }
+    let pressing = column("points.active")?.last().is_some_and(|n| *n > 0.0) && largest > 0.0;
+    if scene.motion.pressed && !pressing && !told(&["opened", "passed through"]) {
+        return fail("the tool presses at the end, but nothing is in contact".to_owned());
+    }
+    if !scene.motion.pressed && column("points.active")?.iter().all(|n| *n == 0.0) {
+        return fail("the run is done, but there was no contact".to_owned());
+    }
+    Ok(())
+}
+
+/// All forces on the bodies cancel at every step; the largest of them.
+fn balance(history: &Table) -> Result<f64, Finding> {
+    let mut largest = 0.0f64;
+    for axis in ["x", "y", "z"] {
+        let acting = |c: &&String| c.starts_with("force.") && c.ends_with(&format!(".{axis}"));
+        let all: Vec<Vec<f64>> = (history.columns.iter().filter(acting))
+            .filter_map(|c| history.column(c))
+            .collect();
+        for row in 0..history.rows.len() {
+            let sum: f64 = all.iter().map(|c| c[row]).sum();
+            let size = all.iter().map(|c| c[row].abs()).fold(0.0, f64::max);
+            largest = largest.max(size);
+            // Before contact nothing but rounding acts.
+            if sum.abs() > BALANCE * largest.max(size) {
+                return Err(Finding(format!(
+                    "forces along {axis} sum to {sum:.2e} at row {row}; the largest is {size:.2e}"
+                )));
+            }
+        }
+    }
+    Ok(largest)
+}
+
+impl RandomScene {
+    /// Longest edge of an element in the surface that the tool meets.
+    fn element_size(&self) -> f64 {
+        use super::BodyKind::{Arch, Block, Sheet, SheetOnBlock};
+        let size = match self.body {
+            Sheet { size, .. } | Block { size, .. } | SheetOnBlock { size, .. } => size,
+            Arch {
+                radius,
+                half_angle,
+                half_width,
+                ..
+            } => [2.0 * radius * half_angle.to_radians(), 2.0 * half_width],
+        };
+        (size[0] / f64::from(self.elements[0])).max(size[1] / f64::from(self.elements[1]))
+    }
+}
