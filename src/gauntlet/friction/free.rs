@@ -135,7 +135,10 @@ pub fn sled(trial: &mut Trial) -> Result<(), Broken> {
     );
     let most = slides.last("force.tool.x")?;
     trial.holds("carried up to mu N", most > 1.9 && most < 2.0 + 1e-6);
-    trial.says(slides.reason(), &["surface `tool`", "along x"]);
+    trial.says(
+        slides.reason(),
+        &["surface `tool`", "along x", "contact `slide`"],
+    );
     trial.iterations(1300);
     Ok(())
 }

@@ -59,7 +59,7 @@ pub const GROUP: Group = Group {
         Case {
             name: "sled",
             what: "a plate laid on a block and pushed aside, both by force, below mu N and above",
-            right: "below it springs back to where it was; above it is named as held by nothing",
+            right: "below it springs back to where it was; above, surface and contact are named",
             run: free::sled,
         },
     ],
