@@ -5,6 +5,7 @@
 //! `tests/hard_cases/gauntlet.rs` makes each a test.
 mod check;
 mod conditioning;
+mod drawn;
 mod elements;
 mod friction;
 mod geometry;

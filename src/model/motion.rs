@@ -75,6 +75,14 @@ impl Motion {
         Ok(Translation3::from(moved) * turned * self.placement)
     }
 
+    /// Prescribed turn from time `start` to `end` (degrees).
+    pub fn turn(&self, start: f64, end: f64) -> Result<f64, ValueError> {
+        let Some(turn) = &self.rotation else {
+            return Ok(0.0);
+        };
+        Ok(turn.angle.eval(end)? - turn.angle.eval(start)?)
+    }
+
     /// Its functions of time.
     pub fn functions(&self) -> impl Iterator<Item = &TimeFunction> {
         let angle = self.rotation.as_ref().map(|r| &r.angle);

@@ -12,6 +12,7 @@ mod memory;
 mod passed;
 mod pieces;
 mod progress;
+mod sound;
 mod stabilized;
 mod step;
 pub mod watch;

@@ -13,6 +13,7 @@
 use super::augment::{self, Left};
 use super::passed;
 use super::progress::Progress;
+use super::sound;
 use super::watch::Span;
 use crate::assembly::{Assembler, Fault};
 use crate::model::driven::press::{Placed, Presser};
@@ -71,7 +72,11 @@ impl Attempts<'_, '_> {
         trial: &mut State,
     ) -> Result<Converged, StepFailure> {
         let penalties = self.assembler.penalties.clone();
-        let result = self.attempt(step, end, dt, before, trial, &penalties);
+        let result = match sound::turns(self.model, end - dt, end) {
+            Ok(None) => self.attempt(step, end, dt, before, trial, &penalties),
+            Ok(Some(failure)) => Err(failure),
+            Err(error) => Err(Fault::from(error).into()),
+        };
         result.map_err(|failure| {
             self.assembler.penalties.copy_from_slice(&penalties);
             let StepFailure::Fault(Fault::Value(error)) = failure else {
@@ -222,6 +227,8 @@ impl Attempts<'_, '_> {
         patience: Patience,
     ) -> Result<Converged, StepFailure> {
         let converged = self.penalized(step, end, trial, patience)?;
+        let from = (self.committed, self.progress.time);
+        sound::far_side(self.model, from, (trial, end))?;
         match self.model.pairs.iter().any(|p| p.augmentation.is_some()) {
             true => self.augment(step, end, trial, patience, converged),
             false => Ok(converged),
@@ -404,12 +411,15 @@ impl Attempts<'_, '_> {
             interrupt: self.interrupt,
             iterations: 0,
         };
-        let result = newton.solve(step, end, trial, self.observer);
+        let mut result = newton.solve(step, end, trial, self.observer);
         if first.is_some() {
             self.opened = newton.opened;
         }
         self.progress.ping_pongs += newton.ping_pongs;
         self.progress.iterations += u64::from(newton.iterations);
+        if result.is_ok() {
+            result = sound::inside_out(self.model, trial).and(result);
+        }
         result
     }
 

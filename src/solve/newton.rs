@@ -106,6 +106,36 @@ pub enum StepFailure {
         left: f64,
         allowed: f64,
     },
+    #[error(
+        "{count} element(s) of body `{body}` are turned inside out, element {element} first: the step is too large, or the \
+         body pressed harder than its mesh and material carry"
+    )]
+    InsideOut {
+        body: String,
+        element: usize,
+        count: usize,
+    },
+    #[error(
+        "contact `{pair}`: {points} point(s) went through {master} within the step, deeper than its `depth` {depth:.6e}, and \
+         touch it on its far side: take smaller steps or a larger `depth`"
+    )]
+    FarSide {
+        pair: String,
+        /// The master, in words.
+        master: String,
+        points: usize,
+        depth: f64,
+    },
+    #[error(
+        "surface `{surface}` turns by {degrees:.0} degrees within the step, more than the {largest:.0} over which the slip of \
+         contact `{pair}` can be followed: take smaller steps"
+    )]
+    TurnedTooFar {
+        pair: String,
+        surface: String,
+        degrees: f64,
+        largest: f64,
+    },
     #[error("interrupted")]
     Interrupted,
 }

@@ -49,7 +49,8 @@ cases!(
     free_edge,
 );
 
-cases!(motion:);
+cases!(motion: borders, open_edges, fillet, sharp_corner, full_turn, cam, turned_together,
+    through_in_one_step, mirrored_elements, reversal, fifty_times);
 
 cases!(conditioning:);
 
@@ -64,7 +65,7 @@ cases!(instability:
     snap_under_tool,
 );
 
-cases!(friction:);
+cases!(friction: mu_0_to_2, slip_front, hysteresis, wedge, pole, closing_again, mu_in_time, fast_turn, sled);
 
 cases!(
     invariance: placed_elsewhere,

@@ -213,7 +213,7 @@ impl Assembler<'_> {
                 continue;
             };
             if border.active == 0 {
-                return Err(Fault::untouched(surface, driven));
+                return Err(Fault::untouched(self.model, border.surface, driven));
             }
             let (_, theta) = driven.motion(u);
             let (r, k) = match border.below.is_empty() {
@@ -380,10 +380,22 @@ fn resistances(k: &Matrix6<f64>, symmetric: bool) -> (Vector6<f64>, Matrix6<f64>
 }
 
 impl Fault {
-    fn untouched(surface: &SurfaceModel, driven: &Driven) -> Fault {
+    fn untouched(model: &Model, index: usize, driven: &Driven) -> Fault {
+        let rubs: Vec<&str> = (model.pairs.iter())
+            .filter(|p| p.friction.is_some() && p.rigid_master() == Some(index))
+            .map(|p| p.name.as_str())
+            .collect();
         Fault::Untouched {
-            surface: surface.name.clone(),
+            surface: model.surfaces[index].name.clone(),
             free: driven.words(),
+            friction: match rubs.is_empty() {
+                true => String::new(),
+                false => format!(
+                    ". Where friction was to hold it, it was pushed harder than contact `{}` can: the coefficient times the \
+                     pressing force",
+                    rubs.join("`, `")
+                ),
+            },
         }
     }
 

@@ -56,9 +56,15 @@ pub enum Fault {
     /// A surface driven by force touches no slave point.
     #[error(
         "surface `{surface}`, which forces drive {free}, has lost all contact: nothing holds it. Forces act on the \
-         surface: check their sign and size over time, the components that are free, and what supports the bodies under it"
+         surface: check their sign and size over time, the components that are free, and what supports the bodies under \
+         it{friction}"
     )]
-    Untouched { surface: String, free: String },
+    Untouched {
+        surface: String,
+        free: String,
+        /// Empty, or a word on friction that was to hold it.
+        friction: String,
+    },
     /// A surface driven by force moves in a direction in which nothing resists it.
     #[error(
         "nothing resists the motion of surface `{surface}` {motion}, and its forces drive it on: take the component out \
