@@ -32,7 +32,7 @@ cases!(geometry:);
 
 cases!(motion:);
 
-cases!(conditioning:);
+cases!(conditioning: thickness, poisson, penalty, penalty_under_ball, stiffness_ratio, scale, far, time_unit);
 
 cases!(instability:);
 
@@ -40,7 +40,7 @@ cases!(friction:);
 
 cases!(invariance: threads);
 
-cases!(elements:);
+cases!(elements: squeezed, squeezed_sheet, distorted, inverted, full_circle, layers);
 
 #[test]
 fn every_case_is_a_test() {
