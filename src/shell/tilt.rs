@@ -11,15 +11,16 @@
 //! `W = V/2 k(C) (c^ab [gamma_a gamma_b] + [E_33 E_33] / C_33)`, `k = (s - s0)^2 / s` for `s = -S^33 > s0`, else 0,
 //!
 //! where brackets are the mean over the corners less the mean of what the tying keeps, `c^ab` is the inverse metric of the
-//! mid-surface, and `s0` a thirtieth of the pressure above. It vanishes in every state whose strains are the same at all
+//! mid-surface, and `s0` a seventh of the pressure above (at most a twentieth of E). It vanishes in every state whose strains are the same at all
 //! corners, and takes no part where a shell is not squeezed.
 use super::kinematics::{Fields, V, dot, shear, stretch};
 use super::material::{Law, MaterialLaw, Metric};
 use super::reference::{Reference, sign};
 use num_dual::{Dual2SVec64, DualNum};
 
-/// `s0` over `E / max(G_11, G_22)`.
-const ONSET: f64 = 0.01;
+/// `s0` over `E min(1 / max(G_11, G_22), G^33)`. Smaller values change shells that are in no danger, and Newton's method then
+/// meets a stiffness that sets in at once.
+const ONSET: f64 = 0.05;
 /// Part of a mode's square that one linear direction of the tying leaves out: 1 - 1/3.
 const LINEAR: f64 = 2.0 / 3.0;
 /// The same of the mode rs of the thickness strain: 1 - 1/9.
@@ -94,10 +95,11 @@ impl Element {
             dot(&b, &c),
             dot(&a, &c),
         ];
+        let metric = Metric::new(lower);
         Element {
-            metric: Metric::new(lower),
+            metric,
             volume: re.volume.iter().sum(),
-            onset: ONSET * young / lower[0].max(lower[1]),
+            onset: ONSET * young * (1.0 / lower[0].max(lower[1])).min(metric.upper[2]),
         }
     }
 

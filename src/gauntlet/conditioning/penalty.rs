@@ -119,7 +119,7 @@ pub fn penalty(trial: &mut Trial) -> Result<(), Broken> {
             format!("error times penalty at {multiple:e}"),
             lost,
             1.0,
-            0.03,
+            0.04,
         );
     }
     trial.iterations(60);

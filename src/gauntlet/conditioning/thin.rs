@@ -15,7 +15,7 @@ const WIDTH: f64 = 0.1;
 pub fn thickness(trial: &mut Trial) -> Result<(), Broken> {
     let depth = 1e-2;
     for (element, n, tolerance) in [("h8", 20, 1e-2), ("q18", 10, 5e-3)] {
-        for t in [1e-1, 1e-2, 1e-3, 1e-4] {
+        for t in [1e-1_f64, 1e-2, 1e-3, 1e-4] {
             let mut scene = json!({
                 "covact": 1,
                 "materials": { "m": { "st_venant_kirchhoff": { "E": E, "nu": 0 } } },

@@ -72,7 +72,7 @@ pub fn full_circle(trial: &mut Trial) -> Result<(), Broken> {
 
 /// The strip of `conditioning/thickness`, in layers.
 pub fn layers(trial: &mut Trial) -> Result<(), Broken> {
-    let (t, depth) = (0.02, 1e-2);
+    let (t, depth) = (0.02_f64, 1e-2);
     for layers in [1, 2, 8] {
         let scene = json!({
             "covact": 1,
