@@ -155,7 +155,7 @@ pub fn under_ball(trial: &mut Trial) -> Result<(), Broken> {
             0.1,
         );
     }
-    trial.iterations(300);
+    trial.iterations(400);
     Ok(())
 }
 

@@ -62,6 +62,6 @@ pub fn thickness(trial: &mut Trial) -> Result<(), Broken> {
             );
         }
     }
-    trial.iterations(260);
+    trial.iterations(560);
     Ok(())
 }

@@ -108,6 +108,6 @@ pub fn layers(trial: &mut Trial) -> Result<(), Broken> {
             1e-2,
         );
     }
-    trial.iterations(140);
+    trial.iterations(210);
     Ok(())
 }

@@ -5,7 +5,10 @@ use super::squeezed::between_planes;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// A block of 1 x 1 x 1, 2 x 2 x 2 elements, as an Abaqus file; nodes of the lines at x = 1/2 are where `place` puts
+/// Flat, so that the thickness of the solid-shells is along z.
+const HEIGHT: f64 = 0.2;
+
+/// A block of 1 x 1 x [`HEIGHT`], 2 x 2 x 2 elements, as an Abaqus file; nodes of the lines at x = 1/2 are where `place` puts
 /// them (column y = 0, 1/2, 1).
 fn block(place: [[f64; 2]; 3]) -> String {
     let mut text = String::from("*NODE\n");
@@ -16,7 +19,7 @@ fn block(place: [[f64; 2]; 3]) -> String {
                     1 => place[j],
                     _ => [0.5 * i as f64, 0.5 * j as f64],
                 };
-                let (number, z) = (1 + i + 3 * j + 9 * k, 0.5 * k as f64);
+                let (number, z) = (1 + i + 3 * j + 9 * k, 0.5 * HEIGHT * k as f64);
                 let _ = writeln!(text, "{number}, {x:?}, {y:?}, {z:?}");
             }
         }
@@ -53,11 +56,11 @@ fn pressed(
             }
         } },
         "surfaces": { "tool": {
-            "plane": { "center": [0, 0, 1], "normal": [0, 0, -1], "size": [10, 10] },
-            "motion": { "translation": [0, 0, format!("-{amount}*t")] }
+            "plane": { "center": [0, 0, HEIGHT], "normal": [0, 0, -1], "size": [10, 10] },
+            "motion": { "translation": [0, 0, format!("-{:?}*t", amount * HEIGHT)] }
         } },
         "contacts": { "press": {
-            "slave": "block.head", "master": "tool", "points": { "gauss": 2 }, "penalty": { "value": 1e4 }
+            "slave": "block.head", "master": "tool", "points": { "gauss": 2 }, "penalty": { "value": 1e4 / HEIGHT }
         } },
         "supports": {
             "floor": { "on": "block.floor", "symmetry": "z" },
