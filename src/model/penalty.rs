@@ -7,6 +7,11 @@ use crate::scene::{Elastic, Material};
 /// only cost digits in the factorization.
 pub const FACTOR: f64 = 20.0;
 
+/// Bound on the automatic penalty of slender bodies, as a multiple of `E / t (t/L)^5` (thickness t, length L of the body).
+/// The pressure that bends a plate by its own thickness is about `E (t/L)^4`; under this bound it sinks in by 2000 times
+/// the rounding of a position L. A stiffer penalty would make of it a penetration that double precision cannot hold.
+pub const SLENDER: f64 = 2e12;
+
 /// Penetration that an automatic penalty tolerates, as a fraction of the slave's element size.
 pub const TOLERATED: f64 = 0.01;
 
@@ -55,6 +60,10 @@ pub struct FaceSize {
     pub edge: f64,
     /// Mean depth of the elements below the faces: volume by area.
     pub depth: f64,
+    /// Thickness of the body below the faces, taken as its volume by their area (more where they are a part of a side).
+    pub thickness: f64,
+    /// Length of the body: the diagonal of its box.
+    pub length: f64,
 }
 
 /// Measures the elements under some faces.
@@ -70,12 +79,19 @@ pub fn face_size(mesh: &Mesh, faces: &[Face]) -> FaceSize {
     FaceSize {
         edge: (area / faces.len().max(1) as f64).sqrt() / spans,
         depth: volume / area,
+        thickness: mesh.volume() / area,
+        length: {
+            let [low, high] = mesh.bounds();
+            (high - low).norm()
+        },
     }
 }
 
 /// The automatic penalty (force / length^3); scales with the units of the scene as it should.
 pub fn automatic(material: &Material, size: &FaceSize) -> f64 {
-    FACTOR * modulus(material) / size.edge.min(size.depth)
+    let solid = FACTOR / size.edge.min(size.depth);
+    let slender = SLENDER / size.thickness * (size.thickness / size.length).powi(5);
+    modulus(material) * solid.min(slender)
 }
 
 /// Poisson's ratio of a material.

@@ -646,7 +646,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             .matrix()
             .abs_multiply(&w.scratch, &mut w.absolute);
         self.model.dofs.fold(&mut w.absolute);
-        let floor = 0.5 * f64::EPSILON * dot(&w.absolute, &w.absolute).sqrt();
+        let floor =
+            0.5 * f64::EPSILON * dot(&w.absolute, &w.absolute).sqrt() + totals.contact_rounding;
         Norms {
             residual,
             force: reactions.sqrt().max(external).max(totals.contact_norm),

@@ -52,7 +52,7 @@ cases!(
 cases!(motion: borders, open_edges, fillet, sharp_corner, full_turn, cam, turned_together,
     through_in_one_step, mirrored_elements, reversal, fifty_times);
 
-cases!(conditioning:);
+cases!(conditioning: thickness, poisson, penalty, penalty_under_ball, stiffness_ratio, scale, far, time_unit);
 
 cases!(instability:
     rests_on_contact_alone,
@@ -78,7 +78,7 @@ cases!(
     elevated_and_refined,
 );
 
-cases!(elements:);
+cases!(elements: squeezed, squeezed_sheet, distorted, inverted, full_circle, layers);
 
 #[test]
 fn every_case_is_a_test() {

@@ -138,6 +138,9 @@ pub struct Totals {
     pub touching: Vec<bool>,
     /// Norm of the contact forces on nodes.
     pub contact_norm: f64,
+    /// What rounding of the positions leaves of them: the norm of penalty times area times the rounding of a position, over
+    /// the points in contact.
+    pub contact_rounding: f64,
     /// Motions of driven surfaces that the contact does not resist, found with the tangent.
     pub loose: Vec<Loose>,
 }

@@ -182,8 +182,25 @@ impl Assembler<'_> {
             }
         }
         self.close_borders::<TANGENT>(&state.u, increments, residual, rhs)?;
+        totals.contact_rounding = self.rounding(state);
         totals.contact_norm = self.contact.iter().map(|f| f * f).sum::<f64>().sqrt();
         Ok(())
+    }
+
+    /// See [`Totals::contact_rounding`]. A gap is a difference of positions, whose digits end at theirs, however small the
+    /// displacements are.
+    fn rounding(&self, state: &State) -> f64 {
+        let (mut sum, mut first) = (0.0, 0);
+        for (index, eps) in self.penalties.iter().enumerate() {
+            let slaves = state.slaves(self.model, index);
+            let points = &state.points[first..first + slaves.len()];
+            first += slaves.len();
+            for (p, _) in slaves.iter().zip(points).filter(|(_, s)| s.closed) {
+                let x = self.model.point_position(p, &state.u).norm();
+                sum += (eps * p.area * f64::EPSILON * x).powi(2);
+            }
+        }
+        sum.sqrt()
     }
 }
 
