@@ -8,14 +8,15 @@ use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::output::{
-    BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, Results, SurfaceOutput,
+    BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, PartNames, Results, SurfaceOutput,
     SurfaceState,
 };
 use crate::scene::Output;
 use crate::shell::{ElementBlock, with_block};
 use covact_geometry::Vec3;
 
-/// Contact fields on all nodes, and totals over all slave points.
+/// Contact fields on all nodes, and totals over all slave points. [`Fields::gather`] makes all of them from an accepted
+/// state, so that a run that is continued has the same.
 pub struct Fields {
     surfaces: Vec<SurfaceOutput>,
     notes: Vec<String>,
@@ -85,6 +86,20 @@ impl Fields {
     /// What could not be prepared as asked for.
     pub fn notes(&self) -> Vec<String> {
         self.notes.clone()
+    }
+
+    /// Names of all that [`Fields::write`] writes.
+    pub fn part_names(&self, model: &Model) -> PartNames {
+        PartNames {
+            bodies: model.bodies.iter().map(|b| b.name.clone()).collect(),
+            surfaces: (self.surfaces.iter())
+                .map(|s| s.name().to_owned())
+                .collect(),
+            clouds: match self.gaps.is_empty() {
+                true => Vec::new(),
+                false => friction_fields::cloud_names(model),
+            },
+        }
     }
 
     /// Recovers pressure, gap and status at the nodes of all slave surfaces: averages over the slave points by their

@@ -8,6 +8,7 @@ mod convert;
 mod inspect;
 mod output;
 mod project;
+mod resume;
 mod run;
 mod schema;
 mod support;

@@ -11,6 +11,7 @@ mod friction_history;
 mod friction_output;
 mod lost;
 mod parametrisation;
+mod resume;
 mod rollback;
 #[path = "../verification/support.rs"]
 #[allow(dead_code)]

@@ -10,6 +10,7 @@ mod elements;
 mod links;
 mod loads;
 mod maps;
+mod memory;
 mod moving;
 mod rigid;
 mod sliding;
@@ -37,6 +38,7 @@ use std::sync::Arc;
 
 pub use answer::PointAnswer;
 pub use driven::Loose;
+pub use memory::{AssemblerMemory, CouplingMemory, MemoryError};
 
 /// What kept the model from being evaluated at a trial state. The step is cut.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
