@@ -11,6 +11,8 @@ pub mod bytes;
 mod error;
 mod fingerprint;
 pub mod state;
+#[cfg(test)]
+mod tests;
 
 pub use error::CheckpointError;
 pub use fingerprint::Fingerprint;
