@@ -2,6 +2,7 @@
 
 pub mod assembly;
 pub mod contact;
+pub mod gauntlet;
 pub mod mesh;
 pub mod model;
 pub mod output;

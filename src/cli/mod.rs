@@ -2,6 +2,7 @@
 mod cad;
 mod check;
 mod convert;
+mod gauntlet;
 mod inspect;
 mod new;
 mod progress;
@@ -53,6 +54,8 @@ enum Command {
     Project(ProjectArgs),
     /// Write the surfaces of a CAD file, with their trims, as JSON that loses nothing
     Convert(ConvertArgs),
+    /// Run hard cases with known answers, and show how each came out
+    Gauntlet(GauntletArgs),
     /// Print the JSON schema of scenes
     Schema,
     /// Write a scene to start from
@@ -136,6 +139,22 @@ struct ConvertArgs {
 }
 
 #[derive(Debug, Args)]
+struct GauntletArgs {
+    /// Cases, `GROUP/NAME`, or whole groups; default: all
+    #[arg(value_name = "CASE")]
+    cases: Vec<String>,
+    /// List the cases, run nothing
+    #[arg(long)]
+    list: bool,
+    /// Print the verdicts as JSON
+    #[arg(long, conflicts_with = "markdown")]
+    json: bool,
+    /// Print a Markdown table
+    #[arg(long)]
+    markdown: bool,
+}
+
+#[derive(Debug, Args)]
 struct NewArgs {
     /// Name of the scene; `NAME.json` is written
     name: String,
@@ -159,6 +178,7 @@ pub fn main() -> ExitCode {
         Command::Inspect(args) => inspect::inspect(&args),
         Command::Project(args) => project::project(&args),
         Command::Convert(args) => convert::convert(&args),
+        Command::Gauntlet(args) => gauntlet::gauntlet(&args),
         Command::Schema => print(&crate::scene::schema()),
         Command::New(args) => new::new(&args),
     });

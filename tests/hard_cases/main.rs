@@ -9,6 +9,7 @@ mod friction_driven;
 mod friction_energy;
 mod friction_history;
 mod friction_output;
+mod gauntlet;
 mod lost;
 mod parametrisation;
 mod resume;

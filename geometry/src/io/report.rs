@@ -167,6 +167,33 @@ pub struct CadFile {
 }
 
 impl CadFile {
+    /// Patches that come from no file, numbered from 1; lengths in `unit`. For [`write_json`](super::write_json).
+    pub fn of(patches: Vec<NurbsPatch>, unit: LengthUnit) -> Self {
+        let patches = (patches.into_iter().zip(1..)).map(|(patch, entity)| CadPatch {
+            border: match patch.trim() {
+                Some(_) => FaceBorder::Trimmed,
+                None => FaceBorder::Natural,
+            },
+            patch,
+            entity,
+            type_number: 0,
+            base: entity,
+            instance: 0,
+            name: None,
+        });
+        CadFile {
+            path: String::new(),
+            format: CadFormat::Covact,
+            unit,
+            resolution: None,
+            patches: patches.collect(),
+            entities: Vec::new(),
+            skipped: Vec::new(),
+            trims: TrimReport::default(),
+            notes: Vec::new(),
+        }
+    }
+
     /// Converts patches and resolution to another unit.
     ///
     /// # Errors
