@@ -160,9 +160,7 @@ impl Results {
                 };
                 let exact = entry(format!("{stem}_{step:04}.vtu"));
                 match kind {
-                    Kind::Surface => {
-                        [exact, entry(format!("{stem}_tessellated_{step:04}.vtu"))]
-                    }
+                    Kind::Surface => [exact, entry(format!("{stem}_tessellated_{step:04}.vtu"))],
                     Kind::Body | Kind::Cloud => [exact.clone(), exact],
                 }
             })

@@ -8,8 +8,8 @@ use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::output::{
-    BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, PartNames, Results, SurfaceOutput,
-    SurfaceState,
+    BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, PartNames, Results,
+    SurfaceOutput, SurfaceState,
 };
 use crate::scene::Output;
 use crate::shell::{ElementBlock, with_block};
@@ -123,6 +123,8 @@ impl Fields {
         self.area = 0.0;
         self.sunk.fill(0);
         self.friction.clear();
+        // Of a run that is continued, the segments may be other ones than the model's.
+        self.front.resize(state.points.len(), false);
         if !self.gaps.is_empty() {
             self.gaps.resize(state.points.len(), f64::NAN);
         }

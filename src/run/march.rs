@@ -73,6 +73,7 @@ struct Outputs {
 }
 
 impl<'a, 'm> March<'a, 'm> {
+    #[allow(clippy::too_many_arguments)]
     pub fn new(
         scene: &'a Scene,
         model: &'m Model,

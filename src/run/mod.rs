@@ -63,13 +63,14 @@ pub fn run(
         .build()
         .map_err(|e| RunError::scene(scene, "/solution/threads", e.to_string()))?;
     let threads = pool.current_num_threads();
-    pool.install(|| solve(scene, out, (threads, options.resume), observer, interrupt))
+    pool.install(|| solve(scene, out, threads, options.resume, observer, interrupt))
 }
 
 fn solve(
     loaded: &LoadedScene,
     out: &Path,
-    (threads, resume): (usize, bool),
+    threads: usize,
+    resume: bool,
     observer: &mut (dyn Observer + Send),
     interrupt: &AtomicBool,
 ) -> Result<Summary, RunError> {
@@ -83,6 +84,10 @@ fn solve(
         Some(Found::Finished(summary)) => {
             let text = format!("the run in {} has reached its end already", out.display());
             observer.event(&Event::Note { text });
+            observer.event(&Event::Finished {
+                status: summary.status.name().to_owned(),
+                wall_s: summary.wall_s,
+            });
             return Ok(*summary);
         }
         Some(Found::Unfinished(sections)) => Some(sections),

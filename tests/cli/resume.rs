@@ -109,7 +109,10 @@ fn killed(scene: &Value) {
         kills += 1;
         resumed += u32::from(resume);
     }
-    assert!(kills >= 6 && resumed >= 5, "{kills} kills, {resumed} resumed");
+    assert!(
+        kills >= 6 && resumed >= 5,
+        "{kills} kills, {resumed} resumed"
+    );
     let output = run(pieces.path(), true);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_same(whole.path(), pieces.path());
@@ -152,34 +155,33 @@ fn killed_while_it_slides() {
     }));
 }
 
-/// Two blocks: friction on a master that deforms, and segments on the ends of the upper one, under a plate that is driven by
-/// force.
+/// A block that is drawn over another with friction, up to a wall whose facets cut its front into segments, while a ball that
+/// is driven by force lies on the other.
 #[test]
 fn killed_between_bodies() {
+    let block = |min: Value, max: Value, elements: Value| {
+        json!({
+            "mesh": {"block": {"min": min, "max": max, "elements": elements}}, "material": "m"
+        })
+    };
     killed(&json!({
         "covact": 1,
         "materials": {"m": {"neo_hooke": {"E": 100, "nu": 0.3}}},
         "bodies": {
-            "bed": {"mesh": {"block": {"min": [0, 0, -1], "max": [4, 1, 0], "elements": [12, 1, 1]}}, "material": "m"},
-            "sledge": {
-                "mesh": {"block": {"min": [0.5, 0, 0], "max": [1.5, 1, 0.6], "elements": [4, 1, 1]}},
-                "material": "m"
-            },
-            "wall": {"mesh": {"block": {"min": [3, 0, 0], "max": [3.5, 1, 0.5], "elements": [1, 1, 3]}}, "material": "m"}
+            "bed": block(json!([0, 0, -1]), json!([4, 1, 0]), json!([12, 1, 1])),
+            "sledge": block(json!([0.5, 0, 0.01]), json!([1.5, 1, 0.6]), json!([4, 1, 1])),
+            "wall": block(json!([2.3, 0, 0.05]), json!([2.8, 1, 0.55]), json!([1, 1, 3]))
         },
         "surfaces": {"ball": {
-            "sphere": {"radius": 3, "center": [1, 0.5, 3.6]},
-            "motion": {
-                "translation": [{"table": [[0, 0], [0.2, 0], [1, 1.6]]}, 0, 0],
-                "free": {"force": {"z": {"table": [[0, -0.1], [0.2, -1], [1, -1]]}}}
-            }
+            "sphere": {"radius": 1, "center": [3.4, 0.5, 1.05]},
+            "motion": {"free": {"force": {"z": {"table": [[0, -0.1], [0.2, -1], [1, -2]]}}}}
         }},
         "contacts": {
             "rub": {
                 "slave": "sledge.bottom", "master": "bed.top", "points": {"gauss": 2},
                 "friction": {"coulomb": {"mu": 0.2}}
             },
-            "load": {"slave": "sledge.top", "master": "ball", "points": {"gauss": 2}},
+            "load": {"slave": "bed.top", "master": "ball", "points": {"gauss": 2}},
             "bump": {"slave": "sledge.x_max", "master": "wall.x_min", "points": {"segments": 2}}
         },
         "supports": {
@@ -188,11 +190,12 @@ fn killed_between_bodies() {
             "bed_y": {"on": "bed.y_min", "symmetry": "y"},
             "wall_y": {"on": "wall.y_min", "symmetry": "y"},
             "sledge_y": {"on": "sledge.y_min", "symmetry": "y"},
-            "pull": {"on": "sledge.x_min", "displacement": {
-                "x": {"table": [[0, 0], [0.2, 0], [1, 1.6]]}
+            "push": {"on": "sledge.top", "displacement": {
+                "x": {"table": [[0, 0], [0.2, 0], [1, 0.88]]}, "y": 0,
+                "z": {"table": [[0, 0], [0.2, -0.03], [1, -0.03]]}
             }}
         },
-        "solution": {"step": {"initial": 0.1, "max": 0.1}}
+        "solution": {"step": {"initial": 0.05, "max": 0.05}}
     }));
 }
 
@@ -227,7 +230,10 @@ fn a_run_that_has_reached_its_end() {
         &["run", "scene.json", "-o", "out", "--resume"],
     );
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert_parts(&stderr(&output), &["the run in out has reached its end already"]);
+    assert_parts(
+        &stderr(&output),
+        &["the run in out has reached its end already"],
+    );
     assert!(before == (contents(folder.path()), summary(folder.path())));
     // A tool that never touches has its own end.
     write_plate(
@@ -253,7 +259,10 @@ fn a_scene_that_has_changed() {
             let lines = corners.map(|c| format!("vertex {c} {z}\n")).concat();
             format!("facet normal 0 0 -1\nouter loop\n{lines}endloop\nendfacet\n")
         };
-        let (a, b) = (["-50 -50", "50 50", "50 -50"], ["-50 -50", "-50 50", "50 50"]);
+        let (a, b) = (
+            ["-50 -50", "50 50", "50 -50"],
+            ["-50 -50", "-50 50", "50 50"],
+        );
         format!("solid s\n{}{}endsolid s\n", facet(a), facet(b))
     };
     std::fs::write(path.join("flat.stl"), stl("9")).unwrap();
@@ -268,7 +277,10 @@ fn a_scene_that_has_changed() {
     let refused = |parts: &[&str]| {
         let output = run(path, true);
         assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
-        assert_parts(&stderr(&output), &["error: the run in `out` is of another scene: "]);
+        assert_parts(
+            &stderr(&output),
+            &["error: the run in `out` is of another scene: "],
+        );
         assert_parts(&stderr(&output), parts);
         assert!(before == contents(path));
     };

@@ -228,7 +228,11 @@ fn sledge(way: f64, steps: u32, contact: Value) -> Value {
 /// Attraction points on facets that move, and a structure of the system that has grown as the block slid.
 #[test]
 fn friction_between_bodies() {
-    let found = in_pieces(&sledge(1.6, 12, json!({"friction": {"coulomb": {"mu": 0.2}}})));
+    let found = in_pieces(&sledge(
+        1.6,
+        12,
+        json!({"friction": {"coulomb": {"mu": 0.2}}}),
+    ));
     assert_eq!(found.status, RunStatus::Done);
     assert!(found.pattern_rebuilds >= 2, "{}", found.pattern_rebuilds);
 }
@@ -271,9 +275,8 @@ fn raised_penalties() {
         .as_object_mut()
         .unwrap()
         .remove("friction");
-    scene["materials"]["rubber"]["neo_hooke"]["nu"] = json!(0.49);
     scene["surfaces"]["die"]["motion"]["translation"][2] =
-        json!({"table": [[0, 0], [0.2, -0.9], [0.8, -0.9], [1, 0.1]]});
+        json!({"table": [[0, 0], [0.2, -0.7], [0.8, -0.7], [1, 0.1]]});
     scene["output"] = json!({});
     let found = in_pieces(&scene);
     assert_eq!(found.status, RunStatus::Done);
@@ -281,11 +284,9 @@ fn raised_penalties() {
     assert!(found.warnings.iter().any(raised), "{:?}", found.warnings);
 }
 
-/// A strip that is pressed beyond the load at which it could buckle and released: the solver remembers that the last matrix
-/// was indefinite.
-#[test]
-fn an_indefinite_matrix() {
-    let found = in_pieces(&json!({
+/// A strip that is stretched or pressed along its length, its end moved as a table says.
+fn strip(way: Value) -> Value {
+    json!({
         "covact": 1,
         "materials": {"m": {"st_venant_kirchhoff": {"E": 100, "nu": 0.3}}},
         "bodies": {"strip": {
@@ -293,27 +294,32 @@ fn an_indefinite_matrix() {
         }},
         "supports": {
             "wall": {"on": "strip.x_min", "fixed": true},
-            "push": {"on": "strip.x_max", "displacement": {
-                "x": {"table": [[0, 0], [0.5, -0.2], [1, 0.2]]}, "y": 0
-            }}
+            "push": {"on": "strip.x_max", "displacement": {"x": {"table": way}, "y": 0}}
         },
         "solution": {"step": {"initial": 0.1, "max": 0.1}}
-    }));
+    })
+}
+
+/// Pressed beyond the load at which it could buckle, and released: the solver remembers that the last matrix was indefinite.
+#[test]
+fn an_indefinite_matrix() {
+    let found = in_pieces(&strip(json!([[0, 0], [0.5, -0.2], [1, 0.2]])));
     assert_eq!(found.status, RunStatus::Done);
     let of = |method: &str| found.factorizations.get(method).copied().unwrap_or(0);
-    assert!(of("llt") > 2 && of("ldlt") > 2, "{:?}", found.factorizations);
+    assert!(
+        of("llt") > 2 && of("ldlt") > 2,
+        "{:?}",
+        found.factorizations
+    );
 }
 
 /// A run that fails at its smallest step does so again.
 #[test]
 fn a_run_that_does_not_converge() {
-    let mut scene = ironed(json!({}));
-    scene["solution"] = json!({
-        "step": {"initial": 0.1, "max": 0.1, "min": 0.04}, "newton": {"max_iterations": 9}
-    });
-    scene["surfaces"]["die"]["motion"]["translation"][2] =
-        json!({"table": [[0, 0], [0.2, -0.3], [0.5, -0.3], [1, -40]]});
+    let mut scene = strip(json!([[0, 0], [0.5, 2], [1, -30]]));
+    scene["solution"]["step"]["min"] = json!(0.02);
+    scene["solution"]["newton"] = json!({"max_iterations": 5});
     let found = in_pieces(&scene);
     assert_eq!(found.status, RunStatus::NotConverged);
-    assert!(found.steps > 3 && found.cuts > 0, "{found:?}");
+    assert!(found.steps > 5 && found.cuts > 1, "{found:?}");
 }

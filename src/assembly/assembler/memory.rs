@@ -90,7 +90,8 @@ impl Assembler<'_> {
             return Err(MemoryError::Misfit("another number of contact pairs"));
         }
         let mut other = false;
-        for ((pair, own), memory) in (self.model.pairs.iter().zip(&mut self.couplings)).zip(couplings)
+        for ((pair, own), memory) in
+            (self.model.pairs.iter().zip(&mut self.couplings)).zip(couplings)
         {
             match (own, memory, pair.body_master()) {
                 (Some(own), Some(memory), Some(master)) => {

@@ -30,7 +30,10 @@ impl Fingerprint {
         for (key, value) in scene.as_object().into_iter().flatten() {
             match value {
                 Value::Object(inner) => parts.extend((inner.iter()).map(|(name, value)| {
-                    (format!("`/{key}/{name}`"), Sum::of(value.to_string().as_bytes()))
+                    (
+                        format!("`/{key}/{name}`"),
+                        Sum::of(value.to_string().as_bytes()),
+                    )
                 })),
                 value => {
                     let sum = Sum::of(value.to_string().as_bytes());
@@ -144,8 +147,17 @@ mod tests {
         assert_ne!(first.value(), other.value());
         let difference = other.difference(&first);
         assert_eq!(difference.as_deref(), Some("`/materials/m` has changed"));
-        let more = of(&text("10", r#", "surfaces": {"s": {"sphere": {"radius": 1}}}"#));
-        assert_eq!(more.difference(&first).as_deref(), Some("`/surfaces/s` is new"));
-        assert_eq!(first.difference(&more).as_deref(), Some("`/surfaces/s` is gone"));
+        let more = of(&text(
+            "10",
+            r#", "surfaces": {"s": {"sphere": {"radius": 1}}}"#,
+        ));
+        assert_eq!(
+            more.difference(&first).as_deref(),
+            Some("`/surfaces/s` is new")
+        );
+        assert_eq!(
+            first.difference(&more).as_deref(),
+            Some("`/surfaces/s` is gone")
+        );
     }
 }

@@ -177,7 +177,12 @@ pub fn find(folder: &Path, scene: &Fingerprint) -> Result<Found, RunError> {
     let path = place(folder);
     let bytes = match read(&path) {
         Ok(bytes) => bytes?,
-        Err(e) if matches!(e.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
+        Err(e)
+            if matches!(
+                e.kind(),
+                io::ErrorKind::NotFound | io::ErrorKind::NotADirectory
+            ) =>
+        {
             return finished(folder, scene, path);
         }
         Err(e) => return Err(OutputError::io("read", &path, e).into()),

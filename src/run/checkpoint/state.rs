@@ -132,11 +132,7 @@ fn put_elements(model: &Model, elements: &[f64], out: &mut Writer) {
     }
 }
 
-fn take_elements(
-    model: &Model,
-    elements: &mut [f64],
-    from: &mut Reader,
-) -> Result<(), Malformed> {
+fn take_elements(model: &Model, elements: &mut [f64], from: &mut Reader) -> Result<(), Malformed> {
     from.exactly(elements.len(), "numbers of elements")?;
     elements.fill(0.0);
     let mut first = 0;

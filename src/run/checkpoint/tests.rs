@@ -49,7 +49,14 @@ fn stopped() -> (LoadedScene, tempfile::TempDir, Vec<u8>) {
         threads: 1,
         ..RunOptions::default()
     };
-    run(&scene, folder.path(), &options, &mut StopAfter(2, &flag), &flag).unwrap();
+    run(
+        &scene,
+        folder.path(),
+        &options,
+        &mut StopAfter(2, &flag),
+        &flag,
+    )
+    .unwrap();
     let bytes = std::fs::read(place(folder.path())).unwrap();
     (scene, folder, bytes)
 }
@@ -106,7 +113,14 @@ fn no_byte_can_do_harm() {
 fn other_versions_are_named() {
     let (scene, folder, good) = stopped();
     let fingerprint = Fingerprint::new(&scene);
-    let opened = |bytes: Vec<u8>| open(place(folder.path()), sealed(bytes), folder.path(), &fingerprint);
+    let opened = |bytes: Vec<u8>| {
+        open(
+            place(folder.path()),
+            sealed(bytes),
+            folder.path(),
+            &fingerprint,
+        )
+    };
     assert!(opened(good.clone()).is_ok());
     let mut format = good.clone();
     format[MARK.len()] += 1;
@@ -117,5 +131,9 @@ fn other_versions_are_named() {
     program[HEAD + 8] = b'9';
     let error = opened(program).unwrap_err();
     assert!(matches!(&error, CheckpointError::Version { found, .. } if found.starts_with('9')));
-    assert!(error.to_string().contains("continue it with that version, or run without `--resume`"));
+    assert!(
+        error
+            .to_string()
+            .contains("continue it with that version, or run without `--resume`")
+    );
 }
