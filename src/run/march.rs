@@ -123,10 +123,14 @@ impl<'a, 'm> March<'a, 'm> {
         };
         self.keep(&committed, &walk, &outputs)?;
         let ending = self.steps(&mut committed, &mut walk, &mut outputs);
+        // Whatever went wrong, the last accepted step is not lost.
+        let flushed = self.keeper.flush();
         if self.scene.output.every > 0 && outputs.written != Some(self.progress.steps) {
             self.write(&mut outputs, &committed)?;
         }
-        ending
+        let ending = ending?;
+        flushed?;
+        Ok(ending)
     }
 
     /// Starts at time 0, in a folder that may hold another run.

@@ -1,8 +1,10 @@
 //! The file that a run is continued from: `checkpoint.bin` in the folder of its results.
 //!
-//! It is written after every accepted step, once everything else of the step is, and replaces the one before as a whole:
+//! It is made at every accepted step, once everything else of the step is written, and replaces the one before as a whole:
 //! whoever ends the process at any moment leaves a checkpoint of some accepted step and files that are as new or newer. A
-//! run that goes on from it does anew what came after. At the end of the run the file is removed.
+//! run that goes on from it does anew what came after. Replacing a file may have to wait for the disk, so that steps which
+//! take less than a hundred times as long share a checkpoint: a process that is killed loses no more than that, and one that
+//! ends by itself nothing. At the end of the run the file is removed.
 //!
 //! The layout: a mark, the version of the format, the length of the file, the version of the program, the sections
 //! ([`bytes`]), and a checksum of all of it. A crash of the machine may tear what was not yet on the disk, which the
@@ -33,7 +35,7 @@ const MARK: &[u8; 8] = b"covact\r\n";
 const FORMAT: u32 = 1;
 /// Mark, format and length.
 const HEAD: usize = 20;
-/// Time between two checkpoints that are brought to the disk, in times of what the last one took.
+/// Time between two checkpoints that are written, or brought to the disk, in times of what the last one took.
 const RARELY: u32 = 100;
 /// What bringing one to the disk is taken to cost before it has been tried.
 const FIRST: Duration = Duration::from_millis(10);
@@ -66,6 +68,10 @@ pub struct Keeper {
     path: PathBuf,
     scene: Fingerprint,
     out: Writer,
+    /// The last one is not written yet.
+    pending: bool,
+    /// When one was written, and what that took; none yet.
+    written: Option<(Instant, Duration)>,
     /// When one was brought to the disk, and what that took.
     synced: Instant,
     cost: Duration,
@@ -78,26 +84,44 @@ impl Keeper {
             path: place(folder),
             scene,
             out: Writer::default(),
+            pending: false,
+            written: None,
             synced: Instant::now(),
             cost: FIRST,
         }
     }
 
-    /// Replaces the checkpoint by one with the sections that `put` writes. On failure the one before is as it was.
-    pub fn write(&mut self, put: impl FnOnce(&mut Writer)) -> Result<(), OutputError> {
+    /// Makes a checkpoint with the sections that `put` writes, and writes it where it is time to. On failure the one before is
+    /// as it was.
+    pub fn keep(&mut self, put: impl FnOnce(&mut Writer)) -> Result<(), OutputError> {
         let out = &mut self.out;
         out.clear();
         seal(out, FORMAT, env!("CARGO_PKG_VERSION"), |out| {
             out.section("scene", |out| self.scene.put(out));
             put(out);
         });
+        self.pending = true;
+        match self.written {
+            Some((when, cost)) if when.elapsed() < RARELY * cost => Ok(()),
+            _ => self.flush(),
+        }
+    }
+
+    /// Writes the last checkpoint, where it is not written yet. On failure the one before is as it was.
+    pub fn flush(&mut self) -> Result<(), OutputError> {
+        if !std::mem::take(&mut self.pending) {
+            return Ok(());
+        }
+        let (out, start) = (&self.out, Instant::now());
         let create = |path: &Path| {
             let mut options = OpenOptions::new();
             options.write(true).create_new(true).open(path)
         };
         if self.synced.elapsed() < RARELY * self.cost {
             let unsynced = |path: &Path| create(path).map(Unsynced);
-            return write_whole_with(&self.path, out.bytes(), unsynced);
+            let done = write_whole_with(&self.path, out.bytes(), unsynced);
+            self.written = Some((start, start.elapsed()));
+            return done;
         }
         self.synced = Instant::now();
         let written = write_whole_with(&self.path, out.bytes(), create);

@@ -122,7 +122,7 @@ impl March<'_, '_> {
         phases.start("checkpoint");
         let spent = cost.spent(phases);
         let memory = assembler.memory();
-        let written = keeper.write(|out| {
+        let written = keeper.keep(|out| {
             out.section("progress", |out| {
                 put_progress(progress, out);
                 spent.put(out);
