@@ -273,6 +273,8 @@ fn a_summary_reads_back() {
         pattern_rebuilds: 0,
         effects: vec!["normal contact".into()],
         warnings: vec!["slave points are coarse".into()],
+        resumed: 0,
+        scene: String::new(),
         versions: Versions::default(),
     };
     summary.write(&path).unwrap();

@@ -13,7 +13,10 @@ mod constraints;
 mod matrix;
 mod pattern;
 
-pub use assembler::{Assembler, Drag, Fault, Manner, PairForce, PointAnswer, SurfaceForce, Totals};
+pub use assembler::{
+    Assembler, AssemblerMemory, CouplingMemory, Drag, Fault, Manner, MemoryError, PairForce,
+    PointAnswer, SurfaceForce, Totals,
+};
 pub use constraints::{ConstraintError, Dof, DofMap, DofMapBuilder, Link};
 pub use matrix::{ConstrainedScatter, SystemMatrix};
 pub use pattern::{Pattern, PatternError};

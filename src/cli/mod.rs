@@ -72,6 +72,9 @@ struct RunArgs {
     /// Folder for the results
     #[arg(short, long, value_name = "FOLDER")]
     out: PathBuf,
+    /// Go on with a run that was cut short, from its last accepted step
+    #[arg(long)]
+    resume: bool,
     /// Print one JSON object per event and line
     #[arg(long, conflicts_with = "quiet")]
     json: bool,

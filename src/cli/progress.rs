@@ -231,6 +231,7 @@ impl Table {
                 "{step:>5} {:>10} {:>10} again from {start}: {reason}",
                 "", ""
             )],
+            Event::Note { text } => vec![format!("note: {text}")],
             Event::Warning { text } => vec![format!("warning: {text}")],
         }
     }

@@ -40,6 +40,7 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     };
     let options = RunOptions {
         threads: args.threads,
+        resume: args.resume,
     };
     let result = run::run(&scene, &args.out, &options, observer.as_mut(), &interrupt);
     // Clears the progress bar before anything else is printed.

@@ -126,6 +126,14 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     fs::create_dir_all(path).map_err(|e| OutputError::io("create the folder", path, e))
 }
 
+/// Removes a file; that there is none is fine.
+pub fn remove_file(path: &Path) -> Result<(), OutputError> {
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(OutputError::io("remove", path, e)),
+        _ => Ok(()),
+    }
+}
+
 /// The file that `path` means, links followed; refuses what is not a regular file.
 fn resolve(path: &Path) -> Result<PathBuf, OutputError> {
     match fs::metadata(path) {
@@ -135,6 +143,22 @@ fn resolve(path: &Path) -> Result<PathBuf, OutputError> {
         Ok(_) => fs::canonicalize(path).map_err(|e| OutputError::io("write", path, e)),
         // Not there yet; anything else wrong with the path shows when the temporary file is made.
         Err(_) => Ok(path.to_path_buf()),
+    }
+}
+
+/// Removes temporary files that a process left in a folder when it was killed. They harm nothing, so that what cannot be
+/// removed stays.
+pub fn sweep(folder: &Path) {
+    let left_over = |name: &str| {
+        let rest = name.strip_prefix('.')?.strip_suffix(".tmp")?;
+        let (process, number) = rest.rsplit_once('.')?.1.split_once('-')?;
+        let digits = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
+        (digits(process) && digits(number)).then_some(())
+    };
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if entry.file_name().to_str().and_then(left_over).is_some() {
+            let _ = fs::remove_file(entry.path());
+        }
     }
 }
 

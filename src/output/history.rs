@@ -2,10 +2,11 @@
 use super::OutputError;
 use super::atomic::{Sink, write_fully, write_whole};
 use super::columns::documented;
+use super::sum::Sum;
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs::{File, OpenOptions};
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// A CSV file that grows by one whole line at a time: whoever stops the program finds complete lines. Numbers are the
@@ -18,7 +19,18 @@ pub struct History {
     file: File,
     /// Bytes that are whole lines.
     length: u64,
+    /// Sum of them.
+    sum: Sum,
     line: String,
+}
+
+/// Where a table ended, so that a run that was interrupted finds its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct HistoryMark {
+    /// Bytes of the table.
+    pub length: u64,
+    /// Checksum of them.
+    pub sum: u64,
 }
 
 impl History {
@@ -28,15 +40,7 @@ impl History {
     /// [`OutputError::UnknownColumn`] for a column that [`super::COLUMNS`] does not document,
     /// [`OutputError::DuplicateColumn`], or the operating system's.
     pub fn create(path: &Path, columns: Vec<String>) -> Result<Self, OutputError> {
-        let mut index = HashMap::with_capacity(columns.len());
-        for (i, column) in columns.iter().enumerate() {
-            if !documented(column) {
-                return Err(OutputError::UnknownColumn(column.clone()));
-            }
-            if index.insert(column.clone(), i).is_some() {
-                return Err(OutputError::DuplicateColumn(column.clone()));
-            }
-        }
+        let index = places(&columns)?;
         let mut line = columns
             .iter()
             .map(|c| quoted(c))
@@ -48,14 +52,70 @@ impl History {
             .append(true)
             .open(path)
             .map_err(|e| OutputError::io("open", path, e))?;
+        let mut sum = Sum::new();
+        sum.add(line.as_bytes());
         Ok(History {
             path: path.to_path_buf(),
             columns,
             index,
             file,
             length: line.len() as u64,
+            sum,
             line,
         })
+    }
+
+    /// Goes on with the table at `path` from where it was at `mark`; what came after is cut off. Nothing where the table
+    /// does not begin with what was there then, and it is left as it is.
+    ///
+    /// # Errors
+    /// As [`History::create`].
+    pub fn resume(
+        path: &Path,
+        columns: Vec<String>,
+        mark: HistoryMark,
+    ) -> Result<Option<Self>, OutputError> {
+        let index = places(&columns)?;
+        let failed = |action, e| OutputError::io(action, path, e);
+        let mut options = OpenOptions::new();
+        let mut file = match options.read(true).append(true).open(path) {
+            Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
+            opened => opened.map_err(|e| failed("open", e))?,
+        };
+        let (mut sum, mut left) = (Sum::new(), mark.length);
+        let mut buffer = [0; 1 << 14];
+        while left > 0 {
+            let most = left.min(buffer.len() as u64) as usize;
+            let read = file
+                .read(&mut buffer[..most])
+                .map_err(|e| failed("read", e))?;
+            if read == 0 {
+                return Ok(None);
+            }
+            sum.add(&buffer[..read]);
+            left -= read as u64;
+        }
+        if sum.value() != mark.sum {
+            return Ok(None);
+        }
+        file.set_len(mark.length).map_err(|e| failed("write", e))?;
+        Ok(Some(History {
+            path: path.to_path_buf(),
+            columns,
+            index,
+            file,
+            length: mark.length,
+            sum,
+            line: String::new(),
+        }))
+    }
+
+    /// Where the table ends now.
+    pub fn mark(&self) -> HistoryMark {
+        HistoryMark {
+            length: self.length,
+            sum: self.sum.value(),
+        }
     }
 
     /// Column names, from left to right.
@@ -94,6 +154,7 @@ impl History {
         match append(&mut self.file, self.line.as_bytes(), self.length) {
             Ok(()) => {
                 self.length += self.line.len() as u64;
+                self.sum.add(self.line.as_bytes());
                 Ok(())
             }
             Err(e) => Err(OutputError::io("write", &self.path, e)),
@@ -113,6 +174,20 @@ fn removed(file: &File) -> bool {
         let _ = file;
         false
     }
+}
+
+/// Places of columns that are documented and named once.
+fn places(columns: &[String]) -> Result<HashMap<String, usize>, OutputError> {
+    let mut index = HashMap::with_capacity(columns.len());
+    for (i, column) in columns.iter().enumerate() {
+        if !documented(column) {
+            return Err(OutputError::UnknownColumn(column.clone()));
+        }
+        if index.insert(column.clone(), i).is_some() {
+            return Err(OutputError::DuplicateColumn(column.clone()));
+        }
+    }
+    Ok(index)
 }
 
 /// A sink whose end can be taken back.

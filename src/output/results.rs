@@ -1,5 +1,5 @@
 //! A folder of results: one `.vtu` per part and step, listed with their times in `.pvd` collections.
-use super::atomic::{make_folder, write_whole};
+use super::atomic::{make_folder, remove_file, write_whole};
 use super::vtu::escape;
 use super::{BodyFields, OutputError, PointCloud, SurfaceOutput};
 use nalgebra::Isometry3;
@@ -23,6 +23,16 @@ pub struct Results {
     stems: Stems,
     exact: Vec<Entry>,
     tessellated: Vec<Entry>,
+    /// Steps that were written, with their times.
+    written: Vec<(u32, f64)>,
+}
+
+/// Names of the parts of a run, in the order they are written.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct PartNames {
+    pub bodies: Vec<String>,
+    pub surfaces: Vec<String>,
+    pub clouds: Vec<String>,
 }
 
 /// A file of a collection.
@@ -39,14 +49,51 @@ impl Results {
     /// does not pass for this one's.
     pub fn create(folder: &Path) -> Result<Self, OutputError> {
         make_folder(folder)?;
-        let results = Results {
+        let results = Results::empty(folder);
+        results.write_collections(&[], &[])?;
+        Ok(results)
+    }
+
+    /// Goes on in a folder that holds the files of the steps `written`, each with all of `parts`; the collections list these
+    /// again, and no later ones.
+    pub fn resume(
+        folder: &Path,
+        written: Vec<(u32, f64)>,
+        parts: &PartNames,
+    ) -> Result<Self, OutputError> {
+        let mut results = Results::empty(folder);
+        for &(step, time) in &written {
+            for [exact, tessellated] in results.entries(step, time, &parts.listed()) {
+                results.exact.push(exact);
+                results.tessellated.push(tessellated);
+            }
+        }
+        results.write_collections(&results.exact, &results.tessellated)?;
+        results.written = written;
+        Ok(results)
+    }
+
+    fn empty(folder: &Path) -> Self {
+        Results {
             folder: folder.to_path_buf(),
             stems: Stems::default(),
             exact: Vec::new(),
             tessellated: Vec::new(),
-        };
-        results.write_collections(&[], &[])?;
-        Ok(results)
+            written: Vec::new(),
+        }
+    }
+
+    /// Steps that were written, with their times.
+    pub fn written(&self) -> &[(u32, f64)] {
+        &self.written
+    }
+
+    /// Removes the files of a step that is not listed, where there are any.
+    pub fn remove(&mut self, step: u32, parts: &PartNames) -> Result<(), OutputError> {
+        for file in self.entries(step, 0.0, &parts.listed()).iter().flatten() {
+            remove_file(&self.folder.join(&file.file))?;
+        }
+        Ok(())
     }
 
     /// Writes every part at an accepted step, then the collections. The part numbers and file names are those of the
@@ -60,64 +107,64 @@ impl Results {
         surfaces: &[SurfaceState],
         clouds: &[PointCloud],
     ) -> Result<(), OutputError> {
-        let mut exact = self.exact.clone();
-        let mut tessellated = self.tessellated.clone();
-        for body in bodies {
-            let part = self.stems.part(Kind::Body, body.name);
-            let file = format!("{}_{step:04}.vtu", self.stems.of[part].stem);
-            let bytes = body.to_vtu(part as u32)?;
-            write_whole(&self.folder.join(&file), &bytes)?;
-            let entry = Entry {
-                time,
-                part,
-                name: body.name.to_string(),
-                file,
+        let parts: Vec<(Kind, &str)> = (bodies.iter().map(|b| (Kind::Body, b.name)))
+            .chain(surfaces.iter().map(|s| (Kind::Surface, s.surface.name())))
+            .chain(clouds.iter().map(|c| (Kind::Cloud, c.name.as_str())))
+            .collect();
+        let entries = self.entries(step, time, &parts);
+        let mut next = entries.iter();
+        let mut put = |bytes: Vec<u8>, tessellated: Option<Vec<u8>>| {
+            let Some([exact, other]) = next.next() else {
+                return Ok(());
             };
-            exact.push(entry.clone());
-            tessellated.push(entry);
+            write_whole(&self.folder.join(&exact.file), &bytes)?;
+            tessellated.map_or(Ok(()), |bytes| {
+                write_whole(&self.folder.join(&other.file), &bytes)
+            })
+        };
+        for (body, [entry, _]) in bodies.iter().zip(&entries) {
+            put(body.to_vtu(entry.part as u32)?, None)?;
         }
         for state in surfaces {
-            let name = state.surface.name();
-            let part = self.stems.part(Kind::Surface, name);
-            let stem = &self.stems.of[part].stem;
-            for (list, file, bytes) in [
-                (
-                    &mut exact,
-                    format!("{stem}_{step:04}.vtu"),
-                    state.surface.to_vtu(state.at)?,
-                ),
-                (
-                    &mut tessellated,
-                    format!("{stem}_tessellated_{step:04}.vtu"),
-                    state.surface.to_tessellated_vtu(state.at)?,
-                ),
-            ] {
-                write_whole(&self.folder.join(&file), &bytes)?;
-                list.push(Entry {
-                    time,
-                    part,
-                    name: name.to_string(),
-                    file,
-                });
-            }
+            let exact = state.surface.to_vtu(state.at)?;
+            put(exact, Some(state.surface.to_tessellated_vtu(state.at)?))?;
         }
         for cloud in clouds {
-            let part = self.stems.part(Kind::Cloud, &cloud.name);
-            let file = format!("{}_{step:04}.vtu", self.stems.of[part].stem);
-            write_whole(&self.folder.join(&file), &cloud.to_vtu()?)?;
-            let entry = Entry {
-                time,
-                part,
-                name: cloud.name.clone(),
-                file,
-            };
-            exact.push(entry.clone());
-            tessellated.push(entry);
+            put(cloud.to_vtu()?, None)?;
+        }
+        let mut exact = self.exact.clone();
+        let mut tessellated = self.tessellated.clone();
+        for [first, second] in entries {
+            exact.push(first);
+            tessellated.push(second);
         }
         self.write_collections(&exact, &tessellated)?;
         self.exact = exact;
         self.tessellated = tessellated;
+        self.written.push((step, time));
         Ok(())
+    }
+
+    /// What the collections list of a step: per part the file with the exact surface, and the tessellated one, which of
+    /// anything but a surface is the same.
+    fn entries(&mut self, step: u32, time: f64, parts: &[(Kind, &str)]) -> Vec<[Entry; 2]> {
+        (parts.iter())
+            .map(|&(kind, name)| {
+                let part = self.stems.part(kind, name);
+                let stem = &self.stems.of[part].stem;
+                let entry = |file| Entry {
+                    time,
+                    part,
+                    name: name.to_string(),
+                    file,
+                };
+                let exact = entry(format!("{stem}_{step:04}.vtu"));
+                match kind {
+                    Kind::Surface => [exact, entry(format!("{stem}_tessellated_{step:04}.vtu"))],
+                    Kind::Body | Kind::Cloud => [exact.clone(), exact],
+                }
+            })
+            .collect()
     }
 
     fn write_collections(&self, exact: &[Entry], tessellated: &[Entry]) -> Result<(), OutputError> {
@@ -129,6 +176,15 @@ impl Results {
             &self.folder.join("results_tessellated.pvd"),
             collection(tessellated).as_bytes(),
         )
+    }
+}
+
+impl PartNames {
+    fn listed(&self) -> Vec<(Kind, &str)> {
+        (self.bodies.iter().map(|n| (Kind::Body, n.as_str())))
+            .chain(self.surfaces.iter().map(|n| (Kind::Surface, n.as_str())))
+            .chain(self.clouds.iter().map(|n| (Kind::Cloud, n.as_str())))
+            .collect()
     }
 }
 

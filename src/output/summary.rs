@@ -80,6 +80,13 @@ pub struct Summary {
     pub effects: Vec<String>,
     /// What the user should know, in words.
     pub warnings: Vec<String>,
+    /// Times that the run was continued after an interruption. Seconds and phases are then those of all parts, each up to
+    /// the step that the next one went on from.
+    #[serde(default)]
+    pub resumed: u32,
+    /// Checksum of the scene and of the files that it names.
+    #[serde(default)]
+    pub scene: String,
     /// Versions that made this file.
     pub versions: Versions,
 }

@@ -2,7 +2,7 @@
 mod moving;
 
 use crate::assembly::{Assembler, Fault, PointAnswer};
-use crate::contact::friction::history::{PointHistory, PointStatus};
+use crate::contact::friction::history::{PointHistory, PointStatus, Turn};
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::Friction;
 use crate::contact::law::Offsets;
@@ -111,7 +111,7 @@ fn release(
     history.release(&local, foot.map(|f| f.signed_distance - z0));
 }
 
-/// Takes the state at the end of a step, which began at time `start`, into the histories.
+/// Takes the state at the end of a step, which began at time `start` with displacements `before`, into the histories.
 ///
 /// # Errors
 /// A point that cannot be evaluated, or a motion or a coefficient without a value at `time`.
@@ -119,7 +119,7 @@ pub fn commit(
     model: &Model,
     assembler: &mut Assembler,
     state: &mut State,
-    start: f64,
+    (before, start): (&[f64], f64),
     time: f64,
 ) -> Result<FrictionTotals, Fault> {
     if model.histories() == 0 {
@@ -149,10 +149,15 @@ pub fn commit(
         let (hints, histories) = (&state.points[points], &mut state.histories[range]);
         match pair.master {
             Master::Rigid(surface) => {
+                let master = model.surfaces[surface].at(time, &state.u)?;
                 let batch = Batch {
                     model,
                     pair,
-                    master: model.surfaces[surface].at(time, &state.u)?,
+                    turn: Turn {
+                        start: model.surfaces[surface].at(start, before)?.pose.rotation,
+                        end: master.pose.rotation,
+                    },
+                    master,
                     u: &state.u,
                     offsets: pair.offsets(time),
                     eps_n,
@@ -198,6 +203,7 @@ struct Batch<'a> {
     model: &'a Model,
     pair: &'a PairModel,
     master: RigidMaster<'a, SurfaceSet>,
+    turn: Turn,
     u: &'a [f64],
     offsets: Option<Offsets<'a>>,
     eps_n: f64,
@@ -222,7 +228,7 @@ impl Batch<'_> {
             .map_err(|fault| Fault::contact(self.pair, i, &x, fault))?;
         match touch {
             Some(touch) => {
-                let turn = &self.master.pose.rotation;
+                let turn = &self.turn;
                 let (n, eps_t) = (touch.touch.n, friction.eps_t);
                 let first = limited(&touch.traction.trial, &touch.normal, -history.n);
                 let (local, traction) = (&touch.local, &touch.traction);
@@ -236,7 +242,7 @@ impl Batch<'_> {
                 let local = (pose.inverse_transform_point(&Point3::from(x))).coords;
                 let foot = self.master.foot(&x, hint, f64::INFINITY);
                 let foot = foot.map(|f| (f.signed_distance - z0, f.normal));
-                history.leave(&local, foot, self.eps_n, friction.eps_t, &pose.rotation);
+                history.leave(&local, foot, self.eps_n, friction.eps_t, &self.turn);
             }
         }
         Ok(())

@@ -1,10 +1,11 @@
 //! Why a run could not be done.
+use super::checkpoint::CheckpointError;
 use crate::model::ModelError;
 use crate::output::OutputError;
 use crate::scene::{LoadedScene, Place, ValueError};
 
-/// An error with the process's exit code: 3 where the scene or a file it names is wrong, 5 where a result cannot be
-/// written, 1 where the program is.
+/// An error with the process's exit code: 3 where the scene or a file it names is wrong (or not the one that is to be
+/// continued), 5 where a result cannot be written or a checkpoint not be used, 1 where the program is.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The scene, or a file it names, is wrong.
@@ -20,6 +21,9 @@ pub enum RunError {
     },
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// A run cannot be continued.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// A fault of this program.
     #[error("internal error: {0}")]
     Internal(String),
@@ -52,7 +56,8 @@ impl RunError {
     pub fn exit_code(&self) -> u8 {
         match self {
             RunError::Scene { .. } => 3,
-            RunError::Output(_) => 5,
+            RunError::Checkpoint(e) if e.is_scene() => 3,
+            RunError::Output(_) | RunError::Checkpoint(_) => 5,
             RunError::Internal(_) => 1,
         }
     }

@@ -8,14 +8,15 @@ use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::output::{
-    BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, Results, SurfaceOutput,
-    SurfaceState,
+    BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, PartNames, Results,
+    SurfaceOutput, SurfaceState,
 };
 use crate::scene::Output;
 use crate::shell::{ElementBlock, with_block};
 use covact_geometry::Vec3;
 
-/// Contact fields on all nodes, and totals over all slave points.
+/// Contact fields on all nodes, and totals over all slave points. [`Fields::gather`] makes all of them from an accepted
+/// state, so that a run that is continued has the same.
 pub struct Fields {
     surfaces: Vec<SurfaceOutput>,
     notes: Vec<String>,
@@ -96,6 +97,20 @@ impl Fields {
         self.notes.clone()
     }
 
+    /// Names of all that [`Fields::write`] writes.
+    pub fn part_names(&self, model: &Model) -> PartNames {
+        PartNames {
+            bodies: model.bodies.iter().map(|b| b.name.clone()).collect(),
+            surfaces: (self.surfaces.iter())
+                .map(|s| s.name().to_owned())
+                .collect(),
+            clouds: match self.gaps.is_empty() {
+                true => Vec::new(),
+                false => friction_fields::cloud_names(model),
+            },
+        }
+    }
+
     /// Recovers pressure, gap and status at the nodes of all slave surfaces: averages over the slave points by their
     /// shape functions and areas, `p_I = sum w N_I p / sum w N_I`. With points at nodes that is the point's own
     /// pressure; as the areas are the modelled ones, it is right on symmetry planes too. Where gaps are averaged, they and
@@ -119,6 +134,8 @@ impl Fields {
         self.pressed.fill(0.0);
         let start = std::mem::take(&mut self.start);
         self.friction.clear();
+        // Of a run that is continued, the segments may be other ones than the model's.
+        self.front.resize(state.points.len(), false);
         if !self.gaps.is_empty() {
             self.gaps.resize(state.points.len(), f64::NAN);
         }
@@ -216,6 +233,11 @@ impl Fields {
             self.smallest_gap = f64::NAN;
         }
         Ok(())
+    }
+
+    /// The start of the run has been gathered, by the process that it was continued from.
+    pub fn went_on(&mut self) {
+        self.gathered = true;
     }
 
     /// Takes over a node with an averaged gap.

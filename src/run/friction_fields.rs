@@ -100,6 +100,18 @@ pub(super) fn status(history: &PointHistory) -> u8 {
     }
 }
 
+/// What the slave points of a contact are called; its two passes have one name.
+fn cloud_name(pair: &PairModel) -> String {
+    let back = pair.half.is_some_and(|half| half.back);
+    format!("{}{}_points", pair.name, if back { "_back" } else { "" })
+}
+
+/// Names of [`clouds`].
+pub(super) fn cloud_names(model: &Model) -> Vec<String> {
+    let sliding = model.pairs.iter().filter(|p| p.friction.is_some());
+    sliding.map(cloud_name).collect()
+}
+
 /// The slave points of every contact with friction; `gaps` are those of all points of the model (length).
 pub(super) fn clouds(model: &Model, state: &State, gaps: &[f64]) -> Vec<PointCloud> {
     let mut first = 0;
@@ -113,10 +125,8 @@ pub(super) fn clouds(model: &Model, state: &State, gaps: &[f64]) -> Vec<PointClo
         };
         let histories = &state.histories[range];
         let positions = points.iter().map(|p| model.point_position(p, &state.u));
-        let back = pair.half.is_some_and(|half| half.back);
         out.push(PointCloud {
-            // The two passes of a contact have one name.
-            name: format!("{}{}_points", pair.name, if back { "_back" } else { "" }),
+            name: cloud_name(pair),
             positions: positions.collect(),
             area: points.iter().map(|p| p.area).collect(),
             status: histories.iter().map(status).collect(),

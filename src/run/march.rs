@@ -1,6 +1,12 @@
 //! The march through time: steps, roll-back, output.
+mod kept;
+
+pub(super) use kept::Kept;
+
 use super::RunError;
+use super::checkpoint::{CheckpointError, Keeper, start};
 use super::commit::{self, FrictionTotals};
+use super::cost::Cost;
 use super::fields::Fields;
 use super::history;
 use super::progress::Progress;
@@ -10,6 +16,7 @@ use crate::assembly::{Assembler, Drag};
 use crate::model::error::number;
 use crate::model::state::State;
 use crate::model::{Model, penalty, segments};
+use crate::output::atomic::{make_folder, sweep};
 use crate::output::{History, Phases, Results, RunStatus};
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
@@ -45,6 +52,17 @@ pub(super) struct March<'a, 'm> {
     /// Pairs that are in contact at the last accepted step.
     touching: Vec<bool>,
     pub watch: Watch,
+    pub cost: Cost,
+    pub keeper: Keeper,
+}
+
+/// What carries over from one step to the next, beside the accepted state.
+struct Walk {
+    stepping: Stepping,
+    /// The state before the last accepted step and that step's size, while the path is smooth.
+    before: Option<(State, f64)>,
+    /// Whether the last step needed its points kept.
+    hold: bool,
 }
 
 /// Folder, table and fields of a run.
@@ -57,6 +75,7 @@ struct Outputs {
 }
 
 impl<'a, 'm> March<'a, 'm> {
+    #[allow(clippy::too_many_arguments)]
     pub fn new(
         scene: &'a Scene,
         model: &'m Model,
@@ -65,6 +84,8 @@ impl<'a, 'm> March<'a, 'm> {
         observer: &'a mut (dyn Observer + Send),
         interrupt: &'a AtomicBool,
         phases: Phases,
+        cost: Cost,
+        keeper: Keeper,
     ) -> Self {
         March {
             scene,
@@ -85,11 +106,54 @@ impl<'a, 'm> March<'a, 'm> {
                 .collect(),
             touching: vec![false; model.pairs.len()],
             watch: Watch::new(model),
+            cost,
+            keeper,
         }
     }
 
-    /// Runs from time 0 to the end, or to where it gets.
-    pub fn run(&mut self, out: &Path) -> Result<Ending, RunError> {
+    /// Runs to the end, or to where it gets: from where it was when it was `kept`, else from time 0.
+    pub fn run(&mut self, out: &Path, kept: Option<Kept>) -> Result<Ending, RunError> {
+        let settings = &self.scene.solution;
+        let stepping = Stepping::new(
+            settings.step,
+            settings.end_time,
+            &self.model.kinks,
+            &settings.stops,
+        );
+        let (mut committed, mut walk, mut outputs) = match kept {
+            None => self.begin(out, stepping)?,
+            Some(kept) => self.go_on(out, stepping, kept)?,
+        };
+        self.keep(&committed, &walk, &outputs)?;
+        let ending = self.steps(&mut committed, &mut walk, &mut outputs);
+        if let Some(text) = self.watch.drift(self.model) {
+            self.warn(text);
+        }
+        // Whatever went wrong, the last accepted step is not lost.
+        let flushed = self.keeper.flush();
+        if self.scene.output.every > 0 && outputs.written != Some(self.progress.steps) {
+            self.write(&mut outputs, &committed)?;
+        }
+        let ending = ending?;
+        flushed?;
+        Ok(ending)
+    }
+
+    /// Starts at time 0, in a folder that may hold another run.
+    fn begin(
+        &mut self,
+        out: &Path,
+        stepping: Stepping,
+    ) -> Result<(State, Walk, Outputs), RunError> {
+        make_folder(out)?;
+        sweep(out);
+        if start(out)? {
+            let text = format!(
+                "an unfinished run in {} is replaced; `--resume` would have continued it",
+                out.display()
+            );
+            self.observer.event(&Event::Note { text });
+        }
         let mut outputs = Outputs {
             results: Results::create(out)?,
             table: History::create(&out.join("history.csv"), history::columns(self.model))?,
@@ -104,31 +168,90 @@ impl<'a, 'm> March<'a, 'm> {
         commit::start(self.model, masters, &mut committed).map_err(|e| RunError::internal(&e))?;
         self.gather(&mut outputs, &committed, 0.0)?;
         self.write(&mut outputs, &committed)?;
-        let ending = self.steps(&mut committed, &mut outputs);
-        if let Some(text) = self.watch.drift(self.model) {
-            self.warn(text);
-        }
-        if self.scene.output.every > 0 && outputs.written != Some(self.progress.steps) {
-            self.write(&mut outputs, &committed)?;
-        }
-        ending
+        let walk = Walk {
+            stepping,
+            before: None,
+            hold: false,
+        };
+        Ok((committed, walk, outputs))
     }
 
-    fn steps(&mut self, committed: &mut State, outputs: &mut Outputs) -> Result<Ending, RunError> {
+    /// Takes up a run where it was kept: files are as they were then, and what was written later is dropped.
+    fn go_on(
+        &mut self,
+        out: &Path,
+        mut stepping: Stepping,
+        kept: Kept,
+    ) -> Result<(State, Walk, Outputs), RunError> {
+        let Kept {
+            committed,
+            before,
+            dt,
+            hold,
+            progress,
+            touched,
+            touching,
+            watch,
+            table: mark,
+            written,
+            factorizations,
+            // Given back where the pattern is analysed.
+            assembler: _,
+            expects_indefinite: _,
+            spent,
+        } = kept;
+        self.workspace.factorizations = factorizations;
+        (self.progress, self.touched, self.touching) = (progress, touched, touching);
+        self.watch = watch;
+        self.cost.earlier = spent;
+        self.cost.earlier.resumed += 1;
+        stepping.set_size(dt);
+        let (step, time) = (self.progress.steps, self.progress.time);
+        let path = out.join("history.csv");
+        let Some(table) = History::resume(&path, history::columns(self.model), mark)? else {
+            return Err(CheckpointError::History { path }.into());
+        };
+        sweep(out);
+        let fields = Fields::new(self.model, &self.scene.output)?;
+        let parts = fields.part_names(self.model);
+        let last = written.last().map(|last| last.0);
+        let mut results = Results::resume(out, written, &parts)?;
+        if self.scene.output.every > 0 && last != Some(step) {
+            // Written because the run ended there, which it does not.
+            results.remove(step, &parts)?;
+        }
+        let mut outputs = Outputs {
+            results,
+            table,
+            fields,
+            written: last,
+        };
+        if step > 0 {
+            outputs.fields.went_on();
+        }
+        self.gather(&mut outputs, &committed, time)?;
+        let text = format!("continued after step {step} (time {})", number(time));
+        self.observer.event(&Event::Note { text });
+        let walk = Walk {
+            stepping,
+            before,
+            hold,
+        };
+        Ok((committed, walk, outputs))
+    }
+
+    fn steps(
+        &mut self,
+        committed: &mut State,
+        walk: &mut Walk,
+        outputs: &mut Outputs,
+    ) -> Result<Ending, RunError> {
         let settings = &self.scene.solution;
-        let mut stepping = Stepping::new(
-            settings.step,
-            settings.end_time,
-            &self.model.kinks,
-            &settings.stops,
-        );
         let mut trial = committed.clone();
-        // The state before the last accepted step and that step's size, while the path is smooth.
-        let mut before: Option<(State, f64)> = None;
-        let (mut cuts, mut hold) = (0, false);
+        let mut cuts = 0;
         let segmented = self.model.pairs.iter().any(|p| p.segments.is_some());
-        while !stepping.done(self.progress.time) {
-            let end = stepping.next(self.progress.time);
+        while !walk.stepping.done(self.progress.time) {
+            let end = walk.stepping.next(self.progress.time);
             let dt = end - self.progress.time;
             let step = self.progress.steps + 1;
             // On the last accepted state, so that a step that is cut has the same segments.
@@ -157,10 +280,10 @@ impl<'a, 'm> March<'a, 'm> {
                 observer: self.observer,
                 progress: &mut self.progress,
                 first: None,
-                hold: &mut hold,
+                hold: &mut walk.hold,
                 opened: false,
             }
-            .solve(step, end, dt, before.as_ref(), &mut trial);
+            .solve(step, end, dt, walk.before.as_ref(), &mut trial);
             let failure = match result {
                 Ok(converged) => {
                     let start = self.progress.time;
@@ -179,22 +302,25 @@ impl<'a, 'm> March<'a, 'm> {
                             &span,
                         )
                         .map_err(|e| RunError::internal(&e))?;
-                    match &mut before {
+                    match &mut walk.before {
                         Some((state, size)) => {
                             std::mem::swap(state, committed);
                             *size = dt;
                         }
-                        None => before = Some((committed.clone(), dt)),
+                        None => walk.before = Some((committed.clone(), dt)),
                     }
                     committed.copy_from(&trial);
                     committed.stabilized += drag.work;
-                    if stepping.at_kink(end) {
-                        before = None;
-                    }
                     // Augmentations say nothing of how far a step may go.
-                    stepping.accepted(converged.iterations - converged.augmenting);
-                    let sliding = commit::commit(self.model, self.assembler, committed, start, end)
-                        .map_err(|e| RunError::internal(&e))?;
+                    walk.stepping
+                        .accepted(converged.iterations - converged.augmenting);
+                    let was = walk.before.as_ref().map_or(&[][..], |before| &before.0.u);
+                    let sliding =
+                        commit::commit(self.model, self.assembler, committed, (was, start), end)
+                            .map_err(|e| RunError::internal(&e))?;
+                    if walk.stepping.at_kink(end) {
+                        walk.before = None;
+                    }
                     self.accept(step, end, &converged);
                     self.record(
                         outputs,
@@ -205,9 +331,10 @@ impl<'a, 'm> March<'a, 'm> {
                         &sliding,
                         (work, drag),
                     )?;
+                    self.keep(committed, walk, outputs)?;
                     cuts = 0;
                     if let Some(ending) =
-                        self.stabilized(committed, &drag, &converged, stepping.done(end))
+                        self.stabilized(committed, &drag, &converged, walk.stepping.done(end))
                     {
                         return Ok(ending);
                     }
@@ -224,7 +351,7 @@ impl<'a, 'm> March<'a, 'm> {
             cuts += 1;
             self.progress.cuts += 1;
             let reason = failure.to_string();
-            let Some(next_dt) = stepping.failed(dt) else {
+            let Some(next_dt) = walk.stepping.failed(dt) else {
                 let unstable = self.workspace.unstable.map_or_else(String::new, |u| {
                     format!("; {}", u.words(self.model, self.assembler.stabilizes()))
                 });

@@ -2,7 +2,9 @@
 mod augment;
 mod averaged;
 mod check;
+mod checkpoint;
 mod commit;
+mod cost;
 mod error;
 mod fields;
 mod friction_fields;
@@ -20,32 +22,36 @@ pub mod watch;
 pub use check::{
     BodyReport, CheckReport, LoadReport, PairReport, SupportReport, SurfaceReport, check,
 };
+pub use checkpoint::CheckpointError;
 pub use error::RunError;
 
 use crate::assembly::Assembler;
 use crate::model;
-use crate::output::{Phases, RunStatus, Summary, Versions, cpu_seconds, peak_memory_mb};
+use crate::output::{Phases, RunStatus, Summary, Versions};
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
-use march::March;
+use checkpoint::{Fingerprint, Found, Keeper};
+use cost::{Cost, Spent};
+use march::{Kept, March};
 use progress::Progress;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 
 /// Choices that are the caller's, not the scene's.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RunOptions {
     /// Threads; 0 takes the scene's number, and where that is 0 too, what the machine has.
     pub threads: usize,
+    /// Go on with the run whose checkpoint is in the folder; one that has reached its end is left as it is.
+    pub resume: bool,
 }
 
 /// Solves a scene and writes its results into the folder `out`. A run that does not reach its end returns its summary
 /// with a status that says so: what was computed is kept.
 ///
 /// # Errors
-/// [`RunError`] where the scene or a file it names is wrong, or a result cannot be written.
+/// [`RunError`] where the scene or a file it names is wrong, a result cannot be written, or there is no run to continue.
 pub fn run(
     scene: &LoadedScene,
     out: &Path,
@@ -62,17 +68,36 @@ pub fn run(
         .build()
         .map_err(|e| RunError::scene(scene, "/solution/threads", e.to_string()))?;
     let threads = pool.current_num_threads();
-    pool.install(|| solve(scene, out, threads, observer, interrupt))
+    pool.install(|| solve(scene, out, threads, options.resume, observer, interrupt))
 }
 
 fn solve(
     loaded: &LoadedScene,
     out: &Path,
     threads: usize,
+    resume: bool,
     observer: &mut (dyn Observer + Send),
     interrupt: &AtomicBool,
 ) -> Result<Summary, RunError> {
-    let (wall, cpu) = (Instant::now(), cpu_seconds());
+    let cost = Cost::start();
+    let fingerprint = Fingerprint::new(loaded);
+    let found = match resume {
+        true => Some(checkpoint::find(out, &fingerprint)?),
+        false => None,
+    };
+    let sections = match found {
+        Some(Found::Finished(summary)) => {
+            let text = format!("the run in {} has reached its end already", out.display());
+            observer.event(&Event::Note { text });
+            observer.event(&Event::Finished {
+                status: summary.status.name().to_owned(),
+                wall_s: summary.wall_s,
+            });
+            return Ok(*summary);
+        }
+        Some(Found::Unfinished(sections)) => Some(sections),
+        None => None,
+    };
     let mut phases = Phases::new();
     phases.start("model");
     let model = model::build::build(loaded).map_err(|e| RunError::model(loaded, e))?;
@@ -90,13 +115,23 @@ fn solve(
     phases.start("analysis");
     let mut assembler =
         Assembler::new(&model, &model.dofs).map_err(|e| memory::pattern(loaded, &e))?;
+    let kept = sections.map(|sections| Kept::read(&sections, &model));
+    let kept = kept.transpose()?;
+    if let Some(kept) = &kept {
+        (assembler.restore(&kept.assembler))
+            .map_err(|e| CheckpointError::misfit(out, &e.to_string()))?;
+    }
     let mut solver = solver(&loaded.scene, model.symmetric, threads);
     if let Some(pattern) = assembler.take_new_pattern() {
         solver
             .analyze(&pattern)
             .map_err(|e| memory::analysis(loaded, &e))?;
     }
+    if let Some(kept) = &kept {
+        solver.expect_indefinite(kept.expects_indefinite);
+    }
     phases.stop("analysis");
+    let scene = checkpoint::name(&fingerprint);
     let mut march = March::new(
         &loaded.scene,
         &model,
@@ -105,11 +140,20 @@ fn solve(
         observer,
         interrupt,
         phases,
+        cost,
+        Keeper::new(out, fingerprint),
     );
-    let (status, reason, failure) = match march.run(out) {
+    let (status, reason, failure) = match march.run(out, kept) {
         Ok(ending) => (ending.status, ending.reason, None),
         Err(e) => (RunStatus::Failed, Some(e.to_string()), Some(e)),
     };
+    let Spent {
+        wall_s,
+        cpu_s,
+        phases,
+        peak_memory_mb,
+        resumed,
+    } = march.cost.spent(&march.phases);
     let Progress {
         warnings,
         iterations,
@@ -118,17 +162,16 @@ fn solve(
         steps,
         time,
     } = march.progress;
-    let phases = march.phases;
     let pattern_rebuilds = march.assembler.rebuilds();
     let factorizations = march.workspace.factorizations.iter();
     let summary = Summary {
         status,
         reason,
         time,
-        wall_s: wall.elapsed().as_secs_f64(),
-        cpu_s: cpu_seconds().zip(cpu).map(|(now, then)| now - then),
-        phases: phases.seconds(),
-        peak_memory_mb: peak_memory_mb(),
+        wall_s,
+        cpu_s,
+        phases,
+        peak_memory_mb,
         threads,
         dofs: model.unknowns(),
         contact_points: model.contact_points(),
@@ -142,6 +185,8 @@ fn solve(
         pattern_rebuilds,
         effects: model.effects.clone(),
         warnings,
+        resumed,
+        scene,
         versions: Versions::default(),
     };
     let path = out.join("summary.json");
@@ -154,6 +199,9 @@ fn solve(
         return Err(failure);
     }
     written?;
+    if matches!(status, RunStatus::Done | RunStatus::NoContact) {
+        march.keeper.finish()?;
+    }
     march.observer.event(&Event::Finished {
         status: status.name().to_owned(),
         wall_s: summary.wall_s,

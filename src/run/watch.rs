@@ -14,6 +14,7 @@ use crate::assembly::{Assembler, Fault, PointAnswer, SurfaceForce, Totals};
 use crate::model::error::number;
 use crate::model::state::State;
 use crate::model::{Model, SurfaceModel};
+use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::scene::ValueError;
 use covact_geometry::Vec3;
 use nalgebra::Isometry3;
@@ -135,6 +136,72 @@ impl Watch {
             ],
             ..Watch::default()
         }
+    }
+
+    /// Into a checkpoint.
+    pub(super) fn put(&self, out: &mut Writer) {
+        let Watch {
+            external,
+            adjusted,
+            imbalance,
+            turnover,
+            worst,
+            worst_step,
+            speed,
+            reactions,
+            loads,
+            surfaces,
+            penalties,
+            pressed,
+            tractions,
+        } = self;
+        out.f64s(&[*external, *adjusted, *imbalance, *turnover, *worst]);
+        out.u32(*worst_step);
+        out.f64s(speed);
+        for numbers in [reactions, loads, penalties, pressed] {
+            out.count(numbers.len());
+            out.f64s(numbers);
+        }
+        out.count(surfaces.len());
+        for SurfaceForce { force, moment } in surfaces {
+            out.f64s(force.as_slice());
+            out.f64s(moment.as_slice());
+        }
+        out.count(tractions.len());
+        out.f64s(tractions.as_flattened());
+    }
+
+    /// [`Self::put`], read back for the same model.
+    pub(super) fn take(model: &Model, from: &mut Reader) -> Result<Self, Malformed> {
+        let mut watch = Watch::new(model);
+        let mut sums = [0.0; 5];
+        from.f64s(&mut sums)?;
+        [
+            watch.external,
+            watch.adjusted,
+            watch.imbalance,
+            watch.turnover,
+            watch.worst,
+        ] = sums;
+        watch.worst_step = from.u32()?;
+        from.f64s(&mut watch.speed)?;
+        for numbers in [
+            &mut watch.reactions,
+            &mut watch.loads,
+            &mut watch.penalties,
+            &mut watch.pressed,
+        ] {
+            from.exactly(numbers.len(), "watched numbers")?;
+            from.f64s(numbers)?;
+        }
+        from.exactly(watch.surfaces.len(), "surfaces")?;
+        for SurfaceForce { force, moment } in &mut watch.surfaces {
+            from.f64s(force.as_mut_slice())?;
+            from.f64s(moment.as_mut_slice())?;
+        }
+        from.exactly(watch.tractions.len(), "tractions")?;
+        from.f64s(watch.tractions.as_flattened_mut())?;
+        Ok(watch)
     }
 
     /// Work of an accepted step, and what acts at its end. `residual` is that of all degrees of freedom; the assembler has

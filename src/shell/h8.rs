@@ -34,15 +34,14 @@ impl Formulation {
         }
     }
 
-<<<<<<< HEAD
     /// Numbers of state per element.
     pub(super) const fn state_len(self) -> usize {
         tangent::state_len(self.modes())
-=======
+    }
+
     /// Whether transverse strains are assumed, not those of the displacements.
     const fn assumed(self) -> bool {
         !matches!(self, Formulation::Displacement)
->>>>>>> cond
     }
 }
 

@@ -60,6 +60,8 @@ pub struct Motion {
     pub pressed: bool,
     /// The force that drives the tool along z after its path; none: its path is prescribed.
     pub force: Option<f64>,
+    /// How far the tool goes beyond touch.
+    pub pressing: f64,
 }
 
 /// A scene drawn from a seed.
@@ -104,7 +106,16 @@ fn chance(rng: &mut Rng, share: f64) -> bool {
 pub fn draw(seed: u64) -> RandomScene {
     // Neighbouring seeds give unrelated scenes.
     let mut rng = Rng::with_seed(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5bd1_e995);
-    let rng = &mut rng;
+    loop {
+        let scene = attempt(seed, &mut rng);
+        if scene.presses() {
+            return scene;
+        }
+    }
+}
+
+/// A scene, which may have no room to press in, or slave points too far apart to feel it.
+fn attempt(seed: u64, rng: &mut Rng) -> RandomScene {
     let body = body(rng);
     let held = [Held::AllRound, Held::TwoEdges, Held::OneEdge][rng.usize(0..3)];
     let solid = matches!(body, BodyKind::Block { .. });
@@ -120,7 +131,7 @@ pub fn draw(seed: u64) -> RandomScene {
     let faceted = matches!(tool, Tool::Sphere { .. } | Tool::Cylinder { .. });
     let facets = (faceted && chance(rng, 0.2)).then(|| {
         let kind = ["bilinear", "biquadratic", "smooth"][rng.usize(0..3)];
-        (kind, rng.u32(12..30))
+        (kind, rng.u32(24..40))
     });
     let e = 10f64.powf(between(rng, 0.0, 5.0));
     let motion = motion(rng, (&body, held), &tool, center, gap, e);
@@ -151,6 +162,30 @@ pub fn draw(seed: u64) -> RandomScene {
         penalty: chance(rng, 0.4).then(|| 10f64.powf(between(rng, -1.0, 1.0))),
         steps: rng.u32(8..20),
         mirrored: false,
+    }
+}
+
+impl RandomScene {
+    /// Whether the tool surely comes to slave points: where it is round it may end between them.
+    fn presses(&self) -> bool {
+        let half = self.body.half();
+        let within = match (self.points, self.element) {
+            (("nodes", _), "q18") => 2,
+            (("nodes", _), _) => 1,
+            (("lobatto", n), _) => n - 1,
+            ((_, n), _) => n,
+        };
+        let spacing = [0, 1]
+            .map(|k| 2.0 * half[k] / f64::from(self.elements[k] * within))
+            .into_iter()
+            .fold(0.0, f64::max);
+        let sagitta = match self.tool {
+            Tool::Sphere { radius } => 0.25 * spacing * spacing / radius,
+            Tool::Cylinder { radius, .. } => 0.125 * spacing * spacing / radius,
+            Tool::Plane { .. } => 0.0,
+            Tool::Patch(_) => 0.05 * spacing * spacing,
+        };
+        self.motion.pressing > sagitta + 0.05
     }
 }
 
@@ -320,9 +355,7 @@ fn motion(
         _ => [0.0; 2],
     };
     let turn = if kind == 3 { turned } else { 0.0 };
-    // Where there is no room at all, the edge is squeezed by a little.
-    let room = room(scene, tool, center, aside, turn).max(gap) + 0.01;
-    let depth = depth.min(room);
+    let depth = depth.min(room(scene, tool, center, aside, turn));
     let down = [0.0, 0.0, -depth];
     let aside = [aside[0], aside[1], -depth];
     let start = (0.0, [0.0; 3]);
@@ -342,5 +375,6 @@ fn motion(
         turn,
         pressed,
         force,
+        pressing: depth - gap,
     }
 }

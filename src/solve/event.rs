@@ -88,6 +88,8 @@ pub enum Event {
         next_dt: f64,
         reason: String,
     },
+    /// Something that is as it should be, in words.
+    Note { text: String },
     /// Something the user should know.
     Warning { text: String },
     /// The run ended.

@@ -202,6 +202,22 @@ impl Workspace {
         }
     }
 
+    /// What outlives an accepted step: the factorizations made. All else is written by every step before it is read.
+    pub fn kept(&self) -> &BTreeMap<Method, u64> {
+        let Workspace {
+            residual: _,
+            rhs: _,
+            increments: _,
+            du: _,
+            scratch: _,
+            absolute: _,
+            base: _,
+            unstable: _,
+            factorizations,
+        } = self;
+        factorizations
+    }
+
     /// Residual at all degrees of freedom of the last evaluation: reactions at the constrained ones.
     pub fn residual(&self) -> &[f64] {
         &self.residual

@@ -55,6 +55,23 @@ impl Stepping {
             .any(|b| (b - time).abs() <= 1e-9 * self.end)
     }
 
+    /// The present size, for a run that is continued: all else is given by the scene.
+    pub fn size(&self) -> f64 {
+        let Stepping {
+            settings: _,
+            end: _,
+            kinks: _,
+            stops: _,
+            dt,
+        } = self;
+        *dt
+    }
+
+    /// Goes on with a size.
+    pub fn set_size(&mut self, dt: f64) {
+        self.dt = dt;
+    }
+
     /// Whether the end is reached.
     pub fn done(&self, time: f64) -> bool {
         time >= self.end * (1.0 - 1e-12)

@@ -9,6 +9,7 @@ mod inspect;
 mod limits;
 mod output;
 mod project;
+mod resume;
 mod run;
 mod schema;
 mod support;

@@ -12,6 +12,7 @@ mod friction_output;
 mod gauntlet;
 mod lost;
 mod parametrisation;
+mod resume;
 mod rollback;
 mod stabilization;
 #[path = "../verification/support.rs"]

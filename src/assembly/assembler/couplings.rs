@@ -4,6 +4,7 @@
 //! The pattern therefore holds more than what touches: every point that is in contact or near is coupled with its facet
 //! and the facets around. Only where a point touches a facet outside of that is the pattern built anew.
 use super::links::Links;
+use super::memory::{CouplingMemory, MemoryError};
 use crate::contact::points::SlavePoint;
 use covact_geometry::MovingFacets;
 use std::collections::BTreeSet;
@@ -149,6 +150,52 @@ impl Couplings {
             self.facets[cell][place].map = start as u32;
         }
         Some(Ok(self.facets[cell][place].map as usize))
+    }
+
+    /// What is coupled.
+    pub fn memory(&self) -> CouplingMemory {
+        // Cells and nodes are those of the model; maps are made as they are asked for.
+        let Couplings {
+            cell_of: _,
+            nodes: _,
+            starts: _,
+            facets,
+            maps: _,
+            links,
+        } = self;
+        CouplingMemory {
+            counts: facets.iter().map(|f| f.len() as u32).collect(),
+            facets: facets.iter().flatten().map(|c| c.facet).collect(),
+            links: links.pairs().collect(),
+        }
+    }
+
+    /// Couples what was coupled then, of `facets` facets that there are.
+    ///
+    /// # Errors
+    /// [`MemoryError::Misfit`]
+    pub fn restore(&mut self, memory: &CouplingMemory, facets: usize) -> Result<(), MemoryError> {
+        let known = |f: &u32| (*f as usize) < facets;
+        let all = memory.facets.iter().chain(memory.links.iter().flatten());
+        let sum: u64 = memory.counts.iter().map(|c| u64::from(*c)).sum();
+        if memory.counts.len() != self.facets.len()
+            || sum != memory.facets.len() as u64
+            || !all.clone().all(known)
+        {
+            return Err(MemoryError::Misfit("another set of coupled facets"));
+        }
+        let mut rest = memory.facets.iter();
+        for (cell, count) in self.facets.iter_mut().zip(&memory.counts) {
+            cell.clear();
+            let own = rest.by_ref().take(*count as usize);
+            cell.extend(own.map(|&facet| Coupled { facet, map: NONE }));
+            if !cell.is_sorted_by(|a, b| a.facet < b.facet) {
+                return Err(MemoryError::Misfit("coupled facets without order"));
+            }
+        }
+        self.maps.clear();
+        self.links.restore(&memory.links);
+        Ok(())
     }
 
     /// Block maps, from where [`Couplings::map`] says.

@@ -42,6 +42,18 @@ impl Links {
         }
     }
 
+    /// Links these pairs and no others.
+    pub fn restore(&mut self, pairs: &[[u32; 2]]) {
+        let Links {
+            pairs: own,
+            known,
+            maps,
+        } = self;
+        known.clear();
+        maps.clear();
+        *own = pairs.iter().map(|[a, b]| sorted(*a, *b)).collect();
+    }
+
     /// The pairs.
     pub fn pairs(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
         self.pairs.iter().copied()

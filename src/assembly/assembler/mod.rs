@@ -10,6 +10,7 @@ mod elements;
 mod links;
 mod loads;
 mod maps;
+mod memory;
 mod moving;
 mod rigid;
 mod sliding;
@@ -39,6 +40,7 @@ use std::sync::Arc;
 
 pub use answer::PointAnswer;
 pub use driven::Loose;
+pub use memory::{AssemblerMemory, CouplingMemory, MemoryError};
 pub use viscous::Drag;
 
 /// What kept the model from being evaluated at a trial state. The step is cut.

@@ -6,7 +6,7 @@ use super::couplings::Couplings;
 use super::driven::Border;
 use super::links;
 use super::touched::{self, Touched};
-use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, maps, put};
+use super::{Assembler, Fault, PairForce, PatternError, SurfaceForce, Totals, maps, put};
 use crate::contact::friction::history::PointHistory;
 use crate::contact::kernel::assemble_force;
 use crate::contact::law::{GapOffset, Multipliers, NoOffset, NormalLaw, Offsets, Penalty};
@@ -286,6 +286,13 @@ impl Assembler<'_> {
             couplings.couple(&surface.facets, near.into_iter());
             couplings.link(&surface.facets, links.into_iter());
         }
+        self.build_pattern()?;
+        self.rebuilds += 1;
+        Ok(())
+    }
+
+    /// Builds the pattern of the couplings as they are, and all that depends on it.
+    pub(super) fn build_pattern(&mut self) -> Result<(), PatternError> {
         let pattern = std::sync::Arc::new(maps::pattern(self.model, self.dofs, &self.couplings)?);
         let maps = maps::Maps::new(self.model, self.dofs, &pattern)?;
         self.borders = Border::all(self.model, &pattern)?;
@@ -295,7 +302,6 @@ impl Assembler<'_> {
         self.follower_maps = maps.followers;
         self.matrix = super::system(self.model, pattern.clone());
         self.new_pattern = Some(pattern);
-        self.rebuilds += 1;
         Ok(())
     }
 

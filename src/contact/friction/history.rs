@@ -41,6 +41,23 @@ pub struct PointHistory {
     pub dissipated: f64,
 }
 
+/// What turns the coordinates of the base into those of space, at the start of a step and at its end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turn {
+    pub start: UnitQuaternion<f64>,
+    pub end: UnitQuaternion<f64>,
+}
+
+impl Turn {
+    /// They are those of space.
+    pub fn none() -> Self {
+        Turn {
+            start: UnitQuaternion::identity(),
+            end: UnitQuaternion::identity(),
+        }
+    }
+}
+
 impl PointHistory {
     /// Law of the normal traction of the point, its gap measured from `z0` (length).
     #[inline]
@@ -64,7 +81,7 @@ impl PointHistory {
         first: &Vec3,
         n: f64,
         eps_t: f64,
-        to_space: &UnitQuaternion<f64>,
+        to_space: &Turn,
     ) {
         let (t, slides) = (traction.slip.t, traction.slip.slides);
         if slides {
@@ -72,7 +89,7 @@ impl PointHistory {
             // did not touch, the traction at the start is the limit there. Either is of second order in the step, and neither
             // gives energy back.
             let slid = traction.slid(eps_t);
-            let before = to_space.inverse_transform_vector(&self.t);
+            let before = to_space.start.inverse_transform_vector(&self.t);
             let went_on = self.status == PointStatus::Slip && before.dot(&slid) > 0.0;
             let first = if went_on { &before } else { first };
             self.dissipated += 0.5 * (first + t).dot(&slid);
@@ -90,7 +107,7 @@ impl PointHistory {
             false => PointStatus::Stick,
         };
         self.n = n;
-        self.t = to_space * t;
+        self.t = to_space.end * t;
     }
 
     /// [`Self::accept`] with augmentation: both tractions become multipliers. A point that sticks stays tied to where it was,
@@ -102,7 +119,7 @@ impl PointHistory {
         first: &Vec3,
         n: f64,
         eps_t: f64,
-        to_space: &UnitQuaternion<f64>,
+        to_space: &Turn,
     ) {
         let (base, tied) = (self.base, self.approach == 0.0);
         self.accept(local, traction, first, n, eps_t, to_space);
@@ -122,10 +139,10 @@ impl PointHistory {
         foot: Option<(f64, Vec3)>,
         eps_n: f64,
         eps_t: f64,
-        to_space: &UnitQuaternion<f64>,
+        to_space: &Turn,
     ) {
         if self.status != PointStatus::Open {
-            let before = to_space.inverse_transform_vector(&self.t);
+            let before = to_space.start.inverse_transform_vector(&self.t);
             // Without a foot the point has gone at once.
             let mut trial = before;
             if let Some((gap, normal)) = foot {
@@ -171,7 +188,7 @@ mod tests {
             ..PointHistory::default()
         };
         let foot = Some((to.z, Vec3::z()));
-        history.leave(&to, foot, 1.0 / to.z, 1.0, &UnitQuaternion::identity());
+        history.leave(&to, foot, 1.0 / to.z, 1.0, &Turn::none());
         assert_eq!((history.base, history.approach), (to, to.z));
         assert_eq!((history.lambda, history.t), (Vec3::zeros(), Vec3::zeros()));
         history
@@ -197,7 +214,7 @@ mod tests {
             status: PointStatus::Slip,
             ..PointHistory::default()
         };
-        let still = UnitQuaternion::identity();
+        let still = Turn::none();
         history.leave(&Vec3::new(5.0, 0.0, 9.0), None, 2.0, 1.0, &still);
         assert!((history.slip - 0.3).abs() < 1e-15 && (history.dissipated - 0.045).abs() < 1e-15);
         assert!(history.approach.is_infinite() && history.status == PointStatus::Open);

@@ -19,7 +19,7 @@ pub fn placed(trial: &mut Trial) -> Result<(), Broken> {
         let off = difference(&here, &there, |v| turn * v)?;
         trial.within(format!("seed {}: difference", scene.seed), off, SAME);
     }
-    trial.iterations(700);
+    trial.iterations(1200);
     Ok(())
 }
 
@@ -65,7 +65,7 @@ pub fn carried(trial: &mut Trial) -> Result<(), Broken> {
     for energy in ["energy.internal", "energy.dissipated"] {
         trial.equal(energy, moved.last(energy)?, at_rest.last(energy)?, SAME);
     }
-    trial.iterations(120);
+    trial.iterations(300);
     Ok(())
 }
 
@@ -80,7 +80,7 @@ pub fn mirrored(trial: &mut Trial) -> Result<(), Broken> {
         let off = difference(&here, &there, flip)?;
         trial.within(format!("seed {}: difference", scene.seed), off, SAME);
     }
-    trial.iterations(700);
+    trial.iterations(1200);
     Ok(())
 }
 

@@ -26,7 +26,7 @@ pub fn threads(trial: &mut Trial) -> Result<(), Broken> {
         let same = one.history == four.history;
         trial.holds(format!("seed {}: the same rows", scene.seed), same);
     }
-    trial.iterations(700);
+    trial.iterations(1200);
     Ok(())
 }
 
@@ -102,7 +102,7 @@ pub fn renumbered(trial: &mut Trial) -> Result<(), Broken> {
         rng.shuffle(&mut nodes);
         rng.shuffle(&mut elements);
     }
-    trial.iterations(200);
+    trial.iterations(400);
     Ok(())
 }
 
@@ -171,6 +171,6 @@ pub fn order(trial: &mut Trial) -> Result<(), Broken> {
     trial.within("forces: difference", worst / largest, SAME);
     let energy = "energy.internal";
     trial.equal(energy, other.last(energy)?, given.last(energy)?, SAME);
-    trial.iterations(100);
+    trial.iterations(600);
     Ok(())
 }

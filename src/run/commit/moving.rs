@@ -1,6 +1,6 @@
 //! Slave points on faces of bodies: their attraction points are material points of these faces.
 use crate::assembly::Fault;
-use crate::contact::friction::history::PointHistory;
+use crate::contact::friction::history::{PointHistory, Turn};
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::moving::Reduced;
 use crate::contact::friction::rigid::Friction;
@@ -14,7 +14,7 @@ use crate::model::state::PointState;
 use crate::model::{Model, PairModel};
 use crate::with_law;
 use covact_geometry::{Hint, MovingFoot, Vec3};
-use nalgebra::{Matrix3, UnitQuaternion};
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 /// The points of a pair whose master is a body, at an accepted state.
@@ -150,7 +150,7 @@ impl<'a> Batch<'a> {
             .map_err(|fault| Fault::contact(self.pair, i, &x, fault))?;
         // Where the master is now, its coordinates are those of space: what follows is as on a rigid master that does not
         // move, until the point is attached again.
-        let still = UnitQuaternion::identity();
+        let still = Turn::none();
         let (place, base, tied) = (history.place, history.base, history.approach == 0.0);
         let mut stays = None;
         master.detach(history, &x);

@@ -115,6 +115,16 @@ impl LinearSolver for DirectSolver {
         Ok(found)
     }
 
+    fn expects_indefinite(&self) -> bool {
+        self.prepared.as_ref().is_some_and(|p| p.expect_indefinite)
+    }
+
+    fn expect_indefinite(&mut self, expected: bool) {
+        if let Some(prepared) = &mut self.prepared {
+            prepared.expect_indefinite = expected;
+        }
+    }
+
     fn solve_in_place(&mut self, rhs: &mut [f64]) -> Result<(), LinearError> {
         let prepared = self.prepared.as_mut().ok_or(LinearError::NotAnalyzed)?;
         prepared.solve(rhs)

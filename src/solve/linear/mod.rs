@@ -53,6 +53,15 @@ pub trait LinearSolver {
         self.solve_in_place(rhs)
     }
 
+    /// What is remembered of the matrices factorized so far, beside the analysis of their pattern: that an indefinite one
+    /// is to be expected. A run that is continued gives it to [`expect_indefinite`](Self::expect_indefinite).
+    fn expects_indefinite(&self) -> bool {
+        false
+    }
+
+    /// Sets [`expects_indefinite`](Self::expects_indefinite), after the pattern was analysed.
+    fn expect_indefinite(&mut self, _expected: bool) {}
+
     /// Solves and improves the solution once with the residual in working precision: `x = A^-1 b` and then
     /// `x += A^-1 (b - A x)`. It makes the backward error small where pivoting was poor (indefinite matrices); it does
     /// not lower the floor that `|A| |x|` sets. `residual` holds `b - A x` of the first solution, before it was

@@ -1,0 +1,116 @@
+//! What an assembler carries from one evaluation to the next: what a run that is continued has to set up again.
+use super::couplings::Couplings;
+use super::{Assembler, PatternError};
+
+/// What the next evaluation depends on, beside the state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AssemblerMemory {
+    /// Penalty per pair.
+    pub penalties: Vec<f64>,
+    /// Per pair whose master is a body, what the pattern couples. It decides about the order of elimination, and with it
+    /// about the last bits.
+    pub couplings: Vec<Option<CouplingMemory>>,
+    /// Times the pattern was built anew.
+    pub rebuilds: u32,
+    /// The solver has not taken the pattern yet.
+    pub new_pattern: bool,
+}
+
+/// What a pair couples in the pattern.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct CouplingMemory {
+    /// Number of facets per cell, and the facets, cell by cell, ascending.
+    pub counts: Vec<u32>,
+    pub facets: Vec<u32>,
+    /// Pairs of facets that are coupled with each other, ascending.
+    pub links: Vec<[u32; 2]>,
+}
+
+/// Why a memory is none of this model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MemoryError {
+    #[error("{0}")]
+    Misfit(&'static str),
+    #[error(transparent)]
+    Pattern(#[from] PatternError),
+}
+
+impl Assembler<'_> {
+    /// What a run that is continued gives to [`Assembler::restore`].
+    pub fn memory(&self) -> AssemblerMemory {
+        // Whoever adds a field decides here whether it outlives an accepted step. All that is left out is given by the model,
+        // made with the pattern, or written by every evaluation before it is read.
+        let Assembler {
+            model: _,
+            dofs: _,
+            matrix: _,
+            element_maps: _,
+            kinds: _,
+            point_maps: _,
+            follower_maps: _,
+            systems: _,
+            touches: _,
+            answers: _,
+            masters: _,
+            couplings,
+            meetings: _,
+            sliding: _,
+            averaged: _,
+            new_pattern,
+            rebuilds,
+            work: _,
+            external: _,
+            contact: _,
+            borders: _,
+            penalties,
+            manner: _,
+            // Written by the first evaluation of a step.
+            viscous: _,
+        } = self;
+        AssemblerMemory {
+            penalties: penalties.clone(),
+            couplings: (couplings.iter())
+                .map(|c| c.as_ref().map(Couplings::memory))
+                .collect(),
+            rebuilds: *rebuilds,
+            new_pattern: new_pattern.is_some(),
+        }
+    }
+
+    /// Makes a new assembler of the same model one that has this memory.
+    ///
+    /// # Errors
+    /// [`MemoryError::Misfit`] where it is of another model.
+    pub fn restore(&mut self, memory: &AssemblerMemory) -> Result<(), MemoryError> {
+        let AssemblerMemory {
+            penalties,
+            couplings,
+            rebuilds,
+            new_pattern: _,
+        } = memory;
+        if penalties.len() != self.penalties.len() || couplings.len() != self.couplings.len() {
+            return Err(MemoryError::Misfit("another number of contact pairs"));
+        }
+        let mut other = false;
+        for ((pair, own), memory) in
+            (self.model.pairs.iter().zip(&mut self.couplings)).zip(couplings)
+        {
+            match (own, memory, pair.body_master()) {
+                (Some(own), Some(memory), Some(master)) => {
+                    if own.memory() != *memory {
+                        own.restore(memory, master.facets.len())?;
+                        other = true;
+                    }
+                }
+                (None, None, _) => {}
+                _ => return Err(MemoryError::Misfit("another master of a contact pair")),
+            }
+        }
+        if other {
+            self.build_pattern()?;
+        }
+        self.penalties.copy_from_slice(penalties);
+        self.rebuilds = *rebuilds;
+        Ok(())
+    }
+}

@@ -1,0 +1,288 @@
+//! What a checkpoint keeps of a run under way, and how the run goes on from it.
+//!
+//! Everything that evolves is taken apart field by field: a new field does not compile until it is decided here whether it
+//! is kept. What is kept needs a line in `put` and one in `take`, and a new [format](crate::run::checkpoint).
+use super::{March, Outputs, Walk};
+use crate::assembly::{AssemblerMemory, CouplingMemory};
+use crate::model::Model;
+use crate::model::state::State;
+use crate::output::{HistoryMark, OutputError};
+use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
+use crate::run::checkpoint::{CheckpointError, Sections, state};
+use crate::run::cost::Spent;
+use crate::run::progress::Progress;
+use crate::run::watch::Watch;
+use crate::solve::linear::Method;
+use std::collections::BTreeMap;
+
+/// A run under way at an accepted step.
+pub struct Kept {
+    pub(super) committed: State,
+    pub(super) before: Option<(State, f64)>,
+    pub(super) dt: f64,
+    pub(super) hold: bool,
+    pub(super) progress: Progress,
+    pub(super) touched: Vec<bool>,
+    pub(super) touching: Vec<bool>,
+    pub(super) watch: Watch,
+    pub(super) table: HistoryMark,
+    /// Steps whose fields were written, with their times.
+    pub(super) written: Vec<(u32, f64)>,
+    pub(super) factorizations: BTreeMap<Method, u64>,
+    pub assembler: AssemblerMemory,
+    pub expects_indefinite: bool,
+    pub(super) spent: Spent,
+}
+
+impl Kept {
+    /// Reads a checkpoint of a run of this model.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Damaged`]
+    pub fn read(sections: &Sections, model: &Model) -> Result<Self, CheckpointError> {
+        sections.read(|from| Kept::take(model, from))
+    }
+
+    fn take(model: &Model, from: &mut Reader) -> Result<Self, Malformed> {
+        let (progress, spent) =
+            from.section("progress", |r| Ok((take_progress(r)?, Spent::take(r)?)))?;
+        let (dt, hold, touched, touching) = from.section("path", |r| {
+            let pairs = model.pairs.len();
+            let (dt, hold) = (r.f64()?, r.bool()?);
+            Ok((dt, hold, take_flags(pairs, r)?, take_flags(pairs, r)?))
+        })?;
+        let watch = from.section("watch", |r| Watch::take(model, r))?;
+        let committed = from.section("state", |r| state::take(model, r))?;
+        let before = from.section("before", |r| {
+            r.option(|r| Ok((state::take_before(model, &committed, r)?, r.f64()?)))
+        })?;
+        let (assembler, expects_indefinite, factorizations) = from.section("solver", |r| {
+            Ok((take_assembler(model, r)?, r.bool()?, take_counts(r)?))
+        })?;
+        let (table, written) = from.section("output", |r| {
+            let table = HistoryMark {
+                length: r.u64()?,
+                sum: r.u64()?,
+            };
+            let count = r.count(12)?;
+            let written: Result<_, _> = (0..count).map(|_| Ok((r.u32()?, r.f64()?))).collect();
+            Ok((table, written?))
+        })?;
+        Ok(Kept {
+            committed,
+            before,
+            dt,
+            hold,
+            progress,
+            touched,
+            touching,
+            watch,
+            table,
+            written,
+            factorizations,
+            assembler,
+            expects_indefinite,
+            spent,
+        })
+    }
+}
+
+impl March<'_, '_> {
+    /// Writes the checkpoint of the last accepted step, whose other files are all written.
+    pub(super) fn keep(
+        &mut self,
+        committed: &State,
+        walk: &Walk,
+        outputs: &Outputs,
+    ) -> Result<(), OutputError> {
+        let March {
+            scene: _,
+            model,
+            assembler,
+            solver,
+            workspace,
+            observer: _,
+            interrupt: _,
+            phases,
+            progress,
+            touched,
+            touching,
+            watch,
+            cost,
+            keeper,
+        } = self;
+        let Walk {
+            stepping,
+            before,
+            hold,
+        } = walk;
+        let Outputs {
+            results,
+            table,
+            // Gathered anew from the accepted state.
+            fields: _,
+            // The last of what `results` has written.
+            written: _,
+        } = outputs;
+        phases.start("checkpoint");
+        let spent = cost.spent(phases);
+        let memory = assembler.memory();
+        let written = keeper.keep(|out| {
+            out.section("progress", |out| {
+                put_progress(progress, out);
+                spent.put(out);
+            });
+            out.section("path", |out| {
+                out.f64(stepping.size());
+                out.bool(*hold);
+                put_flags(touched, out);
+                put_flags(touching, out);
+            });
+            out.section("watch", |out| watch.put(out));
+            out.section("state", |out| state::put(model, committed, out));
+            out.section("before", |out| {
+                out.option(before.as_ref(), |out, (state, size)| {
+                    state::put_before(model, state, out);
+                    out.f64(*size);
+                });
+            });
+            out.section("solver", |out| {
+                put_assembler(&memory, out);
+                // A pattern that is still to be analysed makes the solver forget.
+                out.bool(!memory.new_pattern && solver.expects_indefinite());
+                put_counts(workspace.kept(), out);
+            });
+            out.section("output", |out| {
+                let HistoryMark { length, sum } = table.mark();
+                out.u64(length);
+                out.u64(sum);
+                out.count(results.written().len());
+                for (step, time) in results.written() {
+                    out.u32(*step);
+                    out.f64(*time);
+                }
+            });
+        });
+        phases.stop("checkpoint");
+        written
+    }
+}
+
+fn put_progress(progress: &Progress, out: &mut Writer) {
+    let Progress {
+        warnings,
+        iterations,
+        cuts,
+        steps,
+        time,
+        ping_pongs,
+    } = progress;
+    out.count(warnings.len());
+    warnings.iter().for_each(|text| out.text(text));
+    out.u64(*iterations);
+    out.u32(*cuts);
+    out.u32(*steps);
+    out.f64(*time);
+    out.u32(*ping_pongs);
+}
+
+fn take_progress(from: &mut Reader) -> Result<Progress, Malformed> {
+    let count = from.count(8)?;
+    let warnings: Result<_, _> = (0..count).map(|_| from.text().map(str::to_owned)).collect();
+    Ok(Progress {
+        warnings: warnings?,
+        iterations: from.u64()?,
+        cuts: from.u32()?,
+        steps: from.u32()?,
+        time: from.f64()?,
+        ping_pongs: from.u32()?,
+    })
+}
+
+fn put_flags(flags: &[bool], out: &mut Writer) {
+    out.count(flags.len());
+    flags.iter().for_each(|f| out.bool(*f));
+}
+
+fn take_flags(count: usize, from: &mut Reader) -> Result<Vec<bool>, Malformed> {
+    from.exactly(count, "contact pairs")?;
+    (0..count).map(|_| from.bool()).collect()
+}
+
+fn put_assembler(memory: &AssemblerMemory, out: &mut Writer) {
+    let AssemblerMemory {
+        penalties,
+        couplings,
+        rebuilds,
+        // The pattern is built, and analysed, anew in any case.
+        new_pattern: _,
+    } = memory;
+    out.count(penalties.len());
+    out.f64s(penalties);
+    for coupling in couplings {
+        out.option(coupling.as_ref(), |out, coupling| {
+            let CouplingMemory {
+                counts,
+                facets,
+                links,
+            } = coupling;
+            put_numbers(counts, out);
+            put_numbers(facets, out);
+            put_numbers(links.as_flattened(), out);
+        });
+    }
+    out.u32(*rebuilds);
+}
+
+fn take_assembler(model: &Model, from: &mut Reader) -> Result<AssemblerMemory, Malformed> {
+    from.exactly(model.pairs.len(), "penalties")?;
+    let mut penalties = vec![0.0; model.pairs.len()];
+    from.f64s(&mut penalties)?;
+    let mut couplings = Vec::with_capacity(model.pairs.len());
+    for _ in &model.pairs {
+        couplings.push(from.option(|from| {
+            Ok(CouplingMemory {
+                counts: take_numbers(from)?,
+                facets: take_numbers(from)?,
+                links: take_numbers(from)?.as_chunks().0.to_vec(),
+            })
+        })?);
+    }
+    Ok(AssemblerMemory {
+        penalties,
+        couplings,
+        rebuilds: from.u32()?,
+        new_pattern: true,
+    })
+}
+
+fn put_numbers(numbers: &[u32], out: &mut Writer) {
+    out.count(numbers.len());
+    numbers.iter().for_each(|n| out.u32(*n));
+}
+
+fn take_numbers(from: &mut Reader) -> Result<Vec<u32>, Malformed> {
+    let count = from.count(4)?;
+    (0..count).map(|_| from.u32()).collect()
+}
+
+fn put_counts(counts: &BTreeMap<Method, u64>, out: &mut Writer) {
+    out.count(counts.len());
+    for (method, count) in counts {
+        out.text(method.name());
+        out.u64(*count);
+    }
+}
+
+fn take_counts(from: &mut Reader) -> Result<BTreeMap<Method, u64>, Malformed> {
+    let mut out = BTreeMap::new();
+    for _ in 0..from.count(16)? {
+        let name = from.text()?;
+        let all = [Method::Llt, Method::Ldlt, Method::Lu];
+        let Some(method) = all.into_iter().find(|m| m.name() == name) else {
+            return Err(from.malformed("an unknown factorization"));
+        };
+        out.insert(method, from.u64()?);
+    }
+    Ok(out)
+}

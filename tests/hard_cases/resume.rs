@@ -1,0 +1,325 @@
+//! A run that is stopped after every step, and in the middle of steps, and continued each time by a program that knows
+//! nothing but the files, ends as one that was never stopped: to the last bit of every file.
+use covact::output::{RunStatus, Summary};
+use covact::run::{RunError, RunOptions, run};
+use covact::scene::{self, LoadedScene};
+use covact::solve::event::{Event, Observer};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+pub fn loaded(scene: &Value) -> LoadedScene {
+    let text = serde_json::to_string_pretty(scene).expect("serialisable");
+    scene::parse(&text, "scene.json").expect("valid scene")
+}
+
+/// Where a part of a run is stopped.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Stop {
+    Never,
+    /// Before the next step.
+    Accepted,
+    /// At this iteration, after a step was accepted.
+    Iteration(u32),
+    /// At another start of a step, or before the step after next.
+    Retried,
+}
+
+struct Stopper<'a> {
+    stop: Stop,
+    steps: u32,
+    flag: &'a AtomicBool,
+    notes: Vec<String>,
+}
+
+impl Observer for Stopper<'_> {
+    fn event(&mut self, event: &Event) {
+        let stop = match (self.stop, event) {
+            (_, Event::Note { text }) => {
+                self.notes.push(text.clone());
+                false
+            }
+            (stop, Event::StepAccepted { .. }) => {
+                self.steps += 1;
+                stop == Stop::Accepted || stop == Stop::Retried && self.steps == 2
+            }
+            (Stop::Iteration(n), Event::Iteration { iteration, .. }) => {
+                self.steps > 0 && *iteration >= n
+            }
+            (Stop::Retried, Event::StepRetried { .. } | Event::StepCut { .. }) => self.steps > 0,
+            _ => false,
+        };
+        self.flag.fetch_or(stop, Ordering::Relaxed);
+    }
+}
+
+/// A part of a run, with what it noted.
+fn part(
+    scene: &LoadedScene,
+    out: &Path,
+    resume: bool,
+    threads: usize,
+    stop: Stop,
+) -> Result<(Summary, Vec<String>), RunError> {
+    let flag = AtomicBool::new(false);
+    let mut observer = Stopper {
+        stop,
+        steps: 0,
+        flag: &flag,
+        notes: Vec::new(),
+    };
+    let options = RunOptions { threads, resume };
+    let summary = run(scene, out, &options, &mut observer, &flag)?;
+    Ok((summary, observer.notes))
+}
+
+/// All files of a folder but the summary.
+fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let name = |p: &Path| p.file_name().unwrap().to_str().unwrap().to_owned();
+    (std::fs::read_dir(folder).unwrap())
+        .map(|e| e.unwrap().path())
+        .filter(|p| !p.ends_with("summary.json"))
+        .map(|p| (name(&p), std::fs::read(&p).unwrap()))
+        .collect()
+}
+
+fn assert_same(a: &Path, b: &Path) {
+    let (a, b) = (contents(a), contents(b));
+    assert_eq!(
+        a.keys().collect::<Vec<_>>(),
+        b.keys().collect::<Vec<_>>(),
+        "other files"
+    );
+    for (name, bytes) in &a {
+        assert!(b[name] == *bytes, "{name} differs");
+    }
+}
+
+/// What a summary says of the computation, the times it took left out.
+fn counts(s: &Summary) -> impl PartialEq + std::fmt::Debug {
+    (
+        (s.status, s.reason.clone(), s.time),
+        (s.dofs, s.contact_points, s.effects.clone()),
+        (s.newton_iterations, s.factorizations.clone()),
+        (s.steps, s.cuts, s.pattern_rebuilds),
+        (s.warnings.clone(), s.scene.clone()),
+    )
+}
+
+/// Runs a scene at once and in pieces; returns what both agree on.
+fn in_pieces(scene: &Value) -> Summary {
+    let scene = loaded(scene);
+    let (whole, pieces) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let (expected, _) = part(&scene, whole.path(), false, 1, Stop::Never).unwrap();
+    let mut found = part(&scene, pieces.path(), false, 2, Stop::Accepted)
+        .unwrap()
+        .0;
+    let mut parts = 0;
+    while found.status == RunStatus::Interrupted {
+        parts += 1;
+        assert_eq!(found.resumed, parts - 1);
+        let stop = match parts % 4 {
+            0 => Stop::Iteration(1),
+            1 => Stop::Accepted,
+            2 => Stop::Iteration(3),
+            _ => Stop::Retried,
+        };
+        let threads = 1 + parts as usize % 2;
+        found = part(&scene, pieces.path(), true, threads, stop).unwrap().0;
+    }
+    println!("{parts} parts, {found:?}");
+    assert!(parts >= expected.steps / 2, "{parts} parts");
+    assert_eq!(counts(&expected), counts(&found));
+    if expected.status == RunStatus::NotConverged {
+        // It can be tried once more, with the same outcome.
+        let checkpoint = |folder: &Path| std::fs::read(folder.join("checkpoint.bin")).unwrap();
+        assert!(!checkpoint(whole.path()).is_empty());
+        let (again, _) = part(&scene, whole.path(), true, 1, Stop::Never).unwrap();
+        assert_eq!(counts(&expected), counts(&again));
+        for folder in [&whole, &pieces] {
+            std::fs::remove_file(folder.path().join("checkpoint.bin")).unwrap();
+        }
+    }
+    assert_same(whole.path(), pieces.path());
+    found
+}
+
+/// A slab of `elements`, a die that is pressed in, drawn along and lifted.
+pub fn ironed(contact: Value) -> Value {
+    let mut iron = json!({
+        "slave": "slab.top", "master": "die", "points": {"gauss": 2}, "penalty": {"scaled": 3},
+        "friction": {"coulomb": {"mu": 0.3}}
+    });
+    iron.as_object_mut()
+        .unwrap()
+        .extend(contact.as_object().unwrap().clone());
+    json!({
+        "covact": 1,
+        "materials": {"rubber": {"neo_hooke": {"E": 10, "nu": 0.3}}},
+        "bodies": {"slab": {
+            "mesh": {"block": {
+                "min": [0, 0, -2], "max": [6, 0.5, 0], "elements": [12, 1, 2]
+            }},
+            "material": "rubber"
+        }},
+        "surfaces": {"die": {
+            "cylinder": {"radius": 3, "length": 2, "center": [2, 0, 3]},
+            "motion": {"translation": [
+                {"table": [[0, 0], [0.2, 0], [0.8, 1.2], [1, 1.2]]}, 0,
+                {"table": [[0, 0], [0.2, -0.3], [0.8, -0.3], [1, 0.1]]}
+            ]}
+        }},
+        "contacts": {"iron": iron},
+        "supports": {
+            "floor": {"on": "slab.bottom", "fixed": true},
+            "front": {"on": "slab.y_min", "symmetry": "y"},
+            "back": {"on": "slab.y_max", "symmetry": "y"}
+        },
+        "solution": {"step": {"initial": 0.1, "max": 0.1}},
+        "output": {"every": 3, "contact_points": true}
+    })
+}
+
+/// Attraction points and multipliers on a rigid surface, enhanced strains, kinks, contact that opens; fields of every third
+/// step only, with slave points.
+#[test]
+fn friction_with_augmentation() {
+    let found = in_pieces(&ironed(
+        json!({"augmentation": {"gap": 1e-3, "slip": 1e-3, "max": 25}}),
+    ));
+    assert_eq!(found.status, RunStatus::Done);
+    assert!(found.warnings.iter().any(|w| w.contains("opened at step")));
+}
+
+/// Two blocks, the upper one pressed into the lower one and drawn along it over many facets.
+fn sledge(way: f64, steps: u32, contact: Value) -> Value {
+    let step = 1.0 / f64::from(steps);
+    let mut press = json!({"slave": "sledge.bottom", "master": "bed.top", "points": {"gauss": 2}});
+    press
+        .as_object_mut()
+        .unwrap()
+        .extend(contact.as_object().unwrap().clone());
+    json!({
+        "covact": 1,
+        "materials": {"m": {"neo_hooke": {"E": 100, "nu": 0.3}}},
+        "bodies": {
+            "bed": {"mesh": {"block": {
+                "min": [0, 0, -1], "max": [4, 1, 0], "elements": [12, 1, 1]
+            }}, "material": "m"},
+            "sledge": {"mesh": {"block": {
+                "min": [0.5, 0, 0.01], "max": [1.5, 1, 0.6], "elements": [4, 2, 1]
+            }}, "material": "m"}
+        },
+        "contacts": {"press": press},
+        "supports": {
+            "ground": {"on": "bed.bottom", "fixed": true},
+            "bed_y": {"on": "bed.y_min", "symmetry": "y"},
+            "sledge_y": {"on": "sledge.y_min", "symmetry": "y"},
+            "push": {"on": "sledge.top", "displacement": {
+                "x": {"table": [[0, 0], [0.25, 0], [1, way]]}, "y": 0,
+                "z": {"table": [[0, 0], [0.25, -0.03], [1, -0.03]]}
+            }}
+        },
+        "solution": {"step": {"initial": step, "max": step}}
+    })
+}
+
+/// Attraction points on facets that move, and a structure of the system that has grown as the block slid.
+#[test]
+fn friction_between_bodies() {
+    let found = in_pieces(&sledge(
+        1.6,
+        12,
+        json!({"friction": {"coulomb": {"mu": 0.2}}}),
+    ));
+    assert_eq!(found.status, RunStatus::Done);
+    assert!(found.pattern_rebuilds >= 2, "{}", found.pattern_rebuilds);
+}
+
+/// Slave points that are cut anew in every step, and are other ones each time.
+#[test]
+fn segments() {
+    let found = in_pieces(&sledge(1.3, 8, json!({"points": {"segments": 2}})));
+    assert_eq!(found.status, RunStatus::Done);
+    assert!(found.pattern_rebuilds >= 1, "{}", found.pattern_rebuilds);
+}
+
+/// Averaged gaps with two passes.
+#[test]
+fn averaged_gaps() {
+    let contact = json!({"gap": "averaged", "passes": "two_half"});
+    let found = in_pieces(&sledge(0.6, 6, contact));
+    assert_eq!(found.status, RunStatus::Done);
+}
+
+/// A surface driven by force with friction, whose motion is among the unknowns.
+#[test]
+fn a_driven_surface() {
+    let mut scene = ironed(json!({}));
+    scene["surfaces"]["die"]["motion"] = json!({
+        "translation": [{"table": [[0, 0], [0.2, 0], [1, 1]]}, 0, 0],
+        "free": {"force": {"z": {"table": [[0, -0.2], [0.2, -1], [1, -1.2]]}}}
+    });
+    scene["surfaces"]["die"]["cylinder"]["center"] = json!([2, 0, 3.05]);
+    scene["output"] = json!({});
+    let found = in_pieces(&scene);
+    assert_eq!(found.status, RunStatus::Done);
+}
+
+/// A soft automatic penalty is raised on the way, and stays so.
+#[test]
+fn raised_penalties() {
+    let mut scene = ironed(json!({"penalty": "auto", "friction": null}));
+    scene["contacts"]["iron"]
+        .as_object_mut()
+        .unwrap()
+        .remove("friction");
+    scene["surfaces"]["die"]["motion"]["translation"][2] =
+        json!({"table": [[0, 0], [0.2, -0.7], [0.8, -0.7], [1, 0.1]]});
+    scene["output"] = json!({});
+    let found = in_pieces(&scene);
+    assert_eq!(found.status, RunStatus::Done);
+    let raised = |w: &String| w.contains("automatic penalty raised");
+    assert!(found.warnings.iter().any(raised), "{:?}", found.warnings);
+}
+
+/// A strip that is stretched or pressed along its length, its end moved as a table says.
+fn strip(way: Value) -> Value {
+    json!({
+        "covact": 1,
+        "materials": {"m": {"st_venant_kirchhoff": {"E": 100, "nu": 0.3}}},
+        "bodies": {"strip": {
+            "mesh": {"plate": {"size": [20, 1], "thickness": 0.5, "elements": [10, 1]}}, "material": "m"
+        }},
+        "supports": {
+            "wall": {"on": "strip.x_min", "fixed": true},
+            "push": {"on": "strip.x_max", "displacement": {"x": {"table": way}, "y": 0}}
+        },
+        "solution": {"step": {"initial": 0.1, "max": 0.1}}
+    })
+}
+
+/// Pressed beyond the load at which it could buckle, and released: the solver remembers that the last matrix was indefinite.
+#[test]
+fn an_indefinite_matrix() {
+    let found = in_pieces(&strip(json!([[0, 0], [0.5, -0.2], [1, 0.2]])));
+    assert_eq!(found.status, RunStatus::Done);
+    let of = |method: &str| found.factorizations.get(method).copied().unwrap_or(0);
+    assert!(
+        of("llt") > 2 && of("ldlt") > 2,
+        "{:?}",
+        found.factorizations
+    );
+}
+
+/// A run that fails at its smallest step does so again.
+#[test]
+fn a_run_that_does_not_converge() {
+    let mut scene = strip(json!([[0, 0], [0.5, 2], [1, -30]]));
+    scene["solution"]["step"]["min"] = json!(0.02);
+    scene["solution"]["newton"] = json!({"max_iterations": 5});
+    let found = in_pieces(&scene);
+    assert_eq!(found.status, RunStatus::NotConverged);
+    assert!(found.steps > 5 && found.cuts > 1, "{found:?}");
+}
