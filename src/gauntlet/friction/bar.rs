@@ -50,7 +50,7 @@ fn bar(trial: &mut Trial, path: &[[f64; 2]]) -> Result<Outcome, Broken> {
         "solution": {
             "end_time": path[path.len() - 1][0],
             "step": { "initial": 0.05, "max": 0.05, "adaptive": false },
-            "newton": { "tolerance": 1e-10 }
+            "newton": { "tolerance": 1e-11 }
         },
         "output": { "every": 0 }
     });

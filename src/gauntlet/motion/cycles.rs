@@ -39,7 +39,7 @@ pub fn through(trial: &mut Trial) -> Result<(), Broken> {
             trial.equal(what, large.last(name)?, small.last(name)?, 1e-8);
         }
     }
-    trial.iterations(400);
+    trial.iterations(800);
     Ok(())
 }
 
