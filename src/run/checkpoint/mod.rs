@@ -266,7 +266,7 @@ fn read(path: &Path) -> io::Result<Result<Vec<u8>, CheckpointError>> {
             false => foreign(),
         };
     }
-    let length = head.get(HEAD - 8..).map_or(0, |bytes| {
+    let length = head.get(HEAD - 8..HEAD).map_or(0, |bytes| {
         let mut word = [0; 8];
         word.copy_from_slice(bytes);
         u64::from_le_bytes(word)
