@@ -331,13 +331,13 @@ impl<'a, 'm> March<'a, 'm> {
                         &sliding,
                         (work, drag),
                     )?;
-                    self.keep(committed, walk, outputs)?;
                     cuts = 0;
                     if let Some(ending) =
                         self.stabilized(committed, &drag, &converged, walk.stepping.done(end))
                     {
                         return Ok(ending);
                     }
+                    self.keep(committed, walk, outputs)?;
                     continue;
                 }
                 Err(failure) => failure,

@@ -355,7 +355,7 @@ fn motion(
         _ => [0.0; 2],
     };
     let turn = if kind == 3 { turned } else { 0.0 };
-    let depth = depth.min(room(scene, tool, center, aside, turn));
+    let depth = depth.min(room(scene, tool, center, aside, turn) - 0.03);
     let down = [0.0, 0.0, -depth];
     let aside = [aside[0], aside[1], -depth];
     let start = (0.0, [0.0; 3]);

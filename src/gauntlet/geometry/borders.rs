@@ -77,7 +77,12 @@ fn gaps(trial: &mut Trial) -> Result<(), Broken> {
     let told = open.warnings("too far apart to be joined").join(" ");
     trial.says(
         &told,
-        &["`tool`", "0.000848528", ", 0.5) between entity 1 and entity 2", "`cad.tolerance`"],
+        &[
+            "`tool`",
+            "0.000848528",
+            ", 0.5) between entity 1 and entity 2",
+            "`cad.tolerance`",
+        ],
     );
     trial.iterations(90);
     Ok(())
