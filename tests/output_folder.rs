@@ -270,6 +270,7 @@ fn a_summary_reads_back() {
         factorizations: BTreeMap::from([("llt".to_string(), 40), ("ldlt".to_string(), 1)]),
         steps: 3,
         cuts: 1,
+        ping_pongs: 0,
         pattern_rebuilds: 0,
         effects: vec!["normal contact".into()],
         warnings: vec!["slave points are coarse".into()],

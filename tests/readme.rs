@@ -49,3 +49,23 @@ fn the_scene_in_the_readme_is_well_formed() {
         "{problems:?}"
     );
 }
+
+#[test]
+fn readme_lists_the_cases_of_the_gauntlet() {
+    let readme = include_str!("../README.md");
+    let mut cases = 0;
+    for group in covact::gauntlet::GROUPS {
+        for case in group.cases {
+            let row = format!(
+                "| {}: {} | {} | {} |",
+                group.name,
+                case.name.replace('_', " "),
+                case.what,
+                case.right
+            );
+            assert!(readme.contains(&row), "README lacks {row}");
+            cases += 1;
+        }
+    }
+    assert!(cases >= 40);
+}

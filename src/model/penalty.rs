@@ -33,7 +33,7 @@ pub enum Given {
     TooStiff(f64),
 }
 
-/// Judges a given penalty by the automatic one (force / length^3).
+/// Judges a given penalty by the automatic one of elements that are not bounded for being slender (force / length^3).
 pub fn judge(given: f64, automatic: f64) -> Given {
     let multiple = FACTOR * given / automatic;
     match multiple {
@@ -87,10 +87,23 @@ pub fn face_size(mesh: &Mesh, faces: &[Face]) -> FaceSize {
     }
 }
 
+impl FaceSize {
+    /// What suits the elements, and what bounds it where the body is slender, over Young's modulus.
+    fn penalties(&self) -> [f64; 2] {
+        let slender = SLENDER / self.thickness * (self.thickness / self.length).powi(5);
+        [FACTOR / self.edge.min(self.depth), slender]
+    }
+
+    /// How many times smaller the automatic penalty is for being bounded; 1 where it is not.
+    pub fn bounded(&self) -> f64 {
+        let [solid, slender] = self.penalties();
+        (solid / slender).max(1.0)
+    }
+}
+
 /// The automatic penalty (force / length^3); scales with the units of the scene as it should.
 pub fn automatic(material: &Material, size: &FaceSize) -> f64 {
-    let solid = FACTOR / size.edge.min(size.depth);
-    let slender = SLENDER / size.thickness * (size.thickness / size.length).powi(5);
+    let [solid, slender] = size.penalties();
     modulus(material) * solid.min(slender)
 }
 

@@ -12,10 +12,10 @@ use super::history;
 use super::progress::Progress;
 use super::step::Attempts;
 use super::watch::{Span, Watch, Work};
-use crate::assembly::{Assembler, Drag};
+use crate::assembly::{Assembler, Drag, Fault};
 use crate::model::error::number;
 use crate::model::state::State;
-use crate::model::{Model, penalty, segments};
+use crate::model::{BodyModel, Model, penalty, segments};
 use crate::output::atomic::{make_folder, sweep};
 use crate::output::{History, Phases, Results, RunStatus};
 use crate::scene::Scene;
@@ -29,6 +29,23 @@ use std::sync::atomic::AtomicBool;
 /// Residual relative to the forces up to which an equilibrium that only the round-off floor accepts is taken without a
 /// word.
 const RELIABLE: f64 = 1e-4;
+
+/// What helps where an element with enhanced strains cannot follow; empty for other failures.
+fn squeezed(model: &Model, failure: &StepFailure) -> &'static str {
+    let named = match failure {
+        StepFailure::Fault(Fault::Element { body, .. }) | StepFailure::InsideOut { body, .. } => {
+            body
+        }
+        _ => return "",
+    };
+    let enhanced = |b: &&BodyModel| b.name == *named && b.block.alpha_len() > 0;
+    match model.bodies.iter().find(enhanced) {
+        Some(_) => {
+            "; where it is squeezed rather than bent, element `h8_displacement` follows farther"
+        }
+        None => "",
+    }
+}
 
 /// How a run ended.
 pub(super) struct Ending {
@@ -268,6 +285,7 @@ impl<'a, 'm> March<'a, 'm> {
             });
             (self.assembler).begin_step(&committed.u, self.progress.time, end);
             self.workspace.unstable = None;
+            self.workspace.unstable = None;
             let result = Attempts {
                 model: self.model,
                 committed,
@@ -355,10 +373,11 @@ impl<'a, 'm> March<'a, 'm> {
                 let unstable = self.workspace.unstable.map_or_else(String::new, |u| {
                     format!("; {}", u.words(self.model, self.assembler.stabilizes()))
                 });
+                let squeezed = squeezed(self.model, &failure);
                 return Ok(Ending {
                     status: RunStatus::NotConverged,
                     reason: Some(format!(
-                        "step {step} from time {} failed at the smallest step size: {reason}{unstable}",
+                        "step {step} from time {} failed at the smallest step size: {reason}{squeezed}{unstable}",
                         self.progress.time
                     )),
                 });

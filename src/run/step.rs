@@ -349,7 +349,8 @@ impl Attempts<'_, '_> {
                 return Ok(converged);
             }
         }
-        Err(StepFailure::PenetrationStays)
+        let raised = raised.pop().unwrap_or_default();
+        Err(StepFailure::PenetrationStays { raised })
     }
 
     /// Fails where a point that was in contact in the last accepted state lies below the surface, deeper than its

@@ -66,10 +66,11 @@ pub enum StepFailure {
         /// How far it has got, in words.
         reached: String,
     },
+    /// The last raise, in words that name the contact.
     #[error(
-        "the penetration stays above 1 % of an element although the automatic penalty was raised"
+        "{raised}, and it stays too deep: give the contact a `penalty`, more `points` a face, or a finer slave"
     )]
-    PenetrationStays,
+    PenetrationStays { raised: String },
     #[error(
         "contact `{pair}`: {points} point(s) that were in contact sank deeper than the `depth` {depth:.6e} of \
          {master}: the penalty is too soft for it, or the step too large"

@@ -14,6 +14,7 @@ mod lost;
 mod parametrisation;
 mod resume;
 mod rollback;
+mod soak;
 mod stabilization;
 #[path = "../verification/support.rs"]
 #[allow(dead_code)]

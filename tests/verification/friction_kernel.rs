@@ -1,7 +1,7 @@
 //! Friction at a single point: a helix over the patches of a cylinder, and the attraction point against the rate law of
 //! Konyukhov & Schweizerhof, Comput. Mech. 35 (2005), eq. (4).
 use covact::contact::friction::evolution::CovariantTraction;
-use covact::contact::friction::history::{PointHistory, PointStatus};
+use covact::contact::friction::history::{PointHistory, PointStatus, Turn};
 use covact::contact::friction::law::{Coulomb, FrictionLaw};
 use covact::contact::friction::orthotropic::Orthotropic;
 use covact::contact::friction::rigid::Friction;
@@ -46,13 +46,14 @@ impl<'a, F: FrictionLaw> Driver<'a, F> {
             .touch_with_friction(x, &mut self.hint, &self.law, &self.friction, &self.history)
             .expect("a reliable foot")
             .expect("contact");
-        let pose = self.master.pose.rotation;
+        // The master does not move.
+        let turn = Turn::none();
         let eps_t = self.friction.eps_t;
         let (trial, n) = (&touch.traction.trial, touch.touch.n);
         let first = (self.friction.law)
             .slip(trial, &touch.normal, -self.history.n)
             .t;
-        (self.history).accept(&touch.local, &touch.traction, &first, n, eps_t, &pose);
+        (self.history).accept(&touch.local, &touch.traction, &first, n, eps_t, &turn);
         self.history.t
     }
 }

@@ -129,7 +129,7 @@ impl Builder<'_> {
             Penalty::Scaled(f) => format!("{} of the automatic {auto}", number(f)),
         };
         if !is_automatic {
-            self.limit(name, contact, "penalty", eps_n, automatic)?;
+            self.limit(name, contact, "penalty", eps_n, (automatic, size.bounded()))?;
         }
         // The back pass of two has the penalty of the first.
         let told = format!("contact `{name}`: penalty {value} (pressure per penetration), {how}");
@@ -156,7 +156,7 @@ impl Builder<'_> {
                 Some(nodes)
             }
         };
-        let friction = self.friction(name, contact, body, eps_n, automatic)?;
+        let friction = self.friction(name, contact, (body, &size), eps_n, automatic)?;
         let augmentation = (contact.augmentation.as_ref())
             .map(|asked| AugmentationModel::new(asked, size.edge, automatic));
         let first_history = (friction.is_some() || augmentation.is_some()).then(|| {
@@ -231,7 +231,7 @@ impl Builder<'_> {
         &mut self,
         name: &str,
         contact: &Contact,
-        body: usize,
+        (body, size): (usize, &FaceSize),
         eps_n: f64,
         suitable: f64,
     ) -> Result<Option<FrictionModel>, ModelError> {
@@ -254,7 +254,14 @@ impl Builder<'_> {
         };
         if contact.tangential_penalty != Penalty::Auto {
             let (given, suitable) = (ratio * eps_n, automatic * suitable);
-            self.limit(name, contact, "tangential_penalty", given, suitable)?;
+            let bounded = size.bounded();
+            self.limit(
+                name,
+                contact,
+                "tangential_penalty",
+                given,
+                (suitable, bounded),
+            )?;
         }
         // The back pass of two has the friction of the first.
         if self.scene.contacts.get(name) == Some(contact) {
@@ -267,18 +274,18 @@ impl Builder<'_> {
         Ok(Some(FrictionModel { law, ratio }))
     }
 
-    /// Warns of a given penalty that costs too many digits, and refuses one that leaves none; `automatic` is what suits the
-    /// elements.
+    /// Warns of a given penalty that costs too many digits, and refuses one that leaves none. Compared with are the automatic
+    /// one and how many times smaller that is for the body being slender.
     fn limit(
         &mut self,
         name: &str,
         contact: &Contact,
         field: &str,
         given: f64,
-        automatic: f64,
+        (automatic, bounded): (f64, f64),
     ) -> Result<(), ModelError> {
         let what = field.replace('_', " ");
-        match penalty::judge(given, automatic) {
+        match penalty::judge(given, automatic * bounded) {
             penalty::Given::Fine => {}
             // The back pass of two has the penalty of the first.
             penalty::Given::Stiff(multiple) => {
