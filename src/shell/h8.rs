@@ -3,7 +3,7 @@ use super::error::{ElementFault, FaultCause, ShellError};
 use super::kinematics::{self, Fields, V};
 use super::material::{Collapsed, Law, MaterialLaw};
 use super::reference::{MODES, Reference};
-use super::{brick, stress, tangent, tilt};
+use super::{brick, stress, tangent};
 use crate::mesh::{ElementKind, Mesh};
 use crate::scene::Element;
 use covact_geometry::Vec3;
@@ -37,11 +37,6 @@ impl Formulation {
     /// Numbers of state per element.
     pub(super) const fn state_len(self) -> usize {
         tangent::state_len(self.modes())
-    }
-
-    /// Whether transverse strains are assumed, not those of the displacements.
-    const fn assumed(self) -> bool {
-        !matches!(self, Formulation::Displacement)
     }
 }
 
@@ -245,11 +240,7 @@ impl H8Block {
         .map_err(|cause| ElementFault {
             element: e as u32,
             cause,
-        })?;
-        if self.formulation.assumed() {
-            out.energy += tilt::add(&self.law, re, &u, &mut out.f, Some(&mut out.k));
-        }
-        Ok(())
+        })
     }
 
     /// Forces without tangent, for line searches: `f - L^T D^-1 h` with f and h at `u` and the alpha in `state`, but L
@@ -267,7 +258,7 @@ impl H8Block {
     ) -> Result<f64, ElementFault> {
         let u = arrays(u);
         let re = &self.reference[e];
-        let energy = with_law!(self, law => match self.formulation {
+        with_law!(self, law => match self.formulation {
             Formulation::Eas7 => residual::<_, 7>(law, re, &u, state, f),
             Formulation::Eas3 => residual::<_, 3>(law, re, &u, state, f),
             Formulation::Eas0 => residual::<_, 0>(law, re, &u, state, f),
@@ -276,11 +267,7 @@ impl H8Block {
                 energy
             }),
         })
-        .map_err(|(point, c)| fault(e, point, c))?;
-        Ok(match self.formulation.assumed() {
-            true => energy + tilt::add(&self.law, re, &u, f, None),
-            false => energy,
-        })
+        .map_err(|(point, c)| fault(e, point, c))
     }
 
     /// `alpha = alpha_from - scale D^-1 (h + L du)`, with D, h, L of the evaluation that produced `du`.

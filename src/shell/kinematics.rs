@@ -114,14 +114,14 @@ fn bilinear<D: DualNum<f64> + Copy>(e: &[[V<D>; 2]; 2]) -> [[V<D>; 2]; 2] {
 
 /// `(g.g - G.G)/2` from `G` and the displacement's derivative, without the cancellation of that difference.
 #[inline(always)]
-pub(super) fn stretch<D: DualNum<f64> + Copy>(big: &V<f64>, u: &V<D>) -> D {
+fn stretch<D: DualNum<f64> + Copy>(big: &V<f64>, u: &V<D>) -> D {
     let f = |x: usize| u[x] * (u[x] * 0.5 + big[x]);
     f(0) + f(1) + f(2)
 }
 
 /// `g_a.g_b - G_a.G_b`, likewise.
 #[inline(always)]
-pub(super) fn shear<D: DualNum<f64> + Copy>(big: [&V<f64>; 2], u: [&V<D>; 2]) -> D {
+fn shear<D: DualNum<f64> + Copy>(big: [&V<f64>; 2], u: [&V<D>; 2]) -> D {
     dot_plain(u[0], big[1]) + dot_plain(u[1], big[0]) + dot(u[0], u[1])
 }
 

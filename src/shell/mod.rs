@@ -30,7 +30,6 @@ mod stress;
 mod tangent;
 #[cfg(test)]
 mod tests;
-mod tilt;
 
 pub(crate) use block::with_block;
 pub use block::{Block, ElementBlock, ElementSystem, STATES, bytes_per_element};

@@ -57,7 +57,8 @@ pub fn clearance(
     let (s, c) = at.turn.sin_cos();
     let mut least = f64::INFINITY;
     let mut look = |x: f64, y: f64, z: f64| {
-        if x.abs() <= half[0] && y.abs() <= half[1] && wanted(x, y) {
+        // A little beyond the edges too, between which and the samples of a patch there is a slope.
+        if x.abs() <= half[0] + 0.3 && y.abs() <= half[1] + 0.3 && wanted(x, y) {
             least = least.min(z - body.height(x));
         }
     };

@@ -99,7 +99,11 @@ fn contact_that_is_lost_is_told_by_its_energy() {
     let [stored, lost] = ["energy.internal", "energy.imbalance"].map(|c| outcome.column(c));
     let most = stored.iter().fold(0.0f64, |a, e| a.max(*e));
     // The plate ends at rest, and most of what it held is gone without work.
-    assert!(stored[stored.len() - 1] < 1e-6 * most && lost[lost.len() - 1] > 0.1 * most);
+    let (kept, gone) = (stored[stored.len() - 1], lost[lost.len() - 1]);
+    assert!(
+        kept < 1e-6 * most && gone > 0.1 * most,
+        "{kept} {gone} of {most}"
+    );
     let told = told(&outcome);
     assert!(
         !told.is_empty() && told[0].contains("contact lost"),
@@ -124,7 +128,7 @@ fn overclosures_do_work() {
     for gap in ["pointwise", "averaged"] {
         let run = |choice: Value, dt: f64| {
             let mut scene = plate(6, 0.0, 1);
-            scene["surfaces"]["ball"]["sphere"]["center"] = json!([0, 0, 25.9]);
+            scene["surfaces"]["ball"]["sphere"]["center"] = json!([0, 0, 25.7]);
             scene["contacts"]["press"]["gap"] = json!(gap);
             scene["contacts"]["press"]["initial_overclosure"] = choice;
             scene["solution"]["step"] = json!({ "initial": dt, "max": dt });

@@ -11,13 +11,13 @@ pub const GROUP: Group = Group {
         Case {
             name: "squeezed",
             what: "blocks of 1, 2 and 4 layers between plates, shortened by 40 %, free or confined sideways",
-            right: "neo-Hooke's closed form to 1e-9, and a stable one: no negative pivot, no pattern",
+            right: "neo-Hooke's closed form, uniform, to 1e-9; q18 and h8_displacement without a negative pivot",
             run: squeezed::squeezed,
         },
         Case {
             name: "squeezed_sheet",
             what: "a sheet of elements four times as long as thick, in two layers, squeezed by 30 %",
-            right: "the closed form to 1e-9, no negative pivot",
+            right: "the closed form, uniform, to 1e-9",
             run: squeezed::sheet,
         },
         Case {

@@ -111,7 +111,8 @@ pub fn hysteresis(trial: &mut Trial) -> Result<(), Broken> {
         off / pull,
         3e-4,
     );
-    trial.equal("pull at the end of the cycle", force(5.2)?, pull, 1e-9);
+    // Positions are rounded to 1e-16 of their size, which under this penalty is some 1e-10 of the pressure at every step.
+    trial.equal("pull at the end of the cycle", force(5.2)?, pull, 5e-9);
     let dissipated =
         outcome.at("energy.dissipated", 5.2)? - outcome.at("energy.dissipated", 1.2)?;
     trial.equal(
