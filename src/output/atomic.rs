@@ -57,6 +57,28 @@ pub fn write_whole_with<S: Sink>(
     })
 }
 
+/// Writes `bytes` over the beginning of the file at `path`, which is made where it is missing and keeps what lies behind
+/// them; nothing is waited for. On failure, or when the process is killed, a part of them may be there: this is for whoever
+/// has another copy. Targets are refused as by [`write_whole`]. Returns the file, to be synced.
+pub fn overwrite(path: &Path, bytes: &[u8]) -> Result<File, OutputError> {
+    let mut file = open_in_place(path)?;
+    file.write_all(bytes)
+        .map_err(|e| OutputError::io("write", path, e))?;
+    Ok(file)
+}
+
+/// Opens the file of [`overwrite`], with all that is in it.
+pub fn open_in_place(path: &Path) -> Result<File, OutputError> {
+    // Opening a pipe would wait for its reader.
+    if fs::metadata(path).is_ok_and(|meta| !meta.is_file()) {
+        let path = path.to_path_buf();
+        return Err(OutputError::NotAFile { path });
+    }
+    let mut options = OpenOptions::new();
+    options.write(true).create(true).truncate(false);
+    (options.open(path)).map_err(|e| OutputError::io("write", path, e))
+}
+
 /// A file that takes its name when it is complete: what is written goes into a temporary file beside it, which
 /// [`commit`](Self::commit) renames and dropping removes. For contents that are not in memory at once.
 #[derive(Debug)]
