@@ -3,9 +3,9 @@
 //! One of these [slots] is written anew, in place, at every accepted step, once everything else of the step is written, and
 //! never the one that was written last: whoever ends the process at any moment leaves the checkpoint of the last accepted
 //! step, or of the one before where the last is torn, and files that are as new or newer. A run that goes on from it does
-//! anew what came after. Nothing is waited for, so that a step costs a copy of its state into memory of the system. That a
-//! crash of the machine may lose; so the newest slot is brought to the disk as often as costs no more than a hundredth of the
-//! time, and the one that is there is left alone until another is. At the end of the run the files are removed.
+//! anew what came after. Nothing is waited for: a step costs a copy of its state into the memory of the system, which a
+//! crash of the machine may lose or tear. So the newest slot is brought to the disk as often as costs half a hundredth of the
+//! time, and is left alone until another is there. At the end of the run the files are removed.
 //!
 //! The layout: a mark, the version of the format, the length, a number that grows by one with every checkpoint of a run, the
 //! version of the program, the sections ([`bytes`]), and a checksum of all of it. What lies behind is left of an earlier and
@@ -38,7 +38,7 @@ const FORMAT: u32 = 2;
 /// Mark, format, length and number.
 const HEAD: usize = 28;
 /// Time between two checkpoints that are brought to the disk, in times of what the last one took.
-const RARELY: u32 = 100;
+const RARELY: u32 = 200;
 /// What bringing one to the disk is taken to cost before it has been tried.
 const FIRST: Duration = Duration::from_millis(10);
 
