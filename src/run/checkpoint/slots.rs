@@ -95,15 +95,17 @@ fn start(path: &Path) -> io::Result<Result<(File, Vec<u8>), CheckpointError>> {
     Read::by_ref(&mut file)
         .take(HEAD as u64)
         .read_to_end(&mut head)?;
-    // Nothing but zeros is what a crash of the machine may leave.
     if head.iter().all(|b| *b == 0) {
         return Ok(Err(damaged(path, "it is empty")));
     }
-    let marked = head.len().min(MARK.len());
-    match head[..marked] == MARK[..marked] {
-        true if head.len() < HEAD => Ok(Err(damaged(path, "it is not whole"))),
+    // Zeros are what a crash of the machine may leave.
+    let mut mark = head.iter().zip(MARK);
+    if mark.clone().any(|(b, m)| b != m && *b != 0) {
+        return foreign();
+    }
+    match head.len() == HEAD && mark.all(|(b, m)| b == m) {
         true => Ok(Ok((file, head))),
-        false => foreign(),
+        false => Ok(Err(damaged(path, "it is not whole"))),
     }
 }
 
