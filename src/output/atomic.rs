@@ -1,7 +1,8 @@
 //! Files written whole or not at all.
 //!
 //! The bytes go into a temporary file in the same folder, which takes the target's name only after everything has
-//! reached the disk. Whoever reads the target sees the earlier file or the new one, never a part.
+//! reached the disk. Whoever reads the target sees the earlier file or the new one, never a part. The one exception is
+//! [`overwrite`], for files of which there is another copy.
 use super::OutputError;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};

@@ -80,7 +80,7 @@ fn passable(fault: CheckpointError) -> Result<(PathBuf, String), CheckpointError
     }
 }
 
-/// The first bytes of a file, and its length, where it is a checkpoint.
+/// An open file behind its head, and the head, where it is a checkpoint.
 fn start(path: &Path) -> io::Result<Result<(File, Vec<u8>), CheckpointError>> {
     let foreign = || {
         Ok(Err(CheckpointError::Foreign {
