@@ -245,7 +245,8 @@ fn a_torn_checkpoint() {
         .map(|path| std::fs::read(path).unwrap())
         .collect();
     for (path, bytes) in all.iter().zip(&good) {
-        std::fs::write(path, &bytes[..bytes.len() - 1]).unwrap();
+        // Less than the checkpoint itself, behind which there may be the end of a longer one.
+        std::fs::write(path, &bytes[..bytes.len() / 2]).unwrap();
     }
     let before = contents(torn.path());
     let error = part(&scene, torn.path(), true, 1, Stop::Never).unwrap_err();
