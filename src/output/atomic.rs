@@ -1,7 +1,8 @@
 //! Files written whole or not at all.
 //!
 //! The bytes go into a temporary file in the same folder, which takes the target's name only after everything has
-//! reached the disk. Whoever reads the target sees the earlier file or the new one, never a part.
+//! reached the disk. Whoever reads the target sees the earlier file or the new one, never a part. The one exception is
+//! [`overwrite`], for files of which there is another copy.
 use super::OutputError;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -55,6 +56,28 @@ pub fn write_whole_with<S: Sink>(
         let _ = fs::remove_file(&temporary);
         OutputError::io("write", path, source)
     })
+}
+
+/// Writes `bytes` over the beginning of the file at `path`, which is made where it is missing and keeps what lies behind
+/// them; nothing is waited for. On failure, or when the process is killed, a part of them may be there: this is for whoever
+/// has another copy. Targets are refused as by [`write_whole`]. Returns the file, to be synced.
+pub fn overwrite(path: &Path, bytes: &[u8]) -> Result<File, OutputError> {
+    let mut file = open_in_place(path)?;
+    file.write_all(bytes)
+        .map_err(|e| OutputError::io("write", path, e))?;
+    Ok(file)
+}
+
+/// Opens the file of [`overwrite`], with all that is in it.
+pub fn open_in_place(path: &Path) -> Result<File, OutputError> {
+    // Opening a pipe would wait for its reader.
+    if fs::metadata(path).is_ok_and(|meta| !meta.is_file()) {
+        let path = path.to_path_buf();
+        return Err(OutputError::NotAFile { path });
+    }
+    let mut options = OpenOptions::new();
+    options.write(true).create(true).truncate(false);
+    (options.open(path)).map_err(|e| OutputError::io("write", path, e))
 }
 
 /// A file that takes its name when it is complete: what is written goes into a temporary file beside it, which

@@ -2,6 +2,7 @@
 mod kept;
 
 pub(super) use kept::Kept;
+use kept::lines_behind;
 
 use super::RunError;
 use super::checkpoint::{CheckpointError, Keeper, start};
@@ -147,7 +148,11 @@ impl<'a, 'm> March<'a, 'm> {
             self.warn(text);
         }
         // Whatever went wrong, the last accepted step is not lost.
-        let flushed = self.keeper.flush();
+        let reached = |e: &Ending| matches!(e.status, RunStatus::Done | RunStatus::NoContact);
+        let flushed = match &ending {
+            Ok(ending) if reached(ending) => Ok(()),
+            _ => self.keeper.flush(),
+        };
         if self.scene.output.every > 0 && outputs.written != Some(self.progress.steps) {
             self.write(&mut outputs, &committed)?;
         }
@@ -201,6 +206,8 @@ impl<'a, 'm> March<'a, 'm> {
         kept: Kept,
     ) -> Result<(State, Walk, Outputs), RunError> {
         let Kept {
+            slot,
+            passed_over,
             committed,
             before,
             dt,
@@ -225,17 +232,22 @@ impl<'a, 'm> March<'a, 'm> {
         stepping.set_size(dt);
         let (step, time) = (self.progress.steps, self.progress.time);
         let path = out.join("history.csv");
+        let lost = lines_behind(&path, mark.length);
         let Some(table) = History::resume(&path, history::columns(self.model), mark)? else {
             return Err(CheckpointError::History { path }.into());
         };
+        self.keeper.go_on(slot);
         sweep(out);
         let fields = Fields::new(self.model, &self.scene.output)?;
         let parts = fields.part_names(self.model);
         let last = written.last().map(|last| last.0);
         let mut results = Results::resume(out, written, &parts)?;
-        if self.scene.output.every > 0 && last != Some(step) {
+        let every = self.scene.output.every;
+        for step in (step..=step.saturating_add(lost)).filter(|_| every > 0) {
             // Written because the run ended there, which it does not.
-            results.remove(step, &parts)?;
+            if last != Some(step) && !step.is_multiple_of(every) {
+                results.remove(step, &parts)?;
+            }
         }
         let mut outputs = Outputs {
             results,
@@ -247,6 +259,10 @@ impl<'a, 'm> March<'a, 'm> {
             outputs.fields.went_on();
         }
         self.gather(&mut outputs, &committed, time)?;
+        for text in passed_over {
+            let text = format!("{text}; the checkpoint before it is taken");
+            self.observer.event(&Event::Note { text });
+        }
         let text = format!("continued after step {step} (time {})", number(time));
         self.observer.event(&Event::Note { text });
         let walk = Walk {

@@ -3,7 +3,7 @@ use crate::support::*;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Output, Stdio};
 use std::time::Duration;
 
@@ -61,8 +61,41 @@ fn counts(folder: &Path) -> Vec<Value> {
     keys.map(|key| summary[key].clone()).to_vec()
 }
 
-/// Starts the program and kills it after it has told `lines` events and `wait` more; false where it has ended before.
-fn kill(folder: &Path, resume: bool, lines: usize, wait: Duration) -> bool {
+/// Number of the checkpoint in a slot, where there is one.
+fn number(path: &Path) -> Option<u64> {
+    let bytes = std::fs::read(path).ok()?;
+    Some(u64::from_le_bytes(bytes.get(20..28)?.try_into().ok()?))
+}
+
+/// The newest slot of the results.
+fn newest(folder: &Path) -> Option<PathBuf> {
+    let slots = (0..3).map(|i| folder.join(format!("out/checkpoint.{i}.bin")));
+    let found = slots.filter_map(|path| Some((number(&path)?, path)));
+    found.max().map(|(_, path)| path)
+}
+
+/// Leaves the newest slot as the only one, and returns it.
+fn only_newest(folder: &Path) -> PathBuf {
+    let kept = newest(folder).unwrap();
+    for path in (0..3).map(|i| folder.join(format!("out/checkpoint.{i}.bin"))) {
+        if path != kept && path.exists() {
+            std::fs::remove_file(path).unwrap();
+        }
+    }
+    kept
+}
+
+/// The last step whose row in the table is whole.
+fn last_row(folder: &Path) -> Option<u32> {
+    let text = std::fs::read_to_string(folder.join("out/history.csv")).ok()?;
+    let rows = text[..=text.rfind('\n')?].lines().skip(1);
+    let step = |row: &str| row.split(',').next().unwrap().parse().unwrap();
+    Some(rows.last().map_or(0, step))
+}
+
+/// Starts the program and kills it after it has told `lines` events and `wait` more; nothing where it has ended before, else the
+/// step after which it has told to continue.
+fn kill(folder: &Path, resume: bool, lines: usize, wait: Duration) -> Option<Option<u32>> {
     let mut arguments = vec!["run", "scene.json", "-o", "out", "--json"];
     arguments.extend(resume.then_some("--resume"));
     let mut child = command(folder, &arguments)
@@ -71,12 +104,16 @@ fn kill(folder: &Path, resume: bool, lines: usize, wait: Duration) -> bool {
         .spawn()
         .unwrap();
     let told = BufReader::new(child.stdout.take().unwrap()).lines();
-    let told = told.take(lines).filter(Result::is_ok).count();
+    let told: Vec<String> = told.take(lines).filter_map(Result::ok).collect();
     std::thread::sleep(wait);
     // SIGKILL.
     child.kill().unwrap();
     let ended = child.wait().unwrap().success();
-    told == lines && !ended
+    let continued = told.iter().find_map(|line| {
+        let rest = line.split_once("continued after step ")?.1;
+        rest.split_once(' ')?.0.parse().ok()
+    });
+    (told.len() == lines && !ended).then_some(continued)
 }
 
 /// Kills a run at moments that a fixed list gives, up to ten times, and lets it end; the same scene runs at once beside it.
@@ -100,15 +137,23 @@ fn killed(scene: &Value) {
         (12, 5000),
     ];
     let (mut kills, mut resumed) = (0, 0);
+    let mut redone = Vec::new();
     for (lines, micros) in moments {
-        let resume = pieces.path().join("out/checkpoint.bin").exists();
+        let resume = newest(pieces.path()).is_some();
         let wait = Duration::from_micros(micros);
-        if !kill(pieces.path(), resume, lines, wait) {
+        let before = last_row(pieces.path());
+        let Some(continued) = kill(pieces.path(), resume, lines, wait) else {
             break;
-        }
+        };
         kills += 1;
         resumed += u32::from(resume);
+        if let Some(step) = continued {
+            redone.push(before.unwrap() - step);
+        }
     }
+    // A row is written just before its checkpoint.
+    println!("steps whose rows are written again: {redone:?}");
+    assert!(redone.len() >= 4 && redone.iter().all(|steps| *steps <= 1));
     assert!(
         kills >= 6 && resumed >= 5,
         "{kills} kills, {resumed} resumed"
@@ -201,8 +246,8 @@ fn killed_between_bodies() {
 
 /// Runs `scene.json` until it has told some events, and kills it.
 fn cut_short(folder: &Path) {
-    assert!(kill(folder, false, 12, Duration::ZERO));
-    assert!(folder.join("out/checkpoint.bin").exists());
+    assert!(kill(folder, false, 12, Duration::ZERO).is_some());
+    assert!(newest(folder).is_some());
 }
 
 /// The plate in many steps.
@@ -220,7 +265,7 @@ fn a_run_that_has_reached_its_end() {
     assert_eq!(output.status.code(), Some(5));
     assert_parts(
         &stderr(&output),
-        &["error: nothing to continue: `out/checkpoint.bin` is missing; run without `--resume`"],
+        &["error: nothing to continue: `out/checkpoint.0.bin` is missing; run without `--resume`"],
     );
     assert!(!folder.path().join("out").exists());
     assert_eq!(run(folder.path(), false).status.code(), Some(0));
@@ -308,7 +353,11 @@ fn files_that_are_not_as_they_were() {
     let path = folder.path();
     plate_in_steps(path, &[]);
     cut_short(path);
-    let file = path.join("out/checkpoint.bin");
+    let file = only_newest(path);
+    let named = |words: &str| {
+        let name = file.file_name().unwrap().to_str().unwrap();
+        format!("`out/{name}` {words}")
+    };
     let good = std::fs::read(&file).unwrap();
     let refused = |parts: &[&str]| {
         let before = contents(path);
@@ -318,24 +367,21 @@ fn files_that_are_not_as_they_were() {
         assert_parts(&stderr(&output), &["without `--resume`"]);
         assert!(before == contents(path));
     };
-    let damaged = "error: `out/checkpoint.bin` is damaged: ";
-    for length in [1, 8, 19, 27, 100, good.len() - 1] {
+    let damaged = &named("is damaged: ");
+    for length in [1, 8, 27, 28, 36, 100, good.len() - 1] {
         std::fs::write(&file, &good[..length]).unwrap();
-        match length < 8 {
-            true => refused(&["is no checkpoint of covact"]),
-            false => refused(&[damaged, "not whole"]),
-        }
+        refused(&["error: ", damaged, "not whole"]);
     }
     std::fs::write(&file, []).unwrap();
     refused(&[damaged, "empty"]);
-    for at in [30, good.len() / 2, good.len() - 4] {
+    for at in [22, 40, good.len() / 2, good.len() - 4] {
         let mut bytes = good.clone();
         bytes[at] ^= 4;
         std::fs::write(&file, &bytes).unwrap();
         refused(&[damaged, "its checksum is wrong"]);
     }
     std::fs::write(&file, "a text of somebody\n".repeat(9)).unwrap();
-    refused(&["is no checkpoint of covact"]);
+    refused(&[&named("is no checkpoint of covact")]);
     std::fs::write(&file, &good).unwrap();
     // The table must begin as it was then; a part of a line at its end is what a kill may leave.
     let table = path.join("out/history.csv");
@@ -363,7 +409,7 @@ fn files_that_are_not_as_they_were() {
         &["note: an unfinished run in out is replaced; `--resume` would have continued it"],
     );
     assert!(pieces == contents(path));
-    assert!(!pieces.contains_key("checkpoint.bin"));
+    assert!(newest(path).is_none());
 }
 
 /// The shell's limit on the size of files stands in for a full device.
@@ -374,6 +420,8 @@ fn a_device_that_takes_no_checkpoint() {
     let path = folder.path();
     plate_in_steps(path, &[]);
     cut_short(path);
+    let kept = only_newest(path);
+    let kept = kept.file_name().unwrap().to_str().unwrap();
     let before = contents(path);
     let program = env!("CARGO_BIN_EXE_covact");
     let script =
@@ -386,24 +434,38 @@ fn a_device_that_takes_no_checkpoint() {
     assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
     assert_parts(
         &stderr(&output),
-        &["error: cannot write `out/checkpoint.bin`: the file is larger than the system allows"],
+        &[
+            "error: cannot write `out/checkpoint.",
+            ".bin`: the file is larger than the system allows",
+        ],
     );
     assert_eq!(summary(path)["status"], json!("failed"));
     let after = contents(path);
-    assert!(before["checkpoint.bin"] == after["checkpoint.bin"]);
+    assert!(before[kept] == after[kept]);
+    assert_eq!(newest(path).map(|path| path.ends_with(kept)), Some(false));
     assert!(before["history.csv"].starts_with(&after["history.csv"]));
     assert!(after.keys().all(|name| !name.contains(".tmp")));
-    // With room it goes on.
-    assert_eq!(run(path, true).status.code(), Some(0));
+    // With room it goes on, from the one that is whole.
+    let output = covact(path, &["run", "scene.json", "-o", "out", "--resume"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let notes = stderr(&output);
+    assert_parts(
+        &notes,
+        &[
+            "note: `out/checkpoint.",
+            ".bin` is damaged: it is not whole; the checkpoint before it is taken",
+            "note: continued after step",
+        ],
+    );
     let pieces = contents(path);
     // A folder in its place.
-    std::fs::create_dir(path.join("out/checkpoint.bin")).unwrap();
+    std::fs::create_dir(path.join("out/checkpoint.1.bin")).unwrap();
     for resume in [false, true] {
         let output = run(path, resume);
         assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
-        assert_parts(&stderr(&output), &["`out/checkpoint.bin`"]);
+        assert_parts(&stderr(&output), &["`out/checkpoint.1.bin`"]);
     }
-    std::fs::remove_dir(path.join("out/checkpoint.bin")).unwrap();
+    std::fs::remove_dir(path.join("out/checkpoint.1.bin")).unwrap();
     assert_eq!(run(path, false).status.code(), Some(0));
     assert!(pieces == contents(path));
 }
@@ -429,7 +491,14 @@ fn a_folder_that_is_read_only() {
     if kept_out {
         assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
         assert_parts(&stderr(&output), &["permission denied"]);
-        assert!(before["checkpoint.bin"] == contents(path)["checkpoint.bin"]);
+        let slots = |of: &BTreeMap<String, Vec<u8>>| {
+            let slot = |name: &String| name.starts_with("checkpoint");
+            of.clone()
+                .into_iter()
+                .filter(|(name, _)| slot(name))
+                .collect::<Vec<_>>()
+        };
+        assert!(slots(&before) == slots(&contents(path)));
         assert_eq!(run(path, true).status.code(), Some(0));
     } else {
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

@@ -6,7 +6,7 @@ use covact::scene::{self, LoadedScene};
 use covact::solve::event::{Event, Observer};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub fn loaded(scene: &Value) -> LoadedScene {
@@ -84,6 +84,18 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
         .collect()
 }
 
+/// The checkpoints of a folder, the newest first.
+fn slots(folder: &Path) -> Vec<PathBuf> {
+    let number = |path: &PathBuf| {
+        let bytes = std::fs::read(path).unwrap();
+        u64::from_le_bytes(bytes[20..28].try_into().unwrap())
+    };
+    let paths = (0..9).map(|i| folder.join(format!("checkpoint.{i}.bin")));
+    let mut found: Vec<PathBuf> = paths.filter(|path| path.exists()).collect();
+    found.sort_by_key(|path| std::cmp::Reverse(number(path)));
+    found
+}
+
 fn assert_same(a: &Path, b: &Path) {
     let (a, b) = (contents(a), contents(b));
     assert_eq!(
@@ -133,12 +145,13 @@ fn in_pieces(scene: &Value) -> Summary {
     assert_eq!(counts(&expected), counts(&found));
     if expected.status == RunStatus::NotConverged {
         // It can be tried once more, with the same outcome.
-        let checkpoint = |folder: &Path| std::fs::read(folder.join("checkpoint.bin")).unwrap();
-        assert!(!checkpoint(whole.path()).is_empty());
+        assert!(!slots(whole.path()).is_empty());
         let (again, _) = part(&scene, whole.path(), true, 1, Stop::Never).unwrap();
         assert_eq!(counts(&expected), counts(&again));
         for folder in [&whole, &pieces] {
-            std::fs::remove_file(folder.path().join("checkpoint.bin")).unwrap();
+            for path in slots(folder.path()) {
+                std::fs::remove_file(path).unwrap();
+            }
         }
     }
     assert_same(whole.path(), pieces.path());
@@ -190,6 +203,65 @@ fn friction_with_augmentation() {
     ));
     assert_eq!(found.status, RunStatus::Done);
     assert!(found.warnings.iter().any(|w| w.contains("opened at step")));
+}
+
+/// A kill or a crash in the middle of writing a checkpoint: the one before counts, whose step is done again, and what was
+/// written at the end of the part that is lost does not stay.
+#[test]
+fn a_torn_checkpoint() {
+    let scene = loaded(&ironed(json!({})));
+    let (whole, torn) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let (expected, _) = part(&scene, whole.path(), false, 1, Stop::Never).unwrap();
+    let mut found = part(&scene, torn.path(), false, 1, Stop::Accepted)
+        .unwrap()
+        .0;
+    // Where the newest one ends: nowhere, in its head, in its midst, before its last byte.
+    for (i, share) in [0.0, 1e-9, 0.5, 1.0].into_iter().enumerate() {
+        let step = found.steps;
+        let all = slots(torn.path());
+        assert!(all.len() >= 2);
+        let mut newest = std::fs::read(&all[0]).unwrap();
+        let end = ((share * newest.len() as f64).ceil() as usize).min(newest.len() - 1);
+        match i {
+            // Behind it is what was there.
+            2 => newest[end..].fill(7),
+            _ => newest.truncate(end),
+        }
+        std::fs::write(&all[0], &newest).unwrap();
+        let (next, notes) = part(&scene, torn.path(), true, 1, Stop::Retried).unwrap();
+        let name = all[0].file_name().unwrap().to_str().unwrap();
+        let passed_over = |n: &String| n.contains(&format!("{name}` is damaged: "));
+        assert!(notes.iter().any(passed_over), "{notes:?}");
+        let last = format!("continued after step {} (", step - 1);
+        assert!(notes.iter().any(|n| n.starts_with(&last)), "{notes:?}");
+        // The step that was lost, or one more.
+        assert!(next.steps >= step);
+        found = next;
+    }
+    // Without any that is whole, all are named and nothing changes.
+    let all = slots(torn.path());
+    let good: Vec<_> = all
+        .iter()
+        .map(|path| std::fs::read(path).unwrap())
+        .collect();
+    for (path, bytes) in all.iter().zip(&good) {
+        // Less than the checkpoint itself, behind which there may be the end of a longer one.
+        std::fs::write(path, &bytes[..bytes.len() / 2]).unwrap();
+    }
+    let before = contents(torn.path());
+    let error = part(&scene, torn.path(), true, 1, Stop::Never).unwrap_err();
+    assert_eq!(error.exit_code(), 5);
+    for path in &all {
+        let words = format!("{}` is damaged: it is not whole", path.display());
+        assert!(error.to_string().contains(&words), "{error}");
+    }
+    assert!(before == contents(torn.path()));
+    for (path, bytes) in all.iter().zip(&good) {
+        std::fs::write(path, bytes).unwrap();
+    }
+    let (found, _) = part(&scene, torn.path(), true, 1, Stop::Never).unwrap();
+    assert_eq!(counts(&expected), counts(&found));
+    assert_same(whole.path(), torn.path());
 }
 
 /// Two blocks, the upper one pressed into the lower one and drawn along it over many facets.

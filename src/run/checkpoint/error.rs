@@ -49,7 +49,7 @@ impl CheckpointError {
     /// A checkpoint in `folder` that does not fit the model of its scene.
     pub(crate) fn misfit(folder: &Path, reason: &str) -> Self {
         CheckpointError::Damaged {
-            path: super::place(folder),
+            path: super::slots::current(folder),
             reason: reason.to_owned(),
         }
     }

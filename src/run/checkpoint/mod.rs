@@ -1,77 +1,56 @@
-//! The file that a run is continued from: `checkpoint.bin` in the folder of its results.
+//! What a run is continued from: `checkpoint.0.bin`, `checkpoint.1.bin` and `checkpoint.2.bin` in the folder of its results.
 //!
-//! It is made at every accepted step, once everything else of the step is written, and replaces the one before as a whole:
-//! whoever ends the process at any moment leaves a checkpoint of some accepted step and files that are as new or newer. A
-//! run that goes on from it does anew what came after. Replacing a file may have to wait for the disk, so that steps which
-//! take less than a hundred times as long share a checkpoint: a process that is killed loses no more than that, and one that
-//! ends by itself nothing. At the end of the run the file is removed.
+//! One of these [slots] is written anew, in place, at every accepted step, once everything else of the step is written, and
+//! never the one that was written last: whoever ends the process at any moment leaves the checkpoint of the last accepted
+//! step, or of the one before where the last is torn, and files that are as new or newer. A run that goes on from it does
+//! anew what came after. Nothing is waited for: a step costs a copy of its state into the memory of the system, which a
+//! crash of the machine may lose or tear. So the newest slot is brought to the disk as often as costs half a hundredth of the
+//! time, and is left alone until another is there. At the end of the run the files are removed.
 //!
-//! The layout: a mark, the version of the format, the length of the file, the version of the program, the sections
-//! ([`bytes`]), and a checksum of all of it. A crash of the machine may tear what was not yet on the disk, which the
-//! checksum tells; the file is brought there as often as costs no more than a hundredth of the time.
+//! The layout: a mark, the version of the format, the length, a number that grows by one with every checkpoint of a run, the
+//! version of the program, the sections ([`bytes`]), and a checksum of all of it. What lies behind is left of an earlier and
+//! longer checkpoint.
 pub mod bytes;
 mod error;
 mod fingerprint;
+mod slots;
 pub mod state;
 #[cfg(test)]
 mod tests;
 
 pub use error::CheckpointError;
 pub use fingerprint::Fingerprint;
+pub use slots::Slot;
 
-use crate::output::atomic::{Sink, remove_file, write_whole_with};
+use crate::output::atomic::{Sink, open_in_place, overwrite, remove_file};
 use crate::output::sum::Sum;
 use crate::output::{OutputError, RunStatus, Summary};
 use crate::run::RunError;
 use bytes::{Malformed, Reader, Writer};
-use std::fs::{File, OpenOptions};
-use std::io::{self, Read, Write};
+use slots::{SLOTS, newest, place};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// First bytes of the file; the line ends show where it was taken for text.
+/// First bytes of a file; the line ends show where it was taken for text.
 const MARK: &[u8; 8] = b"covact\r\n";
 /// Version of the layout and of the sections; to be raised with every change of them.
-const FORMAT: u32 = 1;
-/// Mark, format and length.
-const HEAD: usize = 20;
-/// Time between two checkpoints that are written, or brought to the disk, in times of what the last one took.
-const RARELY: u32 = 100;
+const FORMAT: u32 = 2;
+/// Mark, format, length and number.
+const HEAD: usize = 28;
+/// Time between two checkpoints that are brought to the disk, in times of what the last one took.
+const RARELY: u32 = 200;
 /// What bringing one to the disk is taken to cost before it has been tried.
 const FIRST: Duration = Duration::from_millis(10);
 
-/// Where a run keeps its checkpoint.
-fn place(folder: &Path) -> PathBuf {
-    folder.join("checkpoint.bin")
-}
-
-/// A file that is not waited for.
-struct Unsynced(File);
-
-impl Write for Unsynced {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.write(bytes)
-    }
-    fn flush(&mut self) -> io::Result<()> {
-        self.0.flush()
-    }
-}
-
-impl Sink for Unsynced {
-    fn sync(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
 /// Writes the checkpoints of a run.
 pub struct Keeper {
-    path: PathBuf,
+    folder: PathBuf,
     scene: Fingerprint,
     out: Writer,
-    /// The last one is not written yet.
-    pending: bool,
-    /// When one was written, and what that took; none yet.
-    written: Option<(Instant, Duration)>,
+    /// The last one; none yet.
+    newest: Option<Slot>,
+    /// The slot that is on the disk, or that the run went on from; none yet.
+    safe: Option<usize>,
     /// When one was brought to the disk, and what that took.
     synced: Instant,
     cost: Duration,
@@ -81,69 +60,86 @@ impl Keeper {
     /// For a run of `scene` with results in `folder`.
     pub fn new(folder: &Path, scene: Fingerprint) -> Self {
         Keeper {
-            path: place(folder),
+            folder: folder.to_path_buf(),
             scene,
             out: Writer::default(),
-            pending: false,
-            written: None,
+            newest: None,
+            safe: None,
             synced: Instant::now(),
             cost: FIRST,
         }
     }
 
-    /// Makes a checkpoint with the sections that `put` writes, and writes it where it is time to. On failure the one before is
-    /// as it was.
+    /// Goes on from a checkpoint, which stays until a later one is on the disk.
+    pub fn go_on(&mut self, from: Slot) {
+        (self.newest, self.safe) = (Some(from), Some(from.index));
+    }
+
+    /// Writes a checkpoint with the sections that `put` writes. On failure the one before is as it was.
     pub fn keep(&mut self, put: impl FnOnce(&mut Writer)) -> Result<(), OutputError> {
+        let slot = self.next();
         let out = &mut self.out;
         out.clear();
-        seal(out, FORMAT, env!("CARGO_PKG_VERSION"), |out| {
+        seal(out, slot.number, |out| {
             out.section("scene", |out| self.scene.put(out));
             put(out);
         });
-        self.pending = true;
-        match self.written {
-            Some((when, cost)) if when.elapsed() < RARELY * cost => Ok(()),
-            _ => self.flush(),
+        let path = place(&self.folder, slot.index);
+        let mut file = overwrite(&path, self.out.bytes())?;
+        self.newest = Some(slot);
+        match self.synced.elapsed() < RARELY * self.cost {
+            true => Ok(()),
+            false => self.sync(&path, slot, &mut file),
         }
     }
 
-    /// Writes the last checkpoint, where it is not written yet. On failure the one before is as it was.
+    /// Brings the last checkpoint to the disk.
     pub fn flush(&mut self) -> Result<(), OutputError> {
-        if !std::mem::take(&mut self.pending) {
+        let Some(slot) = self.newest else {
             return Ok(());
-        }
-        let (out, start) = (&self.out, Instant::now());
-        let create = |path: &Path| {
-            let mut options = OpenOptions::new();
-            options.write(true).create_new(true).open(path)
         };
-        if self.synced.elapsed() < RARELY * self.cost {
-            let unsynced = |path: &Path| create(path).map(Unsynced);
-            let done = write_whole_with(&self.path, out.bytes(), unsynced);
-            self.written = Some((start, start.elapsed()));
-            return done;
-        }
-        self.synced = Instant::now();
-        let written = write_whole_with(&self.path, out.bytes(), create);
-        self.cost = self.synced.elapsed();
-        written
+        let path = place(&self.folder, slot.index);
+        let mut file = open_in_place(&path)?;
+        self.sync(&path, slot, &mut file)
     }
 
-    /// Removes the checkpoint of a run that has reached its end.
+    fn sync(&mut self, path: &Path, slot: Slot, file: &mut impl Sink) -> Result<(), OutputError> {
+        let start = Instant::now();
+        file.sync().map_err(|e| OutputError::io("write", path, e))?;
+        self.safe = Some(slot.index);
+        (self.synced, self.cost) = (Instant::now(), start.elapsed());
+        Ok(())
+    }
+
+    /// Where the next one belongs.
+    fn next(&self) -> Slot {
+        let last = self.newest.map(|slot| slot.index);
+        let free = |index: &usize| Some(*index) != last && Some(*index) != self.safe;
+        Slot {
+            // Of three slots at most two are taken.
+            index: (0..SLOTS).find(free).unwrap_or(0),
+            number: self.newest.map_or(0, |slot| slot.number) + 1,
+        }
+    }
+
+    /// Removes the checkpoints of a run that has reached its end: the last one last, so that none that is left is older.
     pub fn finish(&self) -> Result<(), OutputError> {
-        remove_file(&self.path)
+        let last = self.newest.map_or(0, |slot| slot.index);
+        let others = (0..SLOTS).filter(|index| *index != last);
+        (others.chain([last])).try_for_each(|index| remove_file(&place(&self.folder, index)))
     }
 }
 
-/// A whole file: the head, what `put` writes, and the checksum.
-fn seal(out: &mut Writer, format: u32, program: &str, put: impl FnOnce(&mut Writer)) {
+/// A whole checkpoint: the head, what `put` writes, and the checksum.
+fn seal(out: &mut Writer, number: u64, put: impl FnOnce(&mut Writer)) {
     out.raw(MARK);
-    out.u32(format);
+    out.u32(FORMAT);
     out.u64(0);
-    out.text(program);
+    out.u64(number);
+    out.text(env!("CARGO_PKG_VERSION"));
     put(out);
     let length = out.bytes().len() as u64 + 8;
-    out.set_u64(HEAD - 8, length);
+    out.set_u64(HEAD - 16, length);
     let sum = Sum::of(out.bytes());
     out.u64(sum);
 }
@@ -155,9 +151,11 @@ fn seal(out: &mut Writer, format: u32, program: &str, put: impl FnOnce(&mut Writ
 pub fn start(folder: &Path) -> Result<bool, OutputError> {
     // An earlier summary must not pass for that of this run, should it be cut short.
     remove_file(&folder.join("summary.json"))?;
-    let path = place(folder);
-    let unfinished = path.exists();
-    remove_file(&path)?;
+    let mut unfinished = false;
+    for path in (0..SLOTS).map(|index| place(folder, index)) {
+        unfinished |= path.exists();
+        remove_file(&path)?;
+    }
     Ok(unfinished)
 }
 
@@ -173,6 +171,10 @@ pub enum Found {
 #[derive(Debug)]
 pub struct Sections {
     path: PathBuf,
+    /// Where the checkpoint is.
+    pub slot: Slot,
+    /// What is wrong with later ones, which were passed over.
+    pub passed_over: Vec<String>,
     bytes: Vec<u8>,
     /// Where they start, behind that of the scene.
     start: usize,
@@ -198,20 +200,16 @@ impl Sections {
 /// # Errors
 /// [`CheckpointError`] where there is none that can be continued, or what the operating system has against reading it.
 pub fn find(folder: &Path, scene: &Fingerprint) -> Result<Found, RunError> {
-    let path = place(folder);
-    let bytes = match read(&path) {
-        Ok(bytes) => bytes?,
-        Err(e)
-            if matches!(
-                e.kind(),
-                io::ErrorKind::NotFound | io::ErrorKind::NotADirectory
-            ) =>
-        {
-            return finished(folder, scene, path);
+    let found = newest(folder, |path, slot, bytes| {
+        open(path.to_path_buf(), slot, bytes, folder, scene)
+    })?;
+    match found {
+        Some((mut sections, passed_over)) => {
+            sections.passed_over = passed_over;
+            Ok(Found::Unfinished(sections))
         }
-        Err(e) => return Err(OutputError::io("read", &path, e).into()),
-    };
-    Ok(Found::Unfinished(open(path, bytes, folder, scene)?))
+        None => finished(folder, scene, place(folder, 0)),
+    }
 }
 
 /// Whether the folder holds the results of a run that reached its end.
@@ -243,66 +241,29 @@ fn damaged(path: &Path, reason: impl Into<String>) -> CheckpointError {
     }
 }
 
-/// The bytes of a file whose head tells its length.
-fn read(path: &Path) -> io::Result<Result<Vec<u8>, CheckpointError>> {
-    let foreign = || {
-        Ok(Err(CheckpointError::Foreign {
-            path: path.to_path_buf(),
-        }))
-    };
-    let meta = std::fs::metadata(path)?;
-    if !meta.is_file() {
-        return foreign();
+/// Takes the checksum, which has to be that of the bytes before it.
+fn checked(path: &Path, bytes: &mut Vec<u8>) -> Result<(), CheckpointError> {
+    let sum = bytes.split_off(bytes.len().saturating_sub(8));
+    match sum == Sum::of(bytes).to_le_bytes() {
+        true => Ok(()),
+        false => Err(damaged(path, "its checksum is wrong")),
     }
-    let mut file = File::open(path)?;
-    let mut head = Vec::with_capacity(HEAD);
-    Read::by_ref(&mut file)
-        .take(HEAD as u64)
-        .read_to_end(&mut head)?;
-    if !head.starts_with(MARK) {
-        // Nothing but zeros is what a crash of the machine may leave.
-        return match head.iter().all(|b| *b == 0) {
-            true => Ok(Err(damaged(path, "it is empty"))),
-            false => foreign(),
-        };
-    }
-    let length = head.get(HEAD - 8..HEAD).map_or(0, |bytes| {
-        let mut word = [0; 8];
-        word.copy_from_slice(bytes);
-        u64::from_le_bytes(word)
-    });
-    if length != meta.len() || length < HEAD as u64 + 8 {
-        return Ok(Err(damaged(path, "it is not whole")));
-    }
-    let mut bytes = Vec::new();
-    if bytes.try_reserve_exact(length as usize).is_err() {
-        return Ok(Err(damaged(path, "it is larger than the memory")));
-    }
-    bytes.extend_from_slice(&head);
-    file.take(length - HEAD as u64).read_to_end(&mut bytes)?;
-    Ok(match bytes.len() as u64 == length {
-        true => Ok(bytes),
-        false => Err(damaged(path, "it is not whole")),
-    })
 }
 
 /// Checks everything that needs no model.
 fn open(
     path: PathBuf,
-    bytes: Vec<u8>,
+    slot: Slot,
+    mut bytes: Vec<u8>,
     folder: &Path,
     scene: &Fingerprint,
 ) -> Result<Sections, CheckpointError> {
-    let mut bytes = bytes;
-    let sum = bytes.split_off(bytes.len().saturating_sub(8));
-    if sum != Sum::of(&bytes).to_le_bytes() {
-        return Err(damaged(&path, "its checksum is wrong"));
-    }
+    checked(&path, &mut bytes)?;
     let mut reader = Reader::new(&bytes);
     let mut head = || {
         reader.raw(MARK.len())?;
         let format = reader.u32()?;
-        reader.u64()?;
+        reader.raw(HEAD - MARK.len() - 4)?;
         Ok((format, reader.text()?.to_owned()))
     };
     let (format, program) = head().map_err(|e: Malformed| damaged(&path, e.0))?;
@@ -320,5 +281,11 @@ fn open(
         return Err(CheckpointError::Scene { folder, difference });
     }
     let start = bytes.len() - reader.left();
-    Ok(Sections { path, bytes, start })
+    Ok(Sections {
+        path,
+        slot,
+        passed_over: Vec::new(),
+        bytes,
+        start,
+    })
 }

@@ -30,6 +30,11 @@ const SCENE: &str = r#"{
     "solution": {"step": {"initial": 0.25, "max": 0.25}}
 }"#;
 
+const SLOT: Slot = Slot {
+    index: 0,
+    number: 1,
+};
+
 struct StopAfter<'a>(u32, &'a AtomicBool);
 
 impl Observer for StopAfter<'_> {
@@ -57,7 +62,9 @@ fn stopped() -> (LoadedScene, tempfile::TempDir, Vec<u8>) {
         &flag,
     )
     .unwrap();
-    let bytes = std::fs::read(place(folder.path())).unwrap();
+    let found = newest(folder.path(), |_, _, bytes| Ok(bytes)).unwrap();
+    let (bytes, passed_over) = found.unwrap();
+    assert_eq!(passed_over, [""; 0]);
     (scene, folder, bytes)
 }
 
@@ -68,7 +75,7 @@ fn read_back(
     scene: &Fingerprint,
     model: &Model,
 ) -> Result<Kept, CheckpointError> {
-    let sections = open(place(folder), bytes, folder, scene)?;
+    let sections = open(place(folder, 0), SLOT, bytes, folder, scene)?;
     let kept = Kept::read(&sections, model)?;
     let mut assembler = Assembler::new(model, &model.dofs).unwrap();
     (assembler.restore(&kept.assembler)).map_err(|e| damaged(folder, e.to_string()))?;
@@ -115,7 +122,8 @@ fn other_versions_are_named() {
     let fingerprint = Fingerprint::new(&scene);
     let opened = |bytes: Vec<u8>| {
         open(
-            place(folder.path()),
+            place(folder.path(), 0),
+            SLOT,
             sealed(bytes),
             folder.path(),
             &fingerprint,
@@ -136,4 +144,149 @@ fn other_versions_are_named() {
             .to_string()
             .contains("continue it with that version, or run without `--resume`")
     );
+}
+
+/// A keeper of checkpoints that hold one number.
+fn keeper(folder: &Path) -> (Keeper, Fingerprint) {
+    let scene = Fingerprint::new(&scene::parse(SCENE, "scene.json").unwrap());
+    let mut keeper = Keeper::new(folder, scene.clone());
+    keeper.cost = Duration::from_secs(3600);
+    (keeper, scene)
+}
+
+fn put(keeper: &mut Keeper, x: u64) -> Result<(), OutputError> {
+    keeper.keep(|out| out.section("x", |out| out.u64(x)))
+}
+
+/// What is found: the number, where it is, and what is wrong with later ones.
+fn found(folder: &Path, scene: &Fingerprint) -> Result<(u64, Slot, Vec<String>), RunError> {
+    match find(folder, scene)? {
+        Found::Unfinished(sections) => {
+            let x = sections.read(|r| r.section("x", |r| r.u64()))?;
+            Ok((x, sections.slot, sections.passed_over))
+        }
+        Found::Finished(_) => unreachable!(),
+    }
+}
+
+/// Bytes of the slots; none of those that are missing.
+fn slots(folder: &Path) -> [Option<Vec<u8>>; SLOTS] {
+    std::array::from_fn(|index| std::fs::read(place(folder, index)).ok())
+}
+
+#[test]
+fn slots_alternate_around_the_one_that_is_on_the_disk() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (mut keeper, scene) = keeper(folder);
+    let mut before = slots(folder);
+    let mut written = Vec::new();
+    for x in 1..=12 {
+        // The fourth and the ninth are brought to the disk.
+        keeper.cost = Duration::from_secs(if x == 4 || x == 9 { 0 } else { 3600 });
+        put(&mut keeper, x).unwrap();
+        let after = slots(folder);
+        let changed: Vec<usize> = (0..SLOTS).filter(|i| before[*i] != after[*i]).collect();
+        assert_eq!(changed.len(), 1);
+        written.push(changed[0]);
+        let slot = Slot {
+            index: changed[0],
+            number: x,
+        };
+        assert_eq!(found(folder, &scene).unwrap(), (x, slot, vec![]));
+        before = after;
+    }
+    assert_eq!(written, [0, 1, 0, 1, 0, 2, 0, 2, 0, 1, 2, 1]);
+    // What is gone on from stays, too.
+    let (_, slot, _) = found(folder, &scene).unwrap();
+    keeper.go_on(slot);
+    for (x, index) in [(13, 0), (14, 2), (15, 0)] {
+        put(&mut keeper, x).unwrap();
+        assert_eq!(found(folder, &scene).unwrap().1.index, index);
+        assert_eq!(slots(folder)[1], before[1]);
+    }
+    keeper.finish().unwrap();
+    assert_eq!(slots(folder), [None, None, None]);
+}
+
+#[test]
+fn a_torn_slot_gives_way_to_the_one_before() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (mut keeper, scene) = keeper(folder);
+    for x in 1..=3 {
+        put(&mut keeper, x).unwrap();
+    }
+    // The third is over the first.
+    let [Some(third), Some(second), None] = slots(folder) else {
+        panic!("other slots");
+    };
+    let first = {
+        let other = tempfile::tempdir().unwrap();
+        let (mut keeper, _) = self::keeper(other.path());
+        put(&mut keeper, 1).unwrap();
+        std::fs::read(place(other.path(), 0)).unwrap()
+    };
+    assert_eq!(first.len(), third.len());
+    let path = place(folder, 0);
+    for length in 0..third.len() {
+        // Written up to there: over a file that was empty, over zeros, and over the checkpoint before.
+        let zeros = vec![0; third.len() - length];
+        for rest in [&[][..], &zeros, &first[length..]] {
+            let bytes = [&third[..length], rest].concat();
+            if bytes == third || bytes == first {
+                continue;
+            }
+            std::fs::write(&path, &bytes).unwrap();
+            let (x, slot, passed_over) = found(folder, &scene).unwrap();
+            assert_eq!((x, slot.index, slot.number), (2, 1, 2), "{length}");
+            // Whoever finds a smaller number in the head does not look further.
+            let told = passed_over
+                .iter()
+                .all(|text| text.contains("checkpoint.0.bin` is damaged: "));
+            assert!(told && passed_over.len() <= 1, "{passed_over:?}");
+            let known = bytes.len() > HEAD && bytes[HEAD - 8] == 3;
+            assert!(passed_over.len() == 1 || !known);
+        }
+    }
+    // What is left of a longer one is not read.
+    std::fs::write(&path, [&third[..], b"left"].concat()).unwrap();
+    assert_eq!(found(folder, &scene).unwrap().0, 3);
+    // Both are named where none will do.
+    std::fs::write(&path, &third[..40]).unwrap();
+    std::fs::write(place(folder, 1), &second[..second.len() - 1]).unwrap();
+    let error = found(folder, &scene).unwrap_err().to_string();
+    for index in [0, 1] {
+        assert!(error.contains(&format!(
+            "checkpoint.{index}.bin` is damaged: it is not whole"
+        )));
+    }
+    // What is of somebody else is not written over.
+    std::fs::write(place(folder, 1), &second).unwrap();
+    std::fs::write(&path, "a text of somebody").unwrap();
+    let error = found(folder, &scene).unwrap_err().to_string();
+    assert!(
+        error.contains("checkpoint.0.bin` is no checkpoint of covact"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_slot_that_cannot_be_written_leaves_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (mut keeper, scene) = keeper(folder);
+    put(&mut keeper, 1).unwrap();
+    std::fs::create_dir(place(folder, 1)).unwrap();
+    let error = put(&mut keeper, 2).unwrap_err().to_string();
+    assert!(
+        error.contains("checkpoint.1.bin`: it exists and is not a regular file"),
+        "{error}"
+    );
+    std::fs::remove_dir(place(folder, 1)).unwrap();
+    assert_eq!(found(folder, &scene).unwrap().0, 1);
+    // The slot is the next one again.
+    put(&mut keeper, 2).unwrap();
+    assert_eq!(found(folder, &scene).unwrap().1.index, 1);
+    assert_eq!(keeper.newest.map(|slot| slot.number), Some(2));
 }

@@ -8,15 +8,21 @@ use crate::model::Model;
 use crate::model::state::State;
 use crate::output::{HistoryMark, OutputError};
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
-use crate::run::checkpoint::{CheckpointError, Sections, state};
+use crate::run::checkpoint::{CheckpointError, Sections, Slot, state};
 use crate::run::cost::Spent;
 use crate::run::progress::Progress;
 use crate::run::watch::Watch;
 use crate::solve::linear::Method;
 use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Seek, SeekFrom};
+use std::path::Path;
 
 /// A run under way at an accepted step.
 pub struct Kept {
+    /// Where it was found, and what is wrong with later ones.
+    pub(super) slot: Slot,
+    pub(super) passed_over: Vec<String>,
     pub(super) committed: State,
     pub(super) before: Option<(State, f64)>,
     pub(super) dt: f64,
@@ -40,10 +46,10 @@ impl Kept {
     /// # Errors
     /// [`CheckpointError::Damaged`]
     pub fn read(sections: &Sections, model: &Model) -> Result<Self, CheckpointError> {
-        sections.read(|from| Kept::take(model, from))
+        sections.read(|from| Kept::take(model, sections, from))
     }
 
-    fn take(model: &Model, from: &mut Reader) -> Result<Self, Malformed> {
+    fn take(model: &Model, sections: &Sections, from: &mut Reader) -> Result<Self, Malformed> {
         let (progress, spent) =
             from.section("progress", |r| Ok((take_progress(r)?, Spent::take(r)?)))?;
         let (dt, hold, touched, touching) = from.section("path", |r| {
@@ -69,6 +75,8 @@ impl Kept {
             Ok((table, written?))
         })?;
         Ok(Kept {
+            slot: sections.slot,
+            passed_over: sections.passed_over.clone(),
             committed,
             before,
             dt,
@@ -166,6 +174,17 @@ impl March<'_, '_> {
         phases.stop("checkpoint");
         written
     }
+}
+
+/// Number of lines that a table has behind its first `length` bytes; 0 where it cannot be read.
+pub(super) fn lines_behind(path: &Path, length: u64) -> u32 {
+    let count = || -> std::io::Result<u32> {
+        let mut file = File::open(path)?;
+        file.seek(SeekFrom::Start(length))?;
+        let mut lines = BufReader::new(file).split(b'\n');
+        lines.try_fold(0, |count, line| line.map(|_| count + 1))
+    };
+    count().unwrap_or(0)
 }
 
 fn put_progress(progress: &Progress, out: &mut Writer) {
