@@ -123,6 +123,10 @@ impl Lines {
 
 /// Names beyond this many are counted in messages, not listed.
 const MOST_LISTED: usize = 30;
+/// Bytes of a name.
+pub(super) const MOST_IN_NAME: usize = 200;
+/// Texts of more bytes than this are not compared letter by letter: the table for it is as large as their product.
+const MOST_COMPARED: usize = 48;
 /// Problems beyond this many are not looked for.
 pub(super) const MOST_PROBLEMS: usize = 200;
 
@@ -138,7 +142,7 @@ pub fn nearest<'a>(
         .filter_map(|c| {
             let other = c.to_lowercase();
             // Lengths that differ by more than is allowed need no table as large as their product.
-            if length.abs_diff(other.chars().count()) > 3 {
+            if length.abs_diff(other.chars().count()) > 3 || lower.len() > MOST_COMPARED {
                 let part = length.min(other.len()) >= 3
                     && (other.contains(&lower) || lower.contains(&other));
                 return part.then_some((length.abs_diff(other.chars().count()), c));
