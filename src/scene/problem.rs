@@ -125,7 +125,7 @@ impl Lines {
 const MOST_LISTED: usize = 30;
 /// Bytes of a name.
 pub(super) const MOST_IN_NAME: usize = 200;
-/// Texts of more bytes than this are not compared letter by letter: the table for it is as large as their product.
+/// Texts of more bytes than this are not compared letter by letter, which takes time like the product of their lengths.
 const MOST_COMPARED: usize = 48;
 /// Problems beyond this many are not looked for.
 pub(super) const MOST_PROBLEMS: usize = 200;
@@ -141,7 +141,7 @@ pub fn nearest<'a>(
         .into_iter()
         .filter_map(|c| {
             let other = c.to_lowercase();
-            // Lengths that differ by more than is allowed need no table as large as their product.
+            // Lengths that differ by more than is allowed need no work like their product.
             if length.abs_diff(other.chars().count()) > 3 || lower.len() > MOST_COMPARED {
                 let part = length.min(other.len()) >= 3
                     && (other.contains(&lower) || lower.contains(&other));
