@@ -174,3 +174,102 @@ fn counts_are_not_trusted() {
         assert!(matches!(error, MeshError::Syntax { .. }), "{error}");
     }
 }
+
+/// Names and words of files in messages.
+#[test]
+fn long_words_are_cut_off() {
+    let long = "n".repeat(100_000);
+    for more in [
+        format!("*{long}, INPUT=a\n"),
+        format!("*NODE, SYSTEM={long}\n"),
+        format!("*ELEMENT, TYPE=C3D20{long}\n"),
+        format!("*ELEMENT, TYPE=C3D{long}\n"),
+        format!("*NSET, NSET={long}\n1\n"),
+        format!("*NODE, NSET={long}\n9, 0, 0, 9\n"),
+        format!("*SURFACE, NAME={long}\n1, S1\n"),
+    ] {
+        refused(&inp(&more));
+    }
+    let many: String = (0..10_000)
+        .map(|k| format!("*ELEMENT, TYPE=T{k}\n*K{k}\n"))
+        .collect();
+    let message = refused(&many);
+    assert!(message.contains("and 9980 more"), "{message}");
+    let (_, report) = read_inp(inp(&many).as_bytes(), Path::new("a.inp"), 1.0).unwrap();
+    assert!(report.notes.iter().all(|n| n.len() < 1000));
+    for text in [
+        format!(
+            "$MeshFormat\n4.1{} 0 8\n$EndMeshFormat\n",
+            "0".repeat(100_000)
+        ),
+        format!("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n${long}\n"),
+        format!("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"{long}\"\n"),
+    ] {
+        let error = read_gmsh(text.as_bytes(), Path::new("a.msh"), 1.0).unwrap_err();
+        assert!(error.to_string().len() < 500, "{error}");
+    }
+}
+
+/// Thousands of hexahedra with the same nodes, or with nodes of their own in the same places.
+#[test]
+fn many_elements_in_one_place() {
+    let mut text = inp("");
+    let hexahedron = "1, 2, 4, 3, 5, 6, 8, 7";
+    for e in 2..20_000 {
+        writeln!(text, "{e}, {hexahedron}").unwrap();
+    }
+    text += "*ELEMENT, TYPE=S4, ELSET=Q\n";
+    for e in 20_000..60_000 {
+        writeln!(text, "{e}, 1, 2, 4, 3").unwrap();
+    }
+    let message = refused(&text);
+    assert!(message.contains("meet in one face"), "{message}");
+
+    let mut nodes = String::from("*NODE\n");
+    let mut elements = String::from("*ELEMENT, TYPE=C3D8\n");
+    for e in 0..10_000 {
+        let mut own = String::new();
+        for k in [0, 1, 3, 2, 4, 5, 7, 6] {
+            write!(own, ", {}", 8 * e + k + 1).unwrap();
+        }
+        for n in 0..8 {
+            writeln!(
+                nodes,
+                "{}, {}, {}, {}",
+                8 * e + n + 1,
+                n & 1,
+                n >> 1 & 1,
+                n >> 2
+            )
+            .unwrap();
+        }
+        writeln!(elements, "{}{own}", e + 1).unwrap();
+    }
+    let message = refused(&(nodes + &elements));
+    assert!(message.contains("lie at the same place"), "{message}");
+}
+
+/// Parts of a partitioned entity have its groups: many of both would be as many as their product.
+#[test]
+fn parts_share_the_groups_of_their_parent() {
+    let n = 50_000;
+    let mut text =
+        String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 ");
+    writeln!(text, "{n}{} 0\n$EndEntities", " 1".repeat(n)).unwrap();
+    writeln!(text, "$PartitionedEntities\n1 0\n0 0 0 {n}").unwrap();
+    for k in 0..n {
+        writeln!(text, "{} 3 1 0 0 0 0 1 1 1 0 0", k + 2).unwrap();
+    }
+    text += "$EndPartitionedEntities\n";
+    let start = Instant::now();
+    let error = read_gmsh(text.as_bytes(), Path::new("a.msh"), 1.0).unwrap_err();
+    assert!(
+        error.to_string().contains("expected a section $Nodes"),
+        "{error}"
+    );
+    assert!(
+        start.elapsed() < Duration::from_secs(3),
+        "{:?}",
+        start.elapsed()
+    );
+}

@@ -10,6 +10,9 @@ const MIN_SHAPE: f64 = 1e-10;
 /// Nodes closer than this part of the shortest edge count as one.
 const SAME_PLACE: f64 = 1e-6;
 
+/// Nodes in the same cell that a node is compared with.
+const MOST_AT_ONE_PLACE: usize = 64;
+
 impl Mesh {
     /// Finds what would make a computation fail or mean something else than intended: node numbers and positions out
     /// of range, inverted elements, duplicate and unused nodes, non-manifold faces, sets with unknown members.
@@ -192,11 +195,20 @@ fn close_pairs(nodes: &[Vec3], size: f64) -> Vec<[u32; 2]> {
     }
     cells.sort_unstable();
     let mut pairs = Vec::new();
-    for group in cells.chunk_by(|a, b| a.0 == b.0) {
+    for group in cells.chunk_by_mut(|a, b| a.0 == b.0) {
+        if group.len() > MOST_AT_ONE_PLACE {
+            group.sort_by(|a, b| {
+                let [a, b] = [a.1, b.1].map(|n| nodes[n as usize]);
+                let order = |k: usize| a[k].total_cmp(&b[k]);
+                order(0).then(order(1)).then(order(2))
+            });
+        }
         for (i, a) in group.iter().enumerate() {
-            for b in &group[i + 1..] {
+            // Of very many nodes in one place each is paired with the next ones only: all pairs would be as many as
+            // their square.
+            for b in group[i + 1..].iter().take(MOST_AT_ONE_PLACE) {
                 if (nodes[a.1 as usize] - nodes[b.1 as usize]).norm() <= tolerance {
-                    pairs.push([a.1, b.1]);
+                    pairs.push([a.1.min(b.1), a.1.max(b.1)]);
                 }
             }
         }

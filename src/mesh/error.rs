@@ -10,6 +10,33 @@ pub const MAX_NODES: u64 = 50_000_000;
 /// without bound by sets of sets.
 pub const MEMBERS: u64 = 64;
 
+/// Bytes of the name of a set in a file.
+pub(super) const MOST_IN_NAME: usize = 1000;
+
+/// Names and numbers that a message or a note lists; of more it gives the number.
+const MOST_LISTED: usize = 20;
+
+/// Names or numbers for a message, the first ones where there are many.
+pub(super) fn listed<T: fmt::Display>(all: impl IntoIterator<Item = T>) -> String {
+    let mut all = all.into_iter();
+    let mut list: Vec<String> = (all.by_ref().take(MOST_LISTED))
+        .map(|one| shorten(&one.to_string()))
+        .collect();
+    match all.count() {
+        0 => {}
+        more => list.push(format!("and {more} more")),
+    }
+    list.join(", ")
+}
+
+/// At most 40 characters of a text of a file.
+pub(super) fn shorten(text: &str) -> String {
+    match text.char_indices().nth(40) {
+        Some((i, _)) => format!("{}...", &text[..i]),
+        None => text.to_string(),
+    }
+}
+
 /// Members that the sets of a file with so many nodes and elements may have in all; a few more, so that small files may
 /// do what they like.
 pub(super) fn most_members(nodes: usize, elements: usize) -> u64 {
@@ -164,7 +191,7 @@ pub enum MeshError {
     /// A face is shared by more than two elements, or by two on the same side.
     #[error(
         "elements {} meet in one face at ({:.6}, {:.6}, {:.6}): a face belongs to at most two elements, on opposite sides",
-        elements.iter().map(u32::to_string).collect::<Vec<_>>().join(", "),
+        listed(elements),
         position[0], position[1], position[2]
     )]
     NonManifold {

@@ -246,8 +246,8 @@ fn match_surfaces(
                 [row] => faces.push(row.1),
                 rows => {
                     inner += 1;
-                    let same = rows
-                        .iter()
+                    // More than two are an error, which the checks of the mesh tell.
+                    let same = (rows.iter().take(2))
                         .find(|row| goes_around(mesh.face_corners(row.1), quad));
                     faces.push(same.unwrap_or(&rows[0]).1);
                 }

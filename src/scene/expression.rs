@@ -4,7 +4,7 @@
 //! Of the crates measured only nanoexpr (MIT, no dependencies, no unsafe code) and meval have these rules; exmex,
 //! fasteval and mathexpr read `-t^2` as (-t)^2, and meval is built on a release of nom that future compilers
 //! refuse. What is left to do here: our names, IEEE arithmetic, limits, and errors in the scene's words.
-use super::problem::suggestion;
+use super::problem::{shorten, suggestion};
 use nanoexpr::{Context, ErrorKind, Evaluator, Number};
 use std::cell::Cell;
 use std::ops::Range;
@@ -242,18 +242,18 @@ fn explain(
         ErrorKind::UnknownVariable => {
             let known = (variables.iter().copied()).chain(CONSTANTS.iter().map(|c| c.0));
             help = Some(suggestion(name, "possible here", known));
-            format!("unknown variable `{name}`")
+            format!("unknown variable `{}`", shorten(name))
         }
         ErrorKind::UnknownFunction => {
             help = Some(suggestion(name, "functions", functions));
-            format!("unknown function `{name}`")
+            format!("unknown function `{}`", shorten(name))
         }
         ErrorKind::ArgumentCount => {
             span.end = span.start + name.len();
             format!("`{name}` takes {wanted} argument{}", plural(wanted))
         }
         ErrorKind::TooManyArguments => format!("a function takes at most {ARGUMENTS} arguments"),
-        ErrorKind::InvalidNumber => format!("`{found}` is not a number"),
+        ErrorKind::InvalidNumber => format!("`{}` is not a number", shorten(found)),
         ErrorKind::UnclosedParenthesis => "this `(` is not closed".to_owned(),
         ErrorKind::UnexpectedEnd => {
             "the expression ends where a number or name is expected".to_owned()
@@ -271,7 +271,7 @@ fn explain(
                 ")" => "there is no `(` that it closes, or nothing stands before it".to_owned(),
                 _ => "an operator may be missing before it, e.g. `*`".to_owned(),
             });
-            format!("unexpected `{found}`")
+            format!("unexpected `{}`", shorten(found))
         }
         other => other.to_string(),
     };

@@ -2,7 +2,7 @@
 //!
 //! A scene is written by hand, so what matters is to say precisely what is wrong and where. Strict JSON (RFC 8259):
 //! no comments, no trailing commas; a key may be given once.
-use super::problem::{MOST_PROBLEMS, shorten};
+use super::problem::{MOST_IN_NAME, MOST_PROBLEMS, shorten};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -104,7 +104,8 @@ impl Node {
         }
     }
 
-    /// JSON pointer of the innermost value (or its key) that holds a byte of the text.
+    /// JSON pointer of the innermost value (or its key) that holds a byte of the text. It ends above a key that is longer
+    /// than any name may be: many problems below such a key would repeat it.
     pub fn pointer_at(&self, offset: usize) -> String {
         let mut pointer = String::new();
         let mut node = self;
@@ -123,7 +124,8 @@ impl Node {
                     .map(|(i, n)| (i.to_string(), n)),
                 _ => None,
             };
-            let Some((token, child)) = next else {
+            let Some((token, child)) = next.filter(|(token, _)| token.len() <= 2 * MOST_IN_NAME)
+            else {
                 return pointer;
             };
             pointer.push('/');
@@ -244,7 +246,7 @@ impl Reader<'_> {
                 let help = help.or(plain.then_some(quotes));
                 Err(self.fault(
                     span.clone(),
-                    format!("expected a value, found `{word}`"),
+                    format!("expected a value, found `{}`", shorten(word)),
                     help,
                 ))
             }
@@ -270,7 +272,8 @@ impl Reader<'_> {
                 None => return Err(self.unfinished(open, "object")),
                 Some(_) => {
                     let help = "keys are written between double quotes";
-                    let message = format!("expected a key, found `{}`", &self.text[self.here()]);
+                    let found = shorten(&self.text[self.here()]);
+                    let message = format!("expected a key, found `{found}`");
                     return Err(self.fault(self.here(), message, Some(help)));
                 }
             }
@@ -363,7 +366,7 @@ impl Reader<'_> {
                 Ok(true)
             }
             Some(_) => {
-                let found = &self.text[self.here()];
+                let found = shorten(&self.text[self.here()]);
                 let message = format!("expected `,` or `{close}`, found `{found}`");
                 Err(self.fault(
                     self.here(),

@@ -123,6 +123,12 @@ impl Lines {
 
 /// Names beyond this many are counted in messages, not listed.
 const MOST_LISTED: usize = 30;
+/// Bytes of a name.
+pub(super) const MOST_IN_NAME: usize = 200;
+/// Texts of more bytes than this are not compared letter by letter, which takes time like the product of their lengths.
+const MOST_COMPARED: usize = 48;
+/// Names of nearly the same letters that one is compared with.
+const MOST_COMPARISONS: usize = 30;
 /// Problems beyond this many are not looked for.
 pub(super) const MOST_PROBLEMS: usize = 200;
 
@@ -133,26 +139,50 @@ pub fn nearest<'a>(
 ) -> Option<&'a str> {
     let lower = written.to_lowercase();
     let length = lower.chars().count();
+    let mut compared = 0;
     candidates
         .into_iter()
         .filter_map(|c| {
             let other = c.to_lowercase();
-            // Lengths that differ by more than is allowed need no table as large as their product.
-            if length.abs_diff(other.chars().count()) > 3 {
-                let part = length.min(other.len()) >= 3
-                    && (other.contains(&lower) || lower.contains(&other));
-                return part.then_some((length.abs_diff(other.chars().count()), c));
-            }
-            let distance = strsim::damerau_levenshtein(&lower, &other);
+            let other_length = other.chars().count();
+            let allowed = (length.max(other_length) / 3).clamp(1, 3);
             // A part of the right name (`slave` for `slaves`, `E-modulus` for `E` is not) also counts.
             let part = length >= 3
                 && (other.contains(&lower) || lower.contains(&other) && other.len() >= 3);
-            let allowed = (length.max(other.chars().count()) / 3).clamp(1, 3);
-            (distance <= allowed && distance < length.max(1) || part).then_some((distance, c))
+            if part {
+                return Some((length.abs_diff(other_length), c));
+            }
+            // Every change of a letter changes at most one of the letters that both have.
+            let may_be_near = length.abs_diff(other_length) <= allowed
+                && lower.len() <= MOST_COMPARED
+                && length.max(other_length) - in_common(&lower, &other) <= allowed;
+            if !may_be_near || compared == MOST_COMPARISONS {
+                return None;
+            }
+            compared += 1;
+            let distance = strsim::damerau_levenshtein(&lower, &other);
+            (distance <= allowed && distance < length.max(1)).then_some((distance, c))
         })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, c)| c)
         .filter(|c| *c != written)
+}
+
+/// How many letters two texts have in common, wherever they stand; letters beyond ASCII count as one.
+fn in_common(one: &str, other: &str) -> usize {
+    let mut counts = [0u8; 128];
+    let place = |c: char| if c.is_ascii() { c as usize } else { 0 };
+    for c in one.chars() {
+        let count = &mut counts[place(c)];
+        *count = count.saturating_add(1);
+    }
+    let mut common = 0;
+    for c in other.chars() {
+        let count = &mut counts[place(c)];
+        common += usize::from(*count > 0);
+        *count = count.saturating_sub(1);
+    }
+    common
 }
 
 /// "did you mean `b`? Known keys: `a`, `b`" in the words of `what`.

@@ -1,5 +1,6 @@
 //! Values that may vary: a number, a table over time, or an expression.
 use super::expression::{Expression, ExpressionError};
+use super::problem::shorten;
 use covact_geometry::Vec3;
 use schemars::JsonSchema;
 use serde::de::{self, Deserializer, MapAccess, Visitor};
@@ -86,7 +87,7 @@ pub enum ValueError {
     #[error("{0}")]
     Expression(#[from] ExpressionError),
     /// An expression without variables that is infinite or no number.
-    #[error("the expression `{expression}` is {value}")]
+    #[error("the expression `{}` is {value}", shorten(.expression))]
     NotFinite { expression: String, value: f64 },
     #[error(transparent)]
     Eval(#[from] EvalError),
@@ -102,7 +103,7 @@ pub enum ValueError {
 
 /// A [`TimeFunction`] gave something infinite or no number.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("`{expression}` is {value} at t = {time}{}", position(.x))]
+#[error("`{}` is {value} at t = {time}{}", shorten(.expression), position(.x))]
 pub struct EvalError {
     pub expression: String,
     pub value: f64,

@@ -8,9 +8,9 @@ corpus=corpus/$target
 dictionary=
 mkdir -p "$corpus"
 case $target in
-scene) cp -n ../../examples/scenes/*.json seeds/scene/* "$corpus" && rm -f "$corpus/schema.json" ;;
-msh) cp -n ../../assets/mesh/*.msh seeds/msh/* "$corpus" ;;
-inp) cp -n ../../assets/mesh/plate.inp seeds/inp/* "$corpus" ;;
+scene) cp ../../examples/scenes/*.json seeds/scene/* "$corpus" && rm -f "$corpus/schema.json" ;;
+msh) cp ../../assets/mesh/*.msh seeds/msh/* "$corpus" ;;
+inp) cp ../../assets/mesh/plate.inp seeds/inp/* "$corpus" ;;
 esac
 [ -f "$target.dict" ] && dictionary=-dict=$target.dict
 # Fuzzed is safe Rust: overflow checks and assertions find more than a sanitizer, and sooner.

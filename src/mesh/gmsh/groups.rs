@@ -2,10 +2,11 @@
 use super::Block;
 use super::cursor::{Cursor, quoted};
 use crate::mesh::MeshError;
-use crate::mesh::error::most_members;
+use crate::mesh::error::{MOST_IN_NAME, most_members};
 use crate::mesh::raw::RawMesh;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::rc::Rc;
 
 const DIMENSIONS: [&str; 4] = ["point", "curve", "surface", "volume"];
 
@@ -15,7 +16,7 @@ pub(super) struct Groups {
     /// Names of the groups.
     names: BTreeMap<(i32, i32), String>,
     /// Groups of every entity (dimension, number).
-    members: BTreeMap<(i32, i32), Vec<i32>>,
+    members: BTreeMap<(i32, i32), Rc<[i32]>>,
 }
 
 impl Groups {
@@ -33,6 +34,11 @@ impl Groups {
             let line = c.rest_of_line().trim_ascii();
             let name = line.strip_prefix(b"\"").and_then(|l| l.strip_suffix(b"\""));
             match name {
+                // Sets repeat their names.
+                Some(name) if name.len() > MOST_IN_NAME => {
+                    let expected = format!("a name of at most {MOST_IN_NAME} bytes");
+                    return Err(c.syntax(at, &expected, quoted(name)));
+                }
                 Some(name) if !name.is_empty() => {
                     let name = String::from_utf8_lossy(name).into_owned();
                     self.names.insert((dim, tag), name);
@@ -75,12 +81,12 @@ impl Groups {
                     c.int("a partition")?;
                 }
                 let mut groups = groups_of_entity(c, dim)?;
-                if groups.is_empty() && parent_dim == dim {
-                    groups = self
-                        .members
-                        .get(&(dim, parent))
-                        .cloned()
-                        .unwrap_or_default();
+                // Many parts may have one parent with many groups, so they share them.
+                if let (true, Some(of_parent)) = (
+                    groups.is_empty() && parent_dim == dim,
+                    self.members.get(&(dim, parent)),
+                ) {
+                    groups = of_parent.clone();
                 }
                 self.members.insert((dim, tag), groups);
             }
@@ -100,7 +106,7 @@ impl Groups {
         let mut members = 0;
         for block in blocks.iter().filter(|b| b.count > 0) {
             let groups = self.members.get(&(block.dim, block.entity));
-            for &group in groups.into_iter().flatten() {
+            for &group in groups.into_iter().flat_map(|g| g.iter()) {
                 // A negative number says that the entity is reversed in the group.
                 let key = (block.dim, group.checked_abs().unwrap_or(0));
                 let kind = DIMENSIONS[block.dim as usize];
@@ -169,7 +175,7 @@ fn entity_counts(c: &mut Cursor) -> Result<[usize; 4], MeshError> {
 }
 
 /// Rest of an entity after its number: its position or box, its groups, its borders.
-fn groups_of_entity(c: &mut Cursor, dim: i32) -> Result<Vec<i32>, MeshError> {
+fn groups_of_entity(c: &mut Cursor, dim: i32) -> Result<Rc<[i32]>, MeshError> {
     for _ in 0..if dim == 0 { 3 } else { 6 } {
         c.real("a coordinate of an entity")?;
     }
@@ -184,5 +190,5 @@ fn groups_of_entity(c: &mut Cursor, dim: i32) -> Result<Vec<i32>, MeshError> {
             c.int("the number of a bounding entity")?;
         }
     }
-    Ok(groups)
+    Ok(groups.into())
 }

@@ -5,7 +5,7 @@
 mod cursor;
 mod groups;
 
-use super::error::MAX_NODES;
+use super::error::{MAX_NODES, shorten};
 use super::raw::RawMesh;
 use super::{MeshError, MeshReport};
 use crate::mesh::Mesh;
@@ -204,7 +204,10 @@ impl Reader<'_> {
             if number.is_none() {
                 return Err(c.syntax(start, "the format's version, 4.1", quoted(version)));
             }
-            let what = format!("gmsh format version {}", String::from_utf8_lossy(version));
+            let what = format!(
+                "gmsh format version {}",
+                shorten(&String::from_utf8_lossy(version))
+            );
             return Err(c.unsupported(start, what, EXPORT));
         }
         let (kind, start) = c.word("0 (text) or 1 (binary)")?;
@@ -250,7 +253,7 @@ impl Reader<'_> {
             .windows(end.len())
             .position(|window| window == end);
         let Some(found) = found else {
-            let expected = format!("{} to end the section", String::from_utf8_lossy(&end));
+            let expected = format!("{} to end the section", quoted(&end));
             return Err(c.syntax(start, &expected, "the end of the file"));
         };
         c.pos += found + end.len();

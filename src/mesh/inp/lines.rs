@@ -103,7 +103,8 @@ impl<'a> Keyword<'a> {
 
     /// Takes the parameters of a continuation line.
     pub fn extend(&mut self, parts: impl Iterator<Item = Field<'a>>) {
-        for part in parts {
+        // A line of commas alone would need far more memory than itself.
+        for part in parts.filter(|part| !part.text.is_empty()) {
             let (name, value) = part.text.split_once('=').unwrap_or((part.text, ""));
             let field = Field {
                 text: value.trim().trim_matches('"'),

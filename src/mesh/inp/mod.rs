@@ -6,7 +6,7 @@
 mod lines;
 mod quadratic;
 
-use super::error::{MAX_NODES, most_members};
+use super::error::{MAX_NODES, MOST_IN_NAME, listed, most_members, shorten};
 use super::raw::RawMesh;
 use super::{Face, Mesh, MeshError, MeshReport};
 use covact_geometry::Vec3;
@@ -158,38 +158,40 @@ impl<'a> Reader<'a> {
         };
         let generate = keyword.get("GENERATE").is_some();
         if let (Some(file), true) = (keyword.get("INPUT"), keyword.name != "*INCLUDE") {
-            let what = format!("{} with its data in another file (INPUT)", keyword.name);
+            let keyword = shorten(&keyword.name);
+            let what = format!("{keyword} with its data in another file (INPUT)");
             let help = "put the data into this file";
             return Err(file.unsupported(path, what, help));
         }
         self.mode = match keyword.name.as_str() {
             "*NODE" => {
                 if let Some(system) = keyword.get("SYSTEM").filter(|s| s.text != "R") {
-                    let what = format!("the coordinate system {}", system.text);
+                    let what = format!("the coordinate system {}", shorten(system.text));
                     return Err(system.unsupported(path, what, "give rectangular coordinates"));
                 }
-                Mode::Node(keyword.get("NSET").map(|f| self.spell(f.text)))
+                Mode::Node(keyword.get("NSET").map(|f| self.spell(f)).transpose()?)
             }
             "*ELEMENT" => {
                 let field = name("TYPE")?;
-                let set = keyword.get("ELSET").map(|f| self.spell(f.text));
+                let set = keyword.get("ELSET").map(|f| self.spell(f)).transpose()?;
                 self.elements(field, set)?
             }
             "*NSET" => Mode::NodeSet {
-                set: self.spell(name("NSET")?.text),
+                set: self.spell(name("NSET")?)?,
                 generate,
             },
             "*ELSET" => Mode::ElementSet {
-                set: self.spell(name("ELSET")?.text),
+                set: self.spell(name("ELSET")?)?,
                 generate,
             },
             "*SURFACE" => {
-                let set = self.spell(name("NAME")?.text);
+                let set = self.spell(name("NAME")?)?;
                 match keyword.get("TYPE") {
                     Some(t) if !t.text.eq_ignore_ascii_case("ELEMENT") => {
-                        self.raw
-                            .notes
-                            .push(format!("surface `{set}` of type {} was left out", t.text));
+                        self.raw.notes.push(format!(
+                            "surface `{set}` of type {} was left out",
+                            shorten(t.text)
+                        ));
                         Mode::Skip
                     }
                     _ => Mode::Surface(set),
@@ -241,11 +243,11 @@ impl<'a> Reader<'a> {
             });
         }
         if kind.starts_with("C3D20") {
-            let what = format!("element type {kind}");
+            let what = format!("element type {}", shorten(&kind));
             return Err(field.unsupported(self.path, what, SERENDIPITY));
         }
         if kind.starts_with("C3D") || kind.starts_with("SC") {
-            let what = format!("element type {kind}");
+            let what = format!("element type {}", shorten(&kind));
             return Err(field.unsupported(self.path, what, ELEMENTS));
         }
         self.types.insert(kind);
@@ -253,11 +255,15 @@ impl<'a> Reader<'a> {
     }
 
     /// First spelling of a set's name.
-    fn spell(&mut self, name: &str) -> String {
-        self.spelling
-            .entry(name.to_uppercase())
-            .or_insert_with(|| name.to_string())
-            .clone()
+    fn spell(&mut self, field: Field) -> Result<String, MeshError> {
+        let name = field.text;
+        // Every line of the set looks it up.
+        if name.len() > MOST_IN_NAME {
+            let expected = format!("a name of at most {MOST_IN_NAME} bytes");
+            return Err(field.syntax(self.path, &expected));
+        }
+        let spelling = self.spelling.entry(name.to_uppercase());
+        Ok(spelling.or_insert_with(|| name.to_string()).clone())
     }
 
     /// Known set that a data line names.
@@ -371,8 +377,8 @@ impl<'a> Reader<'a> {
             let found = format!("{first}, {last}, {step}");
             return Err(field.syntax_found(self.path, expected, &found));
         }
-        // Looking a number up costs little beside keeping it.
-        self.grow((((last - first) / step).min(most) / 64) as usize)?;
+        // Looking a number up costs less than keeping it.
+        self.grow((((last - first) / step).min(most) / 8) as usize)?;
         // Numbers of passed-over elements are not known, so only those that exist are taken.
         let known = |tag: &u64| {
             self.types.is_empty() || self.items.contains_key(tag) || self.nodes.contains_key(tag)
@@ -535,7 +541,6 @@ impl<'a> Reader<'a> {
     }
 
     fn finish(mut self) -> Result<RawMesh, MeshError> {
-        let list = |set: &BTreeSet<String>| set.iter().cloned().collect::<Vec<_>>().join(", ");
         if self.raw.hexahedra.is_empty() {
             let mut found = self.types.clone();
             if !self.quads.is_empty() {
@@ -546,7 +551,7 @@ impl<'a> Reader<'a> {
                 found: if found.is_empty() {
                     "none".to_string()
                 } else {
-                    list(&found)
+                    listed(&found)
                 },
                 help: ELEMENTS.to_string(),
             });
@@ -576,16 +581,20 @@ impl<'a> Reader<'a> {
                     }
                 }
             }
+            // Neighbours share nodes; there may be many sets.
+            nodes.sort_unstable();
+            nodes.dedup();
+            nodes.shrink_to_fit();
         }
         if !self.types.is_empty() {
             self.raw
                 .notes
-                .push(format!("elements left out: {}", list(&self.types)));
+                .push(format!("elements left out: {}", listed(&self.types)));
         }
         if !self.skipped.is_empty() {
             self.raw
                 .notes
-                .push(format!("keywords left out: {}", list(&self.skipped)));
+                .push(format!("keywords left out: {}", listed(&self.skipped)));
         }
         Ok(self.raw)
     }

@@ -7,9 +7,21 @@ use covact_geometry::io::not_regular;
 use std::fs::File;
 use std::path::Path;
 
+/// Bytes of a path in a message.
+const MOST_OF_PATH: usize = 1000;
+
 pub(super) struct Checker<'a> {
     loaded: &'a LoadedScene,
     problems: Vec<Problem>,
+}
+
+/// A path for messages; of a very long one the end.
+fn shorten_path(path: &Path) -> String {
+    let shown = path.display().to_string();
+    match shown.char_indices().rev().nth(MOST_OF_PATH / 4) {
+        Some((i, _)) if shown.len() > MOST_OF_PATH => format!("...{}", &shown[i..]),
+        _ => shown,
+    }
 }
 
 /// JSON pointer of nested names.
@@ -182,7 +194,7 @@ impl<'a> Checker<'a> {
     /// The file exists and can be opened; its extension is one of `extensions` (none: any).
     pub fn file(&mut self, at: &str, path: &Path, extensions: &[&str]) {
         let full = self.loaded.resolve(path);
-        let shown = full.display();
+        let shown = shorten_path(&full);
         if path.as_os_str().is_empty() {
             return self.add(at, "the path is empty", None);
         }

@@ -16,7 +16,9 @@ use names::Sets;
 pub fn check(loaded: &LoadedScene) -> Vec<Problem> {
     let mut c = Checker::new(loaded);
     let scene = &loaded.scene;
-    names::check(&mut c, scene);
+    if !names::check(&mut c, scene) {
+        return c.finish();
+    }
     for (name, material) in &scene.materials {
         check_material(&mut c, name, material);
     }

@@ -1,14 +1,12 @@
 //! Names, and what refers to them.
 use super::checker::{Checker, path};
-use crate::scene::problem::{listed, nearest, shorten, suggestion};
+use crate::scene::problem::{MOST_IN_NAME, listed, nearest, shorten, suggestion};
 use crate::scene::types::*;
 use std::collections::BTreeMap;
 
-/// Bytes of a name.
-const MOST_IN_NAME: usize = 200;
-
-/// Names can be used in `body.set`, in columns of the history and in file names.
-pub(super) fn check(c: &mut Checker, scene: &Scene) {
+/// Names can be used in `body.set`, in columns of the history and in file names. Whether they are short enough for the
+/// other checks, which repeat them for everything that they belong to.
+pub(super) fn check(c: &mut Checker, scene: &Scene) -> bool {
     let sections: [(&str, Vec<&String>); 6] = [
         ("materials", scene.materials.keys().collect()),
         ("bodies", scene.bodies.keys().collect()),
@@ -21,6 +19,10 @@ pub(super) fn check(c: &mut Checker, scene: &Scene) {
         for name in names {
             check_name(c, &path(&[section, name]), name, *section == "bodies");
         }
+    }
+    let long = |name: &String| name.len() > MOST_IN_NAME;
+    if sections.iter().any(|s| s.1.iter().any(|name| long(name))) {
+        return false;
     }
     for (name, body) in &scene.bodies {
         let (generated, what) = generated_sets(&body.mesh);
@@ -55,6 +57,7 @@ pub(super) fn check(c: &mut Checker, scene: &Scene) {
             }
         }
     }
+    !scene.bodies.values().any(|b| b.sets.keys().any(long))
 }
 
 fn check_name(c: &mut Checker, at: &str, name: &str, body: bool) {
