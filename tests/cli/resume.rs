@@ -358,7 +358,9 @@ fn files_that_are_not_as_they_were() {
         let name = file.file_name().unwrap().to_str().unwrap();
         format!("`out/{name}` {words}")
     };
-    let good = std::fs::read(&file).unwrap();
+    let mut good = std::fs::read(&file).unwrap();
+    // Behind it there may be the end of a longer one.
+    good.truncate(u64::from_le_bytes(good[12..20].try_into().unwrap()) as usize);
     let refused = |parts: &[&str]| {
         let before = contents(path);
         let output = run(path, true);
