@@ -78,40 +78,6 @@ fn an_arch_led_by_a_tool_balances_to_second_order() {
     );
 }
 
-/// A ball that bends a plate slides past its end: what the plate held is lost in a step that is named.
-#[test]
-fn contact_that_is_lost_is_told_by_its_energy() {
-    let scene = json!({
-        "covact": 1,
-        "materials": { "m": { "st_venant_kirchhoff": { "E": 1000, "nu": 0.3 } } },
-        "bodies": { "plate": { "material": "m", "mesh": { "plate": {
-            "size": [20, 4], "thickness": 0.5, "elements": [10, 2]
-        } } } },
-        "surfaces": { "ball": { "sphere": { "radius": 2, "center": [18, 2, 2.3] }, "motion": { "translation": [
-            { "table": [[0, 0], [0.5, 0], [1, 6]] }, 0, { "table": [[0, 0], [0.5, -1], [1, -1]] }
-        ] } } },
-        "contacts": { "press": { "slave": "plate.top", "master": "ball", "points": { "gauss": 2 } } },
-        "supports": { "end": { "on": "plate.x_min", "fixed": true } },
-        "solution": { "step": { "initial": 0.05, "max": 0.05 }, "threads": 1 },
-        "output": { "every": 0 }
-    });
-    let outcome = done(&scene);
-    let [stored, lost] = ["energy.internal", "energy.imbalance"].map(|c| outcome.column(c));
-    let most = stored.iter().fold(0.0f64, |a, e| a.max(*e));
-    // The plate ends at rest, and most of what it held is gone without work.
-    let (kept, gone) = (stored[stored.len() - 1], lost[lost.len() - 1]);
-    assert!(
-        kept < 1e-6 * most && gone > 0.1 * most,
-        "{kept} {gone} of {most}"
-    );
-    let told = told(&outcome);
-    assert!(
-        !told.is_empty() && told[0].contains("contact lost"),
-        "{:?}",
-        outcome.summary.warnings
-    );
-}
-
 /// The relative imbalance at the end of a run.
 fn left(scene: &Value) -> (f64, Outcome) {
     let outcome = done(scene);
@@ -128,7 +94,7 @@ fn overclosures_do_work() {
     for gap in ["pointwise", "averaged"] {
         let run = |choice: Value, dt: f64| {
             let mut scene = plate(6, 0.0, 1);
-            scene["surfaces"]["ball"]["sphere"]["center"] = json!([0, 0, 25.7]);
+            scene["surfaces"]["ball"]["sphere"]["center"] = json!([0, 0, 25.2]);
             scene["contacts"]["press"]["gap"] = json!(gap);
             scene["contacts"]["press"]["initial_overclosure"] = choice;
             scene["solution"]["step"] = json!({ "initial": dt, "max": dt });

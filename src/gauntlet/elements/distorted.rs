@@ -13,10 +13,10 @@ const HEIGHT: f64 = 0.2;
 fn block(place: [[f64; 2]; 3]) -> String {
     let mut text = String::from("*NODE\n");
     for k in 0..3 {
-        for j in 0..3 {
+        for (j, line) in place.iter().enumerate() {
             for i in 0..3 {
                 let [x, y] = match i {
-                    1 => place[j],
+                    1 => *line,
                     _ => [0.5 * i as f64, 0.5 * j as f64],
                 };
                 let (number, z) = (1 + i + 3 * j + 9 * k, 0.5 * HEIGHT * k as f64);
