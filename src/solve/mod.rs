@@ -2,6 +2,7 @@
 pub mod convergence;
 mod cycle;
 pub mod event;
+pub mod failure;
 pub mod linear;
 pub mod newton;
 pub mod place;

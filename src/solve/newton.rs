@@ -6,6 +6,7 @@
 use super::convergence::{Norms, Verdict};
 use super::cycle::{Cycle, PingPong};
 use super::event::{Event, Observer};
+pub use super::failure::StepFailure;
 use super::linear::{Factorization, LinearError, LinearSolver, Method};
 use super::place;
 use super::unstable::{Unstable, singular};
@@ -13,133 +14,11 @@ use crate::assembly::{Assembler, Fault, Manner, Totals};
 use crate::model::Model;
 use crate::model::state::{PointState, State};
 use crate::output::Phases;
-use crate::scene::{self, ValueError};
+use crate::scene;
 use crate::shell::{ElementBlock, with_block};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Why a step failed. All but [`StepFailure::Interrupted`] call for a smaller step.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum StepFailure {
-    #[error(
-        "no convergence in {iterations} iterations (residual {residual:.3e} of the forces){oscillation}"
-    )]
-    TooManyIterations {
-        iterations: u32,
-        residual: f64,
-        /// Empty, or a word on points that switch status round and round.
-        oscillation: String,
-    },
-    #[error("not a finite number at iteration {iteration}: {place}")]
-    NotFinite {
-        iteration: u32,
-        /// What is not finite, in words: an element, a slave point, a load.
-        place: String,
-    },
-    /// Something in the scene has no value.
-    #[error("`{pointer}`: {error}")]
-    NoValue {
-        /// JSON pointer of what has none.
-        pointer: String,
-        error: ValueError,
-    },
-    #[error("{0}")]
-    Fault(#[from] Fault),
-    #[error("linear solver: {error}{place}")]
-    Solve {
-        error: LinearError,
-        /// Body and place of the node that it names, or nothing.
-        place: String,
-    },
-    /// Nothing resists a motion of a body.
-    #[error("linear solver: {error}; {words}")]
-    Singular { error: LinearError, words: String },
-    #[error(
-        "body `{body}` runs away: loads drive it on, no support hinders it {motion}, and contact does not stop it ({reached}): \
-         add a support or a contact, more friction, or turn the loads"
-    )]
-    RunsAway {
-        body: String,
-        /// Its free motions, in words.
-        motion: String,
-        /// How far it has got, in words.
-        reached: String,
-    },
-    /// The last raise, in words that name the contact.
-    #[error(
-        "{raised}, and it stays too deep: give the contact a `penalty`, more `points` a face, or a finer slave"
-    )]
-    PenetrationStays { raised: String },
-    #[error(
-        "contact `{pair}`: {points} point(s) that were in contact sank deeper than the `depth` {depth:.6e} of \
-         {master}: the penalty is too soft for it, or the step too large"
-    )]
-    Sunk {
-        pair: String,
-        /// The master, in words.
-        master: String,
-        points: usize,
-        depth: f64,
-    },
-    #[error(
-        "contact `{pair}`: {points} point(s), one of them at ({:.6e}, {:.6e}, {:.6e}), passed through {master} within the \
-         step, deeper than its `depth` {depth:.6e}: take smaller steps or a larger `depth`", at[0], at[1], at[2]
-    )]
-    PassedThrough {
-        pair: String,
-        /// The master, in words.
-        master: String,
-        points: usize,
-        /// Where one of them ended.
-        at: [f64; 3],
-        depth: f64,
-    },
-    #[error(
-        "contact `{pair}`: after {augmentations} augmentation(s) {what} of {left:.3e} is left, more than {allowed:.3e} \
-         (`augmentation`): take a larger penalty, smaller steps or a larger `max`"
-    )]
-    NotAugmented {
-        pair: String,
-        augmentations: u32,
-        /// A gap or an elastic slip, in words.
-        what: &'static str,
-        left: f64,
-        allowed: f64,
-    },
-    #[error(
-        "{count} element(s) of body `{body}` are turned inside out, element {element} first: the step is too large, or the \
-         body pressed harder than its mesh and material carry"
-    )]
-    InsideOut {
-        body: String,
-        element: usize,
-        count: usize,
-    },
-    #[error(
-        "contact `{pair}`: {points} point(s) went through {master} within the step, deeper than its `depth` {depth:.6e}, and \
-         touch it on its far side: take smaller steps or a larger `depth`"
-    )]
-    FarSide {
-        pair: String,
-        /// The master, in words.
-        master: String,
-        points: usize,
-        depth: f64,
-    },
-    #[error(
-        "surface `{surface}` turns by {degrees:.0} degrees within the step, more than the {largest:.0} over which the slip of \
-         contact `{pair}` can be followed: take smaller steps"
-    )]
-    TurnedTooFar {
-        pair: String,
-        surface: String,
-        degrees: f64,
-        largest: f64,
-    },
-    #[error("interrupted")]
-    Interrupted,
-}
 
 /// What a converged step took.
 #[derive(Debug, Clone, PartialEq)]

@@ -263,8 +263,14 @@ fn results_removed_during_a_run() {
         lines.for_each(drop);
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
-        let message = "cannot write `out/history.csv`: no such file or folder (it was removed during the run)";
-        assert_parts(&stderr(&output), &[message]);
+        // Without the folder, the first file of the step that is under way is named.
+        let parts: &[&str] = match what {
+            "out" => &["cannot write `out/", ": no such file or folder"],
+            _ => &[
+                "cannot write `out/history.csv`: no such file or folder (it was removed during the run)",
+            ],
+        };
+        assert_parts(&stderr(&output), parts);
     }
 }
 
