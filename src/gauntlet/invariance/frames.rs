@@ -19,7 +19,7 @@ pub fn placed(trial: &mut Trial) -> Result<(), Broken> {
         let off = difference(&here, &there, |v| turn * v)?;
         trial.within(format!("seed {}: difference", scene.seed), off, SAME);
     }
-    trial.iterations(4500);
+    trial.iterations(1300);
     Ok(())
 }
 
@@ -80,7 +80,7 @@ pub fn mirrored(trial: &mut Trial) -> Result<(), Broken> {
         let off = difference(&here, &there, flip)?;
         trial.within(format!("seed {}: difference", scene.seed), off, SAME);
     }
-    trial.iterations(4500);
+    trial.iterations(1300);
     Ok(())
 }
 

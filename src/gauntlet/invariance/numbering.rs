@@ -26,7 +26,7 @@ pub fn threads(trial: &mut Trial) -> Result<(), Broken> {
         let same = one.history == four.history;
         trial.holds(format!("seed {}: the same rows", scene.seed), same);
     }
-    trial.iterations(4500);
+    trial.iterations(1300);
     Ok(())
 }
 

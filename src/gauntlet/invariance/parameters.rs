@@ -27,7 +27,7 @@ fn changed(trial: &mut Trial, changes: &[(&str, Change)]) -> Result<(), Broken> 
 }
 
 pub fn turned(trial: &mut Trial) -> Result<(), Broken> {
-    trial.iterations(4500);
+    trial.iterations(1900);
     changed(
         trial,
         &[
@@ -39,7 +39,7 @@ pub fn turned(trial: &mut Trial) -> Result<(), Broken> {
 }
 
 pub fn refined(trial: &mut Trial) -> Result<(), Broken> {
-    trial.iterations(4500);
+    trial.iterations(1900);
     changed(
         trial,
         &[
