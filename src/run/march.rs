@@ -93,7 +93,7 @@ struct Outputs {
 }
 
 impl<'a, 'm> March<'a, 'm> {
-    #[allow(clippy::too_many_arguments)]
+    #[expect(clippy::too_many_arguments)]
     pub fn new(
         scene: &'a Scene,
         model: &'m Model,
@@ -300,7 +300,6 @@ impl<'a, 'm> March<'a, 'm> {
                 dt,
             });
             (self.assembler).begin_step(&committed.u, self.progress.time, end);
-            self.workspace.unstable = None;
             self.workspace.unstable = None;
             let result = Attempts {
                 model: self.model,
