@@ -12,6 +12,7 @@ pub mod scene;
 pub mod shell;
 pub mod soak;
 pub mod solve;
+pub mod study;
 
 #[cfg(feature = "cli")]
 pub mod cli;

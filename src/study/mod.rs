@@ -1,0 +1,3 @@
+//! Studies: a scene run over a grid of choices, with its error against its cost.
+pub mod file;
+pub mod record;
