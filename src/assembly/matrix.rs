@@ -1,6 +1,7 @@
 //! The values of a system on a pattern, symmetric or not.
 use super::constraints::DofMap;
 use super::pattern::{FLAG_BITS, Pattern, PatternError, SAME_NODE, TRANSPOSED};
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -97,6 +98,35 @@ impl SystemMatrix {
         match &mut self.transposed {
             None => scatter_into(&mut self.values, map, ke, n),
             Some(transposed) => scatter_both_into(&mut self.values, transposed, 0, map, ke, n),
+        }
+    }
+
+    /// Adds `w_a w_b k` to the block of every pair of nodes `a`, `b` with weights `w`: what a point with tangent `k` adds, where
+    /// `places` of [`Pattern::point_places`] says. Each pair's block is a multiple of the same `k`, so that it does not matter
+    /// which of the two nodes has its row stored; if this matrix is symmetric, so must be `k`.
+    ///
+    /// # Panics
+    /// If there are fewer places than pairs, or they are of another, larger pattern.
+    #[inline(always)]
+    pub fn scatter_point(&mut self, places: &[u32], weights: &[f64], k: &Matrix3<f64>) {
+        let turned = self.transposed.is_some().then(|| k.transpose());
+        let mut at = 0;
+        for (q, wq) in weights.iter().enumerate() {
+            for wp in &weights[q..] {
+                let w = wp * wq;
+                let first = places[at] as usize;
+                at += 1;
+                let block = &mut self.values[first..first + 9];
+                for (out, k) in block.iter_mut().zip(k.as_slice()) {
+                    *out += w * k;
+                }
+                if let (Some(transposed), Some(k)) = (&mut self.transposed, &turned) {
+                    let block = &mut transposed[first..first + 9];
+                    for (out, k) in block.iter_mut().zip(k.as_slice()) {
+                        *out += w * k;
+                    }
+                }
+            }
         }
     }
 

@@ -211,6 +211,22 @@ impl Pattern {
         }
         Ok(())
     }
+
+    /// Appends to `out` the number of the first value of the blocks of all pairs of `nodes`, for
+    /// [`SystemMatrix::scatter_point`](super::SystemMatrix::scatter_point), in the order of [`Self::element_map`]. No node may
+    /// occur twice.
+    ///
+    /// # Errors
+    /// [`PatternError::NotCoupled`].
+    pub fn point_places(&self, nodes: &[u32], out: &mut Vec<u32>) -> Result<(), PatternError> {
+        let before = out.len();
+        self.element_map(nodes, out)?;
+        for code in &mut out[before..] {
+            // Fits: see MAX_BLOCKS.
+            *code = 9 * (*code >> FLAG_BITS);
+        }
+        Ok(())
+    }
 }
 
 /// How many groups each node is in, summed up to starts; checks all node numbers.

@@ -2,7 +2,8 @@
 //!
 //! - [`kernel`]: face points in nine slots, [`corner`]: edges and vertices, [`published`]: the published tangent;
 //! - [`point`]: one response for all of them, [`law`]: what the traction is;
-//! - [`rigid`], [`moving`]: closest points on masters that do not move or whose nodes do, [`meeting`]: what both give;
+//! - [`rigid`], [`moving`]: closest points on masters that do not move or whose nodes do, [`meeting`]: what both give,
+//!   [`placed`]: many points on a rigid one;
 //! - [`friction`]: slip, its laws and its history;
 //! - [`spin`]: a rigid body's translation and spin in the slots, [`averaged`]: the gap in the mean of slave nodes.
 pub mod averaged;
@@ -16,6 +17,7 @@ pub mod kernel;
 pub mod law;
 pub mod meeting;
 pub mod moving;
+pub mod placed;
 pub mod point;
 pub mod points;
 pub mod published;

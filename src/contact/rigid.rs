@@ -8,7 +8,7 @@ use super::meeting::Meeting;
 use super::point::PointGeometry;
 use super::published::{self, Parts};
 use covact_geometry::{EdgeKind, Foot, Frame, Hint, Jet, Location, PatchSet, Status, Vec3};
-use nalgebra::{Isometry3, Matrix3, Point3, Rotation3};
+use nalgebra::{Isometry3, Matrix3, Point3};
 
 /// Which tangent a batch uses: a type, so that the choice is made outside the loop over points.
 pub trait RigidTangent: Sync {
@@ -58,6 +58,8 @@ const UNEVEN: f64 = 2e-5;
 /// A point in contact, per unit area and in space coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Touch {
+    /// The slave point.
+    pub x: Vec3,
     /// Residual (the slave is pushed by its negative), force / length^2.
     pub residual: Vec3,
     /// Derivative of the residual with respect to the slave point, force / length^3.
@@ -78,7 +80,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         self.surface.project(&local, hint, reach)
     }
 
-    /// Evaluates one slave point; `None` where it is open.
+    /// Evaluates one slave point; `None` where it is open. For many points make [`Self::placed`] once.
     ///
     /// `hint` is where the search starts, and is set to where it ended.
     ///
@@ -91,76 +93,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         law: &L,
         tangent: &T,
     ) -> Result<Option<Touch>, PointFault> {
-        let Some((_, foot, geometry)) = self.contact_at(x, hint, law)? else {
-            return Ok(None);
-        };
-        let normal = law.normal(geometry.xi3());
-        let (residual, k) = match self.steady(&foot, &geometry, law) {
-            None => respond_rigid(&geometry, &normal, tangent),
-            Some(steady) => respond_steady(&steady, &normal),
-        };
-        Ok(Some(self.in_space(&geometry, law, &normal, residual, k)))
-    }
-
-    /// The slave point at `x`, its foot and what the surface looks like there, in the surface's own coordinates; `None` where
-    /// the point is open. `hint` as for [`Self::touch`].
-    #[inline]
-    pub(super) fn contact_at<L: NormalLaw>(
-        &self,
-        x: &Vec3,
-        hint: &mut Option<Hint>,
-        law: &L,
-    ) -> Result<Option<(Vec3, Foot, PointGeometry)>, PointFault> {
-        if !(x.x.is_finite() && x.y.is_finite() && x.z.is_finite()) {
-            return Err(PointFault::NotFinite);
-        }
-        let local = self.pose.inverse_transform_point(&Point3::from(*x)).coords;
-        let reach = self.depth.max(law.reach());
-        let Some(foot) = self.surface.project(&local, *hint, reach) else {
-            *hint = None;
-            return Ok(None);
-        };
-        let (patch, xi) = (foot.patch, foot.xi);
-        *hint = Some(Hint { patch, xi });
-        // On either side: an uncertain foot must not pass for an open point.
-        if foot.status == Status::NotConverged {
-            let piece = Piece::Patch(patch);
-            return Err(PointFault::ProjectionNotConverged { piece, xi });
-        }
-        let xi3 = foot.signed_distance;
-        if free(&foot) || xi3 < -self.depth || !law.closes(xi3) {
-            return Ok(None);
-        }
-        let geometry = self.geometry(&foot, &(local - foot.jet.rho))?;
-        if !geometry.is_minimum() {
-            return Err(PointFault::BeyondFocalSurface {
-                piece: Piece::Patch(patch),
-                xi,
-                xi3,
-            });
-        }
-        Ok(Some((local, foot, geometry)))
-    }
-
-    /// A touch from residual and tangent in the surface's own coordinates.
-    #[inline]
-    pub(super) fn in_space<L: NormalLaw>(
-        &self,
-        geometry: &PointGeometry,
-        law: &L,
-        normal: &Normal,
-        residual: Vec3,
-        tangent: Matrix3<f64>,
-    ) -> Touch {
-        let rotation = Rotation3::from(self.pose.rotation);
-        let r = rotation.matrix();
-        Touch {
-            residual: r * residual,
-            tangent: r * tangent * r.transpose(),
-            xi3: geometry.xi3(),
-            gap: law.gap(geometry.xi3()),
-            n: normal.n,
-        }
+        self.placed().touch(x, hint, law, tangent)
     }
 
     /// The closest point within `reach` on either side, for what needs more than [`Self::touch`]: a rigid surface with
@@ -201,7 +134,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
     }
 
     /// What the surface looks like at a foot, in its own coordinates; `d` is the distance vector.
-    fn geometry(&self, foot: &Foot, d: &Vec3) -> Result<PointGeometry, PointFault> {
+    pub(super) fn geometry(&self, foot: &Foot, d: &Vec3) -> Result<PointGeometry, PointFault> {
         let (patch, xi, xi3) = (foot.patch, foot.xi, foot.signed_distance);
         let degenerate = PointFault::DegenerateFrame {
             piece: Piece::Patch(patch),
@@ -340,7 +273,12 @@ pub(super) fn respond_steady(steady: &Steady, normal: &Normal) -> (Vec3, Matrix3
 /// Whether one tangent is so much shorter than the other that a pole may be next to the point.
 #[inline]
 fn next_to_pole(jet: &Jet) -> bool {
-    let [a, b] = [0, 1].map(|k| jet.rho_i[k].norm_squared());
+    uneven([0, 1].map(|k| jet.rho_i[k].norm_squared()))
+}
+
+/// [`next_to_pole`] of the squared lengths.
+#[inline]
+pub(super) fn uneven([a, b]: [f64; 2]) -> bool {
     a.min(b) < UNEVEN * UNEVEN * a.max(b)
 }
 

@@ -136,13 +136,31 @@ impl Model {
     /// Deformed position of a node.
     #[inline]
     pub fn position(&self, node: usize, u: &[f64]) -> Vec3 {
-        self.nodes[node] + Vec3::new(u[3 * node], u[3 * node + 1], u[3 * node + 2])
+        let u = &u[3 * node..3 * node + 3];
+        self.nodes[node] + Vec3::new(u[0], u[1], u[2])
     }
 
     /// Deformed position of a slave point.
-    #[inline]
     pub fn point_position(&self, p: &SlavePoint, u: &[f64]) -> Vec3 {
-        (p.terms()).fold(Vec3::zeros(), |x, (n, w)| x + self.position(n, u) * w)
+        self.position_of(p, u)
+    }
+
+    /// [`Self::point_position`] for loops over points: the loop over nodes is none for all faces but rare ones.
+    #[inline(always)]
+    pub fn position_of(&self, p: &SlavePoint, u: &[f64]) -> Vec3 {
+        match p.count {
+            1 => self.combined(p, 1, u),
+            4 => self.combined(p, 4, u),
+            9 => self.combined(p, 9, u),
+            n => self.combined(p, n as usize, u),
+        }
+    }
+
+    #[inline(always)]
+    fn combined(&self, p: &SlavePoint, count: usize, u: &[f64]) -> Vec3 {
+        let terms = p.nodes[..count].iter().zip(&p.shape[..count]);
+        let terms = terms.map(|(node, w)| self.position(*node as usize, u) * *w);
+        terms.reduce(|x, y| x + y).unwrap_or_else(Vec3::zeros)
     }
 
     /// Number of nodes that belong to bodies; those of driven surfaces come after them.

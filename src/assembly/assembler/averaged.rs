@@ -302,11 +302,8 @@ impl Assembler<'_> {
         let pair = &model.pairs[index];
         let surface = pair.rigid_master();
         let small = NEAR * pair.element_size;
-        let mut next = 0;
         for (i, p) in pair.points.iter().enumerate() {
             let count = p.count as usize;
-            let start = next;
-            next += count * (count + 1) / 2;
             let Ok(Some(met)) = &own.met[i] else { continue };
             if !own.carries[i] {
                 continue;
@@ -365,27 +362,8 @@ impl Assembler<'_> {
                 border.carry::<TANGENT>(p, &force, &k, &(x - at.center));
             }
             if TANGENT {
-                let size = 3 * count;
-                own.ke.resize(size * size, 0.0);
-                for (b, wb) in p.shape[..count].iter().enumerate() {
-                    for (a, wa) in p.shape[..count].iter().enumerate() {
-                        for c in 0..3 {
-                            for r in 0..3 {
-                                own.ke[(3 * b + c) * size + 3 * a + r] = wa * wb * k[(r, c)];
-                            }
-                        }
-                    }
-                }
-                put(
-                    &mut self.matrix,
-                    self.dofs,
-                    &mut self.work,
-                    &p.nodes[..count],
-                    &self.point_maps[index][start..next],
-                    &mut own.ke,
-                    at.increments,
-                    rhs,
-                );
+                let (nodes, shape) = (&p.nodes[..count], &p.shape[..count]);
+                self.put_point([index, i], nodes, shape, &k, at.increments, rhs);
             }
         }
     }

@@ -2,16 +2,56 @@
 use super::couplings::Couplings;
 use super::{DofMap, Kind, Pattern, PatternError};
 use super::{averaged, driven};
+use crate::contact::points::SlavePoint;
 use crate::model::Model;
 
 /// Places of all blocks on one pattern.
 pub(super) struct Maps {
     pub elements: Vec<u32>,
     pub kinds: Vec<Kind>,
-    /// Per pair with a rigid master: per point, where its blocks go.
-    pub points: Vec<Vec<u32>>,
+    /// Per pair.
+    pub points: Vec<PointMaps>,
     /// Per follower load: per face, where its blocks go.
     pub followers: Vec<Vec<u32>>,
+}
+
+/// Where the blocks of a pair's points go; empty unless its master is rigid.
+#[derive(Debug, Clone, Default)]
+pub(super) struct PointMaps {
+    /// First values of the blocks of plain points, for [`SystemMatrix::scatter_point`](crate::assembly::SystemMatrix).
+    places: Vec<u32>,
+    /// Per point, where its own places begin; `u32::MAX` where it is not plain.
+    starts: Vec<u32>,
+}
+
+impl PointMaps {
+    fn new(points: &[SlavePoint], dofs: &DofMap, pattern: &Pattern) -> Result<Self, PatternError> {
+        let mut out = PointMaps::default();
+        for p in points {
+            let nodes = &p.nodes[..p.count as usize];
+            let twice = |(i, node): (usize, &u32)| nodes[..i].contains(node);
+            let start = match u32::try_from(out.places.len()) {
+                Ok(start) if !dofs.constrains(nodes) && !nodes.iter().enumerate().any(twice) => {
+                    pattern.point_places(nodes, &mut out.places)?;
+                    start
+                }
+                _ => u32::MAX,
+            };
+            out.starts.push(start);
+        }
+        Ok(out)
+    }
+
+    /// The places of a point of `count` nodes none of which is constrained or occurs twice; nothing for others.
+    #[inline(always)]
+    pub fn plain(&self, point: usize, count: usize) -> Option<&[u32]> {
+        let start = self.starts[point];
+        let pairs = count * (count + 1) / 2;
+        match start {
+            u32::MAX => None,
+            _ => Some(&self.places[start as usize..start as usize + pairs]),
+        }
+    }
 }
 
 /// The pattern of a model under its constraints: elements, and slave points with the facets that they may touch.
@@ -79,13 +119,10 @@ impl Maps {
         }
         let mut points = Vec::new();
         for pair in &model.pairs {
-            let mut maps = Vec::new();
-            if pair.rigid_master().is_some() {
-                for p in &pair.points {
-                    pattern.element_map(&p.nodes[..p.count as usize], &mut maps)?;
-                }
-            }
-            points.push(maps);
+            points.push(match pair.rigid_master() {
+                Some(_) => PointMaps::new(&pair.points, dofs, pattern)?,
+                None => PointMaps::default(),
+            });
         }
         let mut followers = Vec::new();
         for (_, load) in &model.follower_loads {

@@ -50,6 +50,7 @@ impl Assembler<'_> {
             follower_maps: _,
             systems: _,
             touches: _,
+            held: _,
             answers: _,
             masters: _,
             couplings,

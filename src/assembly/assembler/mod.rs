@@ -12,6 +12,7 @@ mod loads;
 mod maps;
 mod memory;
 mod moving;
+mod pressed;
 mod rigid;
 mod sliding;
 mod touched;
@@ -29,7 +30,7 @@ use crate::shell::ElementFault;
 use averaged::Averaged;
 use couplings::Couplings;
 use covact_geometry::Vec3;
-use maps::Maps;
+use maps::{Maps, PointMaps};
 use moving::Meetings;
 use sliding::Sliding;
 use viscous::Viscous;
@@ -171,11 +172,13 @@ pub struct Assembler<'m> {
     matrix: SystemMatrix,
     element_maps: Vec<u32>,
     kinds: Vec<Kind>,
-    /// Per pair: per point, where its blocks go.
-    point_maps: Vec<Vec<u32>>,
+    /// Per pair: where the blocks of its points go.
+    point_maps: Vec<PointMaps>,
     follower_maps: Vec<Vec<u32>>,
     systems: Systems,
     touches: Vec<Result<Option<Touch>, PointFault>>,
+    /// Points of a pair that [`Manner::hold`] keeps closed.
+    held: Vec<bool>,
     /// Per point with history, of pairs with friction or augmentation; nothing where it is open.
     answers: Vec<Option<PointAnswer>>,
     /// The surfaces of masters that are bodies, at the last state evaluated.
@@ -225,6 +228,7 @@ impl<'m> Assembler<'m> {
             follower_maps: maps.followers,
             systems: Systems::new(model),
             touches: vec![Ok(None); most],
+            held: Vec::new(),
             answers: vec![None; model.histories()],
             masters,
             couplings,
@@ -346,6 +350,31 @@ impl<'m> Assembler<'m> {
         residual.fill(0.0);
         let mut totals = Totals::default();
         self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
+        Ok(totals)
+    }
+
+    /// Sets the tangent to zero, before [`Self::linearize_contact`].
+    pub fn clear_matrix(&mut self) {
+        self.matrix.clear();
+    }
+
+    /// [`Self::contact`], with what contact adds to the tangent on top of what is there ([`Self::clear_matrix`]), and to
+    /// `rhs` where there are `increments` ([`Self::linearize`]): what a measurement of contact alone evaluates.
+    ///
+    /// # Errors
+    /// As [`Self::contact`], and a pattern that has grown too large.
+    pub fn linearize_contact(
+        &mut self,
+        state: &mut State,
+        time: f64,
+        increments: Option<&[f64]>,
+        residual: &mut [f64],
+        rhs: &mut [f64],
+    ) -> Result<Totals, Fault> {
+        self.meet::<true>(state, time)?;
+        residual.fill(0.0);
+        let mut totals = Totals::default();
+        self.contacts::<true>(state, time, increments, residual, rhs, &mut totals)?;
         Ok(totals)
     }
 }

@@ -1,6 +1,7 @@
 //! Contact with rigid surfaces: the slave points of a pair are evaluated in parallel and summed in order.
 use super::answer::PointAnswer;
-use super::{Assembler, Fault, Manner, PairForce, SurfaceForce, Totals, put, touched};
+use super::pressed::{Pressed, PressedSums};
+use super::{Assembler, Fault, Manner, PairForce, SurfaceForce, Totals, touched};
 use crate::contact::closest::ClosestPoint;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::{FrictionLaw, Secant};
@@ -31,7 +32,7 @@ impl Assembler<'_> {
         totals.pairs = vec![PairForce::default(); self.model.pairs.len()];
         self.contact.fill(0.0);
         self.clear_borders();
-        let mut first = 0;
+        let (mut first, mut rounding) = (0, 0.0);
         for (index, pair) in self.model.pairs.iter().enumerate() {
             if pair.averaged.is_some() {
                 let n = pair.points.len();
@@ -39,6 +40,7 @@ impl Assembler<'_> {
                 self.average::<TANGENT>(
                     index, first, state, time, increments, residual, rhs, totals,
                 )?;
+                self.rounding(state, index, first, &mut rounding);
                 first += n;
                 continue;
             }
@@ -48,6 +50,7 @@ impl Assembler<'_> {
                 self.moving::<TANGENT>(
                     index, state, range, time, increments, residual, rhs, totals,
                 );
+                self.rounding(state, index, first, &mut rounding);
                 first += count;
                 continue;
             };
@@ -58,10 +61,10 @@ impl Assembler<'_> {
             let Manner { hold, secant } = self.manner;
             // A surface driven by force follows the points as they are.
             let hold = hold && surface.driven.is_none();
-            let held: Vec<bool> = match hold && pair.friction.is_none() {
-                true => points.iter().map(|p| p.closed).collect(),
-                false => Vec::new(),
-            };
+            self.held.clear();
+            if hold && pair.friction.is_none() {
+                self.held.extend(points.iter().map(|p| p.closed));
+            }
             let touches = &mut self.touches[..n];
             let u = &state.u;
             let law = Penalty {
@@ -91,7 +94,7 @@ impl Assembler<'_> {
                     (offsets, None) if hold => {
                         let augmented = pair.history().filter(|_| pair.augmentation.is_some());
                         let histories = &state.histories[augmented.unwrap_or(0..0)];
-                        let held = Held { held: &held, histories, offsets };
+                        let held = Held { held: &self.held, histories, offsets };
                         batch.choose(points, touches, &held);
                     }
                     (offsets, None) if pair.augmentation.is_some() => {
@@ -114,93 +117,57 @@ impl Assembler<'_> {
                     }),
                 }
             });
-            let mut deepest = 0.0f64;
-            let before = totals.active;
-            let mut ke = [0.0; 729];
-            let mut at = 0;
-            let maps = &self.point_maps[index];
-            for (i, p) in pair.points.iter().enumerate() {
-                let count = p.count as usize;
-                let pairs = count * (count + 1) / 2;
-                let map = &maps[at..at + pairs];
-                at += pairs;
-                let touch = match &touches[i] {
+            let mut pressed = Pressed {
+                eps_n: law.eps_n,
+                residual,
+                contact: &mut self.contact,
+                matrix: &mut self.matrix,
+                maps: &self.point_maps[index],
+                dofs: self.dofs,
+                work: &mut self.work,
+                increments,
+                rhs,
+                sums: PressedSums::default(),
+            };
+            let may_open = surface.driven.is_none();
+            let each = pair.points.iter().zip(touches.iter()).zip(points);
+            for (i, ((p, touch), state)) in each.enumerate() {
+                let touch = match touch {
                     Err(fault) => {
                         let x = self.model.point_position(p, u);
                         return Err(Fault::contact(pair, i, &x, *fault));
                     }
                     Ok(touch) => touch,
                 };
-                totals.changed += usize::from(touch.is_some() != points[i].closed);
-                totals.opened +=
-                    usize::from(points[i].closed && touch.is_none() && surface.driven.is_none());
-                points[i].closed = touch.is_some();
+                totals.changed += usize::from(touch.is_some() != state.closed);
+                totals.opened += usize::from(state.closed && touch.is_none() && may_open);
+                state.closed = touch.is_some();
                 let Some(touch) = touch else { continue };
-                totals.active += 1;
-                deepest = deepest.max(-touch.gap);
-                totals.contact_energy += 0.5 * law.eps_n * touch.gap * touch.gap * p.area;
-                let force = touch.residual * p.area;
-                let on = &mut totals.surfaces[number];
-                on.force -= force;
-                on.moment -= self.model.point_position(p, u).cross(&force);
-                for (node, w) in p.terms() {
-                    for c in 0..3 {
-                        residual[3 * node + c] += w * force[c];
-                        self.contact[3 * node + c] += w * force[c];
-                    }
-                }
-                if TANGENT {
-                    let size = 3 * count;
-                    let k = touch.tangent * p.area;
-                    for (b, wb) in p.shape[..count].iter().enumerate() {
-                        for (a, wa) in p.shape[..count].iter().enumerate() {
-                            for c in 0..3 {
-                                for r in 0..3 {
-                                    ke[(3 * b + c) * size + 3 * a + r] = wa * wb * k[(r, c)];
-                                }
-                            }
-                        }
-                    }
-                    let ke = &mut ke[..size * size];
-                    put(
-                        &mut self.matrix,
-                        self.dofs,
-                        &mut self.work,
-                        &p.nodes[..count],
-                        map,
-                        ke,
-                        increments,
-                        rhs,
-                    );
-                }
+                rounding += (law.eps_n * p.area * f64::EPSILON * touch.x.norm()).powi(2);
+                pressed.add::<TANGENT>(i, p, touch);
             }
-            totals.penetration.push(deepest);
-            totals.touching.push(totals.active > before);
+            pressed.sums.note(number, totals);
             first += n;
             if surface.driven.is_some() {
                 self.carry::<TANGENT>(index, &state.u, time)?;
             }
         }
         self.close_borders::<TANGENT>(&state.u, increments, residual, rhs)?;
-        totals.contact_rounding = self.rounding(state);
+        totals.contact_rounding = rounding.sqrt();
         totals.contact_norm = self.contact.iter().map(|f| f * f).sum::<f64>().sqrt();
         Ok(())
     }
 
-    /// See [`Totals::contact_rounding`]. A gap is a difference of positions, whose digits end at theirs, however small the
-    /// displacements are.
-    fn rounding(&self, state: &State) -> f64 {
-        let (mut sum, mut first) = (0.0, 0);
-        for (index, eps) in self.penalties.iter().enumerate() {
-            let slaves = state.slaves(self.model, index);
-            let points = &state.points[first..first + slaves.len()];
-            first += slaves.len();
-            for (p, _) in slaves.iter().zip(points).filter(|(_, s)| s.closed) {
-                let x = self.model.point_position(p, &state.u).norm();
-                sum += (eps * p.area * f64::EPSILON * x).powi(2);
-            }
+    /// What a pair adds to the square of [`Totals::contact_rounding`]. A gap is a difference of positions, whose digits end at
+    /// theirs, however small the displacements are.
+    fn rounding(&self, state: &State, index: usize, first: usize, sum: &mut f64) {
+        let eps = self.penalties[index];
+        let slaves = state.slaves(self.model, index);
+        let points = &state.points[first..first + slaves.len()];
+        for (p, _) in slaves.iter().zip(points).filter(|(_, s)| s.closed) {
+            let x = self.model.point_position(p, &state.u).norm();
+            *sum += (eps * p.area * f64::EPSILON * x).powi(2);
         }
-        sum.sqrt()
     }
 }
 
@@ -227,6 +194,7 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
         hold: bool,
     ) {
         let augmented = self.pair.augmentation.is_some();
+        let placed = self.master.placed();
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
@@ -235,13 +203,12 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
             .enumerate()
             .with_min_len(64)
             .for_each(|(i, ((((p, s), out), answer), history))| {
-                let x = self.model.point_position(p, self.u);
+                let x = self.model.position_of(p, self.u);
                 let law = Augmented {
                     held: hold && s.closed,
                     ..history.law(self.law.eps_n, offsets.map_or(0.0, |o| o.at(i)))
                 };
-                let touch =
-                    (self.master).touch_with_friction(&x, &mut s.hint, &law, friction, history);
+                let touch = placed.touch_with_friction(&x, &mut s.hint, &law, friction, history);
                 if augmented {
                     *answer = touched::of(&touch)
                         .map(|t| PointAnswer::with_friction(t, history, friction.eps_t));
@@ -282,15 +249,16 @@ impl<P: ClosestPoint, L: NormalLaw + Copy> Batch<'_, P, L> {
         tangent: &T,
         offset: &O,
     ) {
+        let placed = self.master.placed();
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
             .enumerate()
             .with_min_len(64)
             .for_each(|(i, ((p, s), out))| {
-                let x = self.model.point_position(p, self.u);
+                let x = self.model.position_of(p, self.u);
                 let law = offset.law(i, self.law);
-                *out = self.master.touch(&x, &mut s.hint, &law, tangent);
+                *out = placed.touch(&x, &mut s.hint, &law, tangent);
             });
     }
 }

@@ -7,6 +7,7 @@ use crate::contact::corner::Steady;
 use crate::contact::fault::PointFault;
 use crate::contact::kernel::Normal;
 use crate::contact::law::{Augmented, NormalLaw};
+use crate::contact::placed::Placed;
 use crate::contact::rigid::{Exact, RigidMaster, Touch, respond_rigid, respond_steady};
 use covact_geometry::{Hint, Vec3};
 
@@ -45,7 +46,24 @@ impl PointHistory {
 }
 
 impl<P: ClosestPoint> RigidMaster<'_, P> {
-    /// Evaluates a slave point with friction; `None` where it is open. `hint` as for [`RigidMaster::touch`].
+    /// [`Placed::touch_with_friction`] of a single point.
+    ///
+    /// # Errors
+    /// [`PointFault`] as there.
+    pub fn touch_with_friction<F: FrictionLaw>(
+        &self,
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        law: &Augmented,
+        friction: &Friction<F>,
+        history: &PointHistory,
+    ) -> Result<Option<FrictionTouch>, PointFault> {
+        (self.placed()).touch_with_friction(x, hint, law, friction, history)
+    }
+}
+
+impl<P: ClosestPoint> Placed<'_, P> {
+    /// Evaluates a slave point with friction; `None` where it is open. `hint` as for [`Placed::touch`].
     ///
     /// # Errors
     /// [`PointFault`] as there.
@@ -58,50 +76,52 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Result<Option<FrictionTouch>, PointFault> {
-        let Some((local, foot, geometry)) = self.contact_at(x, hint, law)? else {
-            return Ok(None);
-        };
-        let xi3 = geometry.xi3();
-        let normal = law.normal(xi3);
-        // The pressure of a point that is held is nothing to go by: it is far from the surface.
-        let limit = match law.held {
-            true => Normal {
-                n: history.n,
-                dn: 0.0,
-            },
-            false => normal,
-        };
-        let attraction = history.attraction(friction.eps_t);
-        let gap = law.gap(xi3);
-        let (mut residual, mut k, n, traction) = match self.steady(&foot, &geometry, law) {
-            None => {
-                let (residual, k) = respond_rigid(&geometry, &normal, &Exact);
-                let (n, turn) = (geometry.normal(), geometry.turn());
-                let friction = attraction.traction(&friction.law, &local, &n, &turn, gap, &limit);
-                (residual, k, n, friction)
-            }
-            Some(steady) => {
-                let (residual, k) = respond_steady(&steady, &normal);
-                let Steady { n, turn, gradient } = &steady;
-                let friction = attraction.traction_towards(
-                    &friction.law,
-                    &local,
-                    n,
-                    gradient,
-                    turn,
-                    gap,
-                    &limit,
-                );
-                (residual, k, *n, friction)
-            }
-        };
-        residual += traction.slip.t;
-        k += traction.tangent;
-        Ok(Some(FrictionTouch {
-            touch: self.in_space(&geometry, law, &normal, residual, k),
-            traction,
-            local,
-            normal: n,
-        }))
+        self.at_foot(x, hint, law, |local, foot| {
+            let geometry = self.geometry(local, foot)?;
+            let xi3 = geometry.xi3();
+            let normal = law.normal(xi3);
+            // The pressure of a point that is held is nothing to go by: it is far from the surface.
+            let limit = match law.held {
+                true => Normal {
+                    n: history.n,
+                    dn: 0.0,
+                },
+                false => normal,
+            };
+            let attraction = history.attraction(friction.eps_t);
+            let gap = law.gap(xi3);
+            let (mut residual, mut k, n, traction) = match self.master.steady(foot, &geometry, law)
+            {
+                None => {
+                    let (residual, k) = respond_rigid(&geometry, &normal, &Exact);
+                    let (n, turn) = (geometry.normal(), geometry.turn());
+                    let friction =
+                        attraction.traction(&friction.law, local, &n, &turn, gap, &limit);
+                    (residual, k, n, friction)
+                }
+                Some(steady) => {
+                    let (residual, k) = respond_steady(&steady, &normal);
+                    let Steady { n, turn, gradient } = &steady;
+                    let friction = attraction.traction_towards(
+                        &friction.law,
+                        local,
+                        n,
+                        gradient,
+                        turn,
+                        gap,
+                        &limit,
+                    );
+                    (residual, k, *n, friction)
+                }
+            };
+            residual += traction.slip.t;
+            k += traction.tangent;
+            Ok(FrictionTouch {
+                touch: self.in_space(x, &geometry, law, &normal, residual, k),
+                traction,
+                local: *local,
+                normal: n,
+            })
+        })
     }
 }

@@ -1,0 +1,209 @@
+//! Evaluation of many slave points on a rigid surface at one place.
+use super::closest::ClosestPoint;
+use super::kernel::Normal;
+use super::law::NormalLaw;
+use super::point::PointGeometry;
+use super::rigid::{
+    Piece, PointFault, RigidMaster, RigidTangent, Touch, free, respond_rigid, respond_steady,
+    uneven,
+};
+use covact_geometry::{EdgeKind, Foot, Frame, Hint, Location, Status, Vec3};
+use nalgebra::{Matrix3, Rotation3};
+
+/// A rigid surface at its present position, with what all points share: made once, outside the loop over points.
+#[derive(Debug, Clone)]
+pub struct Placed<'a, P> {
+    pub(super) master: &'a RigidMaster<'a, P>,
+    /// Columns of the rotation from the surface's own coordinates to those of space.
+    columns: [Vec3; 3],
+}
+
+impl<P> RigidMaster<'_, P> {
+    /// The surface with what all points share.
+    pub fn placed(&self) -> Placed<'_, P> {
+        let turn = Rotation3::from(self.pose.rotation).into_inner();
+        Placed {
+            master: self,
+            columns: [0, 1, 2].map(|c| turn.column(c).into_owned()),
+        }
+    }
+}
+
+impl<P> Placed<'_, P> {
+    /// A point of space in the surface's own coordinates.
+    #[inline(always)]
+    fn local(&self, x: &Vec3) -> Vec3 {
+        let d = x - self.master.pose.translation.vector;
+        let [a, b, c] = &self.columns;
+        Vec3::new(a.dot(&d), b.dot(&d), c.dot(&d))
+    }
+
+    /// A vector of the surface's own coordinates in space.
+    #[inline(always)]
+    pub(super) fn turned(&self, v: &Vec3) -> Vec3 {
+        let [a, b, c] = &self.columns;
+        a * v.x + b * v.y + c * v.z
+    }
+
+    /// A tangent of the surface's own coordinates in space.
+    fn turned_tangent(&self, k: &Matrix3<f64>) -> Matrix3<f64> {
+        let r = Matrix3::from_columns(&self.columns);
+        r * k * r.transpose()
+    }
+}
+
+impl<P: ClosestPoint> Placed<'_, P> {
+    /// Evaluates one slave point; `None` where it is open.
+    ///
+    /// `hint` is where the search starts, and is set to where it ended.
+    ///
+    /// # Errors
+    /// [`PointFault`] where the point has no reliable closest point.
+    #[inline]
+    pub fn touch<L: NormalLaw, T: RigidTangent>(
+        &self,
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        law: &L,
+        tangent: &T,
+    ) -> Result<Option<Touch>, PointFault> {
+        self.at_foot(x, hint, law, |local, foot| {
+            let xi3 = foot.signed_distance;
+            let Some(frame) = face(foot) else {
+                return self.off_face(x, local, foot, law, tangent);
+            };
+            if !frame_is_minimum(&frame, xi3) {
+                return Err(beyond(foot));
+            }
+            let normal = law.normal(xi3);
+            // Turned before the tangent is formed: three vectors are less than a matrix from both sides.
+            let frame = Frame {
+                rho_i: [self.turned(&frame.rho_i[0]), self.turned(&frame.rho_i[1])],
+                n: self.turned(&frame.n),
+                ..frame
+            };
+            Ok(Touch {
+                x: *x,
+                residual: frame.n * normal.n,
+                tangent: tangent.face(&frame, xi3, &normal),
+                xi3,
+                gap: law.gap(xi3),
+                n: normal.n,
+            })
+        })
+    }
+
+    /// [`Self::touch`] of a foot that is not, or not safely, one of a face.
+    #[cold]
+    #[inline(never)]
+    fn off_face<L: NormalLaw, T: RigidTangent>(
+        &self,
+        x: &Vec3,
+        local: &Vec3,
+        foot: &Foot,
+        law: &L,
+        tangent: &T,
+    ) -> Result<Touch, PointFault> {
+        let geometry = self.geometry(local, foot)?;
+        let normal = law.normal(geometry.xi3());
+        let (residual, k) = match self.master.steady(foot, &geometry, law) {
+            None => respond_rigid(&geometry, &normal, tangent),
+            Some(steady) => respond_steady(&steady, &normal),
+        };
+        Ok(self.in_space(x, &geometry, law, &normal, residual, k))
+    }
+
+    /// Searches for the foot of a slave point at `x`, and gives the point in the surface's own coordinates and its foot to
+    /// `then` where the point is closed; `None` where it is open. `hint` as for [`Self::touch`].
+    #[inline(always)]
+    pub(super) fn at_foot<L: NormalLaw, R>(
+        &self,
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        law: &L,
+        then: impl FnOnce(&Vec3, &Foot) -> Result<R, PointFault>,
+    ) -> Result<Option<R>, PointFault> {
+        if !(x.x.is_finite() && x.y.is_finite() && x.z.is_finite()) {
+            return Err(PointFault::NotFinite);
+        }
+        let local = self.local(x);
+        let depth = self.master.depth;
+        let reach = depth.max(law.reach());
+        let Some(foot) = self.master.surface.project(&local, *hint, reach) else {
+            *hint = None;
+            return Ok(None);
+        };
+        *hint = Some(foot.hint());
+        // On either side: an uncertain foot must not pass for an open point.
+        if foot.status == Status::NotConverged {
+            return Err(PointFault::ProjectionNotConverged {
+                piece: Piece::Patch(foot.patch),
+                xi: foot.xi,
+            });
+        }
+        let xi3 = foot.signed_distance;
+        if !law.closes(xi3) || xi3 < -depth || free(&foot) {
+            return Ok(None);
+        }
+        then(&local, &foot).map(Some)
+    }
+
+    /// What the surface looks like at the foot of a point at `local`, which must be the closest.
+    pub(super) fn geometry(&self, local: &Vec3, foot: &Foot) -> Result<PointGeometry, PointFault> {
+        let geometry = self.master.geometry(foot, &(local - foot.jet.rho))?;
+        match geometry.is_minimum() {
+            true => Ok(geometry),
+            false => Err(beyond(foot)),
+        }
+    }
+
+    /// A touch of a slave point at `x` from residual and tangent in the surface's own coordinates.
+    pub(super) fn in_space<L: NormalLaw>(
+        &self,
+        x: &Vec3,
+        geometry: &PointGeometry,
+        law: &L,
+        normal: &Normal,
+        residual: Vec3,
+        tangent: Matrix3<f64>,
+    ) -> Touch {
+        Touch {
+            x: *x,
+            residual: self.turned(&residual),
+            tangent: self.turned_tangent(&tangent),
+            xi3: geometry.xi3(),
+            gap: law.gap(geometry.xi3()),
+            n: normal.n,
+        }
+    }
+}
+
+/// The frame of a foot on a face that no pole is next to.
+#[inline(always)]
+fn face(foot: &Foot) -> Option<Frame> {
+    let on_face = match foot.location {
+        Location::Face => true,
+        Location::Edge { kind, .. } | Location::Corner { kind, .. } => kind == EdgeKind::Smooth,
+        Location::Crease { .. } | Location::Pole { .. } => false,
+    };
+    if !on_face {
+        return None;
+    }
+    Frame::new(&foot.jet, foot.side).filter(|frame| !uneven([frame.a[0], frame.a[2]]))
+}
+
+/// [`PointGeometry::is_minimum`] of a face.
+#[inline(always)]
+fn frame_is_minimum(frame: &Frame, xi3: f64) -> bool {
+    let [i11, i12, i22] = [0, 1, 2].map(|i| frame.a[i] - xi3 * frame.h[i]);
+    i11 > 0.0 && i11 * i22 - i12 * i12 > 0.0
+}
+
+#[cold]
+fn beyond(foot: &Foot) -> PointFault {
+    PointFault::BeyondFocalSurface {
+        piece: Piece::Patch(foot.patch),
+        xi: foot.xi,
+        xi3: foot.signed_distance,
+    }
+}
