@@ -15,7 +15,7 @@ pub const NONE: &str = "no effect";
 fn list() -> Vec<Effect> {
     let coulomb = || json!({ "coulomb": { "mu": 0.3 } });
     let ellipse = || json!({ "orthotropic": { "mu": [0.2, 0.4], "direction": [1, 0, 0] } });
-    let facets = |kind: &str| json!({ "facets": { "kind": kind, "count": [24, 24] } });
+    let facets = |kind: &str| json!({ "facets": { "kind": kind, "count": [12, 12] } });
     let contact = |c: Value| (c, Value::Null);
     let none: fn(&mut Program) = |_| {};
     let entry = |name, (contact, ball): (Value, Value), state| (name, contact, ball, state);

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 pub const RADIUS: f64 = 25.0;
 /// Elements along a side of the plate; four slave points (Gauss 2) on each.
-const ELEMENTS: usize = 16;
+const ELEMENTS: usize = 12;
 /// Time of the evaluation: the ball has moved by -1 along z and turned by 20 degrees.
 pub const TIME: f64 = 1.0;
 
@@ -26,7 +26,7 @@ pub fn masters() -> [(&'static str, Value); 2] {
         ("NURBS", Value::Null),
         (
             "bilinear facets",
-            json!({ "facets": { "kind": "bilinear", "count": [24, 24] } }),
+            json!({ "facets": { "kind": "bilinear", "count": [12, 12] } }),
         ),
     ]
 }
@@ -34,7 +34,7 @@ pub fn masters() -> [(&'static str, Value); 2] {
 /// How far the points are from the ball.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Distance {
-    /// All below the surface, by .05.
+    /// All below the surface, by .3.
     Closed,
     /// All above it, by .3: near, so that every one is searched for, and open.
     Open,
@@ -55,7 +55,7 @@ impl Distance {
 
     fn at(self, x: f64, y: f64) -> f64 {
         match self {
-            Distance::Closed => -0.05,
+            Distance::Closed => -0.3,
             Distance::Open => 0.3,
             Distance::Mixed => 0.3 * (0.7 * x).sin() * (0.9 * y).sin(),
         }

@@ -35,7 +35,7 @@ impl<D: DualNum<f64> + Copy> Frame<D> {
     /// Frame of a jet; `side` is +1 where `rho_1 x rho_2` points out of the master and -1 where it points in.
     /// `None` where the tangents do not span a plane (a pole, a collapsed edge, parallel tangents) or are not finite:
     /// `|rho_1 x rho_2| <= 1e-12 max(a_11, a_22)`.
-    #[inline]
+    #[inline(always)]
     pub fn new(jet: &Jet<D>, side: f64) -> Option<Self> {
         let [r1, r2] = jet.rho_i;
         let a = [r1.dot(&r1), r1.dot(&r2), r2.dot(&r2)];
@@ -57,7 +57,11 @@ impl<D: DualNum<f64> + Copy> Frame<D> {
             n,
             a,
             a_inv: [a[2] * inv_det, -a[1] * inv_det, a[0] * inv_det],
-            h: jet.rho_ij.map(|r| r.dot(&n)),
+            h: [
+                jet.rho_ij[0].dot(&n),
+                jet.rho_ij[1].dot(&n),
+                jet.rho_ij[2].dot(&n),
+            ],
             area,
         })
     }

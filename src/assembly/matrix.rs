@@ -109,24 +109,9 @@ impl SystemMatrix {
     /// If there are fewer places than pairs, or they are of another, larger pattern.
     #[inline(always)]
     pub fn scatter_point(&mut self, places: &[u32], weights: &[f64], k: &Matrix3<f64>) {
-        let turned = self.transposed.is_some().then(|| k.transpose());
-        let mut at = 0;
-        for (q, wq) in weights.iter().enumerate() {
-            for wp in &weights[q..] {
-                let w = wp * wq;
-                let first = places[at] as usize;
-                at += 1;
-                let block = &mut self.values[first..first + 9];
-                for (out, k) in block.iter_mut().zip(k.as_slice()) {
-                    *out += w * k;
-                }
-                if let (Some(transposed), Some(k)) = (&mut self.transposed, &turned) {
-                    let block = &mut transposed[first..first + 9];
-                    for (out, k) in block.iter_mut().zip(k.as_slice()) {
-                        *out += w * k;
-                    }
-                }
-            }
+        add_multiples(&mut self.values, places, weights, k);
+        if let Some(transposed) = &mut self.transposed {
+            add_multiples(transposed, places, weights, &k.transpose());
         }
     }
 
@@ -405,6 +390,21 @@ fn scatter_into(values: &mut [f64], map: &[u32], ke: &[f64], n: usize) {
             at += 1;
             let first = 9 * (code >> FLAG_BITS) as usize;
             add_block(&mut values[first..first + 9], code, ke, 3 * n, 3 * p, 3 * q);
+        }
+    }
+}
+
+/// Adds `w_a w_b k` to the block of every pair of nodes.
+#[inline(always)]
+fn add_multiples(values: &mut [f64], places: &[u32], weights: &[f64], k: &Matrix3<f64>) {
+    let k: [f64; 9] = std::array::from_fn(|i| k.as_slice()[i]);
+    let mut places = places.iter();
+    for (q, wq) in weights.iter().enumerate() {
+        for (wp, first) in weights[q..].iter().zip(&mut places) {
+            let (w, first) = (wp * wq, *first as usize);
+            for (out, k) in values[first..first + 9].iter_mut().zip(&k) {
+                *out += w * k;
+            }
         }
     }
 }

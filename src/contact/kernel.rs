@@ -58,9 +58,10 @@ pub(super) fn in_slot<D: DualNum<f64> + Copy>(slot: usize, v: &Vector3<D>) -> Sl
 }
 
 /// `A^{ij}`, inverse of `a_ij - xi3 h_ij`, as 11, 12, 22.
-#[inline]
+#[inline(always)]
 pub fn inverse_at_point<D: DualNum<f64> + Copy>(frame: &Frame<D>, xi3: D) -> [D; 3] {
-    let [m11, m12, m22] = [0, 1, 2].map(|i| frame.a[i] - frame.h[i] * xi3);
+    let m = |i: usize| frame.a[i] - frame.h[i] * xi3;
+    let [m11, m12, m22] = [m(0), m(1), m(2)];
     let inverse_det = (m11 * m22 - m12 * m12).recip();
     [m22 * inverse_det, -m12 * inverse_det, m11 * inverse_det]
 }
@@ -116,7 +117,7 @@ pub fn normal_tangent<D: DualNum<f64> + Copy>(
 /// Exact tangent of a contact point with unit weight on a rigid master: the first 3 x 3 block of
 /// [`normal_tangent`]. With `c_i = 0` its geometric part collapses, by `A = a - xi3 h`, to
 /// `-N (A^-1 h a^-1)^ij rho_i x rho_j`.
-#[inline]
+#[inline(always)]
 pub fn normal_tangent_rigid<D: DualNum<f64> + Copy>(
     frame: &Frame<D>,
     xi3: D,
@@ -128,7 +129,7 @@ pub fn normal_tangent_rigid<D: DualNum<f64> + Copy>(
 }
 
 /// Product `l h r` of three symmetric 2 x 2 matrices (11, 12, 22) whose product is symmetric.
-#[inline]
+#[inline(always)]
 fn triple<D: DualNum<f64> + Copy>(l: &[D; 3], h: &[D; 3], r: &[D; 3]) -> [D; 3] {
     let lh = [
         l[0] * h[0] + l[1] * h[1],
@@ -144,14 +145,14 @@ fn triple<D: DualNum<f64> + Copy>(l: &[D; 3], h: &[D; 3], r: &[D; 3]) -> [D; 3] 
 }
 
 /// `dN n x n - N s^ij rho_i x rho_j`, symmetric to the last bit: the half that is formed is mirrored.
-#[inline]
+#[inline(always)]
 pub(super) fn main_and_curvature<D: DualNum<f64> + Copy>(
     frame: &Frame<D>,
     s: &[D; 3],
     normal: &Normal<D>,
 ) -> Matrix3<D> {
     let [r1, r2] = &frame.rho_i;
-    let s = s.map(|s| s * normal.n);
+    let s = [s[0] * normal.n, s[1] * normal.n, s[2] * normal.n];
     let n = frame.n * normal.dn;
     let t1 = r1 * s[0] + r2 * s[1];
     let t2 = r1 * s[1] + r2 * s[2];

@@ -59,7 +59,6 @@ impl<P: ClosestPoint> Placed<'_, P> {
     ///
     /// # Errors
     /// [`PointFault`] where the point has no reliable closest point.
-    #[inline]
     pub fn touch<L: NormalLaw, T: RigidTangent>(
         &self,
         x: &Vec3,
@@ -67,30 +66,88 @@ impl<P: ClosestPoint> Placed<'_, P> {
         law: &L,
         tangent: &T,
     ) -> Result<Option<Touch>, PointFault> {
-        self.at_foot(x, hint, law, |local, foot| {
-            let xi3 = foot.signed_distance;
-            let Some(frame) = face(foot) else {
-                return self.off_face(x, local, foot, law, tangent);
-            };
-            if !frame_is_minimum(&frame, xi3) {
-                return Err(beyond(foot));
+        let mut out = Ok(None);
+        self.touch_into(x, hint, law, tangent, &mut out);
+        out
+    }
+
+    /// [`Self::touch`] for loops over points: the result is written where it stays.
+    #[inline(always)]
+    pub fn touch_into<L: NormalLaw, T: RigidTangent>(
+        &self,
+        x: &Vec3,
+        hint: &mut Option<Hint>,
+        law: &L,
+        tangent: &T,
+        out: &mut Result<Option<Touch>, PointFault>,
+    ) {
+        if !(x.x.is_finite() && x.y.is_finite() && x.z.is_finite()) {
+            *out = Err(PointFault::NotFinite);
+            return;
+        }
+        let local = self.local(x);
+        let found = self.search(&local, *hint, law);
+        let Some(foot) = &found else {
+            *hint = None;
+            *out = Ok(None);
+            return;
+        };
+        *hint = Some(foot.hint());
+        match self.closes(foot, law) {
+            Ok(true) => {}
+            Ok(false) => {
+                *out = Ok(None);
+                return;
             }
-            let normal = law.normal(xi3);
-            // Turned before the tangent is formed: three vectors are less than a matrix from both sides.
-            let frame = Frame {
-                rho_i: [self.turned(&frame.rho_i[0]), self.turned(&frame.rho_i[1])],
-                n: self.turned(&frame.n),
-                ..frame
-            };
-            Ok(Touch {
-                x: *x,
-                residual: frame.n * normal.n,
-                tangent: tangent.face(&frame, xi3, &normal),
-                xi3,
-                gap: law.gap(xi3),
-                n: normal.n,
-            })
-        })
+            Err(fault) => {
+                *out = Err(fault);
+                return;
+            }
+        }
+        let xi3 = foot.signed_distance;
+        let frame = match face(foot) {
+            Some(frame) if frame_is_minimum(&frame, xi3) => frame,
+            _ => {
+                *out = self.off_face(x, &local, foot, law, tangent).map(Some);
+                return;
+            }
+        };
+        let normal = law.normal(xi3);
+        // Turned before the tangent is formed: three vectors are less than a matrix from both sides.
+        let frame = Frame {
+            rho_i: [self.turned(&frame.rho_i[0]), self.turned(&frame.rho_i[1])],
+            n: self.turned(&frame.n),
+            ..frame
+        };
+        *out = Ok(Some(Touch {
+            x: *x,
+            residual: frame.n * normal.n,
+            tangent: tangent.face(&frame, xi3, &normal),
+            xi3,
+            gap: law.gap(xi3),
+            n: normal.n,
+        }));
+    }
+
+    /// The foot of a point at `local`.
+    #[inline(always)]
+    fn search<L: NormalLaw>(&self, local: &Vec3, hint: Option<Hint>, law: &L) -> Option<Foot> {
+        let reach = self.master.depth.max(law.reach());
+        self.master.surface.project(local, hint, reach)
+    }
+
+    /// Whether a foot means contact.
+    #[inline(always)]
+    fn closes<L: NormalLaw>(&self, foot: &Foot, law: &L) -> Result<bool, PointFault> {
+        // On either side: an uncertain foot must not pass for an open point.
+        if foot.status == Status::NotConverged {
+            return Err(PointFault::ProjectionNotConverged {
+                piece: Piece::Patch(foot.patch),
+                xi: foot.xi,
+            });
+        }
+        let xi3 = foot.signed_distance;
+        Ok(law.closes(xi3) && xi3 >= -self.master.depth && !free(foot))
     }
 
     /// [`Self::touch`] of a foot that is not, or not safely, one of a face.
@@ -127,25 +184,16 @@ impl<P: ClosestPoint> Placed<'_, P> {
             return Err(PointFault::NotFinite);
         }
         let local = self.local(x);
-        let depth = self.master.depth;
-        let reach = depth.max(law.reach());
-        let Some(foot) = self.master.surface.project(&local, *hint, reach) else {
+        let found = self.search(&local, *hint, law);
+        let Some(foot) = &found else {
             *hint = None;
             return Ok(None);
         };
         *hint = Some(foot.hint());
-        // On either side: an uncertain foot must not pass for an open point.
-        if foot.status == Status::NotConverged {
-            return Err(PointFault::ProjectionNotConverged {
-                piece: Piece::Patch(foot.patch),
-                xi: foot.xi,
-            });
-        }
-        let xi3 = foot.signed_distance;
-        if !law.closes(xi3) || xi3 < -depth || free(&foot) {
+        if !self.closes(foot, law)? {
             return Ok(None);
         }
-        then(&local, &foot).map(Some)
+        then(&local, foot).map(Some)
     }
 
     /// What the surface looks like at the foot of a point at `local`, which must be the closest.
@@ -195,7 +243,8 @@ fn face(foot: &Foot) -> Option<Frame> {
 /// [`PointGeometry::is_minimum`] of a face.
 #[inline(always)]
 fn frame_is_minimum(frame: &Frame, xi3: f64) -> bool {
-    let [i11, i12, i22] = [0, 1, 2].map(|i| frame.a[i] - xi3 * frame.h[i]);
+    let at = |i: usize| frame.a[i] - xi3 * frame.h[i];
+    let [i11, i12, i22] = [at(0), at(1), at(2)];
     i11 > 0.0 && i11 * i22 - i12 * i12 > 0.0
 }
 

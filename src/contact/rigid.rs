@@ -21,14 +21,14 @@ pub trait RigidTangent: Sync {
 pub struct Exact;
 
 impl RigidTangent for Exact {
-    #[inline]
+    #[inline(always)]
     fn face(&self, frame: &Frame, xi3: f64, normal: &Normal) -> Matrix3<f64> {
         kernel::normal_tangent_rigid(frame, xi3, normal)
     }
 }
 
 impl RigidTangent for Parts {
-    #[inline]
+    #[inline(always)]
     fn face(&self, frame: &Frame, _xi3: f64, normal: &Normal) -> Matrix3<f64> {
         published::normal_tangent_rigid(frame, normal, *self)
     }

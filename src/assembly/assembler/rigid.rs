@@ -258,7 +258,7 @@ impl<P: ClosestPoint, L: NormalLaw + Copy> Batch<'_, P, L> {
             .for_each(|(i, ((p, s), out))| {
                 let x = self.model.position_of(p, self.u);
                 let law = offset.law(i, self.law);
-                *out = placed.touch(&x, &mut s.hint, &law, tangent);
+                placed.touch_into(&x, &mut s.hint, &law, tangent, out);
             });
     }
 }
