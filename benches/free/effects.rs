@@ -46,12 +46,12 @@ fn list() -> Vec<Effect> {
         entry(
             "Coulomb friction, slip",
             contact(json!({ "friction": coulomb() })),
-            |p| base(p, 0.1),
+            |p| base(p, 1.0),
         ),
         entry(
             "orthotropic friction, slip",
             contact(json!({ "friction": ellipse() })),
-            |p| base(p, 0.1),
+            |p| base(p, 1.0),
         ),
         entry(
             "friction and augmentation, stick",
