@@ -172,7 +172,8 @@ impl Placed {
         let mut shape = self.kind.at(xi);
         let mut r = p - self.position(&shape);
         for _ in 0..STEPS {
-            if r.norm() <= close {
+            // Well below, so that the place is as sharp as it can be.
+            if r.norm() <= 0.01 * close {
                 break;
             }
             let frame = [0, 1, 2].map(|i| self.combine(&shape.d[i]));
