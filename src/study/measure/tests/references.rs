@@ -70,7 +70,10 @@ fn no_clean_order() {
     for (values, words) in [
         ([8.0, 9.5, 9.0], "change sign"),
         ([8.0, 8.5, 9.0], "order of 0.00"),
-        ([8.0, 8.0, 8.5], "do not differ"),
+        (
+            [8.0, 8.0, 8.5],
+            "two coarsest runs of the refinement do not differ",
+        ),
         ([0.0, 7.995, 8.0], "order of 10.64"),
     ] {
         let mut bench = three(values);
@@ -133,6 +136,13 @@ fn references_that_are_not_there() {
         &warnings,
         &["no estimate", "order of convergence is declared"],
     );
+    // Runs that agree exactly tell nothing either, with an order or without.
+    for more in [json!({}), json!({ "order": 2 })] {
+        let mut bench = three([7.0, 8.5, 8.5]);
+        let (records, warnings) = bench.measure(quantity(), refinement(more));
+        assert_eq!(records[0].reference.as_ref().unwrap().error, None);
+        says(&warnings, &["no estimate", "two finest runs do not differ"]);
+    }
     // A name that the study does not have.
     let quantity = of_f_against(json!("end"), json!({ "finest": "fnie" }));
     let (_, warnings) = bench.measure(quantity, refinement(json!({})));
