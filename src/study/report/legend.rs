@@ -83,6 +83,12 @@ pub(crate) fn draw(svg: &mut Svg, entries: &[Entry], left: f64, top: f64) -> f64
         .iter()
         .map(|e| width(&e.text) + 46.0)
         .fold(0.0, f64::max);
+    // One long name among many short ones is cut rather than given a column as wide as the plot.
+    let widest = if entries.len() > 6 {
+        widest.min(0.5 * room)
+    } else {
+        widest
+    };
     let columns = ((room / widest).floor() as usize).clamp(1, 4);
     let rows = entries.len().div_ceil(columns);
     let columns = entries.len().div_ceil(rows);

@@ -38,6 +38,8 @@ pub(crate) struct Path {
 pub(crate) enum Kind {
     /// Joins runs.
     Join,
+    /// Joins runs that are not the finest in everything else.
+    Thin,
     /// Runs on from side to side.
     Level,
     /// A curve of many points.
@@ -66,7 +68,7 @@ impl Plot {
     /// Draws it.
     pub fn draw(&self) -> Svg {
         let mut svg = Svg::new(WIDTH, &self.title);
-        svg.fitted_text("title", [12.0, 22.0], &self.title, (WIDTH - 24.0) / 1.25);
+        svg.fitted_text("title", [12.0, 22.0], &self.title, (WIDTH - 24.0) / 1.42);
         svg.fitted_text("soft", [12.0, 42.0], &self.y_label, WIDTH - 24.0);
         self.band(&mut svg);
         self.grid(&mut svg);
@@ -156,6 +158,7 @@ impl Plot {
         svg.open(&format!("c{}", path.colour), path.run, &path.title);
         let class = match path.kind {
             Kind::Join | Kind::Curve => "l",
+            Kind::Thin => "l thin",
             Kind::Level => "l dash",
             Kind::Reference => "ref",
         };
@@ -177,7 +180,7 @@ impl Plot {
                 }
             }
         }
-        svg.marker(point.style.marker, at, 4.6);
+        svg.marker(point.style.marker, at, 4.3);
         svg.close();
     }
 }

@@ -165,7 +165,9 @@ fn cells(view: &View, i: usize, on_front: bool) -> Vec<Cell> {
     for &c in &view.varying {
         let label = view.label(i, c);
         let mut cell = words(label.map_or(String::new(), |l| l.text.clone()));
-        cell.class = "choice";
+        if cell.text.chars().count() > 30 {
+            cell.class = "choice";
+        }
         out.push(cell);
     }
     out.push(status(run, on_front));
@@ -224,7 +226,7 @@ fn cells(view: &View, i: usize, on_front: bool) -> Vec<Cell> {
 
 fn status(run: &crate::study::record::RunRecord, on_front: bool) -> Cell {
     let (text, key, class) = match &run.ending {
-        Ending::Done if on_front => ("done, on the front".to_string(), 0.0, "front-run"),
+        Ending::Done if on_front => ("done, Pareto front".to_string(), 0.0, "front-run"),
         Ending::Done => ("done".to_string(), 1.0, ""),
         Ending::Failed(reason) => (format!("failed: {reason}"), 2.0, "reason"),
         Ending::Missing => ("missing".to_string(), 3.0, "reason"),

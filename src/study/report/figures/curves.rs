@@ -39,7 +39,7 @@ pub(super) fn figures(view: &View, q: usize, out: &mut Vec<Figure>) {
         format!(" ({})", quantity.unit)
     };
     let mut plot = Plot {
-        title: format!("{}: curves", quantity.name),
+        title: format!("Curves: {}", quantity.name),
         x: Axis::linear(all().map(|p| p[0]), false, Form::Plain),
         x_label: variable(view.record, q),
         y: Axis::linear(all().map(|p| p[1]), false, Form::Plain),
