@@ -5,6 +5,7 @@ use covact::study::record::Record;
 use covact::study::report::write;
 use std::fs;
 use std::path::Path;
+use std::sync::LazyLock;
 
 fn written(record: &Record) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -25,6 +26,15 @@ fn pictures(folder: &Path) -> Vec<String> {
     names.sort();
     names
 }
+
+/// Records with what is written of them, once for all tests.
+static ALL: LazyLock<Vec<(&str, Record, tempfile::TempDir)>> = LazyLock::new(|| {
+    let written = |(name, record)| {
+        let folder = written(&record);
+        (name, record, folder)
+    };
+    all().into_iter().map(written).collect()
+});
 
 fn all() -> Vec<(&'static str, Record)> {
     vec![
@@ -47,8 +57,7 @@ fn all() -> Vec<(&'static str, Record)> {
 
 #[test]
 fn pages_are_whole_and_refer_to_nothing_outside() {
-    for (name, record) in all() {
-        let folder = written(&record);
+    for (name, record, folder) in ALL.iter() {
         let page = read(folder.path(), "report.html");
         let tags = tags(&page).unwrap_or_else(|e| panic!("{name}: {e}"));
         for outside in ["http://", "https://", "src=", "@import", "url("] {
@@ -83,8 +92,7 @@ fn names_are_escaped() {
 #[test]
 fn pictures_are_xml_with_finite_numbers() {
     let mut count = 0;
-    for (name, record) in all() {
-        let folder = written(&record);
+    for (name, _, folder) in ALL.iter() {
         for picture in pictures(folder.path()) {
             let text = read(folder.path(), &picture);
             let tags = tags(&text).unwrap_or_else(|e| panic!("{name}, {picture}: {e}"));
