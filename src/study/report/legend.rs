@@ -1,4 +1,5 @@
 //! Legends below plots, where they cover no data.
+use super::plot::dashed;
 use super::svg::{Svg, width};
 use super::view::{Style, View};
 
@@ -13,6 +14,8 @@ pub(crate) enum Sign {
     Band,
     Front,
     Reference,
+    /// Colour and kind of dashes.
+    Curve(usize, usize),
     /// A line without markers in the colour of a series.
     Level(Style),
     Bar,
@@ -138,6 +141,11 @@ fn sign(svg: &mut Svg, sign: Sign, [x, y]: [f64; 2]) {
         Sign::Phase(p) => svg.rect(&format!("p{p}"), [x + 8.0, y - 5.5], [15.0, 11.0]),
         Sign::Band => svg.rect("band", [x, y - 5.5], [26.0, 11.0]),
         Sign::Front => svg.line("front", [x + 3.0, y], [x + 23.0, y]),
+        Sign::Curve(c, dashes) => {
+            svg.open(&colour(c), None, "");
+            svg.line(dashed(dashes), from, to);
+            svg.close();
+        }
         Sign::Reference => svg.line("ref", from, to),
         Sign::None => {}
     }

@@ -5,6 +5,8 @@ use super::svg::{Svg, width};
 use super::view::Style;
 
 pub(crate) const WIDTH: f64 = 640.0;
+/// Kinds of dashes that tell curves of one colour apart, the first without.
+pub(crate) const DASHES: usize = 4;
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 18.0;
 const TOP: f64 = 54.0;
@@ -42,8 +44,8 @@ pub(crate) enum Kind {
     Thin,
     /// Runs on from side to side.
     Level,
-    /// A curve of many points.
-    Curve,
+    /// A curve of many points, with one of [`DASHES`] kinds of dashes.
+    Curve(usize),
     Reference,
 }
 
@@ -157,7 +159,8 @@ impl Plot {
         let points: Vec<[f64; 2]> = path.points.iter().map(|&p| self.at(p)).collect();
         svg.open(&format!("c{}", path.colour), path.run, &path.title);
         let class = match path.kind {
-            Kind::Join | Kind::Curve => "l",
+            Kind::Join => "l",
+            Kind::Curve(dashes) => dashed(dashes),
             Kind::Thin => "l thin",
             Kind::Level => "l dash",
             Kind::Reference => "ref",
@@ -182,5 +185,15 @@ impl Plot {
         }
         svg.marker(point.style.marker, at, 4.3);
         svg.close();
+    }
+}
+
+/// The class of a line with one of the kinds of dashes.
+pub(crate) fn dashed(kind: usize) -> &'static str {
+    match kind % DASHES {
+        0 => "l",
+        1 => "l dash",
+        2 => "l dot",
+        _ => "l long",
     }
 }

@@ -74,7 +74,11 @@ fn against_size(
     };
     let log = quantity.swing && values().any(|v| v > 0.0);
     let mut plot = Plot {
-        title: format!("Against {over}: {}", quantity.name),
+        title: format!(
+            "{} against {over}: {}",
+            if quantity.swing { "Noise" } else { "Value" },
+            quantity.name
+        ),
         x: Axis::log(
             runs.iter().filter_map(|&i| view.size(i, choice)),
             Form::Plain,
