@@ -166,7 +166,8 @@ impl Placed {
     }
 
     /// The place of the cell that is nearest to `p`, and its distance: Gauss-Newton steps within the parent, which end where
-    /// no direction along or into it comes nearer. A point within the cell is found with distance zero up to rounding.
+    /// no direction along or into it comes nearer. A point within the cell is found with distance zero up to rounding; to a
+    /// point about as far away as the cell is large, a bent cell may have several such places.
     pub fn nearest(&self, p: &Vec3, close: f64) -> ([f64; 3], f64) {
         let mut xi = [0.0; 3];
         let mut shape = self.kind.at(xi);

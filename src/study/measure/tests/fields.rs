@@ -280,7 +280,7 @@ fn fields_on_cells_and_of_several_components() {
 fn files_that_do_not_hold_what_they_say() {
     let mut bench = Bench::new();
     let f = |x: &Vec3| x.x;
-    for id in ["cut", "broken", "late", "none", "reference"] {
+    for id in ["cut", "broken", "late", "none", "shared", "reference"] {
         scalar(&mut bench, id, &square(H8, 3, 1), f);
     }
     let edit = |id: &str, file: &str, change: &dyn Fn(String) -> String| {
@@ -303,7 +303,15 @@ fn files_that_do_not_hold_what_they_say() {
     edit("none", "results.pvd", &|t| {
         t.replace("\"plate\"", "\"slab\"")
     });
+    // A surface of the body's name comes after it.
+    edit("shared", "results.pvd", &|t| {
+        let surface =
+            "<DataSet timestep=\"1.0\" part=\"1\" name=\"plate\" file=\"ball_0001.vtu\"/>";
+        t.replace("</Collection>", &format!("{surface}</Collection>"))
+            .replace("<Collection>", &format!("<Collection>{surface}"))
+    });
     let (_, warnings) = against_last(&mut bench);
+    assert!(bench.error("shared") < 1e-14);
     assert!(bench.missing("cut").contains("cannot be read"));
     assert!(
         bench
