@@ -181,11 +181,18 @@ impl Placed {
             let Some(step) = step(&frame, &r, &xi, self.kind.dimension()) else {
                 break;
             };
-            let mut share = 1.0;
-            let better = (0..HALVINGS).find_map(|_| {
-                let mut next = xi;
-                for i in 0..3 {
-                    next[i] = (xi[i] + share * step[i]).clamp(-1.0, 1.0);
+            // The way to the first face of the parent, if that is nearer than the end of the step: cutting off single
+            // coordinates behind it would change the direction, and slanted cells would not be left along their faces.
+            let reach = |i: usize| (step[i].signum() - xi[i]) / step[i];
+            let first = (0..3)
+                .filter(|&i| step[i] != 0.0 && reach(i) < 1.0)
+                .min_by(|&i, &j| reach(i).total_cmp(&reach(j)));
+            let mut share = first.map_or(1.0, reach);
+            let better = (0..HALVINGS).find_map(|halving| {
+                let mut next: [f64; 3] =
+                    std::array::from_fn(|i| (xi[i] + share * step[i]).clamp(-1.0, 1.0));
+                if let Some(i) = first.filter(|_| halving == 0) {
+                    next[i] = step[i].signum();
                 }
                 let shape = self.kind.at(next);
                 let rest = p - self.position(&shape);
