@@ -5,8 +5,8 @@ use covact_geometry::Vec3;
 
 /// Most nodes of a cell.
 pub(super) const NODES: usize = 18;
-/// Steps that the inverse mapping takes at most.
-const STEPS: usize = 60;
+/// Steps that the inverse mapping takes at most. Inside of a cell a few do; far off a strongly bent one they converge linearly.
+const STEPS: usize = 100;
 /// Halvings of a step that brings no descent.
 const HALVINGS: usize = 30;
 
