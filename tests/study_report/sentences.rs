@@ -167,9 +167,28 @@ fn what_gains_with_all_else_equal() {
             "With everything else equal, bilinear takes 2.8 times the time of NURBS (2 to 4 in 2 pairs).",
         ]
     );
+    // Smooth facets take what NURBS take.
+    let mut same = record.clone();
+    for k in [0, 2] {
+        let mut run = record.runs[k].clone();
+        run.choices
+            .insert("master".into(), label("smooth", "smooth", None));
+        same.runs.push(run);
+    }
+    assert_eq!(
+        section(&same, "What gains")[0],
+        "With everything else equal, the same Newton iterations are needed by NURBS and smooth (2 pairs)."
+    );
     // One pair the other way round, and there is nothing to say about iterations.
     record.runs[3].newton_iterations = 90;
-    assert_eq!(section(&record, "What gains").len(), 1);
+    let said = section(&record, "What gains");
+    assert!(said.len() == 1 && said[0].contains("the time"), "{said:?}");
+    // A single pair has no range.
+    record.runs.truncate(2);
+    assert_eq!(
+        section(&record, "What gains")[0],
+        "With everything else equal, bilinear needs 3 times the Newton iterations of NURBS."
+    );
 }
 
 #[test]
