@@ -145,17 +145,14 @@ fn against_time(view: &View, q: usize, with: &[usize], missing: usize) -> Option
         .map(|k| [costs[k].0, costs[k].1])
         .collect();
     plot.legend = legend::series(view, &series_of(view, runs.iter().copied()), |_| None);
-    plot.legend.push(Entry::new(
-        Sign::Front,
-        "Pareto front: none is both faster and better",
-    ));
+    plot.legend.push(Entry::new(Sign::Front, "Pareto front"));
     if repeated {
         plot.legend
-            .push(Entry::new(Sign::Bar, "least and most of the repeats"));
+            .push(Entry::new(Sign::Bar, "least to most of repeats"));
     }
     band_entry(&mut plot);
     let caption = format!(
-        "What accuracy costs: left is faster, down is more accurate.{}",
+        "Left is faster, down is more accurate. No run is both faster and more accurate than one of the Pareto front.{}",
         notes(view, q, &plot, &runs, missing)
     );
     Some(Figure {
