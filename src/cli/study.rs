@@ -14,10 +14,7 @@ pub(super) fn study(args: &StudyArgs) -> u8 {
     match run(args) {
         Ok(code) => code,
         Err(StudyError::Scene(e)) => report::scene_error(&e, args.json),
-        Err(e) => {
-            report::error(&e.to_string());
-            exit::IO
-        }
+        Err(e) => report::other_error(&e.to_string(), exit::IO, args.json),
     }
 }
 
@@ -41,11 +38,20 @@ fn run(args: &StudyArgs) -> Result<u8, StudyError> {
         watch(&interrupt);
         let settings = settings(&loaded)?;
         let width = expansion.runs.iter().map(|r| r.id.len()).max().unwrap_or(0);
-        play(&folder, &settings, &interrupt, &|event| tell(event, args, width))?;
+        play(&folder, &settings, &interrupt, &|event| {
+            tell(event, args, width)
+        })?;
     }
     let record = conclude(&loaded, &expansion, &folder);
     record.write(&args.out)?;
-    Ok(end(args, &loaded, &expansion, &record, interrupt.load(Ordering::Relaxed)))
+    crate::study::report::write(&record, &args.out)?;
+    Ok(end(
+        args,
+        &loaded,
+        &expansion,
+        &record,
+        interrupt.load(Ordering::Relaxed),
+    ))
 }
 
 fn settings(loaded: &LoadedStudy) -> Result<Settings, StudyError> {
@@ -76,7 +82,9 @@ fn watch(interrupt: &Arc<AtomicBool>) {
         report::stderr("\nstopping, what is done is kept (the same command goes on)\n");
     });
     if let Err(e) = handler {
-        report::warning(&format!("interrupting will lose what has been measured: {e}"));
+        report::warning(&format!(
+            "interrupting will lose what has been measured: {e}"
+        ));
     }
 }
 
@@ -107,7 +115,10 @@ fn tell(event: &Event, args: &StudyArgs, width: usize) {
         return;
     }
     let wall = event.wall_s.map_or(String::new(), |s| format!("{s:8.2} s"));
-    let cost = format!("{:5} steps {:6} iterations", event.steps, event.newton_iterations);
+    let cost = format!(
+        "{:5} steps {:6} iterations",
+        event.steps, event.newton_iterations
+    );
     let told = match &event.ending {
         Ending::Done => cost,
         Ending::Failed(reason) => format!("FAILED: {reason}"),

@@ -106,7 +106,10 @@ pub fn expand(loaded: &LoadedStudy) -> Result<Expansion, SceneError> {
     let references = (references.into_iter())
         .map(|(name, runs)| (name, runs.into_iter().map(|run| place[run]).collect()))
         .collect();
-    let runs = order.iter().map(|old| expander.runs[*old].clone()).collect();
+    let runs = order
+        .iter()
+        .map(|old| expander.runs[*old].clone())
+        .collect();
     Ok(Expansion {
         runs,
         choices: names(&study.grids),
@@ -225,8 +228,9 @@ impl Expander<'_> {
             }
             let slug = file_stem(&texts.join("_").replace([' ', ','], "_").replace("__", "_"));
             let id = format!("{:03}_{slug}", self.grid_runs + 1);
+            let id: String = id.chars().take(SLUG).collect();
             let new = Planned {
-                id: id.chars().take(SLUG).collect(),
+                id: id.trim_end_matches('_').to_owned(),
                 choices: labels,
                 reference: None,
                 scene: Json::Null,
@@ -261,12 +265,19 @@ impl Expander<'_> {
             }
         };
         for problem in problems {
-            let at = variant.cause(&problem.pointer).unwrap_or("/scene").to_owned();
-            let message = format!("the scene is wrong at `{}`: {}", problem.pointer, problem.message);
+            let at = variant
+                .cause(&problem.pointer)
+                .unwrap_or("/scene")
+                .to_owned();
+            let message = format!(
+                "the scene is wrong at `{}`: {}",
+                problem.pointer, problem.message
+            );
             // Once for all variants that have it.
             if self.told.insert((at.clone(), message.clone())) {
                 let message = format!("with {text}, {message}");
-                self.problems.push(self.loaded.problem(&at, message, problem.help));
+                self.problems
+                    .push(self.loaded.problem(&at, message, problem.help));
             }
         }
         None
@@ -286,7 +297,12 @@ impl Expander<'_> {
         if new.reference.is_none() {
             self.grid_runs += 1;
         }
-        self.runs.push(Planned { scene, ..new });
+        let mut id = new.id;
+        // Names of references that differ in more than letters and digits, or in nothing but case.
+        while (self.runs.iter()).any(|run| run.id.eq_ignore_ascii_case(&id)) {
+            id.push('_');
+        }
+        self.runs.push(Planned { id, scene, ..new });
         self.known.insert(sum, self.runs.len() - 1);
         self.runs.len() - 1
     }

@@ -1,8 +1,8 @@
 //! Studies: a scene run over a grid of choices, with its error against its cost.
 //!
 //! [`load`] reads a study file, [`expand`] makes the scenes of its runs and finds all that is wrong with it, [`Folder::write`]
-//! writes them where they are run, [`play()`] runs those that have not been run, [`conclude`] makes a [`record::Record`] of what
-//! is there, and [`report::write`] the pages, tables and pictures of that.
+//! writes them where they are run, [`play()`] runs those that have not been run, and [`conclude`] makes a [`record::Record`] of
+//! what is there, of which [`report::write`] makes a page, pictures and a table.
 mod change;
 mod check;
 mod choice;
