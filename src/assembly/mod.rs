@@ -13,6 +13,7 @@ mod constraints;
 mod matrix;
 mod pattern;
 
+pub(crate) use assembler::sizes;
 pub use assembler::{
     Assembler, AssemblerMemory, CouplingMemory, Drag, Fault, Manner, MemoryError, PairForce,
     PointAnswer, SurfaceForce, Totals,

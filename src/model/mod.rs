@@ -4,7 +4,6 @@ pub mod averaged;
 pub mod build;
 pub mod constraints;
 pub mod driven;
-pub mod effects;
 pub mod error;
 pub mod free_motion;
 pub mod friction;
@@ -14,6 +13,7 @@ pub mod master;
 pub mod motion;
 pub mod overclosure;
 pub mod penalty;
+pub mod plan;
 pub mod segments;
 pub mod self_contact;
 pub mod slave;
@@ -37,6 +37,8 @@ use loads::{DeadLoad, FollowerPressure};
 use master::Master;
 use overclosure::Overclosure;
 use stabilization::StabilizationModel;
+
+use plan::Plan;
 
 pub use error::ModelError;
 pub use surface::SurfaceModel;
@@ -65,6 +67,8 @@ pub struct Model {
     pub symmetric: bool,
     /// Effects that are on, by name.
     pub effects: Vec<String>,
+    /// Every effect that the program has, on or off, and the kernel of every pair.
+    pub plan: Plan,
     /// Choices the program made, in words.
     pub notes: Vec<String>,
     /// Things the user should look at.
@@ -153,6 +157,13 @@ impl Model {
     /// Surfaces driven by force, with their numbers.
     pub fn driven(&self) -> impl Iterator<Item = (usize, &SurfaceModel, &Driven)> {
         (self.surfaces.iter().enumerate()).filter_map(|(i, s)| Some((i, s, s.driven.as_ref()?)))
+    }
+
+    /// Whether loads or driving forces act.
+    pub fn loaded(&self) -> bool {
+        !self.dead_loads.is_empty()
+            || !self.follower_loads.is_empty()
+            || self.driven().next().is_some()
     }
 
     /// Number of unknowns.

@@ -44,7 +44,7 @@ pub struct Watch {
     pub worst_step: u32,
     /// Largest displacement of a node by the time it took, in the last step and in the one before.
     pub speed: [f64; 2],
-    /// Reactions and loads, 3 per node of the bodies (force).
+    /// Reactions and loads, 3 per node of the bodies (force); no loads where the scene has none.
     reactions: Vec<f64>,
     loads: Vec<f64>,
     /// What the rigid surfaces exert.
@@ -122,7 +122,7 @@ impl Watch {
         let n = 3 * model.body_nodes();
         Watch {
             reactions: vec![0.0; n],
-            loads: vec![0.0; n],
+            loads: vec![0.0; if model.loaded() { n } else { 0 }],
             surfaces: vec![SurfaceForce::default(); model.surfaces.len()],
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             pressed: vec![0.0; model.pairs.len()],
@@ -232,7 +232,8 @@ impl Watch {
                 b += b_i * du;
             }
             work.add(a, b);
-            at.copy_from_slice(&end[..n]);
+            let own = at.len();
+            at.copy_from_slice(&end[..own]);
         }
         let moved = was.iter().zip(now).map(|(a, b)| (b - a).abs());
         let speed = moved.fold(0.0, f64::max) / (span.to.1 - span.from.1);

@@ -176,6 +176,19 @@ impl LoadedScene {
         self.lines.place(&self.text, self.span_of(pointer).start)
     }
 
+    /// Whether the file has a value at a JSON pointer, rather than a default in its place.
+    pub fn has(&self, pointer: &str) -> bool {
+        let mut node = &self.root;
+        for token in pointer.split('/').skip(1) {
+            let token = token.replace("~1", "/").replace("~0", "~");
+            match node.child(&token) {
+                Some((child, _)) => node = child,
+                None => return false,
+            }
+        }
+        true
+    }
+
     /// Bytes of the value of a JSON pointer, as for [`LoadedScene::place_of`]. Of objects and lists, their key.
     pub fn span_of(&self, pointer: &str) -> Range<usize> {
         let mut node = &self.root;

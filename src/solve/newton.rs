@@ -12,7 +12,7 @@ use super::place;
 use super::unstable::{Unstable, singular};
 use crate::assembly::{Assembler, Fault, Manner, Totals};
 use crate::model::Model;
-use crate::model::state::{PointState, State};
+use crate::model::state::{PointState, State, heap};
 use crate::output::Phases;
 use crate::scene;
 use crate::shell::{ElementBlock, with_block};
@@ -80,6 +80,26 @@ impl Workspace {
             unstable: None,
             factorizations: BTreeMap::new(),
         }
+    }
+
+    /// Bytes of heap that it holds, by part: vectors, and those of its state.
+    pub fn parts(&self) -> Vec<(&'static str, usize)> {
+        let Workspace {
+            residual,
+            rhs,
+            increments,
+            du,
+            scratch,
+            absolute,
+            base,
+            unstable: _,
+            // A few counts.
+            factorizations: _,
+        } = self;
+        let vectors = [residual, rhs, increments, du, scratch, absolute].map(heap);
+        let mut parts = vec![("vectors", vectors.iter().sum())];
+        parts.extend(base.parts());
+        parts
     }
 
     /// What outlives an accepted step: the factorizations made. All else is written by every step before it is read.

@@ -6,6 +6,7 @@
 use super::links::Links;
 use super::memory::{CouplingMemory, MemoryError};
 use crate::contact::points::SlavePoint;
+use crate::model::state::heap;
 use covact_geometry::MovingFacets;
 use std::collections::BTreeSet;
 
@@ -196,6 +197,20 @@ impl Couplings {
         self.maps.clear();
         self.links.restore(&memory.links);
         Ok(())
+    }
+
+    /// Bytes of heap that it holds, links left out.
+    pub fn bytes(&self) -> usize {
+        let Couplings {
+            cell_of,
+            nodes,
+            starts,
+            facets,
+            maps,
+            links: _,
+        } = self;
+        let coupled: usize = facets.iter().map(heap).sum();
+        heap(cell_of) + heap(nodes) + heap(starts) + heap(facets) + heap(maps) + coupled
     }
 
     /// Block maps, from where [`Couplings::map`] says.

@@ -2,7 +2,7 @@
 //! elements, which is chosen once for each body.
 use super::{Assembler, Fault, Kind, Totals, element_fault};
 use crate::assembly::{ConstrainedScatter, DofMap, SystemMatrix};
-use crate::model::state::State;
+use crate::model::state::{State, heap};
 use crate::model::{BodyModel, Model};
 use crate::shell::{Block, ElementBlock, ElementSystem, H8System, Q18System, with_block};
 use rayon::prelude::*;
@@ -27,6 +27,13 @@ impl Systems {
             h8: vec![H8System::default(); most(|b| matches!(b, Block::H8(_)))],
             q18: vec![Q18System::default(); most(|b| matches!(b, Block::Q18(_)))],
         }
+    }
+}
+
+impl Systems {
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        heap(&self.h8) + heap(&self.q18)
     }
 }
 

@@ -56,6 +56,7 @@ impl Assembler<'_> {
             meetings: _,
             sliding: _,
             averaged: _,
+            ran: _,
             new_pattern,
             rebuilds,
             work: _,
@@ -69,8 +70,8 @@ impl Assembler<'_> {
         } = self;
         AssemblerMemory {
             penalties: penalties.clone(),
-            couplings: (couplings.iter())
-                .map(|c| c.as_ref().map(Couplings::memory))
+            couplings: (0..self.model.pairs.len())
+                .map(|pair| couplings.get(pair).map(Couplings::memory))
                 .collect(),
             rebuilds: *rebuilds,
             new_pattern: new_pattern.is_some(),
@@ -88,14 +89,12 @@ impl Assembler<'_> {
             rebuilds,
             new_pattern: _,
         } = memory;
-        if penalties.len() != self.penalties.len() || couplings.len() != self.couplings.len() {
+        if penalties.len() != self.penalties.len() || couplings.len() != self.model.pairs.len() {
             return Err(MemoryError::Misfit("another number of contact pairs"));
         }
         let mut other = false;
-        for ((pair, own), memory) in
-            (self.model.pairs.iter().zip(&mut self.couplings)).zip(couplings)
-        {
-            match (own, memory, pair.body_master()) {
+        for ((index, pair), memory) in self.model.pairs.iter().enumerate().zip(couplings) {
+            match (self.couplings.get_mut(index), memory, pair.body_master()) {
                 (Some(own), Some(memory), Some(master)) => {
                     if own.memory() != *memory {
                         own.restore(memory, master.facets.len())?;

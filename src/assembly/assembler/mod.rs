@@ -4,6 +4,7 @@
 //! the result is the same to the last bit for every number of threads.
 mod answer;
 mod averaged;
+mod bytes;
 mod couplings;
 mod driven;
 mod elements;
@@ -12,6 +13,7 @@ mod loads;
 mod maps;
 mod memory;
 mod moving;
+mod per_pair;
 mod rigid;
 mod sliding;
 mod touched;
@@ -22,6 +24,7 @@ use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 use crate::contact::rigid::{PointFault, Touch};
 use crate::model::driven::press::PressFault;
 use crate::model::master::Masters;
+use crate::model::plan::Kernel;
 use crate::model::state::State;
 use crate::model::{Model, PairModel};
 use crate::scene::ValueError;
@@ -31,6 +34,7 @@ use couplings::Couplings;
 use covact_geometry::Vec3;
 use maps::Maps;
 use moving::Meetings;
+use per_pair::PerPair;
 use sliding::Sliding;
 use viscous::Viscous;
 
@@ -39,6 +43,7 @@ use elements::Systems;
 use std::sync::Arc;
 
 pub use answer::PointAnswer;
+pub(crate) use bytes::sizes;
 pub use driven::Loose;
 pub use memory::{AssemblerMemory, CouplingMemory, MemoryError};
 pub use viscous::Drag;
@@ -171,28 +176,33 @@ pub struct Assembler<'m> {
     matrix: SystemMatrix,
     element_maps: Vec<u32>,
     kinds: Vec<Kind>,
-    /// Per pair: per point, where its blocks go.
-    point_maps: Vec<Vec<u32>>,
+    /// Per pair with a rigid master: per point, where its blocks go.
+    point_maps: PerPair<Vec<u32>>,
     follower_maps: Vec<Vec<u32>>,
     systems: Systems,
+    /// Room for the points of a pair with a rigid master.
     touches: Vec<Result<Option<Touch>, PointFault>>,
-    /// Per point with history, of pairs with friction or augmentation; nothing where it is open.
+    /// Per point with history, of pairs with friction or augmentation; nothing where it is open. Empty without augmentation.
     answers: Vec<Option<PointAnswer>>,
     /// The surfaces of masters that are bodies, at the last state evaluated.
     pub masters: Masters,
     /// Per pair whose master is a body: the nodes that the pattern couples, and the points at the last state.
-    couplings: Vec<Option<Couplings>>,
-    meetings: Vec<Meetings>,
+    couplings: PerPair<Couplings>,
+    /// Per pair without friction whose master is a body: the points at the last state.
+    meetings: PerPair<Meetings>,
     /// Per pair with friction whose master is a body: the points at the last state.
-    sliding: Vec<Sliding>,
+    sliding: PerPair<Sliding>,
     /// Per pair with averaged gaps: its points and nodes at the last state.
-    averaged: Vec<Option<Averaged>>,
+    averaged: PerPair<Averaged>,
+    /// Per pair: the kernel that its points were evaluated by last, told by what it was compiled for.
+    ran: Vec<Option<Kernel>>,
     /// The pattern, until the solver has taken it.
     new_pattern: Option<Arc<Pattern>>,
     rebuilds: u32,
     work: ConstrainedScatter,
-    /// Dead loads at the present time.
+    /// Dead loads at the present time; empty where the scene has no loads.
     external: Vec<f64>,
+    /// Empty where the scene has no contacts.
     contact: Vec<f64>,
     borders: Vec<Border>,
     /// Where the scene asks for stabilisation.
@@ -211,9 +221,8 @@ impl<'m> Assembler<'m> {
         let pattern = Arc::new(maps::pattern(model, dofs, &couplings)?);
         pattern.fits(model.symmetric)?;
         let maps = Maps::new(model, dofs, &pattern)?;
-        let rigid = model.pairs.iter().filter(|p| p.rigid_master().is_some());
-        let most = rigid.map(|p| p.points.len()).max().unwrap_or(0);
         let n = 3 * model.nodes.len();
+        let vector = |needed: bool| vec![0.0; if needed { n } else { 0 }];
         let borders = Border::all(model, &pattern)?;
         Ok(Assembler {
             model,
@@ -224,18 +233,19 @@ impl<'m> Assembler<'m> {
             point_maps: maps.points,
             follower_maps: maps.followers,
             systems: Systems::new(model),
-            touches: vec![Ok(None); most],
-            answers: vec![None; model.histories()],
+            touches: vec![Ok(None); rigid::most(model)],
+            answers: vec![None; answer::count(model)],
             masters,
             couplings,
-            meetings: model.pairs.iter().map(Meetings::new).collect(),
-            sliding: model.pairs.iter().map(Sliding::new).collect(),
-            averaged: model.pairs.iter().map(Averaged::new).collect(),
+            meetings: PerPair::new(model.pairs.iter().map(Meetings::new)),
+            sliding: PerPair::new(model.pairs.iter().map(Sliding::new)),
+            averaged: PerPair::new(model.pairs.iter().map(Averaged::new)),
+            ran: vec![None; model.pairs.len()],
             new_pattern: Some(pattern),
             rebuilds: 0,
             work: ConstrainedScatter::default(),
-            external: vec![0.0; n],
-            contact: vec![0.0; n],
+            external: vector(model.loaded()),
+            contact: vector(!model.pairs.is_empty()),
             borders,
             viscous: Viscous::new(model),
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
@@ -265,9 +275,16 @@ impl<'m> Assembler<'m> {
     }
 
     /// What points with history do at the state evaluated last, in the order of [`State::histories`]; nothing where they are
-    /// open.
+    /// open. Empty where no pair has augmentation.
     pub fn answers(&self) -> &[Option<PointAnswer>] {
         &self.answers
+    }
+
+    /// Per pair: the kernel that its points were evaluated by last; none where they were not, or only by a first
+    /// linearisation that held them, whose law is its own. It is told by what the loop over the points was compiled for, not
+    /// by the plan.
+    pub fn ran(&self) -> &[Option<Kernel>] {
+        &self.ran
     }
 
     /// The tangent of the last [`Self::linearize`].
@@ -275,12 +292,13 @@ impl<'m> Assembler<'m> {
         &self.matrix
     }
 
-    /// Dead loads of the last evaluation.
+    /// Dead loads of the last evaluation; empty where the scene has no loads.
     pub fn external(&self) -> &[f64] {
         &self.external
     }
 
-    /// Contact forces at all degrees of freedom of the last evaluation, as they stand in the residual.
+    /// Contact forces at all degrees of freedom of the last evaluation, as they stand in the residual; empty where the scene
+    /// has no contacts.
     pub fn contact_forces(&self) -> &[f64] {
         &self.contact
     }
