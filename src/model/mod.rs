@@ -21,6 +21,7 @@ pub mod stabilization;
 pub mod state;
 pub mod surface;
 pub mod symmetry;
+pub mod without;
 
 use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;
