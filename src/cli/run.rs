@@ -90,7 +90,7 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     // A run that the user stopped, or that lost its folder, is not followed by others.
     let goes_on = !matches!(summary.status, RunStatus::Interrupted | RunStatus::Failed);
     match goes_on && !args.without.is_empty() {
-        true => without::what_ifs(&scene, args, code),
+        true => without::what_ifs(&scene, args, code, &interrupt),
         false => code,
     }
 }

@@ -7,6 +7,7 @@ use crate::scene::{self, LoadedScene};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The scene without an effect, or the exit code of what stands against it.
 pub(super) fn scene_without(
@@ -53,9 +54,17 @@ fn folder(out: &Path, name: &str) -> PathBuf {
 /// comparisons. Returns the full run's code, or that of the first what-if that was not fine.
 ///
 /// A what-if is a process of its own, so that its time and its memory are its own.
-pub(super) fn what_ifs(scene: &LoadedScene, args: &RunArgs, full: u8) -> u8 {
+pub(super) fn what_ifs(
+    scene: &LoadedScene,
+    args: &RunArgs,
+    full: u8,
+    interrupt: &AtomicBool,
+) -> u8 {
     let mut code = full;
     for name in &args.without {
+        if interrupt.load(Ordering::Relaxed) {
+            break;
+        }
         let out = folder(&args.out, name);
         if !args.json && !args.quiet {
             report::stderr(&format!("\nwithout {name}: into {}\n", out.display()));
@@ -146,7 +155,11 @@ fn short(value: Option<f64>) -> String {
         Some(0.0) => "0".to_owned(),
         Some(v) if (1e-3..1e6).contains(&v.abs()) => {
             let digits = 5 - v.abs().log10().floor() as i32;
-            format!("{v:.*}", digits.max(0) as usize)
+            let text = format!("{v:.*}", digits.max(0) as usize);
+            match text.contains('.') {
+                true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+                false => text,
+            }
         }
         Some(v) => format!("{v:.5e}"),
     }
@@ -165,9 +178,9 @@ fn percent(change: Option<f64>) -> String {
 
 fn table(found: &Comparison, name: &str) -> String {
     let instead = Removable::named(name).map_or("", |r| r.instead);
-    let mut rows = vec![["", "full", name, "", "full", name, ""].map(str::to_owned)];
-    rows[0][2] = format!("without {name}");
-    rows[0][5] = rows[0][2].clone();
+    let without = format!("without {name}");
+    let titles = ["", "end, full", &without, "", "peak, full", &without, ""];
+    let mut rows = vec![titles.map(str::to_owned)];
     for column in &found.columns {
         let Compared { name, end, peak } = column;
         rows.push([
@@ -180,9 +193,8 @@ fn table(found: &Comparison, name: &str) -> String {
             percent(column.peak_change()),
         ]);
     }
-    let mut out = format!(
-        "\nwithout {name}: {instead}; at the end of both runs, and where each is largest\n"
-    );
+    let mut out =
+        format!("\nwithout {name}: {instead}; values at the end, and those of largest magnitude\n");
     lines(&mut out, &rows);
     out.push('\n');
     lines(&mut out, &costs(&found.cost, name));

@@ -265,7 +265,7 @@ impl Removable {
                 reason: match self.name {
                     "facets" => "the surface is given as triangles, and no other is known",
                     _ => {
-                        "the published tangent, of which it is a part, does not go with friction, augmentation and offset"
+                        "the published tangent, of which it is a part, does not go with friction, augmentation or an offset"
                     }
                 },
             }),

@@ -126,7 +126,8 @@ impl Teller<'_> {
     }
 
     fn materials(&self) -> Vec<Effect> {
-        let kinds: [(&str, &str, fn(&Material) -> bool); 2] = [
+        type Kind = (&'static str, &'static str, fn(&Material) -> bool);
+        let kinds: [Kind; 2] = [
             ("material.st_venant_kirchhoff", "st_venant_kirchhoff", |m| {
                 matches!(m, Material::StVenantKirchhoff(_))
             }),
@@ -135,7 +136,7 @@ impl Teller<'_> {
             }),
         ];
         let materials = &self.loaded.scene.materials;
-        let effect = |(effect, word, is): (&'static str, &str, fn(&Material) -> bool)| {
+        let effect = |(effect, word, is): Kind| {
             let own = |b: &&(&BodyModel, &Body)| materials.get(&b.1.material).is_some_and(is);
             let all: Vec<_> = self.described().collect();
             let first = all.iter().find(own);

@@ -15,6 +15,7 @@ use super::Model;
 use super::symmetry::Unsymmetric;
 use crate::scene::{LoadedScene, Place};
 use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
 
 /// Every effect that the program has, in one scene.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -151,8 +152,13 @@ impl Effect {
 
     /// Bytes for each point, element or node that a run holds for it, all copies; none where there are none.
     pub fn bytes_per(&self, per: Per) -> Option<usize> {
-        let own = self.held.iter().filter(|h| h.per == per);
-        let bytes: usize = own.map(|h| h.each * h.copies).sum();
+        // Parts of several bodies or surfaces: what the largest takes.
+        let mut parts: BTreeMap<&str, usize> = BTreeMap::new();
+        for held in self.held.iter().filter(|h| h.per == per) {
+            let most = parts.entry(held.part).or_default();
+            *most = (*most).max(held.each * held.copies);
+        }
+        let bytes = parts.values().sum();
         (bytes > 0).then_some(bytes)
     }
 

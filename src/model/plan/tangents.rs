@@ -7,9 +7,38 @@ use crate::scene::FacetKind;
 use crate::with_patches;
 use covact_geometry::Surface;
 
-/// Creases across a patch along one direction.
-fn creases<S: Surface>(patch: &S, dir: usize) -> usize {
-    patch.crease_knots(dir).len()
+/// Cosine of the angle between normals above which a patch is smooth across a knot: a degree.
+const SMOOTH: f64 = 0.999_847_7;
+
+/// Knots across which the normals of patches turn at once, seen at five places along each.
+fn creases<S: Surface>(patches: &[S]) -> usize {
+    let mut count = 0;
+    for patch in patches {
+        let domain = patch.domain();
+        for dir in 0..2 {
+            let turns = |knot: f64| {
+                (0..5).any(|k| {
+                    let [a, b] = domain[1 - dir];
+                    let along = a + (b - a) * (f64::from(k) + 0.5) / 5.0;
+                    let step = 1e-7 * (domain[dir][1] - domain[dir][0]);
+                    let normal = |x: f64| {
+                        let mut xi = [along; 2];
+                        xi[dir] = x;
+                        let [r, s] = patch.jet(xi).rho_i;
+                        r.cross(&s)
+                    };
+                    let (n, m) = (normal(knot - step), normal(knot + step));
+                    n.dot(&m) < SMOOTH * n.norm() * m.norm()
+                })
+            };
+            count += patch
+                .crease_knots(dir)
+                .into_iter()
+                .filter(|x| turns(*x))
+                .count();
+        }
+    }
+    count
 }
 
 impl Teller<'_> {
@@ -135,10 +164,7 @@ impl Teller<'_> {
         let surface = &self.model.surfaces[surface];
         let edges = surface.set.edges();
         let [sharp, partial] = [edges.sharp, edges.partial.len()];
-        let creases: usize = with_patches!(&surface.set, s => {
-            let of = |dir| move |p: &_| creases(p, dir);
-            (0..2).map(|dir| s.patches().iter().map(of(dir)).sum::<usize>()).sum()
-        });
+        let creases = with_patches!(&surface.set, s => creases(s.patches()));
         self.effect(
             name,
             crate::scene::pointer(&["surfaces", &surface.name]),
