@@ -78,12 +78,14 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         follower_loads,
         dofs: supports.dofs,
         stabilization: None,
+        small: None,
         symmetric: true,
         effects: Vec::new(),
         notes: builder.notes,
         warnings: builder.warnings,
         kinks: Vec::new(),
     };
+    model.small = super::small::linearise(scene, &mut model)?;
     symmetry(scene, &mut model)?;
     model.effects = super::effects::effects(scene, &model);
     model.kinks = kinks(scene, &model);

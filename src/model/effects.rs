@@ -12,7 +12,10 @@ pub fn effects(scene: &Scene, model: &Model) -> Vec<String> {
     let mut add = |name: &str| {
         on.insert(name.to_owned());
     };
-    add("large_rotation");
+    add(model
+        .small
+        .as_ref()
+        .map_or("large_rotation", |_| "small_displacements"));
     for body in scene.bodies.values() {
         add(match body.element {
             Element::H8 => "element.h8_solid_shell",

@@ -17,6 +17,7 @@ pub mod penalty;
 pub mod segments;
 pub mod self_contact;
 pub mod slave;
+pub mod small;
 pub mod stabilization;
 pub mod state;
 pub mod surface;
@@ -36,6 +37,7 @@ use friction::FrictionModel;
 use loads::{DeadLoad, FollowerPressure};
 use master::Master;
 use overclosure::Overclosure;
+use small::SmallModel;
 use stabilization::StabilizationModel;
 
 pub use error::ModelError;
@@ -61,6 +63,8 @@ pub struct Model {
     pub dofs: DofMap,
     /// Viscous stabilisation where the scene asks for it.
     pub stabilization: Option<StabilizationModel>,
+    /// Contact as it is linearised at the start, where the scene declares displacements small.
+    pub small: Option<SmallModel>,
     /// Whether the tangent is symmetric ([`symmetry::unsymmetric_effects`]).
     pub symmetric: bool,
     /// Effects that are on, by name.
@@ -153,6 +157,14 @@ impl Model {
     /// Surfaces driven by force, with their numbers.
     pub fn driven(&self) -> impl Iterator<Item = (usize, &SurfaceModel, &Driven)> {
         (self.surfaces.iter().enumerate()).filter_map(|(i, s)| Some((i, s, s.driven.as_ref()?)))
+    }
+
+    /// Numbers that an element of a body keeps in a run; none of the linear elements for small displacements.
+    pub fn state_len(&self, body: &BodyModel) -> usize {
+        match self.small {
+            None => body.block.state_len(),
+            Some(_) => 0,
+        }
     }
 
     /// Number of unknowns.

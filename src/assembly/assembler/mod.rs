@@ -14,6 +14,7 @@ mod memory;
 mod moving;
 mod rigid;
 mod sliding;
+mod small;
 mod touched;
 mod viscous;
 
@@ -32,6 +33,7 @@ use covact_geometry::Vec3;
 use maps::Maps;
 use moving::Meetings;
 use sliding::Sliding;
+use small::Linear;
 use viscous::Viscous;
 
 use driven::Border;
@@ -41,6 +43,7 @@ use std::sync::Arc;
 pub use answer::PointAnswer;
 pub use driven::Loose;
 pub use memory::{AssemblerMemory, CouplingMemory, MemoryError};
+pub use small::{Factored, Line, Needed};
 pub use viscous::Drag;
 
 /// What kept the model from being evaluated at a trial state. The step is cut.
@@ -197,6 +200,8 @@ pub struct Assembler<'m> {
     borders: Vec<Border>,
     /// Where the scene asks for stabilisation.
     viscous: Option<Viscous>,
+    /// Where displacements are small.
+    linear: Option<Box<Linear>>,
     /// Penalty per pair; an automatic one may be raised in the course of a run.
     pub penalties: Vec<f64>,
     /// How contact is linearised.
@@ -215,6 +220,7 @@ impl<'m> Assembler<'m> {
         let most = rigid.map(|p| p.points.len()).max().unwrap_or(0);
         let n = 3 * model.nodes.len();
         let borders = Border::all(model, &pattern)?;
+        let linear = Linear::new(model, dofs, &pattern)?;
         Ok(Assembler {
             model,
             dofs,
@@ -238,6 +244,7 @@ impl<'m> Assembler<'m> {
             contact: vec![0.0; n],
             borders,
             viscous: Viscous::new(model),
+            linear,
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             manner: Manner::default(),
         })
@@ -342,9 +349,14 @@ impl<'m> Assembler<'m> {
         time: f64,
         residual: &mut [f64],
     ) -> Result<Totals, Fault> {
+        let mut totals = Totals::default();
+        if self.linear.is_some() {
+            residual.fill(0.0);
+            self.small_contact(state, time, residual, &mut totals)?;
+            return Ok(totals);
+        }
         self.meet::<false>(state, time)?;
         residual.fill(0.0);
-        let mut totals = Totals::default();
         self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
         Ok(totals)
     }
