@@ -50,11 +50,11 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// Prepares what `output` asks for.
+    /// Prepares what `output` asks for; copies of surfaces only where fields are written at all.
     pub fn new(model: &Model, output: &Output) -> Result<Self, OutputError> {
         let mut notes = Vec::new();
         let mut surfaces = Vec::new();
-        for surface in &model.surfaces {
+        for surface in model.surfaces.iter().filter(|_| output.every > 0) {
             let pieces = pieces(surface, output.tessellation);
             let written = SurfaceOutput::new(&surface.name, pieces, output.tessellation)?;
             if !written.left_out().is_empty() {
@@ -101,9 +101,7 @@ impl Fields {
     pub fn part_names(&self, model: &Model) -> PartNames {
         PartNames {
             bodies: model.bodies.iter().map(|b| b.name.clone()).collect(),
-            surfaces: (self.surfaces.iter())
-                .map(|s| s.name().to_owned())
-                .collect(),
+            surfaces: model.surfaces.iter().map(|s| s.name.clone()).collect(),
             clouds: match self.gaps.is_empty() {
                 true => Vec::new(),
                 false => friction_fields::cloud_names(model),

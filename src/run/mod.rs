@@ -71,6 +71,11 @@ pub fn run(
     pool.install(|| solve(scene, out, threads, options.resume, observer, interrupt))
 }
 
+/// Checksum of a scene and of the files that it names, as [`Summary::scene`] tells it.
+pub fn checksum(loaded: &LoadedScene) -> String {
+    checkpoint::name(&Fingerprint::new(loaded))
+}
+
 fn solve(
     loaded: &LoadedScene,
     out: &Path,

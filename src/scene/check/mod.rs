@@ -10,7 +10,8 @@ use super::load::LoadedScene;
 use super::problem::{Problem, shorten, suggestion};
 use super::types::*;
 use super::value::{POSITION_AND_TIME, TIME};
-use checker::{Checker, path};
+pub(crate) use checker::Checker;
+use checker::path;
 use names::Sets;
 
 /// All problems of a scene, in the order of the file; none: the scene can be built.
