@@ -41,11 +41,19 @@ fn run(args: &StudyArgs) -> Result<u8, StudyError> {
         watch(&interrupt);
         let settings = settings(&loaded)?;
         let width = expansion.runs.iter().map(|r| r.id.len()).max().unwrap_or(0);
-        play(&folder, &settings, &interrupt, &|event| tell(event, args, width))?;
+        play(&folder, &settings, &interrupt, &|event| {
+            tell(event, args, width)
+        })?;
     }
     let record = conclude(&loaded, &expansion, &folder);
     record.write(&args.out)?;
-    Ok(end(args, &loaded, &expansion, &record, interrupt.load(Ordering::Relaxed)))
+    Ok(end(
+        args,
+        &loaded,
+        &expansion,
+        &record,
+        interrupt.load(Ordering::Relaxed),
+    ))
 }
 
 fn settings(loaded: &LoadedStudy) -> Result<Settings, StudyError> {
@@ -76,7 +84,9 @@ fn watch(interrupt: &Arc<AtomicBool>) {
         report::stderr("\nstopping, what is done is kept (the same command goes on)\n");
     });
     if let Err(e) = handler {
-        report::warning(&format!("interrupting will lose what has been measured: {e}"));
+        report::warning(&format!(
+            "interrupting will lose what has been measured: {e}"
+        ));
     }
 }
 
@@ -107,7 +117,10 @@ fn tell(event: &Event, args: &StudyArgs, width: usize) {
         return;
     }
     let wall = event.wall_s.map_or(String::new(), |s| format!("{s:8.2} s"));
-    let cost = format!("{:5} steps {:6} iterations", event.steps, event.newton_iterations);
+    let cost = format!(
+        "{:5} steps {:6} iterations",
+        event.steps, event.newton_iterations
+    );
     let told = match &event.ending {
         Ending::Done => cost,
         Ending::Failed(reason) => format!("FAILED: {reason}"),

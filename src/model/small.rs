@@ -49,6 +49,8 @@ pub struct SmallPoint {
     pub foot: Vec3,
     /// Where the foot is on the master.
     pub hint: Hint,
+    /// The normal is the direction of the distance from an edge or a vertex.
+    pub line: bool,
 }
 
 impl SmallPair {
@@ -76,6 +78,31 @@ impl SmallPair {
         motion: Option<&SmallMotion>,
         u: &[f64],
     ) -> f64 {
+        at.normal.dot(&self.relative(point, at, p, motion, u))
+    }
+
+    /// Length of `u_s - u_m`, and [`Self::approach`].
+    pub fn way(
+        &self,
+        point: usize,
+        at: &SmallPoint,
+        p: &SlavePoint,
+        motion: Option<&SmallMotion>,
+        u: &[f64],
+    ) -> (f64, f64) {
+        let relative = self.relative(point, at, p, motion, u);
+        (relative.norm(), at.normal.dot(&relative))
+    }
+
+    #[inline]
+    fn relative(
+        &self,
+        point: usize,
+        at: &SmallPoint,
+        p: &SlavePoint,
+        motion: Option<&SmallMotion>,
+        u: &[f64],
+    ) -> Vec3 {
         let of = |n: usize| Vec3::new(u[3 * n], u[3 * n + 1], u[3 * n + 2]);
         let slave = (p.terms()).fold(Vec3::zeros(), |sum, (n, w)| sum + of(n) * w);
         let master = match motion {
@@ -83,7 +110,7 @@ impl SmallPair {
             None => (self.master(point).iter())
                 .fold(Vec3::zeros(), |sum, &(n, w)| sum + of(n as usize) * w),
         };
-        at.normal.dot(&(slave - master))
+        slave - master
     }
 }
 
@@ -179,14 +206,13 @@ fn start(model: &Model, pair: &PairModel) -> Result<(SmallPair, Option<Vec3>), M
                 let at = (master.pose * nalgebra::Point3::from(foot.jet.rho)).coords;
                 let normal = master.pose.rotation * foot.normal;
                 let gap = foot.signed_distance;
+                let line = on_line(&foot) && foot.distance > small;
                 Ok(Some(SmallPoint {
-                    normal: match on_line(&foot) && foot.distance > small {
-                        true => (x - at) / gap,
-                        false => normal,
-                    },
+                    normal: if line { (x - at) / gap } else { normal },
                     gap,
                     foot: at,
                     hint: foot.hint(),
+                    line,
                 }))
             };
             pair.points.par_iter().map(point).collect()
@@ -233,14 +259,16 @@ fn on_body(master: &BodyMaster, x: &Vec3, small: f64) -> Result<Option<SmallPoin
     if moving::free(&foot, x) || moving::behind(&foot, x, master.depth) {
         return Ok(None);
     }
+    let line = moving_on_line(&foot) && foot.distance > small;
     Ok(Some(SmallPoint {
-        normal: match moving_on_line(&foot) && foot.distance > small {
+        normal: match line {
             true => (x - foot.jet.rho) / foot.signed_distance,
             false => foot.normal,
         },
         gap: foot.signed_distance,
         foot: foot.jet.rho,
         hint: foot.hint(),
+        line,
     }))
 }
 

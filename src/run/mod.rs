@@ -5,6 +5,7 @@ mod check;
 mod checkpoint;
 mod commit;
 mod cost;
+mod doubt;
 mod error;
 mod fields;
 mod friction_fields;

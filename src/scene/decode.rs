@@ -190,7 +190,8 @@ impl<'de, 'f> Decoder<'de, 'f> {
                         "a scene starts with the version of its format, `\"covact\": 1`".into()
                     }
                     "covact_study" => {
-                        "a study starts with the version of its format, `\"covact_study\": 1`".into()
+                        "a study starts with the version of its format, `\"covact_study\": 1`"
+                            .into()
                     }
                     _ => format!("known keys: {}", list(known)),
                 });

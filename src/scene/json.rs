@@ -64,11 +64,7 @@ pub(super) fn read(
     }
     reader.skip_space()?;
     if reader.at == text.len() {
-        return Err(reader.fault(
-            0..0,
-            "the file is empty",
-            Some(start),
-        ));
+        return Err(reader.fault(0..0, "the file is empty", Some(start)));
     }
     let root = reader.value()?;
     reader.skip_space()?;

@@ -13,11 +13,11 @@ mod schema;
 mod types;
 mod value;
 
-pub use check::check;
-pub use expression::{Expression, ExpressionError};
 pub(crate) use check::Checker;
+pub use check::check;
 pub use document::{Document, pointer};
 pub(crate) use document::{Form, load as load_document, nearest_file, parse as parse_document};
+pub use expression::{Expression, ExpressionError};
 pub use load::{FORMAT, LoadedScene, load, parse};
 pub use problem::{Place, Problem, SceneError, nearest};
 pub(crate) use problem::{shorten, suggestion};

@@ -55,8 +55,11 @@ impl Variant {
     /// not bodies, surfaces and other things that have names.
     pub fn set(&mut self, at: &str, value: &Json, from: &str) -> Result<(), Fault> {
         let tokens = tokens(at).ok_or_else(|| {
-            Fault::new(from, format!("`{}` is no JSON pointer into the scene", shorten(at)))
-                .help("write `/` and keys, as in `/solution/step/initial`")
+            Fault::new(
+                from,
+                format!("`{}` is no JSON pointer into the scene", shorten(at)),
+            )
+            .help("write `/` and keys, as in `/solution/step/initial`")
         })?;
         let lost = |depth: usize, node: &Json| lost(&tokens, depth, node, from);
         let Some((last, way)) = tokens.split_last() else {
@@ -75,8 +78,9 @@ impl Variant {
                 return Err(lost(depth, node));
             }
             node = match node {
-                Json::Object(members) => (members.entry(token.as_str()))
-                    .or_insert_with(|| Json::Object(Map::new())),
+                Json::Object(members) => {
+                    (members.entry(token.as_str())).or_insert_with(|| Json::Object(Map::new()))
+                }
                 Json::Array(items) => match index(token, items.len()) {
                     Some(i) => &mut items[i],
                     None => return Ok(()),
@@ -124,7 +128,9 @@ impl Variant {
     /// What in the study file is answerable for the value at a pointer: what set it, or something in it, last.
     pub fn cause(&self, at: &str) -> Option<&str> {
         let within = |inner: &str, outer: &str| {
-            inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+            inner
+                .strip_prefix(outer)
+                .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
         };
         let of = |is: &dyn Fn(&str) -> bool| {
             (self.touched.iter().rev().find(|(set, _)| is(set))).map(|(_, from)| from.as_str())
@@ -157,16 +163,24 @@ fn lost(tokens: &[String], depth: usize, node: &Json, from: &str) -> Fault {
     let token = tokens.get(depth).map_or("", String::as_str);
     match node {
         Json::Object(members) => {
-            Fault::new(from, format!("there is no `{}` in {place}", shorten(token)))
-                .help(suggestion(token, "keys there", members.keys().map(String::as_str)))
+            Fault::new(from, format!("there is no `{}` in {place}", shorten(token))).help(
+                suggestion(token, "keys there", members.keys().map(String::as_str)),
+            )
         }
-        Json::Array(items) => {
-            Fault::new(from, format!("there is no item `{}` in {place}", shorten(token)))
-                .help(format!("it has {} items, counted from 0; `-` stands for one more", items.len()))
-        }
+        Json::Array(items) => Fault::new(
+            from,
+            format!("there is no item `{}` in {place}", shorten(token)),
+        )
+        .help(format!(
+            "it has {} items, counted from 0; `-` stands for one more",
+            items.len()
+        )),
         other => Fault::new(
             from,
-            format!("{place} is {}, with nothing in it", shorten(&other.to_string())),
+            format!(
+                "{place} is {}, with nothing in it",
+                shorten(&other.to_string())
+            ),
         )
         .help("set it as a whole"),
     }
@@ -181,7 +195,9 @@ pub(super) fn tidy(value: &Json) -> Json {
         },
         Json::Array(items) => items.iter().map(tidy).collect(),
         Json::Object(members) => {
-            let all = members.iter().map(|(key, value)| (key.clone(), tidy(value)));
+            let all = members
+                .iter()
+                .map(|(key, value)| (key.clone(), tidy(value)));
             Json::Object(all.collect())
         }
         other => other.clone(),
@@ -223,7 +239,12 @@ mod tests {
     #[test]
     fn pointers_that_lead_nowhere() {
         for (at, value, message, help) in [
-            ("contacts", json!(1), "`contacts` is no JSON pointer", "`/solution/step/initial`"),
+            (
+                "contacts",
+                json!(1),
+                "`contacts` is no JSON pointer",
+                "`/solution/step/initial`",
+            ),
             ("", json!(1), "the whole scene cannot be replaced", "as in"),
             (
                 "/contacts/pres/points",
@@ -237,7 +258,12 @@ mod tests {
                 "`/contacts/press/master` of the scene is \"a\", with nothing in it",
                 "set it as a whole",
             ),
-            ("/a~1b/7", json!(1), "there is no item `7` in `/a~1b` of the scene", "it has 3 items"),
+            (
+                "/a~1b/7",
+                json!(1),
+                "there is no item `7` in `/a~1b` of the scene",
+                "it has 3 items",
+            ),
             (
                 "/contacts/press/point",
                 Json::Null,
@@ -255,8 +281,10 @@ mod tests {
     #[test]
     fn the_cause_of_a_fault_is_what_set_it_last() {
         let mut v = scene();
-        v.set("/contacts/press/points", &json!("nodes"), "/first").unwrap();
-        v.set("/contacts/press/points", &json!({ "gauss": 0 }), "/second").unwrap();
+        v.set("/contacts/press/points", &json!("nodes"), "/first")
+            .unwrap();
+        v.set("/contacts/press/points", &json!({ "gauss": 0 }), "/second")
+            .unwrap();
         v.clear("/contacts/press/gap", "/third");
         assert_eq!(v.cause("/contacts/press/points/gauss"), Some("/second"));
         assert_eq!(v.cause("/contacts/press/gap"), Some("/third"));

@@ -1,6 +1,6 @@
 //! What can be wrong with a study, apart from its scene.
-use super::file::{Choice, Grid, Measure, Reference, StlSource, Study, Take};
 use super::file::MasterChoice;
+use super::file::{Choice, Grid, Measure, Reference, StlSource, Study, Take};
 use super::load::LoadedStudy;
 use crate::scene::{Checker, Problem, Scene, pointer};
 use std::collections::BTreeSet;
@@ -14,7 +14,11 @@ pub(super) fn check(loaded: &LoadedStudy, scene: &Scene) -> Vec<Problem> {
     let study = &loaded.study;
     if study.grids.is_empty() {
         let help = "write `[{\"choices\": [{\"shell\": {\"values\": [{\"h8\": [10, 10]}]}}]}]`";
-        c.add("/grids", "a study needs at least one grid", Some(help.into()));
+        c.add(
+            "/grids",
+            "a study needs at least one grid",
+            Some(help.into()),
+        );
     }
     let mut runs = 0usize;
     for (i, grid) in study.grids.iter().enumerate() {
@@ -44,7 +48,11 @@ pub(super) fn check(loaded: &LoadedStudy, scene: &Scene) -> Vec<Problem> {
     }
     if study.quantities.is_empty() {
         let help = "name a column of the history: `{\"name\": \"force\", \"of\": {\"column\": {\"name\": \"force.ball.z\"}}}`";
-        c.add("/quantities", "a study needs a quantity to measure", Some(help.into()));
+        c.add(
+            "/quantities",
+            "a study needs a quantity to measure",
+            Some(help.into()),
+        );
     }
     check_quantities(&mut c, study, scene);
     let timing = &study.timing;
@@ -61,7 +69,11 @@ fn check_grid(c: &mut Checker, at: &str, grid: &Grid) {
     if grid.choices.is_empty() {
         let help = "name what varies: `master`, `shell`, `points`, `tangent`, `penalty`, `augmentation`, `step`, \
                     `tolerance`, `key` or `variants`";
-        c.add(&format!("{at}/choices"), "the grid has no choices", Some(help.into()));
+        c.add(
+            &format!("{at}/choices"),
+            "the grid has no choices",
+            Some(help.into()),
+        );
     }
     let mut names = BTreeSet::new();
     for (k, choice) in grid.choices.iter().enumerate() {
@@ -72,11 +84,19 @@ fn check_grid(c: &mut Checker, at: &str, grid: &Grid) {
         }
         if !names.insert((name, choice.target())) {
             let message = format!("two choices of the grid are called `{name}`");
-            c.add(&at, message, Some("give every choice a name of its own".into()));
+            c.add(
+                &at,
+                message,
+                Some("give every choice a name of its own".into()),
+            );
         }
         if choice.count() == 0 {
             let message = "the choice has no values";
-            c.add(&format!("{at}/values"), message, Some("name at least one".into()));
+            c.add(
+                &format!("{at}/values"),
+                message,
+                Some("name at least one".into()),
+            );
         }
         check_values(c, &at, choice);
     }
@@ -114,12 +134,20 @@ fn check_values(c: &mut Checker, at: &str, choice: &Choice) {
         }
         Choice::Key { at: pointers, .. } if pointers.is_empty() => {
             let help = "write JSON pointers, as in `[\"/solution/newton/line_search\"]`";
-            c.add(&format!("{at}/at"), "no key of the scene is named", Some(help.into()));
+            c.add(
+                &format!("{at}/at"),
+                "no key of the scene is named",
+                Some(help.into()),
+            );
         }
         Choice::Variants { values, .. } => {
             for (k, variant) in values.iter().enumerate() {
                 if variant.label.trim().is_empty() {
-                    c.add(&format!("{at}/values/{k}/label"), "the label is empty", None);
+                    c.add(
+                        &format!("{at}/values/{k}/label"),
+                        "the label is empty",
+                        None,
+                    );
                 }
                 if let Some(size) = variant.size {
                     c.positive(&format!("{at}/values/{k}/size"), "the size", size);
@@ -139,12 +167,22 @@ fn check_quantities(c: &mut Checker, study: &Study, scene: &Scene) {
         }
         if !names.insert(&quantity.name) {
             let message = format!("two quantities are called `{}`", quantity.name);
-            c.add(&format!("{at}/name"), message, Some("choose another name".into()));
+            c.add(
+                &format!("{at}/name"),
+                message,
+                Some("choose another name".into()),
+            );
         }
         match &quantity.of {
             Measure::Field { body, .. } => {
                 let bodies = scene.bodies.keys();
-                c.refers(&format!("{at}/of/field/body"), "body", "bodies", body, bodies);
+                c.refers(
+                    &format!("{at}/of/field/body"),
+                    "body",
+                    "bodies",
+                    body,
+                    bodies,
+                );
             }
             Measure::Column { take, between, .. } => {
                 if let Take::At(time) = take {

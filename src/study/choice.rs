@@ -68,7 +68,11 @@ pub(super) fn apply(
                 Some(TangentChoice::WithoutCurvature) => published(true, false),
                 Some(TangentChoice::Main) => published(false, false),
             };
-            variant.set(&pointer(&["contacts", &contact, "tangent"]), &tangent, &from)
+            variant.set(
+                &pointer(&["contacts", &contact, "tangent"]),
+                &tangent,
+                &from,
+            )
         }
         Choice::Penalty { values, .. } => {
             let contact = part("contacts", variant)?;
@@ -86,7 +90,10 @@ pub(super) fn apply(
                 }
                 Some(other) => Err(Fault::new(
                     &from,
-                    format!("expected \"none\" or an object, found {}", shorten(&other.to_string())),
+                    format!(
+                        "expected \"none\" or an object, found {}",
+                        shorten(&other.to_string())
+                    ),
                 )
                 .help("write `{\"gap\": 1e-4}` or, with all defaults, `{}`")),
                 None => Ok(()),
@@ -126,19 +133,18 @@ fn written<T: Serialize>(value: &T) -> Json {
 }
 
 /// The part of a section that a choice is about: the one that it names, or the only one.
-fn part(
-    section: &str,
-    named: Option<&str>,
-    at: &str,
-    variant: &Variant,
-) -> Result<String, Fault> {
+fn part(section: &str, named: Option<&str>, at: &str, variant: &Variant) -> Result<String, Fault> {
     let what = match section {
         "surfaces" => "surface",
         "bodies" => "body",
         _ => "contact",
     };
     let members = variant.scene.get(section).and_then(Json::as_object);
-    let names: Vec<&str> = members.into_iter().flatten().map(|(name, _)| name.as_str()).collect();
+    let names: Vec<&str> = members
+        .into_iter()
+        .flatten()
+        .map(|(name, _)| name.as_str())
+        .collect();
     match (named, &names[..]) {
         (Some(name), _) if names.contains(&name) => Ok(name.to_owned()),
         (Some(name), _) => Err(Fault::new(
@@ -216,7 +222,9 @@ fn shell(
 ) -> Result<(), Fault> {
     let mesh = pointer(&["bodies", body, "mesh"]);
     let kind = variant.scene.pointer(&mesh).and_then(Json::as_object);
-    let kind = kind.and_then(|m| m.keys().next()).map_or("", String::as_str);
+    let kind = kind
+        .and_then(|m| m.keys().next())
+        .map_or("", String::as_str);
     let (kind, axes) = match kind {
         "block" => (kind.to_owned(), 3),
         "file" => {
@@ -227,15 +235,27 @@ fn shell(
         other => (other.to_owned(), 2),
     };
     if counts.len() != axes {
-        let message = format!("expected {axes} numbers of elements, found {}", counts.len());
+        let message = format!(
+            "expected {axes} numbers of elements, found {}",
+            counts.len()
+        );
         return Err(Fault::new(from, message).help(format!("body `{body}` is a {kind}")));
     }
     let known = ["h8", "h8_displacement", "q18"];
     if serde_json::from_value::<crate::scene::Element>(json!(element)).is_err() {
-        let near = nearest(element, known).map_or(String::new(), |n| format!("did you mean `{n}`? "));
+        let near =
+            nearest(element, known).map_or(String::new(), |n| format!("did you mean `{n}`? "));
         let message = format!("unknown element `{}`", shorten(element));
         return Err(Fault::new(from, message).help(format!("{near}elements: {}", known.join(", "))));
     }
-    variant.set(&format!("{mesh}{}", pointer(&[&kind, "elements"])), &json!(counts), from)?;
-    variant.set(&pointer(&["bodies", body, "element"]), &json!(element), from)
+    variant.set(
+        &format!("{mesh}{}", pointer(&[&kind, "elements"])),
+        &json!(counts),
+        from,
+    )?;
+    variant.set(
+        &pointer(&["bodies", body, "element"]),
+        &json!(element),
+        from,
+    )
 }

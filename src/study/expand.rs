@@ -106,7 +106,10 @@ pub fn expand(loaded: &LoadedStudy) -> Result<Expansion, SceneError> {
     let references = (references.into_iter())
         .map(|(name, runs)| (name, runs.into_iter().map(|run| place[run]).collect()))
         .collect();
-    let runs = order.iter().map(|old| expander.runs[*old].clone()).collect();
+    let runs = order
+        .iter()
+        .map(|old| expander.runs[*old].clone())
+        .collect();
     Ok(Expansion {
         runs,
         choices: names(&study.grids),
@@ -261,12 +264,19 @@ impl Expander<'_> {
             }
         };
         for problem in problems {
-            let at = variant.cause(&problem.pointer).unwrap_or("/scene").to_owned();
-            let message = format!("the scene is wrong at `{}`: {}", problem.pointer, problem.message);
+            let at = variant
+                .cause(&problem.pointer)
+                .unwrap_or("/scene")
+                .to_owned();
+            let message = format!(
+                "the scene is wrong at `{}`: {}",
+                problem.pointer, problem.message
+            );
             // Once for all variants that have it.
             if self.told.insert((at.clone(), message.clone())) {
                 let message = format!("with {text}, {message}");
-                self.problems.push(self.loaded.problem(&at, message, problem.help));
+                self.problems
+                    .push(self.loaded.problem(&at, message, problem.help));
             }
         }
         None

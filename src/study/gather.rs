@@ -50,7 +50,9 @@ pub(super) fn state(folder: &Folder, run: usize, repeat: u32) -> State {
     let mut stale = None;
     let mut fits = |scene: &str, covact: &str| {
         if covact != version {
-            stale = Some(format!("they are of covact {covact}, and this is {version}"));
+            stale = Some(format!(
+                "they are of covact {covact}, and this is {version}"
+            ));
         } else if scene != ready.checksum {
             stale = Some("the scene or a file that it names has changed since".to_owned());
         }
@@ -83,7 +85,10 @@ fn of_summary(summary: &Summary) -> Ending {
         RunStatus::NoContact => "no contact",
         RunStatus::Failed => "failed",
     };
-    let reason = summary.reason.as_ref().map_or(String::new(), |r| format!(": {r}"));
+    let reason = summary
+        .reason
+        .as_ref()
+        .map_or(String::new(), |r| format!(": {r}"));
     Ending::Failed(format!("{what}{reason}"))
 }
 
@@ -94,7 +99,10 @@ fn without_summary(account: &Account, results: &Path) -> String {
     }
     let said = std::fs::read(results.join("stderr.txt")).unwrap_or_default();
     let said = String::from_utf8_lossy(&said);
-    let first = said.lines().find(|l| !l.trim().is_empty()).unwrap_or_default();
+    let first = said
+        .lines()
+        .find(|l| !l.trim().is_empty())
+        .unwrap_or_default();
     let first = first.strip_prefix("error: ").unwrap_or(first);
     match (first.is_empty(), account.exit_code) {
         (false, _) => first.chars().take(REASON).collect(),
@@ -121,9 +129,15 @@ pub(super) fn gather(
                 ));
             }
         }
-        let first = states.iter().position(|s| s.ending != Ending::Missing).unwrap_or(0);
+        let first = states
+            .iter()
+            .position(|s| s.ending != Ending::Missing)
+            .unwrap_or(0);
         let path = folder.results(&planned.id, first as u32 + 1);
-        let missing = states.iter().filter(|s| s.ending == Ending::Missing).count();
+        let missing = states
+            .iter()
+            .filter(|s| s.ending == Ending::Missing)
+            .count();
         if missing > 0 && missing < states.len() {
             warnings.push(format!(
                 "run {}: {missing} of {} repeats are missing",
@@ -149,7 +163,9 @@ fn record(
     let there = states.get(first);
     // One that fails now and then has failed.
     let failed = states.iter().find(is_failed);
-    let ending = failed.or(there).map_or(Ending::Missing, |s| s.ending.clone());
+    let ending = failed
+        .or(there)
+        .map_or(Ending::Missing, |s| s.ending.clone());
     let count = states.iter().filter(is_failed).count();
     if count > 0 && states.iter().any(|s| s.ending == Ending::Done) {
         warnings.push(format!(
@@ -167,7 +183,9 @@ fn record(
             phases.insert(name.clone(), spread.map_or(0.0, |s| s.median));
         }
     }
-    let peak = summaries().filter_map(|s| s.peak_memory_mb).reduce(f64::max);
+    let peak = summaries()
+        .filter_map(|s| s.peak_memory_mb)
+        .reduce(f64::max);
     let of = |take: &dyn Fn(&Summary) -> u64| summary.map_or(0, take);
     RunRecord {
         id: planned.id.clone(),

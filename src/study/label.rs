@@ -200,7 +200,9 @@ fn augmentation(choice: &Json) -> String {
     let Json::Object(members) = choice else {
         return "not augmented".to_owned();
     };
-    let settings = members.iter().map(|(key, v)| format!(", {key} {}", value(v)));
+    let settings = members
+        .iter()
+        .map(|(key, v)| format!(", {key} {}", value(v)));
     "augmented".to_owned() + &settings.collect::<String>()
 }
 

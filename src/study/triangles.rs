@@ -62,7 +62,11 @@ impl Triangles {
             let [a, b, c] = t.map(|n| self.nodes[n as usize]);
             Bilinear::new([a, b, c, c])
         };
-        let flat = self.triangles.iter().map(flat).collect::<Result<Vec<_>, _>>()?;
+        let flat = self
+            .triangles
+            .iter()
+            .map(flat)
+            .collect::<Result<Vec<_>, _>>()?;
         Ok(distance_from(exact, &flat))
     }
 }
@@ -107,7 +111,12 @@ impl Maker {
     }
 
     /// The file with the triangles of the surface `name` of a scene; errors in words.
-    pub fn make(&mut self, scene: &Json, name: &str, source: &StlSource) -> Result<PathBuf, String> {
+    pub fn make(
+        &mut self,
+        scene: &Json,
+        name: &str,
+        source: &StlSource,
+    ) -> Result<PathBuf, String> {
         let (refinement, label) = match source {
             StlSource::File(path) => return Ok(path.clone()),
             StlSource::Chord(c) => (Refinement::Chord(*c), format!("chord_{c}")),
@@ -118,11 +127,16 @@ impl Maker {
             }
         };
         let surface = scene.pointer(&scene::pointer(&["surfaces", name]));
-        let key = format!("{name} {label} {} {}", surface.unwrap_or(&Json::Null), scene["units"]);
+        let key = format!(
+            "{name} {label} {} {}",
+            surface.unwrap_or(&Json::Null),
+            scene["units"]
+        );
         if let Some(path) = self.made.get(&key) {
             return Ok(path.clone());
         }
-        let mut loaded = scene::parse(&scene.to_string(), "the scene").map_err(|e| e.to_string())?;
+        let mut loaded =
+            scene::parse(&scene.to_string(), "the scene").map_err(|e| e.to_string())?;
         loaded.dir.clone_from(&self.dir);
         let exact = exact_surface(&loaded, name).map_err(|e| e.to_string())?;
         let made = Triangles::of(&exact, refinement).map_err(|e| e.to_string())?;

@@ -1,6 +1,6 @@
 //! Collects problems; the rules that many fields share.
-use crate::scene::json::MORE;
 use crate::scene::document::{Document, nearest_file, pointer};
+use crate::scene::json::MORE;
 use crate::scene::problem::{MOST_PROBLEMS, Problem, shorten, suggestion};
 use crate::scene::value::{Value, ValueError};
 use covact_geometry::io::not_regular;

@@ -127,7 +127,13 @@ fn worker(
             Ok(Ended::Done) => {
                 queue.done += 1;
                 let state = state(folder, run, repeat);
-                told(&event(folder, (run, repeat), &state, (queue.done, of), false));
+                told(&event(
+                    folder,
+                    (run, repeat),
+                    &state,
+                    (queue.done, of),
+                    false,
+                ));
             }
             Err(failure) => queue.failure = Some(failure),
         }
