@@ -15,8 +15,8 @@ mod pattern;
 
 pub(crate) use assembler::sizes;
 pub use assembler::{
-    Assembler, AssemblerMemory, CouplingMemory, Drag, Fault, Manner, MemoryError, PairForce,
-    PointAnswer, SurfaceForce, Totals,
+    Assembler, AssemblerMemory, CouplingMemory, Drag, Factored, Fault, Line, Manner, MemoryError,
+    Needed, PairForce, PointAnswer, SurfaceForce, Totals,
 };
 pub use constraints::{ConstraintError, Dof, DofMap, DofMapBuilder, Link};
 pub use matrix::{ConstrainedScatter, SystemMatrix};

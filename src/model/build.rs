@@ -22,7 +22,7 @@ use crate::scene::{
     TIME, TimeFunction, Value,
 };
 use crate::shell::{Block, Law, bytes_per_element};
-use covact_geometry::Vec3;
+use covact_geometry::{PatchSet, Vec3};
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -51,17 +51,7 @@ struct Builder<'s> {
 /// [`ModelError`] with the field of the scene at fault.
 pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     let scene = &loaded.scene;
-    let mut builder = Builder {
-        scene,
-        dir: &loaded.dir,
-        nodes: Vec::new(),
-        bodies: Vec::new(),
-        body_index: BTreeMap::new(),
-        notes: Vec::new(),
-        warnings: Vec::new(),
-        averaged: 0,
-        histories: 0,
-    };
+    let mut builder = Builder::new(loaded);
     builder.bodies()?;
     let (pairs, mut surfaces) = builder.contacts()?;
     let held = builder.drive(&mut surfaces)?;
@@ -80,6 +70,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         follower_loads,
         dofs: supports.dofs,
         stabilization: None,
+        small: None,
         symmetric: true,
         effects: Vec::new(),
         plan: Plan::default(),
@@ -87,6 +78,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         warnings: builder.warnings,
         kinks: Vec::new(),
     };
+    model.small = super::small::linearise(scene, &mut model)?;
     let unsymmetric = symmetry(scene, &mut model)?;
     model.kinks = kinks(scene, &model);
     values::check(scene, &model)?;
@@ -96,6 +88,43 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     model.plan = Plan::new(loaded, &model, &unsymmetric);
     model.effects = model.plan.names();
     Ok(model)
+}
+
+/// The patches of a rigid surface that facets in its place would be cut from: at its scale, not yet rotated and moved to its
+/// place, with the sides that its source gives.
+///
+/// # Errors
+/// [`ModelError`]: there is no such surface, its file cannot be read, or it holds facets already.
+pub fn exact_surface(loaded: &LoadedScene, name: &str) -> Result<PatchSet, ModelError> {
+    let here = || format!("/surfaces/{name}");
+    let Some(surface) = loaded.scene.surfaces.get(name) else {
+        return Err(text(here(), format!("there is no surface `{name}`")));
+    };
+    let mut surface = surface.clone();
+    // The sphere of facets is another than the one that is used exactly.
+    surface.facets = Some(scene::Facets {
+        kind: scene::FacetKind::Bilinear,
+        chord: None,
+        size: None,
+        count: Some([1, 1]),
+    });
+    Builder::new(loaded).exact(name, &surface)
+}
+
+impl<'s> Builder<'s> {
+    fn new(loaded: &'s LoadedScene) -> Self {
+        Builder {
+            scene: &loaded.scene,
+            dir: &loaded.dir,
+            nodes: Vec::new(),
+            bodies: Vec::new(),
+            body_index: BTreeMap::new(),
+            notes: Vec::new(),
+            warnings: Vec::new(),
+            averaged: 0,
+            histories: 0,
+        }
+    }
 }
 
 /// Bodies have to be held by supports, or by contact with the help of a stabilisation.

@@ -17,6 +17,7 @@ pub mod plan;
 pub mod segments;
 pub mod self_contact;
 pub mod slave;
+pub mod small;
 pub mod stabilization;
 pub mod state;
 pub mod surface;
@@ -37,6 +38,7 @@ use friction::FrictionModel;
 use loads::{DeadLoad, FollowerPressure};
 use master::Master;
 use overclosure::Overclosure;
+use small::SmallModel;
 use stabilization::StabilizationModel;
 
 use plan::Plan;
@@ -64,6 +66,8 @@ pub struct Model {
     pub dofs: DofMap,
     /// Viscous stabilisation where the scene asks for it.
     pub stabilization: Option<StabilizationModel>,
+    /// Contact as it is linearised at the start, where the scene declares displacements small.
+    pub small: Option<SmallModel>,
     /// Whether the tangent is symmetric ([`symmetry::unsymmetric_effects`]).
     pub symmetric: bool,
     /// Effects that are on, by name.
@@ -165,6 +169,14 @@ impl Model {
         !self.dead_loads.is_empty()
             || !self.follower_loads.is_empty()
             || self.driven().next().is_some()
+    }
+
+    /// Numbers that an element of a body keeps in a run; none of the linear elements for small displacements.
+    pub fn state_len(&self, body: &BodyModel) -> usize {
+        match self.small {
+            None => body.block.state_len(),
+            Some(_) => 0,
+        }
     }
 
     /// Number of unknowns.

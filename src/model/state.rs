@@ -39,7 +39,7 @@ impl State {
         let elements = model
             .bodies
             .iter()
-            .map(|b| b.block.state_len() * b.block.elements());
+            .map(|b| model.state_len(b) * b.block.elements());
         let points = model.pairs.iter().map(|p| p.points.len());
         let nodes = (model.pairs.iter().filter_map(|p| p.averaged.as_ref())).map(|a| a.len());
         let mut u = vec![0.0; 3 * model.nodes.len()];

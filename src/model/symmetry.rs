@@ -23,6 +23,10 @@ pub struct Unsymmetric {
 /// nonlinear finite element analyses", Computers and Structures 18 (1984)). They vanish along an edge that is held, and
 /// along one that slides in a plane of symmetry.
 pub fn unsymmetric_effects(model: &Model) -> Vec<Unsymmetric> {
+    if model.small.is_some() {
+        // Pressures do not follow, and friction and half passes do not go with it.
+        return Vec::new();
+    }
     let still = still(model);
     let halves = (model.pairs.iter())
         .filter(|p| p.half.is_some_and(|h| !h.back))

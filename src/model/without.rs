@@ -1,8 +1,8 @@
 //! Scenes without one of their effects: what if it were not there?
 use super::Model;
 use crate::scene::{
-    Contact, Gap, InitialOverclosure, Load, MasterSurface, Passes, Penalty, Points, Scene,
-    Stabilization, Surface, Tangent, nearest,
+    Contact, Gap, InitialOverclosure, Kinematics, Load, MasterSurface, Passes, Penalty, Points,
+    Scene, Stabilization, Surface, Tangent, nearest,
 };
 
 /// An effect that can be turned off.
@@ -179,6 +179,15 @@ pub const REMOVABLE: &[Removable] = &[
         },
     },
     Removable {
+        name: "large_rotation",
+        instead: "displacements are small (`\"kinematics\": \"small\"`): linear elements, contact linearised at the start",
+        effects: &["large_rotation"],
+        remove: |scene| {
+            let was = std::mem::replace(&mut scene.solution.kinematics, Kinematics::Small);
+            was == Kinematics::Large
+        },
+    },
+    Removable {
         name: "stabilization",
         instead: "nothing helps where the structure does not hold",
         effects: &["stabilization.viscous"],
@@ -201,7 +210,7 @@ fn contacts(scene: &mut Scene, change: impl Fn(&mut Contact) -> bool) -> bool {
 /// Leaves out parts of the published tangent, where that form goes with what else a contact has.
 fn published(scene: &mut Scene, leave_out: impl Fn(&mut bool, &mut bool)) -> bool {
     contacts(scene, |c| {
-        if c.friction.is_some() || c.augmentation.is_some() || c.offset != 0.0 {
+        if c.friction.is_some() || c.offset != 0.0 {
             return false;
         }
         let (mut rotational, mut curvature) = match c.tangent {
@@ -265,7 +274,7 @@ impl Removable {
                 reason: match self.name {
                     "facets" => "the surface is given as triangles, and no other is known",
                     _ => {
-                        "the published tangent, of which it is a part, does not go with friction, augmentation or an offset"
+                        "the published tangent, of which it is a part, does not go with friction or an offset"
                     }
                 },
             }),

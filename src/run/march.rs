@@ -8,6 +8,7 @@ use super::RunError;
 use super::checkpoint::{CheckpointError, Keeper, start};
 use super::commit::{self, FrictionTotals};
 use super::cost::Cost;
+use super::doubt;
 use super::fields::Fields;
 use super::history;
 use super::progress::Progress;
@@ -544,6 +545,16 @@ impl<'a, 'm> March<'a, 'm> {
         let told = (self.watch).close(self.model, (step, span), work, pressed, energy, softened);
         if let Some(text) = told {
             self.warn(text);
+        }
+        let masters = &mut self.assembler.masters;
+        let internal = totals.internal_energy;
+        for doubt in doubt::doubts(self.model, masters, state, time, internal)
+            .map_err(|e| RunError::internal(&e))?
+        {
+            let told = |w: &String| w.starts_with(&doubt.about);
+            if !self.progress.warnings.iter().any(told) {
+                self.warn(doubt.text);
+            }
         }
         let row = history::row(&history::Record {
             model: self.model,

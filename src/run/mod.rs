@@ -5,6 +5,7 @@ mod check;
 mod checkpoint;
 mod commit;
 mod cost;
+mod doubt;
 mod error;
 mod fields;
 mod friction_fields;
@@ -71,6 +72,11 @@ pub fn run(
         .map_err(|e| RunError::scene(scene, "/solution/threads", e.to_string()))?;
     let threads = pool.current_num_threads();
     pool.install(|| solve(scene, out, threads, options.resume, observer, interrupt))
+}
+
+/// Checksum of a scene and of the files that it names, as [`Summary::scene`] tells it.
+pub fn checksum(loaded: &LoadedScene) -> String {
+    checkpoint::name(&Fingerprint::new(loaded))
 }
 
 fn solve(

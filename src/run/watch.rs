@@ -12,6 +12,7 @@
 //! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
 use crate::assembly::{Assembler, Fault, PointAnswer, SurfaceForce, Totals};
 use crate::model::error::number;
+use crate::model::motion::SmallMotion;
 use crate::model::state::State;
 use crate::model::{Model, SurfaceModel};
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
@@ -416,11 +417,27 @@ impl Twist {
     /// Per surface; none where it stands still.
     fn all(model: &Model, span: &Span) -> Result<Vec<Option<Twist>>, ValueError> {
         let ((from, start), (to, end)) = (span.from, span.to);
+        if model.small.is_some() {
+            let between = |s: &SurfaceModel| {
+                let [a, b] = [s.motion.small(start)?, s.motion.small(end)?];
+                Ok((a != b).then(|| Twist::small(&a, &b)))
+            };
+            return model.surfaces.iter().map(between).collect();
+        }
         let between = |s: &SurfaceModel| {
             let (a, b) = (s.pose(start, &from.u)?, s.pose(end, &to.u)?);
             Ok((a != b).then(|| Twist::between(&a, &b)))
         };
         model.surfaces.iter().map(between).collect()
+    }
+
+    /// Between two small motions, which refer to where everything was at the start, as their forces do.
+    fn small(a: &SmallMotion, b: &SmallMotion) -> Twist {
+        let spin = b.spin - a.spin;
+        Twist {
+            velocity: b.shift - a.shift - spin.cross(&b.center),
+            spin,
+        }
     }
 
     /// The logarithm of the motion (R. M. Murray, Z. Li, S. S. Sastry, "A Mathematical Introduction to Robotic Manipulation",

@@ -16,6 +16,7 @@ pub(crate) mod sizes {
     use super::super::moving::Meetings;
     use super::super::per_pair::PerPair;
     use super::super::sliding::Sliding;
+    use super::super::small::Linear;
     use crate::contact::points::SlavePoint;
     use crate::contact::rigid::{PointFault, Touch};
     use crate::model::master::BodySurface;
@@ -38,6 +39,8 @@ pub(crate) mod sizes {
     pub const ANSWER: usize = size_of::<Option<PointAnswer>>();
     /// The segments of a pair, but for the points that states share.
     pub const CUT: usize = size_of::<Option<Arc<[SlavePoint]>>>();
+    /// What small displacements are computed with, but for what it holds.
+    pub const LINEAR: usize = size_of::<Linear>();
     /// A slave node of a driven surface.
     pub const BORDER_NODE: usize = Border::NODE;
     /// The same with friction: more.
@@ -82,7 +85,10 @@ pub(crate) mod sizes {
             let entries: usize = faces.iter().map(|f| pairs(f.nodes().len())).sum();
             size_of::<Vec<u32>>() + size_of::<u32>() * entries
         };
-        let loads = model.follower_loads.iter();
+        let loads = model
+            .follower_loads
+            .iter()
+            .filter(|_| model.small.is_none());
         loads.map(|(_, load)| of(&load.faces)).sum()
     }
 }
@@ -118,6 +124,7 @@ impl Assembler<'_> {
             viscous,
             penalties,
             manner: _,
+            linear,
         } = self;
         let [values, transposed] = matrix.bytes();
         let followers: usize = follower_maps.iter().map(heap).sum();
@@ -149,6 +156,7 @@ impl Assembler<'_> {
             ("driven", driven[0]),
             ("driven friction", driven[1]),
             ("stabilization", viscous.as_ref().map_or(0, Viscous::bytes)),
+            ("linear", linear.as_ref().map_or(0, |l| l.bytes())),
             ("pairs", heap(penalties) + heap(ran)),
         ]
     }

@@ -126,6 +126,16 @@ impl Couplings {
         self.maps.clear();
     }
 
+    /// Sets the couplings to points with these facets, and no others.
+    pub fn set(&mut self, feet: impl Iterator<Item = (usize, u32)>) {
+        let feet: BTreeSet<(usize, u32)> = feet.map(|(p, f)| (self.cell(p), f)).collect();
+        self.facets.iter_mut().for_each(Vec::clear);
+        for (cell, facet) in feet {
+            self.facets[cell].push(Coupled { facet, map: NONE });
+        }
+        self.maps.clear();
+    }
+
     /// Couples, besides the neighbours among the facets that are coupled with points, `pairs` of facets with each other.
     pub fn link(&mut self, facets: &MovingFacets, pairs: impl Iterator<Item = (u32, u32)>) {
         let coupled = self.pairs().map(|(_, facet)| facet).collect();

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 const CHUNK: usize = 128;
 
 /// Room for one chunk of elements of each shape that the model has.
+#[derive(Default)]
 pub(super) struct Systems {
     h8: Vec<H8System>,
     q18: Vec<Q18System>,
@@ -114,6 +115,42 @@ impl Assembler<'_> {
         }
         Ok(())
     }
+}
+
+/// Sums the stiffness of all undeformed elements, of these kinds and with these places, into a matrix.
+pub(super) fn undeformed(
+    model: &Model,
+    dofs: &DofMap,
+    matrix: &mut SystemMatrix,
+    systems: &mut Systems,
+    (kinds, maps): (&[Kind], &[u32]),
+) -> Result<(), Fault> {
+    let zero = vec![0.0; 3 * model.nodes.len()];
+    let (mut forces, mut rhs) = (zero.clone(), zero.clone());
+    let (mut first_element, mut first_map) = (0, 0);
+    for body in &model.bodies {
+        let count = body.block.elements();
+        let map = pairs(body.mesh.kind.nodes()) * count;
+        let mut sums = Sums {
+            matrix: &mut *matrix,
+            dofs,
+            work: &mut ConstrainedScatter::default(),
+            kinds: &kinds[first_element..first_element + count],
+            maps: &maps[first_map..first_map + map],
+            increments: None,
+            residual: &mut forces,
+            rhs: &mut rhs,
+            energy: &mut 0.0,
+        };
+        first_element += count;
+        first_map += map;
+        let mut states = vec![0.0; body.block.state_len() * count];
+        match &body.block {
+            Block::H8(b) => sums.add(body, b, &mut systems.h8, &mut states, &zero),
+            Block::Q18(b) => sums.add(body, b, &mut systems.q18, &mut states, &zero),
+        }?;
+    }
+    Ok(())
 }
 
 impl Sums<'_> {

@@ -90,7 +90,12 @@ impl Maps {
             points.push((index, maps));
         }
         let mut followers = Vec::new();
-        for (_, load) in &model.follower_loads {
+        // At small displacements pressures do not follow.
+        let follower = model
+            .follower_loads
+            .iter()
+            .filter(|_| model.small.is_none());
+        for (_, load) in follower {
             let mut maps = Vec::new();
             for nodes in &load.faces {
                 pattern.element_map(nodes.nodes(), &mut maps)?;

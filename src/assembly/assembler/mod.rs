@@ -16,6 +16,7 @@ mod moving;
 mod per_pair;
 mod rigid;
 mod sliding;
+mod small;
 mod touched;
 mod viscous;
 
@@ -36,6 +37,7 @@ use maps::Maps;
 use moving::Meetings;
 use per_pair::PerPair;
 use sliding::Sliding;
+use small::Linear;
 use viscous::Viscous;
 
 use driven::Border;
@@ -46,6 +48,7 @@ pub use answer::PointAnswer;
 pub(crate) use bytes::sizes;
 pub use driven::Loose;
 pub use memory::{AssemblerMemory, CouplingMemory, MemoryError};
+pub use small::{Factored, Line, Needed};
 pub use viscous::Drag;
 
 /// What kept the model from being evaluated at a trial state. The step is cut.
@@ -207,6 +210,8 @@ pub struct Assembler<'m> {
     borders: Vec<Border>,
     /// Where the scene asks for stabilisation.
     viscous: Option<Viscous>,
+    /// Where displacements are small.
+    linear: Option<Box<Linear>>,
     /// Penalty per pair; an automatic one may be raised in the course of a run.
     pub penalties: Vec<f64>,
     /// How contact is linearised.
@@ -222,8 +227,12 @@ impl<'m> Assembler<'m> {
         pattern.fits(model.symmetric)?;
         let maps = Maps::new(model, dofs, &pattern)?;
         let n = 3 * model.nodes.len();
+        // At small displacements points and elements have loops of their own.
+        let large = model.small.is_none();
+        let pairs = || model.pairs.iter().filter(|_| large);
         let vector = |needed: bool| vec![0.0; if needed { n } else { 0 }];
         let borders = Border::all(model, &pattern)?;
+        let linear = Linear::new(model, dofs, &pattern)?;
         Ok(Assembler {
             model,
             dofs,
@@ -232,14 +241,17 @@ impl<'m> Assembler<'m> {
             kinds: maps.kinds,
             point_maps: maps.points,
             follower_maps: maps.followers,
-            systems: Systems::new(model),
+            systems: match large {
+                true => Systems::new(model),
+                false => Systems::default(),
+            },
             touches: vec![Ok(None); rigid::most(model)],
             answers: vec![None; answer::count(model)],
             masters,
             couplings,
-            meetings: PerPair::new(model.pairs.iter().map(Meetings::new)),
-            sliding: PerPair::new(model.pairs.iter().map(Sliding::new)),
-            averaged: PerPair::new(model.pairs.iter().map(Averaged::new)),
+            meetings: PerPair::new(pairs().map(Meetings::new)),
+            sliding: PerPair::new(pairs().map(Sliding::new)),
+            averaged: PerPair::new(pairs().map(Averaged::new)),
             ran: vec![None; model.pairs.len()],
             new_pattern: Some(pattern),
             rebuilds: 0,
@@ -248,6 +260,7 @@ impl<'m> Assembler<'m> {
             contact: vector(!model.pairs.is_empty()),
             borders,
             viscous: Viscous::new(model),
+            linear,
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             manner: Manner::default(),
         })
@@ -360,9 +373,14 @@ impl<'m> Assembler<'m> {
         time: f64,
         residual: &mut [f64],
     ) -> Result<Totals, Fault> {
+        let mut totals = Totals::default();
+        if self.linear.is_some() {
+            residual.fill(0.0);
+            self.small_contact(state, time, residual, &mut totals)?;
+            return Ok(totals);
+        }
         self.meet::<false>(state, time)?;
         residual.fill(0.0);
-        let mut totals = Totals::default();
         self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
         Ok(totals)
     }

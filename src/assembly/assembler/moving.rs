@@ -117,6 +117,11 @@ pub(super) fn first_couplings(model: &Model, masters: &Masters) -> PerPair<Coupl
     let couplings = (model.pairs.iter().enumerate()).map(|(index, pair)| {
         let surface = masters.surface(index)?;
         let mut couplings = Couplings::new(&pair.points);
+        if let Some(small) = &model.small {
+            // Feet stay where they are.
+            couplings.set(small.pairs[index].feet());
+            return Some(couplings);
+        }
         let near = near(model, masters, index, &pair.points, &zero, &[]);
         couplings.couple(&surface.facets, near.into_iter());
         if pair.friction.is_some() {

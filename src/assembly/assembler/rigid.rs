@@ -19,6 +19,9 @@ use rayon::prelude::*;
 
 /// Most points of a pair that are evaluated at once.
 pub(super) fn most(model: &Model) -> usize {
+    if model.small.is_some() {
+        return 0;
+    }
     let rigid = (model.pairs.iter()).filter(|p| p.rigid_master().is_some() && p.averaged.is_none());
     rigid.map(|p| p.points.len()).max().unwrap_or(0)
 }

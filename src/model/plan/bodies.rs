@@ -1,5 +1,6 @@
 //! The effects of bodies: their elements and materials.
 use super::{Effect, Held, Per, Teller, why};
+use crate::assembly::sizes;
 use crate::model::BodyModel;
 use crate::scene::{Body, Element, Material, pointer};
 
@@ -16,12 +17,24 @@ impl Teller<'_> {
     }
 
     pub(super) fn bodies(&self) -> Vec<Effect> {
-        let rotation = self.effect(
-            "large_rotation",
-            "/bodies",
-            Ok("elements are integrated over the undeformed body, at rotations of any size".into()),
-        );
-        let mut out = vec![rotation];
+        let small = self.model.small.is_some();
+        let key = "/solution/kinematics";
+        let large = match self.loaded.has(key) {
+            true => "`kinematics` is `large`: displacements and rotations of any size",
+            false => "no `kinematics`: displacements and rotations of any size",
+        };
+        let declared = "`kinematics` is `small`";
+        let nodes = self.model.nodes.len();
+        let mut out = vec![
+            self.effect("large_rotation", key, why(!small, large, declared)),
+            self.effect("small_displacements", key, why(small, declared, large))
+                .costs("one factorization for every set of points in contact")
+                .holds(vec![
+                    Held::assembler("linear", Per::Point, 8, self.model.contact_points()),
+                    Held::assembler("linear", Per::Node, 24, nodes),
+                    Held::assembler("linear", Per::Whole, sizes::LINEAR, 1).growing(),
+                ]),
+        ];
         out.extend(self.elements());
         out.extend(self.strains());
         out.extend(self.materials());
@@ -100,7 +113,7 @@ impl Teller<'_> {
         );
         let (mut held, mut numbers) = (Vec::new(), Vec::new());
         for (body, _) in &with {
-            let len = body.block.state_len();
+            let len = self.model.state_len(body);
             let n = body.block.elements();
             held.push(Held::state("element states", Per::Element, 8 * len, n));
             numbers.push(body.block.alpha_len());

@@ -15,6 +15,8 @@ pub enum GapKind {
     Pointwise,
     /// Of every slave node, in the mean of the points around it.
     Averaged,
+    /// Of every slave point, with the normal and the foot that it has at the start: displacements are small.
+    Linearised,
 }
 
 /// Whose rows the points of a pair have.
@@ -41,9 +43,10 @@ impl Kernel {
     /// The kernel of a pair of a model.
     pub fn of(model: &Model, pair: &PairModel) -> Kernel {
         Kernel {
-            gap: match pair.averaged {
-                None => GapKind::Pointwise,
-                Some(_) => GapKind::Averaged,
+            gap: match (&model.small, &pair.averaged) {
+                (Some(_), _) => GapKind::Linearised,
+                (None, None) => GapKind::Pointwise,
+                (None, Some(_)) => GapKind::Averaged,
             },
             master: match &pair.master {
                 Master::Rigid(surface) => model.surfaces[*surface].kind(),
@@ -91,8 +94,10 @@ impl Kernel {
 /// E.g. `rigid_nurbs.penalty.coulomb.exact`.
 impl fmt::Display for Kernel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.gap == GapKind::Averaged {
-            f.write_str("averaged.")?;
+        match self.gap {
+            GapKind::Pointwise => {}
+            GapKind::Averaged => f.write_str("averaged.")?,
+            GapKind::Linearised => f.write_str("linearised.")?,
         }
         let (master, law) = (self.master.name(), self.law.name());
         let (friction, tangent) = (self.friction.name(), self.tangent.name());

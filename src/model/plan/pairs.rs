@@ -87,9 +87,10 @@ impl Teller<'_> {
         let rigid = pair.body_master().is_none();
         let of_body = pair.body_master();
         let own = of_body.and_then(|m| m.own.as_ref());
+        let large = self.model.small.is_none();
         let most = |p: &PairModel| match p.rigid_master().is_some() && p.averaged.is_none() {
-            true => p.points.len(),
-            false => 0,
+            true if large => p.points.len(),
+            _ => 0,
         };
         // One buffer serves all pairs: it belongs to the first of those with most points.
         let largest = self.model.pairs.iter().map(most).max().unwrap_or(0);
@@ -133,7 +134,7 @@ impl Teller<'_> {
             cost = format!("9 x 9 slots a point, scattered to {size} x {size}");
             held.push(Held::assembler("masters", Per::Whole, sizes::MASTER, 1).growing());
             held.push(Held::assembler("couplings", Per::Whole, sizes::COUPLINGS, 1).growing());
-            if let Some([each, fixed]) = sizes::meetings(pair) {
+            if let (true, Some([each, fixed])) = (large, sizes::meetings(pair)) {
                 let points = Held::assembler("points on bodies", Per::Point, each, told.points());
                 let room = Held::assembler("points on bodies", Per::Whole, fixed, 1);
                 // Segments are cut anew, with other numbers of points.

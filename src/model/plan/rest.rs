@@ -99,7 +99,11 @@ impl Teller<'_> {
             true => "the scene has no loads",
             false => "no load of this kind",
         };
-        let dead = model.dead_loads.first().map(|(name, _)| name.as_str());
+        // At small displacements pressures do not follow.
+        let large = model.small.is_none();
+        let followers = || model.follower_loads.iter().map(|(name, _)| name.as_str());
+        let dead = model.dead_loads.iter().map(|(name, _)| name.as_str());
+        let dead = dead.chain(followers().filter(|_| !large)).next();
         let nodes = model.nodes.len();
         // One vector for all loads, told with the first of them.
         let vector = |first: bool| {
@@ -123,7 +127,7 @@ impl Teller<'_> {
             )
             .holds(vec![vector(is_first), watched(is_first)]),
         );
-        let follower = model.follower_loads.first().map(|(name, _)| name.as_str());
+        let follower = followers().find(|_| large);
         let is_first = dead.is_none() && follower.is_some();
         let maps = sizes::followers(model);
         let follows = self
@@ -135,6 +139,9 @@ impl Teller<'_> {
                 },
                 match follower {
                     Some(name) => Ok(format!("load `{name}` has `follower`")),
+                    None if followers().next().is_some() => {
+                        Err("displacements are small: pressures keep their direction".to_owned())
+                    }
                     None => Err(none.to_owned()),
                 },
             )

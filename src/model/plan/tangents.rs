@@ -1,4 +1,5 @@
 //! The tangent of a contact pair and its parts: which of them there are for its geometry.
+use super::kernel::GapKind;
 use super::pairs::Told;
 use super::{Effect, Teller, Why, why};
 use crate::contact::kind::TangentKind;
@@ -87,6 +88,10 @@ impl Teller<'_> {
             Some(_) => part("rotational"),
             None => told.key("master"),
         };
+        let (at, rotational) = match self.still(told) {
+            Some(why) => ("/solution/kinematics".to_owned(), Err(why)),
+            None => (at, rotational),
+        };
         out.push(
             self.effect("contact.tangent.rotational", at, rotational)
                 .detail(),
@@ -99,12 +104,22 @@ impl Teller<'_> {
             ),
             _ => (at, curvature),
         };
+        let (at, curvature) = match self.still(told) {
+            Some(why) => ("/solution/kinematics".to_owned(), Err(why)),
+            None => (at, curvature),
+        };
         out.push(
             self.effect("contact.tangent.curvature", at, curvature)
                 .detail(),
         );
         out.push(self.edges(told).detail());
         out
+    }
+
+    /// Why the tangent of normals is nothing, where they stay.
+    fn still(&self, told: &Told) -> Option<String> {
+        (told.kernel.gap == GapKind::Linearised)
+            .then(|| "displacements are small: normals and feet stay as at the start".to_owned())
     }
 
     /// Whether the master is curved anywhere, and what tells.

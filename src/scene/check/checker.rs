@@ -1,6 +1,6 @@
 //! Collects problems; the rules that many fields share.
+use crate::scene::document::{Document, nearest_file, pointer};
 use crate::scene::json::MORE;
-use crate::scene::load::{LoadedScene, nearest_file, pointer};
 use crate::scene::problem::{MOST_PROBLEMS, Problem, shorten, suggestion};
 use crate::scene::value::{Value, ValueError};
 use covact_geometry::io::not_regular;
@@ -10,8 +10,8 @@ use std::path::Path;
 /// Bytes of a path in a message.
 const MOST_OF_PATH: usize = 1000;
 
-pub(super) struct Checker<'a> {
-    loaded: &'a LoadedScene,
+pub(crate) struct Checker<'a> {
+    loaded: &'a Document,
     problems: Vec<Problem>,
 }
 
@@ -30,7 +30,7 @@ pub(super) fn path(tokens: &[&str]) -> String {
 }
 
 impl<'a> Checker<'a> {
-    pub fn new(loaded: &'a LoadedScene) -> Self {
+    pub fn new(loaded: &'a Document) -> Self {
         Checker {
             loaded,
             problems: Vec::new(),

@@ -1,0 +1,252 @@
+//! What small displacements neglect, measured on what came out: nothing here changes a result.
+//!
+//! Elements: the rotation and the strain at their middles, and the strain that is quadratic in the rotations, as the energy
+//! that it would store in the plane of the shell beside what is stored. Where supports or contact hold a sheet in its plane,
+//! that energy stiffens it (a clamped plate by about 5 % where it bends by a third of its thickness); a cantilever escapes
+//! from it. Contact: every slave point is projected once more, where it is now, on the master where that is now. The turn
+//! of the normal and the gap are what the start did not know of.
+use crate::assembly::Fault;
+use crate::model::error::number;
+use crate::model::master::Masters;
+use crate::model::state::State;
+use crate::model::{BodyModel, Model};
+use crate::shell::{ElementBlock, with_block};
+use covact_geometry::Vec3;
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+/// Rotations (radians), strains and shares above which the assumption is doubtful.
+const DOUBTFUL: f64 = 0.05;
+/// Multiple of that above which it is wrong.
+const WRONG: f64 = 5.0;
+
+/// A doubt: told once, when it comes up.
+pub(super) struct Doubt {
+    /// Text that such a warning begins with.
+    pub about: String,
+    pub text: String,
+}
+
+/// What the displacements of elements leave out.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Stretch {
+    rotation: f64,
+    strain: f64,
+    /// Energy of the quadratic strain.
+    energy: f64,
+}
+
+impl Stretch {
+    fn with(self, other: Stretch) -> Stretch {
+        Stretch {
+            rotation: self.rotation.max(other.rotation),
+            strain: self.strain.max(other.strain),
+            energy: self.energy + other.energy,
+        }
+    }
+}
+
+/// The doubts about an accepted state with strain energy `internal`; none where displacements may be large.
+///
+/// # Errors
+/// A motion of a surface without a value at `time`.
+pub(super) fn doubts(
+    model: &Model,
+    masters: &mut Masters,
+    state: &State,
+    time: f64,
+    internal: f64,
+) -> Result<Vec<Doubt>, Fault> {
+    let mut out = Vec::new();
+    if model.small.is_none() {
+        return Ok(out);
+    }
+    let mut tell = |what: &str, of: &str, value: f64, text: String| {
+        if value <= DOUBTFUL {
+            return;
+        }
+        let (about, level) = match value > WRONG * DOUBTFUL {
+            true => (
+                "displacements are not small",
+                "take `\"kinematics\": \"large\"`",
+            ),
+            false => (
+                "displacements may not be small enough",
+                "compare with `\"kinematics\": \"large\"`",
+            ),
+        };
+        let about = format!("{about}, {what}{of}:");
+        out.push(Doubt {
+            text: format!("{about} {text} (time {}); {level}", number(time)),
+            about,
+        });
+    };
+    let mut neglected = 0.0;
+    for body in &model.bodies {
+        let found = with_block!(&body.block, block => stretch(model, body, block, &state.u));
+        let of = format!(" of body `{}`", body.name);
+        let text = format!("elements turn by up to {:.3} rad", found.rotation);
+        tell("rotations", &of, found.rotation, text);
+        let text = format!(
+            "elements are strained by up to {:.1} %",
+            100.0 * found.strain
+        );
+        tell("strains", &of, found.strain, text);
+        neglected += found.energy;
+    }
+    if internal > 0.0 {
+        let share = neglected / internal;
+        let text = format!(
+            "strains that are quadratic in them would store up to {} of the energy in the planes of the elements, and where \
+             sheets are held in their plane stiffen them by as much",
+            match share < 1.0 {
+                true => format!("{:.0} %", 100.0 * share),
+                false => format!("{} times", number((10.0 * share).round() / 10.0)),
+            }
+        );
+        tell("rotations", "", share, text);
+    }
+    for (index, pair) in model.pairs.iter().enumerate() {
+        let found = contact(model, masters, state, index, time)?;
+        let of = format!(" of contact `{}`", pair.name);
+        let text = format!(
+            "at points in contact the normal of {} has turned by up to {:.3} rad from that of the start",
+            pair.master_words(model),
+            found.turn
+        );
+        tell("normals", &of, found.turn, text);
+        let share = found.error / found.way;
+        if share.is_finite() {
+            let text = format!(
+                "points in contact are off by up to {} from where their gaps say, {:.0} % of their way, {}",
+                number(found.error),
+                100.0 * share,
+                number(found.way)
+            );
+            tell("gaps", &of, share, text);
+        }
+        if found.beyond > 0 {
+            let text = format!(
+                "{} point(s) would touch {} that were not in front of it at the start, and are not in contact",
+                found.beyond,
+                pair.master_words(model)
+            );
+            tell("feet", &of, 1.0, text);
+        }
+    }
+    Ok(out)
+}
+
+fn stretch<const N: usize>(
+    model: &Model,
+    body: &BodyModel,
+    block: &impl ElementBlock<N>,
+    u: &[f64],
+) -> Stretch {
+    let young = body.block.law().young();
+    let of = |e: usize| {
+        let x = body.nodes_of(block, e).map(|n| model.nodes[n as usize]);
+        let [big, du] = [&x, &body.displacements(block, e, u)].map(middle);
+        let Some(dual) = big.try_inverse() else {
+            return Stretch::default();
+        };
+        let h = du * dual;
+        let (turn, strain) = ((h - h.transpose()) * 0.5, (h + h.transpose()) * 0.5);
+        // Along two directions at right angles in the plane of the element.
+        let a = big.column(0).normalize();
+        let b = big.column(1) - a * a.dot(&big.column(1));
+        let [a, b] = [h * a, h * b.normalize()];
+        let [aa, bb, ab] = [a.dot(&a), b.dot(&b), a.dot(&b)].map(|q| 0.5 * q);
+        let squared = aa * aa + bb * bb + 2.0 * ab * ab;
+        Stretch {
+            rotation: turn.norm() / f64::sqrt(2.0),
+            strain: strain.norm(),
+            energy: 0.5 * young * squared * block.volume(e),
+        }
+    };
+    // Summed by one thread, so that the sum is the same for any number of them.
+    let all: Vec<Stretch> = (0..block.elements())
+        .into_par_iter()
+        .with_min_len(256)
+        .map(of)
+        .collect();
+    all.into_iter().fold(Stretch::default(), Stretch::with)
+}
+
+/// Derivatives of a field along the three directions of an element at its middle, by columns.
+fn middle<const N: usize>(z: &[Vec3; N]) -> Matrix3<f64> {
+    let mean = |a: &[usize], b: &[usize]| {
+        let sum = |i: &[usize]| i.iter().fold(Vec3::zeros(), |s, &n| s + z[n]);
+        (sum(b) - sum(a)) / (2.0 * a.len() as f64)
+    };
+    match N {
+        8 => Matrix3::from_columns(&[
+            mean(&[0, 2, 4, 6], &[1, 3, 5, 7]),
+            mean(&[0, 1, 4, 5], &[2, 3, 6, 7]),
+            mean(&[0, 1, 2, 3], &[4, 5, 6, 7]),
+        ]),
+        _ => Matrix3::from_columns(&[
+            mean(&[3, 12], &[5, 14]),
+            mean(&[1, 10], &[7, 16]),
+            mean(&[4], &[13]),
+        ]),
+    }
+}
+
+/// What a contact is off by.
+#[derive(Debug, Clone, Copy, Default)]
+struct Off {
+    turn: f64,
+    error: f64,
+    /// Largest displacement of a point in contact relative to its master.
+    way: f64,
+    /// Points in contact that have no foot.
+    beyond: usize,
+}
+
+fn contact(
+    model: &Model,
+    masters: &mut Masters,
+    state: &State,
+    index: usize,
+    time: f64,
+) -> Result<Off, Fault> {
+    let mut off = Off::default();
+    let Some(small) = &model.small else {
+        return Ok(off);
+    };
+    masters.update(model, &state.u);
+    let (pair, own) = (&model.pairs[index], &small.pairs[index]);
+    let first: usize = model.pairs[..index].iter().map(|p| p.points.len()).sum();
+    let master = masters.at(model, index, &state.u, time)?;
+    let motion = model.small_motion(pair, time)?;
+    let offsets = pair.offsets(time);
+    let seen: Vec<_> = (pair.points.par_iter().zip(&own.points).enumerate())
+        .with_min_len(64)
+        .map(|(i, (p, at))| {
+            let x = model.point_position(p, &state.u);
+            master.see(i, &x, at.map(|at| at.hint))
+        })
+        .collect();
+    for (i, (p, seen)) in pair.points.iter().zip(&seen).enumerate() {
+        let Some(seen) = seen else { continue };
+        let z0 = offsets.map_or(0.0, |o| o.at(i));
+        let Some(at) = &own.points[i] else {
+            off.beyond += usize::from(seen.closed(z0));
+            continue;
+        };
+        let closed = state.points[first + i].closed;
+        if !closed && !seen.closed(z0) {
+            continue;
+        }
+        let (way, along) = own.way(i, at, p, motion.as_ref(), &state.u);
+        off.way = off.way.max(way);
+        off.error = off.error.max((at.gap + along - seen.signed_distance).abs());
+        if closed && !at.line {
+            let cosine = at.normal.dot(&seen.normal).clamp(-1.0, 1.0);
+            let sine = at.normal.cross(&seen.normal).norm();
+            off.turn = off.turn.max(sine.atan2(cosine));
+        }
+    }
+    Ok(off)
+}
