@@ -105,9 +105,12 @@ impl Border {
 
     /// The borders of all driven surfaces.
     pub fn all(model: &Model, pattern: &Pattern) -> Result<Vec<Border>, PatternError> {
-        (model.driven())
+        let borders: Result<Vec<Border>, _> = (model.driven())
             .map(|(surface, _, driven)| Border::new(model, surface, driven, pattern))
-            .collect()
+            .collect();
+        let mut borders = borders?;
+        borders.shrink_to_fit();
+        Ok(borders)
     }
 
     fn new(
