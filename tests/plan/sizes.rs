@@ -29,7 +29,8 @@ fn held(scene: &Value, time: f64) -> (Model, Parts) {
     {
         let mut state = State::new(&model);
         let mut assembler = Assembler::new(&model, &model.dofs).expect("a pattern");
-        let mut compare = |exactly: bool, state: &State, assembler: &Assembler| {
+        let compare = |exactly: bool, state: &State, assembler: &Assembler| {
+            let mut parts = Parts::new();
             let own = state.parts().into_iter().map(|p| (Holder::State, p));
             let all = own.chain((assembler.parts().into_iter()).map(|p| (Holder::Assembler, p)));
             for (holder, (part, bytes)) in all {
@@ -44,12 +45,11 @@ fn held(scene: &Value, time: f64) -> (Model, Parts) {
                     }
                     false => {}
                 }
-                if exactly {
-                    parts.insert(part, bytes);
-                }
+                parts.insert(part, bytes);
             }
+            parts
         };
-        compare(true, &state, &assembler);
+        parts.extend(compare(true, &state, &assembler));
         // Everything that is announced is a part of something.
         for held in model.plan.effects().flat_map(|e| &e.held) {
             if matches!(held.holder, Holder::State | Holder::Assembler) {
