@@ -30,6 +30,9 @@ fn kernels(scene: &Value) -> Vec<(String, Option<String>)> {
     pairs.map(|p| (p.kernel, p.ran)).collect()
 }
 
+/// Changes of a scene, the kernel that they ask for, and the number of pairs.
+type Case<'c> = (&'c [(&'c str, Value)], &'c str, usize);
+
 fn runs_as(scene: &Value, expected: &str, pairs: usize) {
     let found = kernels(scene);
     assert_eq!(found.len(), pairs);
@@ -111,7 +114,7 @@ fn between_bodies() {
     let main = json!({"published": {"rotational": false, "curvature": false}});
     let halves = || ("/contacts/press/passes", json!("two_half"));
     let friction = || ("/contacts/press/friction", coulomb());
-    let cases: [(&[(&str, Value)], &str, usize); 7] = [
+    let cases: [Case; 7] = [
         (&[], "faces.penalty.frictionless.exact", 1),
         (&[friction()], "faces.penalty.coulomb.exact", 1),
         (
