@@ -14,7 +14,7 @@ use super::history;
 use super::progress::Progress;
 use super::step::Attempts;
 use super::watch::{Span, Watch, Work};
-use crate::assembly::{Assembler, Drag, Fault};
+use crate::assembly::{Assembler, Drag, Fault, Needed};
 use crate::model::error::number;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model, penalty, segments};
@@ -366,6 +366,11 @@ impl<'a, 'm> March<'a, 'm> {
                         (work, drag),
                     )?;
                     cuts = 0;
+                    if self.model.small.is_some()
+                        && (walk.stepping.done(end) || walk.stepping.at_kink(end))
+                    {
+                        self.beyond_linear(committed, converged.totals.internal_energy);
+                    }
                     if let Some(ending) =
                         self.stabilized(committed, &drag, &converged, walk.stepping.done(end))
                     {
@@ -546,15 +551,9 @@ impl<'a, 'm> March<'a, 'm> {
         if let Some(text) = told {
             self.warn(text);
         }
-        let masters = &mut self.assembler.masters;
-        let internal = totals.internal_energy;
-        for doubt in doubt::doubts(self.model, masters, state, time, internal)
-            .map_err(|e| RunError::internal(&e))?
-        {
-            let told = |w: &String| w.starts_with(&doubt.about);
-            if !self.progress.warnings.iter().any(told) {
-                self.warn(doubt.text);
-            }
+        let doubts = doubt::doubts(self.model, &mut self.assembler.masters, state, time);
+        for doubt in doubts.map_err(|e| RunError::internal(&e))? {
+            self.doubt(doubt);
         }
         let row = history::row(&history::Record {
             model: self.model,
@@ -577,6 +576,43 @@ impl<'a, 'm> March<'a, 'm> {
             self.write(outputs, state)?;
         }
         Ok(())
+    }
+
+    /// Measures what the linear elements leave out of their forces, and tells where it is not small.
+    fn beyond_linear(&mut self, state: &State, internal: f64) {
+        let time = self.progress.time;
+        let next = self.assembler.small_quadratic(&state.u);
+        let Ok(next) = next else {
+            self.warn(
+                "displacements are not small: the large-rotation elements could not follow them at all; take \
+                 `\"kinematics\": \"large\"`"
+                    .to_owned(),
+            );
+            return;
+        };
+        let mut released = 0.0;
+        if self.assembler.small_needs(&state.points) == Needed::Nothing {
+            let mut further = next.forces.clone();
+            self.model.dofs.fold(&mut further);
+            // Where it cannot be solved for, nothing is released: the doubt is the larger.
+            let matrix = self.assembler.matrix();
+            if self.solver.solve_with(matrix, &mut further).is_ok() {
+                self.model.dofs.expand(&mut further, None);
+                released = (further.iter().zip(&next.forces))
+                    .map(|(u, f)| 0.5 * u * f)
+                    .sum();
+            }
+        }
+        if let Some(doubt) = doubt::forces(&next, released, internal, time) {
+            self.doubt(doubt);
+        }
+    }
+
+    fn doubt(&mut self, doubt: doubt::Doubt) {
+        let told = |w: &String| w.starts_with(&doubt.about);
+        if !self.progress.warnings.iter().any(told) {
+            self.warn(doubt.text);
+        }
     }
 
     /// Reports a warning once.

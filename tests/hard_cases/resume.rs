@@ -395,3 +395,26 @@ fn a_run_that_does_not_converge() {
     assert_eq!(found.status, RunStatus::NotConverged);
     assert!(found.steps > 5 && found.cuts > 1, "{found:?}");
 }
+
+/// Small displacements: the factorization that a part had at hand is made anew by the next, and does not count again; a
+/// penalty that is raised, doubts that were told.
+#[test]
+fn small_displacements() {
+    let mut scene = ironed(json!({"penalty": "auto"}));
+    let contact = scene["contacts"]["iron"].as_object_mut().unwrap();
+    contact.remove("friction");
+    scene["solution"]["kinematics"] = json!("small");
+    scene["output"] = json!({"every": 2});
+    let found = in_pieces(&scene);
+    assert_eq!(found.status, RunStatus::Done);
+    let told = |part: &str| found.warnings.iter().any(|w| w.contains(part));
+    assert!(told("displacements may not be small enough"), "{found:?}");
+    assert!(told("opened at step"), "{found:?}");
+    // Between bodies, whose set of points in contact stays while they are drawn along.
+    let mut scene = sledge(0.02, 8, json!({}));
+    scene["solution"]["kinematics"] = json!("small");
+    let found = in_pieces(&scene);
+    assert_eq!(found.status, RunStatus::Done);
+    let factorizations: u64 = found.factorizations.values().sum();
+    assert!(factorizations < found.newton_iterations, "{found:?}");
+}

@@ -5,6 +5,7 @@ use crate::assembly::{ConstrainedScatter, DofMap, SystemMatrix};
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::shell::{Block, ElementBlock, ElementSystem, H8System, Q18System, with_block};
+use covact_geometry::Vec3;
 use rayon::prelude::*;
 
 /// Elements evaluated before their matrices are summed.
@@ -141,6 +142,68 @@ pub(super) fn undeformed(
             Block::H8(b) => sums.add(body, b, &mut systems.h8, &mut states, &zero),
             Block::Q18(b) => sums.add(body, b, &mut systems.q18, &mut states, &zero),
         }?;
+    }
+    Ok(())
+}
+
+/// What the large-rotation elements add to the linear ones at the same displacements.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Quadratic {
+    /// Forces that are quadratic in the displacements, at all degrees of freedom.
+    pub forces: Vec<f64>,
+    /// Strain energy of even orders, that of the linear elements included.
+    pub even: f64,
+    /// Strain energy of odd orders.
+    pub odd: f64,
+}
+
+/// The even part of the forces and both parts of the energy of all elements at displacements `u`, whose enhanced strains are
+/// those of the linear elements, with condensation at no displacements.
+///
+/// # Errors
+/// Strains that are impossible.
+pub(super) fn quadratic(model: &Model, u: &[f64]) -> Result<Quadratic, Fault> {
+    let mut out = Quadratic {
+        forces: vec![0.0; u.len()],
+        ..Quadratic::default()
+    };
+    for body in &model.bodies {
+        with_block!(&body.block, block => add_quadratic(body, block, u, &mut out))?;
+    }
+    Ok(out)
+}
+
+fn add_quadratic<const N: usize, B: ElementBlock<N>>(
+    body: &BodyModel,
+    block: &B,
+    u: &[f64],
+    out: &mut Quadratic,
+) -> Result<(), Fault> {
+    let fault = |fault| element_fault(&body.name, fault);
+    let (len, alphas) = (block.state_len(), block.alpha_len());
+    let none = vec![0.0; alphas];
+    let (mut state, mut system) = (vec![0.0; len], B::System::default());
+    let mut sides = [B::NO_FORCES; 2];
+    for e in 0..block.elements() {
+        let x = body.displacements(block, e, u);
+        state.fill(0.0);
+        (block.evaluate(e, &[Vec3::zeros(); N], &mut state, &mut system)).map_err(fault)?;
+        block.update_alpha(&mut state, &x, 1.0, &none);
+        let mut energies = [0.0; 2];
+        for ((sign, f), energy) in [1.0, -1.0].into_iter().zip(&mut sides).zip(&mut energies) {
+            let x = x.map(|x| x * sign);
+            *energy = block.residual(e, &x, &state, f).map_err(fault)?;
+            state[..alphas].iter_mut().for_each(|a| *a = -*a);
+        }
+        let [a, b] = energies;
+        out.even += 0.5 * (a + b);
+        out.odd += 0.5 * (a - b);
+        for f in &sides {
+            let nodes = body.nodes_of(block, e);
+            for (f, &n) in f.as_ref().chunks_exact(3).zip(&nodes) {
+                (0..3).for_each(|c| out.forces[3 * n as usize + c] += 0.5 * f[c]);
+            }
+        }
     }
     Ok(())
 }

@@ -42,6 +42,7 @@ use std::sync::Arc;
 
 pub use answer::PointAnswer;
 pub use driven::Loose;
+pub use elements::Quadratic;
 pub use memory::{AssemblerMemory, CouplingMemory, MemoryError};
 pub use small::{Factored, Line, Needed};
 pub use viscous::Drag;
