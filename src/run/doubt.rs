@@ -7,7 +7,8 @@
 //! release `R = -Q . u2 / 2`. The next terms of the forces are then about `3 W3 / 2 W2 + 2 (W4 - R) / W2` of what they are (the
 //! expansion of W. T. Koiter, "On the stability of elastic equilibrium", Delft 1945, along the path itself): a clamped
 //! plate is stiffened where it bends by a third of its thickness, a cantilever escapes by drawing in.
-use crate::assembly::{Fault, Quadratic};
+use super::march::March;
+use crate::assembly::{Fault, Needed, Quadratic};
 use crate::model::error::number;
 use crate::model::master::Masters;
 use crate::model::state::State;
@@ -128,7 +129,7 @@ fn doubt(what: &str, of: &str, value: f64, text: &str, time: f64) -> Option<Doub
 
 /// The doubt about the forces of the linear elements; `next` are the terms that follow, of strain energy `internal`, and
 /// `released` what further displacements release.
-pub(super) fn forces(next: &Quadratic, released: f64, internal: f64, time: f64) -> Option<Doubt> {
+fn forces(next: &Quadratic, released: f64, internal: f64, time: f64) -> Option<Doubt> {
     let fourth = (next.even - internal - released).max(0.0);
     let share = (1.5 * next.odd.abs() + 2.0 * fourth) / internal;
     let text = format!(
@@ -140,6 +141,46 @@ pub(super) fn forces(next: &Quadratic, released: f64, internal: f64, time: f64) 
     );
     (internal > 0.0 && !share.is_nan())
         .then(|| doubt("forces", " of the elements", share, &text, time))?
+}
+
+impl March<'_, '_> {
+    /// Measures what the linear elements leave out of their forces, and tells where it is not small.
+    pub(super) fn beyond_linear(&mut self, state: &State, internal: f64) {
+        let time = self.progress.time;
+        let next = self.assembler.small_quadratic(&state.u);
+        let Ok(next) = next else {
+            self.warn(
+                "displacements are not small: the large-rotation elements could not follow them at all; take \
+                 `\"kinematics\": \"large\"`"
+                    .to_owned(),
+            );
+            return;
+        };
+        let mut released = 0.0;
+        if self.assembler.small_needs(&state.points) == Needed::Nothing {
+            let mut further = next.forces.clone();
+            self.model.dofs.fold(&mut further);
+            // Where it cannot be solved for, nothing is released: the doubt is the larger.
+            let matrix = self.assembler.matrix();
+            if self.solver.solve_with(matrix, &mut further).is_ok() {
+                self.model.dofs.expand(&mut further, None);
+                released = (further.iter().zip(&next.forces))
+                    .map(|(u, f)| 0.5 * u * f)
+                    .sum();
+            }
+        }
+        if let Some(doubt) = forces(&next, released, internal, time) {
+            self.doubt(doubt);
+        }
+    }
+
+    /// Tells a doubt, once.
+    pub(super) fn doubt(&mut self, doubt: Doubt) {
+        let told = |w: &String| w.starts_with(&doubt.about);
+        if !self.progress.warnings.iter().any(told) {
+            self.warn(doubt.text);
+        }
+    }
 }
 
 fn stretch<const N: usize>(

@@ -14,7 +14,7 @@ use super::history;
 use super::progress::Progress;
 use super::step::Attempts;
 use super::watch::{Span, Watch, Work};
-use crate::assembly::{Assembler, Drag, Fault, Needed};
+use crate::assembly::{Assembler, Drag, Fault};
 use crate::model::error::number;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model, penalty, segments};
@@ -60,7 +60,7 @@ pub(super) struct March<'a, 'm> {
     pub(super) scene: &'a Scene,
     pub(super) model: &'m Model,
     pub assembler: &'a mut Assembler<'m>,
-    solver: &'a mut dyn LinearSolver,
+    pub(super) solver: &'a mut dyn LinearSolver,
     pub workspace: Workspace,
     pub observer: &'a mut (dyn Observer + Send),
     interrupt: &'a AtomicBool,
@@ -576,43 +576,6 @@ impl<'a, 'm> March<'a, 'm> {
             self.write(outputs, state)?;
         }
         Ok(())
-    }
-
-    /// Measures what the linear elements leave out of their forces, and tells where it is not small.
-    fn beyond_linear(&mut self, state: &State, internal: f64) {
-        let time = self.progress.time;
-        let next = self.assembler.small_quadratic(&state.u);
-        let Ok(next) = next else {
-            self.warn(
-                "displacements are not small: the large-rotation elements could not follow them at all; take \
-                 `\"kinematics\": \"large\"`"
-                    .to_owned(),
-            );
-            return;
-        };
-        let mut released = 0.0;
-        if self.assembler.small_needs(&state.points) == Needed::Nothing {
-            let mut further = next.forces.clone();
-            self.model.dofs.fold(&mut further);
-            // Where it cannot be solved for, nothing is released: the doubt is the larger.
-            let matrix = self.assembler.matrix();
-            if self.solver.solve_with(matrix, &mut further).is_ok() {
-                self.model.dofs.expand(&mut further, None);
-                released = (further.iter().zip(&next.forces))
-                    .map(|(u, f)| 0.5 * u * f)
-                    .sum();
-            }
-        }
-        if let Some(doubt) = doubt::forces(&next, released, internal, time) {
-            self.doubt(doubt);
-        }
-    }
-
-    fn doubt(&mut self, doubt: doubt::Doubt) {
-        let told = |w: &String| w.starts_with(&doubt.about);
-        if !self.progress.warnings.iter().any(told) {
-            self.warn(doubt.text);
-        }
     }
 
     /// Reports a warning once.

@@ -4,7 +4,9 @@ use super::{Assembler, Fault, Kind, Totals, element_fault};
 use crate::assembly::{ConstrainedScatter, DofMap, SystemMatrix};
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
-use crate::shell::{Block, ElementBlock, ElementSystem, H8System, Q18System, with_block};
+use crate::shell::{
+    Block, ElementBlock, ElementFault, ElementSystem, H8System, Q18System, with_block,
+};
 use covact_geometry::Vec3;
 use rayon::prelude::*;
 
@@ -178,30 +180,53 @@ fn add_quadratic<const N: usize, B: ElementBlock<N>>(
     block: &B,
     u: &[f64],
     out: &mut Quadratic,
-) -> Result<(), Fault> {
-    let fault = |fault| element_fault(&body.name, fault);
+) -> Result<(), Fault>
+where
+    B::Forces: Send,
+{
     let (len, alphas) = (block.state_len(), block.alpha_len());
-    let none = vec![0.0; alphas];
-    let (mut state, mut system) = (vec![0.0; len], B::System::default());
-    let mut sides = [B::NO_FORCES; 2];
-    for e in 0..block.elements() {
+    let still = [Vec3::zeros(); N];
+    // Forces and energy at `sign u`.
+    type Both<F> = [(F, f64); 2];
+    let of = |e: usize| -> Result<Both<B::Forces>, ElementFault> {
         let x = body.displacements(block, e, u);
-        state.fill(0.0);
-        (block.evaluate(e, &[Vec3::zeros(); N], &mut state, &mut system)).map_err(fault)?;
+        let (mut state, mut system) = (vec![0.0; len], B::System::default());
+        block.evaluate(e, &still, &mut state, &mut system)?;
+        let none = vec![0.0; alphas];
         block.update_alpha(&mut state, &x, 1.0, &none);
-        let mut energies = [0.0; 2];
-        for ((sign, f), energy) in [1.0, -1.0].into_iter().zip(&mut sides).zip(&mut energies) {
+        let linear = state[..alphas].to_vec();
+        let mut both = [(B::NO_FORCES, 0.0); 2];
+        for (sign, (f, energy)) in [1.0, -1.0].into_iter().zip(&mut both) {
             let x = x.map(|x| x * sign);
-            *energy = block.residual(e, &x, &state, f).map_err(fault)?;
-            state[..alphas].iter_mut().for_each(|a| *a = -*a);
+            let alpha: Vec<f64> = linear.iter().map(|a| sign * a).collect();
+            state[..alphas].copy_from_slice(&alpha);
+            *energy = block.residual(e, &x, &state, f)?;
+            if alphas > 0 {
+                // The quadratic strains ask for enhanced ones, too: a step of Newton's method.
+                let mut there = state.clone();
+                block.evaluate(e, &x, &mut there, &mut system)?;
+                block.update_alpha(&mut there, &still, 1.0, &alpha);
+                *energy = block.residual(e, &x, &there, &mut B::NO_FORCES.clone())?;
+            }
         }
-        let [a, b] = energies;
-        out.even += 0.5 * (a + b);
-        out.odd += 0.5 * (a - b);
-        for f in &sides {
-            let nodes = body.nodes_of(block, e);
-            for (f, &n) in f.as_ref().chunks_exact(3).zip(&nodes) {
-                (0..3).for_each(|c| out.forces[3 * n as usize + c] += 0.5 * f[c]);
+        Ok(both)
+    };
+    let all: Result<Vec<_>, _> = (0..block.elements())
+        .into_par_iter()
+        .with_min_len(16)
+        .map(of)
+        .collect();
+    for (e, [(a, plus), (b, minus)]) in (all.map_err(|fault| element_fault(&body.name, fault))?)
+        .iter()
+        .enumerate()
+    {
+        out.even += 0.5 * (plus + minus);
+        out.odd += 0.5 * (plus - minus);
+        let nodes = body.nodes_of(block, e);
+        for (at, &n) in nodes.iter().enumerate() {
+            for c in 0..3 {
+                let f = 0.5 * (a.as_ref()[3 * at + c] + b.as_ref()[3 * at + c]);
+                out.forces[3 * n as usize + c] += f;
             }
         }
     }
