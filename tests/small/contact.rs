@@ -40,7 +40,7 @@ fn hertz_beside_large_rotations() {
         let force = -4.0 * o.at("force.sphere.z", 1.0) / FORCE - 1.0;
         (force, o.at("pressure.max", 1.0) / P0 - 1.0)
     };
-    let seconds = |o: &Outcome| o.summary.cpu_s;
+    let seconds = |o: &Outcome| o.summary.cpu_s.unwrap_or(f64::NAN);
     for (name, o) in [("small", &a), ("large", &b)] {
         println!(
             "{name}: F, p0 off by {:?}, {} iterations, {} factorizations, {:.2} s",
@@ -50,9 +50,9 @@ fn hertz_beside_large_rotations() {
             seconds(o)
         );
     }
-    assert!(of(&a).0.abs() < 1.5e-2 && of(&a).1.abs() < 2e-2);
-    // Both agree as far as strains are small.
-    assert!((of(&a).0 - of(&b).0).abs() < 8e-3 && (of(&a).1 - of(&b).1).abs() < 2e-2);
+    // Measured: -.27 % and -.21 %; with large rotations -.75 % and -1.30 %.
+    assert!(of(&a).0.abs() < 5e-3 && of(&a).1.abs() < 5e-3);
+    assert!(of(&a).0.abs() < of(&b).0.abs() && of(&a).1.abs() < of(&b).1.abs());
     assert!(a.summary.newton_iterations <= b.summary.newton_iterations);
     assert!(a.summary.warnings.is_empty(), "{:?}", a.summary.warnings);
     assert_eq!(factorizations(&a), sets(&a));
@@ -95,8 +95,8 @@ fn sandwich(factor: f64, steps: u32) -> Value {
             "surfaces": {"tool": {
                 "plane": {"center": [4, 2, 1], "normal": [0, 0, 1], "size": [20, 20]},
                 "motion": {
-                    "translation": [0, 0, format!("-{}*t", 1e-3 * factor)],
-                    "rotation": {"center": [4, 2, 1], "axis": [0, 1, 0], "angle": format!("{}*t", 1e-3 * factor)}
+                    "translation": [0, 0, format!("-{}*t", 1e-2 * factor)],
+                    "rotation": {"center": [4, 2, 1], "axis": [0, 1, 0], "angle": format!("{}*t", 1e-2 * factor)}
                 },
                 "depth": 1
             }},
@@ -107,7 +107,7 @@ fn sandwich(factor: f64, steps: u32) -> Value {
             "supports": {
                 "clamp": {"on": "plate.x_min", "fixed": true}, "floor": {"on": "base.z_min", "fixed": true}
             },
-            "loads": {"side": {"on": "plate.y_max", "traction": [0, format!("{}*t", 1e-3 * factor), 0]}}
+            "loads": {"side": {"on": "plate.y_max", "traction": [0, format!("{}*t", 1e-2 * factor), 0]}}
         }),
         steps,
     )
@@ -120,12 +120,12 @@ fn what_is_doubled_doubles_everything() {
     assert!(points.iter().all(|n| *n == points[0]), "{points:?}");
     for body in ["plate", "base"] {
         let [a, b] = [&two, &one].map(|o| displacements(o, body));
-        let off = off(&a, &b, 2.0);
-        assert!(off < 1e-12, "{body}: {off:e}");
+        let difference = off(&a, &b, 2.0);
+        assert!(difference < 1e-12, "{body}: {difference:e}");
         let last = two.summary.steps;
         let [a, b] = [&two, &one].map(|o| o.body(body, last).field("cauchy_stress").to_vec());
-        let off = super::off(&a, &b, 2.0);
-        assert!(off < 1e-12, "stress of {body}: {off:e}");
+        let difference = off(&a, &b, 2.0);
+        assert!(difference < 1e-11, "stress of {body}: {difference:e}");
     }
     let mut compared = 0;
     for name in &one.history.columns {
@@ -179,7 +179,7 @@ fn the_steps_do_not_matter() {
 fn contact_is_the_limit_of_the_large_one() {
     let mut last = None;
     for scale in [1.0, 0.1, 0.01] {
-        let small = sandwich(30.0 * scale, 1);
+        let small = sandwich(3.0 * scale, 1);
         let mut other = large(&small);
         other["solution"]["newton"] = json!({"tolerance": 1e-12});
         let [a, b] = [solve(&small), solve(&other)];
@@ -229,13 +229,10 @@ fn offsets_and_overclosures() {
             "{name}: {found} {expected}"
         );
     }
+    // What counts as touching is flatter than the sphere: it takes more.
     deep["contacts"]["press"]["initial_overclosure"] = json!("stress_free");
-    set(
-        &mut deep,
-        "/surfaces/sphere/motion/translation",
-        json!([0, 0, "1e-3*t"]),
-    );
-    let free = solve(&deep);
-    let own = free.at("force.sphere.z", 1.0).abs();
-    assert!(own < 0.5 * expected.abs(), "{own}");
+    let motion = "/surfaces/sphere/motion/translation";
+    set(&mut deep, motion, json!([0, 0, "-0.01*t"]));
+    let flat = solve(&deep).at("force.sphere.z", 1.0);
+    assert!(flat < 1.1 * expected, "{flat} {expected}");
 }

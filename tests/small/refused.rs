@@ -58,7 +58,7 @@ fn by_key_with_place() {
         ),
         (
             r#""translation": [0, 0, "-t"]"#,
-            r#""free": {"z": "-t"}"#,
+            r#""translation": [0, 0, 0], "free": {"force": {"z": -1}}"#,
             "9:",
             "a surface driven by force",
         ),
