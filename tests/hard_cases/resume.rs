@@ -119,8 +119,15 @@ fn counts(s: &Summary) -> impl PartialEq + std::fmt::Debug {
     )
 }
 
-/// Runs a scene at once and in pieces; returns what both agree on.
+/// Runs a scene at once and in pieces, two steps long or shorter; returns what both agree on.
 fn in_pieces(scene: &Value) -> Summary {
+    let (found, parts) = pieces(scene);
+    assert!(parts >= found.steps / 2, "{parts} parts");
+    found
+}
+
+/// Runs a scene at once and in pieces; returns what both agree on, and the number of pieces.
+fn pieces(scene: &Value) -> (Summary, u32) {
     let scene = loaded(scene);
     let (whole, pieces) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let (expected, _) = part(&scene, whole.path(), false, 1, Stop::Never).unwrap();
@@ -141,7 +148,6 @@ fn in_pieces(scene: &Value) -> Summary {
         found = part(&scene, pieces.path(), true, threads, stop).unwrap().0;
     }
     println!("{parts} parts, {found:?}");
-    assert!(parts >= expected.steps / 2, "{parts} parts");
     assert_eq!(counts(&expected), counts(&found));
     if expected.status == RunStatus::NotConverged {
         // It can be tried once more, with the same outcome.
@@ -155,7 +161,7 @@ fn in_pieces(scene: &Value) -> Summary {
         }
     }
     assert_same(whole.path(), pieces.path());
-    found
+    (found, parts)
 }
 
 /// A slab of `elements`, a die that is pressed in, drawn along and lifted.
@@ -405,15 +411,18 @@ fn small_displacements() {
     contact.remove("friction");
     scene["solution"]["kinematics"] = json!("small");
     scene["output"] = json!({"every": 2});
-    let found = in_pieces(&scene);
+    // Most steps take fewer iterations than some pieces wait for.
+    let (found, parts) = pieces(&scene);
+    assert!(parts >= 3, "{parts} parts");
     assert_eq!(found.status, RunStatus::Done);
     let told = |part: &str| found.warnings.iter().any(|w| w.contains(part));
     assert!(told("displacements may not be small enough"), "{found:?}");
-    assert!(told("opened at step"), "{found:?}");
+    assert!(told("automatic penalty raised"), "{found:?}");
     // Between bodies, whose set of points in contact stays while they are drawn along.
     let mut scene = sledge(0.02, 8, json!({}));
     scene["solution"]["kinematics"] = json!("small");
-    let found = in_pieces(&scene);
+    let (found, parts) = pieces(&scene);
+    assert!(parts >= 2, "{parts} parts");
     assert_eq!(found.status, RunStatus::Done);
     let factorizations: u64 = found.factorizations.values().sum();
     assert!(factorizations < found.newton_iterations, "{found:?}");
