@@ -16,7 +16,7 @@ mod pattern;
 pub(crate) use assembler::sizes;
 pub use assembler::{
     Assembler, AssemblerMemory, CouplingMemory, Drag, Factored, Fault, Line, Manner, MemoryError,
-    Needed, PairForce, PointAnswer, SurfaceForce, Totals,
+    Needed, PairForce, PointAnswer, Quadratic, SurfaceForce, Totals,
 };
 pub use constraints::{ConstraintError, Dof, DofMap, DofMapBuilder, Link};
 pub use matrix::{ConstrainedScatter, SystemMatrix};

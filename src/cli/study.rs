@@ -14,10 +14,7 @@ pub(super) fn study(args: &StudyArgs) -> u8 {
     match run(args) {
         Ok(code) => code,
         Err(StudyError::Scene(e)) => report::scene_error(&e, args.json),
-        Err(e) => {
-            report::error(&e.to_string());
-            exit::IO
-        }
+        Err(e) => report::other_error(&e.to_string(), exit::IO, args.json),
     }
 }
 
@@ -47,6 +44,7 @@ fn run(args: &StudyArgs) -> Result<u8, StudyError> {
     }
     let record = conclude(&loaded, &expansion, &folder);
     record.write(&args.out)?;
+    crate::study::report::write(&record, &args.out)?;
     Ok(end(
         args,
         &loaded,

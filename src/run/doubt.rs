@@ -1,11 +1,14 @@
 //! What small displacements neglect, measured on what came out: nothing here changes a result.
 //!
-//! Elements: the rotation and the strain at their middles, and the strain that is quadratic in the rotations, as the energy
-//! that it would store in the plane of the shell beside what is stored. Where supports or contact hold a sheet in its plane,
-//! that energy stiffens it (a clamped plate by about 5 % where it bends by a third of its thickness); a cantilever escapes
-//! from it. Contact: every slave point is projected once more, where it is now, on the master where that is now. The turn
-//! of the normal and the gap are what the start did not know of.
-use crate::assembly::Fault;
+//! Elements: the rotation and the strain at their middles. Contact: every slave point is projected once more, where it is
+//! now, on the master where that is now: the turn of the normal and the gap are what the start did not know of. At kinks and
+//! at the end also the energy of the large-rotation elements: with displacements `u` of the linear ones it is
+//! `W2 + W3 + W4`, and the strains that are quadratic in `u` ask for further displacements `u2`, linear again, which
+//! release `R = -Q . u2 / 2`. The next terms of the forces are then about `3 W3 / 2 W2 + 2 (W4 - R) / W2` of what they are (the
+//! expansion of W. T. Koiter, "On the stability of elastic equilibrium", Delft 1945, along the path itself): a clamped
+//! plate is stiffened where it bends by a third of its thickness, a cantilever escapes by drawing in.
+use super::march::March;
+use crate::assembly::{Fault, Needed, Quadratic};
 use crate::model::error::number;
 use crate::model::master::Masters;
 use crate::model::state::State;
@@ -32,8 +35,6 @@ pub(super) struct Doubt {
 struct Stretch {
     rotation: f64,
     strain: f64,
-    /// Energy of the quadratic strain.
-    energy: f64,
 }
 
 impl Stretch {
@@ -41,12 +42,11 @@ impl Stretch {
         Stretch {
             rotation: self.rotation.max(other.rotation),
             strain: self.strain.max(other.strain),
-            energy: self.energy + other.energy,
         }
     }
 }
 
-/// The doubts about an accepted state with strain energy `internal`; none where displacements may be large.
+/// The doubts about an accepted state; none where displacements may be large.
 ///
 /// # Errors
 /// A motion of a surface without a value at `time`.
@@ -55,33 +55,14 @@ pub(super) fn doubts(
     masters: &mut Masters,
     state: &State,
     time: f64,
-    internal: f64,
 ) -> Result<Vec<Doubt>, Fault> {
     let mut out = Vec::new();
     if model.small.is_none() {
         return Ok(out);
     }
     let mut tell = |what: &str, of: &str, value: f64, text: String| {
-        if value <= DOUBTFUL {
-            return;
-        }
-        let (about, level) = match value > WRONG * DOUBTFUL {
-            true => (
-                "displacements are not small",
-                "take `\"kinematics\": \"large\"`",
-            ),
-            false => (
-                "displacements may not be small enough",
-                "compare with `\"kinematics\": \"large\"`",
-            ),
-        };
-        let about = format!("{about}, {what}{of}:");
-        out.push(Doubt {
-            text: format!("{about} {text} (time {}); {level}", number(time)),
-            about,
-        });
+        out.extend(doubt(what, of, value, &text, time));
     };
-    let mut neglected = 0.0;
     for body in &model.bodies {
         let found = with_block!(&body.block, block => stretch(model, body, block, &state.u));
         let of = format!(" of body `{}`", body.name);
@@ -92,19 +73,6 @@ pub(super) fn doubts(
             100.0 * found.strain
         );
         tell("strains", &of, found.strain, text);
-        neglected += found.energy;
-    }
-    if internal > 0.0 {
-        let share = neglected / internal;
-        let text = format!(
-            "strains that are quadratic in them would store up to {} of the energy in the planes of the elements, and where \
-             sheets are held in their plane stiffen them by as much",
-            match share < 1.0 {
-                true => format!("{:.0} %", 100.0 * share),
-                false => format!("{} times", number((10.0 * share).round() / 10.0)),
-            }
-        );
-        tell("rotations", "", share, text);
     }
     for (index, pair) in model.pairs.iter().enumerate() {
         let found = contact(model, masters, state, index, time)?;
@@ -137,13 +105,90 @@ pub(super) fn doubts(
     Ok(out)
 }
 
+/// The doubt that a value above its limit raises.
+fn doubt(what: &str, of: &str, value: f64, text: &str, time: f64) -> Option<Doubt> {
+    if value <= DOUBTFUL {
+        return None;
+    }
+    let (about, help) = match value > WRONG * DOUBTFUL {
+        true => (
+            "displacements are not small",
+            "take `\"kinematics\": \"large\"`",
+        ),
+        false => (
+            "displacements may not be small enough",
+            "compare with `\"kinematics\": \"large\"`",
+        ),
+    };
+    let about = format!("{about}, {what}{of}:");
+    Some(Doubt {
+        text: format!("{about} {text} (time {}); {help}", number(time)),
+        about,
+    })
+}
+
+/// The doubt about the forces of the linear elements; `next` are the terms that follow, of strain energy `internal`, and
+/// `released` what further displacements release.
+fn forces(next: &Quadratic, released: f64, internal: f64, time: f64) -> Option<Doubt> {
+    let fourth = (next.even - internal - released).max(0.0);
+    let share = (1.5 * next.odd.abs() + 2.0 * fourth) / internal;
+    let text = format!(
+        "strains that are quadratic in the displacements change them by about {}",
+        match share < 1.0 {
+            true => format!("{:.0} %", 100.0 * share),
+            false => format!("{} times as much", number((10.0 * share).round() / 10.0)),
+        }
+    );
+    (internal > 0.0 && !share.is_nan())
+        .then(|| doubt("forces", " of the elements", share, &text, time))?
+}
+
+impl March<'_, '_> {
+    /// Measures what the linear elements leave out of their forces, and tells where it is not small.
+    pub(super) fn beyond_linear(&mut self, state: &State, internal: f64) {
+        let time = self.progress.time;
+        let next = self.assembler.small_quadratic(&state.u);
+        let Ok(next) = next else {
+            self.warn(
+                "displacements are not small: the large-rotation elements could not follow them at all; take \
+                 `\"kinematics\": \"large\"`"
+                    .to_owned(),
+            );
+            return;
+        };
+        let mut released = 0.0;
+        if self.assembler.small_needs(&state.points) == Needed::Nothing {
+            let mut further = next.forces.clone();
+            self.model.dofs.fold(&mut further);
+            // Where it cannot be solved for, nothing is released: the doubt is the larger.
+            let matrix = self.assembler.matrix();
+            if self.solver.solve_with(matrix, &mut further).is_ok() {
+                self.model.dofs.expand(&mut further, None);
+                released = (further.iter().zip(&next.forces))
+                    .map(|(u, f)| 0.5 * u * f)
+                    .sum();
+            }
+        }
+        if let Some(doubt) = forces(&next, released, internal, time) {
+            self.doubt(doubt);
+        }
+    }
+
+    /// Tells a doubt, once.
+    pub(super) fn doubt(&mut self, doubt: Doubt) {
+        let told = |w: &String| w.starts_with(&doubt.about);
+        if !self.progress.warnings.iter().any(told) {
+            self.warn(doubt.text);
+        }
+    }
+}
+
 fn stretch<const N: usize>(
     model: &Model,
     body: &BodyModel,
     block: &impl ElementBlock<N>,
     u: &[f64],
 ) -> Stretch {
-    let young = body.block.law().young();
     let of = |e: usize| {
         let x = body.nodes_of(block, e).map(|n| model.nodes[n as usize]);
         let [big, du] = [&x, &body.displacements(block, e, u)].map(middle);
@@ -152,25 +197,16 @@ fn stretch<const N: usize>(
         };
         let h = du * dual;
         let (turn, strain) = ((h - h.transpose()) * 0.5, (h + h.transpose()) * 0.5);
-        // Along two directions at right angles in the plane of the element.
-        let a = big.column(0).normalize();
-        let b = big.column(1) - a * a.dot(&big.column(1));
-        let [a, b] = [h * a, h * b.normalize()];
-        let [aa, bb, ab] = [a.dot(&a), b.dot(&b), a.dot(&b)].map(|q| 0.5 * q);
-        let squared = aa * aa + bb * bb + 2.0 * ab * ab;
         Stretch {
             rotation: turn.norm() / f64::sqrt(2.0),
             strain: strain.norm(),
-            energy: 0.5 * young * squared * block.volume(e),
         }
     };
-    // Summed by one thread, so that the sum is the same for any number of them.
-    let all: Vec<Stretch> = (0..block.elements())
+    (0..block.elements())
         .into_par_iter()
         .with_min_len(256)
         .map(of)
-        .collect();
-    all.into_iter().fold(Stretch::default(), Stretch::with)
+        .reduce(Stretch::default, Stretch::with)
 }
 
 /// Derivatives of a field along the three directions of an element at its middle, by columns.

@@ -60,7 +60,7 @@ pub(super) struct March<'a, 'm> {
     pub(super) scene: &'a Scene,
     pub(super) model: &'m Model,
     pub assembler: &'a mut Assembler<'m>,
-    solver: &'a mut dyn LinearSolver,
+    pub(super) solver: &'a mut dyn LinearSolver,
     pub workspace: Workspace,
     pub observer: &'a mut (dyn Observer + Send),
     interrupt: &'a AtomicBool,
@@ -366,6 +366,11 @@ impl<'a, 'm> March<'a, 'm> {
                         (work, drag),
                     )?;
                     cuts = 0;
+                    if self.model.small.is_some()
+                        && (walk.stepping.done(end) || walk.stepping.at_kink(end))
+                    {
+                        self.beyond_linear(committed, converged.totals.internal_energy);
+                    }
                     if let Some(ending) =
                         self.stabilized(committed, &drag, &converged, walk.stepping.done(end))
                     {
@@ -546,15 +551,9 @@ impl<'a, 'm> March<'a, 'm> {
         if let Some(text) = told {
             self.warn(text);
         }
-        let masters = &mut self.assembler.masters;
-        let internal = totals.internal_energy;
-        for doubt in doubt::doubts(self.model, masters, state, time, internal)
-            .map_err(|e| RunError::internal(&e))?
-        {
-            let told = |w: &String| w.starts_with(&doubt.about);
-            if !self.progress.warnings.iter().any(told) {
-                self.warn(doubt.text);
-            }
+        let doubts = doubt::doubts(self.model, &mut self.assembler.masters, state, time);
+        for doubt in doubts.map_err(|e| RunError::internal(&e))? {
+            self.doubt(doubt);
         }
         let row = history::row(&history::Record {
             model: self.model,

@@ -26,6 +26,8 @@ pub(crate) trait Form: DeserializeOwned {
 /// The text of a file that was read, so that everything found later can point into it.
 #[derive(Debug, Clone)]
 pub struct Document {
+    /// What the file holds, e.g. "scene".
+    pub what: &'static str,
     /// Name of the file as the user gave it.
     pub name: String,
     /// Folder that paths in the file are relative to.
@@ -103,6 +105,7 @@ pub(crate) fn parse<T: Form>(text: &str, name: &str) -> Result<(T, Document), Sc
     match (root, content) {
         (Some(root), Some(content)) if faults.is_empty() => {
             let document = Document {
+                what: T::NAME,
                 name: name.to_string(),
                 dir: PathBuf::from("."),
                 text: text.to_string(),

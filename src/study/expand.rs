@@ -228,8 +228,9 @@ impl Expander<'_> {
             }
             let slug = file_stem(&texts.join("_").replace([' ', ','], "_").replace("__", "_"));
             let id = format!("{:03}_{slug}", self.grid_runs + 1);
+            let id: String = id.chars().take(SLUG).collect();
             let new = Planned {
-                id: id.chars().take(SLUG).collect(),
+                id: id.trim_end_matches('_').to_owned(),
                 choices: labels,
                 reference: None,
                 scene: Json::Null,
@@ -296,7 +297,12 @@ impl Expander<'_> {
         if new.reference.is_none() {
             self.grid_runs += 1;
         }
-        self.runs.push(Planned { scene, ..new });
+        let mut id = new.id;
+        // Names of references that differ in more than letters and digits, or in nothing but case.
+        while (self.runs.iter()).any(|run| run.id.eq_ignore_ascii_case(&id)) {
+            id.push('_');
+        }
+        self.runs.push(Planned { id, scene, ..new });
         self.known.insert(sum, self.runs.len() - 1);
         self.runs.len() - 1
     }

@@ -5,7 +5,7 @@ use super::folder::Folder;
 use super::play::Account;
 use super::record::{Ending, RunRecord, Spread};
 use crate::output::{RunStatus, Summary, read_csv};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Characters of a reason that is taken from what a run said.
@@ -119,6 +119,7 @@ pub(super) fn gather(
 ) -> (Vec<RunRecord>, Vec<String>, BTreeMap<String, PathBuf>) {
     let (mut records, mut warnings) = (Vec::new(), Vec::new());
     let mut results = BTreeMap::new();
+    let mut elsewhere = 0;
     for (k, planned) in expansion.runs.iter().enumerate() {
         let states: Vec<State> = (1..=timing.repeats).map(|r| state(folder, k, r)).collect();
         for (repeat, state) in (1..).zip(&states) {
@@ -129,6 +130,9 @@ pub(super) fn gather(
                 ));
             }
         }
+        elsewhere += (states.iter())
+            .filter(|s| s.summary.is_some() && s.account.is_none())
+            .count();
         let first = states
             .iter()
             .position(|s| s.ending != Ending::Missing)
@@ -148,7 +152,30 @@ pub(super) fn gather(
         records.push(record(planned, &states, first, &path, &mut warnings));
         results.insert(planned.id.clone(), path);
     }
+    if elsewhere > 0 {
+        warnings.push(format!(
+            "{elsewhere} of the runs were not done by this command: their times are those that they tell, perhaps of \
+             another machine"
+        ));
+    }
+    if let Some(others) = others(folder) {
+        warnings.push(others);
+    }
     (records, warnings, results)
+}
+
+/// Folders that no run of the study has, in words.
+fn others(folder: &Folder) -> Option<String> {
+    let known: BTreeSet<&str> = folder.runs.iter().map(|r| r.id.as_str()).collect();
+    let entries = std::fs::read_dir(folder.path.join("runs")).ok()?;
+    let names = entries.filter_map(|e| e.ok()?.file_name().into_string().ok());
+    let mut names: Vec<String> = names.filter(|n| !known.contains(n.as_str())).collect();
+    names.sort();
+    let first = names.first()?;
+    Some(format!(
+        "{} folder(s) in runs belong to no run of the study as it is now and are left alone, the first is {first}",
+        names.len()
+    ))
 }
 
 /// The record of a run; `first` is the first repeat that is there.

@@ -69,11 +69,7 @@ impl Choice {
             }
             Choice::Points { values, .. } => points(values.get(k)?),
             Choice::Tangent { values, .. } => alone(tangent(*values.get(k)?)),
-            Choice::Penalty { values, .. } => alone(&match values.get(k)? {
-                Penalty::Auto => "automatic penalty".to_owned(),
-                Penalty::Value(p) => format!("penalty {}", number(*p)),
-                Penalty::Scaled(f) => format!("penalty {} x automatic", number(*f)),
-            }),
+            Choice::Penalty { values, .. } => penalty(values.get(k)?),
             Choice::Augmentation { values, .. } => alone(&augmentation(values.get(k)?)),
             Choice::Step { values } => fine("step", *values.get(k)?),
             Choice::Tolerance { values } => fine("tolerance", *values.get(k)?),
@@ -183,6 +179,23 @@ fn points(choice: &PointsChoice) -> Label {
         text: format!("{kind}{shown}{ending}"),
         series: format!("{kind}{ending}"),
         size: count.map(|n| 1.0 / f64::from(n)),
+    }
+}
+
+/// The gap that a penalty leaves vanishes with its inverse.
+fn penalty(choice: &Penalty) -> Label {
+    let (text, series, size) = match *choice {
+        Penalty::Auto => ("automatic penalty".to_owned(), "automatic penalty", 1.0),
+        Penalty::Value(p) => (format!("penalty {}", number(p)), "penalty", p.recip()),
+        Penalty::Scaled(f) => {
+            let text = format!("{} x automatic penalty", number(f));
+            (text, "automatic penalty", f.recip())
+        }
+    };
+    Label {
+        text,
+        series: series.to_owned(),
+        size: Some(size),
     }
 }
 

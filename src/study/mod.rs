@@ -2,7 +2,7 @@
 //!
 //! [`load`] reads a study file, [`expand`] makes the scenes of its runs and finds all that is wrong with it, [`Folder::write`]
 //! writes them where they are run, [`play()`] runs those that have not been run, and [`conclude`] makes a [`record::Record`] of
-//! what is there.
+//! what is there, of which [`report::write`] makes a page, pictures and a table.
 mod change;
 mod check;
 mod choice;
@@ -17,6 +17,7 @@ mod load;
 pub mod measure;
 mod play;
 pub mod record;
+pub mod report;
 mod triangles;
 
 pub use conclude::{conclude, machine};

@@ -47,6 +47,7 @@ use std::sync::Arc;
 pub use answer::PointAnswer;
 pub(crate) use bytes::sizes;
 pub use driven::Loose;
+pub use elements::Quadratic;
 pub use memory::{AssemblerMemory, CouplingMemory, MemoryError};
 pub use small::{Factored, Line, Needed};
 pub use viscous::Drag;

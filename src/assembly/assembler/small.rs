@@ -1,6 +1,6 @@
 //! The model at small displacements: `K u + sum eps_n A g n = f` with one stiffness for the whole run. The elements are
 //! evaluated once, undeformed, where the tangent of the large-rotation element is the stiffness of the linear one.
-use super::elements::{Systems, undeformed};
+use super::elements::{Quadratic, Systems, quadratic, undeformed};
 use super::{Assembler, Fault, Kind, PairForce, PatternError, SurfaceForce, Totals};
 use crate::assembly::{DofMap, Pattern, SystemMatrix};
 use crate::model::Model;
@@ -383,6 +383,14 @@ impl Assembler<'_> {
             });
             linear.at_hand = true;
         }
+    }
+
+    /// What the large-rotation elements add at displacements `u`.
+    ///
+    /// # Errors
+    /// Strains that are impossible.
+    pub fn small_quadratic(&self, u: &[f64]) -> Result<Quadratic, Fault> {
+        quadratic(self.model, u)
     }
 
     /// The energy along `du` from where the last evaluation was, `residual` being that of its own points in contact

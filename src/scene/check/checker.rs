@@ -210,7 +210,8 @@ impl<'a> Checker<'a> {
             }
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
                 let near = nearest_file(&full).map(|n| format!("did you mean `{n}`?"));
-                let help = near.unwrap_or_else(|| "paths are relative to the scene file".into());
+                let what = self.loaded.what;
+                let help = near.unwrap_or_else(|| format!("paths are relative to the {what} file"));
                 return self.add(at, format!("there is no file `{shown}`"), Some(help));
             }
             Err(e) => return self.add(at, format!("cannot read `{shown}`: {e}"), None),

@@ -39,7 +39,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         self.measure(trial, time)?;
         // The set of the last step costs nothing if its factorization is at hand; otherwise that of the start is as good.
         let mut changed = 0;
-        if self.assembler.small_needs(&trial.points) != Needed::Nothing {
+        if self.assembler.small_needs(&trial.points) == Needed::Factorization {
             changed = self.assembler.small_switch(&mut trial.points);
         }
         for iteration in 0.. {
