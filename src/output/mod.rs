@@ -28,6 +28,7 @@ mod trimmed;
 mod vtu;
 
 pub use bezier::{BezierError, MAX_DEGREE, SurfacePiece};
+pub(crate) use body::vtk_cell;
 pub use body::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, SLIP, STRESS_COMPONENTS, von_mises,
 };
@@ -39,4 +40,5 @@ pub use measure::{Phases, cpu_seconds, peak_memory_mb};
 pub use results::{PartNames, Results, SurfaceState, file_stem};
 pub use summary::{RunStatus, SUMMARY_FORMAT, Summary, Versions};
 pub use surface::SurfaceOutput;
+pub(crate) use vtu::escape;
 pub use vtu::{Field, Place};

@@ -172,7 +172,7 @@ pub fn facets(chords: &[f64], sheets: &[(&str, &[u32])]) -> Record {
         &["master", "shell"],
         vec![force(Some(0.0004)), noise(), curve()],
     );
-    let mut masters = vec![label("exact", "exact", None)];
+    let mut masters = vec![label("NURBS", "NURBS", None)];
     for series in ["bilinear", "smooth"] {
         for &chord in chords {
             masters.push(label(
@@ -304,6 +304,27 @@ pub fn two_hundred() -> Record {
         for run in &mut record.runs {
             let first = run.measured[0].clone();
             run.measured.push(first);
+        }
+    }
+    record
+}
+
+/// Twelve series: more than there are colours.
+pub fn many_series() -> Record {
+    let plain = facets(&[0.4, 0.1], &[("H8", &[4, 8, 16]), ("Q18", &[4, 8])]);
+    let mut record = empty(&["master", "shell", "points"], vec![force(Some(0.0004))]);
+    for (p, points) in ["nodes", "Gauss 2", "Gauss 3, averaged"]
+        .into_iter()
+        .enumerate()
+    {
+        for run in &plain.runs {
+            let mut run = run.clone();
+            run.id = format!("{}-{p}", run.id);
+            run.choices
+                .insert("points".into(), label(points, points, None));
+            run.measured.truncate(1);
+            run.measured[0].error = run.measured[0].error.map(|e| e * (1.0 + 0.3 * p as f64));
+            record.runs.push(run);
         }
     }
     record

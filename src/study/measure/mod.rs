@@ -5,6 +5,7 @@
 //! has an error of its own, which [`richardson`] estimates from the distances between the runs of the refinement.
 mod column;
 mod curve;
+mod field;
 mod reference;
 mod richardson;
 mod sample;
@@ -55,7 +56,7 @@ pub fn measure(
         }
         let reference = known.map(|known| match known {
             Ok(known) => known.record,
-            Err(lost) => lost.record,
+            Err(lost) => lost.into_record(),
         });
         if let Some(own) = reference.as_ref().and_then(|r| r.error) {
             near(runs, own, &mut told);
@@ -105,6 +106,7 @@ fn one(
     match &sampled.sample {
         Sample::Value(value) => out.value = Some(*value),
         Sample::Curve(curve) => out.curve = Some(curve.clone()),
+        Sample::Field(_) => {}
     }
     let known = match known {
         None => return out,

@@ -20,8 +20,21 @@ pub(super) struct Known {
 
 /// A reference that is not there.
 pub(super) struct Lost {
-    pub record: ReferenceRecord,
+    source: String,
     pub why: String,
+}
+
+impl Lost {
+    fn new(source: impl Into<String>, why: impl Into<String>) -> Lost {
+        Lost {
+            source: source.into(),
+            why: why.into(),
+        }
+    }
+
+    pub fn into_record(self) -> ReferenceRecord {
+        bare(self.source)
+    }
 }
 
 /// The reference of a quantity; none where the study names none. What is wrong with it is told.
@@ -40,39 +53,30 @@ pub(super) fn find(
             stored(&quantity.of, &dir.join(file), [x, y], source)
         }
         Reference::Finest(name) => {
-            let Some(refinement) = study.references.get(name) else {
-                let names = study.references.keys().map(String::as_str);
-                let why = match nearest(name, names) {
-                    Some(near) => {
-                        format!("the study has no reference `{name}`; did you mean `{near}`?")
-                    }
-                    None => format!("the study has no reference `{name}`"),
-                };
-                told.all(&format!("no errors: {why}"));
-                return Some(Err(lost(format!("`{name}`"), why)));
-            };
             let sequence = references.get(name).map_or(&[][..], Vec::as_slice);
-            let of = Sequence {
-                name,
-                refinement,
-                quantity,
-                runs,
-                source,
-            };
-            of.finest(sequence, told)
+            match study.references.get(name) {
+                Some(refinement) => Sequence {
+                    name,
+                    refinement,
+                    quantity,
+                    runs,
+                    source,
+                }
+                .finest(sequence, told),
+                None => {
+                    let names = study.references.keys().map(String::as_str);
+                    let near = nearest(name, names);
+                    let near = near.map_or(String::new(), |n| format!("; did you mean `{n}`?"));
+                    let why = format!("the study has no reference `{name}`{near}");
+                    Err(Lost::new(format!("`{name}`"), why))
+                }
+            }
         }
     };
     if let Err(lost) = &found {
         told.all(&format!("no errors, since {}", lost.why));
     }
     Some(found)
-}
-
-fn lost(source: String, why: String) -> Lost {
-    Lost {
-        record: bare(source),
-        why,
-    }
 }
 
 /// A record with nothing but its source.
@@ -98,7 +102,7 @@ fn is_curve(of: &Measure) -> bool {
 }
 
 fn number(of: &Measure, value: f64, source: &str) -> Result<Known, Lost> {
-    let refuse = |why: &str| Err(lost(source.to_string(), why.to_string()));
+    let refuse = |why: &str| Err(Lost::new(source, why));
     match of {
         Measure::Field { .. } => {
             return refuse("a field is compared with a run, not with a number");
@@ -119,7 +123,7 @@ fn number(of: &Measure, value: f64, source: &str) -> Result<Known, Lost> {
 }
 
 fn stored(of: &Measure, file: &Path, [x, y]: [&str; 2], source: &str) -> Result<Known, Lost> {
-    let refuse = |why: String| lost(source.to_string(), why);
+    let refuse = |why: String| Lost::new(source, why);
     if !is_curve(of) {
         let what = "a stored curve is there to compare curves with (`take`: `curve`)";
         return Err(refuse(what.into()));
@@ -161,26 +165,27 @@ impl Sequence<'_> {
         let source = |id: &str| format!("run `{id}`, the finest of `{name}`");
         let Some((&last, before)) = sequence.split_last() else {
             let why = format!("reference `{name}` has no runs");
-            return Err(lost(format!("`{name}`"), why));
+            return Err(Lost::new(format!("`{name}`"), why));
         };
         let Some(run) = self.runs.get(last) else {
             let why = format!("the runs of reference `{name}` are not there");
-            return Err(lost(format!("`{name}`"), why));
+            return Err(Lost::new(format!("`{name}`"), why));
         };
         let source = source(&run.id);
         let sample = match self.sample(last) {
             Ok(sample) => sample,
             Err(why) => {
                 let why = format!("the reference is missing ({source}): {why}");
-                return Err(lost(source, why));
+                return Err(Lost::new(source, why));
             }
         };
         let mut record = bare(source);
         match &sample {
             Sample::Value(value) => record.value = Some(*value),
             Sample::Curve(curve) => record.curve = Some(curve.clone()),
+            Sample::Field(_) => {}
         }
-        match self.estimate(&sample, before) {
+        match self.estimate(&sample, before, told) {
             Ok((estimate, scale)) => {
                 if let Some(doubt) = &estimate.doubt {
                     told.all(&format!("reference `{name}`: {doubt}"));
@@ -214,6 +219,7 @@ impl Sequence<'_> {
         &self,
         finest: &Sample,
         before: &[usize],
+        told: &mut Told,
     ) -> Result<(richardson::Estimate, f64), String> {
         let of = |run: usize| {
             self.sample(run).map_err(|why| {
@@ -226,18 +232,22 @@ impl Sequence<'_> {
         };
         let middle = of(middle)?;
         // Without the coarsest run a declared order does.
-        let coarse = match (coarser.last().map(|&run| of(run)), self.refinement.order) {
-            (Some(Ok(coarse)), _) => Some(coarse),
-            (Some(Err(why)), None) => return Err(why),
-            (Some(Err(_)) | None, _) => None,
+        let coarse = match (coarser.last(), self.refinement.order) {
+            (Some(&run), None) => Some((run, of(run)?)),
+            (Some(&run), Some(_)) => of(run).ok().map(|sample| (run, sample)),
+            (None, _) => None,
         };
         let last = middle.difference(finest)?;
         let scale = sample::scale(self.quantity.scale, last.size)?;
         let last = signed(&middle, finest, last.distance);
         let before = match &coarse {
-            Some(coarse) => {
-                let distance = coarse.difference(&middle)?.distance;
-                Some(signed(coarse, &middle, distance))
+            Some((run, coarse)) => {
+                let difference = coarse.difference(&middle)?;
+                for note in &difference.notes {
+                    let id = &self.runs[*run].id;
+                    told.run(&note.text, id, note.detail.as_deref());
+                }
+                Some(signed(coarse, &middle, difference.distance))
             }
             None => None,
         };

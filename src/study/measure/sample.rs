@@ -1,17 +1,19 @@
 //! What was measured of a run, before it is compared with anything.
 use super::super::file::Measure;
+use super::field::Field;
 use super::{column, curve, summary};
 use crate::output::{Table, read_csv};
 use serde_json::Value as Json;
 use std::cell::OnceCell;
 use std::path::PathBuf;
 
-/// A number or a curve.
+/// A number, a curve or a field.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Sample {
     Value(f64),
     /// Independent variable and value.
     Curve(Vec<[f64; 2]>),
+    Field(Box<Field>),
 }
 
 /// Something to tell the user about.
@@ -33,7 +35,7 @@ pub(super) struct Sampled {
 /// How far a sample is from another.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Difference {
-    /// Of values the size of their difference, of curves the root of its mean square.
+    /// Of values the size of their difference, of curves and fields the root of its mean square.
     pub distance: f64,
     /// Of the other sample, measured as the distance is.
     pub size: f64,
@@ -50,6 +52,7 @@ impl Sample {
                 notes: Vec::new(),
             }),
             (Sample::Curve(a), Sample::Curve(b)) => curve::difference(a, b),
+            (Sample::Field(a), Sample::Field(b)) => a.difference(b),
             _ => Err(format!(
                 "{} cannot be compared with {}",
                 self.kind(),
@@ -58,10 +61,11 @@ impl Sample {
         }
     }
 
-    pub fn kind(&self) -> &'static str {
+    fn kind(&self) -> &'static str {
         match self {
             Sample::Value(_) => "a number",
             Sample::Curve(_) => "a curve",
+            Sample::Field(_) => "a field",
         }
     }
 }
@@ -78,7 +82,7 @@ pub(super) fn scale(given: Option<f64>, size: f64) -> Result<f64, String> {
     }
 }
 
-/// The results of all runs, each file read once.
+/// The results of all runs. Tables and summaries are read once and kept, fields are read when asked for.
 pub(super) struct Source {
     runs: Vec<Files>,
 }
@@ -118,7 +122,10 @@ impl Source {
                 sample: Sample::Value(summary::number(files.summary()?, name)?),
                 notes: Vec::new(),
             }),
-            Measure::Field { .. } => Err("fields are not measured".into()),
+            Measure::Field { body, name } => Ok(Sampled {
+                sample: Sample::Field(Box::new(Field::read(&files.folder, body, name)?)),
+                notes: Vec::new(),
+            }),
         }
     }
 }

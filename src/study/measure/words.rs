@@ -1,5 +1,6 @@
 //! What is measured, in words.
 use super::super::file::{Measure, Take};
+use super::field::Field;
 
 /// E.g. "`force.ball.z` at the end".
 pub(super) fn measure(of: &Measure) -> String {
@@ -28,7 +29,13 @@ pub(super) fn measure(of: &Measure) -> String {
             }
             text
         }
-        Measure::Field { body, name } => format!("field `{name}` of body `{body}` at the end"),
+        Measure::Field { body, name } => {
+            let over = match Field::lives_on_slave_faces(name) {
+                true => "slave faces",
+                false => "volume",
+            };
+            format!("field `{name}` over the {over} of body `{body}` at the end")
+        }
         Measure::Summary { name } => format!("`{name}` of the summary"),
     }
 }

@@ -93,7 +93,7 @@ impl Axis {
         let every = (decades / 7.0).ceil().max(1.0) as i32;
         let labelled: &[f64] = match decades {
             d if d <= 0.8 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0],
-            d if d <= 2.2 => &[1.0, 2.0, 5.0],
+            d if d <= 2.6 => &[1.0, 2.0, 5.0],
             _ => &[1.0],
         };
         let minor: &[f64] = if decades <= 5.0 {

@@ -45,7 +45,7 @@ impl Bars {
     /// Draws them.
     pub fn draw(&self) -> Svg {
         let mut svg = Svg::new(WIDTH, &self.title);
-        svg.fitted_text("title", [12.0, 22.0], &self.title, (WIDTH - 24.0) / 1.25);
+        svg.fitted_text("title", [12.0, 22.0], &self.title, (WIDTH - 24.0) / 1.42);
         let widest = self
             .rows
             .iter()

@@ -1,4 +1,5 @@
 //! Legends below plots, where they cover no data.
+use super::plot::dashed;
 use super::svg::{Svg, width};
 use super::view::{Style, View};
 
@@ -13,6 +14,8 @@ pub(crate) enum Sign {
     Band,
     Front,
     Reference,
+    /// Colour and kind of dashes.
+    Curve(usize, usize),
     /// A line without markers in the colour of a series.
     Level(Style),
     Bar,
@@ -83,6 +86,12 @@ pub(crate) fn draw(svg: &mut Svg, entries: &[Entry], left: f64, top: f64) -> f64
         .iter()
         .map(|e| width(&e.text) + 46.0)
         .fold(0.0, f64::max);
+    // One long name among many short ones is cut rather than given a column as wide as the plot.
+    let widest = if entries.len() > 6 {
+        widest.min(0.5 * room)
+    } else {
+        widest
+    };
     let columns = ((room / widest).floor() as usize).clamp(1, 4);
     let rows = entries.len().div_ceil(columns);
     let columns = entries.len().div_ceil(rows);
@@ -132,6 +141,11 @@ fn sign(svg: &mut Svg, sign: Sign, [x, y]: [f64; 2]) {
         Sign::Phase(p) => svg.rect(&format!("p{p}"), [x + 8.0, y - 5.5], [15.0, 11.0]),
         Sign::Band => svg.rect("band", [x, y - 5.5], [26.0, 11.0]),
         Sign::Front => svg.line("front", [x + 3.0, y], [x + 23.0, y]),
+        Sign::Curve(c, dashes) => {
+            svg.open(&colour(c), None, "");
+            svg.line(dashed(dashes), from, to);
+            svg.close();
+        }
         Sign::Reference => svg.line("ref", from, to),
         Sign::None => {}
     }

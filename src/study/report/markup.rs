@@ -32,7 +32,32 @@ pub(crate) fn prose(text: &str) -> String {
             out.push_str(&raised(&escaped(part)));
         }
     }
-    out.replace(" %", "\u{a0}%")
+    unbroken(&out)
+}
+
+/// Spaces between a number and its unit, and in "8 x 8", where no line is to end.
+fn unbroken(text: &str) -> String {
+    let chars: Vec<char> = text.chars().collect();
+    let digit = |i: Option<usize>| {
+        i.and_then(|i| chars.get(i))
+            .is_some_and(char::is_ascii_digit)
+    };
+    let ends = |i: usize| chars.get(i).is_none_or(|c| !c.is_alphanumeric());
+    let mut out = String::with_capacity(text.len() + 16);
+    for (i, &c) in chars.iter().enumerate() {
+        let at = |k: usize| chars.get(i + k).copied();
+        let before = digit(i.checked_sub(1));
+        let unit = matches!(at(1), Some('%' | 's' | 'h')) && ends(i + 2)
+            || at(1) == Some('m') && at(2) == Some('s') && ends(i + 3);
+        let into_cross = matches!(at(1), Some('x' | '×')) && at(2) == Some(' ');
+        let past_cross = digit(Some(i + 1))
+            && i > 1
+            && matches!(chars[i - 1], 'x' | '×')
+            && matches!(chars[i - 2], ' ');
+        let keep = before && (unit || into_cross && digit(Some(i + 3))) || past_cross;
+        out.push(if c == ' ' && keep { '\u{a0}' } else { c });
+    }
+    out
 }
 
 /// `h^1.9` with its power raised.
@@ -85,6 +110,10 @@ mod tests {
         assert_eq!(
             prose("h^1.9. `a<b` 1 %"),
             "h<sup>1.9</sup>. <code>a&lt;b</code> 1\u{a0}%"
+        );
+        assert_eq!(
+            prose("8 x 16 x 2 costs 3 s, 1 ms"),
+            "8\u{a0}x\u{a0}16\u{a0}x\u{a0}2 costs 3\u{a0}s, 1\u{a0}ms"
         );
         assert_eq!(prose("one ` only ^ x"), "one ` only ^ x");
         assert_eq!(slug("Punch force (N) <z>"), "punch-force-n-z");

@@ -124,13 +124,14 @@ fn warnings(out: &mut String, view: &View) {
 fn pictures(out: &mut String, view: &View, figures: &[Figure]) {
     let mut left = PICTURES;
     let quantities = &view.record.quantities;
-    let full = figures.iter().filter_map(|f| f.quantity).next();
+    let first = figures.iter().filter_map(|f| f.quantity).next();
+    let full = first.or((!quantities.is_empty()).then_some(0));
     let of =
         |q: Option<usize>| -> Vec<&Figure> { figures.iter().filter(|f| f.quantity == q).collect() };
     if let Some(q) = full {
         let _ = writeln!(out, "<h2>{}</h2>", escaped(&quantities[q].name));
         about(out, &quantities[q]);
-        group(out, &of(Some(q)), &mut left);
+        quantity_group(out, &of(Some(q)), &mut left);
     }
     let cost = of(None);
     if !cost.is_empty() {
@@ -153,10 +154,7 @@ fn pictures(out: &mut String, view: &View, figures: &[Figure]) {
         let name = escaped(&quantities[q].name);
         let _ = writeln!(out, "<details{open}><summary>{name}</summary>");
         about(out, &quantities[q]);
-        if figures.is_empty() {
-            out.push_str("<p>No run has a value or an error to draw.</p>\n");
-        }
-        group(out, &figures, &mut left);
+        quantity_group(out, &figures, &mut left);
         out.push_str("</details>\n");
     }
 }
@@ -187,7 +185,18 @@ fn about(out: &mut String, quantity: &QuantityRecord) {
             ),
         });
     }
+    let mut chars = text.chars();
+    let first = chars.next().into_iter().flat_map(char::to_uppercase);
+    let text: String = first.chain(chars).collect();
     let _ = writeln!(out, "<p>{}</p>", prose(&text));
+}
+
+fn quantity_group(out: &mut String, figures: &[&Figure], left: &mut usize) {
+    if figures.is_empty() {
+        out.push_str("<p>No run has a value or an error to draw.</p>\n");
+    } else {
+        group(out, figures, left);
+    }
 }
 
 fn group(out: &mut String, figures: &[&Figure], left: &mut usize) {

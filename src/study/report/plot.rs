@@ -5,6 +5,8 @@ use super::svg::{Svg, width};
 use super::view::Style;
 
 pub(crate) const WIDTH: f64 = 640.0;
+/// Kinds of dashes that tell curves of one colour apart, the first without.
+pub(crate) const DASHES: usize = 4;
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 18.0;
 const TOP: f64 = 54.0;
@@ -38,10 +40,12 @@ pub(crate) struct Path {
 pub(crate) enum Kind {
     /// Joins runs.
     Join,
+    /// Joins runs that are not the finest in everything else.
+    Thin,
     /// Runs on from side to side.
     Level,
-    /// A curve of many points.
-    Curve,
+    /// A curve of many points, with one of [`DASHES`] kinds of dashes.
+    Curve(usize),
     Reference,
 }
 
@@ -66,7 +70,7 @@ impl Plot {
     /// Draws it.
     pub fn draw(&self) -> Svg {
         let mut svg = Svg::new(WIDTH, &self.title);
-        svg.fitted_text("title", [12.0, 22.0], &self.title, (WIDTH - 24.0) / 1.25);
+        svg.fitted_text("title", [12.0, 22.0], &self.title, (WIDTH - 24.0) / 1.42);
         svg.fitted_text("soft", [12.0, 42.0], &self.y_label, WIDTH - 24.0);
         self.band(&mut svg);
         self.grid(&mut svg);
@@ -155,7 +159,9 @@ impl Plot {
         let points: Vec<[f64; 2]> = path.points.iter().map(|&p| self.at(p)).collect();
         svg.open(&format!("c{}", path.colour), path.run, &path.title);
         let class = match path.kind {
-            Kind::Join | Kind::Curve => "l",
+            Kind::Join => "l",
+            Kind::Curve(dashes) => dashed(dashes),
+            Kind::Thin => "l thin",
             Kind::Level => "l dash",
             Kind::Reference => "ref",
         };
@@ -177,7 +183,17 @@ impl Plot {
                 }
             }
         }
-        svg.marker(point.style.marker, at, 4.6);
+        svg.marker(point.style.marker, at, 4.3);
         svg.close();
+    }
+}
+
+/// The class of a line with one of the kinds of dashes.
+pub(crate) fn dashed(kind: usize) -> &'static str {
+    match kind % DASHES {
+        0 => "l",
+        1 => "l dash",
+        2 => "l dot",
+        _ => "l long",
     }
 }

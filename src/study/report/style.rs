@@ -96,10 +96,12 @@ pub(crate) fn rules() -> String {
 .plot .frame{stroke:var(--muted);stroke-width:1;fill:none}
 .plot .band{fill:var(--band)}
 .plot .front{stroke:var(--front);stroke-width:7;stroke-linejoin:round;stroke-linecap:round;fill:none}
-.plot .l{fill:none;stroke:currentColor;stroke-width:1.6;stroke-linejoin:round}
-.plot .thin{stroke-width:1.1;opacity:.75}
+.plot .l{fill:none;stroke:currentColor;stroke-width:1.8;stroke-linejoin:round}
+.plot .thin{stroke-width:1;opacity:.6}
 .plot .dash{stroke-dasharray:6 4}
-.plot .ref{fill:none;stroke:var(--ink);stroke-width:1.6;stroke-dasharray:2 3}
+.plot .dot{stroke-dasharray:2 2.5}
+.plot .long{stroke-dasharray:14 4}
+.plot .ref{fill:none;stroke:var(--ink);stroke-width:1.2}
 .plot .m{fill:currentColor;stroke:var(--ground);stroke-width:1}
 .plot .open .m{fill:var(--ground);stroke:currentColor;stroke-width:1.6}
 .plot .e{stroke:currentColor;stroke-width:1.2;fill:none}

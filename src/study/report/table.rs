@@ -163,9 +163,14 @@ fn cells(view: &View, i: usize, on_front: bool) -> Vec<Cell> {
     name.key = Some(i as f64);
     let mut out = vec![name];
     for &c in &view.varying {
-        let label = view.label(i, c);
-        let mut cell = words(label.map_or(String::new(), |l| l.text.clone()));
-        cell.class = "choice";
+        let text = |i: usize| view.label(i, c).map_or("", |l| l.text.as_str());
+        let mut cell = words(text(i).to_string());
+        // In the order of the study: letters would put 10 before 9, and 0.1 before 0.025.
+        let first = (0..=i).find(|&j| text(j) == text(i));
+        cell.key = first.map(|j| j as f64);
+        if cell.text.chars().count() > 30 {
+            cell.class = "choice";
+        }
         out.push(cell);
     }
     out.push(status(run, on_front));
@@ -224,7 +229,7 @@ fn cells(view: &View, i: usize, on_front: bool) -> Vec<Cell> {
 
 fn status(run: &crate::study::record::RunRecord, on_front: bool) -> Cell {
     let (text, key, class) = match &run.ending {
-        Ending::Done if on_front => ("done, on the front".to_string(), 0.0, "front-run"),
+        Ending::Done if on_front => ("done, Pareto front".to_string(), 0.0, "front-run"),
         Ending::Done => ("done".to_string(), 1.0, ""),
         Ending::Failed(reason) => (format!("failed: {reason}"), 2.0, "reason"),
         Ending::Missing => ("missing".to_string(), 3.0, "reason"),

@@ -192,10 +192,11 @@ impl<'a> View<'a> {
 
     /// A label that can stand without the name of its choice: "bilinear", but "step 0.1".
     pub fn say(&self, choice: usize, text: &str) -> String {
-        let text = text.trim();
-        let bare = ["true", "false", "on", "off", "none", "null", "yes", "no"].contains(&text);
+        let text = text.trim().replace(", ", " ");
+        let bare =
+            ["true", "false", "on", "off", "none", "null", "yes", "no"].contains(&text.as_str());
         if text.chars().next().is_some_and(char::is_alphabetic) && !bare {
-            text.to_string()
+            text
         } else if text.is_empty() {
             String::new()
         } else {
@@ -210,7 +211,6 @@ impl<'a> View<'a> {
             .iter()
             .filter_map(|&c| self.label(run, c).map(|l| self.say(c, &l.text)))
             .filter(|part| !part.is_empty())
-            .map(|part| part.replace(", ", " "))
             .collect();
         if parts.is_empty() {
             vec![self.run(run).id.clone()]
@@ -227,9 +227,12 @@ impl<'a> View<'a> {
         }
     }
 
-    /// "bilinear chord 0.1 and H8 10 x 10".
-    pub fn words(&self, run: usize) -> String {
-        listed(&self.parts(run))
+    /// " with bilinear chord 0.1 and H8 10 x 10"; nothing where runs do not differ.
+    pub fn with(&self, run: usize) -> String {
+        if self.varying.is_empty() {
+            return String::new();
+        }
+        format!(" with {}", listed(&self.parts(run)))
     }
 
     /// Choices with sizes, of which some series has several.
@@ -310,24 +313,50 @@ impl<'a> View<'a> {
 
     /// What sizes of a choice are called, e.g. "chord": the word that labels have between series and number.
     pub fn size_word(&self, choice: usize) -> Option<String> {
+        let name = &self.record.choices[choice];
         let mut word: Option<String> = None;
         for i in self.done() {
             let Some(label) = self.label(i, choice).filter(|l| l.size.is_some()) else {
                 continue;
             };
-            let rest = label.text.strip_prefix(&label.series).unwrap_or("");
-            let letters: String = rest
-                .trim_matches(|c: char| !c.is_alphabetic())
-                .chars()
-                .filter(|c| c.is_alphabetic() || *c == ' ')
-                .collect();
-            let one = letters.trim().to_string();
+            let rest = finer(label);
+            let letters: String = rest.chars().take_while(|c| c.is_alphabetic()).collect();
+            let one = if label.series == *name && rest.parse::<f64>().is_ok() {
+                name.clone()
+            } else {
+                letters
+            };
             if one.len() < 3 || word.as_ref().is_some_and(|w| *w != one) {
                 return None;
             }
             word = Some(one);
         }
         word
+    }
+
+    /// What sizes of a choice are, for axes.
+    pub fn size_meaning(&self, choice: usize) -> String {
+        let name = &self.record.choices[choice];
+        match (self.size_word(choice), name.as_str()) {
+            (Some(word), _) if word == *name => word,
+            (Some(word), _) => format!("{word} of {name}"),
+            (None, "shell") => "relative element size".to_string(),
+            (None, "points") => "1/n of the points".to_string(),
+            (None, _) => format!("size of {name}"),
+        }
+    }
+}
+
+/// What a label says of its size, e.g. "chord 0.1": what follows the name of its series. All of it where the two differ
+/// otherwise.
+pub(crate) fn finer(label: &Label) -> &str {
+    match label.text.strip_prefix(&label.series) {
+        Some(rest) => rest.trim_matches([' ', ',']),
+        None if label.series.contains(" by ") => {
+            let after = label.text.split_once(", ").map(|parts| parts.1);
+            after.unwrap_or(&label.text)
+        }
+        None => &label.text,
     }
 }
 

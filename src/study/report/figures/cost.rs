@@ -4,10 +4,10 @@ use super::super::bars::{Bars, Row, Shape};
 use super::super::legend::{self, Entry, Sign};
 use super::super::markup::slug;
 use super::super::number::{count, digits, percent, seconds};
-use super::super::plot::{Kind, Path, Plot};
+use super::super::plot::{Path, Plot};
 use super::super::view::View;
 use super::value::{ROWS, some_of};
-use super::{Figure, point, series_of, size_label, title};
+use super::{Figure, joined, point, series_of, title};
 use crate::study::record::Ending;
 
 /// Phases with a colour of their own; the rest has the last one.
@@ -217,7 +217,7 @@ fn iterations(view: &View) -> Option<Figure> {
     };
     Some(Figure {
         file: "iterations".into(),
-        caption: format!("Mean, and in brackets the most.{cut}"),
+        caption: format!("In brackets the most.{cut}"),
         svg: bars.draw(),
         quantity: None,
     })
@@ -234,7 +234,7 @@ fn iterations_against_size(view: &View, choice: usize) -> Option<Figure> {
     if sized.len() < 2 {
         return None;
     }
-    let over = size_label(view, choice);
+    let over = view.size_meaning(choice);
     let mut plot = Plot {
         title: format!("Newton iterations per step against {over}"),
         x: Axis::log(
@@ -257,7 +257,7 @@ fn iterations_against_size(view: &View, choice: usize) -> Option<Figure> {
                 .filter_map(|&i| Some([view.size(i, choice)?, of(i)?]))
                 .collect(),
             colour: view.series[line.series].style.colour,
-            kind: Kind::Join,
+            kind: joined(&line),
             title: view.series[line.series].name.clone(),
             run: None,
         });

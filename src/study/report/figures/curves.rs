@@ -39,7 +39,7 @@ pub(super) fn figures(view: &View, q: usize, out: &mut Vec<Figure>) {
         format!(" ({})", quantity.unit)
     };
     let mut plot = Plot {
-        title: format!("{}: curves", quantity.name),
+        title: format!("Curves: {}", quantity.name),
         x: Axis::linear(all().map(|p| p[0]), false, Form::Plain),
         x_label: variable(view.record, q),
         y: Axis::linear(all().map(|p| p[1]), false, Form::Plain),
@@ -50,18 +50,22 @@ pub(super) fn figures(view: &View, q: usize, out: &mut Vec<Figure>) {
         front: Vec::new(),
         legend: Vec::new(),
     };
-    for (k, (&i, curve)) in shown.iter().zip(&curves).enumerate() {
+    let mut of_colour = [0; STYLES];
+    for (&i, curve) in shown.iter().zip(&curves) {
         let error = view.error(i, q).map(percent);
         let said = error.map_or("no error known".to_string(), |e| format!("error {e}"));
+        let colour = view.style(i).colour;
+        let dashes = of_colour[colour];
+        of_colour[colour] += 1;
         plot.paths.push(Path {
             points: thinned(curve),
-            colour: k,
-            kind: Kind::Curve,
+            colour,
+            kind: Kind::Curve(dashes),
             title: title(view, i, &said),
             run: Some(i),
         });
         plot.legend.push(Entry::new(
-            Sign::Colour(k),
+            Sign::Curve(colour, dashes),
             format!("{} ({said})", view.name(i)),
         ));
     }
@@ -77,7 +81,7 @@ pub(super) fn figures(view: &View, q: usize, out: &mut Vec<Figure>) {
     }
     out.push(Figure {
         file: "curves".into(),
-        caption: format!("Colours are of single runs here.{some}"),
+        caption: some,
         svg: plot.draw(),
         quantity: None,
     });
@@ -103,7 +107,7 @@ fn choose(view: &View, q: usize, with: &[usize]) -> (Vec<usize>, String) {
     }
     chosen.sort_unstable();
     let said = format!(
-        " {} of {} runs: the best of every series, then the worst, as far as the colours go.",
+        "{} of {} runs: the best of every series, then the worst, as long as they can be told apart.",
         chosen.len(),
         with.len()
     );

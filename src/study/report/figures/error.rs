@@ -7,7 +7,7 @@ use super::super::number::{digits, percent, several};
 use super::super::plot::{Kind, Path, Plot};
 use super::super::rates::{error_rate, own_error};
 use super::super::view::{Line, View};
-use super::{Figure, band_text, point, series_of, size_label, title, without};
+use super::{Figure, band_text, joined, point, series_of, title, without};
 
 pub(super) fn figures(view: &View, q: usize, out: &mut Vec<Figure>) {
     let done = view.done();
@@ -34,7 +34,7 @@ fn plot(view: &View, q: usize, over: &str, x: Axis, x_label: &str, runs: &[usize
     let least = errors().filter(|e| *e > 0.0).fold(f64::INFINITY, f64::min);
     let own = own_error(view, q).filter(|own| *own > 0.0 && *own >= least / 5.0);
     Plot {
-        title: format!("{name}: error against {over}"),
+        title: format!("Error against {over}: {name}"),
         x,
         x_label: x_label.to_string(),
         y: Axis::log(errors().chain(own), Form::Percent),
@@ -85,7 +85,7 @@ fn fill(
         plot.paths.push(Path {
             points,
             colour: view.series[line.series].style.colour,
-            kind: Kind::Join,
+            kind: joined(line),
             title: view.series[line.series].name.clone(),
             run: None,
         });
@@ -214,7 +214,7 @@ fn against_size(
         return None;
     }
     let x = Axis::log(runs.iter().filter_map(|&i| size(i)), Form::Plain);
-    let over = size_label(view, choice);
+    let over = view.size_meaning(choice);
     let mut plot = plot(view, q, &over, x, &over, with);
     let levels = levels(view, choice, with, |i| view.error(i, q), &mut plot);
     fill(view, q, &mut plot, &runs, &lines, size);
@@ -274,10 +274,14 @@ pub(super) fn levels(
             title: view.name(i),
             run: Some(i),
         });
-        entries.push(Entry::new(
-            Sign::Level(series.style),
-            format!("{} (of no size)", view.name(i)),
-        ));
+        let sign = Sign::Level(series.style);
+        let text = match &view.factors {
+            None => format!("{}, for comparison", view.name(i)),
+            Some(factors) => format!("{}, for comparison", factors.colours[series.style.colour]),
+        };
+        if !entries.iter().any(|e: &Entry| e.text == text) {
+            entries.push(Entry::new(sign, text));
+        }
     }
     // As many as can be told apart.
     if entries.len() > 8 {
@@ -285,7 +289,7 @@ pub(super) fn levels(
         entries.truncate(8);
         entries.push(Entry::new(
             Sign::None,
-            format!("and {rest} more of no size"),
+            format!("and {rest} more for comparison"),
         ));
     }
     entries

@@ -8,9 +8,9 @@ pub(crate) use cost::{per_step, phases_in_words};
 
 use super::markup::slug;
 use super::number::{count, percent, seconds};
-use super::plot::Point;
+use super::plot::{Kind, Point};
 use super::svg::Svg;
-use super::view::View;
+use super::view::{Line, View};
 
 /// A picture with its words.
 pub(crate) struct Figure {
@@ -79,21 +79,17 @@ fn point(view: &View, run: usize, at: [f64; 2], title: String) -> Point {
     }
 }
 
+/// The line that is finest in everything else stands out.
+fn joined(line: &Line) -> Kind {
+    if line.finest { Kind::Join } else { Kind::Thin }
+}
+
 /// Series that have a run among these, in their order.
 fn series_of(view: &View, runs: impl Iterator<Item = usize>) -> Vec<usize> {
     let mut out: Vec<usize> = runs.filter_map(|i| view.of_run[i]).collect();
     out.sort_unstable();
     out.dedup();
     out
-}
-
-/// What the axis over the sizes of a choice is called.
-fn size_label(view: &View, choice: usize) -> String {
-    let name = &view.record.choices[choice];
-    match view.size_word(choice) {
-        Some(word) if word != *name => format!("{word} ({name})"),
-        _ => format!("size of {name}"),
-    }
 }
 
 /// "2 runs that are done have no error."

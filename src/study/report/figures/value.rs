@@ -4,10 +4,10 @@ use super::super::bars::{Bars, Row, Shape};
 use super::super::legend;
 use super::super::markup::slug;
 use super::super::number::{digits, percent};
-use super::super::plot::{Kind, Path, Plot};
+use super::super::plot::{Path, Plot};
 use super::super::view::View;
 use super::error::levels;
-use super::{Figure, point, series_of, size_label, title, without};
+use super::{Figure, joined, point, series_of, title, without};
 
 /// Bars beyond these many are left out.
 pub(super) const ROWS: usize = 48;
@@ -65,7 +65,7 @@ fn against_size(
     if runs.len() < 2 {
         return None;
     }
-    let over = size_label(view, choice);
+    let over = view.size_meaning(choice);
     let values = || with.iter().filter_map(|&i| value(i));
     let form = if quantity.swing {
         Form::Percent
@@ -74,7 +74,11 @@ fn against_size(
     };
     let log = quantity.swing && values().any(|v| v > 0.0);
     let mut plot = Plot {
-        title: format!("{} against {over}", quantity.name),
+        title: format!(
+            "{} against {over}: {}",
+            if quantity.swing { "Noise" } else { "Value" },
+            quantity.name
+        ),
         x: Axis::log(
             runs.iter().filter_map(|&i| view.size(i, choice)),
             Form::Plain,
@@ -100,7 +104,7 @@ fn against_size(
         plot.paths.push(Path {
             points,
             colour: view.series[line.series].style.colour,
-            kind: Kind::Join,
+            kind: joined(&line),
             title: view.series[line.series].name.clone(),
             run: None,
         });

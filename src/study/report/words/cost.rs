@@ -1,7 +1,7 @@
 //! What a target error costs, with what, and what it costs with everything else.
-use super::super::number::{listed, percent, seconds, several};
+use super::super::number::{listed, percent, seconds};
 use super::super::rates::own_error;
-use super::super::view::View;
+use super::super::view::{View, finer};
 use super::{by_series, overlap};
 
 /// What a set of runs says about a target.
@@ -80,9 +80,9 @@ fn reached(view: &View, q: usize, runs: &[usize], targets: &[f64]) -> Vec<String
                 };
                 let others = others(view, choice, &series, each, i, it);
                 out.push(format!(
-                    "{said} {verb} {} with {}{others}.",
+                    "{said} {verb} {}{}{others}.",
                     time(view, i),
-                    view.words(i)
+                    view.with(i)
                 ));
             }
             Reach::Unknown => out.push(format!(
@@ -94,10 +94,10 @@ fn reached(view: &View, q: usize, runs: &[usize], targets: &[f64]) -> Vec<String
                 let closest = (runs.iter().copied()).min_by(|&a, &b| error(a).total_cmp(&error(b)));
                 let closest = closest.map_or(String::new(), |i| {
                     format!(
-                        "; the closest comes to {} in {} with {}",
+                        "; the closest comes to {} in {}{}",
                         percent(error(i)),
                         time(view, i),
-                        view.words(i)
+                        view.with(i)
                     )
                 });
                 let said = said.replace(" and ", " or ");
@@ -186,9 +186,7 @@ fn rest(view: &View, choice: usize, run: usize) -> String {
             continue;
         };
         let part = if c == choice {
-            let rest = label.text.strip_prefix(&label.series);
-            rest.map(|r| r.trim_matches([' ', ',']))
-                .unwrap_or(&label.text)
+            finer(label)
         } else {
             &view.say(c, &label.text)
         };
@@ -215,9 +213,10 @@ fn reach(view: &View, q: usize, runs: &[usize], target: f64) -> Reach {
     }
 }
 
-/// The choice whose series differ most in what the targets cost; one that never reaches a target counts as hundred times
-/// the cheapest.
+/// The choice whose series differ most in what the targets cost. A series that never reaches a target counts as twice its
+/// most costly run: that much has been tried.
 fn separating(view: &View, q: usize, runs: &[usize], targets: &[f64]) -> Option<usize> {
+    let wall = |i: usize| view.wall(i).map_or(0.0, |w| w.median);
     let mut best: Option<(f64, usize)> = None;
     for &c in &view.varying {
         let series = by_series(view, c, runs);
@@ -226,22 +225,15 @@ fn separating(view: &View, q: usize, runs: &[usize], targets: &[f64]) -> Option<
         }
         let mut sum = 0.0;
         for &target in targets {
-            let reached: Vec<f64> = (series.iter())
-                .filter_map(|s| match reach(view, q, &s.1, target) {
-                    Reach::At(i) => view.wall(i).map(|w| w.median),
-                    _ => None,
-                })
-                .collect();
-            let least = reached.iter().copied().fold(f64::INFINITY, f64::min);
-            let most = reached.iter().copied().fold(0.0, f64::max);
-            if reached.is_empty() {
+            let Reach::At(cheapest) = reach(view, q, runs, target) else {
                 continue;
-            }
-            sum += if reached.len() < series.len() {
-                100f64.max(most / least).ln()
-            } else {
-                (most / least).ln()
             };
+            let cost = |runs: &[usize]| match reach(view, q, runs, target) {
+                Reach::At(i) => wall(i),
+                _ => 2.0 * runs.iter().map(|&i| wall(i)).fold(0.0, f64::max),
+            };
+            let most = series.iter().map(|s| cost(&s.1)).fold(0.0, f64::max);
+            sum += (most / wall(cheapest)).max(1.0).ln();
         }
         // The first of equals stays.
         if best.is_none_or(|b| sum > b.0 * (1.0 + 1e-9)) {
@@ -252,8 +244,7 @@ fn separating(view: &View, q: usize, runs: &[usize], targets: &[f64]) -> Option<
 }
 
 fn time(view: &View, run: usize) -> String {
-    view.wall(run)
-        .map_or(several(0, "second"), |w| seconds(w.median))
+    view.wall(run).map_or(String::new(), |w| seconds(w.median))
 }
 
 fn all(targets: &[f64]) -> String {

@@ -34,12 +34,16 @@ pub(super) fn sentences(view: &View, q: usize) -> Vec<String> {
         };
         parts.truncate(NAMED);
         let meaning = match letter {
-            "h" => format!(" (h: size of {})", view.record.choices[c]),
+            "h" => format!(" (h: {})", view.size_meaning(c)),
             _ => String::new(),
         };
         out.push(format!(
             "The error of {name} falls {}{more}{meaning}.",
-            listed(&parts)
+            if view.series.iter().any(|s| s.name.contains(", ")) {
+                parts.join("; ")
+            } else {
+                listed(&parts)
+            }
         ));
     }
     out
