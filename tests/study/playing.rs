@@ -134,6 +134,63 @@ fn a_study_goes_on() {
     assert!((0.4..0.7).contains(&ratio), "{ratio}");
 }
 
+/// Fields are written where one is measured, at the end only, and times of other numbers of threads are not mixed in.
+#[test]
+fn fields_and_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    two_by_two(folder.path());
+    let path = folder.path().join("study.json");
+    let mut study: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    study["references"] = json!({ "fine": { "order": 2, "runs": [
+        { "/bodies/plate/mesh/plate/elements": [4, 4] },
+        { "/bodies/plate/mesh/plate/elements": [8, 8] },
+    ] } });
+    study["quantities"] = json!([{
+        "name": "displacement",
+        "of": { "field": { "body": "plate", "name": "displacement" } },
+        "reference": { "finest": "fine" }
+    }]);
+    study["timing"] = json!({ "repeats": 1 });
+    write(folder.path(), "study.json", &study);
+    let output = covact(folder.path(), &STUDY);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let out = folder.path().join("out");
+    let record = record(&out);
+    assert_eq!(record.runs.len(), 3);
+    let error = |i: usize| record.runs[i].measured[0].error.unwrap();
+    // The coarser plate is farther from the truth.
+    assert!(
+        error(0) > 1.5 * error(1) && error(1) > 1e-4,
+        "{} {}",
+        error(0),
+        error(1)
+    );
+    let files = std::fs::read_dir(out.join("runs").join(RUNS[0]).join("1")).unwrap();
+    let mut fields: Vec<String> = files
+        .map(|f| f.unwrap().file_name().into_string().unwrap())
+        .collect();
+    fields.retain(|name| name.starts_with("plate_") && name.ends_with(".vtu"));
+    fields.sort();
+    assert_eq!(fields.last().map(String::as_str), Some("plate_0002.vtu"));
+    assert!(!fields.contains(&"plate_0001.vtu".to_owned()), "{fields:?}");
+
+    study["timing"]["threads"] = json!(2);
+    write(folder.path(), "study.json", &study);
+    let output = covact(
+        folder.path(),
+        &["study", "study.json", "-o", "out", "--collect"],
+    );
+    assert_eq!(output.status.code(), Some(4));
+    let said = stderr(&output);
+    assert!(
+        said.contains("are not taken: they took 1 thread(s), and the study asks for 2"),
+        "{said}"
+    );
+    let output = covact(folder.path(), &STUDY);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(events(&output).iter().all(|e| e["before"] == false));
+}
+
 /// An interrupt ends the study; what is done is kept, what is open is named, and the same command goes on.
 #[cfg(unix)]
 #[test]
@@ -165,6 +222,11 @@ fn an_interrupted_study_goes_on() {
         .status()
         .unwrap();
     assert!(killed.success());
+    let last: Value = serde_json::from_str(&lines.next().unwrap().unwrap()).unwrap();
+    assert_eq!(
+        last,
+        json!({ "event": "finished", "done": 1, "failed": 0, "missing": 1, "incomplete": 0 })
+    );
     assert!(lines.next().is_none());
     assert_eq!(child.wait().unwrap().code(), Some(4));
     let left = record(&folder.path().join("out"));

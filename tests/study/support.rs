@@ -77,11 +77,14 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// The events that `--json` told.
+/// The runs that `--json` told of.
 pub fn events(output: &Output) -> Vec<Value> {
     let text = String::from_utf8(output.stdout.clone()).unwrap();
     let lines = text.lines().map(|l| serde_json::from_str(l).unwrap());
-    lines.collect()
+    let mut events: Vec<Value> = lines.collect();
+    assert_eq!(events.pop().unwrap()["event"], "finished");
+    assert!(events.iter().all(|e| e["event"] == "run"));
+    events
 }
 
 /// `OUT/study.json`.
