@@ -106,7 +106,7 @@ fn shells_that_the_mesh_does_not_have() {
     );
     refused(
         &shell(json!({ "h8": [0, 2] })),
-        &format!("{at}/h8/0"),
+        &format!("{at}/h8"),
         "with H8 0 x 2, the scene is wrong at `/bodies/plate/mesh/plate/elements/0`",
         "whole number from 1",
     );
