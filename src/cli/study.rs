@@ -2,7 +2,7 @@
 use super::{StudyArgs, exit, report};
 use crate::study::record::{Ending, Record};
 use crate::study::{
-    Event, Expansion, Folder, LoadedStudy, Settings, StudyError, conclude, expand, load, play,
+    Event, Folder, LoadedStudy, Settings, StudyError, conclude, expand, load, play,
 };
 use serde_json::json;
 use std::path::PathBuf;
@@ -48,7 +48,6 @@ fn run(args: &StudyArgs) -> Result<u8, StudyError> {
     Ok(end(
         args,
         &loaded,
-        &expansion,
         &record,
         interrupt.load(Ordering::Relaxed),
     ))
@@ -131,13 +130,7 @@ fn tell(event: &Event, args: &StudyArgs, width: usize) {
 }
 
 /// Says how it came out; the exit code.
-fn end(
-    args: &StudyArgs,
-    loaded: &LoadedStudy,
-    expansion: &Expansion,
-    record: &Record,
-    interrupted: bool,
-) -> u8 {
+fn end(args: &StudyArgs, loaded: &LoadedStudy, record: &Record, interrupted: bool) -> u8 {
     let (mut failed, mut missing) = (Vec::new(), Vec::new());
     for run in &record.runs {
         match &run.ending {
@@ -160,11 +153,21 @@ fn end(
         run.ending == Ending::Done && run.wall.is_none_or(|w| w.repeats < repeats)
     };
     let incomplete = record.runs.iter().filter(short).count();
-    if !args.quiet && !args.json {
+    let done = record.runs.len() - failed.len() - missing.len();
+    if args.json {
+        let line = json!({
+            "event": "finished",
+            "done": done,
+            "failed": failed.len(),
+            "missing": missing.len(),
+            "incomplete": incomplete,
+        });
+        super::print(&format!("{line}\n"));
+    } else if !args.quiet {
         report::stderr(&format!(
             "{} runs: {} done, {} failed, {} missing; results in {}\n",
-            expansion.runs.len(),
-            expansion.runs.len() - failed.len() - missing.len(),
+            record.runs.len(),
+            done,
             failed.len(),
             missing.len(),
             args.out.display()

@@ -251,7 +251,7 @@ fn shell(
     variant.set(
         &format!("{mesh}{}", pointer(&[&kind, "elements"])),
         &json!(counts),
-        from,
+        &format!("{from}{}", pointer(&[element])),
     )?;
     variant.set(
         &pointer(&["bodies", body, "element"]),

@@ -15,10 +15,10 @@ const REASON: usize = 300;
 #[derive(Debug, Clone)]
 pub(super) struct State {
     pub ending: Ending,
-    /// Of this scene and program.
+    /// Of this scene, program and number of threads.
     pub summary: Option<Summary>,
     pub account: Option<Account>,
-    /// Results that are there, but of another scene or program.
+    /// Why results that are there are not taken.
     pub stale: Option<String>,
 }
 
@@ -48,18 +48,24 @@ pub(super) fn state(folder: &Folder, run: usize, repeat: u32) -> State {
     let found = Summary::read(&results.join("summary.json")).ok();
     let account = Account::read(&results);
     let mut stale = None;
-    let mut fits = |scene: &str, covact: &str| {
-        if covact != version {
-            stale = Some(format!(
-                "they are of covact {covact}, and this is {version}"
-            ));
+    let mut fits = |scene: &str, covact: &str, threads: usize| {
+        let why = if covact != version {
+            format!("they are of covact {covact}, and this is {version}")
         } else if scene != ready.checksum {
-            stale = Some("the scene or a file that it names has changed since".to_owned());
-        }
-        covact == version && scene == ready.checksum
+            "the scene or a file that it names has changed since".to_owned()
+        } else if threads != folder.threads as usize {
+            format!(
+                "they took {threads} thread(s), and the study asks for {}",
+                folder.threads
+            )
+        } else {
+            return true;
+        };
+        stale = Some(why);
+        false
     };
-    let summary = found.filter(|s| fits(&s.scene, &s.versions.covact));
-    let account = account.filter(|a| fits(&a.scene, &a.covact));
+    let summary = found.filter(|s| fits(&s.scene, &s.versions.covact, s.threads));
+    let account = account.filter(|a| fits(&a.scene, &a.covact, a.threads));
     let ending = match (&summary, &account) {
         (_, Some(account)) if account.stopped_after.is_some() => {
             let after = account.stopped_after.unwrap_or_default();

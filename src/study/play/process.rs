@@ -1,7 +1,7 @@
 //! One repeat of a run: a process, its limit, and the account of it.
 use super::Settings;
-use crate::output::OutputError;
 use crate::output::atomic::{make_folder, write_whole};
+use crate::output::{OutputError, RunStatus, Summary};
 use crate::study::error::StudyError;
 use crate::study::folder::Folder;
 use serde::{Deserialize, Serialize};
@@ -15,15 +15,20 @@ use std::time::{Duration, Instant};
 /// Bounds of the time between two looks at a process: so short that a run's time is known to half a hundredth.
 const LOOK: [Duration; 2] = [Duration::from_micros(500), Duration::from_millis(20)];
 
-/// `process.json` beside the results of a run: what its process took, as seen from outside.
+/// `process.json` beside the results of a run: what its process took, and how it ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Account {
     /// Version of the program.
     pub covact: String,
     /// Checksum of the scene.
     pub scene: String,
-    /// Elapsed seconds.
+    pub threads: usize,
+    /// Elapsed seconds of the process, as seen from outside.
     pub wall_s: f64,
+    /// Processor seconds of all threads, as the run tells.
+    pub cpu_s: Option<f64>,
+    /// Largest resident memory in MB (10^6 bytes), as the run tells.
+    pub peak_memory_mb: Option<f64>,
     /// None where a signal ended it.
     pub exit_code: Option<i32>,
     /// The signal that ended it, where one did.
@@ -93,7 +98,15 @@ impl Process<'_> {
             }
         };
         let wall_s = start.elapsed().as_secs_f64();
+        let summary = Summary::read(&results.join("summary.json")).ok();
+        // At the terminal an interrupt reaches the run, too, and perhaps before it reaches this program.
+        if (summary.as_ref()).is_some_and(|s| s.status == RunStatus::Interrupted) {
+            return Ok(Ended::Interrupted);
+        }
         let account = Account {
+            threads: self.folder.threads as usize,
+            cpu_s: summary.as_ref().and_then(|s| s.cpu_s),
+            peak_memory_mb: summary.as_ref().and_then(|s| s.peak_memory_mb),
             covact: env!("CARGO_PKG_VERSION").to_owned(),
             scene: ready.checksum.clone(),
             wall_s,
@@ -101,10 +114,6 @@ impl Process<'_> {
             signal: signal(status),
             stopped_after,
         };
-        // At the terminal an interrupt reaches the run, too, and perhaps before it reaches this program.
-        if account.exit_code == Some(4) && stopped_by_user(&results) {
-            return Ok(Ended::Interrupted);
-        }
         account.write(&results)?;
         Ok(Ended::Done)
     }
@@ -140,11 +149,6 @@ fn clear(results: &Path) -> Result<(), OutputError> {
 
 fn wait(child: &mut Child, results: &Path) -> Result<ExitStatus, OutputError> {
     (child.wait()).map_err(|e| OutputError::io("wait for the run in", results, e))
-}
-
-fn stopped_by_user(results: &Path) -> bool {
-    use crate::output::{RunStatus, Summary};
-    Summary::read(&results.join("summary.json")).is_ok_and(|s| s.status == RunStatus::Interrupted)
 }
 
 #[cfg(unix)]
