@@ -5,12 +5,14 @@ mod convert;
 mod gauntlet;
 mod inspect;
 mod new;
+mod plan;
 mod progress;
 mod project;
 mod report;
 mod run;
 mod soak;
 mod study;
+mod without;
 
 use clap::{Args, Parser, Subcommand};
 use std::io::Write;
@@ -50,6 +52,8 @@ enum Command {
     Run(RunArgs),
     /// Read and check everything a scene names; solve nothing
     Check(CheckArgs),
+    /// Every effect that the program has: on or off in a scene, why, and what it costs; solve nothing
+    Plan(CheckArgs),
     /// Show what is in a CAD file
     Inspect(InspectArgs),
     /// Closest points of a CAD file to the points of a list
@@ -78,6 +82,11 @@ struct RunArgs {
     /// Go on with a run that was cut short, from its last accepted step
     #[arg(long)]
     resume: bool,
+    #[arg(long, value_name = "EFFECT", conflicts_with = "off", help = without::help())]
+    without: Vec<String>,
+    /// Run only the what-if: the scene without this effect, into FOLDER
+    #[arg(long, value_name = "EFFECT", hide = true)]
+    off: Option<String>,
     /// Print one JSON object per event and line
     #[arg(long, conflicts_with = "quiet")]
     json: bool,
@@ -231,6 +240,7 @@ pub fn main() -> ExitCode {
     let result = std::panic::catch_unwind(move || match cli.command {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
+        Command::Plan(args) => plan::plan(&args),
         Command::Inspect(args) => inspect::inspect(&args),
         Command::Project(args) => project::project(&args),
         Command::Convert(args) => convert::convert(&args),

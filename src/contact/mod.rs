@@ -3,6 +3,7 @@
 //! - [`kernel`]: face points in nine slots, [`corner`]: edges and vertices, [`published`]: the published tangent;
 //! - [`point`]: one response for all of them, [`law`]: what the traction is;
 //! - [`rigid`], [`moving`]: closest points on masters that do not move or whose nodes do, [`meeting`]: what both give;
+//! - [`kind`]: what a batch of points is compiled for;
 //! - [`friction`]: slip, its laws and its history;
 //! - [`spin`]: a rigid body's translation and spin in the slots, [`averaged`]: the gap in the mean of slave nodes.
 pub mod averaged;
@@ -13,6 +14,7 @@ pub mod corner;
 pub mod fault;
 pub mod friction;
 pub mod kernel;
+pub mod kind;
 pub mod law;
 pub mod meeting;
 pub mod moving;

@@ -11,7 +11,9 @@ use super::driven::Driven;
 use super::error::{At, number, text};
 use super::loads::{DeadLoad, FollowerPressure, load_points};
 use super::motion::pose;
+use super::plan::Plan;
 use super::slave::slave_points;
+use super::symmetry::Unsymmetric;
 use super::{BodyModel, Model, ModelError, SurfaceModel};
 use crate::limits;
 use crate::mesh::{self, Face, Mesh};
@@ -68,19 +70,23 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         follower_loads,
         dofs: supports.dofs,
         stabilization: None,
+        small: None,
         symmetric: true,
         effects: Vec::new(),
+        plan: Plan::default(),
         notes: builder.notes,
         warnings: builder.warnings,
         kinks: Vec::new(),
     };
-    symmetry(scene, &mut model)?;
-    model.effects = super::effects::effects(scene, &model);
+    model.small = super::small::linearise(scene, &mut model)?;
+    let unsymmetric = symmetry(scene, &mut model)?;
     model.kinks = kinks(scene, &model);
     values::check(scene, &model)?;
     stabilize(scene, &mut model)?;
     super::initial::check(&mut model, scene)?;
     super::driven::start::approach(&mut model, scene)?;
+    model.plan = Plan::new(loaded, &model, &unsymmetric);
+    model.effects = model.plan.names();
     Ok(model)
 }
 
@@ -146,8 +152,9 @@ fn stabilize(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Decides whether the system is symmetric, and whether the linear solver that was asked for can solve it.
-fn symmetry(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
+/// Decides whether the system is symmetric, and whether the linear solver that was asked for can solve it; returns what
+/// makes it unsymmetric.
+fn symmetry(scene: &Scene, model: &mut Model) -> Result<Vec<Unsymmetric>, ModelError> {
     let reasons = super::symmetry::unsymmetric_effects(model);
     model.symmetric = reasons.is_empty();
     let asked = match scene.solution.linear_solver {
@@ -155,7 +162,7 @@ fn symmetry(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
         scene::LinearSolver::Ldlt => "ldlt",
         scene::LinearSolver::Auto | scene::LinearSolver::Lu => "",
     };
-    match reasons.first() {
+    match reasons.first().map(|r| &r.why) {
         Some(reason) if !asked.is_empty() => {
             let message =
                 format!("`{asked}` is for symmetric systems, and this one is not: {reason}");
@@ -163,9 +170,12 @@ fn symmetry(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
             Err(text("/solution/linear_solver", message).help(help))
         }
         _ => {
-            let note = |reason: String| format!("{reason}, so that the system is unsymmetric (LU)");
-            model.notes.extend(reasons.into_iter().map(note));
-            Ok(())
+            let note = |reason: &Unsymmetric| {
+                let why = &reason.why;
+                format!("{why}, so that the system is unsymmetric (LU)")
+            };
+            model.notes.extend(reasons.iter().map(note));
+            Ok(reasons)
         }
     }
 }

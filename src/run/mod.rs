@@ -5,6 +5,7 @@ mod check;
 mod checkpoint;
 mod commit;
 mod cost;
+mod doubt;
 mod error;
 mod fields;
 mod friction_fields;
@@ -13,6 +14,7 @@ mod march;
 mod memory;
 mod passed;
 mod pieces;
+mod plan;
 mod progress;
 mod sound;
 mod stabilized;
@@ -24,10 +26,11 @@ pub use check::{
 };
 pub use checkpoint::CheckpointError;
 pub use error::RunError;
+pub use plan::{PlanReport, plan};
 
 use crate::assembly::Assembler;
 use crate::model;
-use crate::output::{Phases, RunStatus, Summary, Versions};
+use crate::output::{Phases, PlanSummary, RunStatus, Summary, Versions};
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
@@ -168,6 +171,7 @@ fn solve(
         time,
     } = march.progress;
     let pattern_rebuilds = march.assembler.rebuilds();
+    let plan = PlanSummary::new(&model.plan, march.assembler.ran());
     let factorizations = march.workspace.factorizations.iter();
     let summary = Summary {
         status,
@@ -189,6 +193,7 @@ fn solve(
         ping_pongs,
         pattern_rebuilds,
         effects: model.effects.clone(),
+        plan,
         warnings,
         resumed,
         scene,

@@ -187,6 +187,19 @@ pub(crate) fn nearest_file(path: &Path) -> Option<String> {
 }
 
 impl Document {
+    /// Whether the file has a value at a JSON pointer, rather than a default in its place.
+    pub fn has(&self, pointer: &str) -> bool {
+        let mut node = &self.root;
+        for token in pointer.split('/').skip(1) {
+            let token = token.replace("~1", "/").replace("~0", "~");
+            match node.child(&token) {
+                Some((child, _)) => node = child,
+                None => return false,
+            }
+        }
+        true
+    }
+
     /// Where the value of a JSON pointer (`/contacts/c1/slave`) starts; of the innermost value on the way to it when
     /// it is not in the file (defaults).
     pub fn place_of(&self, pointer: &str) -> Place {

@@ -144,7 +144,13 @@ fn runs_timed_once() {
             "Every run was timed once, so that small differences of time mean nothing.",
         ]
     );
-    assert!(section(&record, "What gains").is_empty());
+    // All take the same iterations, and of times nothing can be said.
+    assert_eq!(
+        section(&record, "What gains"),
+        [
+            "With everything else equal, the same Newton iterations are needed by NURBS and bilinear (2 pairs)."
+        ]
+    );
 }
 
 #[test]
@@ -167,9 +173,28 @@ fn what_gains_with_all_else_equal() {
             "With everything else equal, bilinear takes 2.8 times the time of NURBS (2 to 4 in 2 pairs).",
         ]
     );
+    // Smooth facets take what NURBS take.
+    let mut same = record.clone();
+    for k in [0, 2] {
+        let mut run = record.runs[k].clone();
+        run.choices
+            .insert("master".into(), label("smooth", "smooth", None));
+        same.runs.push(run);
+    }
+    assert_eq!(
+        section(&same, "What gains")[0],
+        "With everything else equal, the same Newton iterations are needed by NURBS and smooth (2 pairs)."
+    );
     // One pair the other way round, and there is nothing to say about iterations.
     record.runs[3].newton_iterations = 90;
-    assert_eq!(section(&record, "What gains").len(), 1);
+    let said = section(&record, "What gains");
+    assert!(said.len() == 1 && said[0].contains("the time"), "{said:?}");
+    // A single pair has no range.
+    record.runs.truncate(2);
+    assert_eq!(
+        section(&record, "What gains")[0],
+        "With everything else equal, bilinear needs 3 times the Newton iterations of NURBS."
+    );
 }
 
 #[test]
@@ -278,8 +303,9 @@ fn a_run_that_is_the_reference_itself_reaches_nothing() {
 fn values_alone_say_nothing() {
     let mut record = two_masters();
     record.quantities = vec![quantity("peak", "N", "largest `force`")];
-    for run in &mut record.runs {
-        run.newton_iterations = 10;
+    // Iterations that are now more, now less.
+    for (run, iterations) in record.runs.iter_mut().zip([10, 10, 9, 11, 10]) {
+        run.newton_iterations = iterations;
         run.wall = None;
     }
     assert!(sections(&record).is_empty());

@@ -1,15 +1,16 @@
 //! The pattern of a model and where the blocks of everything that is assembled go.
 use super::couplings::Couplings;
+use super::per_pair::PerPair;
 use super::{DofMap, Kind, Pattern, PatternError};
 use super::{averaged, driven};
-use crate::model::Model;
+use crate::model::{Model, PairModel};
 
 /// Places of all blocks on one pattern.
 pub(super) struct Maps {
     pub elements: Vec<u32>,
     pub kinds: Vec<Kind>,
     /// Per pair with a rigid master: per point, where its blocks go.
-    pub points: Vec<Vec<u32>>,
+    pub points: PerPair<Vec<u32>>,
     /// Per follower load: per face, where its blocks go.
     pub followers: Vec<Vec<u32>>,
 }
@@ -18,7 +19,7 @@ pub(super) struct Maps {
 pub(super) fn pattern(
     model: &Model,
     dofs: &DofMap,
-    couplings: &[Option<Couplings>],
+    couplings: &PerPair<Couplings>,
 ) -> Result<Pattern, PatternError> {
     let mut nodes: Vec<u32> = Vec::new();
     let mut starts = vec![0];
@@ -34,7 +35,8 @@ pub(super) fn pattern(
             add(&plain);
         }
     }
-    for (pair, couplings) in model.pairs.iter().zip(couplings) {
+    for (index, pair) in model.pairs.iter().enumerate() {
+        let couplings = couplings.get(index);
         if let (Some(master), Some(couplings)) = (pair.body_master(), couplings) {
             for (cell, facet) in couplings.pairs() {
                 plain.clear();
@@ -48,7 +50,7 @@ pub(super) fn pattern(
                 add(&plain);
             }
         }
-        averaged::groups(pair, couplings.as_ref(), &mut add);
+        averaged::groups(pair, couplings, &mut add);
     }
     let driven = driven::groups(model, |nodes, out| dofs.extend_nodes(nodes, out));
     let groups = starts.windows(2).map(|w| &nodes[w[0]..w[1]]);
@@ -78,27 +80,36 @@ impl Maps {
             }
         }
         let mut points = Vec::new();
-        for pair in &model.pairs {
+        let rigid = |p: &&PairModel| p.rigid_master().is_some();
+        for (index, pair) in model.pairs.iter().enumerate().filter(|(_, p)| rigid(p)) {
             let mut maps = Vec::new();
-            if pair.rigid_master().is_some() {
-                for p in &pair.points {
-                    pattern.element_map(&p.nodes[..p.count as usize], &mut maps)?;
-                }
+            for p in &pair.points {
+                pattern.element_map(&p.nodes[..p.count as usize], &mut maps)?;
             }
-            points.push(maps);
+            maps.shrink_to_fit();
+            points.push((index, maps));
         }
         let mut followers = Vec::new();
-        for (_, load) in &model.follower_loads {
+        // At small displacements pressures do not follow.
+        let follower = model
+            .follower_loads
+            .iter()
+            .filter(|_| model.small.is_none());
+        for (_, load) in follower {
             let mut maps = Vec::new();
             for nodes in &load.faces {
                 pattern.element_map(nodes.nodes(), &mut maps)?;
             }
+            maps.shrink_to_fit();
             followers.push(maps);
         }
+        elements.shrink_to_fit();
+        kinds.shrink_to_fit();
+        followers.shrink_to_fit();
         Ok(Maps {
             elements,
             kinds,
-            points,
+            points: PerPair::from(points),
             followers,
         })
     }

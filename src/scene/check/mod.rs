@@ -4,6 +4,7 @@ mod checker;
 mod friction;
 mod names;
 mod shapes;
+mod small;
 
 use super::load::LoadedScene;
 use super::problem::{Problem, shorten, suggestion};
@@ -56,6 +57,7 @@ pub fn check(loaded: &LoadedScene) -> Vec<Problem> {
         check_load(&mut c, &path(&["loads", name]), load, &sets);
     }
     check_solution(&mut c, &scene.solution);
+    small::check(&mut c, scene);
     c.whole("/output/tessellation", scene.output.tessellation, 1, 200);
     if scene.output.contact_points && scene.contacts.values().all(|c| c.friction.is_none()) {
         c.add(

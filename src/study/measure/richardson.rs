@@ -42,6 +42,9 @@ pub(super) fn estimate(
         Some(p) => return Err(format!("the declared order is {p}, and has to be above 0")),
         None => None,
     };
+    if last == 0.0 {
+        return Err("the two finest runs do not differ".into());
+    }
     let size = last.abs();
     let observed = before.map(|before| observe(before, last, ratio));
     let of_order = |p: f64, observed: bool, doubt: Option<String>| Estimate {
@@ -79,8 +82,8 @@ pub(super) fn estimate(
 
 /// The order that three runs converge with.
 fn observe(before: f64, last: f64, ratio: f64) -> Result<f64, String> {
-    if last == 0.0 && before == 0.0 {
-        return Err("the runs of the refinement do not differ".into());
+    if before == 0.0 {
+        return Err("the two coarsest runs of the refinement do not differ".into());
     }
     if before * last < 0.0 {
         return Err("the refinement's differences change sign".into());
@@ -89,9 +92,7 @@ fn observe(before: f64, last: f64, ratio: f64) -> Result<f64, String> {
     if PLAUSIBLE.contains(&p) {
         return Ok(p);
     }
-    Err(if p.is_finite() {
-        format!("the refinement converges with an observed order of {p:.2}")
-    } else {
-        "two runs of the refinement do not differ".into()
-    })
+    Err(format!(
+        "the refinement converges with an observed order of {p:.2}"
+    ))
 }

@@ -45,13 +45,13 @@ impl Bars {
     /// Draws them.
     pub fn draw(&self) -> Svg {
         let mut svg = Svg::new(WIDTH, &self.title);
-        svg.fitted_text("title", [12.0, 22.0], &self.title, (WIDTH - 24.0) / 1.42);
+        svg.fitted_text("title", [12.0, 22.0], &self.title, (WIDTH - 24.0) / 1.3);
         let widest = self
             .rows
             .iter()
             .map(|r| width(&r.name))
             .fold(60.0, f64::max);
-        let left = (widest + 44.0).min(270.0);
+        let left = (widest + 44.0).min(320.0);
         let bottom = TOP + self.rows.len() as f64 * ROW + 6.0;
         let place = |v: f64| left + self.axis.place(v) * (WIDTH - left - RIGHT);
         for (value, label) in &self.axis.ticks {

@@ -11,6 +11,9 @@ use std::fmt::Write as _;
 /// Bytes of pictures that a page may have. Those beyond are named and linked: they are beside the page.
 const PICTURES: usize = 1_200_000;
 
+/// Warnings that are not folded.
+const WARNINGS: usize = 10;
+
 /// The page. Whatever it refers to lies beside it.
 pub(crate) fn html(view: &View, figures: &[Figure]) -> String {
     let record = view.record;
@@ -114,10 +117,19 @@ fn warnings(out: &mut String, view: &View) {
         return;
     }
     out.push_str("<div class=\"warnings\"><strong>Warnings</strong>\n<ul>\n");
-    for warning in &view.record.warnings {
-        let _ = writeln!(out, "<li>{}</li>", prose(warning));
+    let item = |warning: &String| format!("<li>{}</li>\n", prose(warning));
+    let (first, more) = view
+        .record
+        .warnings
+        .split_at(view.record.warnings.len().min(WARNINGS));
+    out.extend(first.iter().map(item));
+    out.push_str("</ul>\n");
+    if !more.is_empty() {
+        let _ = writeln!(out, "<details><summary>{} more</summary>\n<ul>", more.len());
+        out.extend(more.iter().map(item));
+        out.push_str("</ul></details>\n");
     }
-    out.push_str("</ul></div>\n");
+    out.push_str("</div>\n");
 }
 
 /// Those of the first quantity and of cost in full, those of other quantities folded.

@@ -70,7 +70,7 @@ impl Plot {
     /// Draws it.
     pub fn draw(&self) -> Svg {
         let mut svg = Svg::new(WIDTH, &self.title);
-        svg.fitted_text("title", [12.0, 22.0], &self.title, (WIDTH - 24.0) / 1.42);
+        svg.fitted_text("title", [12.0, 22.0], &self.title, (WIDTH - 24.0) / 1.3);
         svg.fitted_text("soft", [12.0, 42.0], &self.y_label, WIDTH - 24.0);
         self.band(&mut svg);
         self.grid(&mut svg);

@@ -171,17 +171,17 @@ fn marker(shape: usize, [x, y]: [f64; 2], size: f64) -> String {
     }
 }
 
-/// About how wide a text of 12 pixels is set, on the wide side of common typefaces.
+/// About how wide a text of 12 pixels is set, in a wide typeface.
 pub(crate) fn width(text: &str) -> f64 {
     let of = |c: char| match c {
-        'i' | 'j' | 'l' | '\'' | '|' | '.' | ',' | ':' | ';' | '!' | '\u{202f}' => 3.4,
-        'f' | 't' | 'r' | '(' | ')' | '[' | ']' | '/' | ' ' | '-' | '⁰'..='⁹' | '¹' | '²' | '³' => {
-            4.6
+        'i' | 'j' | 'l' | '\'' | '|' | '.' | ',' | ':' | ';' | '!' | ' ' | '\u{202f}' => 3.9,
+        'f' | 't' | 'r' | '(' | ')' | '[' | ']' | '/' | '-' | '⁰'..='⁹' | '¹' | '²' | '³' => {
+            4.8
         }
-        'm' | 'w' | 'M' | 'W' | '%' | '@' => 10.4,
-        'A'..='Z' | '<' | '>' | '=' | '+' | '×' | '&' => 8.4,
-        c if (c as u32) >= 0x1100 => 12.5,
-        _ => 6.9,
+        'm' | 'M' | 'W' | '%' | '@' => 11.6,
+        'A'..='Z' | 'w' | '<' | '>' | '=' | '+' | '×' | '&' | '−' => 9.4,
+        c if (c as u32) >= 0x1100 && !"…–".contains(c) => 12.5,
+        _ => 7.5,
     };
     text.chars().map(of).sum()
 }

@@ -2,7 +2,7 @@
 use super::figures::{per_step, phases_in_words};
 use super::front::pareto;
 use super::markup::escaped;
-use super::number::{count, digits, percent, seconds};
+use super::number::{count, digits, percent, seconds, several};
 use super::view::View;
 use crate::study::record::Ending;
 use std::fmt::Write as _;
@@ -234,10 +234,20 @@ fn status(run: &crate::study::record::RunRecord, on_front: bool) -> Cell {
         Ending::Failed(reason) => (format!("failed: {reason}"), 2.0, "reason"),
         Ending::Missing => ("missing".to_string(), 3.0, "reason"),
     };
+    let text = match run.warnings.len() {
+        0 => text,
+        n => format!("{text}, {}", several(n, "warning")),
+    };
+    // A page is no log: `study.json` and `study.csv` have all of them.
+    let mut hint = run.warnings.join("; ");
+    if let Some((at, _)) = hint.char_indices().nth(400) {
+        hint.truncate(at);
+        hint.push('…');
+    }
     Cell {
         text,
         key: Some(key),
-        hint: run.warnings.join("; "),
+        hint,
         class,
     }
 }

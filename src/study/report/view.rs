@@ -110,8 +110,10 @@ impl<'a> View<'a> {
             .filter_map(|(&c, part)| part.map(|text| self.say(c, text)))
             .filter(|part| !part.is_empty())
             .collect();
-        if parts.is_empty() {
+        if key.is_empty() {
             "runs".to_string()
+        } else if parts.is_empty() {
+            "as in the scene".to_string()
         } else {
             parts.join(", ")
         }
@@ -130,16 +132,32 @@ impl<'a> View<'a> {
             })
         };
         let (mut colours, mut markers) = (Vec::new(), Vec::new());
+        let mut styles = Vec::new();
         for (key, s) in keys {
-            let first = self.series_name(&key[..1], &telling[..1]);
+            let first = match key[0] {
+                Some(_) => self.series_name(&key[..1], &telling[..1]),
+                None => format!("{} as in the scene", self.record.choices[telling[0]]),
+            };
             let rest = self.series_name(&key[1..], &telling[1..]);
-            self.series[s].style = Style {
-                colour: place(&mut colours, first) % STYLES,
-                marker: place(&mut markers, rest) % STYLES,
+            let style = Style {
+                colour: place(&mut colours, first),
+                marker: place(&mut markers, rest),
+            };
+            styles.push((s, style));
+        }
+        // Colours and markers that mean several things are of no use: then the two together tell series apart.
+        let few = telling.len() > 1 && colours.len() <= STYLES && markers.len() <= STYLES;
+        for (s, style) in styles {
+            self.series[s].style = if few {
+                style
+            } else {
+                Style {
+                    colour: s % STYLES,
+                    marker: (s + s / STYLES) % STYLES,
+                }
             };
         }
-        // Colours and markers that mean several things are of no use in a legend.
-        if colours.len() <= STYLES && markers.len() <= STYLES {
+        if few {
             self.factors = Some(Factors { colours, markers });
         }
     }
@@ -195,7 +213,8 @@ impl<'a> View<'a> {
         let text = text.trim().replace(", ", " ");
         let bare =
             ["true", "false", "on", "off", "none", "null", "yes", "no"].contains(&text.as_str());
-        if text.chars().next().is_some_and(char::is_alphabetic) && !bare {
+        let number = text.starts_with(|c: char| c.is_ascii_digit() || ".-−".contains(c));
+        if !text.is_empty() && !number && !bare {
             text
         } else if text.is_empty() {
             String::new()

@@ -166,24 +166,33 @@ impl Placed {
     }
 
     /// The place of the cell that is nearest to `p`, and its distance: Gauss-Newton steps within the parent, which end where
-    /// no direction along or into it comes nearer. A point within the cell is found with distance zero up to rounding.
+    /// no direction along or into it comes nearer. A point within the cell is found with distance zero up to rounding; to a
+    /// point about as far away as the cell is large, a bent cell may have several such places.
     pub fn nearest(&self, p: &Vec3, close: f64) -> ([f64; 3], f64) {
         let mut xi = [0.0; 3];
         let mut shape = self.kind.at(xi);
         let mut r = p - self.position(&shape);
         for _ in 0..STEPS {
-            if r.norm() <= close {
+            // Well below, so that the place is as sharp as it can be.
+            if r.norm() <= 0.01 * close {
                 break;
             }
             let frame = [0, 1, 2].map(|i| self.combine(&shape.d[i]));
             let Some(step) = step(&frame, &r, &xi, self.kind.dimension()) else {
                 break;
             };
-            let mut share = 1.0;
-            let better = (0..HALVINGS).find_map(|_| {
-                let mut next = xi;
-                for i in 0..3 {
-                    next[i] = (xi[i] + share * step[i]).clamp(-1.0, 1.0);
+            // The way to the first face of the parent, if that is nearer than the end of the step: cutting off single
+            // coordinates behind it would change the direction, and slanted cells would not be left along their faces.
+            let reach = |i: usize| (step[i].signum() - xi[i]) / step[i];
+            let first = (0..3)
+                .filter(|&i| step[i] != 0.0 && reach(i) < 1.0)
+                .min_by(|&i, &j| reach(i).total_cmp(&reach(j)));
+            let mut share = first.map_or(1.0, reach);
+            let better = (0..HALVINGS).find_map(|halving| {
+                let mut next: [f64; 3] =
+                    std::array::from_fn(|i| (xi[i] + share * step[i]).clamp(-1.0, 1.0));
+                if let Some(i) = first.filter(|_| halving == 0) {
+                    next[i] = step[i].signum();
                 }
                 let shape = self.kind.at(next);
                 let rest = p - self.position(&shape);

@@ -7,6 +7,8 @@ mod cell;
 mod faces;
 mod file;
 mod norm;
+#[cfg(test)]
+mod tests;
 mod tree;
 
 use super::sample::Difference;

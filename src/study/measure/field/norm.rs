@@ -18,8 +18,7 @@ const VOLUMES: f64 = 0.01;
 /// is NaN.
 pub(super) fn difference(field: &Field, reference: &Field) -> Result<Difference, String> {
     alike(field, reference)?;
-    let places = (field.cells.iter()).map(|c| c.placed(&field.points));
-    let tree = Tree::new(places.collect());
+    let tree = Tree::new(&field.cells, &field.points);
     let mut rules = Rules::default();
     let components = reference.components;
     let (mut apart, mut size, mut volume, mut left_out) = (0.0, 0.0, 0.0, 0.0);

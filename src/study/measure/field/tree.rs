@@ -1,13 +1,14 @@
 //! A tree of boxes around cells.
-use super::cell::Placed;
+use super::cell::Cell;
 use covact_geometry::Vec3;
 
 /// Cells in a leaf.
 const LEAF: usize = 4;
 
 /// Finds the nearest of many cells.
-pub(super) struct Tree {
-    cells: Vec<Placed>,
+pub(super) struct Tree<'a> {
+    cells: &'a [Cell],
+    points: &'a [Vec3],
     /// Size of every cell: the diagonal of its box.
     sizes: Vec<f64>,
     /// Cell numbers, those of a leaf together.
@@ -38,15 +39,18 @@ pub(super) struct Found {
     pub size: f64,
 }
 
-impl Tree {
-    /// `cells` is not empty.
-    pub fn new(cells: Vec<Placed>) -> Tree {
-        let bounds: Vec<[Vec3; 2]> = cells.iter().map(Placed::bounds).collect();
+impl<'a> Tree<'a> {
+    /// `cells` is not empty, and its nodes are among the points.
+    pub fn new(cells: &'a [Cell], points: &'a [Vec3]) -> Tree<'a> {
+        let bounds: Vec<[Vec3; 2]> = (cells.iter())
+            .map(|cell| cell.placed(points).bounds())
+            .collect();
         let mut tree = Tree {
             sizes: bounds.iter().map(|[a, b]| (b - a).norm()).collect(),
             order: (0..cells.len() as u32).collect(),
             nodes: Vec::with_capacity(cells.len()),
             cells,
+            points,
         };
         tree.grow(&bounds, 0..tree.order.len());
         tree
@@ -118,7 +122,9 @@ impl Tree {
     }
 
     fn look(&self, cell: usize, p: &Vec3) -> Found {
-        let (xi, distance) = self.cells[cell].nearest(p, self.close(cell, p));
+        let (xi, distance) = self.cells[cell]
+            .placed(self.points)
+            .nearest(p, self.close(cell, p));
         Found {
             cell,
             xi,

@@ -226,7 +226,7 @@ fn iterations(view: &View) -> Option<Figure> {
 fn iterations_against_size(view: &View, choice: usize) -> Option<Figure> {
     let of = |i: usize| per_step(view, i).map(|p| p.0);
     let runs: Vec<usize> = (view.done().into_iter())
-        .filter(|&i| of(i).is_some())
+        .filter(|&i| of(i).is_some() && view.label(i, choice).is_some())
         .collect();
     let sized: Vec<usize> = (runs.iter().copied())
         .filter(|&i| view.size(i, choice).is_some())

@@ -145,17 +145,14 @@ fn against_time(view: &View, q: usize, with: &[usize], missing: usize) -> Option
         .map(|k| [costs[k].0, costs[k].1])
         .collect();
     plot.legend = legend::series(view, &series_of(view, runs.iter().copied()), |_| None);
-    plot.legend.push(Entry::new(
-        Sign::Front,
-        "Pareto front: none is both faster and better",
-    ));
+    plot.legend.push(Entry::new(Sign::Front, "Pareto front"));
     if repeated {
         plot.legend
-            .push(Entry::new(Sign::Bar, "least and most of the repeats"));
+            .push(Entry::new(Sign::Bar, "least to most of repeats"));
     }
     band_entry(&mut plot);
     let caption = format!(
-        "What accuracy costs: left is faster, down is more accurate.{}",
+        "Left is faster, down is more accurate. No run is both faster and more accurate than one of the Pareto front.{}",
         notes(view, q, &plot, &runs, missing)
     );
     Some(Figure {
@@ -215,8 +212,11 @@ fn against_size(
     }
     let x = Axis::log(runs.iter().filter_map(|&i| size(i)), Form::Plain);
     let over = view.size_meaning(choice);
-    let mut plot = plot(view, q, &over, x, &over, with);
-    let levels = levels(view, choice, with, |i| view.error(i, q), &mut plot);
+    let shown: Vec<usize> = (with.iter().copied())
+        .filter(|&i| view.label(i, choice).is_some())
+        .collect();
+    let mut plot = plot(view, q, &over, x, &over, &shown);
+    let levels = levels(view, choice, &shown, |i| view.error(i, q), &mut plot);
     fill(view, q, &mut plot, &runs, &lines, size);
     let order = |s: usize| {
         let line = lines.iter().find(|l| l.series == s && l.finest)?;
@@ -233,7 +233,7 @@ fn against_size(
         } else {
             ", along the line that is finest in everything else"
         },
-        notes(view, q, &plot, with, missing)
+        notes(view, q, &plot, &shown, missing)
     );
     Some(Figure {
         file: format!("error-{}", slug(&view.record.choices[choice])),
@@ -262,7 +262,8 @@ pub(super) fn levels(
     };
     for (s, series) in view.series.iter().enumerate() {
         let finest = (runs.iter().copied())
-            .filter(|&i| view.of_run[i] == Some(s) && view.size(i, choice).is_none())
+            .filter(|&i| view.of_run[i] == Some(s))
+            .filter(|&i| view.label(i, choice).is_some_and(|l| l.size.is_none()))
             .filter(|&i| y(i).is_some_and(|v| v > 0.0))
             .min_by(|&a, &b| fineness(a).total_cmp(&fineness(b)));
         let Some(i) = finest else { continue };

@@ -66,7 +66,10 @@ fn against_size(
         return None;
     }
     let over = view.size_meaning(choice);
-    let values = || with.iter().filter_map(|&i| value(i));
+    let values = || {
+        let shown = with.iter().filter(|&&i| view.label(i, choice).is_some());
+        shown.filter_map(|&i| value(i))
+    };
     let form = if quantity.swing {
         Form::Percent
     } else {

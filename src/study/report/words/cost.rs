@@ -186,7 +186,13 @@ fn rest(view: &View, choice: usize, run: usize) -> String {
             continue;
         };
         let part = if c == choice {
-            finer(label)
+            // A number alone says nothing.
+            let rest = finer(label);
+            if rest.parse::<f64>().is_ok() {
+                &label.text
+            } else {
+                rest
+            }
         } else {
             &view.say(c, &label.text)
         };

@@ -1,5 +1,5 @@
 //! What a choice gains or costs in iterations and time, with everything else equal.
-use super::super::number::{digits, several};
+use super::super::number::{digits, listed, several};
 use super::super::view::View;
 use super::surely_less;
 
@@ -21,6 +21,7 @@ pub(super) fn sentences(view: &View) -> Vec<String> {
     for &c in &view.varying {
         let iterations = |i: usize| Some(view.run(i).newton_iterations as f64);
         let any = |_: usize, _: usize| true;
+        out.extend(equal(view, c, iterations));
         if let Some((base, ratios)) = compare(view, c, iterations, any) {
             out.extend(sentence(
                 &base,
@@ -82,8 +83,8 @@ fn compare(
             .filter_map(|&(x, y)| Some(positive(y)? / positive(x)?))
             .collect();
         let Some(mean) = mean(pairs) else { continue };
-        let sure = all.iter().all(|r| *r > 1.0) && pairs.iter().all(|&(x, y)| clear(x, y));
-        if !sure || mean.exp() < 1.1 {
+        let sure = all.iter().all(|r| *r >= 1.0) && pairs.iter().all(|&(x, y)| clear(x, y));
+        if !sure || mean.exp() < 1.05 {
             continue;
         }
         ratios.push(Ratio {
@@ -122,24 +123,29 @@ fn paired(view: &View, choice: usize, a: &[usize], b: &[usize]) -> Vec<Pair> {
 
 /// `what` is what the series has more of, `as_much` how that is said the second time.
 fn sentence(base: &str, ratios: &[Ratio], verb: &str, what: &str, as_much: &str) -> Option<String> {
+    // Near one a digit more tells something from nothing.
+    let figures = |ratio: f64| if ratio < 2.0 { 3 } else { 2 };
     if ratios.is_empty() || base.is_empty() {
         return None;
     }
     let parts: Vec<String> = (ratios.iter().take(4).enumerate())
         .map(|(k, r)| {
             let pairs = several(r.pairs, "pair");
-            let (least, most) = (digits(r.least, 2), digits(r.most, 2));
-            let range = if least == most {
-                pairs
-            } else {
-                format!("{least} to {most} in {pairs}")
+            let (least, most) = (
+                digits(r.least, figures(r.least)),
+                digits(r.most, figures(r.most)),
+            );
+            let range = match r.pairs {
+                1 => String::new(),
+                _ if least == most => format!(" ({pairs})"),
+                _ => format!(" ({least} to {most} in {pairs})"),
             };
             let compared = match k {
                 0 => format!("{what} of {base}"),
                 _ => format!("as {as_much}"),
             };
             format!(
-                "{} {verb} {} times {compared} ({range})",
+                "{} {verb} {} times {compared}{range}",
                 r.name,
                 digits(r.mean, 2)
             )
@@ -152,5 +158,42 @@ fn sentence(base: &str, ratios: &[Ratio], verb: &str, what: &str, as_much: &str)
     Some(format!(
         "With everything else equal, {}{more}.",
         parts.join("; ")
+    ))
+}
+
+/// Series that take as many iterations as the first of them in every one of at least two pairs.
+fn equal(view: &View, choice: usize, of: impl Fn(usize) -> Option<f64>) -> Option<String> {
+    let series = super::by_series(view, choice, &view.done());
+    let same = |a: &[usize], b: &[usize]| {
+        let pairs = paired(view, choice, a, b);
+        let all = pairs.iter().all(|&(i, j)| of(i) == of(j));
+        (all && pairs.len() > 1).then_some(pairs.len())
+    };
+    let mut groups: Vec<String> = Vec::new();
+    let mut named = vec![false; series.len()];
+    for (k, (name, runs)) in series.iter().enumerate() {
+        if named[k] {
+            continue;
+        }
+        let mut names = vec![view.say(choice, name)];
+        let mut pairs = usize::MAX;
+        for (m, (other, of_other)) in series.iter().enumerate().skip(k + 1) {
+            if let Some(n) = same(runs, of_other) {
+                names.push(view.say(choice, other));
+                pairs = pairs.min(n);
+                named[m] = true;
+            }
+        }
+        if names.len() > 1 {
+            let each = if names.len() > 2 { " each" } else { "" };
+            groups.push(format!("{} ({pairs} pairs{each})", listed(&names)));
+        }
+    }
+    if groups.is_empty() {
+        return None;
+    }
+    Some(format!(
+        "With everything else equal, the same Newton iterations are needed by {}.",
+        groups.join("; and by ")
     ))
 }
