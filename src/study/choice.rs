@@ -189,7 +189,9 @@ fn master(
                     variant.clear(&scale, from);
                     path.map_err(|reason| {
                         let message = format!("no triangles can be made of `{surface}`: {reason}");
-                        Fault::new(from, message)
+                        let help =
+                            "give the triangles as a file: `{\"stl\": {\"file\": \"tool.stl\"}}`";
+                        Fault::new(from, message).help(help)
                     })?
                 }
             };

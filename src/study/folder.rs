@@ -133,8 +133,36 @@ fn written(run: &Planned, fields: bool, files: &mut Files) -> Result<String, Stu
         }
         _ => scene["output"] = json!({ "every": every }),
     }
-    // Writing a tree of JSON values into memory cannot fail.
-    Ok(serde_json::to_string_pretty(&scene).unwrap_or_default() + "\n")
+    Ok(text(&scene))
+}
+
+/// Sections of a scene in the order in which people write them.
+const ORDER: [&str; 11] = [
+    "covact",
+    "title",
+    "units",
+    "materials",
+    "bodies",
+    "surfaces",
+    "contacts",
+    "supports",
+    "loads",
+    "solution",
+    "output",
+];
+
+/// A scene as text, for people to read.
+fn text(scene: &Json) -> String {
+    let place = |key: &str| ORDER.iter().position(|k| *k == key).unwrap_or(ORDER.len());
+    let mut members: Vec<(&String, &Json)> = scene.as_object().into_iter().flatten().collect();
+    members.sort_by_key(|(key, _)| place(key));
+    let member = |(key, value): (&String, &Json)| {
+        // Writing JSON values into memory cannot fail.
+        let value = serde_json::to_string_pretty(value).unwrap_or_default();
+        format!("  {}: {}", json!(key), value.replace('\n', "\n  "))
+    };
+    let members: Vec<String> = members.into_iter().map(member).collect();
+    format!("{{\n{}\n}}\n", members.join(",\n"))
 }
 
 /// Writes a file unless it is there with the same bytes.

@@ -93,6 +93,17 @@ fn jobs_by_hand_are_the_study() {
         force(1)
     );
     assert_eq!(direct.quantities, collected.quantities);
+    // The scenes are written for people, with their files beside them.
+    let scene = folder.path().join("direct/runs/001_STL_4_x_4/scene.json");
+    let scene = std::fs::read_to_string(scene).unwrap();
+    assert!(
+        scene.starts_with("{\n  \"covact\": 1,\n  \"materials\": {\n    \"steel\": {"),
+        "{scene}"
+    );
+    assert!(
+        scene.contains("\"file\": \"../../files/ball_count_4_4.stl\""),
+        "{scene}"
+    );
     assert!(
         collected
             .warnings
