@@ -273,6 +273,7 @@ fn a_summary_reads_back() {
         ping_pongs: 0,
         pattern_rebuilds: 0,
         effects: vec!["normal contact".into()],
+        plan: Default::default(),
         warnings: vec!["slave points are coarse".into()],
         resumed: 0,
         scene: String::new(),

@@ -88,11 +88,6 @@ fn augmentation_and_offset() {
         ),
         (
             "\"points\": {\"gauss\": 2}",
-            "\"tangent\": {\"published\": {}}, \"augmentation\": {}",
-            "14:63: the published tangent, which is right on the surface, does not go with augmentation",
-        ),
-        (
-            "\"points\": {\"gauss\": 2}",
             "\"tangent\": {\"published\": {}}, \"offset\": 0.5",
             "14:63: the published tangent, which is right on the surface, does not go with an offset",
         ),

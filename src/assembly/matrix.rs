@@ -29,6 +29,14 @@ pub struct ConstrainedScatter {
     ke: Vec<f64>,
 }
 
+impl ConstrainedScatter {
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        let indices = self.nodes.capacity() + self.map.capacity();
+        indices * size_of::<u32>() + self.ke.capacity() * size_of::<f64>()
+    }
+}
+
 impl SystemMatrix {
     /// A symmetric matrix of zeros.
     pub fn new(pattern: Arc<Pattern>) -> Self {
@@ -45,6 +53,12 @@ impl SystemMatrix {
         let mut matrix = Self::new(pattern);
         matrix.transposed = Some(vec![0.0; matrix.values.len()]);
         matrix
+    }
+
+    /// Bytes of heap that the values hold: those of the lower triangle, and those of the transpose's.
+    pub fn bytes(&self) -> [usize; 2] {
+        let size = |values: &Vec<f64>| values.capacity() * size_of::<f64>();
+        [size(&self.values), self.transposed.as_ref().map_or(0, size)]
     }
 
     /// Whether the blocks below the diagonal stand for those above it, too.

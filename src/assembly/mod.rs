@@ -13,9 +13,10 @@ mod constraints;
 mod matrix;
 mod pattern;
 
+pub(crate) use assembler::sizes;
 pub use assembler::{
-    Assembler, AssemblerMemory, CouplingMemory, Drag, Fault, Manner, MemoryError, PairForce,
-    PointAnswer, SurfaceForce, Totals,
+    Assembler, AssemblerMemory, CouplingMemory, Drag, Factored, Fault, Line, Manner, MemoryError,
+    Needed, PairForce, PointAnswer, Quadratic, SurfaceForce, Totals,
 };
 pub use constraints::{ConstraintError, Dof, DofMap, DofMapBuilder, Link};
 pub use matrix::{ConstrainedScatter, SystemMatrix};

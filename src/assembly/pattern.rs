@@ -49,6 +49,11 @@ pub struct Pattern {
 }
 
 impl Pattern {
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        (self.column_starts.capacity() + self.rows.capacity()) * size_of::<u32>()
+    }
+
     /// The pattern of `nodes` nodes in which all nodes of each group are coupled with each other (an element's nodes;
     /// the nodes of a contact point and of the surface it may touch). Every node has its diagonal block, coupled or
     /// not. Groups may overlap, repeat and name a node twice. The iterator is walked three times.

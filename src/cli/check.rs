@@ -240,6 +240,9 @@ fn contact<'n>(out: &mut Paragraphs, p: &PairReport, notes: impl Iterator<Item =
 fn meaning(effect: &str) -> &'static str {
     match effect {
         "large_rotation" => "displacements and rotations of any size",
+        "small_displacements" => {
+            "linear elements, and contact linearised where it starts: for displacements that stay small"
+        }
         "element.h8_solid_shell" => "8-node solid-shell elements that do not lock when thin",
         "element.q18_solid_shell" => "18-node quadratic solid-shells, for thin and curved sheets",
         "element.h8_displacement" => "plain 8-node bricks, for solids (they lock when thin)",

@@ -5,11 +5,14 @@ mod convert;
 mod gauntlet;
 mod inspect;
 mod new;
+mod plan;
 mod progress;
 mod project;
 mod report;
 mod run;
 mod soak;
+mod study;
+mod without;
 
 use clap::{Args, Parser, Subcommand};
 use std::io::Write;
@@ -49,6 +52,8 @@ enum Command {
     Run(RunArgs),
     /// Read and check everything a scene names; solve nothing
     Check(CheckArgs),
+    /// Every effect that the program has: on or off in a scene, why, and what it costs; solve nothing
+    Plan(CheckArgs),
     /// Show what is in a CAD file
     Inspect(InspectArgs),
     /// Closest points of a CAD file to the points of a list
@@ -59,8 +64,10 @@ enum Command {
     Gauntlet(GauntletArgs),
     /// Run random scenes, each in a process of its own, and audit what they report
     Soak(SoakArgs),
+    /// Run a scene over a grid of choices, and compare errors and times
+    Study(StudyArgs),
     /// Print the JSON schema of scenes
-    Schema,
+    Schema(SchemaArgs),
     /// Write a scene to start from
     New(NewArgs),
 }
@@ -75,6 +82,11 @@ struct RunArgs {
     /// Go on with a run that was cut short, from its last accepted step
     #[arg(long)]
     resume: bool,
+    #[arg(long, value_name = "EFFECT", conflicts_with = "off", help = without::help())]
+    without: Vec<String>,
+    /// Run only the what-if: the scene without this effect, into FOLDER
+    #[arg(long, value_name = "EFFECT", hide = true)]
+    off: Option<String>,
     /// Print one JSON object per event and line
     #[arg(long, conflicts_with = "quiet")]
     json: bool,
@@ -177,6 +189,37 @@ struct SoakArgs {
 }
 
 #[derive(Debug, Args)]
+struct StudyArgs {
+    /// Study file (JSON)
+    study: PathBuf,
+    /// Folder for scenes, results and the report; a study that was cut short goes on
+    #[arg(short, long, value_name = "FOLDER")]
+    out: PathBuf,
+    /// Run nothing; write the scenes and `jobs.txt`, a command a line, for other machines
+    #[arg(long, conflicts_with = "collect")]
+    jobs: bool,
+    /// The program's name in `jobs.txt`
+    #[arg(long, value_name = "NAME", requires = "jobs")]
+    program: Option<String>,
+    /// Run nothing; take the results that are there
+    #[arg(long)]
+    collect: bool,
+    /// Print one JSON object per event and line
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+    /// Print errors and warnings only
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+#[derive(Debug, Args)]
+struct SchemaArgs {
+    /// That of studies
+    #[arg(long)]
+    study: bool,
+}
+
+#[derive(Debug, Args)]
 struct NewArgs {
     /// Name of the scene; `NAME.json` is written
     name: String,
@@ -197,12 +240,17 @@ pub fn main() -> ExitCode {
     let result = std::panic::catch_unwind(move || match cli.command {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
+        Command::Plan(args) => plan::plan(&args),
         Command::Inspect(args) => inspect::inspect(&args),
         Command::Project(args) => project::project(&args),
         Command::Convert(args) => convert::convert(&args),
         Command::Gauntlet(args) => gauntlet::gauntlet(&args),
         Command::Soak(args) => soak::soak(&args),
-        Command::Schema => print(&crate::scene::schema()),
+        Command::Study(args) => study::study(&args),
+        Command::Schema(args) => print(&match args.study {
+            true => crate::study::schema(),
+            false => crate::scene::schema(),
+        }),
         Command::New(args) => new::new(&args),
     });
     // The hook has told about the panic.

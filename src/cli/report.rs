@@ -156,6 +156,15 @@ pub(super) fn scene_error(error_: &SceneError, json: bool) -> u8 {
     code
 }
 
+/// Tells of an error that has no place, with `json` on standard output, too, and returns the exit code.
+pub(super) fn other_error(message: &str, code: u8, json: bool) -> u8 {
+    error(message);
+    if json {
+        failure(code, message.to_owned(), None, &[]);
+    }
+    code
+}
+
 /// Tells why a run or check failed and returns the exit code.
 pub(super) fn run_error(error_: &RunError, scene: &LoadedScene, json: bool) -> u8 {
     if let RunError::Scene { pointer, help, .. } = error_ {

@@ -1,6 +1,6 @@
 //! `covact run`.
 use super::progress::{JsonLines, Plain, Terminal};
-use super::{RunArgs, check, exit, report};
+use super::{RunArgs, check, exit, report, without};
 use crate::output::RunStatus;
 use crate::run::{self, RunOptions};
 use crate::solve::event::{Observer, Silent};
@@ -13,6 +13,16 @@ pub(super) fn run(args: &RunArgs) -> u8 {
         Ok(scene) => scene,
         Err(e) => return report::scene_error(&e, args.json),
     };
+    let scene = match &args.off {
+        Some(name) => match without::scene_without(&scene, name, args.json) {
+            Ok(scene) => scene,
+            Err(code) => return code,
+        },
+        None => scene,
+    };
+    if let Err(code) = without::check_names(&scene, args) {
+        return code;
+    }
     let interrupt = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&interrupt);
     let handler = ctrlc::set_handler(move || {
@@ -77,5 +87,10 @@ pub(super) fn run(args: &RunArgs) -> u8 {
             args.out.display()
         ));
     }
-    code
+    // A run that the user stopped, or that lost its folder, is not followed by others.
+    let goes_on = !matches!(summary.status, RunStatus::Interrupted | RunStatus::Failed);
+    match goes_on && !args.without.is_empty() {
+        true => without::what_ifs(&scene, args, code, &interrupt),
+        false => code,
+    }
 }

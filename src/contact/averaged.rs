@@ -97,6 +97,11 @@ pub struct GapRow {
 }
 
 impl GapRow {
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        self.entries.capacity() * size_of::<(u32, Vector3<f64>)>()
+    }
+
     /// Empties the row and keeps its memory.
     pub fn clear(&mut self) {
         self.entries.clear();

@@ -1,6 +1,7 @@
 //! Laws of normal contact: gap in, traction and stiffness out. Chosen outside every loop.
 use super::friction::history::PointHistory;
 use super::kernel::Normal;
+use super::kind::LawKind;
 
 /// A law between the normal coordinate `xi3` (negative = penetration) and the normal traction.
 pub trait NormalLaw: Sync {
@@ -36,8 +37,12 @@ pub trait NormalLaw: Sync {
 
 /// What the gaps of slave points are measured from: chosen outside the loop over points, nothing where there is none.
 pub trait GapOffset: Sync {
+    /// What the law is, for a penalty.
+    const KIND: LawKind;
     /// The law of a single point.
     type Law<L: NormalLaw>: NormalLaw;
+    /// What the gap of point `index` is measured from (length).
+    fn z0(&self, index: usize) -> f64;
     /// The law of point `index` of a pair.
     fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Self::Law<L>;
 }
@@ -47,7 +52,12 @@ pub trait GapOffset: Sync {
 pub struct NoOffset;
 
 impl GapOffset for NoOffset {
+    const KIND: LawKind = LawKind::Penalty;
     type Law<L: NormalLaw> = L;
+    #[inline]
+    fn z0(&self, _index: usize) -> f64 {
+        0.0
+    }
     #[inline]
     fn law<L: NormalLaw + Copy>(&self, _index: usize, law: &L) -> L {
         *law
@@ -56,7 +66,7 @@ impl GapOffset for NoOffset {
 
 /// The gap of point `i` is `xi3 - base - factor z0[i]`: the surface is thicker than it is modelled, or an overclosure `z0 <= 0`
 /// is not to be resolved.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Offsets<'a> {
     /// Distance from the surface at which contact begins (length, `>= 0`).
     pub base: f64,
@@ -74,7 +84,12 @@ impl Offsets<'_> {
 }
 
 impl GapOffset for Offsets<'_> {
+    const KIND: LawKind = LawKind::Offset;
     type Law<L: NormalLaw> = Shifted<L>;
+    #[inline]
+    fn z0(&self, index: usize) -> f64 {
+        self.at(index)
+    }
     #[inline]
     fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Shifted<L> {
         Shifted {
@@ -125,7 +140,12 @@ pub struct Multipliers<'a> {
 }
 
 impl GapOffset for Multipliers<'_> {
+    const KIND: LawKind = LawKind::Multipliers;
     type Law<L: NormalLaw> = Augmented<L>;
+    #[inline]
+    fn z0(&self, index: usize) -> f64 {
+        self.offsets.map_or(0.0, |o| o.at(index))
+    }
     #[inline]
     fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Augmented<L> {
         Augmented {
@@ -148,7 +168,12 @@ pub struct Held<'a> {
 }
 
 impl GapOffset for Held<'_> {
+    const KIND: LawKind = LawKind::Held;
     type Law<L: NormalLaw> = Augmented<L>;
+    #[inline]
+    fn z0(&self, index: usize) -> f64 {
+        self.offsets.map_or(0.0, |o| o.at(index))
+    }
     #[inline]
     fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Augmented<L> {
         Augmented {

@@ -4,6 +4,7 @@
 //! - [`point`]: one response for all of them, [`law`]: what the traction is;
 //! - [`rigid`], [`moving`]: closest points on masters that do not move or whose nodes do, [`meeting`]: what both give,
 //!   [`placed`]: many points on a rigid one;
+//! - [`kind`]: what a batch of points is compiled for;
 //! - [`friction`]: slip, its laws and its history;
 //! - [`spin`]: a rigid body's translation and spin in the slots, [`averaged`]: the gap in the mean of slave nodes.
 pub mod averaged;
@@ -14,6 +15,7 @@ pub mod corner;
 pub mod fault;
 pub mod friction;
 pub mod kernel;
+pub mod kind;
 pub mod law;
 pub mod meeting;
 pub mod moving;

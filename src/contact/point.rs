@@ -6,6 +6,7 @@
 //! [`kernel::assemble_block`].
 use super::corner;
 use super::kernel::{self, Normal, SlotMatrix, Slots};
+use super::kind::TangentForm;
 use super::published::{self, Parts};
 use super::rigid::Exact;
 use covact_geometry::{Frame, Jet};
@@ -175,7 +176,7 @@ impl<D: DualNum<f64> + Copy> PointGeometry<D> {
 }
 
 /// Which tangent a batch uses at face points: a type, so that the choice is made outside the loop over points.
-pub trait FaceTangent: Sync {
+pub trait FaceTangent: TangentForm {
     /// Tangent of a face point in the nine slots.
     fn face_slots<D: DualNum<f64> + Copy>(
         &self,

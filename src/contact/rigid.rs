@@ -3,6 +3,7 @@ use super::closest::ClosestPoint;
 use super::corner::{self, Steady};
 pub use super::fault::{Piece, PointFault};
 use super::kernel::{self, Normal};
+use super::kind::TangentForm;
 use super::law::NormalLaw;
 use super::meeting::Meeting;
 use super::point::PointGeometry;
@@ -11,7 +12,7 @@ use covact_geometry::{EdgeKind, Foot, Frame, Hint, Jet, Location, PatchSet, Stat
 use nalgebra::{Isometry3, Matrix3, Point3};
 
 /// Which tangent a batch uses: a type, so that the choice is made outside the loop over points.
-pub trait RigidTangent: Sync {
+pub trait RigidTangent: TangentForm {
     /// Tangent at a face point on a rigid master.
     fn face(&self, frame: &Frame, xi3: f64, normal: &Normal) -> Matrix3<f64>;
 }

@@ -56,7 +56,11 @@ impl Estimate {
         let of_bodies = (model.bodies.iter().zip(elements)).map(|(body, &element)| {
             let count = body.block.elements() as u64;
             let nodes = body.mesh.kind.nodes() as u64;
-            let [shape, states] = bytes_per_element(element).map(|b| b as u64);
+            let [shape, mut states] = bytes_per_element(element).map(|b| b as u64);
+            if model.small.is_some() {
+                // While the stiffness is made.
+                states /= STATES as u64;
+            }
             let maps = 4 * nodes * (nodes + 1) / 2;
             times(count, shape + states + maps + 4 * nodes)
         });
@@ -77,7 +81,10 @@ impl Estimate {
         let blocks = pattern.blocks() as u64;
         let mut matrix = blocks * if model.symmetric { 72 + 4 } else { 144 + 4 };
         let mut factor = analysis.memory_bytes as u64;
-        if model.pairs.iter().any(|p| p.body_master().is_some()) {
+        if model.small.is_some() {
+            // The stiffness beside the system, with its constraints and without.
+            matrix *= 3;
+        } else if model.pairs.iter().any(|p| p.body_master().is_some()) {
             // Couplings are added as points come to further facets: half as much again, measured.
             matrix += matrix / 2;
             factor += factor / 2;

@@ -1,4 +1,5 @@
 //! Slave nodes of a pair whose gaps are averaged, and the points around each.
+use super::state::heap;
 use super::{Model, PairModel};
 use crate::contact::averaged::NodalGap;
 use crate::contact::points::SlavePoint;
@@ -73,6 +74,18 @@ impl SlaveNodes {
     /// Number of nodes.
     pub fn len(&self) -> usize {
         self.nodes.len()
+    }
+
+    /// Bytes of heap that they hold.
+    pub fn bytes(&self) -> usize {
+        let SlaveNodes {
+            nodes,
+            places,
+            starts,
+            around,
+            first: _,
+        } = self;
+        heap(nodes) + heap(places) + heap(starts) + heap(around)
     }
 
     /// Whether there are none.

@@ -11,7 +11,9 @@ use super::driven::Driven;
 use super::error::{At, number, text};
 use super::loads::{DeadLoad, FollowerPressure, load_points};
 use super::motion::pose;
+use super::plan::Plan;
 use super::slave::slave_points;
+use super::symmetry::Unsymmetric;
 use super::{BodyModel, Model, ModelError, SurfaceModel};
 use crate::limits;
 use crate::mesh::{self, Face, Mesh};
@@ -20,7 +22,7 @@ use crate::scene::{
     TIME, TimeFunction, Value,
 };
 use crate::shell::{Block, Law, bytes_per_element};
-use covact_geometry::Vec3;
+use covact_geometry::{PatchSet, Vec3};
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -49,17 +51,7 @@ struct Builder<'s> {
 /// [`ModelError`] with the field of the scene at fault.
 pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     let scene = &loaded.scene;
-    let mut builder = Builder {
-        scene,
-        dir: &loaded.dir,
-        nodes: Vec::new(),
-        bodies: Vec::new(),
-        body_index: BTreeMap::new(),
-        notes: Vec::new(),
-        warnings: Vec::new(),
-        averaged: 0,
-        histories: 0,
-    };
+    let mut builder = Builder::new(loaded);
     builder.bodies()?;
     let (pairs, mut surfaces) = builder.contacts()?;
     let held = builder.drive(&mut surfaces)?;
@@ -78,20 +70,61 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         follower_loads,
         dofs: supports.dofs,
         stabilization: None,
+        small: None,
         symmetric: true,
         effects: Vec::new(),
+        plan: Plan::default(),
         notes: builder.notes,
         warnings: builder.warnings,
         kinks: Vec::new(),
     };
-    symmetry(scene, &mut model)?;
-    model.effects = super::effects::effects(scene, &model);
+    model.small = super::small::linearise(scene, &mut model)?;
+    let unsymmetric = symmetry(scene, &mut model)?;
     model.kinks = kinks(scene, &model);
     values::check(scene, &model)?;
     stabilize(scene, &mut model)?;
     super::initial::check(&mut model, scene)?;
     super::driven::start::approach(&mut model, scene)?;
+    model.plan = Plan::new(loaded, &model, &unsymmetric);
+    model.effects = model.plan.names();
     Ok(model)
+}
+
+/// The patches of a rigid surface that facets in its place would be cut from: at its scale, not yet rotated and moved to its
+/// place, with the sides that its source gives.
+///
+/// # Errors
+/// [`ModelError`]: there is no such surface, its file cannot be read, or it holds facets already.
+pub fn exact_surface(loaded: &LoadedScene, name: &str) -> Result<PatchSet, ModelError> {
+    let here = || format!("/surfaces/{name}");
+    let Some(surface) = loaded.scene.surfaces.get(name) else {
+        return Err(text(here(), format!("there is no surface `{name}`")));
+    };
+    let mut surface = surface.clone();
+    // The sphere of facets is another than the one that is used exactly.
+    surface.facets = Some(scene::Facets {
+        kind: scene::FacetKind::Bilinear,
+        chord: None,
+        size: None,
+        count: Some([1, 1]),
+    });
+    Builder::new(loaded).exact(name, &surface)
+}
+
+impl<'s> Builder<'s> {
+    fn new(loaded: &'s LoadedScene) -> Self {
+        Builder {
+            scene: &loaded.scene,
+            dir: &loaded.dir,
+            nodes: Vec::new(),
+            bodies: Vec::new(),
+            body_index: BTreeMap::new(),
+            notes: Vec::new(),
+            warnings: Vec::new(),
+            averaged: 0,
+            histories: 0,
+        }
+    }
 }
 
 /// Bodies have to be held by supports, or by contact with the help of a stabilisation.
@@ -119,8 +152,9 @@ fn stabilize(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Decides whether the system is symmetric, and whether the linear solver that was asked for can solve it.
-fn symmetry(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
+/// Decides whether the system is symmetric, and whether the linear solver that was asked for can solve it; returns what
+/// makes it unsymmetric.
+fn symmetry(scene: &Scene, model: &mut Model) -> Result<Vec<Unsymmetric>, ModelError> {
     let reasons = super::symmetry::unsymmetric_effects(model);
     model.symmetric = reasons.is_empty();
     let asked = match scene.solution.linear_solver {
@@ -128,7 +162,7 @@ fn symmetry(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
         scene::LinearSolver::Ldlt => "ldlt",
         scene::LinearSolver::Auto | scene::LinearSolver::Lu => "",
     };
-    match reasons.first() {
+    match reasons.first().map(|r| &r.why) {
         Some(reason) if !asked.is_empty() => {
             let message =
                 format!("`{asked}` is for symmetric systems, and this one is not: {reason}");
@@ -136,9 +170,12 @@ fn symmetry(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
             Err(text("/solution/linear_solver", message).help(help))
         }
         _ => {
-            let note = |reason: String| format!("{reason}, so that the system is unsymmetric (LU)");
-            model.notes.extend(reasons.into_iter().map(note));
-            Ok(())
+            let note = |reason: &Unsymmetric| {
+                let why = &reason.why;
+                format!("{why}, so that the system is unsymmetric (LU)")
+            };
+            model.notes.extend(reasons.iter().map(note));
+            Ok(reasons)
         }
     }
 }

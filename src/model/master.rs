@@ -1,5 +1,6 @@
 //! The master of a contact pair: a rigid surface, or faces of a deformable body.
 use super::self_contact::{Accept, Opposing, OwnFacets};
+use super::state::heap;
 use super::surface::SurfaceSet;
 use super::{Model, PairModel};
 use crate::contact::moving;
@@ -73,17 +74,19 @@ impl BodySurface {
 /// The surfaces of all masters that are bodies, where a state puts them.
 #[derive(Debug)]
 pub struct Masters {
+    /// Per pair; empty where no master is a body.
     surfaces: Vec<Option<BodySurface>>,
 }
 
 impl Masters {
     /// At the undeformed positions.
     pub fn new(model: &Model) -> Self {
-        let surfaces = model.pairs.iter();
+        let surface = |p: &PairModel| p.body_master().map(BodySurface::new);
         Masters {
-            surfaces: surfaces
-                .map(|p| p.body_master().map(BodySurface::new))
-                .collect(),
+            surfaces: match model.pairs.iter().any(|p| p.body_master().is_some()) {
+                true => model.pairs.iter().map(surface).collect(),
+                false => Vec::new(),
+            },
         }
     }
 
@@ -96,7 +99,13 @@ impl Masters {
 
     /// The surface of a pair; none where its master is rigid.
     pub fn surface(&self, pair: usize) -> Option<&BodySurface> {
-        self.surfaces[pair].as_ref()
+        self.surfaces.get(pair)?.as_ref()
+    }
+
+    /// Bytes of heap that they hold.
+    pub fn bytes(&self) -> usize {
+        let inner = |s: &BodySurface| s.facets.bytes() + heap(&s.normals);
+        heap(&self.surfaces) + self.surfaces.iter().flatten().map(inner).sum::<usize>()
     }
 
     /// The master of a pair at `time`; a body's where the last [`Masters::update`] put it.
@@ -110,13 +119,13 @@ impl Masters {
         u: &'a [f64],
         time: f64,
     ) -> Result<MasterNow<'a>, ValueError> {
-        Ok(match (&model.pairs[pair].master, &self.surfaces[pair]) {
+        Ok(match (&model.pairs[pair].master, self.surface(pair)) {
             (Master::Rigid(surface), _) => MasterNow::Rigid(model.surfaces[*surface].at(time, u)?),
             (Master::Body(body), surface) => MasterNow::Body {
                 model,
                 u,
                 body,
-                surface: surface.as_ref(),
+                surface,
             },
         })
     }

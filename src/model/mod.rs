@@ -4,7 +4,6 @@ pub mod averaged;
 pub mod build;
 pub mod constraints;
 pub mod driven;
-pub mod effects;
 pub mod error;
 pub mod free_motion;
 pub mod friction;
@@ -14,13 +13,16 @@ pub mod master;
 pub mod motion;
 pub mod overclosure;
 pub mod penalty;
+pub mod plan;
 pub mod segments;
 pub mod self_contact;
 pub mod slave;
+pub mod small;
 pub mod stabilization;
 pub mod state;
 pub mod surface;
 pub mod symmetry;
+pub mod without;
 
 use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;
@@ -36,7 +38,10 @@ use friction::FrictionModel;
 use loads::{DeadLoad, FollowerPressure};
 use master::Master;
 use overclosure::Overclosure;
+use small::SmallModel;
 use stabilization::StabilizationModel;
+
+use plan::Plan;
 
 pub use error::ModelError;
 pub use surface::SurfaceModel;
@@ -61,10 +66,14 @@ pub struct Model {
     pub dofs: DofMap,
     /// Viscous stabilisation where the scene asks for it.
     pub stabilization: Option<StabilizationModel>,
+    /// Contact as it is linearised at the start, where the scene declares displacements small.
+    pub small: Option<SmallModel>,
     /// Whether the tangent is symmetric ([`symmetry::unsymmetric_effects`]).
     pub symmetric: bool,
     /// Effects that are on, by name.
     pub effects: Vec<String>,
+    /// Every effect that the program has, on or off, and the kernel of every pair.
+    pub plan: Plan,
     /// Choices the program made, in words.
     pub notes: Vec<String>,
     /// Things the user should look at.
@@ -171,6 +180,21 @@ impl Model {
     /// Surfaces driven by force, with their numbers.
     pub fn driven(&self) -> impl Iterator<Item = (usize, &SurfaceModel, &Driven)> {
         (self.surfaces.iter().enumerate()).filter_map(|(i, s)| Some((i, s, s.driven.as_ref()?)))
+    }
+
+    /// Whether loads or driving forces act.
+    pub fn loaded(&self) -> bool {
+        !self.dead_loads.is_empty()
+            || !self.follower_loads.is_empty()
+            || self.driven().next().is_some()
+    }
+
+    /// Numbers that an element of a body keeps in a run; none of the linear elements for small displacements.
+    pub fn state_len(&self, body: &BodyModel) -> usize {
+        match self.small {
+            None => body.block.state_len(),
+            Some(_) => 0,
+        }
     }
 
     /// Number of unknowns.

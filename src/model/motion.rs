@@ -19,6 +19,23 @@ struct Turn {
     angle: TimeFunction,
 }
 
+/// A displacement of a rigid surface that is small: `shift + spin x (X - center)` of what was at X at time 0.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SmallMotion {
+    pub shift: Vec3,
+    /// Rotation vector (radians).
+    pub spin: Vec3,
+    pub center: Vec3,
+}
+
+impl SmallMotion {
+    /// Displacement of what was at `x` at time 0.
+    #[inline]
+    pub fn at(&self, x: &Vec3) -> Vec3 {
+        self.shift + self.spin.cross(&(x - self.center))
+    }
+}
+
 /// Rotation about an axis through the origin by an angle in degrees; a zero axis turns nothing.
 pub fn rotation(axis: [f64; 3], degrees: f64) -> UnitQuaternion<f64> {
     match Unit::try_new(Vec3::from(axis), 0.0) {
@@ -73,6 +90,27 @@ impl Motion {
             }
         };
         Ok(Translation3::from(moved) * turned * self.placement)
+    }
+
+    /// Displacement since time 0, taken to first order in the turn.
+    pub fn small(&self, t: f64) -> Result<SmallMotion, ValueError> {
+        let moved = |t: f64| {
+            let [x, y, z] = &self.translation;
+            Ok::<_, ValueError>(Vec3::new(x.eval(t)?, y.eval(t)?, z.eval(t)?))
+        };
+        let start = moved(0.0)?;
+        let (spin, center) = match &self.rotation {
+            None => (Vec3::zeros(), Vec3::zeros()),
+            Some(turn) => {
+                let angle = turn.angle.eval(t)? - turn.angle.eval(0.0)?;
+                (turn.axis.scale(angle.to_radians()), turn.center + start)
+            }
+        };
+        Ok(SmallMotion {
+            shift: moved(t)? - start,
+            spin,
+            center,
+        })
     }
 
     /// Prescribed turn from time `start` to `end` (degrees).

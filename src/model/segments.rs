@@ -337,7 +337,9 @@ pub fn recut(
                 closed: seen.is_some_and(|s| s.closed(pair.offset)),
             });
         }
-        state.cuts[index] = Some(Arc::from(made));
+        if let Some(cut) = state.cuts.get_mut(index) {
+            *cut = Some(Arc::from(made));
+        }
     }
     state.points = points;
     Ok(())

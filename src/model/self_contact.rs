@@ -8,6 +8,7 @@
 //!   opposite side of its wall.
 //! - Now, the outward normals of the point's faces and of the facet oppose each other. This leaves out the back of a wall
 //!   whose front the point meets.
+use crate::contact::kind::MasterKind;
 use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
 use covact_geometry::{MovingFacets, Vec3};
@@ -16,6 +17,8 @@ use std::collections::{BinaryHeap, HashMap};
 
 /// Which facets a batch of slave points may touch: a type, so that pairs of different bodies pay nothing for it.
 pub trait Accept: Sync {
+    /// What the facets are.
+    const KIND: MasterKind;
     /// What is looked up once for a point.
     type Point: Copy;
 
@@ -31,6 +34,7 @@ pub trait Accept: Sync {
 pub struct All;
 
 impl Accept for All {
+    const KIND: MasterKind = MasterKind::Faces;
     type Point = ();
 
     #[inline]
@@ -70,6 +74,7 @@ pub struct Opposing<'a, P> {
 }
 
 impl<P: Fn(u32) -> Vec3 + Sync> Accept for Opposing<'_, P> {
+    const KIND: MasterKind = MasterKind::OwnFaces;
     /// The point and the normal of its faces.
     type Point = (usize, Vec3);
 

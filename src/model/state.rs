@@ -27,7 +27,7 @@ pub struct State {
     /// What slave points remember, pair after pair of those with friction ([`super::PairModel::history`]).
     pub histories: Vec<PointHistory>,
     /// Per pair, the slave points of its integration segments since they were last cut; none where the points are those
-    /// of the model.
+    /// of the model. Empty where no pair has segments.
     pub cuts: Vec<Option<Arc<[SlavePoint]>>>,
     /// Energy that stabilisation has dissipated since the start.
     pub stabilized: f64,
@@ -39,7 +39,7 @@ impl State {
         let elements = model
             .bodies
             .iter()
-            .map(|b| b.block.state_len() * b.block.elements());
+            .map(|b| model.state_len(b) * b.block.elements());
         let points = model.pairs.iter().map(|p| p.points.len());
         let nodes = (model.pairs.iter().filter_map(|p| p.averaged.as_ref())).map(|a| a.len());
         let mut u = vec![0.0; 3 * model.nodes.len()];
@@ -52,7 +52,10 @@ impl State {
             points: vec![PointState::default(); points.sum()],
             nodes: vec![false; nodes.sum()],
             histories: vec![PointHistory::default(); model.histories()],
-            cuts: vec![None; model.pairs.len()],
+            cuts: match model.pairs.iter().any(|p| p.segments.is_some()) {
+                true => vec![None; model.pairs.len()],
+                false => Vec::new(),
+            },
             stabilized: 0.0,
         }
     }
@@ -101,14 +104,38 @@ impl State {
         out.stabilized = self.stabilized;
     }
 
-    /// Bytes that this state occupies.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.u[..])
-            + size_of_val(&self.elements[..])
-            + size_of_val(&self.points[..])
-            + size_of_val(&self.nodes[..])
-            + size_of_val(&self.histories[..])
+    /// Bytes of heap that this state holds, by part.
+    pub fn parts(&self) -> [(&'static str, usize); 6] {
+        let State {
+            u,
+            elements,
+            points,
+            nodes,
+            histories,
+            cuts,
+            stabilized: _,
+        } = self;
+        // Cut points are shared by all states that hold them.
+        let cut = cuts.iter().flatten().map(|cut| size_of_val(&cut[..]));
+        [
+            ("displacements", heap(u)),
+            ("element states", heap(elements)),
+            ("points", heap(points)),
+            ("averaged nodes", heap(nodes)),
+            ("histories", heap(histories)),
+            ("segments", heap(cuts) + cut.sum::<usize>()),
+        ]
     }
+
+    /// Bytes of heap that this state holds.
+    pub fn bytes(&self) -> usize {
+        self.parts().iter().map(|(_, bytes)| bytes).sum()
+    }
+}
+
+/// Bytes of heap that a vector holds itself.
+pub fn heap<T>(of: &Vec<T>) -> usize {
+    of.capacity() * size_of::<T>()
 }
 
 /// [`State::slaves`] where the rest of the state is borrowed.
@@ -118,8 +145,8 @@ pub fn slaves<'a>(
     model: &'a Model,
     pair: usize,
 ) -> &'a [SlavePoint] {
-    match &cuts[pair] {
-        None => &model.pairs[pair].points,
-        Some(cut) => cut,
+    match cuts.get(pair) {
+        Some(Some(cut)) => cut,
+        _ => &model.pairs[pair].points,
     }
 }

@@ -1,38 +1,65 @@
 //! Which effects make the tangent unsymmetric. Decided once, before anything is solved.
 use super::Model;
+use super::friction::LawModel;
 use crate::assembly::Dof;
 use crate::mesh::FaceNodes;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Why the tangent is unsymmetric, an effect a sentence; empty for a symmetric one.
+/// An effect that makes the tangent unsymmetric.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unsymmetric {
+    /// Its name in plans.
+    pub effect: &'static str,
+    /// The contact or load that has it.
+    pub of: String,
+    /// Why, in a sentence.
+    pub why: String,
+}
+
+/// What makes the tangent unsymmetric; nothing for a symmetric one.
 ///
 /// A pressure that follows the faces has a potential but for terms along their border, the triple products of two
 /// displacements and the border's tangent (K. Schweizerhof and E. Ramm, "Displacement dependent pressure loads in
 /// nonlinear finite element analyses", Computers and Structures 18 (1984)). They vanish along an edge that is held, and
 /// along one that slides in a plane of symmetry.
-pub fn unsymmetric_effects(model: &Model) -> Vec<String> {
+pub fn unsymmetric_effects(model: &Model) -> Vec<Unsymmetric> {
+    if model.small.is_some() {
+        // Pressures do not follow, and friction and half passes do not go with it.
+        return Vec::new();
+    }
     let still = still(model);
     let halves = (model.pairs.iter())
         .filter(|p| p.half.is_some_and(|h| !h.back))
-        .map(|p| {
-            format!(
+        .map(|p| Unsymmetric {
+            effect: "contact.passes.two_half",
+            of: p.name.clone(),
+            why: format!(
                 "contact `{}` is made of two half passes, in each of which the traction acts on the slave alone",
                 p.name
-            )
+            ),
         });
     let follower = (model.follower_loads.iter())
         .filter(|(_, load)| border(&load.faces).any(|edge| !quiet(model, &still, edge)))
-        .map(|(name, _)| {
-            format!("the follower pressure `{name}` acts on faces whose border is free to move")
+        .map(|(name, _)| Unsymmetric {
+            effect: "load.follower_pressure",
+            of: name.clone(),
+            why: format!(
+                "the follower pressure `{name}` acts on faces whose border is free to move"
+            ),
         });
     // The second of two half passes has the friction of the first.
     let friction = (model.pairs.iter())
         .filter(|p| p.friction.is_some() && !p.half.is_some_and(|h| h.back))
-        .map(|p| {
-            format!(
+        .map(|p| Unsymmetric {
+            effect: match p.friction.as_ref().map(|f| &f.law) {
+                Some(LawModel::Orthotropic { .. }) => "contact.friction.orthotropic",
+                _ => "contact.friction.coulomb",
+            },
+            of: p.name.clone(),
+            why: format!(
                 "the friction of contact `{}` depends on its pressure",
                 p.name
-            )
+            ),
         });
     follower.chain(halves).chain(friction).collect()
 }

@@ -25,7 +25,7 @@ const H8_TO_VTK: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 const Q18_TO_VTK: [usize; 18] = [0, 2, 8, 6, 9, 11, 17, 15, 1, 5, 7, 3, 10, 14, 16, 12, 4, 13];
 
 /// Node order and type of the cell that an element is written as.
-fn vtk_cell(kind: ElementKind) -> (&'static [usize], CellType) {
+pub(crate) fn vtk_cell(kind: ElementKind) -> (&'static [usize], CellType) {
     match kind {
         ElementKind::H8 => (&H8_TO_VTK, CellType::Hexahedron),
         ElementKind::Q18 => (&Q18_TO_VTK, CellType::LagrangeHexahedron),

@@ -17,9 +17,11 @@ mod bezier;
 mod body;
 mod cloud;
 mod columns;
+mod compare;
 mod error;
 mod history;
 mod measure;
+mod planned;
 mod results;
 pub(crate) mod sum;
 mod summary;
@@ -28,15 +30,19 @@ mod trimmed;
 mod vtu;
 
 pub use bezier::{BezierError, MAX_DEGREE, SurfacePiece};
+pub(crate) use body::vtk_cell;
 pub use body::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, SLIP, STRESS_COMPONENTS, von_mises,
 };
 pub use cloud::PointCloud;
 pub use columns::{COLUMNS, ColumnDoc, column_table, documented};
+pub use compare::{Compared, Comparison, Cost, compare};
 pub use error::OutputError;
 pub use history::{History, HistoryMark, Table, read_csv};
 pub use measure::{Phases, cpu_seconds, peak_memory_mb};
+pub use planned::{EffectSummary, PairSummary, PlanSummary};
 pub use results::{PartNames, Results, SurfaceState, file_stem};
 pub use summary::{RunStatus, SUMMARY_FORMAT, Summary, Versions};
 pub use surface::SurfaceOutput;
+pub(crate) use vtu::escape;
 pub use vtu::{Field, Place};

@@ -1,6 +1,7 @@
 //! How a run went and what it cost.
 use super::OutputError;
 use super::atomic::write_whole;
+use super::planned::PlanSummary;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -78,6 +79,9 @@ pub struct Summary {
     pub pattern_rebuilds: u32,
     /// Effects that were on, by name.
     pub effects: Vec<String>,
+    /// What was done and why, contact by contact.
+    #[serde(default)]
+    pub plan: PlanSummary,
     /// What the user should know, in words.
     pub warnings: Vec<String>,
     /// Times that the run was continued after an interruption. Seconds and phases are then those of all parts, each up to

@@ -12,7 +12,7 @@ use crate::output::{
     SurfaceOutput, SurfaceState,
 };
 use crate::scene::Output;
-use crate::shell::{ElementBlock, with_block};
+use crate::shell::{ElementBlock, ElementFault, with_block};
 use covact_geometry::Vec3;
 
 /// Contact fields on all nodes, and totals over all slave points. [`Fields::gather`] makes all of them from an accepted
@@ -50,11 +50,11 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// Prepares what `output` asks for.
+    /// Prepares what `output` asks for; copies of surfaces only where fields are written at all.
     pub fn new(model: &Model, output: &Output) -> Result<Self, OutputError> {
         let mut notes = Vec::new();
         let mut surfaces = Vec::new();
-        for surface in &model.surfaces {
+        for surface in model.surfaces.iter().filter(|_| output.every > 0) {
             let pieces = pieces(surface, output.tessellation);
             let written = SurfaceOutput::new(&surface.name, pieces, output.tessellation)?;
             if !written.left_out().is_empty() {
@@ -101,9 +101,7 @@ impl Fields {
     pub fn part_names(&self, model: &Model) -> PartNames {
         PartNames {
             bodies: model.bodies.iter().map(|b| b.name.clone()).collect(),
-            surfaces: (self.surfaces.iter())
-                .map(|s| s.name().to_owned())
-                .collect(),
+            surfaces: model.surfaces.iter().map(|s| s.name.clone()).collect(),
             clouds: match self.gaps.is_empty() {
                 true => Vec::new(),
                 false => friction_fields::cloud_names(model),
@@ -123,7 +121,9 @@ impl Fields {
         state: &State,
         time: f64,
     ) -> Result<(), RunError> {
-        masters.update(model, &state.u);
+        if model.small.is_none() {
+            masters.update(model, &state.u);
+        }
         self.pressure.fill(0.0);
         self.gap.fill(f64::NAN);
         self.status.fill(NOT_A_SLAVE);
@@ -170,15 +170,25 @@ impl Fields {
             let offsets = pair.offsets(time);
             let shrinking = pair.resolved(&start, first);
             let histories = pair.history().map(|range| &state.histories[range]);
+            let small = match &model.small {
+                Some(small) => Some((&small.pairs[index], model.small_motion(pair, time)?)),
+                None => None,
+            };
             for (i, ((p, s), front)) in points.iter().zip(states).zip(fronts).enumerate() {
                 let z0 = offsets.map_or(0.0, |o| o.at(i));
-                let x = model.point_position(p, &state.u);
                 // A point with no foot at all keeps the gap unknown.
-                let seen = master.see(i, &x, s.hint);
-                let sunk = seen.is_some_and(|s| s.behind);
-                self.sunk[index] += usize::from(*front && sunk);
-                *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
-                let gap = seen.map_or(f64::NAN, |s| s.gap(z0));
+                let gap = if let Some((own, motion)) = &small {
+                    own.points[i].map_or(f64::NAN, |at| {
+                        at.gap - z0 + own.approach(i, &at, p, motion.as_ref(), &state.u)
+                    })
+                } else {
+                    let x = model.point_position(p, &state.u);
+                    let seen = master.see(i, &x, s.hint);
+                    let sunk = seen.is_some_and(|s| s.behind);
+                    self.sunk[index] += usize::from(*front && sunk);
+                    *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
+                    seen.map_or(f64::NAN, |s| s.gap(z0))
+                };
                 if let Some(kept) = self.gaps.get_mut(first + i) {
                     *kept = gap;
                 }
@@ -336,12 +346,35 @@ fn nodal_stresses(model: &Model, state: &State) -> Vec<Vec<[f64; 6]>> {
     let mut first = 0;
     let mut out = Vec::new();
     for body in &model.bodies {
-        let len = body.block.state_len() * body.block.elements();
+        let len = model.state_len(body) * body.block.elements();
         let states = &state.elements[first..first + len];
         first += len;
-        out.push(with_block!(&body.block, block => body_stresses(body, block, states, &state.u)));
+        out.push(with_block!(&body.block, block => match model.small {
+            None => body_stresses(body, block, states, &state.u),
+            Some(_) => linear_stresses(body, block, &state.u),
+        }));
     }
     out
+}
+
+/// Stress of the linear elements of a body, whose enhanced strains are worked out anew.
+fn linear_stresses<const N: usize, B: ElementBlock<N>>(
+    body: &BodyModel,
+    block: &B,
+    u: &[f64],
+) -> Vec<[f64; 6]> {
+    let (len, alphas) = (block.state_len(), block.alpha_len());
+    let none = vec![0.0; alphas];
+    let (mut state, mut system) = (vec![0.0; len], B::System::default());
+    averaged_stresses(block, body.mesh.nodes.len(), |e, nodal| {
+        state.fill(0.0);
+        if len > 0 {
+            block.evaluate(e, &[Vec3::zeros(); N], &mut state, &mut system)?;
+        }
+        let u = body.displacements(block, e, u);
+        block.update_alpha(&mut state, &u, 1.0, &none);
+        block.linear_nodal_stresses(e, &u, &state, nodal)
+    })
 }
 
 fn body_stresses<const N: usize>(
@@ -351,13 +384,23 @@ fn body_stresses<const N: usize>(
     u: &[f64],
 ) -> Vec<[f64; 6]> {
     let len = block.state_len();
-    let mut sum = vec![[0.0; 6]; body.mesh.nodes.len()];
-    let mut weight = vec![0.0; body.mesh.nodes.len()];
-    for e in 0..block.elements() {
+    averaged_stresses(block, body.mesh.nodes.len(), |e, nodal| {
         let u = body.displacements(block, e, u);
+        block.nodal_stresses(e, &u, &states[e * len..(e + 1) * len], nodal)
+    })
+}
+
+/// Averages what `of` says of the nodes of every element between the elements, by volume; what fails is left out.
+fn averaged_stresses<const N: usize>(
+    block: &impl ElementBlock<N>,
+    nodes: usize,
+    mut of: impl FnMut(usize, &mut [[f64; 6]; N]) -> Result<(), ElementFault>,
+) -> Vec<[f64; 6]> {
+    let mut sum = vec![[0.0; 6]; nodes];
+    let mut weight = vec![0.0; nodes];
+    for e in 0..block.elements() {
         let mut nodal = [[0.0; 6]; N];
-        let element = &states[e * len..(e + 1) * len];
-        if block.nodal_stresses(e, &u, element, &mut nodal).is_err() {
+        if of(e, &mut nodal).is_err() {
             continue;
         }
         let volume = block.volume(e);

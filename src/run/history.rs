@@ -186,7 +186,12 @@ fn reactions(model: &Model, residual: &[f64], u: &[f64]) -> Vec<(Vec3, Vec3)> {
         f[dof as usize % 3] = value;
         let (force, moment) = &mut out[support as usize];
         *force += f;
-        *moment += model.position(dof as usize / 3, u).cross(&f);
+        let at = match model.small {
+            None => model.position(dof as usize / 3, u),
+            // In equilibrium where everything was at the start.
+            Some(_) => model.nodes[dof as usize / 3],
+        };
+        *moment += at.cross(&f);
     };
     for p in &model.prescribed {
         add(p.support, p.dof, residual[p.dof as usize]);

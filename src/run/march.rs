@@ -8,6 +8,7 @@ use super::RunError;
 use super::checkpoint::{CheckpointError, Keeper, start};
 use super::commit::{self, FrictionTotals};
 use super::cost::Cost;
+use super::doubt;
 use super::fields::Fields;
 use super::history;
 use super::progress::Progress;
@@ -59,7 +60,7 @@ pub(super) struct March<'a, 'm> {
     pub(super) scene: &'a Scene,
     pub(super) model: &'m Model,
     pub assembler: &'a mut Assembler<'m>,
-    solver: &'a mut dyn LinearSolver,
+    pub(super) solver: &'a mut dyn LinearSolver,
     pub workspace: Workspace,
     pub observer: &'a mut (dyn Observer + Send),
     interrupt: &'a AtomicBool,
@@ -365,6 +366,11 @@ impl<'a, 'm> March<'a, 'm> {
                         (work, drag),
                     )?;
                     cuts = 0;
+                    if self.model.small.is_some()
+                        && (walk.stepping.done(end) || walk.stepping.at_kink(end))
+                    {
+                        self.beyond_linear(committed, converged.totals.internal_energy);
+                    }
                     if let Some(ending) =
                         self.stabilized(committed, &drag, &converged, walk.stepping.done(end))
                     {
@@ -544,6 +550,10 @@ impl<'a, 'm> March<'a, 'm> {
         let told = (self.watch).close(self.model, (step, span), work, pressed, energy, softened);
         if let Some(text) = told {
             self.warn(text);
+        }
+        let doubts = doubt::doubts(self.model, &mut self.assembler.masters, state, time);
+        for doubt in doubts.map_err(|e| RunError::internal(&e))? {
+            self.doubt(doubt);
         }
         let row = history::row(&history::Record {
             model: self.model,

@@ -13,6 +13,9 @@ use crate::solve::linear::{DirectSolver, LinearError, LuSolver, SolverOptions};
 /// [`RunError::Scene`] at the tessellation.
 pub(super) fn flat_copies(loaded: &LoadedScene, model: &Model) -> Result<(), RunError> {
     let n = loaded.scene.output.tessellation;
+    if loaded.scene.output.every == 0 {
+        return Ok(());
+    }
     let Err(shortage) = limits::ask(limits::tessellation(model, n)) else {
         return Ok(());
     };
@@ -64,7 +67,12 @@ pub(super) fn estimate(loaded: &LoadedScene, model: &Model) -> Result<Estimate, 
     let elements: Vec<_> = (model.bodies.iter())
         .filter_map(|b| Some(loaded.scene.bodies.get(&b.name)?.element))
         .collect();
-    let tessellation = loaded.scene.output.tessellation;
+    let output = &loaded.scene.output;
+    let tessellation = if output.every == 0 {
+        0
+    } else {
+        output.tessellation
+    };
     let estimate = Estimate::new(model, &elements, &pattern_, &found, tessellation);
     let rest = estimate.matrix.saturating_add(estimate.factor);
     match limits::ask(rest) {

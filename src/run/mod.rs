@@ -5,6 +5,7 @@ mod check;
 mod checkpoint;
 mod commit;
 mod cost;
+mod doubt;
 mod error;
 mod fields;
 mod friction_fields;
@@ -13,6 +14,7 @@ mod march;
 mod memory;
 mod passed;
 mod pieces;
+mod plan;
 mod progress;
 mod sound;
 mod stabilized;
@@ -24,10 +26,11 @@ pub use check::{
 };
 pub use checkpoint::CheckpointError;
 pub use error::RunError;
+pub use plan::{PlanReport, plan};
 
 use crate::assembly::Assembler;
 use crate::model;
-use crate::output::{Phases, RunStatus, Summary, Versions};
+use crate::output::{Phases, PlanSummary, RunStatus, Summary, Versions};
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
@@ -69,6 +72,11 @@ pub fn run(
         .map_err(|e| RunError::scene(scene, "/solution/threads", e.to_string()))?;
     let threads = pool.current_num_threads();
     pool.install(|| solve(scene, out, threads, options.resume, observer, interrupt))
+}
+
+/// Checksum of a scene and of the files that it names, as [`Summary::scene`] tells it.
+pub fn checksum(loaded: &LoadedScene) -> String {
+    checkpoint::name(&Fingerprint::new(loaded))
 }
 
 fn solve(
@@ -163,6 +171,7 @@ fn solve(
         time,
     } = march.progress;
     let pattern_rebuilds = march.assembler.rebuilds();
+    let plan = PlanSummary::new(&model.plan, march.assembler.ran());
     let factorizations = march.workspace.factorizations.iter();
     let summary = Summary {
         status,
@@ -184,6 +193,7 @@ fn solve(
         ping_pongs,
         pattern_rebuilds,
         effects: model.effects.clone(),
+        plan,
         warnings,
         resumed,
         scene,

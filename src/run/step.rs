@@ -98,6 +98,11 @@ impl Attempts<'_, '_> {
         trial: &mut State,
         penalties: &[f64],
     ) -> Result<Converged, StepFailure> {
+        if self.model.small.is_some() {
+            // The answer does not depend on the start.
+            trial.copy_from(self.committed);
+            return self.penalized(step, end, trial, Patience::Long);
+        }
         // Another start would not bring the tractions nearer to multipliers.
         let another = |failure: &StepFailure| {
             !matches!(
@@ -337,7 +342,9 @@ impl Attempts<'_, '_> {
         let mut raised = Vec::new();
         for _ in 0..RAISES {
             let mut converged = self.newton(step, end, trial, patience)?;
-            self.none_sunk(end, trial)?;
+            if self.model.small.is_none() {
+                self.none_sunk(end, trial)?;
+            }
             iterations += converged.iterations;
             converged.iterations = iterations;
             if !self.stiffen(step, &converged, &mut raised) {
@@ -412,13 +419,16 @@ impl Attempts<'_, '_> {
             interrupt: self.interrupt,
             iterations: 0,
         };
-        let mut result = newton.solve(step, end, trial, self.observer);
+        let mut result = match self.model.small {
+            None => newton.solve(step, end, trial, self.observer),
+            Some(_) => newton.solve_small(step, end, trial, self.observer),
+        };
         if first.is_some() {
             self.opened = newton.opened;
         }
         self.progress.ping_pongs += newton.ping_pongs;
         self.progress.iterations += u64::from(newton.iterations);
-        if result.is_ok() {
+        if result.is_ok() && self.model.small.is_none() {
             result = sound::inside_out(self.model, trial).and(result);
         }
         result

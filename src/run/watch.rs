@@ -12,6 +12,7 @@
 //! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
 use crate::assembly::{Assembler, Fault, PointAnswer, SurfaceForce, Totals};
 use crate::model::error::number;
+use crate::model::motion::SmallMotion;
 use crate::model::state::State;
 use crate::model::{Model, SurfaceModel};
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
@@ -44,7 +45,7 @@ pub struct Watch {
     pub worst_step: u32,
     /// Largest displacement of a node by the time it took, in the last step and in the one before.
     pub speed: [f64; 2],
-    /// Reactions and loads, 3 per node of the bodies (force).
+    /// Reactions and loads, 3 per node of the bodies (force); no loads where the scene has none.
     reactions: Vec<f64>,
     loads: Vec<f64>,
     /// What the rigid surfaces exert.
@@ -122,7 +123,7 @@ impl Watch {
         let n = 3 * model.body_nodes();
         Watch {
             reactions: vec![0.0; n],
-            loads: vec![0.0; n],
+            loads: vec![0.0; if model.loaded() { n } else { 0 }],
             surfaces: vec![SurfaceForce::default(); model.surfaces.len()],
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             pressed: vec![0.0; model.pairs.len()],
@@ -232,7 +233,8 @@ impl Watch {
                 b += b_i * du;
             }
             work.add(a, b);
-            at.copy_from_slice(&end[..n]);
+            let own = at.len();
+            at.copy_from_slice(&end[..own]);
         }
         let moved = was.iter().zip(now).map(|(a, b)| (b - a).abs());
         let speed = moved.fold(0.0, f64::max) / (span.to.1 - span.from.1);
@@ -415,11 +417,27 @@ impl Twist {
     /// Per surface; none where it stands still.
     fn all(model: &Model, span: &Span) -> Result<Vec<Option<Twist>>, ValueError> {
         let ((from, start), (to, end)) = (span.from, span.to);
+        if model.small.is_some() {
+            let between = |s: &SurfaceModel| {
+                let [a, b] = [s.motion.small(start)?, s.motion.small(end)?];
+                Ok((a != b).then(|| Twist::small(&a, &b)))
+            };
+            return model.surfaces.iter().map(between).collect();
+        }
         let between = |s: &SurfaceModel| {
             let (a, b) = (s.pose(start, &from.u)?, s.pose(end, &to.u)?);
             Ok((a != b).then(|| Twist::between(&a, &b)))
         };
         model.surfaces.iter().map(between).collect()
+    }
+
+    /// Between two small motions, which refer to where everything was at the start, as their forces do.
+    fn small(a: &SmallMotion, b: &SmallMotion) -> Twist {
+        let spin = b.spin - a.spin;
+        Twist {
+            velocity: b.shift - a.shift - spin.cross(&b.center),
+            spin,
+        }
     }
 
     /// The logarithm of the motion (R. M. Murray, Z. Li, S. S. Sastry, "A Mathematical Introduction to Robotic Manipulation",

@@ -189,6 +189,10 @@ impl<'de, 'f> Decoder<'de, 'f> {
                     "covact" => {
                         "a scene starts with the version of its format, `\"covact\": 1`".into()
                     }
+                    "covact_study" => {
+                        "a study starts with the version of its format, `\"covact_study\": 1`"
+                            .into()
+                    }
                     _ => format!("known keys: {}", list(known)),
                 });
             }

@@ -45,8 +45,14 @@ pub(super) struct Fault {
     pub span: Range<usize>,
 }
 
-/// Reads a text. Faults that do not stop reading (keys given twice: the first one counts) are added to `faults`.
-pub(super) fn read(text: &str, faults: &mut Vec<Fault>) -> Result<Node, Fault> {
+/// Reads a text, which messages call `what`; `start` tells what to do about an empty one. Faults that do not stop reading
+/// (keys given twice: the first one counts) are added to `faults`.
+pub(super) fn read(
+    text: &str,
+    what: &str,
+    start: &str,
+    faults: &mut Vec<Fault>,
+) -> Result<Node, Fault> {
     let mut reader = Reader {
         text,
         at: 0,
@@ -58,18 +64,14 @@ pub(super) fn read(text: &str, faults: &mut Vec<Fault>) -> Result<Node, Fault> {
     }
     reader.skip_space()?;
     if reader.at == text.len() {
-        return Err(reader.fault(
-            0..0,
-            "the file is empty",
-            Some("`covact new` writes a scene to start from"),
-        ));
+        return Err(reader.fault(0..0, "the file is empty", Some(start)));
     }
     let root = reader.value()?;
     reader.skip_space()?;
     if reader.at < text.len() {
         return Err(reader.fault(
             reader.here(),
-            "there is more text after the end of the scene",
+            format!("there is more text after the end of the {what}"),
             Some("perhaps a closing bracket too early"),
         ));
     }

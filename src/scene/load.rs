@@ -1,29 +1,38 @@
 //! Reading a scene file.
-use super::decode::decode;
-use super::json::{self, Fault, Kind, Node};
-use super::problem::{Lines, Place, Problem, SceneError, nearest};
+use super::document::{self, Document, Form};
+use super::problem::SceneError;
 use super::types::Scene;
-use covact_geometry::io::read_within;
-use std::io;
-use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::ops::{Deref, DerefMut};
+use std::path::Path;
 
 /// Version of the scene format that this program reads.
 pub const FORMAT: u32 = 1;
-/// Larger files are refused: a scene is text written by people, meshes and CAD data have files of their own.
-const MAX_BYTES: u64 = 64 << 20;
+
+impl Form for Scene {
+    const NAME: &'static str = "scene";
+    const KEY: &'static str = "covact";
+    const VERSION: u32 = FORMAT;
+    const START: &'static str = "`covact new` writes a scene to start from";
+}
 
 /// A scene with its text, so that everything found later can point into the file.
 #[derive(Debug, Clone)]
 pub struct LoadedScene {
     pub scene: Scene,
-    /// Name of the file as the user gave it.
-    pub name: String,
-    /// Folder that paths in the scene are relative to.
-    pub dir: PathBuf,
-    pub text: String,
-    root: Node,
-    lines: Lines,
+    document: Document,
+}
+
+impl Deref for LoadedScene {
+    type Target = Document;
+    fn deref(&self) -> &Document {
+        &self.document
+    }
+}
+
+impl DerefMut for LoadedScene {
+    fn deref_mut(&mut self) -> &mut Document {
+        &mut self.document
+    }
 }
 
 /// Reads a scene file. What needs more than the format is left to [`super::check`].
@@ -31,33 +40,8 @@ pub struct LoadedScene {
 /// # Errors
 /// [`SceneError`]: the file cannot be read, is not JSON, or does not have the form of a scene.
 pub fn load(path: impl AsRef<Path>) -> Result<LoadedScene, SceneError> {
-    let path = path.as_ref();
-    let failed = |e: io::Error| match e.kind() {
-        io::ErrorKind::NotFound => SceneError::Missing {
-            path: path.to_path_buf(),
-            nearest: nearest_file(path),
-        },
-        io::ErrorKind::FileTooLarge => SceneError::Io {
-            path: path.to_path_buf(),
-            reason: format!(
-                "it is larger than {} MB, too large for a scene",
-                MAX_BYTES >> 20
-            ),
-        },
-        _ => SceneError::Io {
-            path: path.to_path_buf(),
-            reason: e.to_string(),
-        },
-    };
-    let bytes = read_within(path, MAX_BYTES).map_err(failed)?;
-    let name = path.display().to_string();
-    let text = String::from_utf8(bytes).map_err(|e| not_utf8(&name, &e))?;
-    let mut loaded = parse(&text, &name)?;
-    loaded.dir = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
-        _ => PathBuf::from("."),
-    };
-    Ok(loaded)
+    let (scene, document) = document::load::<Scene>(path.as_ref())?;
+    Ok(LoadedScene { scene, document })
 }
 
 /// Reads a scene from text; `name` stands for the file in messages. Paths in the scene are relative to the current
@@ -66,191 +50,6 @@ pub fn load(path: impl AsRef<Path>) -> Result<LoadedScene, SceneError> {
 /// # Errors
 /// [`SceneError::Wrong`] with all unknown keys and keys given twice, and the first fault of another kind.
 pub fn parse(text: &str, name: &str) -> Result<LoadedScene, SceneError> {
-    let lines = Lines::new(text);
-    let mut faults = Vec::new();
-    let root = match json::read(text, &mut faults) {
-        Ok(root) => Some(root),
-        Err(fault) => {
-            faults.push(fault);
-            None
-        }
-    };
-    let scene = root.as_ref().and_then(|root| {
-        if let Some(fault) = other_version(root) {
-            // Another version's keys would only add confusing faults.
-            faults = vec![fault];
-            return None;
-        }
-        match decode::<Scene>(root) {
-            Ok(scene) => Some(scene),
-            Err(more) => {
-                faults.extend(more);
-                None
-            }
-        }
-    });
-    match (root, scene) {
-        (Some(root), Some(scene)) if faults.is_empty() => Ok(LoadedScene {
-            scene,
-            name: name.to_string(),
-            dir: PathBuf::from("."),
-            text: text.to_string(),
-            root,
-            lines,
-        }),
-        (root, _) => {
-            faults.sort_by_key(|f| f.span.start);
-            let problem = |f: Fault| Problem {
-                pointer: root
-                    .as_ref()
-                    .map_or(String::new(), |r| r.pointer_at(f.span.start)),
-                place: lines.place(text, f.span.start),
-                message: f.message,
-                help: f.help,
-                span: f.span,
-            };
-            Err(SceneError::Wrong {
-                name: name.to_string(),
-                text: text.to_string(),
-                problems: faults.into_iter().map(problem).collect(),
-            })
-        }
-    }
-}
-
-fn other_version(root: &Node) -> Option<Fault> {
-    let (node, _) = root.child("covact")?;
-    match node.kind {
-        Kind::Number(n) if n != f64::from(FORMAT) => Some(Fault {
-            message: format!("version {n} of the scene format is not known"),
-            help: Some(format!(
-                "this program ({}) reads version {FORMAT}",
-                env!("CARGO_PKG_VERSION")
-            )),
-            span: node.span.clone(),
-        }),
-        _ => None,
-    }
-}
-
-fn not_utf8(name: &str, error: &std::string::FromUtf8Error) -> SceneError {
-    let bytes = error.as_bytes();
-    let at = error.utf8_error().valid_up_to();
-    let text = String::from_utf8_lossy(bytes).into_owned();
-    let utf16 = matches!(bytes, [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..]);
-    let byte = bytes.get(at).copied().unwrap_or_default();
-    let problem = Problem {
-        message: format!("the file is not UTF-8 text: byte 0x{byte:02X}"),
-        help: Some(match utf16 {
-            true => "it looks like UTF-16; save it as UTF-8".into(),
-            false => "save it as UTF-8".into(),
-        }),
-        pointer: String::new(),
-        place: Lines::new(&text).place(&text, at),
-        span: at..at + 1,
-    };
-    SceneError::Wrong {
-        name: name.to_string(),
-        text,
-        problems: vec![problem],
-    }
-}
-
-/// A file in the same folder whose name is like that of `path`.
-pub(crate) fn nearest_file(path: &Path) -> Option<String> {
-    let wanted = path.file_name()?.to_str()?;
-    let parent = path.parent().filter(|p| !p.as_os_str().is_empty());
-    let folder = std::fs::read_dir(parent.unwrap_or(Path::new("."))).ok()?;
-    let mut names: Vec<String> = folder
-        .filter_map(|e| e.ok()?.file_name().into_string().ok())
-        .collect();
-    // The order of a folder is not defined.
-    names.sort();
-    nearest(wanted, names.iter().map(String::as_str)).map(str::to_string)
-}
-
-impl LoadedScene {
-    /// Where the value of a JSON pointer (`/contacts/c1/slave`) starts; of the innermost value on the way to it when
-    /// it is not in the file (defaults).
-    pub fn place_of(&self, pointer: &str) -> Place {
-        self.lines.place(&self.text, self.span_of(pointer).start)
-    }
-
-    /// Bytes of the value of a JSON pointer, as for [`LoadedScene::place_of`]. Of objects and lists, their key.
-    pub fn span_of(&self, pointer: &str) -> Range<usize> {
-        let mut node = &self.root;
-        let mut span = node.span.start..node.span.start + 1;
-        for token in pointer.split('/').skip(1) {
-            let token = token.replace("~1", "/").replace("~0", "~");
-            let Some((child, key)) = node.child(&token) else {
-                break;
-            };
-            node = child;
-            span = match child.kind {
-                Kind::Object(_) | Kind::Array(_) => key,
-                _ => child.span.clone(),
-            };
-        }
-        span
-    }
-
-    /// A problem at a JSON pointer.
-    pub fn problem(
-        &self,
-        pointer: &str,
-        message: impl Into<String>,
-        help: Option<String>,
-    ) -> Problem {
-        Problem {
-            message: message.into(),
-            help,
-            pointer: pointer.to_string(),
-            place: self.place_of(pointer),
-            span: self.span_of(pointer),
-        }
-    }
-
-    /// A problem at a part (bytes) of a text value.
-    pub(super) fn problem_within(
-        &self,
-        pointer: &str,
-        part: Range<usize>,
-        message: impl Into<String>,
-        help: Option<String>,
-    ) -> Problem {
-        let mut problem = self.problem(pointer, message, help);
-        let span = problem.span.clone();
-        // With escape sequences the text and its source do not run in step; then the whole text is meant.
-        let plain = self
-            .text
-            .get(span.clone())
-            .is_some_and(|s| s.starts_with('"') && !s.contains('\\'));
-        if plain && span.start + 1 + part.end < span.end {
-            problem.span = span.start + 1 + part.start..span.start + 1 + part.end;
-            problem.place = self.lines.place(&self.text, problem.span.start);
-        }
-        problem
-    }
-
-    /// The error that lists these problems.
-    pub fn error(&self, problems: Vec<Problem>) -> SceneError {
-        SceneError::Wrong {
-            name: self.name.clone(),
-            text: self.text.clone(),
-            problems,
-        }
-    }
-
-    /// A path of the scene, relative to the scene's folder.
-    pub fn resolve(&self, path: &Path) -> PathBuf {
-        self.dir.join(path)
-    }
-}
-
-/// JSON pointer of nested names, e.g. `["contacts", "c1", "slave"]`.
-pub fn pointer(tokens: &[&str]) -> String {
-    tokens
-        .iter()
-        .map(|t| format!("/{}", json::escape(t)))
-        .collect()
+    let (scene, document) = document::parse::<Scene>(text, name)?;
+    Ok(LoadedScene { scene, document })
 }

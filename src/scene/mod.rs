@@ -4,6 +4,7 @@
 //! being read. Both say where in the file.
 mod check;
 mod decode;
+mod document;
 mod expression;
 mod json;
 mod load;
@@ -12,12 +13,14 @@ mod schema;
 mod types;
 mod value;
 
+pub(crate) use check::Checker;
 pub use check::check;
+pub use document::{Document, pointer};
+pub(crate) use document::{Form, load as load_document, nearest_file, parse as parse_document};
 pub use expression::{Expression, ExpressionError};
-#[cfg(feature = "cli")]
-pub(crate) use load::nearest_file;
-pub use load::{FORMAT, LoadedScene, load, parse, pointer};
+pub use load::{FORMAT, LoadedScene, load, parse};
 pub use problem::{Place, Problem, SceneError, nearest};
+pub(crate) use problem::{shorten, suggestion};
 pub use schema::schema;
 pub use types::*;
 pub use value::{EvalError, POSITION_AND_TIME, TIME, TimeFunction, Value, ValueError};

@@ -1,4 +1,4 @@
-//! What can be wrong with a scene, and where in the file.
+//! What can be wrong with a scene (or a study, which is read alike), and where in the file.
 use serde::Serialize;
 use std::fmt;
 use std::ops::Range;
@@ -48,15 +48,22 @@ impl fmt::Display for Problem {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SceneError {
     /// The file is not there, or is a folder.
-    #[error("there is no scene file `{}`{}", .path.display(), hint(.nearest))]
+    #[error("there is no {what} file `{}`{}", .path.display(), hint(.nearest))]
     Missing {
+        /// What the file should hold, e.g. "scene".
+        what: &'static str,
         path: PathBuf,
         /// A file of a similar name in the same folder.
         nearest: Option<String>,
     },
     /// The operating system refused to read the file.
-    #[error("cannot read the scene `{}`: {reason}", .path.display())]
-    Io { path: PathBuf, reason: String },
+    #[error("cannot read the {what} `{}`: {reason}", .path.display())]
+    Io {
+        /// What the file should hold, e.g. "scene".
+        what: &'static str,
+        path: PathBuf,
+        reason: String,
+    },
     /// The text is no valid scene.
     #[error("{}", listing(.name, .problems))]
     Wrong {
@@ -186,7 +193,7 @@ fn in_common(one: &str, other: &str) -> usize {
 }
 
 /// "did you mean `b`? Known keys: `a`, `b`" in the words of `what`.
-pub(super) fn suggestion<'a>(
+pub(crate) fn suggestion<'a>(
     written: &str,
     what: &str,
     candidates: impl IntoIterator<Item = &'a str> + Clone,
@@ -216,7 +223,7 @@ pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
 }
 
 /// At most 40 characters of a text.
-pub(super) fn shorten(text: &str) -> String {
+pub(crate) fn shorten(text: &str) -> String {
     match text.char_indices().nth(40) {
         Some((i, _)) => format!("{}...", &text[..i]),
         None => text.to_string(),

@@ -69,6 +69,14 @@ pub trait ElementBlock<const N: usize>: Sync {
         state: &[f64],
         out: &mut [[f64; 6]; N],
     ) -> Result<(), ElementFault>;
+    /// The same of the linear element, whose enhanced strains at `u` are the first of `state`.
+    fn linear_nodal_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; N],
+        state: &[f64],
+        out: &mut [[f64; 6]; N],
+    ) -> Result<(), ElementFault>;
 }
 
 /// Forces and tangent of one element.
@@ -158,6 +166,18 @@ impl ElementBlock<8> for H8Block {
         *out = extrapolate(&points);
         Ok(())
     }
+    fn linear_nodal_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; 8],
+        state: &[f64],
+        out: &mut [[f64; 6]; 8],
+    ) -> Result<(), ElementFault> {
+        let mut points = [[0.0; 6]; 8];
+        self.linear_stresses(e, u, state, &mut points)?;
+        *out = extrapolate(&points);
+        Ok(())
+    }
 }
 
 impl ElementBlock<18> for Q18Block {
@@ -183,6 +203,18 @@ impl ElementBlock<18> for Q18Block {
     ) -> Result<(), ElementFault> {
         let mut points = [[0.0; 6]; 18];
         self.stresses(e, u, state, &mut points)?;
+        *out = extrapolate_quadratic(&points);
+        Ok(())
+    }
+    fn linear_nodal_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; 18],
+        state: &[f64],
+        out: &mut [[f64; 6]; 18],
+    ) -> Result<(), ElementFault> {
+        let mut points = [[0.0; 6]; 18];
+        self.linear_stresses(e, u, state, &mut points)?;
         *out = extrapolate_quadratic(&points);
         Ok(())
     }

@@ -7,6 +7,7 @@ use super::{brick, stress, tangent};
 use crate::mesh::{ElementKind, Mesh};
 use crate::scene::Element;
 use covact_geometry::Vec3;
+use num_dual::Dual64;
 
 /// Variants of the 8-node element; all have 2 x 2 x 2 Gauss points.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -325,6 +326,40 @@ impl H8Block {
     }
 }
 
+impl H8Block {
+    /// Stress of the linear element (xx, yy, zz, xy, yz, xz) at the Gauss points `i + 2 j + 4 k`: Hooke's law on the linear
+    /// part of the assumed and enhanced strain. `alpha` are the enhanced strains that belong to `u`.
+    ///
+    /// # Errors
+    /// [`ElementFault`] where the law has no stiffness.
+    pub fn linear_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; 8],
+        alpha: &[f64],
+        out: &mut [[f64; 6]; 8],
+    ) -> Result<(), ElementFault> {
+        let u = stress::from_zero(&arrays(u));
+        let re = &self.reference[e];
+        let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
+        let strain = match self.formulation {
+            Formulation::Eas7 => kinematics::strains(re, &big, &du, &dual_head::<7>(alpha)),
+            Formulation::Eas3 => kinematics::strains(re, &big, &du, &dual_head::<3>(alpha)),
+            Formulation::Eas0 => kinematics::strains(re, &big, &du, &[]),
+            Formulation::Displacement => {
+                std::array::from_fn(|g| brick::strain(&big.at(g), &du.at(g)))
+            }
+        };
+        for g in 0..8 {
+            out[g] = with_law!(self, law => stress::linear(
+                law, &re.metric[g], &big.at(g), &strain[g]
+            ))
+            .map_err(|c| fault(e, g as u8, c))?;
+        }
+        Ok(())
+    }
+}
+
 /// The fault of a Gauss point.
 fn fault(e: usize, point: u8, c: Collapsed) -> ElementFault {
     ElementFault {
@@ -344,6 +379,10 @@ fn head<const NE: usize>(state: &[f64]) -> [f64; NE] {
     let mut alpha = [0.0; NE];
     alpha.copy_from_slice(&state[..NE]);
     alpha
+}
+
+fn dual_head<const NE: usize>(state: &[f64]) -> [Dual64; NE] {
+    head::<NE>(state).map(|a| Dual64::new(0.0, a))
 }
 
 fn residual<L: MaterialLaw, const NE: usize>(

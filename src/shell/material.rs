@@ -120,11 +120,21 @@ impl Law {
 
     /// Poisson's ratio of the linearised law.
     pub fn nu(&self) -> f64 {
-        let (lambda, mu) = match self {
+        let (lambda, mu) = self.lame();
+        0.5 * lambda / (lambda + mu)
+    }
+
+    /// Young's modulus of the linearised law.
+    pub fn young(&self) -> f64 {
+        let (lambda, mu) = self.lame();
+        mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu)
+    }
+
+    fn lame(&self) -> (f64, f64) {
+        match self {
             Law::StVenantKirchhoff(law) => (law.lambda, law.mu),
             Law::NeoHooke(law) => (law.lambda, law.mu),
-        };
-        0.5 * lambda / (lambda + mu)
+        }
     }
 }
 

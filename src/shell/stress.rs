@@ -6,6 +6,7 @@ use super::quadrature::GAUSS_3;
 use super::reference::{GP, contravariant, det, sign};
 use covact_geometry::Vec3;
 use nalgebra::Matrix3;
+use num_dual::Dual64;
 
 fn matrix(v: &[V<f64>; 3]) -> Matrix3<f64> {
     Matrix3::from_columns(&v.map(Vec3::from))
@@ -46,6 +47,25 @@ pub(super) fn cauchy<L: MaterialLaw>(
     let f = left * right * u;
     let sigma = f * stress * f.transpose() / ratio.sqrt();
     Ok(VOIGT.map(|(i, j)| sigma[(i, j)]))
+}
+
+/// Stress of Hooke's law at one Gauss point with undeformed frame `big`, from the derivative of the covariant strain along the
+/// displacement: that of any law at vanishing strain.
+pub(super) fn linear<L: MaterialLaw>(
+    law: &L,
+    metric: &Metric,
+    big: &[V<f64>; 3],
+    strain: &[Dual64; 6],
+) -> Result<[f64; 6], Collapsed> {
+    let (_, s) = law.stress(metric, strain)?;
+    let frame = matrix(big);
+    let sigma = frame * full(&s.map(|s| s.eps), 1.0) * frame.transpose();
+    Ok(VOIGT.map(|(i, j)| sigma[(i, j)]))
+}
+
+/// A direction from the undeformed state.
+pub(super) fn from_zero<const N: usize>(u: &[V<f64>; N]) -> [V<Dual64>; N] {
+    u.map(|u| u.map(|u| Dual64::new(0.0, u)))
 }
 
 /// Extends values at the Gauss points of an element to its eight nodes, trilinearly.

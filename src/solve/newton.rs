@@ -3,6 +3,8 @@
 //! Full steps by default: a thin shell's first iterate stretches it, so that the residual jumps by orders of magnitude
 //! before it falls, and a search that forbids the jump would crawl. The line search (on the slope of the energy along
 //! the increment, which also covers steps an element cannot take) comes in where full steps fail to make headway.
+mod small;
+
 use super::convergence::{Norms, Verdict};
 use super::cycle::{Cycle, PingPong};
 use super::event::{Event, Observer};
@@ -12,7 +14,7 @@ use super::place;
 use super::unstable::{Unstable, singular};
 use crate::assembly::{Assembler, Fault, Manner, Totals};
 use crate::model::Model;
-use crate::model::state::{PointState, State};
+use crate::model::state::{PointState, State, heap};
 use crate::output::Phases;
 use crate::scene;
 use crate::shell::{ElementBlock, with_block};
@@ -80,6 +82,26 @@ impl Workspace {
             unstable: None,
             factorizations: BTreeMap::new(),
         }
+    }
+
+    /// Bytes of heap that it holds, by part: vectors, and those of its state.
+    pub fn parts(&self) -> Vec<(&'static str, usize)> {
+        let Workspace {
+            residual,
+            rhs,
+            increments,
+            du,
+            scratch,
+            absolute,
+            base,
+            unstable: _,
+            // A few counts.
+            factorizations: _,
+        } = self;
+        let vectors = [residual, rhs, increments, du, scratch, absolute].map(heap);
+        let mut parts = vec![("vectors", vectors.iter().sum())];
+        parts.extend(base.parts());
+        parts
     }
 
     /// What outlives an accepted step: the factorizations made. All else is written by every step before it is read.
@@ -339,19 +361,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
 
     /// Solves for the increment.
     fn solve_linear(&mut self, pending: bool) -> Result<Factorization, StepFailure> {
-        if let Some(pattern) = self.assembler.take_new_pattern() {
-            self.phases.start("analysis");
-            let analyzed = self.solver.analyze(&pattern).map(drop);
-            self.phases.stop("analysis");
-            analyzed.map_err(|error| self.unsolvable(error))?;
-        }
-        self.phases.start("factorization");
-        let factored = self.solver.factorize(self.assembler.matrix());
-        self.phases.stop("factorization");
-        let factored = match factored {
-            Ok(factored) => factored,
-            Err(error) => return Err(self.unsolvable(error)),
-        };
+        let factored = self.factorize()?;
         let w = &mut *self.workspace;
         *w.factorizations.entry(factored.method).or_default() += 1;
         self.phases.start("solve");
@@ -364,6 +374,20 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         self.model.dofs.expand(&mut w.du, g);
         w.unstable = Unstable::of(self.model, &factored, &w.du).or(w.unstable);
         Ok(factored)
+    }
+
+    /// Factorizes the matrix of the assembler, whose pattern is analysed before where it is new.
+    fn factorize(&mut self) -> Result<Factorization, StepFailure> {
+        if let Some(pattern) = self.assembler.take_new_pattern() {
+            self.phases.start("analysis");
+            let analyzed = self.solver.analyze(&pattern).map(drop);
+            self.phases.stop("analysis");
+            analyzed.map_err(|error| self.unsolvable(error))?;
+        }
+        self.phases.start("factorization");
+        let factored = self.solver.factorize(self.assembler.matrix());
+        self.phases.stop("factorization");
+        factored.map_err(|error| self.unsolvable(error))
     }
 
     /// What a matrix that cannot be factorized means: in the terms of the scene where a surface driven by force or a body is

@@ -61,10 +61,11 @@ pub(super) fn not_finite(
         return "the sum of the squares of all forces".to_owned();
     };
     let at = dof / 3;
-    if !assembler.external()[dof].is_finite() {
+    let wrong = |forces: &[f64]| forces.get(dof).is_some_and(|f| !f.is_finite());
+    if wrong(assembler.external()) {
         return format!("the load at {}", node(model, at));
     }
-    if !assembler.contact_forces()[dof].is_finite() {
+    if wrong(assembler.contact_forces()) {
         for (index, pair) in model.pairs.iter().enumerate() {
             let mut points = state.slaves(model, index).iter().enumerate();
             if let Some((point, p)) = points.find(|(_, p)| p.terms().any(|(n, _)| n == at)) {

@@ -36,6 +36,9 @@ pub struct Study {
     /// Relative errors that the report says the cost of.
     #[serde(default = "targets")]
     pub targets: Vec<f64>,
+    /// Runs that fail are told, but are no failure of the study.
+    #[serde(default)]
+    pub may_fail: bool,
 }
 
 fn targets() -> Vec<f64> {

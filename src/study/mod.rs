@@ -1,3 +1,29 @@
 //! Studies: a scene run over a grid of choices, with its error against its cost.
+//!
+//! [`load`] reads a study file, [`expand`] makes the scenes of its runs and finds all that is wrong with it, [`Folder::write`]
+//! writes them where they are run, [`play()`] runs those that have not been run, and [`conclude`] makes a [`record::Record`] of
+//! what is there, of which [`report::write`] makes a page, pictures and a table.
+mod change;
+mod check;
+mod choice;
+mod conclude;
+mod error;
+mod expand;
 pub mod file;
+mod folder;
+mod gather;
+mod label;
+mod load;
+pub mod measure;
+mod play;
 pub mod record;
+pub mod report;
+mod triangles;
+
+pub use conclude::{conclude, machine};
+pub use error::StudyError;
+pub use expand::{Expansion, Planned, expand};
+pub use folder::{Folder, Ready};
+pub use load::{FORMAT, LoadedStudy, load, parse, schema};
+pub use play::{Account, Event, Settings, play};
+pub use triangles::{TriangleError, Triangles};

@@ -23,9 +23,33 @@ fn the_committed_schema_is_up_to_date() {
     );
 }
 
+/// To renew it: `cargo run -- schema --study > examples/studies/schema.json`.
 #[test]
-fn the_schema_describes_what_is_read() {
-    let schema: serde_json::Value = serde_json::from_str(&scene::schema()).unwrap();
+fn the_committed_schema_of_studies_is_up_to_date() {
+    let output = Command::new(env!("CARGO_BIN_EXE_covact"))
+        .args(["schema", "--study"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    let printed = String::from_utf8(output.stdout).unwrap();
+    let path = scenes().join("../studies/schema.json");
+    let committed = std::fs::read_to_string(path).unwrap();
+    assert!(
+        printed == committed,
+        "run `cargo run -- schema --study > examples/studies/schema.json`"
+    );
+}
+
+#[test]
+fn the_schemas_describe_what_is_read() {
+    described(&covact::study::schema());
+    let schema = described(&scene::schema());
+    let surface = &schema["$defs"]["Surface"];
+    assert_eq!(surface["oneOf"].as_array().unwrap().len(), 4, "{surface}");
+}
+
+fn described(schema: &str) -> serde_json::Value {
+    let schema: serde_json::Value = serde_json::from_str(schema).unwrap();
     assert_eq!(schema["additionalProperties"], false);
     assert!(schema["properties"]["$schema"].is_object());
     for (name, definition) in schema["$defs"].as_object().unwrap() {
@@ -41,8 +65,7 @@ fn the_schema_describes_what_is_read() {
             "{name}: {text}"
         );
     }
-    let surface = &schema["$defs"]["Surface"];
-    assert_eq!(surface["oneOf"].as_array().unwrap().len(), 4, "{surface}");
+    schema
 }
 
 #[test]

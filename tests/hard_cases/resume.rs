@@ -119,8 +119,15 @@ fn counts(s: &Summary) -> impl PartialEq + std::fmt::Debug {
     )
 }
 
-/// Runs a scene at once and in pieces; returns what both agree on.
+/// Runs a scene at once and in pieces, two steps long or shorter; returns what both agree on.
 fn in_pieces(scene: &Value) -> Summary {
+    let (found, parts) = pieces(scene);
+    assert!(parts >= found.steps / 2, "{parts} parts");
+    found
+}
+
+/// Runs a scene at once and in pieces; returns what both agree on, and the number of pieces.
+fn pieces(scene: &Value) -> (Summary, u32) {
     let scene = loaded(scene);
     let (whole, pieces) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let (expected, _) = part(&scene, whole.path(), false, 1, Stop::Never).unwrap();
@@ -141,7 +148,6 @@ fn in_pieces(scene: &Value) -> Summary {
         found = part(&scene, pieces.path(), true, threads, stop).unwrap().0;
     }
     println!("{parts} parts, {found:?}");
-    assert!(parts >= expected.steps / 2, "{parts} parts");
     assert_eq!(counts(&expected), counts(&found));
     if expected.status == RunStatus::NotConverged {
         // It can be tried once more, with the same outcome.
@@ -155,7 +161,7 @@ fn in_pieces(scene: &Value) -> Summary {
         }
     }
     assert_same(whole.path(), pieces.path());
-    found
+    (found, parts)
 }
 
 /// A slab of `elements`, a die that is pressed in, drawn along and lifted.
@@ -394,4 +400,30 @@ fn a_run_that_does_not_converge() {
     let found = in_pieces(&scene);
     assert_eq!(found.status, RunStatus::NotConverged);
     assert!(found.steps > 5 && found.cuts > 1, "{found:?}");
+}
+
+/// Small displacements: the factorization that a part had at hand is made anew by the next, and does not count again; a
+/// penalty that is raised, doubts that were told.
+#[test]
+fn small_displacements() {
+    let mut scene = ironed(json!({"penalty": "auto"}));
+    let contact = scene["contacts"]["iron"].as_object_mut().unwrap();
+    contact.remove("friction");
+    scene["solution"]["kinematics"] = json!("small");
+    scene["output"] = json!({"every": 2});
+    // Most steps take fewer iterations than some pieces wait for.
+    let (found, parts) = pieces(&scene);
+    assert!(parts >= 3, "{parts} parts");
+    assert_eq!(found.status, RunStatus::Done);
+    let told = |part: &str| found.warnings.iter().any(|w| w.contains(part));
+    assert!(told("displacements may not be small enough"), "{found:?}");
+    assert!(told("automatic penalty raised"), "{found:?}");
+    // Between bodies, whose set of points in contact stays while they are drawn along.
+    let mut scene = sledge(0.02, 8, json!({}));
+    scene["solution"]["kinematics"] = json!("small");
+    let (found, parts) = pieces(&scene);
+    assert!(parts >= 2, "{parts} parts");
+    assert_eq!(found.status, RunStatus::Done);
+    let factorizations: u64 = found.factorizations.values().sum();
+    assert!(factorizations < found.newton_iterations, "{found:?}");
 }

@@ -31,3 +31,32 @@ fn every_tangent_leads_to_the_same_solution() {
     assert!(count[1] >= count[0], "{count:?}");
     assert!(count[3] > count[1], "{count:?}");
 }
+
+/// Augmentation lets the gap vanish, on which the published form is the exact one, while tractions stay: without the
+/// curvature part Newton's method loses its second order there.
+#[test]
+fn every_tangent_leads_to_the_same_augmented_solution() {
+    let run = |tangent: Value| {
+        let mut scene = plate(10, 8.0, 8);
+        let press = &mut scene["contacts"]["press"];
+        press["tangent"] = tangent;
+        press["penalty"] = json!({ "value": 6000 });
+        press["augmentation"] = json!({ "gap": 1e-5 });
+        scene["solution"]["newton"]["max_iterations"] = json!(60);
+        done(&scene)
+    };
+    let exact = run(json!("exact"));
+    let whole = run(json!({ "published": {} }));
+    let main_alone = run(json!({ "published": { "rotational": false, "curvature": false } }));
+    let count = [&exact, &whole, &main_alone].map(|o| o.summary.newton_iterations);
+    println!("iterations: exact, published, main alone: {count:?}");
+    assert!(exact.at("penetration.max", 1.0) > 0.0);
+    for (name, other) in [("published", &whole), ("main alone", &main_alone)] {
+        let d = difference(&exact, other, |_| 1.0);
+        println!("{name}: {d:.1e}");
+        // Every augmentation starts from an equilibrium at 1e-8.
+        assert!(d < 1e-6, "{name}: {d}");
+    }
+    assert!(count[1] <= count[0] + count[0] / 10, "{count:?}");
+    assert!(count[2] > count[1], "{count:?}");
+}

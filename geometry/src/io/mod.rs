@@ -22,7 +22,7 @@ pub use json::{read_json, write_json};
 pub use report::{
     CadFile, CadFormat, CadPatch, EntityCount, FaceBorder, SkipKind, Skipped, Summary, TrimReport,
 };
-pub use stl::{Stl, StlError, StlReport, read_stl, read_stl_path};
+pub use stl::{Stl, StlError, StlReport, read_stl, read_stl_path, write_stl};
 pub use unit::LengthUnit;
 
 use std::path::Path;

@@ -479,19 +479,29 @@ impl Stl {
         FacetMesh { nodes, facets }
     }
 
-    /// The triangles as a binary STL file. Coordinates are rounded to single precision.
+    /// The triangles as a binary STL file, see [`write_stl`].
     pub fn to_binary(&self) -> Vec<u8> {
-        let mut out = vec![b' '; 80];
-        out.extend((self.triangles.len() as u32).to_le_bytes());
-        for triangle in &self.triangles {
-            let [a, b, c] = triangle.map(|n| self.nodes[n as usize]);
-            let normal = (b - a).cross(&(c - a));
-            let normal = normal.try_normalize(0.0).unwrap_or(normal);
-            for x in [normal, a, b, c].iter().flat_map(|v| v.iter()) {
-                out.extend((*x as f32).to_le_bytes());
-            }
-            out.extend([0, 0]);
-        }
-        out
+        write_stl(&self.nodes, &self.triangles)
     }
+}
+
+/// Triangles as a binary STL file. Coordinates are rounded to single precision; triangles with a node that there is not are
+/// left out.
+pub fn write_stl(nodes: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
+    let corners = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|n| nodes.get(n as usize).copied());
+        Some([a?, b?, c?])
+    };
+    let corners: Vec<[Vec3; 3]> = triangles.iter().filter_map(corners).collect();
+    let mut out = vec![b' '; 80];
+    out.extend((corners.len() as u32).to_le_bytes());
+    for [a, b, c] in corners {
+        let normal = (b - a).cross(&(c - a));
+        let normal = normal.try_normalize(0.0).unwrap_or(normal);
+        for x in [normal, a, b, c].iter().flat_map(|v| v.iter()) {
+            out.extend((*x as f32).to_le_bytes());
+        }
+        out.extend([0, 0]);
+    }
+    out
 }

@@ -14,6 +14,11 @@ pub(super) struct Operator {
 }
 
 impl Operator {
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        super::heap(&self.starts) + super::heap(&self.entries)
+    }
+
     /// Of rows of nodes (by place among the facet's) with factors.
     pub fn new(rows: impl IntoIterator<Item = Vec<(u16, f64)>>) -> Self {
         let mut out = Operator {

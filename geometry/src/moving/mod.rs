@@ -62,6 +62,11 @@ pub struct MovingFacets {
     size: f64,
 }
 
+/// Bytes of heap that a vector holds itself.
+fn heap<T>(of: &Vec<T>) -> usize {
+    of.capacity() * size_of::<T>()
+}
+
 /// Where a foot lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MovingPlace {
@@ -208,6 +213,35 @@ pub enum MovingError {
 }
 
 impl MovingFacets {
+    /// Bytes of heap that the surface holds.
+    pub fn bytes(&self) -> usize {
+        let MovingFacets {
+            degree: _,
+            numbers,
+            positions,
+            first,
+            nodes,
+            places,
+            operators,
+            operator_of,
+            source,
+            topology,
+            nets,
+            boxes,
+            tree,
+            size: _,
+        } = self;
+        let counts = [numbers, first, nodes, places, operator_of, source].map(heap);
+        counts.iter().sum::<usize>()
+            + heap(positions)
+            + heap(operators)
+            + operators.iter().map(|o| o.bytes()).sum::<usize>()
+            + topology.bytes()
+            + heap(nets)
+            + heap(boxes)
+            + tree.as_ref().map_or(0, |t| t.bytes())
+    }
+
     /// Number of facets.
     pub fn len(&self) -> usize {
         self.operator_of.len()

@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use super::MovingError;
+use super::{MovingError, heap};
 
 /// Corners at the ends of the edges, in the direction of the parameter that runs along them.
 pub(super) const ENDS: [[usize; 2]; 4] = [[0, 2], [1, 3], [0, 1], [2, 3]];
@@ -72,6 +72,21 @@ pub(super) struct Outline {
 }
 
 impl Topology {
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        let Topology {
+            edge_of,
+            corner_of,
+            edges,
+            corners,
+            first_neighbour,
+            neighbours,
+        } = self;
+        let lists = [edges, corners].map(|l| heap(&l.first) + heap(&l.members));
+        let own = heap(edge_of) + heap(corner_of) + heap(first_neighbour) + heap(neighbours);
+        own + lists.iter().sum::<usize>()
+    }
+
     /// Joins facets over common edges (same ends and, where there is one, the same middle node).
     ///
     /// # Errors

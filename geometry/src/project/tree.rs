@@ -61,6 +61,11 @@ pub(crate) struct Tree {
 }
 
 impl Tree {
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        self.nodes.capacity() * size_of::<Node>()
+    }
+
     /// Builds the tree over boxes (lowest and highest corner); the boxes' numbers are what visits get. Boxes whose
     /// lowest corner is above the highest are left out.
     pub fn new(boxes: &[[Vec3; 2]]) -> Self {

@@ -4,23 +4,24 @@
 //! points of these faces meet: the rank-one part of [`crate::contact::averaged`].
 use super::couplings::Couplings;
 use super::driven::Border;
+use super::per_pair::PerPair;
 use super::{Assembler, Fault, SurfaceForce, Totals, put};
 use crate::contact::averaged::{self, GapRow, NodalGap};
 use crate::contact::carried::carried;
 use crate::contact::fault::{Piece, PointFault};
 use crate::contact::kernel::{Normal, assemble_force};
-use crate::contact::law::Penalty;
+use crate::contact::kind::{LawKind, TangentKind};
+use crate::contact::law::{GapOffset, NoOffset, Penalty};
 use crate::contact::meeting::Meeting;
 use crate::contact::point::FaceTangent;
-use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, RigidMaster};
 use crate::contact::scatter::assemble_point;
 use crate::model::averaged::{Share, SlaveNodes};
 use crate::model::driven::press;
 use crate::model::master::Master;
-use crate::model::state::{PointState, State};
+use crate::model::plan::Kernel;
+use crate::model::state::{PointState, State, heap};
 use crate::model::{Model, PairModel};
-use crate::scene::Tangent;
 use crate::with_patches;
 use covact_geometry::{Hint, ShapeRows, Vec3};
 use nalgebra::{Matrix3, Vector6};
@@ -30,6 +31,7 @@ use rayon::prelude::*;
 const NEAR: f64 = 1e-6;
 
 /// A pair with averaged gaps at the state evaluated last, and room for its matrices.
+#[derive(Default)]
 pub(super) struct Averaged {
     met: Vec<Result<Option<Meeting>, PointFault>>,
     shares: Vec<Share>,
@@ -48,6 +50,38 @@ pub(super) struct Averaged {
 }
 
 impl Averaged {
+    /// Bytes of heap for each point of a pair, for each slave node, and for all of it at the start.
+    pub fn sizes(pair: &PairModel) -> [usize; 3] {
+        let met = size_of::<Result<Option<Meeting>, PointFault>>();
+        let own = met + size_of::<Share>() + size_of::<bool>() + size_of::<Vec3>();
+        let rows = match pair.body_master() {
+            Some(_) => size_of::<ShapeRows>(),
+            None => 0,
+        };
+        let node = size_of::<NodalGap>() + size_of::<Normal>();
+        [own + rows, node, PerPair::<Averaged>::HEAD]
+    }
+
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        let Averaged {
+            met,
+            shares,
+            carries,
+            directions,
+            rows,
+            gaps,
+            normals,
+            row,
+            keys,
+            map,
+            ke,
+        } = self;
+        let points = heap(met) + heap(shares) + heap(carries) + heap(directions) + heap(rows);
+        let nodes = heap(gaps) + heap(normals);
+        points + nodes + row.bytes() + heap(keys) + heap(map) + heap(ke)
+    }
+
     /// Room for a pair; nothing where its gaps are those of the points.
     pub fn new(pair: &PairModel) -> Option<Self> {
         let nodes = pair.averaged.as_ref()?;
@@ -83,12 +117,12 @@ impl Averaged {
         time: f64,
         states: &mut [PointState],
         find: F,
-    ) -> Result<(), Fault>
+    ) -> Result<LawKind, Fault>
     where
         F: Fn(usize, &Vec3, &mut Option<Hint>) -> Result<Option<Meeting>, PointFault> + Sync,
     {
         let Some(nodes) = &pair.averaged else {
-            return Ok(());
+            return Ok(LawKind::Penalty);
         };
         (pair.points.par_iter())
             .zip(states.par_iter_mut())
@@ -106,18 +140,12 @@ impl Averaged {
                 fault,
             )
         };
-        let (depth, reach) = (pair.master.depth(model), pair.reach(model));
-        let offsets = pair.offsets(time);
-        self.gaps.fill(NodalGap::default());
-        for (i, (p, met)) in pair.points.iter().zip(&self.met).enumerate() {
-            let met = met.as_ref().map_err(|e| fault(i, *e))?;
-            let z0 = offsets.as_ref().map_or(0.0, |o| o.at(i));
-            let share = Share::new(met.map(|m| (m.xi3, m.free)), z0, depth, reach);
-            for (at, shape) in nodes.terms(i, p) {
-                share.add_to(&mut self.gaps[at], shape, p.area);
-            }
-            self.shares[i] = share;
+        let reaches = (pair.master.depth(model), pair.reach(model));
+        let law_kind = match pair.offsets(time) {
+            None => self.share(pair, nodes, reaches, &NoOffset),
+            Some(offsets) => self.share(pair, nodes, reaches, &offsets),
         }
+        .map_err(|(i, e)| fault(i, e))?;
         let law = Penalty { eps_n };
         for (normal, gap) in self.normals.iter_mut().zip(&self.gaps) {
             *normal = gap.normal(&law);
@@ -129,7 +157,27 @@ impl Averaged {
                 met.check().map_err(|e| fault(i, e))?;
             }
         }
-        Ok(())
+        Ok(law_kind)
+    }
+
+    /// Shares the gaps of the points, measured from `offsets`, among the nodes; the fault of the first point that has one.
+    fn share<O: GapOffset>(
+        &mut self,
+        pair: &PairModel,
+        nodes: &SlaveNodes,
+        (depth, reach): (f64, f64),
+        offsets: &O,
+    ) -> Result<LawKind, (usize, PointFault)> {
+        self.gaps.fill(NodalGap::default());
+        for (i, (p, met)) in pair.points.iter().zip(&self.met).enumerate() {
+            let met = met.as_ref().map_err(|e| (i, *e))?;
+            let share = Share::new(met.map(|m| (m.xi3, m.free)), offsets.z0(i), depth, reach);
+            for (at, shape) in nodes.terms(i, p) {
+                share.add_to(&mut self.gaps[at], shape, p.area);
+            }
+            self.shares[i] = share;
+        }
+        Ok(O::KIND)
     }
 
     fn closed(&self, node: usize) -> bool {
@@ -212,13 +260,13 @@ impl Assembler<'_> {
         states: &mut [PointState],
     ) -> Result<(), Fault> {
         let (model, pair) = (self.model, &self.model.pairs[index]);
-        let (Master::Rigid(number), Some(averaged)) = (&pair.master, &mut self.averaged[index])
+        let (Master::Rigid(number), Some(averaged)) = (&pair.master, self.averaged.get_mut(index))
         else {
             return Ok(());
         };
         let master = model.surfaces[*number].at(time, u)?;
         let (eps_n, reach) = (self.penalties[index], pair.reach(model));
-        with_patches!(master.surface, patches => {
+        let law = with_patches!(master.surface, patches => {
             let master = RigidMaster {
                 surface: patches,
                 pose: master.pose,
@@ -227,7 +275,13 @@ impl Assembler<'_> {
             averaged.meet(model, pair, eps_n, u, time, states, |_, x, hint| {
                 master.meet(x, hint, reach)
             })
-        })
+        })?;
+        self.ran[index] = Some(Kernel {
+            master: model.surfaces[*number].kind(),
+            law,
+            ..model.plan.kernel(index)
+        });
+        Ok(())
     }
 
     /// Sums up pair `index`, whose points are found.
@@ -248,9 +302,10 @@ impl Assembler<'_> {
             return Ok(());
         };
         // Taken out, so that the rest of the assembler is free.
-        let Some(mut own) = self.averaged[index].take() else {
+        let Some(own) = self.averaged.get_mut(index) else {
             return Ok(());
         };
+        let mut own = std::mem::take(own);
         let points = &mut state.points[first..first + pair.points.len()];
         own.count(points, &mut state.nodes[nodes.range()], totals);
         let u = &state.u;
@@ -264,25 +319,20 @@ impl Assembler<'_> {
             increments,
             center,
         };
-        match pair.tangent {
-            Tangent::Exact => {
+        match self.model.plan.kernel(index).tangent {
+            TangentKind::Exact => {
                 self.points::<TANGENT, _>(&at, &mut own, nodes, &Exact, residual, rhs, totals)
             }
-            Tangent::Published {
-                rotational,
-                curvature,
-            } => {
-                let parts = Parts {
-                    rotational,
-                    curvature,
-                };
+            TangentKind::Published(parts) => {
                 self.points::<TANGENT, _>(&at, &mut own, nodes, &parts, residual, rhs, totals)
             }
         }
         if TANGENT {
             self.rank_one(&at, &mut own, nodes, rhs);
         }
-        self.averaged[index] = Some(own);
+        if let Some(kept) = self.averaged.get_mut(index) {
+            *kept = own;
+        }
         Ok(())
     }
 
@@ -301,6 +351,9 @@ impl Assembler<'_> {
         let (model, index, u) = (self.model, at.index, at.u);
         let pair = &model.pairs[index];
         let surface = pair.rigid_master();
+        if let Some(ran) = &mut self.ran[index] {
+            ran.tangent = tangent.kind();
+        }
         let small = NEAR * pair.element_size;
         for (i, p) in pair.points.iter().enumerate() {
             let count = p.count as usize;

@@ -6,6 +6,7 @@
 use super::links::Links;
 use super::memory::{CouplingMemory, MemoryError};
 use crate::contact::points::SlavePoint;
+use crate::model::state::heap;
 use covact_geometry::MovingFacets;
 use std::collections::BTreeSet;
 
@@ -125,6 +126,16 @@ impl Couplings {
         self.maps.clear();
     }
 
+    /// Sets the couplings to points with these facets, and no others.
+    pub fn set(&mut self, feet: impl Iterator<Item = (usize, u32)>) {
+        let feet: BTreeSet<(usize, u32)> = feet.map(|(p, f)| (self.cell(p), f)).collect();
+        self.facets.iter_mut().for_each(Vec::clear);
+        for (cell, facet) in feet {
+            self.facets[cell].push(Coupled { facet, map: NONE });
+        }
+        self.maps.clear();
+    }
+
     /// Couples, besides the neighbours among the facets that are coupled with points, `pairs` of facets with each other.
     pub fn link(&mut self, facets: &MovingFacets, pairs: impl Iterator<Item = (u32, u32)>) {
         let coupled = self.pairs().map(|(_, facet)| facet).collect();
@@ -196,6 +207,20 @@ impl Couplings {
         self.maps.clear();
         self.links.restore(&memory.links);
         Ok(())
+    }
+
+    /// Bytes of heap that it holds, links left out.
+    pub fn bytes(&self) -> usize {
+        let Couplings {
+            cell_of,
+            nodes,
+            starts,
+            facets,
+            maps,
+            links: _,
+        } = self;
+        let coupled: usize = facets.iter().map(heap).sum();
+        heap(cell_of) + heap(nodes) + heap(starts) + heap(facets) + heap(maps) + coupled
     }
 
     /// Block maps, from where [`Couplings::map`] says.

@@ -7,7 +7,7 @@ use super::{Assembler, Fault, Totals, put};
 use crate::assembly::{Pattern, PatternError};
 use crate::contact::carried::{carried, carried_with_friction};
 use crate::model::driven::{Driven, press, turn};
-use crate::model::state::State;
+use crate::model::state::{State, heap};
 use crate::model::{Model, SurfaceModel};
 use crate::scene::ValueError;
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
@@ -46,6 +46,7 @@ pub(super) struct Border {
 
 /// Entries of the map of a three-node and of a two-node element.
 const THREE: usize = 6;
+const TWO: usize = 3;
 /// An eigenvalue of a surface's own stiffness below this part of the largest is none.
 const NONE: f64 = 1e-9;
 /// Stiffness that stands in for none, as a part of the largest.
@@ -74,11 +75,42 @@ pub(super) fn groups(model: &Model, extend: impl Fn(&[u32], &mut Vec<u32>)) -> V
 }
 
 impl Border {
+    /// Bytes of heap for each slave node of a surface, and with friction more.
+    pub const NODE: usize = size_of::<u32>() * (1 + THREE) + size_of::<[Matrix3<f64>; 2]>();
+    pub const BELOW: usize = size_of::<[Matrix3<f64>; 2]>();
+
+    /// Bytes of heap for a surface, beside those of its nodes.
+    pub fn whole(model: &Model) -> usize {
+        size_of::<Border>() + size_of::<u32>() * (model.nodes.len() + TWO)
+    }
+
+    /// Bytes of heap that it holds, and those that friction adds.
+    pub fn bytes(&self) -> [usize; 2] {
+        let Border {
+            surface: _,
+            nodes,
+            place,
+            maps,
+            own_map,
+            blocks,
+            below,
+            residual: _,
+            tangent: _,
+            active: _,
+            element_size: _,
+        } = self;
+        let own = heap(nodes) + heap(place) + heap(maps) + heap(own_map) + heap(blocks);
+        [own, heap(below)]
+    }
+
     /// The borders of all driven surfaces.
     pub fn all(model: &Model, pattern: &Pattern) -> Result<Vec<Border>, PatternError> {
-        (model.driven())
+        let borders: Result<Vec<Border>, _> = (model.driven())
             .map(|(surface, _, driven)| Border::new(model, surface, driven, pattern))
-            .collect()
+            .collect();
+        let mut borders = borders?;
+        borders.shrink_to_fit();
+        Ok(borders)
     }
 
     fn new(
@@ -105,6 +137,7 @@ impl Border {
                 }
             }
         }
+        nodes.shrink_to_fit();
         let [t, s] = driven.nodes();
         let mut maps = Vec::with_capacity(THREE * nodes.len());
         for &node in &nodes {
@@ -112,6 +145,7 @@ impl Border {
         }
         let mut own_map = Vec::new();
         pattern.element_map(&[t, s], &mut own_map)?;
+        own_map.shrink_to_fit();
         Ok(Border {
             surface,
             blocks: vec![[Matrix3::zeros(); 2]; nodes.len()],

@@ -2,15 +2,19 @@
 //! elements, which is chosen once for each body.
 use super::{Assembler, Fault, Kind, Totals, element_fault};
 use crate::assembly::{ConstrainedScatter, DofMap, SystemMatrix};
-use crate::model::state::State;
+use crate::model::state::{State, heap};
 use crate::model::{BodyModel, Model};
-use crate::shell::{Block, ElementBlock, ElementSystem, H8System, Q18System, with_block};
+use crate::shell::{
+    Block, ElementBlock, ElementFault, ElementSystem, H8System, Q18System, with_block,
+};
+use covact_geometry::Vec3;
 use rayon::prelude::*;
 
 /// Elements evaluated before their matrices are summed.
 const CHUNK: usize = 128;
 
 /// Room for one chunk of elements of each shape that the model has.
+#[derive(Default)]
 pub(super) struct Systems {
     h8: Vec<H8System>,
     q18: Vec<Q18System>,
@@ -27,6 +31,13 @@ impl Systems {
             h8: vec![H8System::default(); most(|b| matches!(b, Block::H8(_)))],
             q18: vec![Q18System::default(); most(|b| matches!(b, Block::Q18(_)))],
         }
+    }
+}
+
+impl Systems {
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        heap(&self.h8) + heap(&self.q18)
     }
 }
 
@@ -107,6 +118,127 @@ impl Assembler<'_> {
         }
         Ok(())
     }
+}
+
+/// Sums the stiffness of all undeformed elements, of these kinds and with these places, into a matrix.
+pub(super) fn undeformed(
+    model: &Model,
+    dofs: &DofMap,
+    matrix: &mut SystemMatrix,
+    systems: &mut Systems,
+    (kinds, maps): (&[Kind], &[u32]),
+) -> Result<(), Fault> {
+    let zero = vec![0.0; 3 * model.nodes.len()];
+    let (mut forces, mut rhs) = (zero.clone(), zero.clone());
+    let (mut first_element, mut first_map) = (0, 0);
+    for body in &model.bodies {
+        let count = body.block.elements();
+        let map = pairs(body.mesh.kind.nodes()) * count;
+        let mut sums = Sums {
+            matrix: &mut *matrix,
+            dofs,
+            work: &mut ConstrainedScatter::default(),
+            kinds: &kinds[first_element..first_element + count],
+            maps: &maps[first_map..first_map + map],
+            increments: None,
+            residual: &mut forces,
+            rhs: &mut rhs,
+            energy: &mut 0.0,
+        };
+        first_element += count;
+        first_map += map;
+        let mut states = vec![0.0; body.block.state_len() * count];
+        match &body.block {
+            Block::H8(b) => sums.add(body, b, &mut systems.h8, &mut states, &zero),
+            Block::Q18(b) => sums.add(body, b, &mut systems.q18, &mut states, &zero),
+        }?;
+    }
+    Ok(())
+}
+
+/// What the large-rotation elements add to the linear ones at the same displacements.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Quadratic {
+    /// Forces that are quadratic in the displacements, at all degrees of freedom.
+    pub forces: Vec<f64>,
+    /// Strain energy of even orders, that of the linear elements included.
+    pub even: f64,
+    /// Strain energy of odd orders.
+    pub odd: f64,
+}
+
+/// The even part of the forces and both parts of the energy of all elements at displacements `u`, whose enhanced strains are
+/// those of the linear elements, with condensation at no displacements.
+///
+/// # Errors
+/// Strains that are impossible.
+pub(super) fn quadratic(model: &Model, u: &[f64]) -> Result<Quadratic, Fault> {
+    let mut out = Quadratic {
+        forces: vec![0.0; u.len()],
+        ..Quadratic::default()
+    };
+    for body in &model.bodies {
+        with_block!(&body.block, block => add_quadratic(body, block, u, &mut out))?;
+    }
+    Ok(out)
+}
+
+fn add_quadratic<const N: usize, B: ElementBlock<N>>(
+    body: &BodyModel,
+    block: &B,
+    u: &[f64],
+    out: &mut Quadratic,
+) -> Result<(), Fault>
+where
+    B::Forces: Send,
+{
+    let (len, alphas) = (block.state_len(), block.alpha_len());
+    let still = [Vec3::zeros(); N];
+    // Forces and energy at `sign u`.
+    type Both<F> = [(F, f64); 2];
+    let of = |e: usize| -> Result<Both<B::Forces>, ElementFault> {
+        let x = body.displacements(block, e, u);
+        let (mut state, mut system) = (vec![0.0; len], B::System::default());
+        block.evaluate(e, &still, &mut state, &mut system)?;
+        let none = vec![0.0; alphas];
+        block.update_alpha(&mut state, &x, 1.0, &none);
+        let linear = state[..alphas].to_vec();
+        let mut both = [(B::NO_FORCES, 0.0); 2];
+        for (sign, (f, energy)) in [1.0, -1.0].into_iter().zip(&mut both) {
+            let x = x.map(|x| x * sign);
+            let alpha: Vec<f64> = linear.iter().map(|a| sign * a).collect();
+            state[..alphas].copy_from_slice(&alpha);
+            *energy = block.residual(e, &x, &state, f)?;
+            if alphas > 0 {
+                // The quadratic strains ask for enhanced ones, too: a step of Newton's method.
+                let mut there = state.clone();
+                block.evaluate(e, &x, &mut there, &mut system)?;
+                block.update_alpha(&mut there, &still, 1.0, &alpha);
+                *energy = block.residual(e, &x, &there, &mut B::NO_FORCES.clone())?;
+            }
+        }
+        Ok(both)
+    };
+    let all: Result<Vec<_>, _> = (0..block.elements())
+        .into_par_iter()
+        .with_min_len(16)
+        .map(of)
+        .collect();
+    for (e, [(a, plus), (b, minus)]) in (all.map_err(|fault| element_fault(&body.name, fault))?)
+        .iter()
+        .enumerate()
+    {
+        out.even += 0.5 * (plus + minus);
+        out.odd += 0.5 * (plus - minus);
+        let nodes = body.nodes_of(block, e);
+        for (at, &n) in nodes.iter().enumerate() {
+            for c in 0..3 {
+                let f = 0.5 * (a.as_ref()[3 * at + c] + b.as_ref()[3 * at + c]);
+                out.forces[3 * n as usize + c] += f;
+            }
+        }
+    }
+    Ok(())
 }
 
 impl Sums<'_> {

@@ -5,6 +5,7 @@
 //! slave points, and beyond these the pairs that points have at the time.
 use super::couplings::Couplings;
 use crate::contact::friction::history::PointHistory;
+use crate::model::state::heap;
 use covact_geometry::MovingFacets;
 use std::collections::{BTreeSet, HashMap};
 
@@ -52,6 +53,13 @@ impl Links {
         known.clear();
         maps.clear();
         *own = pairs.iter().map(|[a, b]| sorted(*a, *b)).collect();
+    }
+
+    /// Bytes of heap that it holds: those of what is in its sets and maps.
+    pub fn bytes(&self) -> usize {
+        let Links { pairs, known, maps } = self;
+        let known = known.capacity() * size_of::<([u32; 3], u32)>();
+        pairs.len() * size_of::<[u32; 2]>() + known + heap(maps)
     }
 
     /// The pairs.

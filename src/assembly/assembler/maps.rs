@@ -1,21 +1,24 @@
 //! The pattern of a model and where the blocks of everything that is assembled go.
 use super::couplings::Couplings;
+use super::elements::pairs;
+use super::per_pair::PerPair;
 use super::{DofMap, Kind, Pattern, PatternError};
 use super::{averaged, driven};
 use crate::contact::points::SlavePoint;
-use crate::model::Model;
+use crate::model::state::heap;
+use crate::model::{Model, PairModel};
 
 /// Places of all blocks on one pattern.
 pub(super) struct Maps {
     pub elements: Vec<u32>,
     pub kinds: Vec<Kind>,
-    /// Per pair.
-    pub points: Vec<PointMaps>,
+    /// Per pair with a rigid master.
+    pub points: PerPair<PointMaps>,
     /// Per follower load: per face, where its blocks go.
     pub followers: Vec<Vec<u32>>,
 }
 
-/// Where the blocks of a pair's points go; empty unless its master is rigid.
+/// Where the blocks of the points of a pair with a rigid master go.
 #[derive(Debug, Clone, Default)]
 pub(super) struct PointMaps {
     /// First values of the blocks of plain points, for [`SystemMatrix::scatter_point`](crate::assembly::SystemMatrix).
@@ -29,9 +32,8 @@ impl PointMaps {
         let mut out = PointMaps::default();
         for p in points {
             let nodes = &p.nodes[..p.count as usize];
-            let twice = |(i, node): (usize, &u32)| nodes[..i].contains(node);
             let start = match u32::try_from(out.places.len()) {
-                Ok(start) if !dofs.constrains(nodes) && !nodes.iter().enumerate().any(twice) => {
+                Ok(start) if is_plain(nodes, dofs) => {
                     pattern.point_places(nodes, &mut out.places)?;
                     start
                 }
@@ -39,26 +41,47 @@ impl PointMaps {
             };
             out.starts.push(start);
         }
+        out.places.shrink_to_fit();
+        out.starts.shrink_to_fit();
         Ok(out)
+    }
+
+    /// Bytes of heap that the maps of such points hold, whatever the pattern.
+    pub fn size(points: &[SlavePoint], dofs: &DofMap) -> usize {
+        let plain = points
+            .iter()
+            .map(|p| &p.nodes[..p.count as usize])
+            .filter(|nodes| is_plain(nodes, dofs));
+        let places: usize = plain.map(|nodes| pairs(nodes.len())).sum();
+        size_of::<u32>() * (places + points.len())
+    }
+
+    /// Bytes of heap that they hold.
+    pub fn bytes(&self) -> usize {
+        heap(&self.places) + heap(&self.starts)
     }
 
     /// The places of a point of `count` nodes none of which is constrained or occurs twice; nothing for others.
     #[inline(always)]
     pub fn plain(&self, point: usize, count: usize) -> Option<&[u32]> {
-        let start = self.starts[point];
-        let pairs = count * (count + 1) / 2;
-        match start {
+        match *self.starts.get(point)? {
             u32::MAX => None,
-            _ => Some(&self.places[start as usize..start as usize + pairs]),
+            start => Some(&self.places[start as usize..start as usize + pairs(count)]),
         }
     }
+}
+
+/// No node is prescribed or tied, or occurs twice: the blocks go straight into the matrix.
+fn is_plain(nodes: &[u32], dofs: &DofMap) -> bool {
+    let twice = |(i, node): (usize, &u32)| nodes[..i].contains(node);
+    !dofs.constrains(nodes) && !nodes.iter().enumerate().any(twice)
 }
 
 /// The pattern of a model under its constraints: elements, and slave points with the facets that they may touch.
 pub(super) fn pattern(
     model: &Model,
     dofs: &DofMap,
-    couplings: &[Option<Couplings>],
+    couplings: &PerPair<Couplings>,
 ) -> Result<Pattern, PatternError> {
     let mut nodes: Vec<u32> = Vec::new();
     let mut starts = vec![0];
@@ -74,7 +97,8 @@ pub(super) fn pattern(
             add(&plain);
         }
     }
-    for (pair, couplings) in model.pairs.iter().zip(couplings) {
+    for (index, pair) in model.pairs.iter().enumerate() {
+        let couplings = couplings.get(index);
         if let (Some(master), Some(couplings)) = (pair.body_master(), couplings) {
             for (cell, facet) in couplings.pairs() {
                 plain.clear();
@@ -88,7 +112,7 @@ pub(super) fn pattern(
                 add(&plain);
             }
         }
-        averaged::groups(pair, couplings.as_ref(), &mut add);
+        averaged::groups(pair, couplings, &mut add);
     }
     let driven = driven::groups(model, |nodes, out| dofs.extend_nodes(nodes, out));
     let groups = starts.windows(2).map(|w| &nodes[w[0]..w[1]]);
@@ -118,24 +142,31 @@ impl Maps {
             }
         }
         let mut points = Vec::new();
-        for pair in &model.pairs {
-            points.push(match pair.rigid_master() {
-                Some(_) => PointMaps::new(&pair.points, dofs, pattern)?,
-                None => PointMaps::default(),
-            });
+        let rigid = |p: &&PairModel| p.rigid_master().is_some();
+        for (index, pair) in model.pairs.iter().enumerate().filter(|(_, p)| rigid(p)) {
+            points.push((index, PointMaps::new(&pair.points, dofs, pattern)?));
         }
         let mut followers = Vec::new();
-        for (_, load) in &model.follower_loads {
+        // At small displacements pressures do not follow.
+        let follower = model
+            .follower_loads
+            .iter()
+            .filter(|_| model.small.is_none());
+        for (_, load) in follower {
             let mut maps = Vec::new();
             for nodes in &load.faces {
                 pattern.element_map(nodes.nodes(), &mut maps)?;
             }
+            maps.shrink_to_fit();
             followers.push(maps);
         }
+        elements.shrink_to_fit();
+        kinds.shrink_to_fit();
+        followers.shrink_to_fit();
         Ok(Maps {
             elements,
             kinds,
-            points,
+            points: PerPair::from(points),
             followers,
         })
     }

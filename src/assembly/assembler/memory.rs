@@ -1,6 +1,6 @@
 //! What an assembler carries from one evaluation to the next: what a run that is continued has to set up again.
 use super::couplings::Couplings;
-use super::{Assembler, PatternError};
+use super::{Assembler, Factored, PatternError};
 
 /// What the next evaluation depends on, beside the state.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,6 +12,8 @@ pub struct AssemblerMemory {
     pub couplings: Vec<Option<CouplingMemory>>,
     /// Times the pattern was built anew.
     pub rebuilds: u32,
+    /// What was factorized last, where displacements are small.
+    pub factored: Option<Factored>,
     /// The solver has not taken the pattern yet.
     pub new_pattern: bool,
 }
@@ -57,6 +59,7 @@ impl Assembler<'_> {
             meetings: _,
             sliding: _,
             averaged: _,
+            ran: _,
             new_pattern,
             rebuilds,
             work: _,
@@ -67,13 +70,16 @@ impl Assembler<'_> {
             manner: _,
             // Written by the first evaluation of a step.
             viscous: _,
+            // All else of it is given by the model.
+            linear,
         } = self;
         AssemblerMemory {
             penalties: penalties.clone(),
-            couplings: (couplings.iter())
-                .map(|c| c.as_ref().map(Couplings::memory))
+            couplings: (0..self.model.pairs.len())
+                .map(|pair| couplings.get(pair).map(Couplings::memory))
                 .collect(),
             rebuilds: *rebuilds,
+            factored: linear.as_ref().and_then(|l| l.factored().cloned()),
             new_pattern: new_pattern.is_some(),
         }
     }
@@ -87,16 +93,15 @@ impl Assembler<'_> {
             penalties,
             couplings,
             rebuilds,
+            factored,
             new_pattern: _,
         } = memory;
-        if penalties.len() != self.penalties.len() || couplings.len() != self.couplings.len() {
+        if penalties.len() != self.penalties.len() || couplings.len() != self.model.pairs.len() {
             return Err(MemoryError::Misfit("another number of contact pairs"));
         }
         let mut other = false;
-        for ((pair, own), memory) in
-            (self.model.pairs.iter().zip(&mut self.couplings)).zip(couplings)
-        {
-            match (own, memory, pair.body_master()) {
+        for ((index, pair), memory) in self.model.pairs.iter().enumerate().zip(couplings) {
+            match (self.couplings.get_mut(index), memory, pair.body_master()) {
                 (Some(own), Some(memory), Some(master)) => {
                     if own.memory() != *memory {
                         own.restore(memory, master.facets.len())?;
@@ -112,6 +117,9 @@ impl Assembler<'_> {
         }
         self.penalties.copy_from_slice(penalties);
         self.rebuilds = *rebuilds;
+        if let Some(linear) = &mut self.linear {
+            linear.restore(factored.clone());
+        }
         Ok(())
     }
 }

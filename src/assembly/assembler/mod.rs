@@ -4,6 +4,7 @@
 //! the result is the same to the last bit for every number of threads.
 mod answer;
 mod averaged;
+mod bytes;
 mod couplings;
 mod driven;
 mod elements;
@@ -12,9 +13,11 @@ mod loads;
 mod maps;
 mod memory;
 mod moving;
+mod per_pair;
 mod pressed;
 mod rigid;
 mod sliding;
+mod small;
 mod touched;
 mod viscous;
 
@@ -23,6 +26,7 @@ use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 use crate::contact::rigid::{PointFault, Touch};
 use crate::model::driven::press::PressFault;
 use crate::model::master::Masters;
+use crate::model::plan::Kernel;
 use crate::model::state::State;
 use crate::model::{Model, PairModel};
 use crate::scene::ValueError;
@@ -32,7 +36,9 @@ use couplings::Couplings;
 use covact_geometry::Vec3;
 use maps::{Maps, PointMaps};
 use moving::Meetings;
+use per_pair::PerPair;
 use sliding::Sliding;
+use small::Linear;
 use viscous::Viscous;
 
 use driven::Border;
@@ -40,8 +46,11 @@ use elements::Systems;
 use std::sync::Arc;
 
 pub use answer::PointAnswer;
+pub(crate) use bytes::sizes;
 pub use driven::Loose;
+pub use elements::Quadratic;
 pub use memory::{AssemblerMemory, CouplingMemory, MemoryError};
+pub use small::{Factored, Line, Needed};
 pub use viscous::Drag;
 
 /// What kept the model from being evaluated at a trial state. The step is cut.
@@ -172,34 +181,41 @@ pub struct Assembler<'m> {
     matrix: SystemMatrix,
     element_maps: Vec<u32>,
     kinds: Vec<Kind>,
-    /// Per pair: where the blocks of its points go.
-    point_maps: Vec<PointMaps>,
+    /// Per pair with a rigid master: where the blocks of its points go.
+    point_maps: PerPair<PointMaps>,
     follower_maps: Vec<Vec<u32>>,
     systems: Systems,
+    /// Room for the points of a pair with a rigid master.
     touches: Vec<Result<Option<Touch>, PointFault>>,
     /// Points of a pair that [`Manner::hold`] keeps closed.
     held: Vec<bool>,
-    /// Per point with history, of pairs with friction or augmentation; nothing where it is open.
+    /// Per point with history, of pairs with friction or augmentation; nothing where it is open. Empty without augmentation.
     answers: Vec<Option<PointAnswer>>,
     /// The surfaces of masters that are bodies, at the last state evaluated.
     pub masters: Masters,
     /// Per pair whose master is a body: the nodes that the pattern couples, and the points at the last state.
-    couplings: Vec<Option<Couplings>>,
-    meetings: Vec<Meetings>,
+    couplings: PerPair<Couplings>,
+    /// Per pair without friction whose master is a body: the points at the last state.
+    meetings: PerPair<Meetings>,
     /// Per pair with friction whose master is a body: the points at the last state.
-    sliding: Vec<Sliding>,
+    sliding: PerPair<Sliding>,
     /// Per pair with averaged gaps: its points and nodes at the last state.
-    averaged: Vec<Option<Averaged>>,
+    averaged: PerPair<Averaged>,
+    /// Per pair: the kernel that its points were evaluated by last, told by what it was compiled for.
+    ran: Vec<Option<Kernel>>,
     /// The pattern, until the solver has taken it.
     new_pattern: Option<Arc<Pattern>>,
     rebuilds: u32,
     work: ConstrainedScatter,
-    /// Dead loads at the present time.
+    /// Dead loads at the present time; empty where the scene has no loads.
     external: Vec<f64>,
+    /// Empty where the scene has no contacts.
     contact: Vec<f64>,
     borders: Vec<Border>,
     /// Where the scene asks for stabilisation.
     viscous: Option<Viscous>,
+    /// Where displacements are small.
+    linear: Option<Box<Linear>>,
     /// Penalty per pair; an automatic one may be raised in the course of a run.
     pub penalties: Vec<f64>,
     /// How contact is linearised.
@@ -214,10 +230,13 @@ impl<'m> Assembler<'m> {
         let pattern = Arc::new(maps::pattern(model, dofs, &couplings)?);
         pattern.fits(model.symmetric)?;
         let maps = Maps::new(model, dofs, &pattern)?;
-        let rigid = model.pairs.iter().filter(|p| p.rigid_master().is_some());
-        let most = rigid.map(|p| p.points.len()).max().unwrap_or(0);
         let n = 3 * model.nodes.len();
+        // At small displacements points and elements have loops of their own.
+        let large = model.small.is_none();
+        let pairs = || model.pairs.iter().filter(|_| large);
+        let vector = |needed: bool| vec![0.0; if needed { n } else { 0 }];
         let borders = Border::all(model, &pattern)?;
+        let linear = Linear::new(model, dofs, &pattern)?;
         Ok(Assembler {
             model,
             dofs,
@@ -226,22 +245,27 @@ impl<'m> Assembler<'m> {
             kinds: maps.kinds,
             point_maps: maps.points,
             follower_maps: maps.followers,
-            systems: Systems::new(model),
-            touches: vec![Ok(None); most],
+            systems: match large {
+                true => Systems::new(model),
+                false => Systems::default(),
+            },
+            touches: vec![Ok(None); rigid::most(model)],
             held: Vec::new(),
-            answers: vec![None; model.histories()],
+            answers: vec![None; answer::count(model)],
             masters,
             couplings,
-            meetings: model.pairs.iter().map(Meetings::new).collect(),
-            sliding: model.pairs.iter().map(Sliding::new).collect(),
-            averaged: model.pairs.iter().map(Averaged::new).collect(),
+            meetings: PerPair::new(pairs().map(Meetings::new)),
+            sliding: PerPair::new(pairs().map(Sliding::new)),
+            averaged: PerPair::new(pairs().map(Averaged::new)),
+            ran: vec![None; model.pairs.len()],
             new_pattern: Some(pattern),
             rebuilds: 0,
             work: ConstrainedScatter::default(),
-            external: vec![0.0; n],
-            contact: vec![0.0; n],
+            external: vector(model.loaded()),
+            contact: vector(!model.pairs.is_empty()),
             borders,
             viscous: Viscous::new(model),
+            linear,
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             manner: Manner::default(),
         })
@@ -269,9 +293,16 @@ impl<'m> Assembler<'m> {
     }
 
     /// What points with history do at the state evaluated last, in the order of [`State::histories`]; nothing where they are
-    /// open.
+    /// open. Empty where no pair has augmentation.
     pub fn answers(&self) -> &[Option<PointAnswer>] {
         &self.answers
+    }
+
+    /// Per pair: the kernel that its points were evaluated by last; none where they were not, or only by a first
+    /// linearisation that held them, whose law is its own. It is told by what the loop over the points was compiled for, not
+    /// by the plan.
+    pub fn ran(&self) -> &[Option<Kernel>] {
+        &self.ran
     }
 
     /// The tangent of the last [`Self::linearize`].
@@ -279,12 +310,13 @@ impl<'m> Assembler<'m> {
         &self.matrix
     }
 
-    /// Dead loads of the last evaluation.
+    /// Dead loads of the last evaluation; empty where the scene has no loads.
     pub fn external(&self) -> &[f64] {
         &self.external
     }
 
-    /// Contact forces at all degrees of freedom of the last evaluation, as they stand in the residual.
+    /// Contact forces at all degrees of freedom of the last evaluation, as they stand in the residual; empty where the scene
+    /// has no contacts.
     pub fn contact_forces(&self) -> &[f64] {
         &self.contact
     }
@@ -346,9 +378,14 @@ impl<'m> Assembler<'m> {
         time: f64,
         residual: &mut [f64],
     ) -> Result<Totals, Fault> {
+        let mut totals = Totals::default();
+        if self.linear.is_some() {
+            residual.fill(0.0);
+            self.small_contact(state, time, residual, &mut totals)?;
+            return Ok(totals);
+        }
         self.meet::<false>(state, time)?;
         residual.fill(0.0);
-        let mut totals = Totals::default();
         self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
         Ok(totals)
     }

@@ -1,26 +1,26 @@
 //! Contact with bodies: the slave points of a pair are evaluated in parallel, their matrices formed in parallel, and all
 //! is summed in order.
 use super::answer::PointAnswer;
-use super::averaged::Averaged;
 use super::couplings::Couplings;
 use super::driven::Border;
 use super::links;
+use super::per_pair::PerPair;
 use super::touched::{self, Touched};
 use super::{Assembler, Fault, PairForce, PatternError, SurfaceForce, Totals, maps, put};
 use crate::contact::friction::history::PointHistory;
 use crate::contact::kernel::assemble_force;
+use crate::contact::kind::{FrictionKind, LawKind, MasterKind, TangentKind};
 use crate::contact::law::{GapOffset, Multipliers, NoOffset, NormalLaw, Offsets, Penalty};
 use crate::contact::moving::{MovingMaster, MovingTouch};
 use crate::contact::point::FaceTangent;
 use crate::contact::points::SlavePoint;
-use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault};
 use crate::contact::scatter::{assemble_point, keep_slave_rows};
 use crate::model::master::{MasterNow, Masters};
+use crate::model::plan::{GapKind, Kernel, SideKind};
 use crate::model::self_contact::{Accept, All, Opposing};
-use crate::model::state::{PointState, State, slaves};
+use crate::model::state::{PointState, State, heap, slaves};
 use crate::model::{Model, PairModel};
-use crate::scene::Tangent;
 use covact_geometry::{ShapeRows, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -42,22 +42,49 @@ pub(super) struct Meetings {
 }
 
 impl Meetings {
-    /// Room for a pair; none is needed where the master is rigid, gaps are averaged, or there is friction
-    /// ([`super::sliding::Sliding`]).
-    pub fn new(pair: &PairModel) -> Self {
+    /// Bytes of heap for each point of a pair, and for all of it.
+    pub fn sizes(pair: &PairModel) -> Option<[usize; 2]> {
+        let stride = Meetings::stride(pair)?;
+        let most = CHUNK.min(pair.points.len());
+        let point = size_of::<Result<Option<MovingTouch>, PointFault>>() + size_of::<u32>();
+        let room = most * (size_of::<ShapeRows>() + stride * size_of::<f64>());
+        Some([point, PerPair::<Meetings>::HEAD + room])
+    }
+
+    /// Numbers that the largest matrix of a pair has; none where this is not for the pair.
+    fn stride(pair: &PairModel) -> Option<usize> {
         let (Some(master), None, None) = (pair.body_master(), &pair.averaged, &pair.friction)
         else {
-            return Meetings::default();
+            return None;
         };
         let slave = pair.points.iter().map(|p| p.count as usize).max();
         let facets = 0..master.facets.len() as u32;
         let facet = facets.map(|f| master.facets.nodes(f).len()).max();
+        Some((3 * (slave.unwrap_or(0) + facet.unwrap_or(0))).pow(2))
+    }
+
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        let Meetings {
+            touched,
+            rows,
+            matrices,
+            stride: _,
+            // Shared with the states.
+            cut: _,
+        } = self;
+        touched.bytes() + heap(rows) + heap(matrices)
+    }
+
+    /// Room for a pair; nothing where the master is rigid, gaps are averaged, or there is friction
+    /// ([`super::sliding::Sliding`]).
+    pub fn new(pair: &PairModel) -> Option<Self> {
         let mut out = Meetings {
-            stride: (3 * (slave.unwrap_or(0) + facet.unwrap_or(0))).pow(2),
+            stride: Meetings::stride(pair)?,
             ..Meetings::default()
         };
         out.resize(pair.points.len());
-        out
+        Some(out)
     }
 
     /// Room for another number of points.
@@ -85,20 +112,24 @@ impl Meetings {
 }
 
 /// Couplings of all pairs before anything has moved.
-pub(super) fn first_couplings(model: &Model, masters: &Masters) -> Vec<Option<Couplings>> {
+pub(super) fn first_couplings(model: &Model, masters: &Masters) -> PerPair<Couplings> {
     let zero = vec![0.0; 3 * model.nodes.len()];
-    (model.pairs.iter().enumerate())
-        .map(|(index, pair)| {
-            let surface = masters.surface(index)?;
-            let mut couplings = Couplings::new(&pair.points);
-            let near = near(model, masters, index, &pair.points, &zero, &[]);
-            couplings.couple(&surface.facets, near.into_iter());
-            if pair.friction.is_some() {
-                couplings.link(&surface.facets, std::iter::empty());
-            }
-            Some(couplings)
-        })
-        .collect()
+    let couplings = (model.pairs.iter().enumerate()).map(|(index, pair)| {
+        let surface = masters.surface(index)?;
+        let mut couplings = Couplings::new(&pair.points);
+        if let Some(small) = &model.small {
+            // Feet stay where they are.
+            couplings.set(small.pairs[index].feet());
+            return Some(couplings);
+        }
+        let near = near(model, masters, index, &pair.points, &zero, &[]);
+        couplings.couple(&surface.facets, near.into_iter());
+        if pair.friction.is_some() {
+            couplings.link(&surface.facets, std::iter::empty());
+        }
+        Some(couplings)
+    });
+    PerPair::new(couplings)
 }
 
 /// Points of a pair that are nearer to their master than an element or its depth, with the facets at their feet.
@@ -140,7 +171,7 @@ impl Assembler<'_> {
         state: &mut State,
         time: f64,
     ) -> Result<(), Fault> {
-        if self.couplings.iter().all(Option::is_none) {
+        if self.couplings.is_empty() {
             return Ok(());
         }
         self.masters.update(self.model, &state.u);
@@ -153,18 +184,20 @@ impl Assembler<'_> {
             let (Some(master), Some(surface), Some(couplings)) = (
                 pair.body_master(),
                 self.masters.surface(index),
-                &mut self.couplings[index],
+                self.couplings.get_mut(index),
             ) else {
                 continue;
             };
-            if let Some(averaged) = &mut self.averaged[index] {
+            let kernel = self.model.plan.kernel(index);
+            if let (GapKind::Averaged, Some(averaged)) = (kernel.gap, self.averaged.get_mut(index))
+            {
                 let facets = MovingMaster {
                     facets: &surface.facets,
                     depth: master.depth,
                 };
                 let (model, u, eps_n) = (self.model, &state.u, self.penalties[index]);
                 let (states, reach) = (&mut state.points[range], pair.reach(model));
-                match &master.own {
+                let law = match &master.own {
                     None => averaged.meet(model, pair, eps_n, u, time, states, |_, x, hint| {
                         facets.meet(x, hint, reach, |_| true)
                     }),
@@ -180,14 +213,23 @@ impl Assembler<'_> {
                         })
                     }
                 }?;
+                self.ran[index] = Some(Kernel {
+                    law,
+                    master: match &master.own {
+                        None => MasterKind::Faces,
+                        Some(_) => MasterKind::OwnFaces,
+                    },
+                    ..kernel
+                });
                 missing |= averaged.touched().any(|(i, f)| !couplings.holds(i, f));
                 continue;
             }
-            if let (Some(friction), Some(histories)) = (&pair.friction, pair.history()) {
-                let sliding = &mut self.sliding[index];
-                sliding.meet(
+            if let (Some(friction), Some(histories), Some(sliding)) =
+                (&pair.friction, pair.history(), self.sliding.get_mut(index))
+            {
+                let ran = sliding.meet(
                     self.model,
-                    pair,
+                    (pair, &kernel),
                     (master, surface),
                     (friction, self.penalties[index], self.manner.secant),
                     &state.u,
@@ -195,7 +237,8 @@ impl Assembler<'_> {
                     &mut state.points[range],
                     &state.histories[histories.clone()],
                 )?;
-                if pair.augmentation.is_some() {
+                self.ran[index] = Some(ran);
+                if kernel.law == LawKind::Multipliers {
                     let eps_t = friction.ratio * self.penalties[index];
                     let known = &state.histories[histories.clone()];
                     sliding.answer(surface, known, eps_t, &mut self.answers[histories]);
@@ -203,9 +246,13 @@ impl Assembler<'_> {
                 missing |= (sliding.touched()).any(|t| !links::holds(couplings, t));
                 continue;
             }
-            if !self.meetings[index].holds(&state.cuts[index]) {
-                self.meetings[index].cut = state.cuts[index].clone();
-                self.meetings[index].resize(points.len());
+            let Some(meetings) = self.meetings.get_mut(index) else {
+                continue;
+            };
+            let cut = state.cuts.get(index).cloned().flatten();
+            if !meetings.holds(&cut) {
+                meetings.cut = cut;
+                meetings.resize(points.len());
                 couplings.resample(points);
             }
             let law = Penalty {
@@ -213,39 +260,39 @@ impl Assembler<'_> {
             };
             let batch = Batch {
                 model: self.model,
-                pair,
                 points,
                 master: MovingMaster {
                     facets: &surface.facets,
                     depth: master.depth,
                 },
                 law: &law,
+                kernel: &kernel,
                 u: &state.u,
             };
             let states = &mut state.points[range];
-            let meetings = &mut self.meetings[index];
             let touches = &mut meetings.touched.all;
             let offsets = pair.offsets(time);
-            let offsets = offsets.as_ref();
-            let histories = match pair.augmentation {
-                Some(_) => pair.history().map(|range| &state.histories[range]),
-                None => None,
+            let histories = match kernel.law {
+                LawKind::Multipliers => pair.history().map(|range| &state.histories[range]),
+                _ => None,
             };
-            match &master.own {
-                None => batch.offset(states, touches, offsets, histories, &All),
+            let known = histories.unwrap_or(&[]);
+            let ran = match &master.own {
+                None => batch.offset(states, touches, offsets, known, &All),
                 Some(own) => {
                     let accept = Opposing {
                         own,
                         normals: &surface.normals,
                         position: |n: u32| self.model.position(n as usize, &state.u),
                     };
-                    batch.offset(states, touches, offsets, histories, &accept);
+                    batch.offset(states, touches, offsets, known, &accept)
                 }
-            }
+            };
+            self.ran[index] = Some(ran);
             if let (Some(_), Some(range)) = (histories, pair.history()) {
                 let answers = self.answers[range].iter_mut().zip(touches.iter());
                 for (i, (answer, touch)) in answers.enumerate() {
-                    let z0 = offsets.map_or(0.0, |o| o.at(i));
+                    let z0 = offsets.as_ref().map_or(0.0, |o| o.at(i));
                     *answer =
                         touched::of(touch).map(|t| PointAnswer::without_friction(t.n, t.xi3 - z0));
                 }
@@ -268,19 +315,20 @@ impl Assembler<'_> {
             let states = &state.points[first..first + points.len()];
             first += points.len();
             let (Some(surface), Some(couplings)) =
-                (self.masters.surface(index), &mut self.couplings[index])
+                (self.masters.surface(index), self.couplings.get_mut(index))
             else {
                 continue;
             };
             let mut near = near(self.model, &self.masters, index, points, &state.u, states);
-            near.extend(self.meetings[index].touched());
-            near.extend(self.averaged[index].iter().flat_map(Averaged::touched));
+            let (meetings, averaged) = (self.meetings.get(index), self.averaged.get(index));
+            near.extend(meetings.iter().flat_map(|m| m.touched()));
+            near.extend(averaged.iter().flat_map(|a| a.touched()));
             let pair = &self.model.pairs[index];
-            let (Some(_), Some(histories)) = (&pair.friction, pair.history()) else {
+            let (Some(sliding), Some(histories)) = (self.sliding.get(index), pair.history()) else {
                 couplings.couple(&surface.facets, near.into_iter());
                 continue;
             };
-            let touched = self.sliding[index].touched();
+            let touched = sliding.touched();
             near.extend(touched.map(|(i, facet, _)| (i, facet)));
             let links = links::with_anchors(&mut near, &state.histories[histories]);
             couplings.couple(&surface.facets, near.into_iter());
@@ -318,17 +366,43 @@ impl Assembler<'_> {
         rhs: &mut [f64],
         totals: &mut Totals,
     ) {
+        let kernel = self.model.plan.kernel(index);
+        match (kernel.friction, kernel.sides) {
+            (FrictionKind::None, SideKind::Both) => self.press::<TANGENT, false>(
+                index, state, range, time, increments, residual, rhs, totals,
+            ),
+            (FrictionKind::None, SideKind::Slave) => self.press::<TANGENT, true>(
+                index, state, range, time, increments, residual, rhs, totals,
+            ),
+            _ => self.slide::<TANGENT>(index, state, range, increments, residual, rhs, totals),
+        }
+    }
+
+    /// Sums up a pair without friction; `HALF`: the slave's rows alone, one of two half passes.
+    #[allow(clippy::too_many_arguments)]
+    fn press<const TANGENT: bool, const HALF: bool>(
+        &mut self,
+        index: usize,
+        state: &mut State,
+        range: Range<usize>,
+        time: f64,
+        increments: Option<&[f64]>,
+        residual: &mut [f64],
+        rhs: &mut [f64],
+        totals: &mut Totals,
+    ) {
         let pair = &self.model.pairs[index];
-        if pair.friction.is_some() {
-            return self.slide::<TANGENT>(index, state, range, increments, residual, rhs, totals);
+        if let (true, Some(ran)) = (HALF, &mut self.ran[index]) {
+            ran.sides = SideKind::Slave;
         }
         let points = slaves(&state.cuts, self.model, index);
         let u = &state.u[..];
         let states = &mut state.points[range];
-        let half = pair.half.is_some();
-        let (Some(surface), Some(couplings)) =
-            (self.masters.surface(index), &mut self.couplings[index])
-        else {
+        let (Some(surface), Some(couplings), Some(meetings)) = (
+            self.masters.surface(index),
+            self.couplings.get_mut(index),
+            self.meetings.get_mut(index),
+        ) else {
             return;
         };
         let facets = &surface.facets;
@@ -338,12 +412,12 @@ impl Assembler<'_> {
             matrices,
             stride,
             ..
-        } = &mut self.meetings[index];
+        } = meetings;
         touched.note(states, totals);
         let mut deepest = 0.0f64;
         // Both passes of two are one contact with two sides, whose energy is the mean of both.
         let mut force = PairForce::default();
-        let share = if half { 0.25 } else { 0.5 };
+        let share = if HALF { 0.25 } else { 0.5 };
         let offsets = pair.offsets(time);
         for chunk in touched.active.chunks(CHUNK) {
             (chunk.par_iter())
@@ -359,7 +433,7 @@ impl Assembler<'_> {
                         let size = 3 * (slave.len() + rows.count);
                         let ke = &mut ke[..size * size];
                         assemble_point(&touch.tangent, slave, rows, p.area, ke);
-                        if half {
+                        if HALF {
                             keep_slave_rows(slave.len(), rows.count, ke);
                         }
                     }
@@ -390,7 +464,7 @@ impl Assembler<'_> {
                     add(node, &assemble_force(&r, &[w, 0.0, 0.0]), &mut force.slave);
                 }
                 let nodes = facets.nodes(touch.facet);
-                let pushed = if half { &[] } else { nodes };
+                let pushed = if HALF { &[] } else { nodes };
                 for (k, &node) in pushed.iter().enumerate() {
                     let row = [-rows.n[k], rows.n_1[k], rows.n_2[k]];
                     add(node as usize, &assemble_force(&r, &row), &mut force.master);
@@ -430,52 +504,45 @@ impl Assembler<'_> {
 /// The slave points of a pair at one trial state.
 struct Batch<'a, L> {
     model: &'a Model,
-    pair: &'a PairModel,
     points: &'a [SlavePoint],
     master: MovingMaster<'a>,
     law: &'a L,
+    kernel: &'a Kernel,
     u: &'a [f64],
 }
 
 impl<L: NormalLaw + Copy> Batch<'_, L> {
-    /// Evaluates every point with gaps measured from where the pair says, and with multipliers where it has any.
+    /// Evaluates every point under the law that the plan names: with gaps measured from where the pair says, and with
+    /// multipliers where it has any. Returns what was run.
     fn offset<A: Accept>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<MovingTouch>, PointFault>],
-        offsets: Option<&Offsets>,
-        histories: Option<&[PointHistory]>,
+        offsets: Option<Offsets>,
+        histories: &[PointHistory],
         accept: &A,
-    ) {
-        match (histories, offsets) {
-            (None, None) => self.choose(states, touches, &NoOffset, accept),
-            (None, Some(offsets)) => self.choose(states, touches, offsets, accept),
-            (Some(histories), offsets) => {
-                let offsets = offsets.copied();
+    ) -> Kernel {
+        match self.kernel.law {
+            LawKind::Penalty | LawKind::Held => self.choose(states, touches, &NoOffset, accept),
+            LawKind::Offset => self.choose(states, touches, &offsets.unwrap_or_default(), accept),
+            LawKind::Multipliers => {
                 let multipliers = Multipliers { histories, offsets };
-                self.choose(states, touches, &multipliers, accept);
+                self.choose(states, touches, &multipliers, accept)
             }
         }
     }
 
-    /// Evaluates every point under the tangent of the pair.
+    /// Evaluates every point under the tangent that the plan names.
     fn choose<O: GapOffset, A: Accept>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<MovingTouch>, PointFault>],
         offsets: &O,
         accept: &A,
-    ) {
-        match self.pair.tangent {
-            Tangent::Exact => self.evaluate(states, touches, offsets, accept, &Exact),
-            Tangent::Published {
-                rotational,
-                curvature,
-            } => {
-                let parts = Parts {
-                    rotational,
-                    curvature,
-                };
+    ) -> Kernel {
+        match self.kernel.tangent {
+            TangentKind::Exact => self.evaluate(states, touches, offsets, accept, &Exact),
+            TangentKind::Published(parts) => {
                 self.evaluate(states, touches, offsets, accept, &parts)
             }
         }
@@ -490,7 +557,7 @@ impl<L: NormalLaw + Copy> Batch<'_, L> {
         offsets: &O,
         accept: &A,
         tangent: &T,
-    ) {
+    ) -> Kernel {
         (self.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
@@ -503,5 +570,14 @@ impl<L: NormalLaw + Copy> Batch<'_, L> {
                 let law = offsets.law(i, self.law);
                 *out = (self.master).touch(&x, &mut s.hint, &law, tangent, facet);
             });
+        Kernel {
+            gap: GapKind::Pointwise,
+            master: A::KIND,
+            law: O::KIND,
+            friction: FrictionKind::None,
+            tangent: tangent.kind(),
+            // Which rows are summed is another loop's.
+            sides: SideKind::Both,
+        }
     }
 }

@@ -115,7 +115,8 @@ impl Assembler<'_> {
         increments: Option<&[f64]>,
         rhs: &mut [f64],
     ) {
-        match self.point_maps[pair].plain(index, nodes.len()) {
+        let maps = self.point_maps.get(pair);
+        match maps.and_then(|maps| maps.plain(index, nodes.len())) {
             Some(places) => self.matrix.scatter_point(places, shape, k),
             None => add_constrained(
                 &mut self.matrix,

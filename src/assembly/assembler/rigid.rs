@@ -1,22 +1,32 @@
 //! Contact with rigid surfaces: the slave points of a pair are evaluated in parallel and summed in order.
 use super::answer::PointAnswer;
+use super::maps::PointMaps;
 use super::pressed::{Pressed, PressedSums};
 use super::{Assembler, Fault, Manner, PairForce, SurfaceForce, Totals, touched};
 use crate::contact::closest::ClosestPoint;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::{FrictionLaw, Secant};
-use crate::contact::friction::rigid::Friction;
+use crate::contact::friction::rigid::{Friction, FrictionTouch};
+use crate::contact::kind::{FrictionKind, LawKind, TangentKind};
 use crate::contact::law::{
     Augmented, GapOffset, Held, Multipliers, NoOffset, NormalLaw, Offsets, Penalty,
 };
-use crate::contact::published::Parts;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
 use crate::model::master::Master;
+use crate::model::plan::{GapKind, Kernel, SideKind};
 use crate::model::state::{PointState, State};
 use crate::model::{Model, PairModel};
-use crate::scene::Tangent;
 use crate::{with_law, with_patches};
 use rayon::prelude::*;
+
+/// Most points of a pair that are evaluated at once.
+pub(super) fn most(model: &Model) -> usize {
+    if model.small.is_some() {
+        return 0;
+    }
+    let rigid = (model.pairs.iter()).filter(|p| p.rigid_master().is_some() && p.averaged.is_none());
+    rigid.map(|p| p.points.len()).max().unwrap_or(0)
+}
 
 impl Assembler<'_> {
     pub(super) fn contacts<const TANGENT: bool>(
@@ -34,7 +44,8 @@ impl Assembler<'_> {
         self.clear_borders();
         let (mut first, mut rounding) = (0, 0.0);
         for (index, pair) in self.model.pairs.iter().enumerate() {
-            if pair.averaged.is_some() {
+            let kernel = self.model.plan.kernel(index);
+            if kernel.gap == GapKind::Averaged {
                 let n = pair.points.len();
                 self.meet_rigid(index, &state.u, time, &mut state.points[first..first + n])?;
                 self.average::<TANGENT>(
@@ -78,7 +89,7 @@ impl Assembler<'_> {
                 )),
                 _ => None,
             };
-            with_patches!(master.surface, patches => {
+            let (friction_kind, (law_kind, tangent_kind)) = with_patches!(master.surface, patches => {
                 let batch = Batch {
                     model: self.model,
                     pair,
@@ -88,41 +99,71 @@ impl Assembler<'_> {
                         depth: master.depth,
                     },
                     law: &law,
+                    kernel: &kernel,
                     u,
                 };
-                match (pair.offsets(time), &friction) {
-                    (offsets, None) if hold => {
+                let offsets = pair.offsets(time);
+                match (kernel.law, &friction) {
+                    (_, None) if hold => {
                         let augmented = pair.history().filter(|_| pair.augmentation.is_some());
                         let histories = &state.histories[augmented.unwrap_or(0..0)];
                         let held = Held { held: &self.held, histories, offsets };
-                        batch.choose(points, touches, &held);
+                        (FrictionKind::None, batch.choose(points, touches, &held))
                     }
-                    (offsets, None) if pair.augmentation.is_some() => {
+                    (LawKind::Multipliers, None) => {
                         let histories = &state.histories[pair.history().unwrap_or(0..0)];
                         let multipliers = Multipliers { histories, offsets };
-                        batch.choose(points, touches, &multipliers);
+                        let ran = batch.choose(points, touches, &multipliers);
                         let answers = &mut self.answers[pair.history().unwrap_or(0..0)];
                         for (answer, touch) in answers.iter_mut().zip(touches.iter()) {
                             *answer = touched::of(touch)
                                 .map(|t| PointAnswer::without_friction(t.n, t.gap));
                         }
+                        (FrictionKind::None, ran)
                     }
-                    (None, None) => batch.choose(points, touches, &NoOffset),
-                    (Some(over), None) => batch.choose(points, touches, &over),
-                    (over, Some((now, eps_t, histories))) => with_law!(*now, law => {
+                    (LawKind::Offset, None) => {
+                        let offsets = offsets.unwrap_or_default();
+                        (FrictionKind::None, batch.choose(points, touches, &offsets))
+                    }
+                    (LawKind::Penalty | LawKind::Held, None) => {
+                        (FrictionKind::None, batch.choose(points, touches, &NoOffset))
+                    }
+                    (planned, Some((now, eps_t, histories))) => with_law!(*now, law => {
                         let law = Secant { law, on: secant };
                         let friction = Friction { law, eps_t: *eps_t };
-                        let answers = &mut self.answers[pair.history().unwrap_or(0..0)];
-                        batch.slide(points, touches, answers, &friction, histories, over, hold)
+                        let ran = match planned {
+                            LawKind::Multipliers => {
+                                let told = &mut self.answers[pair.history().unwrap_or(0..0)];
+                                let (s, t) = (&mut *points, &mut *touches);
+                                batch.slide(s, t, told, &friction, histories, offsets, hold)
+                            }
+                            _ => {
+                                let told = &mut vec![(); n][..];
+                                let (s, t) = (&mut *points, &mut *touches);
+                                batch.slide(s, t, told, &friction, histories, offsets, hold)
+                            }
+                        };
+                        (now.kind(), ran)
                     }),
                 }
             });
+            if law_kind != LawKind::Held {
+                self.ran[index] = Some(Kernel {
+                    gap: GapKind::Pointwise,
+                    master: surface.kind(),
+                    law: law_kind,
+                    friction: friction_kind,
+                    tangent: tangent_kind,
+                    sides: SideKind::Both,
+                });
+            }
+            let none = PointMaps::default();
             let mut pressed = Pressed {
                 eps_n: law.eps_n,
                 residual,
                 contact: &mut self.contact,
                 matrix: &mut self.matrix,
-                maps: &self.point_maps[index],
+                maps: self.point_maps.get(index).unwrap_or(&none),
                 dofs: self.dofs,
                 work: &mut self.work,
                 increments,
@@ -177,23 +218,44 @@ struct Batch<'a, P, L> {
     pair: &'a PairModel,
     master: &'a RigidMaster<'a, P>,
     law: &'a L,
+    kernel: &'a Kernel,
     u: &'a [f64],
 }
 
+/// What is told of a point with friction: a type, so that without augmentation nothing is.
+trait Told: Send {
+    const LAW: Option<LawKind>;
+    fn tell(&mut self, touch: Option<&FrictionTouch>, history: &PointHistory, eps_t: f64);
+}
+
+impl Told for () {
+    const LAW: Option<LawKind> = None;
+    #[inline]
+    fn tell(&mut self, _: Option<&FrictionTouch>, _: &PointHistory, _: f64) {}
+}
+
+impl Told for Option<PointAnswer> {
+    const LAW: Option<LawKind> = Some(LawKind::Multipliers);
+    #[inline]
+    fn tell(&mut self, touch: Option<&FrictionTouch>, history: &PointHistory, eps_t: f64) {
+        *self = touch.map(|t| PointAnswer::with_friction(t, history, eps_t));
+    }
+}
+
 impl<P: ClosestPoint> Batch<'_, P, Penalty> {
-    /// Evaluates every point with friction; surface and law of friction are types here. `hold` keeps closed points closed.
+    /// Evaluates every point with friction; surface, law of friction and what is told are types here. `hold` keeps closed
+    /// points closed. Returns what was run.
     #[allow(clippy::too_many_arguments)]
-    fn slide<F: FrictionLaw>(
+    fn slide<F: FrictionLaw, A: Told>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<Touch>, PointFault>],
-        answers: &mut [Option<PointAnswer>],
+        answers: &mut [A],
         friction: &Friction<F>,
         histories: &[PointHistory],
         offsets: Option<Offsets>,
         hold: bool,
-    ) {
-        let augmented = self.pair.augmentation.is_some();
+    ) -> (LawKind, TangentKind) {
         let placed = self.master.placed();
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
@@ -209,35 +271,30 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
                     ..history.law(self.law.eps_n, offsets.map_or(0.0, |o| o.at(i)))
                 };
                 let touch = placed.touch_with_friction(&x, &mut s.hint, &law, friction, history);
-                if augmented {
-                    *answer = touched::of(&touch)
-                        .map(|t| PointAnswer::with_friction(t, history, friction.eps_t));
-                }
+                answer.tell(touched::of(&touch), history, friction.eps_t);
                 *out = touch.map(|t| t.map(|t| t.touch));
             });
+        let law = match (hold, A::LAW, offsets) {
+            (true, ..) => LawKind::Held,
+            (_, Some(law), _) => law,
+            (_, None, Some(_)) => LawKind::Offset,
+            (_, None, None) => LawKind::Penalty,
+        };
+        (law, TangentKind::Exact)
     }
 }
 
 impl<P: ClosestPoint, L: NormalLaw + Copy> Batch<'_, P, L> {
-    /// Evaluates every point with the tangent that the pair asks for.
+    /// Evaluates every point with the tangent that the plan names. Returns what was run.
     fn choose<O: GapOffset>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<Touch>, PointFault>],
         offset: &O,
-    ) {
-        match self.pair.tangent {
-            Tangent::Exact => self.evaluate(states, touches, &Exact, offset),
-            Tangent::Published {
-                rotational,
-                curvature,
-            } => {
-                let parts = Parts {
-                    rotational,
-                    curvature,
-                };
-                self.evaluate(states, touches, &parts, offset)
-            }
+    ) -> (LawKind, TangentKind) {
+        match self.kernel.tangent {
+            TangentKind::Exact => self.evaluate(states, touches, &Exact, offset),
+            TangentKind::Published(parts) => self.evaluate(states, touches, &parts, offset),
         }
     }
 
@@ -248,7 +305,7 @@ impl<P: ClosestPoint, L: NormalLaw + Copy> Batch<'_, P, L> {
         touches: &mut [Result<Option<Touch>, PointFault>],
         tangent: &T,
         offset: &O,
-    ) {
+    ) -> (LawKind, TangentKind) {
         let placed = self.master.placed();
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
@@ -260,5 +317,6 @@ impl<P: ClosestPoint, L: NormalLaw + Copy> Batch<'_, P, L> {
                 let law = offset.law(i, self.law);
                 placed.touch_into(&x, &mut s.hint, &law, tangent, out);
             });
+        (O::KIND, tangent.kind())
     }
 }

@@ -1,6 +1,7 @@
 //! Contact with friction between bodies: as [`super::moving`], with histories, and columns for the facets that hold the
 //! attraction points.
 use super::answer::PointAnswer;
+use super::per_pair::PerPair;
 use super::touched::{self, Touched};
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
 use crate::contact::friction::history::PointHistory;
@@ -9,13 +10,15 @@ use crate::contact::friction::moving::{Form, Full, Reduced};
 use crate::contact::friction::rigid::Friction;
 use crate::contact::friction::scatter::PointNodes;
 use crate::contact::friction::touch::MovingFrictionTouch;
+use crate::contact::kind::{LawKind, TangentKind};
 use crate::contact::law::Offsets;
 use crate::contact::moving::MovingMaster;
 use crate::contact::rigid::PointFault;
 use crate::model::friction::FrictionModel;
 use crate::model::master::{BodyMaster, BodySurface};
+use crate::model::plan::{GapKind, Kernel, SideKind};
 use crate::model::self_contact::{Accept, All, Opposing};
-use crate::model::state::{PointState, State};
+use crate::model::state::{PointState, State, heap};
 use crate::model::{Model, PairModel};
 use crate::with_law;
 use covact_geometry::{CurvedRows, ShapeRows};
@@ -44,24 +47,50 @@ struct PointWork {
 }
 
 impl Sliding {
-    /// Room for a pair; none is needed without friction, or where the master is rigid.
-    pub fn new(pair: &PairModel) -> Self {
+    /// Bytes of heap for each point of a pair, and for all of it.
+    pub fn sizes(pair: &PairModel) -> Option<[usize; 2]> {
+        let stride = Sliding::stride(pair)?;
+        let most = CHUNK.min(pair.points.len());
+        let point = size_of::<Result<Option<MovingFrictionTouch>, PointFault>>();
+        let room = most * (size_of::<PointWork>() + stride * size_of::<f64>());
+        let point = point + size_of::<u32>();
+        Some([point, PerPair::<Sliding>::HEAD + room])
+    }
+
+    /// Numbers that the largest matrix of a pair has; none where this is not for the pair.
+    fn stride(pair: &PairModel) -> Option<usize> {
         let (Some(master), Some(_)) = (pair.body_master(), &pair.friction) else {
-            return Sliding::default();
+            return None;
         };
         let slave = pair.points.iter().map(|p| p.count as usize).max();
         let facets = 0..master.facets.len() as u32;
         let facet = facets.map(|f| master.facets.nodes(f).len()).max();
-        let stride = (3 * (slave.unwrap_or(0) + 2 * facet.unwrap_or(0))).pow(2);
+        Some((3 * (slave.unwrap_or(0) + 2 * facet.unwrap_or(0))).pow(2))
+    }
+
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        let Sliding {
+            touched,
+            work,
+            matrices,
+            stride: _,
+        } = self;
+        touched.bytes() + heap(work) + heap(matrices)
+    }
+
+    /// Room for a pair; nothing without friction, or where the master is rigid.
+    pub fn new(pair: &PairModel) -> Option<Self> {
+        let stride = Sliding::stride(pair)?;
         let most = CHUNK.min(pair.points.len());
         let mut touched = Touched::default();
         touched.resize(pair.points.len());
-        Sliding {
+        Some(Sliding {
             touched,
             work: vec![PointWork::default(); most],
             matrices: vec![0.0; most * stride],
             stride,
-        }
+        })
     }
 
     /// Points in contact, with the facets at their feet and those of their attraction points.
@@ -87,22 +116,23 @@ impl Sliding {
         }
     }
 
-    /// Evaluates every point of a pair.
+    /// Evaluates every point of a pair; returns what was run.
     #[allow(clippy::too_many_arguments)]
     pub fn meet(
         &mut self,
         model: &Model,
-        pair: &PairModel,
+        (pair, kernel): (&PairModel, &Kernel),
         (master, surface): (&BodyMaster, &BodySurface),
         (friction, eps_n, secant): (&FrictionModel, f64, bool),
         u: &[f64],
         time: f64,
         states: &mut [PointState],
         histories: &[PointHistory],
-    ) -> Result<(), Fault> {
+    ) -> Result<Kernel, Fault> {
         let batch = Batch {
             model,
             pair,
+            kernel,
             master: MovingMaster {
                 facets: &surface.facets,
                 depth: master.depth,
@@ -114,7 +144,8 @@ impl Sliding {
         };
         let eps_t = friction.ratio * eps_n;
         let touches = &mut self.touched.all;
-        with_law!(friction.law.at(time)?, law => {
+        let now = friction.law.at(time)?;
+        let ran = with_law!(now, law => {
             let law = Secant { law, on: secant };
             let friction = Friction { law, eps_t };
             match &master.own {
@@ -125,11 +156,15 @@ impl Sliding {
                         normals: &surface.normals,
                         position: |n: u32| model.position(n as usize, u),
                     };
-                    batch.choose(states, touches, &friction, &accept);
+                    batch.choose(states, touches, &friction, &accept)
                 }
             }
         });
-        (self.touched).settle(pair, |i| model.point_position(&pair.points[i], u))
+        (self.touched).settle(pair, |i| model.point_position(&pair.points[i], u))?;
+        Ok(Kernel {
+            friction: now.kind(),
+            ..ran
+        })
     }
 }
 
@@ -147,11 +182,11 @@ impl Assembler<'_> {
         totals: &mut Totals,
     ) {
         // A half pass acts on its slave alone, so that the master's rows are not asked for.
-        match self.model.pairs[index].half {
-            None => self.slide_as::<TANGENT, _>(
+        match self.model.plan.kernel(index).sides {
+            SideKind::Both => self.slide_as::<TANGENT, _>(
                 index, state, range, increments, residual, rhs, totals, &Full,
             ),
-            Some(_) => self.slide_as::<TANGENT, _>(
+            SideKind::Slave => self.slide_as::<TANGENT, _>(
                 index, state, range, increments, residual, rhs, totals, &Reduced,
             ),
         }
@@ -173,9 +208,11 @@ impl Assembler<'_> {
         let points = &pair.points;
         let u = &state.u[..];
         let half = pair.half.is_some();
-        let (Some(surface), Some(couplings)) =
-            (self.masters.surface(index), &mut self.couplings[index])
-        else {
+        let (Some(surface), Some(couplings), Some(sliding)) = (
+            self.masters.surface(index),
+            self.couplings.get_mut(index),
+            self.sliding.get_mut(index),
+        ) else {
             return;
         };
         let facets = &surface.facets;
@@ -184,7 +221,7 @@ impl Assembler<'_> {
             work,
             matrices,
             stride,
-        } = &mut self.sliding[index];
+        } = sliding;
         touched.note(&mut state.points[range], totals);
         let eps_n = self.penalties[index];
         let mut deepest = 0.0f64;
@@ -279,6 +316,7 @@ impl Assembler<'_> {
 struct Batch<'a> {
     model: &'a Model,
     pair: &'a PairModel,
+    kernel: &'a Kernel,
     master: MovingMaster<'a>,
     eps_n: f64,
     u: &'a [f64],
@@ -296,10 +334,10 @@ impl Batch<'_> {
         touches: &mut Touches,
         friction: &Friction<F>,
         accept: &A,
-    ) {
-        match self.pair.half {
-            None => self.evaluate(states, touches, friction, accept, &Full),
-            Some(_) => self.evaluate(states, touches, friction, accept, &Reduced),
+    ) -> Kernel {
+        match self.kernel.sides {
+            SideKind::Both => self.evaluate(states, touches, friction, accept, &Full),
+            SideKind::Slave => self.evaluate(states, touches, friction, accept, &Reduced),
         }
     }
 
@@ -311,7 +349,7 @@ impl Batch<'_> {
         friction: &Friction<F>,
         accept: &A,
         form: &M,
-    ) {
+    ) -> Kernel {
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
@@ -327,5 +365,21 @@ impl Batch<'_> {
                 *out = (self.master)
                     .touch_with_friction(&x, hint, &law, friction, history, form, facet);
             });
+        Kernel {
+            gap: GapKind::Pointwise,
+            master: A::KIND,
+            // With a history every law has room for a multiplier, which without augmentation is zero.
+            law: match self.offsets {
+                _ if self.kernel.law == LawKind::Multipliers => LawKind::Multipliers,
+                Some(_) => LawKind::Offset,
+                None => LawKind::Penalty,
+            },
+            friction: self.kernel.friction,
+            tangent: TangentKind::Exact,
+            sides: match M::FULL {
+                true => SideKind::Both,
+                false => SideKind::Slave,
+            },
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Slave points of a pair between bodies at the state evaluated last: those in contact.
 use super::{Fault, PairForce, Totals};
 use crate::contact::rigid::PointFault;
-use crate::model::state::PointState;
+use crate::model::state::{PointState, heap};
 use crate::model::{HalfPass, PairModel};
 use covact_geometry::Vec3;
 
@@ -23,12 +23,18 @@ impl<T> Default for Touched<T> {
 }
 
 impl<T: Clone> Touched<T> {
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        heap(&self.all) + heap(&self.active)
+    }
+
     /// Room for a number of points, all of them open.
     pub fn resize(&mut self, points: usize) {
         self.all.clear();
+        self.all.reserve_exact(points);
         self.all.resize(points, Ok(None));
         self.active.clear();
-        self.active.reserve(points);
+        self.active.reserve_exact(points);
     }
 
     /// What a point touches.

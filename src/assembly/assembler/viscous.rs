@@ -2,6 +2,7 @@
 //! tangent. Linear, so exact. Nothing is allocated where the scene does not ask for it.
 use super::Assembler;
 use crate::model::Model;
+use crate::model::state::heap;
 use covact_geometry::Vec3;
 
 /// The step that is being stabilised.
@@ -22,6 +23,11 @@ pub struct Drag {
 }
 
 impl Viscous {
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        heap(&self.base)
+    }
+
     pub fn new(model: &Model) -> Option<Viscous> {
         model.stabilization.as_ref().map(|_| Viscous {
             base: vec![0.0; 3 * model.nodes.len()],
@@ -90,8 +96,9 @@ impl Assembler<'_> {
                 let force = model.weights[dof] * viscous.rate * way;
                 out.work += force * way;
                 drag += force * force;
-                node[0] += self.external[dof].powi(2);
-                node[1] += self.contact[dof].powi(2);
+                let squared = |of: &[f64]| of.get(dof).map_or(0.0, |f| f.powi(2));
+                node[0] += squared(&self.external);
+                node[1] += squared(&self.contact);
                 if removed.get(held) == Some(&(dof as u32)) {
                     held += 1;
                     node[2] += residual[dof].powi(2);

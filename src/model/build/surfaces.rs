@@ -29,7 +29,6 @@ impl Builder<'_> {
         name: &str,
         surface: &scene::Surface,
     ) -> Result<(SurfaceModel, Vec<String>), ModelError> {
-        let here = || format!("/surfaces/{name}");
         let source = match &surface.cad {
             Some(cad) => match self.read_cad(name, cad)? {
                 Source::Stl(stl) => {
@@ -42,25 +41,38 @@ impl Builder<'_> {
             },
             None => self.patches(name, surface)?,
         };
-        let scale = surface.placement.scale;
-        let patches = if scale == 1.0 {
-            source.patches
-        } else {
-            (source.patches.iter())
-                .map(|p| p.transformed(&|x| x * scale))
-                .collect::<Result<Vec<_>, _>>()
-                .map_err(|e| text(here(), e.to_string()))?
-        };
-        let set = PatchSet::new(patches, source.tolerance.map(|t| t * scale)).at(here)?;
+        let (set, labels) = scaled(name, surface, source)?;
         let size = set.size();
         let parts = match &surface.facets {
-            None => (SurfaceSet::Nurbs(set), None, source.labels),
+            None => (SurfaceSet::Nurbs(set), None, labels),
             Some(facets) => {
-                let cut = self.facets(name, facets, set, &source.labels)?;
+                let cut = self.facets(name, facets, set, &labels)?;
                 (cut.set, Some(cut.model), cut.labels)
             }
         };
         self.placed(name, surface, parts, size)
+    }
+
+    /// The patches that facets of a surface would stand for.
+    pub(super) fn exact(
+        &mut self,
+        name: &str,
+        surface: &scene::Surface,
+    ) -> Result<PatchSet, ModelError> {
+        let source = match &surface.cad {
+            Some(cad) => match self.read_cad(name, cad)? {
+                Source::Stl(_) => {
+                    let message = format!("{} is an STL file", cad.file.display());
+                    let help = "facets are made of exact surfaces: take a CAD file (IGES or JSON)";
+                    return Err(text(format!("/surfaces/{name}/cad/file"), message).help(help));
+                }
+                Source::Cad(file) => self.cad_patches(name, cad, &file)?,
+            },
+            None => self.patches(name, surface)?,
+        };
+        let (mut set, _) = scaled(name, surface, source)?;
+        set.set_side_as_given(false);
+        Ok(set)
     }
 
     /// The surface with its motion and depth; `size` is that of the exact surface.
@@ -359,6 +371,26 @@ impl Builder<'_> {
             ));
         }
     }
+}
+
+/// The patches at the size that the placement asks for, with their labels.
+fn scaled(
+    name: &str,
+    surface: &scene::Surface,
+    source: Patches,
+) -> Result<(PatchSet, Vec<String>), ModelError> {
+    let here = || format!("/surfaces/{name}");
+    let scale = surface.placement.scale;
+    let patches = if scale == 1.0 {
+        source.patches
+    } else {
+        (source.patches.iter())
+            .map(|p| p.transformed(&|x| x * scale))
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|e| text(here(), e.to_string()))?
+    };
+    let set = PatchSet::new(patches, source.tolerance.map(|t| t * scale)).at(here)?;
+    Ok((set, source.labels))
 }
 
 fn undecided(found: &ComponentSide) -> bool {

@@ -128,7 +128,8 @@ fn put_elements(model: &Model, elements: &[f64], out: &mut Writer) {
     out.count(elements.len());
     let mut first = 0;
     for body in &model.bodies {
-        let (len, kept) = (body.block.state_len(), body.block.alpha_len());
+        let len = model.state_len(body);
+        let kept = body.block.alpha_len().min(len);
         for _ in 0..body.block.elements() {
             out.f64s(&elements[first..first + kept]);
             first += len;
@@ -141,7 +142,8 @@ fn take_elements(model: &Model, elements: &mut [f64], from: &mut Reader) -> Resu
     elements.fill(0.0);
     let mut first = 0;
     for body in &model.bodies {
-        let (len, kept) = (body.block.state_len(), body.block.alpha_len());
+        let len = model.state_len(body);
+        let kept = body.block.alpha_len().min(len);
         for _ in 0..body.block.elements() {
             from.f64s(&mut elements[first..first + kept])?;
             first += len;

@@ -3,7 +3,7 @@
 //! Everything that evolves is taken apart field by field: a new field does not compile until it is decided here whether it
 //! is kept. What is kept needs a line in `put` and one in `take`, and a new [format](crate::run::checkpoint).
 use super::{March, Outputs, Walk};
-use crate::assembly::{AssemblerMemory, CouplingMemory};
+use crate::assembly::{AssemblerMemory, CouplingMemory, Factored};
 use crate::model::Model;
 use crate::model::state::State;
 use crate::output::{HistoryMark, OutputError};
@@ -224,7 +224,7 @@ fn put_flags(flags: &[bool], out: &mut Writer) {
 }
 
 fn take_flags(count: usize, from: &mut Reader) -> Result<Vec<bool>, Malformed> {
-    from.exactly(count, "contact pairs")?;
+    from.exactly(count, "flags")?;
     (0..count).map(|_| from.bool()).collect()
 }
 
@@ -233,6 +233,7 @@ fn put_assembler(memory: &AssemblerMemory, out: &mut Writer) {
         penalties,
         couplings,
         rebuilds,
+        factored,
         // The pattern is built, and analysed, anew in any case.
         new_pattern: _,
     } = memory;
@@ -251,6 +252,10 @@ fn put_assembler(memory: &AssemblerMemory, out: &mut Writer) {
         });
     }
     out.u32(*rebuilds);
+    out.option(factored.as_ref(), |out, factored| {
+        put_flags(&factored.closed, out);
+        out.f64s(&factored.penalties);
+    });
 }
 
 fn take_assembler(model: &Model, from: &mut Reader) -> Result<AssemblerMemory, Malformed> {
@@ -267,10 +272,18 @@ fn take_assembler(model: &Model, from: &mut Reader) -> Result<AssemblerMemory, M
             })
         })?);
     }
+    let rebuilds = from.u32()?;
+    let factored = from.option(|from| {
+        let closed = take_flags(model.contact_points(), from)?;
+        let mut penalties = vec![0.0; model.pairs.len()];
+        from.f64s(&mut penalties)?;
+        Ok(Factored { closed, penalties })
+    })?;
     Ok(AssemblerMemory {
         penalties,
         couplings,
-        rebuilds: from.u32()?,
+        rebuilds,
+        factored,
         new_pattern: true,
     })
 }

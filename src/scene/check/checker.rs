@@ -1,6 +1,6 @@
 //! Collects problems; the rules that many fields share.
+use crate::scene::document::{Document, nearest_file, pointer};
 use crate::scene::json::MORE;
-use crate::scene::load::{LoadedScene, nearest_file, pointer};
 use crate::scene::problem::{MOST_PROBLEMS, Problem, shorten, suggestion};
 use crate::scene::value::{Value, ValueError};
 use covact_geometry::io::not_regular;
@@ -10,8 +10,8 @@ use std::path::Path;
 /// Bytes of a path in a message.
 const MOST_OF_PATH: usize = 1000;
 
-pub(super) struct Checker<'a> {
-    loaded: &'a LoadedScene,
+pub(crate) struct Checker<'a> {
+    loaded: &'a Document,
     problems: Vec<Problem>,
 }
 
@@ -30,7 +30,7 @@ pub(super) fn path(tokens: &[&str]) -> String {
 }
 
 impl<'a> Checker<'a> {
-    pub fn new(loaded: &'a LoadedScene) -> Self {
+    pub fn new(loaded: &'a Document) -> Self {
         Checker {
             loaded,
             problems: Vec::new(),
@@ -210,7 +210,8 @@ impl<'a> Checker<'a> {
             }
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
                 let near = nearest_file(&full).map(|n| format!("did you mean `{n}`?"));
-                let help = near.unwrap_or_else(|| "paths are relative to the scene file".into());
+                let what = self.loaded.what;
+                let help = near.unwrap_or_else(|| format!("paths are relative to the {what} file"));
                 return self.add(at, format!("there is no file `{shown}`"), Some(help));
             }
             Err(e) => return self.add(at, format!("cannot read `{shown}`: {e}"), None),

@@ -4,12 +4,14 @@ mod checker;
 mod friction;
 mod names;
 mod shapes;
+mod small;
 
 use super::load::LoadedScene;
 use super::problem::{Problem, shorten, suggestion};
 use super::types::*;
 use super::value::{POSITION_AND_TIME, TIME};
-use checker::{Checker, path};
+pub(crate) use checker::Checker;
+use checker::path;
 use names::Sets;
 
 /// All problems of a scene, in the order of the file; none: the scene can be built.
@@ -55,6 +57,7 @@ pub fn check(loaded: &LoadedScene) -> Vec<Problem> {
         check_load(&mut c, &path(&["loads", name]), load, &sets);
     }
     check_solution(&mut c, &scene.solution);
+    small::check(&mut c, scene);
     c.whole("/output/tessellation", scene.output.tessellation, 1, 200);
     if scene.output.contact_points && scene.contacts.values().all(|c| c.friction.is_none()) {
         c.add(

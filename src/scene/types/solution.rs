@@ -10,12 +10,27 @@ pub struct Solution {
     pub end_time: f64,
     /// Times at which a step must end, ascending; steps end at the rows of tables in any case.
     pub stops: Vec<f64>,
+    /// How far displacements may go.
+    pub kinematics: Kinematics,
     pub step: Step,
     pub newton: Newton,
     pub linear_solver: LinearSolver,
     pub stabilization: Stabilization,
     /// Threads; 0 takes what the machine has.
     pub threads: u32,
+}
+
+/// What displacements and rotations may be.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Kinematics {
+    /// Of any size.
+    #[default]
+    Large,
+    /// Small: elements are linear, and contact is linearised where it starts, with the normals and feet of the undeformed
+    /// bodies. One factorization serves every step with the same points in contact. What is neglected is measured, and
+    /// told where it is not small. Without friction, augmentation and the like.
+    Small,
 }
 
 /// Step sizes, in time.
@@ -99,6 +114,7 @@ impl Default for Solution {
         Solution {
             end_time: 1.0,
             stops: Vec::new(),
+            kinematics: Kinematics::Large,
             step: Step::default(),
             newton: Newton::default(),
             linear_solver: LinearSolver::Auto,

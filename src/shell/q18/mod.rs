@@ -17,6 +17,7 @@ use super::material::{Collapsed, Law};
 use super::stress;
 use crate::mesh::{ElementKind, Mesh};
 use covact_geometry::Vec3;
+use num_dual::Dual64;
 use reference::{MODES, Reference, split};
 use tables::{POINTS, TABLES};
 
@@ -244,6 +245,29 @@ impl Q18Block {
             out[g] = with_law!(self, law =>
                 stress::cauchy(law, &re.metric[g], &big, &moved, &strain[g]))
             .map_err(|c| fault(e, g as u8, c))?;
+        }
+        Ok(())
+    }
+
+    /// Stress of the linear element (xx, yy, zz, xy, yz, xz) at the Gauss points `i + 3 j + 9 k`; see
+    /// [`H8Block::linear_stresses`](super::H8Block::linear_stresses).
+    ///
+    /// # Errors
+    /// [`ElementFault`] where the law has no stiffness.
+    pub fn linear_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; 18],
+        alpha: &[f64],
+        out: &mut [[f64; 6]; POINTS],
+    ) -> Result<(), ElementFault> {
+        let re = &self.reference[e];
+        let alpha = head(alpha).map(|a| Dual64::new(0.0, a));
+        let strain = strain::strains(re, &stress::from_zero(&split(&arrays(u))), &alpha);
+        for (g, point) in TABLES.points.iter().enumerate() {
+            let big = point.n.map(|n| strain::along(&n, &re.y));
+            out[g] = with_law!(self, law => stress::linear(law, &re.metric[g], &big, &strain[g]))
+                .map_err(|c| fault(e, g as u8, c))?;
         }
         Ok(())
     }

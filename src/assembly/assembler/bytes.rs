@@ -1,0 +1,173 @@
+//! Memory that an assembler holds, by part, and what each part takes for a pair before it is taken.
+use super::Assembler;
+use super::couplings::Couplings;
+use super::maps::PointMaps;
+use super::moving::Meetings;
+use super::sliding::Sliding;
+use super::viscous::Viscous;
+use crate::model::state::heap;
+
+/// Bytes of heap by what they are for, from the sizes of types alone: for plans.
+pub(crate) mod sizes {
+    use super::super::PointAnswer;
+    use super::super::averaged::Averaged;
+    use super::super::couplings::Couplings;
+    use super::super::driven::Border;
+    use super::super::elements::pairs;
+    use super::super::maps::PointMaps;
+    use super::super::moving::Meetings;
+    use super::super::per_pair::PerPair;
+    use super::super::sliding::Sliding;
+    use super::super::small::Linear;
+    use crate::contact::points::SlavePoint;
+    use crate::contact::rigid::{PointFault, Touch};
+    use crate::model::master::BodySurface;
+    use crate::model::plan::Kernel;
+    use crate::model::{Model, PairModel};
+    use std::collections::BTreeSet;
+    use std::sync::Arc;
+
+    /// A pair: its penalty, and the kernel that was run.
+    pub const PAIR: usize = size_of::<f64>() + size_of::<Option<Kernel>>();
+    /// The list of where the points of a pair with a rigid master go.
+    pub const RIGID_MAP: usize = PerPair::<PointMaps>::HEAD;
+
+    /// A point of a pair with a rigid master at the last state.
+    pub const TOUCH: usize = size_of::<Result<Option<Touch>, PointFault>>();
+    /// The surface of a body, but for what it holds.
+    pub const MASTER: usize = size_of::<Option<BodySurface>>();
+    /// What a pair couples, but for what it holds.
+    pub const COUPLINGS: usize = PerPair::<Couplings>::HEAD;
+    /// What an augmentation makes of a point.
+    pub const ANSWER: usize = size_of::<Option<PointAnswer>>();
+    /// The segments of a pair, but for the points that states share.
+    pub const CUT: usize = size_of::<Option<Arc<[SlavePoint]>>>();
+    /// What small displacements are computed with, but for what it holds.
+    pub const LINEAR: usize = size_of::<Linear>();
+    /// A slave node of a driven surface.
+    pub const BORDER_NODE: usize = Border::NODE;
+    /// The same with friction: more.
+    pub const BELOW: usize = Border::BELOW;
+
+    /// The list of where the points of a pair with a rigid master go, beside [`RIGID_MAP`].
+    pub fn rigid_map(model: &Model, pair: &PairModel) -> usize {
+        PointMaps::size(&pair.points, &model.dofs)
+    }
+
+    /// For each point of a pair without friction on a body, and for all of the pair.
+    pub fn meetings(pair: &PairModel) -> Option<[usize; 2]> {
+        Meetings::sizes(pair)
+    }
+
+    /// For each point of a pair with friction on a body, and for all of the pair.
+    pub fn sliding(pair: &PairModel) -> Option<[usize; 2]> {
+        Sliding::sizes(pair)
+    }
+
+    /// For each point of a pair with averaged gaps, for each of its nodes, and for all of the pair.
+    pub fn averaged(pair: &PairModel) -> [usize; 3] {
+        Averaged::sizes(pair)
+    }
+
+    /// For a driven surface, beside its nodes.
+    pub fn border(model: &Model) -> usize {
+        Border::whole(model)
+    }
+
+    /// Slave nodes of all pairs of a rigid surface.
+    pub fn slave_nodes(model: &Model, surface: usize) -> usize {
+        let own = (model.pairs.iter()).filter(|p| p.rigid_master() == Some(surface));
+        let nodes: BTreeSet<usize> = own
+            .flat_map(|p| {
+                p.points
+                    .iter()
+                    .flat_map(|p| p.terms().map(|(node, _)| node))
+            })
+            .collect();
+        nodes.len()
+    }
+
+    /// Where the tangents of follower loads go.
+    pub fn followers(model: &Model) -> usize {
+        let of = |faces: &[crate::mesh::FaceNodes]| -> usize {
+            let entries: usize = faces.iter().map(|f| pairs(f.nodes().len())).sum();
+            size_of::<Vec<u32>>() + size_of::<u32>() * entries
+        };
+        let loads = model
+            .follower_loads
+            .iter()
+            .filter(|_| model.small.is_none());
+        loads.map(|(_, load)| of(&load.faces)).sum()
+    }
+}
+
+impl Assembler<'_> {
+    /// Bytes of heap that it holds, by part.
+    pub fn parts(&self) -> Vec<(&'static str, usize)> {
+        // Whoever adds a field decides here which part it belongs to.
+        let Assembler {
+            model: _,
+            dofs: _,
+            matrix,
+            element_maps,
+            kinds,
+            point_maps,
+            follower_maps,
+            systems,
+            touches,
+            held,
+            answers,
+            masters,
+            couplings,
+            meetings,
+            sliding,
+            averaged,
+            ran,
+            // Shared with the matrix.
+            new_pattern: _,
+            rebuilds: _,
+            work,
+            external,
+            contact,
+            borders,
+            viscous,
+            penalties,
+            manner: _,
+            linear,
+        } = self;
+        let [values, transposed] = matrix.bytes();
+        let followers: usize = follower_maps.iter().map(heap).sum();
+        let mut driven = [heap(borders), 0];
+        for border in borders {
+            let [own, friction] = border.bytes();
+            driven = [driven[0] + own, driven[1] + friction];
+        }
+        let links = couplings.inner(|c: &Couplings| c.links.bytes());
+        vec![
+            ("matrix", values),
+            ("transposed matrix", transposed),
+            ("pattern", matrix.pattern().bytes()),
+            ("element maps", heap(element_maps) + heap(kinds)),
+            ("element work", systems.bytes()),
+            ("scatter work", work.bytes()),
+            ("rigid maps", point_maps.bytes(PointMaps::bytes)),
+            ("rigid points", heap(touches)),
+            ("points kept", heap(held)),
+            ("follower maps", heap(follower_maps) + followers),
+            ("answers", heap(answers)),
+            ("masters", masters.bytes()),
+            ("couplings", couplings.bytes(Couplings::bytes)),
+            ("links", links),
+            ("points on bodies", meetings.bytes(Meetings::bytes)),
+            ("sliding points", sliding.bytes(Sliding::bytes)),
+            ("averaged gaps", averaged.bytes(|a| a.bytes())),
+            ("loads", heap(external)),
+            ("contact forces", heap(contact)),
+            ("driven", driven[0]),
+            ("driven friction", driven[1]),
+            ("stabilization", viscous.as_ref().map_or(0, Viscous::bytes)),
+            ("linear", linear.as_ref().map_or(0, |l| l.bytes())),
+            ("pairs", heap(penalties) + heap(ran)),
+        ]
+    }
+}

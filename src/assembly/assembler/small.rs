@@ -1,0 +1,501 @@
+//! The model at small displacements: `K u + sum eps_n A g n = f` with one stiffness for the whole run. The elements are
+//! evaluated once, undeformed, where the tangent of the large-rotation element is the stiffness of the linear one.
+use super::elements::{Quadratic, Systems, quadratic, undeformed};
+use super::{Assembler, Fault, Kind, PairForce, PatternError, SurfaceForce, Totals};
+use crate::assembly::{DofMap, Pattern, SystemMatrix};
+use crate::model::Model;
+use crate::model::loads::follower_force;
+use crate::model::motion::SmallMotion;
+use crate::model::plan::{GapKind, Kernel};
+use crate::model::small::SmallModel;
+use crate::model::state::{PointState, State, heap};
+use crate::scene::ValueError;
+use covact_geometry::Vec3;
+use std::sync::Arc;
+
+/// Part of the largest displacement or gap by which a gap has to pass zero for its point to change its status: less is
+/// rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// What is assembled once, and what was factorized last.
+pub(super) struct Linear {
+    /// Of all elements, without constraints: its product with displacements are forces and reactions.
+    stiffness: SystemMatrix,
+    /// Values of the system without contact.
+    base: Vec<f64>,
+    /// Gap per slave point at the last evaluation; NaN where there is no foot.
+    gaps: Vec<f64>,
+    /// What was factorized last.
+    factored: Option<Factored>,
+    /// It is at hand, not only told by the run that is continued.
+    at_hand: bool,
+    /// `K du`.
+    forces: Vec<f64>,
+    /// Largest `n . (u_s - u_m)` at the last evaluation.
+    largest: f64,
+    /// The elements have been evaluated.
+    ready: bool,
+}
+
+/// What a system at small displacements depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Factored {
+    /// Points in contact.
+    pub closed: Vec<bool>,
+    /// Penalty per pair.
+    pub penalties: Vec<f64>,
+}
+
+/// What a set of points in contact asks of the solver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Needed {
+    /// The factorization at hand is that of the set.
+    Nothing,
+    /// It was made before the run was continued, and is made again.
+    Again,
+    /// A set of its own.
+    Factorization,
+}
+
+impl Linear {
+    /// Stiffness of a model on its pattern; nothing where displacements are large.
+    pub fn new(
+        model: &Model,
+        dofs: &DofMap,
+        pattern: &Arc<Pattern>,
+    ) -> Result<Option<Box<Linear>>, PatternError> {
+        if model.small.is_none() {
+            return Ok(None);
+        }
+        let mut nodes: Vec<u32> = Vec::new();
+        let mut starts = vec![0];
+        for body in &model.bodies {
+            for e in 0..body.block.elements() {
+                nodes.extend(body.element_nodes(e));
+                starts.push(nodes.len());
+            }
+        }
+        let groups = starts.windows(2).map(|w| &nodes[w[0]..w[1]]);
+        let own = Arc::new(Pattern::new(model.nodes.len(), groups)?);
+        own.fits(true)?;
+        Ok(Some(Box::new(Linear {
+            stiffness: SystemMatrix::new(own),
+            base: vec![0.0; 9 * pattern.blocks()],
+            gaps: vec![f64::NAN; model.contact_points()],
+            factored: None,
+            at_hand: false,
+            forces: vec![0.0; dofs.dofs()],
+            largest: 0.0,
+            ready: false,
+        })))
+    }
+
+    /// Bytes of heap that it holds, itself included.
+    pub fn bytes(&self) -> usize {
+        let Linear {
+            stiffness,
+            base,
+            gaps,
+            factored,
+            at_hand: _,
+            forces,
+            largest: _,
+            ready: _,
+        } = self;
+        let own = stiffness.bytes()[0] + stiffness.pattern().bytes() + heap(base);
+        let known = (factored.as_ref()).map_or(0, |f| heap(&f.closed) + heap(&f.penalties));
+        size_of::<Linear>() + own + heap(gaps) + heap(forces) + known
+    }
+
+    /// What was factorized last.
+    pub fn factored(&self) -> Option<&Factored> {
+        self.factored.as_ref()
+    }
+
+    /// Takes over what the run that is continued had factorized.
+    pub fn restore(&mut self, factored: Option<Factored>) {
+        self.factored = factored;
+        self.at_hand = false;
+    }
+}
+
+impl Assembler<'_> {
+    /// The small displacements of the model.
+    fn linear(&mut self) -> Option<(&mut Linear, &SmallModel)> {
+        let model = self.model;
+        self.linear.as_deref_mut().zip(model.small.as_ref())
+    }
+
+    /// Evaluates the elements, once.
+    fn stiffen(&mut self) -> Result<(), Fault> {
+        let Some(linear) = self.linear.as_deref_mut() else {
+            return Ok(());
+        };
+        let mut systems = Systems::new(self.model);
+        self.matrix.clear();
+        let known = (&self.kinds[..], &self.element_maps[..]);
+        undeformed(self.model, self.dofs, &mut self.matrix, &mut systems, known)?;
+        linear.base.copy_from_slice(self.matrix.values());
+        let (mut maps, mut count) = (Vec::new(), 0);
+        for body in &self.model.bodies {
+            for e in 0..body.block.elements() {
+                let nodes: Vec<u32> = body.element_nodes(e).collect();
+                linear.stiffness.pattern().element_map(&nodes, &mut maps)?;
+                count += 1;
+            }
+        }
+        linear.stiffness.clear();
+        let kinds = vec![Kind::Free; count];
+        undeformed(
+            self.model,
+            self.dofs,
+            &mut linear.stiffness,
+            &mut systems,
+            (&kinds, &maps),
+        )?;
+        linear.ready = true;
+        Ok(())
+    }
+
+    /// Residual `K u + f_contact - f_ext` at all degrees of freedom (reactions included) with the points in contact that
+    /// `state` says are, whatever their gaps. For models with small displacements; nothing for others.
+    ///
+    /// # Errors
+    /// A motion or a load without a value at `time`; an element without stiffness.
+    pub fn small_residual(
+        &mut self,
+        state: &State,
+        time: f64,
+        residual: &mut [f64],
+    ) -> Result<Totals, Fault> {
+        if self.linear.as_ref().is_some_and(|l| !l.ready) {
+            self.stiffen()?;
+        }
+        let mut totals = Totals::default();
+        if let Some((linear, _)) = self.linear() {
+            linear.stiffness.multiply(&state.u, residual);
+            totals.internal_energy = 0.5 * dot(residual, &state.u);
+        }
+        self.small_contact(state, time, residual, &mut totals)?;
+        self.dead(time)?;
+        for (r, f) in residual.iter_mut().zip(&self.external) {
+            *r -= f;
+        }
+        Ok(totals)
+    }
+
+    /// All loads as dead ones.
+    fn dead(&mut self, time: f64) -> Result<(), ValueError> {
+        let (mut x, mut f) = ([Vec3::zeros(); 9], [0.0; 27]);
+        self.external.fill(0.0);
+        for (_, load) in &self.model.dead_loads {
+            load.add(time, &mut self.external)?;
+        }
+        for (_, load) in &self.model.follower_loads {
+            let p = load.value.eval(time)?;
+            for face in &load.faces {
+                let nodes = face.nodes();
+                for (x, &n) in x.iter_mut().zip(nodes) {
+                    *x = self.model.nodes[n as usize];
+                }
+                follower_force(&x, face.count, p, &mut f);
+                for (k, &n) in nodes.iter().enumerate() {
+                    (0..3).for_each(|c| self.external[3 * n as usize + c] += f[3 * k + c]);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the forces of the points that are in contact, and their totals.
+    pub(super) fn small_contact(
+        &mut self,
+        state: &State,
+        time: f64,
+        residual: &mut [f64],
+        totals: &mut Totals,
+    ) -> Result<(), Fault> {
+        totals.surfaces = vec![SurfaceForce::default(); self.model.surfaces.len()];
+        totals.pairs = vec![PairForce::default(); self.model.pairs.len()];
+        self.contact.fill(0.0);
+        let model = self.model;
+        let (Some(linear), Some(small)) = (self.linear.as_deref_mut(), &model.small) else {
+            return Ok(());
+        };
+        linear.evaluate(model, small, &state.u, time)?;
+        let (mut first, mut rounding) = (0, 0.0);
+        for (index, (pair, own)) in model.pairs.iter().zip(&small.pairs).enumerate() {
+            let range = first..first + pair.points.len();
+            first = range.end;
+            let eps = self.penalties[index];
+            let before = totals.active;
+            let (mut deepest, mut force) = (0.0f64, PairForce::default());
+            for (i, (p, state)) in pair
+                .points
+                .iter()
+                .zip(&state.points[range.clone()])
+                .enumerate()
+            {
+                let (true, Some(at)) = (state.closed, &own.points[i]) else {
+                    continue;
+                };
+                let gap = linear.gaps[range.start + i];
+                totals.active += 1;
+                deepest = deepest.max(-gap);
+                totals.contact_energy += 0.5 * eps * gap * gap * p.area;
+                rounding += (eps * p.area * f64::EPSILON * (at.gap.abs() + linear.largest)).powi(2);
+                let f = at.normal * (eps * gap * p.area);
+                let contact = &mut self.contact;
+                let mut add = |node: usize, f: Vec3, side: &mut SurfaceForce| {
+                    side.force -= f;
+                    side.moment -= model.nodes[node].cross(&f);
+                    for c in 0..3 {
+                        residual[3 * node + c] += f[c];
+                        contact[3 * node + c] += f[c];
+                    }
+                };
+                for (node, w) in p.terms() {
+                    add(node, f * w, &mut force.slave);
+                }
+                for &(node, w) in own.master(i) {
+                    add(node as usize, f * -w, &mut force.master);
+                }
+            }
+            match pair.rigid_master() {
+                Some(surface) => {
+                    totals.surfaces[surface].force += force.slave.force;
+                    totals.surfaces[surface].moment += force.slave.moment;
+                }
+                None => totals.pairs[index] = force,
+            }
+            totals.penetration.push(deepest);
+            totals.touching.push(totals.active > before);
+            self.ran[index] = Some(Kernel {
+                gap: GapKind::Linearised,
+                ..model.plan.kernel(index)
+            });
+        }
+        totals.contact_rounding = f64::sqrt(rounding);
+        totals.contact_norm = dot(&self.contact, &self.contact).sqrt();
+        Ok(())
+    }
+
+    /// Evaluates the gaps of all slave points.
+    ///
+    /// # Errors
+    /// A motion without a value at `time`.
+    pub fn small_gaps(&mut self, u: &[f64], time: f64) -> Result<(), ValueError> {
+        let model = self.model;
+        match self.linear() {
+            Some((linear, small)) => linear.evaluate(model, small, u, time),
+            None => Ok(()),
+        }
+    }
+
+    /// Opens and closes points by the gaps of the last evaluation; returns how many changed.
+    pub fn small_switch(&self, points: &mut [PointState]) -> usize {
+        let (Some(linear), Some(small)) = (&self.linear, &self.model.small) else {
+            return 0;
+        };
+        let at = small.pairs.iter().flat_map(|p| &p.points);
+        let mut changed = 0;
+        for ((point, at), &gap) in points.iter_mut().zip(at).zip(&linear.gaps) {
+            let Some(at) = at else { continue };
+            let least = ROUNDING * (at.gap.abs() + linear.largest);
+            let closed = if point.closed {
+                gap <= least
+            } else {
+                gap < -least
+            };
+            changed += usize::from(closed != point.closed);
+            point.closed = closed;
+        }
+        changed
+    }
+
+    /// What it takes to solve with this set of points in contact.
+    pub fn small_needs(&self, points: &[PointState]) -> Needed {
+        let Some((linear, last)) = (self.linear.as_ref()).and_then(|l| Some((l, l.factored()?)))
+        else {
+            return Needed::Factorization;
+        };
+        let same = last.penalties == self.penalties
+            && (last.closed.iter().zip(points)).all(|(was, now)| *was == now.closed);
+        match (same, linear.at_hand) {
+            (true, true) => Needed::Nothing,
+            (true, false) => Needed::Again,
+            (false, _) => Needed::Factorization,
+        }
+    }
+
+    /// The system with this set of points in contact, which is then factorized.
+    ///
+    /// # Errors
+    /// [`Fault::Pattern`], which no model has.
+    pub fn small_matrix(&mut self, points: &[PointState]) -> Result<(), Fault> {
+        let model = self.model;
+        let (Some(linear), Some(small)) = (self.linear.as_deref_mut(), &model.small) else {
+            return Ok(());
+        };
+        // Until the solver says so.
+        linear.factored = None;
+        self.matrix.values_mut().copy_from_slice(&linear.base);
+        let (mut nodes, mut weights, mut ke) = (Vec::new(), Vec::new(), Vec::new());
+        let mut first = 0;
+        for (index, (pair, own)) in model.pairs.iter().zip(&small.pairs).enumerate() {
+            let range = first..first + pair.points.len();
+            first = range.end;
+            for (i, (p, state)) in pair.points.iter().zip(&points[range]).enumerate() {
+                let (true, Some(at)) = (state.closed, &own.points[i]) else {
+                    continue;
+                };
+                nodes.clear();
+                weights.clear();
+                nodes.extend_from_slice(&p.nodes[..usize::from(p.count)]);
+                weights.extend_from_slice(&p.shape[..usize::from(p.count)]);
+                for &(node, w) in own.master(i) {
+                    nodes.push(node);
+                    weights.push(-w);
+                }
+                let k = at.normal * at.normal.transpose() * (self.penalties[index] * p.area);
+                ke.clear();
+                for b in &weights {
+                    for c in 0..3 {
+                        for a in &weights {
+                            ke.extend((0..3).map(|r| a * b * k[(r, c)]));
+                        }
+                    }
+                }
+                (self.matrix).scatter_constrained(&nodes, &ke, self.dofs, &mut self.work)?;
+            }
+        }
+        self.matrix.set_identities(self.dofs);
+        Ok(())
+    }
+
+    /// Tells that the system with this set has been factorized.
+    pub fn small_factored(&mut self, points: &[PointState]) {
+        let penalties = self.penalties.clone();
+        if let Some((linear, _)) = self.linear() {
+            linear.factored = Some(Factored {
+                closed: points.iter().map(|p| p.closed).collect(),
+                penalties,
+            });
+            linear.at_hand = true;
+        }
+    }
+
+    /// What the large-rotation elements add at displacements `u`.
+    ///
+    /// # Errors
+    /// Strains that are impossible.
+    pub fn small_quadratic(&self, u: &[f64]) -> Result<Quadratic, Fault> {
+        quadratic(self.model, u)
+    }
+
+    /// The energy along `du` from where the last evaluation was, `residual` being that of its own points in contact
+    /// (all those below their masters).
+    pub fn small_line(&mut self, du: &[f64], residual: &[f64]) -> Line {
+        let (model, penalties) = (self.model, &self.penalties);
+        let (Some(linear), Some(small)) = (self.linear.as_deref_mut(), &model.small) else {
+            return Line::default();
+        };
+        linear.stiffness.multiply(du, &mut linear.forces);
+        let mut line = Line {
+            slope: dot(residual, du),
+            curvature: dot(&linear.forces, du),
+            points: Vec::new(),
+        };
+        let mut first = 0;
+        for ((pair, own), eps) in model.pairs.iter().zip(&small.pairs).zip(penalties) {
+            let still = pair.rigid_master().map(|_| SmallMotion::default());
+            for (i, (p, at)) in pair.points.iter().zip(&own.points).enumerate() {
+                let Some(at) = at else { continue };
+                let gap = linear.gaps[first + i];
+                let rate = own.approach(i, at, p, still.as_ref(), du);
+                if rate == 0.0 && gap >= 0.0 {
+                    continue;
+                }
+                let weight = eps * p.area;
+                line.slope -= weight * gap.min(0.0) * rate;
+                line.points.push([weight, gap, rate]);
+            }
+            first += pair.points.len();
+        }
+        line
+    }
+}
+
+/// A convex, piecewise quadratic energy along a line: `slope s + curvature s^2 / 2`, and for each point half of its weight
+/// times the square of its gap where that is negative.
+#[derive(Debug, Clone, Default)]
+pub struct Line {
+    slope: f64,
+    curvature: f64,
+    /// Weight, gap and its derivative.
+    points: Vec<[f64; 3]>,
+}
+
+impl Line {
+    /// Change of the energy from the start of the line.
+    pub fn change(&self, s: f64) -> f64 {
+        let smooth = s * (self.slope + 0.5 * s * self.curvature);
+        let of =
+            |[w, g, d]: &[f64; 3]| 0.5 * w * ((g + s * d).min(0.0).powi(2) - g.min(0.0).powi(2));
+        smooth + self.points.iter().map(of).sum::<f64>()
+    }
+
+    /// Derivative of the energy.
+    pub fn derivative(&self, s: f64) -> f64 {
+        let of = |[w, g, d]: &[f64; 3]| w * d * (g + s * d).min(0.0);
+        self.slope + s * self.curvature + self.points.iter().map(of).sum::<f64>()
+    }
+
+    /// Where the energy is least, up to 1.
+    pub fn least(&self) -> f64 {
+        let (mut low, mut high) = (0.0, 1.0);
+        if self.derivative(high) <= 0.0 {
+            return high;
+        }
+        // The derivative never falls.
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            match self.derivative(middle) <= 0.0 {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        0.5 * (low + high)
+    }
+}
+
+impl Linear {
+    /// Gaps of all slave points.
+    fn evaluate(
+        &mut self,
+        model: &Model,
+        small: &SmallModel,
+        u: &[f64],
+        time: f64,
+    ) -> Result<(), ValueError> {
+        let (mut first, mut largest) = (0, 0.0f64);
+        for (pair, own) in model.pairs.iter().zip(&small.pairs) {
+            let motion = model.small_motion(pair, time)?;
+            let offsets = pair.offsets(time);
+            let gaps = &mut self.gaps[first..first + pair.points.len()];
+            first += gaps.len();
+            for (i, gap) in gaps.iter_mut().enumerate() {
+                let Some(at) = &own.points[i] else { continue };
+                let way = own.approach(i, at, &pair.points[i], motion.as_ref(), u);
+                largest = largest.max(way.abs());
+                *gap = at.gap - offsets.map_or(0.0, |o| o.at(i)) + way;
+            }
+        }
+        self.largest = largest;
+        Ok(())
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

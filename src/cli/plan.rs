@@ -1,0 +1,144 @@
+//! `covact plan`.
+use super::{CheckArgs, check, print, print_json, report};
+use crate::limits::Size;
+use crate::model::plan::{Effect, PairPlan, Per};
+use crate::run::{self, PlanReport};
+use crate::shell::STATES;
+
+pub(super) fn plan(args: &CheckArgs) -> u8 {
+    let scene = match check::load(&args.scene) {
+        Ok(scene) => scene,
+        Err(e) => return report::scene_error(&e, args.json),
+    };
+    match run::plan(&scene) {
+        Ok(found) if args.json => print_json(&found),
+        Ok(found) => print(&listing(&found)),
+        Err(e) => report::run_error(&e, &scene, args.json),
+    }
+}
+
+/// Titles of the columns.
+const TITLES: [&str; 7] = [
+    "",
+    "effect",
+    "per point",
+    "per element",
+    "in all",
+    "decided at",
+    "why",
+];
+
+/// A table whose columns are as wide as what stands in them; sizes to the right.
+#[derive(Default)]
+struct Table {
+    rows: Vec<[String; 7]>,
+}
+
+impl Table {
+    fn add(&mut self, file: &str, effect: &Effect) {
+        let size = |bytes: Option<usize>| bytes.map_or(String::new(), |b| format!("{b} B"));
+        let grows = effect.held.iter().any(|h| h.grows);
+        let all = match (effect.bytes(), grows) {
+            (0, false) => String::new(),
+            (0, true) => "grows".to_owned(),
+            (bytes, false) => Size(bytes as u64).to_string(),
+            (bytes, true) => format!("{} +", Size(bytes as u64)),
+        };
+        let mut why = effect.why.clone();
+        if effect.unsymmetric {
+            why += "; it takes the symmetry from the system";
+        }
+        if !effect.cost.is_empty() {
+            why += &format!(" [{}]", effect.cost);
+        }
+        self.rows.push([
+            if effect.on { "on" } else { "off" }.to_owned(),
+            effect.name.to_owned(),
+            size(effect.bytes_per(Per::Point)),
+            size(effect.bytes_per(Per::Element)),
+            all,
+            format!("{file}:{}", effect.place.line),
+            why,
+        ]);
+    }
+
+    fn write(&self, out: &mut String) {
+        let titles = TITLES.map(str::to_owned);
+        let mut widths = titles.clone().map(|t| t.chars().count());
+        for row in &self.rows {
+            for (width, cell) in widths.iter_mut().zip(row) {
+                *width = cell.chars().count().max(*width);
+            }
+        }
+        for row in std::iter::once(&titles).chain(&self.rows) {
+            let mut line = String::new();
+            for (k, (cell, width)) in row.iter().zip(widths).enumerate() {
+                line += "  ";
+                line += &match k {
+                    2..=4 => format!("{cell:>width$}"),
+                    _ => format!("{cell:<width$}"),
+                };
+            }
+            *out += line.trim_end();
+            out.push('\n');
+        }
+    }
+}
+
+fn listing(found: &PlanReport) -> String {
+    let mut out = String::new();
+    if !found.title.is_empty() {
+        out += &format!("{}\n\n", found.title);
+    }
+    out += &format!(
+        "{} elements, {} nodes, {} unknown displacements (dofs), {} contact points\n",
+        found.elements, found.nodes, found.dofs, found.contact_points
+    );
+    let plan = &found.plan;
+    out += &match plan.symmetric {
+        true => "the system is symmetric\n".to_owned(),
+        false => format!(
+            "the system is unsymmetric: {}\n",
+            plan.unsymmetric.join("; ")
+        ),
+    };
+    let m = &found.memory;
+    out += &format!(
+        "a run takes about {} at most, estimated: elements {}, contact {}, surfaces {}, matrix {}, factorization {}\n",
+        Size(m.total),
+        Size(m.elements),
+        Size(m.contact),
+        Size(m.surfaces),
+        Size(m.matrix),
+        Size(m.factor)
+    );
+    out += &format!(
+        "bytes are those of all copies: a run holds what states remember {STATES} times; what is off takes none; `+` grows\n"
+    );
+    for group in &plan.groups {
+        section(&mut out, group.name, &found.file, &group.effects);
+    }
+    for pair in &plan.pairs {
+        section(&mut out, &head(pair), &found.file, &pair.effects);
+    }
+    out
+}
+
+fn head(pair: &PairPlan) -> String {
+    format!(
+        "contact `{}`{}: {} points of {} on {}, kernel {}",
+        pair.name,
+        if pair.back { ", second half pass" } else { "" },
+        pair.points,
+        pair.slave,
+        pair.master,
+        pair.kernel
+    )
+}
+
+fn section(out: &mut String, title: &str, file: &str, effects: &[Effect]) {
+    *out += &format!("\n{title}\n");
+    let mut table = Table::default();
+    effects.iter().for_each(|e| table.add(file, e));
+    table.write(out);
+}

@@ -1,0 +1,181 @@
+//! `covact study`.
+use super::{StudyArgs, exit, report};
+use crate::study::record::{Ending, Record};
+use crate::study::{
+    Event, Folder, LoadedStudy, Settings, StudyError, conclude, expand, load, play,
+};
+use serde_json::json;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+pub(super) fn study(args: &StudyArgs) -> u8 {
+    match run(args) {
+        Ok(code) => code,
+        Err(StudyError::Scene(e)) => report::scene_error(&e, args.json),
+        Err(e) => report::other_error(&e.to_string(), exit::IO, args.json),
+    }
+}
+
+fn run(args: &StudyArgs) -> Result<u8, StudyError> {
+    let loaded = load(&args.study)?;
+    let expansion = expand(&loaded)?;
+    let folder = Folder::write(&args.out, &loaded.study, &expansion)?;
+    if args.jobs {
+        let program = args.program.as_deref().unwrap_or("covact");
+        let count = folder.write_jobs(program)?;
+        if !args.quiet {
+            report::stderr(&format!(
+                "{count} jobs in {}, to be called in that folder\n",
+                args.out.join("jobs.txt").display()
+            ));
+        }
+        return Ok(0);
+    }
+    let interrupt = Arc::new(AtomicBool::new(false));
+    if !args.collect {
+        watch(&interrupt);
+        let settings = settings(&loaded)?;
+        let width = expansion.runs.iter().map(|r| r.id.len()).max().unwrap_or(0);
+        play(&folder, &settings, &interrupt, &|event| {
+            tell(event, args, width)
+        })?;
+    }
+    let record = conclude(&loaded, &expansion, &folder);
+    record.write(&args.out)?;
+    crate::study::report::write(&record, &args.out)?;
+    Ok(end(
+        args,
+        &loaded,
+        &record,
+        interrupt.load(Ordering::Relaxed),
+    ))
+}
+
+fn settings(loaded: &LoadedStudy) -> Result<Settings, StudyError> {
+    let program = std::env::current_exe().map_err(|e| StudyError::Start {
+        program: PathBuf::from("covact"),
+        reason: format!("cannot tell where this program is: {e}"),
+    })?;
+    let timing = &loaded.study.timing;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    Ok(Settings {
+        program,
+        together: match timing.one_at_a_time {
+            true => 1,
+            false => (cores / timing.threads.max(1) as usize).max(1),
+        },
+        // Longer than any run.
+        limit: Duration::try_from_secs_f64(timing.limit).unwrap_or(Duration::MAX),
+    })
+}
+
+/// An interrupt ends the study; what is done is kept.
+fn watch(interrupt: &Arc<AtomicBool>) {
+    let flag = Arc::clone(interrupt);
+    let handler = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        report::stderr("\nstopping, what is done is kept (the same command goes on)\n");
+    });
+    if let Err(e) = handler {
+        report::warning(&format!(
+            "interrupting will lose what has been measured: {e}"
+        ));
+    }
+}
+
+/// A line for a repeat that has ended.
+fn tell(event: &Event, args: &StudyArgs, width: usize) {
+    if args.json {
+        let (ending, reason) = match &event.ending {
+            Ending::Done => ("done", None),
+            Ending::Failed(reason) => ("failed", Some(reason)),
+            Ending::Missing => ("missing", None),
+        };
+        let line = json!({
+            "event": "run",
+            "id": event.id,
+            "repeat": event.repeat,
+            "ending": ending,
+            "reason": reason,
+            "wall_s": event.wall_s,
+            "steps": event.steps,
+            "newton_iterations": event.newton_iterations,
+            "done": event.done,
+            "of": event.of,
+            "before": event.before,
+        });
+        super::print(&format!("{line}\n"));
+    }
+    if args.quiet || args.json || event.before {
+        return;
+    }
+    let wall = event.wall_s.map_or(String::new(), |s| format!("{s:8.2} s"));
+    let cost = format!(
+        "{:5} steps {:6} iterations",
+        event.steps, event.newton_iterations
+    );
+    let told = match &event.ending {
+        Ending::Done => cost,
+        Ending::Failed(reason) => format!("FAILED: {reason}"),
+        Ending::Missing => "left no results".to_owned(),
+    };
+    report::stderr(&format!(
+        "{:4}/{} {:width$} {:>2} {wall} {told}\n",
+        event.done, event.of, event.id, event.repeat,
+    ));
+}
+
+/// Says how it came out; the exit code.
+fn end(args: &StudyArgs, loaded: &LoadedStudy, record: &Record, interrupted: bool) -> u8 {
+    let (mut failed, mut missing) = (Vec::new(), Vec::new());
+    for run in &record.runs {
+        match &run.ending {
+            Ending::Done => {}
+            Ending::Failed(reason) => failed.push(format!("{}: {reason}", run.id)),
+            Ending::Missing => missing.push(run.id.clone()),
+        }
+    }
+    for warning in &record.warnings {
+        report::warning(warning);
+    }
+    for text in &failed {
+        report::error(&format!("failed: {text}"));
+    }
+    for id in &missing {
+        report::error(&format!("missing: {id}"));
+    }
+    let repeats = loaded.study.timing.repeats;
+    let short = |run: &&crate::study::record::RunRecord| {
+        run.ending == Ending::Done && run.wall.is_none_or(|w| w.repeats < repeats)
+    };
+    let incomplete = record.runs.iter().filter(short).count();
+    let done = record.runs.len() - failed.len() - missing.len();
+    if args.json {
+        let line = json!({
+            "event": "finished",
+            "done": done,
+            "failed": failed.len(),
+            "missing": missing.len(),
+            "incomplete": incomplete,
+        });
+        super::print(&format!("{line}\n"));
+    } else if !args.quiet {
+        report::stderr(&format!(
+            "{} runs: {} done, {} failed, {} missing; results in {}\n",
+            record.runs.len(),
+            done,
+            failed.len(),
+            missing.len(),
+            args.out.display()
+        ));
+    }
+    let failures = !failed.is_empty() && !loaded.study.may_fail;
+    match failures || !missing.is_empty() || incomplete > 0 || interrupted {
+        true => exit::NOT_CONVERGED,
+        false => 0,
+    }
+}

@@ -1,0 +1,155 @@
+//! Two runs side by side: what their histories end with and reach, and what they cost.
+use super::history::{Table, read_csv};
+use super::{OutputError, RunStatus, Summary};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A part of the largest value of its kind below which a number is rounding.
+const NOTHING: f64 = 1e-9;
+
+/// A run beside another one of the same scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Columns of the histories, of both or of one only.
+    pub columns: Vec<Compared>,
+    /// What both runs cost, the full one first.
+    pub cost: [Cost; 2],
+}
+
+/// A column of the history.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Compared {
+    pub name: String,
+    /// Value of the last step in both runs; none where the run has no such column, or no steps.
+    pub end: [Option<f64>; 2],
+    /// Value of largest magnitude in both runs.
+    pub peak: [Option<f64>; 2],
+}
+
+/// What a run took.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Cost {
+    pub status: RunStatus,
+    /// Time that was reached, of the scene's clock.
+    pub time: f64,
+    pub wall_s: f64,
+    pub cpu_s: Option<f64>,
+    pub steps: u32,
+    pub iterations: u64,
+    pub factorizations: BTreeMap<String, u64>,
+    pub peak_memory_mb: Option<f64>,
+    pub dofs: usize,
+}
+
+impl Cost {
+    fn new(summary: &Summary) -> Cost {
+        Cost {
+            status: summary.status,
+            time: summary.time,
+            wall_s: summary.wall_s,
+            cpu_s: summary.cpu_s,
+            steps: summary.steps,
+            iterations: summary.newton_iterations,
+            factorizations: summary.factorizations.clone(),
+            peak_memory_mb: summary.peak_memory_mb,
+            dofs: summary.dofs,
+        }
+    }
+}
+
+impl Compared {
+    /// How much the second run differs at the end, relative to the first; none where that is zero or there is none.
+    pub fn change(&self) -> Option<f64> {
+        change(self.end)
+    }
+
+    /// The same of the peaks.
+    pub fn peak_change(&self) -> Option<f64> {
+        change(self.peak)
+    }
+}
+
+fn change([full, other]: [Option<f64>; 2]) -> Option<f64> {
+    let (full, other) = full.zip(other)?;
+    let change = (other - full) / full.abs();
+    change.is_finite().then_some(change)
+}
+
+/// Reads the results of two runs from their folders. `surfaces` are names whose forces are told, besides those of contacts
+/// between bodies.
+///
+/// # Errors
+/// A folder without the results of a run.
+pub fn compare(folders: [&Path; 2], surfaces: &[&str]) -> Result<Comparison, OutputError> {
+    let [full, other] = folders.map(|folder| {
+        let table = read_csv(&folder.join("history.csv"))?;
+        let summary = Summary::read(&folder.join("summary.json"))?;
+        Ok::<_, OutputError>((table, summary))
+    });
+    let (full, other) = (full?, other?);
+    let tables = [&full.0, &other.0];
+    let mut names: Vec<&String> = Vec::new();
+    for name in tables.iter().flat_map(|t| &t.columns) {
+        if wanted(name, surfaces) && !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let mut columns: Vec<Compared> = (names.into_iter())
+        .map(|name| Compared {
+            name: name.clone(),
+            end: tables.map(|t| end(t, name)),
+            peak: tables.map(|t| peak(t, name)),
+        })
+        .collect();
+    for kind in ["force", "moment"] {
+        let own = |c: &Compared| of_kind(&c.name, kind);
+        let size = |c: &Compared| c.peak.iter().flatten().fold(0.0f64, |a, p| a.max(p.abs()));
+        let largest = columns.iter().filter(|c| own(c)).map(size);
+        let least = NOTHING * largest.fold(0.0, f64::max);
+        columns.retain(|c| !own(c) || size(c) > least);
+    }
+    Ok(Comparison {
+        columns,
+        cost: [Cost::new(&full.1), Cost::new(&other.1)],
+    })
+}
+
+/// Whether a column is a force or a moment.
+fn of_kind(name: &str, kind: &str) -> bool {
+    ["", "slave."].iter().any(|side| {
+        let rest = name.strip_prefix(side);
+        rest.and_then(|r| r.strip_prefix(kind))
+            .is_some_and(|r| r.starts_with('.'))
+    })
+}
+
+/// Columns that say how a run went as a whole.
+fn wanted(name: &str, surfaces: &[&str]) -> bool {
+    const ALWAYS: [&str; 5] = [
+        "penetration.max",
+        "pressure.max",
+        "area.contact",
+        "points.active",
+        "stabilization.share",
+    ];
+    let of_surface = |kind: &str| {
+        let rest = name.strip_prefix(kind).and_then(|r| r.rsplit_once('.'));
+        rest.is_some_and(|(surface, _)| surfaces.contains(&surface))
+    };
+    ALWAYS.contains(&name)
+        || name.starts_with("energy.")
+        || name.starts_with("displacement.")
+        || name.starts_with("slave.force.")
+        || of_surface("force.")
+        || of_surface("moment.")
+}
+
+fn end(table: &Table, name: &str) -> Option<f64> {
+    table.column(name)?.last().copied()
+}
+
+fn peak(table: &Table, name: &str) -> Option<f64> {
+    let all = table.column(name)?.into_iter().filter(|v| !v.is_nan());
+    all.reduce(|a, b| if b.abs() > a.abs() { b } else { a })
+}

@@ -1,0 +1,44 @@
+//! `covact plan`: what a run of a scene would do, and nothing of it.
+use super::RunError;
+use crate::limits::Estimate;
+use crate::model;
+use crate::model::plan::Plan;
+use crate::scene::LoadedScene;
+use serde::Serialize;
+
+/// The plan of a scene, with its sizes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlanReport {
+    /// The scene file as it was named.
+    pub file: String,
+    pub title: String,
+    pub nodes: usize,
+    pub elements: usize,
+    /// Unknowns, prescribed ones left out.
+    pub dofs: usize,
+    /// Slave points of all contacts.
+    pub contact_points: usize,
+    /// Memory that a run takes at its largest, estimated.
+    pub memory: Estimate,
+    #[serde(flatten)]
+    pub plan: Plan,
+}
+
+/// Builds the model of a scene and plans its run.
+///
+/// # Errors
+/// [`RunError::Scene`] with the place of what is wrong.
+pub fn plan(scene: &LoadedScene) -> Result<PlanReport, RunError> {
+    let model = model::build::build(scene).map_err(|e| RunError::model(scene, e))?;
+    let memory = super::memory::estimate(scene, &model)?;
+    Ok(PlanReport {
+        file: scene.name.clone(),
+        title: model.title.clone(),
+        nodes: model.body_nodes(),
+        elements: model.bodies.iter().map(|b| b.block.elements()).sum(),
+        dofs: model.unknowns(),
+        contact_points: model.contact_points(),
+        memory,
+        plan: model.plan,
+    })
+}

@@ -1,0 +1,286 @@
+//! Text files in JSON that people write, read into types, with the place of everything in them.
+use super::decode::decode;
+use super::json::{self, Fault, Kind, Node};
+use super::problem::{Lines, Place, Problem, SceneError, nearest};
+use covact_geometry::io::read_within;
+use serde::de::DeserializeOwned;
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// Larger files are refused: they are text written by people, meshes and CAD data have files of their own.
+const MAX_BYTES: u64 = 64 << 20;
+
+/// A type that a file holds.
+pub(crate) trait Form: DeserializeOwned {
+    /// What messages call it.
+    const NAME: &'static str;
+    /// The key that holds the version of the format.
+    const KEY: &'static str;
+    /// Version of the format that this program reads.
+    const VERSION: u32;
+    /// What to do about an empty file.
+    const START: &'static str;
+}
+
+/// The text of a file that was read, so that everything found later can point into it.
+#[derive(Debug, Clone)]
+pub struct Document {
+    /// What the file holds, e.g. "scene".
+    pub what: &'static str,
+    /// Name of the file as the user gave it.
+    pub name: String,
+    /// Folder that paths in the file are relative to.
+    pub dir: PathBuf,
+    pub text: String,
+    root: Node,
+    lines: Lines,
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// [`SceneError`]: the file cannot be read, is not JSON, or does not have the form of a `T`.
+pub(crate) fn load<T: Form>(path: &Path) -> Result<(T, Document), SceneError> {
+    let what = T::NAME;
+    let failed = |e: io::Error| match e.kind() {
+        io::ErrorKind::NotFound => SceneError::Missing {
+            what,
+            path: path.to_path_buf(),
+            nearest: nearest_file(path),
+        },
+        io::ErrorKind::FileTooLarge => SceneError::Io {
+            what,
+            path: path.to_path_buf(),
+            reason: format!(
+                "it is larger than {} MB, too large for a {what}",
+                MAX_BYTES >> 20
+            ),
+        },
+        _ => SceneError::Io {
+            what,
+            path: path.to_path_buf(),
+            reason: e.to_string(),
+        },
+    };
+    let bytes = read_within(path, MAX_BYTES).map_err(failed)?;
+    let name = path.display().to_string();
+    let text = String::from_utf8(bytes).map_err(|e| not_utf8(&name, &e))?;
+    let (content, mut document) = parse::<T>(&text, &name)?;
+    document.dir = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
+        _ => PathBuf::from("."),
+    };
+    Ok((content, document))
+}
+
+/// Reads a text; `name` stands for the file in messages. Paths in it are relative to the current folder.
+///
+/// # Errors
+/// [`SceneError::Wrong`] with all unknown keys and keys given twice, and the first fault of another kind.
+pub(crate) fn parse<T: Form>(text: &str, name: &str) -> Result<(T, Document), SceneError> {
+    let lines = Lines::new(text);
+    let mut faults = Vec::new();
+    let root = match json::read(text, T::NAME, T::START, &mut faults) {
+        Ok(root) => Some(root),
+        Err(fault) => {
+            faults.push(fault);
+            None
+        }
+    };
+    let content = root.as_ref().and_then(|root| {
+        if let Some(fault) = other_version::<T>(root) {
+            // Another version's keys would only add confusing faults.
+            faults = vec![fault];
+            return None;
+        }
+        match decode::<T>(root) {
+            Ok(content) => Some(content),
+            Err(more) => {
+                faults.extend(more);
+                None
+            }
+        }
+    });
+    match (root, content) {
+        (Some(root), Some(content)) if faults.is_empty() => {
+            let document = Document {
+                what: T::NAME,
+                name: name.to_string(),
+                dir: PathBuf::from("."),
+                text: text.to_string(),
+                root,
+                lines,
+            };
+            Ok((content, document))
+        }
+        (root, _) => {
+            faults.sort_by_key(|f| f.span.start);
+            let problem = |f: Fault| Problem {
+                pointer: root
+                    .as_ref()
+                    .map_or(String::new(), |r| r.pointer_at(f.span.start)),
+                place: lines.place(text, f.span.start),
+                message: f.message,
+                help: f.help,
+                span: f.span,
+            };
+            Err(SceneError::Wrong {
+                name: name.to_string(),
+                text: text.to_string(),
+                problems: faults.into_iter().map(problem).collect(),
+            })
+        }
+    }
+}
+
+fn other_version<T: Form>(root: &Node) -> Option<Fault> {
+    let (node, _) = root.child(T::KEY)?;
+    match node.kind {
+        Kind::Number(n) if n != f64::from(T::VERSION) => Some(Fault {
+            message: format!("version {n} of the {} format is not known", T::NAME),
+            help: Some(format!(
+                "this program ({}) reads version {}",
+                env!("CARGO_PKG_VERSION"),
+                T::VERSION
+            )),
+            span: node.span.clone(),
+        }),
+        _ => None,
+    }
+}
+
+fn not_utf8(name: &str, error: &std::string::FromUtf8Error) -> SceneError {
+    let bytes = error.as_bytes();
+    let at = error.utf8_error().valid_up_to();
+    let text = String::from_utf8_lossy(bytes).into_owned();
+    let utf16 = matches!(bytes, [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..]);
+    let byte = bytes.get(at).copied().unwrap_or_default();
+    let problem = Problem {
+        message: format!("the file is not UTF-8 text: byte 0x{byte:02X}"),
+        help: Some(match utf16 {
+            true => "it looks like UTF-16; save it as UTF-8".into(),
+            false => "save it as UTF-8".into(),
+        }),
+        pointer: String::new(),
+        place: Lines::new(&text).place(&text, at),
+        span: at..at + 1,
+    };
+    SceneError::Wrong {
+        name: name.to_string(),
+        text,
+        problems: vec![problem],
+    }
+}
+
+/// A file in the same folder whose name is like that of `path`.
+pub(crate) fn nearest_file(path: &Path) -> Option<String> {
+    let wanted = path.file_name()?.to_str()?;
+    let parent = path.parent().filter(|p| !p.as_os_str().is_empty());
+    let folder = std::fs::read_dir(parent.unwrap_or(Path::new("."))).ok()?;
+    let mut names: Vec<String> = folder
+        .filter_map(|e| e.ok()?.file_name().into_string().ok())
+        .collect();
+    // The order of a folder is not defined.
+    names.sort();
+    nearest(wanted, names.iter().map(String::as_str)).map(str::to_string)
+}
+
+impl Document {
+    /// Whether the file has a value at a JSON pointer, rather than a default in its place.
+    pub fn has(&self, pointer: &str) -> bool {
+        let mut node = &self.root;
+        for token in pointer.split('/').skip(1) {
+            let token = token.replace("~1", "/").replace("~0", "~");
+            match node.child(&token) {
+                Some((child, _)) => node = child,
+                None => return false,
+            }
+        }
+        true
+    }
+
+    /// Where the value of a JSON pointer (`/contacts/c1/slave`) starts; of the innermost value on the way to it when
+    /// it is not in the file (defaults).
+    pub fn place_of(&self, pointer: &str) -> Place {
+        self.lines.place(&self.text, self.span_of(pointer).start)
+    }
+
+    /// Bytes of the value of a JSON pointer, as for [`Document::place_of`]. Of objects and lists, their key.
+    pub fn span_of(&self, pointer: &str) -> Range<usize> {
+        let mut node = &self.root;
+        let mut span = node.span.start..node.span.start + 1;
+        for token in pointer.split('/').skip(1) {
+            let token = token.replace("~1", "/").replace("~0", "~");
+            let Some((child, key)) = node.child(&token) else {
+                break;
+            };
+            node = child;
+            span = match child.kind {
+                Kind::Object(_) | Kind::Array(_) => key,
+                _ => child.span.clone(),
+            };
+        }
+        span
+    }
+
+    /// A problem at a JSON pointer.
+    pub fn problem(
+        &self,
+        pointer: &str,
+        message: impl Into<String>,
+        help: Option<String>,
+    ) -> Problem {
+        Problem {
+            message: message.into(),
+            help,
+            pointer: pointer.to_string(),
+            place: self.place_of(pointer),
+            span: self.span_of(pointer),
+        }
+    }
+
+    /// A problem at a part (bytes) of a text value.
+    pub(crate) fn problem_within(
+        &self,
+        pointer: &str,
+        part: Range<usize>,
+        message: impl Into<String>,
+        help: Option<String>,
+    ) -> Problem {
+        let mut problem = self.problem(pointer, message, help);
+        let span = problem.span.clone();
+        // With escape sequences the text and its source do not run in step; then the whole text is meant.
+        let plain = self
+            .text
+            .get(span.clone())
+            .is_some_and(|s| s.starts_with('"') && !s.contains('\\'));
+        if plain && span.start + 1 + part.end < span.end {
+            problem.span = span.start + 1 + part.start..span.start + 1 + part.end;
+            problem.place = self.lines.place(&self.text, problem.span.start);
+        }
+        problem
+    }
+
+    /// The error that lists these problems.
+    pub fn error(&self, problems: Vec<Problem>) -> SceneError {
+        SceneError::Wrong {
+            name: self.name.clone(),
+            text: self.text.clone(),
+            problems,
+        }
+    }
+
+    /// A path in the file, which is relative to its folder.
+    pub fn resolve(&self, path: &Path) -> PathBuf {
+        self.dir.join(path)
+    }
+}
+
+/// JSON pointer of nested names, e.g. `["contacts", "c1", "slave"]`.
+pub fn pointer(tokens: &[&str]) -> String {
+    tokens
+        .iter()
+        .map(|t| format!("/{}", json::escape(t)))
+        .collect()
+}

@@ -1,0 +1,18 @@
+//! Why a study could not be done.
+use crate::output::OutputError;
+use crate::scene::SceneError;
+use std::path::PathBuf;
+
+/// Why a study could not be done. A run that fails is no such reason, but a result.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// The study or its scene is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A file cannot be written or read.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// The program that does the runs cannot be started.
+    #[error("cannot start `{}`: {reason}", program.display())]
+    Start { program: PathBuf, reason: String },
+}

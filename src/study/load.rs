@@ -1,0 +1,62 @@
+//! Reading a study file.
+use super::file::Study;
+use crate::scene::{Document, Form, SceneError, load_document, parse_document};
+use std::ops::{Deref, DerefMut};
+use std::path::Path;
+
+/// Version of the study format that this program reads.
+pub const FORMAT: u32 = 1;
+
+impl Form for Study {
+    const NAME: &'static str = "study";
+    const KEY: &'static str = "covact_study";
+    const VERSION: u32 = FORMAT;
+    const START: &'static str = "a study names a scene, and what to vary in it";
+}
+
+/// A study with its text, so that everything found later can point into the file.
+#[derive(Debug, Clone)]
+pub struct LoadedStudy {
+    pub study: Study,
+    document: Document,
+}
+
+impl Deref for LoadedStudy {
+    type Target = Document;
+    fn deref(&self) -> &Document {
+        &self.document
+    }
+}
+
+impl DerefMut for LoadedStudy {
+    fn deref_mut(&mut self) -> &mut Document {
+        &mut self.document
+    }
+}
+
+/// Reads a study file. What needs more than the format is left to [`super::expand`].
+///
+/// # Errors
+/// [`SceneError`]: the file cannot be read, is not JSON, or does not have the form of a study.
+pub fn load(path: impl AsRef<Path>) -> Result<LoadedStudy, SceneError> {
+    let (study, document) = load_document::<Study>(path.as_ref())?;
+    Ok(LoadedStudy { study, document })
+}
+
+/// Reads a study from text; `name` stands for the file in messages. Paths in it are relative to the current folder.
+///
+/// # Errors
+/// As [`load`], but for the file.
+pub fn parse(text: &str, name: &str) -> Result<LoadedStudy, SceneError> {
+    let (study, document) = parse_document::<Study>(text, name)?;
+    Ok(LoadedStudy { study, document })
+}
+
+/// The JSON schema of studies, pretty-printed with a line break at its end.
+pub fn schema() -> String {
+    let schema = schemars::schema_for!(Study);
+    // Serialising a tree of JSON values into memory cannot fail.
+    let mut text = serde_json::to_string_pretty(&schema).unwrap_or_default();
+    text.push('\n');
+    text
+}

@@ -1,0 +1,162 @@
+//! Does the runs of a study, each in a process of its own, so that a crash or a hang is a result.
+mod process;
+
+pub use process::Account;
+
+use super::error::StudyError;
+use super::folder::Folder;
+use super::gather::{State, state};
+use super::record::Ending;
+use process::{Ended, Process};
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// How runs are done.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// The program, which is called with `run SCENE -o OUT --quiet --threads N`.
+    pub program: PathBuf,
+    /// Processes at a time.
+    pub together: usize,
+    /// A run that takes longer is stopped.
+    pub limit: Duration,
+}
+
+/// A repeat of a run that has ended, or was done before.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event<'a> {
+    pub id: &'a str,
+    /// From 1.
+    pub repeat: u32,
+    pub ending: Ending,
+    pub wall_s: Option<f64>,
+    pub steps: u32,
+    pub newton_iterations: u64,
+    /// Repeats that are done, this one too, and all.
+    pub done: usize,
+    pub of: usize,
+    /// It was done by an earlier call.
+    pub before: bool,
+}
+
+/// Does every repeat of every run that has not been done, round after round.
+///
+/// # Errors
+/// A folder that cannot be written, a program that cannot be started. Failed runs are results.
+pub fn play(
+    folder: &Folder,
+    settings: &Settings,
+    interrupt: &AtomicBool,
+    told: &(dyn Fn(&Event) + Sync),
+) -> Result<(), StudyError> {
+    let all: Vec<(usize, u32)> = folder.rounds().collect();
+    let of = all.len();
+    let mut open = Vec::new();
+    let mut done = 0;
+    for (run, repeat) in all {
+        let state = state(folder, run, repeat);
+        match state.again(settings.limit.as_secs_f64()) {
+            true => open.push((run, repeat)),
+            false => {
+                done += 1;
+                told(&event(folder, (run, repeat), &state, (done, of), true));
+            }
+        }
+    }
+    let queue = Mutex::new(Queue {
+        next: 0,
+        done,
+        failure: None,
+    });
+    std::thread::scope(|scope| {
+        for _ in 0..settings.together.clamp(1, open.len().max(1)) {
+            scope.spawn(|| worker(folder, settings, (interrupt, told), (&open, of), &queue));
+        }
+    });
+    match queue.into_inner() {
+        Ok(Queue {
+            failure: Some(failure),
+            ..
+        }) => Err(failure),
+        _ => Ok(()),
+    }
+}
+
+/// What workers share.
+struct Queue {
+    next: usize,
+    done: usize,
+    failure: Option<StudyError>,
+}
+
+fn worker(
+    folder: &Folder,
+    settings: &Settings,
+    (interrupt, told): (&AtomicBool, &(dyn Fn(&Event) + Sync)),
+    (open, of): (&[(usize, u32)], usize),
+    queue: &Mutex<Queue>,
+) {
+    loop {
+        let (run, repeat) = {
+            let Ok(mut queue) = queue.lock() else {
+                return;
+            };
+            let Some(&job) = open.get(queue.next) else {
+                return;
+            };
+            if queue.failure.is_some() || interrupt.load(Ordering::Relaxed) {
+                return;
+            }
+            queue.next += 1;
+            job
+        };
+        let process = Process {
+            folder,
+            run,
+            repeat,
+            settings,
+        };
+        let ended = process.run(interrupt);
+        let Ok(mut queue) = queue.lock() else {
+            return;
+        };
+        match ended {
+            Ok(Ended::Interrupted) => return,
+            Ok(Ended::Done) => {
+                queue.done += 1;
+                let state = state(folder, run, repeat);
+                told(&event(
+                    folder,
+                    (run, repeat),
+                    &state,
+                    (queue.done, of),
+                    false,
+                ));
+            }
+            Err(failure) => queue.failure = Some(failure),
+        }
+    }
+}
+
+fn event<'f>(
+    folder: &'f Folder,
+    (run, repeat): (usize, u32),
+    state: &State,
+    (done, of): (usize, usize),
+    before: bool,
+) -> Event<'f> {
+    let summary = state.summary.as_ref();
+    Event {
+        id: &folder.runs[run].id,
+        repeat,
+        ending: state.ending.clone(),
+        wall_s: state.wall(),
+        steps: summary.map_or(0, |s| s.steps),
+        newton_iterations: summary.map_or(0, |s| s.newton_iterations),
+        done,
+        of,
+        before,
+    }
+}
