@@ -3,7 +3,7 @@
 //! costs that is on.
 //!
 //! `cargo bench --bench free` prints both tables and fails where the program needs more than 2 % more instructions than
-//! the kernel. It needs valgrind; `cargo bench --bench free -- --times` prints nanoseconds in place of instructions,
+//! the kernel for the evaluation of a contact point, its closest point included. It needs valgrind; `cargo bench --bench free -- --times` prints nanoseconds in place of instructions,
 //! measured side by side, without a verdict.
 mod callgrind;
 mod effects;

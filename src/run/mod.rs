@@ -30,7 +30,7 @@ pub use plan::{PlanReport, plan};
 
 use crate::assembly::Assembler;
 use crate::model;
-use crate::output::{Phases, PlanSummary, RunStatus, Summary, Versions};
+use crate::output::{OutputError, Phases, PlanSummary, RunStatus, Summary, Versions};
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
@@ -200,7 +200,16 @@ fn solve(
         versions: Versions::default(),
     };
     let path = out.join("summary.json");
-    let written = summary.write(&path);
+    let mut written = summary.write(&path);
+    // A device that is nearly full may take the account alone: most of a summary is its plan.
+    if written.as_ref().is_err_and(OutputError::is_disk_full) {
+        let plan = PlanSummary::default();
+        written = Summary {
+            plan,
+            ..summary.clone()
+        }
+        .write(&path);
+    }
     // Where not even that could be written, an earlier run's summary must not pass for this one's.
     if written.is_err() && path.is_file() {
         let _ = std::fs::remove_file(&path);

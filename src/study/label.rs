@@ -62,10 +62,18 @@ impl Choice {
     /// The label of a value; `None` beyond the last one.
     pub fn label(&self, k: usize) -> Option<Label> {
         Some(match self {
-            Choice::Master { values, .. } => master(values.get(k)?),
+            Choice::Master { values, .. } => {
+                let choice = values.get(k)?;
+                let kind = std::mem::discriminant(choice);
+                let like = values.iter().filter(|v| std::mem::discriminant(*v) == kind);
+                master(choice, &like.filter_map(facet_counts).collect::<Vec<_>>())
+            }
             Choice::Shell { values, .. } => {
                 let (element, counts) = values.get(k)?.first_key_value()?;
-                shell(element, counts)
+                let like: Vec<&[u32]> = (values.iter())
+                    .filter_map(|v| v.get(element).map(Vec::as_slice))
+                    .collect();
+                shell(element, counts, &like)
             }
             Choice::Points { values, .. } => points(values.get(k)?),
             Choice::Tangent { values, .. } => alone(tangent(*values.get(k)?)),
@@ -105,24 +113,35 @@ fn variant(variant: &Variant) -> Label {
     }
 }
 
-fn master(choice: &MasterChoice) -> Label {
+/// Numbers of facets, where they are given.
+fn facet_counts(choice: &MasterChoice) -> Option<&[u32]> {
+    match choice {
+        MasterChoice::Bilinear(Fineness::Count(n))
+        | MasterChoice::Biquadratic(Fineness::Count(n))
+        | MasterChoice::Smooth(Fineness::Count(n))
+        | MasterChoice::Stl(StlSource::Count(n)) => Some(n),
+        _ => None,
+    }
+}
+
+fn master(choice: &MasterChoice, like: &[&[u32]]) -> Label {
     match choice {
         MasterChoice::Exact => alone("NURBS"),
-        MasterChoice::Bilinear(f) => facets("bilinear", *f),
-        MasterChoice::Biquadratic(f) => facets("biquadratic", *f),
-        MasterChoice::Smooth(f) => facets("smooth", *f),
+        MasterChoice::Bilinear(f) => facets("bilinear", *f, like),
+        MasterChoice::Biquadratic(f) => facets("biquadratic", *f, like),
+        MasterChoice::Smooth(f) => facets("smooth", *f, like),
         MasterChoice::Stl(StlSource::File(path)) => {
             let name = path.file_name().unwrap_or(path.as_os_str());
             alone(&name.to_string_lossy())
         }
-        MasterChoice::Stl(StlSource::Chord(c)) => facets("STL", Fineness::Chord(*c)),
-        MasterChoice::Stl(StlSource::Size(s)) => facets("STL", Fineness::Size(*s)),
-        MasterChoice::Stl(StlSource::Count(n)) => facets("STL", Fineness::Count(*n)),
+        MasterChoice::Stl(StlSource::Chord(c)) => facets("STL", Fineness::Chord(*c), like),
+        MasterChoice::Stl(StlSource::Size(s)) => facets("STL", Fineness::Size(*s), like),
+        MasterChoice::Stl(StlSource::Count(n)) => facets("STL", Fineness::Count(*n), like),
     }
 }
 
 /// Chord errors, sizes and counts are not of one scale, so that each has a series.
-fn facets(kind: &str, fineness: Fineness) -> Label {
+fn facets(kind: &str, fineness: Fineness, like: &[&[u32]]) -> Label {
     let (text, series, size) = match fineness {
         Fineness::Chord(c) => (format!("{kind}, chord {}", number(c)), kind.to_owned(), c),
         Fineness::Size(s) => {
@@ -131,7 +150,7 @@ fn facets(kind: &str, fineness: Fineness) -> Label {
         }
         Fineness::Count(n) => {
             let text = format!("{kind}, {} x {}", n[0], n[1]);
-            (text, format!("{kind} by count"), mean_size(&n))
+            (text, format!("{kind} by count"), mean_size(&n, like))
         }
     };
     Label {
@@ -141,13 +160,21 @@ fn facets(kind: &str, fineness: Fineness) -> Label {
     }
 }
 
-/// Size of an element relative to the body: of `n` elements along each of `d` axes the inverse of their geometric mean.
-fn mean_size(counts: &[u32]) -> f64 {
-    let all: f64 = counts.iter().map(|n| f64::from(*n)).product();
-    all.powf(-1.0 / counts.len().max(1) as f64)
+/// Size of an element relative to the body: the inverse of the geometric mean of their numbers along the axes in which the
+/// series is refined, `like` being the numbers of all its members; along all axes where there is only one.
+fn mean_size(counts: &[u32], like: &[&[u32]]) -> f64 {
+    let refined = |d: &usize| like.iter().any(|other| other.get(*d) != like[0].get(*d));
+    let mut numbers: Vec<f64> = (0..counts.len())
+        .filter(refined)
+        .map(|d| f64::from(counts[d]))
+        .collect();
+    if numbers.is_empty() {
+        numbers.extend(counts.iter().map(|n| f64::from(*n)));
+    }
+    (numbers.iter().product::<f64>()).powf(-1.0 / numbers.len().max(1) as f64)
 }
 
-fn shell(element: &str, counts: &[u32]) -> Label {
+fn shell(element: &str, counts: &[u32], like: &[&[u32]]) -> Label {
     let mut words = element.split('_');
     let mut series = words.next().unwrap_or_default().to_uppercase();
     words.for_each(|word| series += &format!(" {word}"));
@@ -155,7 +182,7 @@ fn shell(element: &str, counts: &[u32]) -> Label {
     Label {
         text: format!("{series} {}", shown.join(" x ")),
         series,
-        size: Some(mean_size(counts)),
+        size: Some(mean_size(counts, like)),
     }
 }
 

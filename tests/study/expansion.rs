@@ -168,6 +168,39 @@ fn shells_points_tangents() {
 }
 
 #[test]
+fn sizes_are_those_of_the_axes_that_are_refined() {
+    // A strip refined along itself, and a plate refined along both axes: half as large every time.
+    for (values, sizes) in [
+        (
+            json!([{ "h8": [4, 1] }, { "h8": [8, 1] }, { "q18": [2, 1] }]),
+            [0.25, 0.125, 2f64.powf(-0.5)],
+        ),
+        (
+            json!([{ "h8": [4, 2] }, { "h8": [8, 4] }, { "h8": [16, 8] }]),
+            [8f64.powf(-0.5), 32f64.powf(-0.5), 128f64.powf(-0.5)],
+        ),
+    ] {
+        let found = runs_of(
+            json!({ "shell": { "values": values } }),
+            &["/bodies/plate/element"],
+        );
+        for (row, size) in found.iter().zip(sizes) {
+            let own = row.2.unwrap();
+            assert!((own / size - 1.0).abs() < 1e-12, "{own} {size}");
+        }
+    }
+    let counts = json!(["exact", { "bilinear": { "count": [12, 1] } }, { "bilinear": { "count": [24, 1] } }]);
+    let found = runs_of(
+        json!({ "master": { "values": counts } }),
+        &["/surfaces/ball/facets"],
+    );
+    assert_eq!(
+        (found[1].2, found[2].2),
+        (Some(1.0 / 12.0), Some(1.0 / 24.0))
+    );
+}
+
+#[test]
 fn penalties_steps_and_any_keys() {
     let found = runs_of(
         json!({ "penalty": { "values": ["auto", { "value": 200 }, { "scaled": 4 }] } }),

@@ -230,8 +230,8 @@ impl Teller<'_> {
                     output.every > 0,
                     match given {
                         true => format!(
-                            "`every` is {}: of each {}. step",
-                            output.every, output.every
+                            "`every` is {}: fields of every accepted step whose number it divides",
+                            output.every
                         ),
                         false => "no `every`: of every step".to_owned(),
                     },

@@ -11,10 +11,13 @@ pub struct Rate {
     pub points: usize,
 }
 
+/// No method here converges faster: a steeper slope is that of an error which is about to change its sign.
+const STEEPEST: f64 = 6.0;
+
 impl Rate {
     /// The points lie so near a line that the exponent means something.
     pub fn is_clear(&self) -> bool {
-        self.r_squared >= 0.98
+        self.r_squared >= 0.98 && self.exponent.abs() <= STEEPEST
     }
 }
 
@@ -77,6 +80,9 @@ mod tests {
         let fit = rate(&[(1.0, 1.0), (e, e), (e * e, 1.0)]).unwrap();
         assert!(fit.exponent.abs() < 1e-12 && fit.r_squared < 1e-12);
         assert!(!fit.is_clear());
+        // An error that changes its sign beyond the last point.
+        let crossing = rate(&[(4.0, 1.0), (2.0, 1e-3), (1.0, 1e-6)]).unwrap();
+        assert!(crossing.r_squared > 0.99 && !crossing.is_clear());
     }
 
     #[test]

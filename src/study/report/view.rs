@@ -310,6 +310,27 @@ impl<'a> View<'a> {
         (size.is_finite() && size > 0.0).then_some(size)
     }
 
+    /// Runs of the same series that are nowhere coarser, and somewhere finer. More slave points or a stiffer penalty do not count
+    /// as finer: they change what is asked of a mesh, and may ask too much.
+    pub fn refinements(&self, run: usize) -> Vec<usize> {
+        let choices: Vec<usize> = (0..self.record.choices.len())
+            .filter(|&c| !matches!(&*self.record.choices[c], "points" | "penalty" | "tolerance"))
+            .collect();
+        let same = |i: usize, c: usize| match choices.contains(&c) {
+            true => self.label(i, c).map(|l| &l.series) == self.label(run, c).map(|l| &l.series),
+            false => self.label(i, c).map(|l| &l.text) == self.label(run, c).map(|l| &l.text),
+        };
+        let ratio = |i: usize, c: usize| match (self.size(i, c), self.size(run, c)) {
+            (Some(other), Some(own)) => other / own,
+            _ => 1.0,
+        };
+        (self.done().into_iter())
+            .filter(|&i| (0..self.record.choices.len()).all(|c| same(i, c)))
+            .filter(|&i| choices.iter().all(|&c| ratio(i, c) <= 1.0))
+            .filter(|&i| choices.iter().any(|&c| ratio(i, c) < 1.0))
+            .collect()
+    }
+
     /// For every series the lines along the choice that changes most what `of` gives.
     pub fn lines_along(&self, of: impl Fn(usize) -> Option<f64>) -> Vec<Line> {
         let mut best: Vec<(f64, Vec<Line>)> = vec![(1.0, Vec::new()); self.series.len()];

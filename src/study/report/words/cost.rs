@@ -7,7 +7,7 @@ use super::{by_series, overlap};
 /// What a set of runs says about a target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Reach {
-    /// The cheapest run that reaches it, whatever the reference's own error is.
+    /// The cheapest run that reaches it, whatever the reference's own error is, and does not lose it by being refined.
     At(usize),
     /// All runs are farther off than the reference's own error can explain.
     Never,
@@ -31,6 +31,7 @@ pub(super) fn sentences(view: &View, q: usize) -> Vec<String> {
     let own = own_error(view, q).unwrap_or(0.0);
     let (untold, told): (Vec<f64>, Vec<f64>) = targets.into_iter().partition(|t| *t <= own);
     let mut out = reached(view, q, &runs, &told);
+    out.extend(cancelling(view, q, &runs, &told));
     if !untold.is_empty() {
         out.push(format!(
             "{} cannot be told: the reference's own error is {}.",
@@ -93,8 +94,10 @@ fn reached(view: &View, q: usize, runs: &[usize], targets: &[f64]) -> Vec<String
                 let error = |i: usize| view.error(i, q).unwrap_or(f64::INFINITY);
                 let closest = (runs.iter().copied()).min_by(|&a, &b| error(a).total_cmp(&error(b)));
                 let closest = closest.map_or(String::new(), |i| {
+                    let kept = lost(view, q, i, error(i)).is_none();
                     format!(
-                        "; the closest comes to {} in {}{}",
+                        "; the closest{} comes to {} in {}{}",
+                        if kept { "" } else { ", by errors that cancel," },
                         percent(error(i)),
                         time(view, i),
                         view.with(i)
@@ -211,11 +214,42 @@ fn reach(view: &View, q: usize, runs: &[usize], target: f64) -> Reach {
     let own = own_error(view, q).unwrap_or(0.0);
     let wall = |i: usize| view.wall(i).map_or(f64::INFINITY, |w| w.median);
     let error = |i: usize| view.error(i, q).unwrap_or(f64::INFINITY);
-    let surely = (runs.iter().copied()).filter(|&i| error(i) + own <= target);
+    let surely = (runs.iter().copied())
+        .filter(|&i| error(i) + own <= target)
+        .filter(|&i| lost(view, q, i, target).is_none());
+    let perhaps = |i: usize| error(i) - own <= target && lost(view, q, i, target).is_none();
     match surely.min_by(|&a, &b| wall(a).total_cmp(&wall(b))) {
         Some(i) => Reach::At(i),
-        None if runs.iter().any(|&i| error(i) - own <= target) => Reach::Unknown,
+        None if runs.iter().any(|&i| perhaps(i)) => Reach::Unknown,
         None => Reach::Never,
+    }
+}
+
+/// A refinement of a run that is farther off than the target: what the run reached, it reached by errors that cancel.
+fn lost(view: &View, q: usize, run: usize, target: f64) -> Option<usize> {
+    let own = own_error(view, q).unwrap_or(0.0);
+    let error = |i: usize| view.error(i, q).unwrap_or(0.0);
+    let mut finer = view.refinements(run).into_iter();
+    finer.find(|&i| error(i) - own > target)
+}
+
+/// How many runs reach a target by errors that cancel, in words.
+fn cancelling(view: &View, q: usize, runs: &[usize], targets: &[f64]) -> Option<String> {
+    let own = own_error(view, q).unwrap_or(0.0);
+    let error = |i: usize| view.error(i, q).unwrap_or(f64::INFINITY);
+    let by_chance =
+        |i: usize| (targets.iter()).any(|&t| error(i) + own <= t && lost(view, q, i, t).is_some());
+    match runs.iter().filter(|&&i| by_chance(i)).count() {
+        0 => None,
+        1 => Some(
+            "One run that reaches a target is not counted for it: refined, it is farther off, so that its errors \
+             cancel by chance."
+                .to_owned(),
+        ),
+        n => Some(format!(
+            "{n} runs that reach a target are not counted for it: refined, they are farther off, so that their errors \
+             cancel by chance."
+        )),
     }
 }
 
