@@ -1,4 +1,4 @@
-//! Contact linearised at the start: Hertz, superposition, one factorization for every set of points in contact.
+//! Contact linearised at the start: Hertz, superposition, one factorization for every change of the points in contact.
 use crate::support::{Outcome, scene_json, set, solve};
 use crate::{displacements, factorizations, large, off, scene};
 use covact::solve::event::Event;
