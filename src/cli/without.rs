@@ -2,7 +2,7 @@
 use super::{RunArgs, exit, print, report};
 use crate::model::build;
 use crate::model::without::{REMOVABLE, Removable, WithoutError};
-use crate::output::{Compared, Comparison, Cost, RunStatus, compare};
+use crate::output::{Compared, Comparison, Cost, RunStatus, Summary, compare};
 use crate::scene::{self, LoadedScene};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,8 @@ pub(super) fn scene_without(
 ) -> Result<LoadedScene, u8> {
     let removed = |removable: &Removable| -> Result<scene::Scene, u8> {
         let model = build::build(loaded).map_err(|e| {
-            let problem = loaded.problem(&e.pointer, e.to_string(), e.help.clone());
+            let text = format!("without {name}: {e}");
+            let problem = loaded.problem(&e.pointer, text, e.help.clone());
             report::scene_error(&loaded.error(vec![problem]), json)
         })?;
         removable.remove(&loaded.scene, &model).map_err(refused)
@@ -25,7 +26,10 @@ pub(super) fn scene_without(
     let removable = Removable::named(name).map_err(refused)?;
     let mut changed = loaded.clone();
     changed.scene = removed(removable)?;
-    let problems = scene::check(&changed);
+    let mut problems = scene::check(&changed);
+    for problem in &mut problems {
+        problem.message = format!("without {name}: {}", problem.message);
+    }
     match problems.is_empty() {
         true => Ok(changed),
         false => Err(report::scene_error(&changed.error(problems), json)),
@@ -39,10 +43,22 @@ fn refused(error: WithoutError) -> u8 {
 
 /// Whether every effect can be turned off, before anything is run; else an exit code.
 pub(super) fn check_names(loaded: &LoadedScene, args: &RunArgs) -> Result<(), u8> {
-    for name in &args.without {
+    for name in names(args) {
         scene_without(loaded, name, args.json)?;
     }
     Ok(())
+}
+
+/// The effects to turn off by their own names, each once; names of none stay, to be told.
+fn names(args: &RunArgs) -> Vec<&str> {
+    let mut out = Vec::new();
+    for name in &args.without {
+        let name = Removable::named(name).map_or(name.as_str(), |r| r.name);
+        if !out.contains(&name) {
+            out.push(name);
+        }
+    }
+    out
 }
 
 /// Folder of a what-if.
@@ -61,7 +77,7 @@ pub(super) fn what_ifs(
     interrupt: &AtomicBool,
 ) -> u8 {
     let mut code = full;
-    for name in &args.without {
+    for name in names(args) {
         if interrupt.load(Ordering::Relaxed) {
             break;
         }
@@ -88,7 +104,7 @@ pub(super) fn what_ifs(
         }
         let surfaces: Vec<&str> = scene.scene.surfaces.keys().map(String::as_str).collect();
         let told = match compare([&args.out, &out], &surfaces) {
-            Ok(found) => tell(&found, name, [full, own], args),
+            Ok(found) => tell(&found, name, &left(&out, name), [full, own], args),
             Err(e) => {
                 report::error(&e.to_string());
                 exit::IO
@@ -125,16 +141,45 @@ struct Told<'a> {
     without: &'a str,
     /// Exit codes of both runs.
     exit_codes: [u8; 2],
+    /// What still has the effect, in words.
+    left: &'a [String],
     #[serde(flatten)]
     comparison: &'a Comparison,
 }
 
-fn tell(found: &Comparison, name: &str, exit_codes: [u8; 2], args: &RunArgs) -> u8 {
+/// What still had the effect in a run without it, in words: contacts whose other keys it goes with.
+fn left(out: &Path, name: &str) -> Vec<String> {
+    let (Ok(removable), Ok(summary)) = (
+        Removable::named(name),
+        Summary::read(&out.join("summary.json")),
+    ) else {
+        return Vec::new();
+    };
+    let mut told = Vec::new();
+    for pair in summary.plan.iter().flat_map(|p| &p.pairs) {
+        for effect in pair.effects.iter().filter(|e| removable.has(&e.name)) {
+            let text = format!("contact `{}`, {}: {}", pair.name, effect.name, effect.why);
+            if !told.contains(&text) {
+                told.push(text);
+            }
+        }
+    }
+    told
+}
+
+fn tell(
+    found: &Comparison,
+    name: &str,
+    left: &[String],
+    exit_codes: [u8; 2],
+    args: &RunArgs,
+) -> u8 {
     if args.json {
         let told = Told {
             event: "comparison",
             without: name,
             exit_codes,
+            left,
             comparison: found,
         };
         return match serde_json::to_string(&told) {
@@ -145,7 +190,7 @@ fn tell(found: &Comparison, name: &str, exit_codes: [u8; 2], args: &RunArgs) -> 
             }
         };
     }
-    print(&table(found, name))
+    print(&table(found, name, left))
 }
 
 /// A number as it is told, of six digits.
@@ -176,13 +221,15 @@ fn percent(change: Option<f64>) -> String {
     }
 }
 
-fn table(found: &Comparison, name: &str) -> String {
+fn table(found: &Comparison, name: &str, left: &[String]) -> String {
     let instead = Removable::named(name).map_or("", |r| r.instead);
     let without = format!("without {name}");
     let titles = ["", "end, full", &without, "", "peak, full", &without, ""];
     let mut rows = vec![titles.map(str::to_owned)];
     for column in &found.columns {
-        let Compared { name, end, peak } = column;
+        let Compared {
+            name, end, peak, ..
+        } = column;
         rows.push([
             name.clone(),
             short(end[0]),
@@ -195,6 +242,9 @@ fn table(found: &Comparison, name: &str) -> String {
     }
     let mut out =
         format!("\nwithout {name}: {instead}; values at the end, and those of largest magnitude\n");
+    for text in left {
+        out += &format!("left as it is: {text}\n");
+    }
     lines(&mut out, &rows);
     out.push('\n');
     lines(&mut out, &costs(&found.cost, name));

@@ -175,7 +175,7 @@ pub(super) fn linearise(
         );
     }
     notes.push(
-        "small displacements: linear elements with Hooke's law, factorized once for every set of points in contact"
+        "small displacements: linear elements with Hooke's law, factorized once for every change of the points in contact"
             .to_owned(),
     );
     model.notes.extend(notes);

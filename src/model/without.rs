@@ -230,18 +230,23 @@ fn published(scene: &mut Scene, leave_out: impl Fn(&mut bool, &mut bool)) -> boo
 }
 
 impl Removable {
-    /// The effect of this name.
+    /// The effect of this name, its own or that of one of its effects in the plan.
     ///
     /// # Errors
     /// [`WithoutError::Unknown`]
     pub fn named(name: &str) -> Result<&'static Removable, WithoutError> {
-        let found = REMOVABLE.iter().find(|r| r.name == name);
+        let found = (REMOVABLE.iter()).find(|r| r.name == name || r.effects.contains(&name));
         let names: Vec<&str> = REMOVABLE.iter().map(|r| r.name).collect();
         found.ok_or_else(|| WithoutError::Unknown {
             name: name.to_owned(),
             nearest: nearest(name, REMOVABLE.iter().map(|r| r.name)),
             known: listed(&names),
         })
+    }
+
+    /// Whether an effect of the plan belongs to it.
+    pub fn has(&self, effect: &str) -> bool {
+        self.effects.contains(&effect)
     }
 
     /// Whether a model has the effect.

@@ -25,6 +25,9 @@ pub struct Compared {
     pub end: [Option<f64>; 2],
     /// Value of largest magnitude in both runs.
     pub peak: [Option<f64>; 2],
+    /// Magnitude up to which a value of its kind is rounding: differences are not told relative to such a one.
+    #[serde(skip)]
+    pub least: f64,
 }
 
 /// What a run took.
@@ -59,21 +62,22 @@ impl Cost {
 }
 
 impl Compared {
-    /// How much the second run differs at the end, relative to the first; none where that is zero or there is none.
+    /// How much the second run differs at the end, relative to the first: negative where its magnitude is smaller. None
+    /// where the first is zero or rounding, or there is none.
     pub fn change(&self) -> Option<f64> {
-        change(self.end)
+        change(self.end, self.least)
     }
 
     /// The same of the peaks.
     pub fn peak_change(&self) -> Option<f64> {
-        change(self.peak)
+        change(self.peak, self.least)
     }
 }
 
-fn change([full, other]: [Option<f64>; 2]) -> Option<f64> {
+fn change([full, other]: [Option<f64>; 2], least: f64) -> Option<f64> {
     let (full, other) = full.zip(other)?;
-    let change = (other - full) / full.abs();
-    change.is_finite().then_some(change)
+    let change = (other - full) / full;
+    (full.abs() > least && change.is_finite()).then_some(change)
 }
 
 /// Reads the results of two runs from their folders. `surfaces` are names whose forces are told, besides those of contacts
@@ -100,28 +104,29 @@ pub fn compare(folders: [&Path; 2], surfaces: &[&str]) -> Result<Comparison, Out
             name: name.clone(),
             end: tables.map(|t| end(t, name)),
             peak: tables.map(|t| peak(t, name)),
+            least: 0.0,
         })
         .collect();
-    for kind in ["force", "moment"] {
-        let own = |c: &Compared| of_kind(&c.name, kind);
-        let size = |c: &Compared| c.peak.iter().flatten().fold(0.0f64, |a, p| a.max(p.abs()));
-        let largest = columns.iter().filter(|c| own(c)).map(size);
-        let least = NOTHING * largest.fold(0.0, f64::max);
-        columns.retain(|c| !own(c) || size(c) > least);
+    let size = |c: &Compared| c.peak.iter().flatten().fold(0.0f64, |a, p| a.max(p.abs()));
+    let mut largest: BTreeMap<String, f64> = BTreeMap::new();
+    for column in &columns {
+        let largest = largest.entry(kind(&column.name).to_owned()).or_default();
+        *largest = largest.max(size(column));
     }
+    for column in &mut columns {
+        column.least = NOTHING * largest.get(kind(&column.name)).copied().unwrap_or(0.0);
+    }
+    columns.retain(|c| !["force", "moment"].contains(&kind(&c.name)) || size(c) > c.least);
     Ok(Comparison {
         columns,
         cost: [Cost::new(&full.1), Cost::new(&other.1)],
     })
 }
 
-/// Whether a column is a force or a moment.
-fn of_kind(name: &str, kind: &str) -> bool {
-    ["", "slave."].iter().any(|side| {
-        let rest = name.strip_prefix(side);
-        rest.and_then(|r| r.strip_prefix(kind))
-            .is_some_and(|r| r.starts_with('.'))
-    })
+/// What a column tells of: "force", "energy" and so on.
+fn kind(name: &str) -> &str {
+    let name = name.strip_prefix("slave.").unwrap_or(name);
+    name.split_once('.').map_or(name, |(kind, _)| kind)
 }
 
 /// Columns that say how a run went as a whole.

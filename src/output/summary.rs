@@ -79,9 +79,9 @@ pub struct Summary {
     pub pattern_rebuilds: u32,
     /// Effects that were on, by name.
     pub effects: Vec<String>,
-    /// What was done and why, contact by contact.
+    /// What was done and why, contact by contact; none where the device was too full to write it.
     #[serde(default)]
-    pub plan: PlanSummary,
+    pub plan: Option<PlanSummary>,
     /// What the user should know, in words.
     pub warnings: Vec<String>,
     /// Times that the run was continued after an interruption. Seconds and phases are then those of all parts, each up to

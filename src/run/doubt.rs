@@ -1,8 +1,8 @@
 //! What small displacements neglect, measured on what came out: nothing here changes a result.
 //!
 //! Elements: the rotation and the strain at their middles. Contact: every slave point is projected once more, where it is
-//! now, on the master where that is now: the turn of the normal and the gap are what the start did not know of. At kinks and
-//! at the end also the energy of the large-rotation elements: with displacements `u` of the linear ones it is
+//! now, on the master where that is now: the turn of the normal and the gap are what the start did not know of. At kinks,
+//! at the end and wherever the strain energy has doubled also the energy of the large-rotation elements: with displacements `u` of the linear ones it is
 //! `W2 + W3 + W4`, and the strains that are quadratic in `u` ask for further displacements `u2`, linear again, which
 //! release `R = -Q . u2 / 2`. The next terms of the forces are then about `3 W3 / 2 W2 + 2 (W4 - R) / W2` of what they are (the
 //! expansion of W. T. Koiter, "On the stability of elastic equilibrium", Delft 1945, along the path itself): a clamped
@@ -22,6 +22,9 @@ use rayon::prelude::*;
 const DOUBTFUL: f64 = 0.05;
 /// Multiple of that above which it is wrong.
 const WRONG: f64 = 5.0;
+
+/// Part of the size of an element below which a way is rounding.
+const NO_WAY: f64 = 1e-9;
 
 /// A doubt: told once, when it comes up.
 pub(super) struct Doubt {
@@ -84,7 +87,7 @@ pub(super) fn doubts(
         );
         tell("normals", &of, found.turn, text);
         let share = found.error / found.way;
-        if share.is_finite() {
+        if found.way > NO_WAY * pair.element_size && share.is_finite() {
             let text = format!(
                 "points in contact are off by up to {} from where their gaps say, {:.0} % of their way, {}",
                 number(found.error),
@@ -147,6 +150,7 @@ impl March<'_, '_> {
     /// Measures what the linear elements leave out of their forces, and tells where it is not small.
     pub(super) fn beyond_linear(&mut self, state: &State, internal: f64) {
         let time = self.progress.time;
+        self.progress.measured = self.progress.measured.max(internal);
         let next = self.assembler.small_quadratic(&state.u);
         let Ok(next) = next else {
             self.warn(

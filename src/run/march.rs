@@ -366,10 +366,13 @@ impl<'a, 'm> March<'a, 'm> {
                         (work, drag),
                     )?;
                     cuts = 0;
+                    let internal = converged.totals.internal_energy;
+                    // A load that goes up and down again between kinks is seen, too.
+                    let grown = internal > 2.0 * self.progress.measured;
                     if self.model.small.is_some()
-                        && (walk.stepping.done(end) || walk.stepping.at_kink(end))
+                        && (grown || walk.stepping.done(end) || walk.stepping.at_kink(end))
                     {
-                        self.beyond_linear(committed, converged.totals.internal_energy);
+                        self.beyond_linear(committed, internal);
                     }
                     if let Some(ending) =
                         self.stabilized(committed, &drag, &converged, walk.stepping.done(end))

@@ -169,9 +169,10 @@ fn solve(
         ping_pongs,
         steps,
         time,
+        measured: _,
     } = march.progress;
     let pattern_rebuilds = march.assembler.rebuilds();
-    let plan = PlanSummary::new(&model.plan, march.assembler.ran());
+    let plan = Some(PlanSummary::new(&model.plan, march.assembler.ran()));
     let factorizations = march.workspace.factorizations.iter();
     let summary = Summary {
         status,
@@ -203,9 +204,8 @@ fn solve(
     let mut written = summary.write(&path);
     // A device that is nearly full may take the account alone: most of a summary is its plan.
     if written.as_ref().is_err_and(OutputError::is_disk_full) {
-        let plan = PlanSummary::default();
         written = Summary {
-            plan,
+            plan: None,
             ..summary.clone()
         }
         .write(&path);

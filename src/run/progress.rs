@@ -11,4 +11,6 @@ pub(super) struct Progress {
     pub ping_pongs: u32,
     pub steps: u32,
     pub time: f64,
+    /// Largest strain energy at which the terms beyond linear elements were measured.
+    pub measured: f64,
 }

@@ -202,6 +202,23 @@ fn every_effect_of_a_list_is_in_every_plan() {
     let first = names(&plate());
     assert!(first.len() > 45, "{}", first.len());
     assert_eq!(first, names(&crate::scenes::blocks()));
+    // Without contacts, too: all of contact is off.
+    let mut alone = plate();
+    for key in ["contacts", "surfaces"] {
+        alone.as_object_mut().unwrap().remove(key);
+    }
+    assert_eq!(first, names(&alone));
+    let report = plan(&loaded(&alone)).unwrap();
+    let mut contact = report
+        .plan
+        .effects()
+        .filter(|e| e.name.starts_with("contact."));
+    assert!(contact.all(|e| !e.on && e.why == "the scene has no contacts"));
+    let details = |scene: &Value| -> Vec<bool> {
+        let report = plan(&loaded(scene)).unwrap();
+        report.plan.effects().map(|e| e.detail).collect()
+    };
+    assert_eq!(details(&plate()), details(&alone));
 }
 
 #[test]

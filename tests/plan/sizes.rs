@@ -1,6 +1,6 @@
 //! What states and assemblers hold: nothing of an effect that is off, and of one that is on what the plan announced.
 use crate::scenes::{blocks, coulomb, model, plate, with};
-use covact::assembly::Assembler;
+use covact::assembly::{Assembler, Fault};
 use covact::contact::friction::history::PointHistory;
 use covact::model::Model;
 use covact::model::plan::Holder;
@@ -69,6 +69,15 @@ fn held(scene: &Value, time: f64) -> (Model, Parts) {
             (assembler.linearize(&mut state, time, None, &mut residual, &mut rhs))
                 .unwrap_or_else(|e| panic!("{e}"));
             compare(false, &state, &assembler);
+        }
+        if model.small.is_some() {
+            let refused = assembler.linearize(&mut state, time, None, &mut residual, &mut rhs);
+            assert_eq!(refused.unwrap_err(), Fault::Small);
+            let refused = assembler.residual(&mut state, time, &mut residual);
+            assert_eq!(refused.unwrap_err(), Fault::Small);
+            let refused =
+                assembler.linearize_contact(&mut state, time, None, &mut residual, &mut rhs);
+            assert_eq!(refused.unwrap_err(), Fault::Small);
         }
     }
     (model, parts)
@@ -206,7 +215,9 @@ fn further_effects_one_by_one() {
     }
     // Elements for small displacements keep nothing, and points have no loops of their own.
     let (_, parts) = held(&cases[8].0, 0.5);
-    assert_eq!((parts["element states"], parts["rigid points"]), (0, 0));
+    for part in ["element states", "rigid points", "rigid maps"] {
+        assert_eq!(parts[part], 0, "{part}");
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `covact run --without`.
 use crate::scenes::{coulomb, plate, with};
+use covact::output::{Compared, compare};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::process::{Command, Output};
@@ -109,7 +110,9 @@ fn several_what_ifs_and_the_exit_code_of_the_full_run() {
         )],
     );
     write(folder, "scene.json", &away);
-    let run = "run scene.json -o out --quiet --without friction --without contact";
+    // Names of the plan are names, and what is given twice runs once.
+    let run = "run scene.json -o out --quiet --without contact.friction.coulomb --without friction \
+               --without contact";
     let output = covact(folder, &run.split(' ').collect::<Vec<_>>());
     assert_eq!(output.status.code(), Some(4), "{}", text(&output.stderr));
     let told = text(&output.stderr);
@@ -117,6 +120,7 @@ fn several_what_ifs_and_the_exit_code_of_the_full_run() {
         told.contains("without friction: exit code 4 (the full run: 4)"),
         "{told}"
     );
+    assert_eq!(told.matches("without friction: exit code").count(), 1);
     assert!(!told.contains("without contact: exit code"), "{told}");
     let table = text(&output.stdout);
     assert!(
@@ -167,5 +171,59 @@ fn what_is_not_there_cannot_be_turned_off() {
     ];
     let output = covact(folder, &run);
     assert_eq!(output.status.code(), Some(3));
-    assert!(text(&output.stderr).contains("does not go with friction"));
+    let told = text(&output.stderr);
+    assert!(told.contains("does not go with friction"), "{told}");
+    assert!(told.contains("without large_rotation: "), "{told}");
+}
+
+/// A contact with friction keeps its tangent: the comparison says so.
+#[test]
+fn what_is_left_as_it_is_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut scene = plate();
+    let other = with(plate(), &[("/contacts/press/friction", coulomb())]);
+    scene["contacts"]["rub"] = other["contacts"]["press"].clone();
+    scene["contacts"]["rub"]["slave"] = json!("plate.bottom");
+    scene["contacts"]["rub"]["master"] = json!("under");
+    scene["surfaces"]["under"] = json!({"sphere": {"radius": 25, "center": [0, 0, -26.5]}});
+    write(folder, "scene.json", &scene);
+    let run = "run scene.json -o out --quiet --without curvature";
+    let output = covact(folder, &run.split(' ').collect::<Vec<_>>());
+    let table = text(&output.stdout);
+    assert!(
+        table.contains("left as it is: contact `rub`, contact.tangent.curvature: "),
+        "{table}{}",
+        text(&output.stderr)
+    );
+    assert!(!table.contains("left as it is: contact `press`"), "{table}");
+}
+
+#[test]
+fn differences_are_relative_to_what_is_not_rounding() {
+    let column = |end: [f64; 2], least: f64| Compared {
+        name: "force.ball.z".to_owned(),
+        end: end.map(Some),
+        peak: end.map(Some),
+        least,
+    };
+    let change = column([-171.6, -124.9], 1e-7).change().unwrap();
+    assert!((change - (124.9 / 171.6 - 1.0)).abs() < 1e-12, "{change}");
+    let change = column([2.0, -1.0], 1e-7).peak_change().unwrap();
+    assert!((change + 1.5).abs() < 1e-12, "{change}");
+    assert_eq!(column([1e-8, 124.9], 1e-7).change(), None);
+    assert_eq!(column([0.0, 0.0], 0.0).change(), None);
+    // As files tell it: what is next to nothing beside the largest of its kind.
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(folder, "scene.json", &plate());
+    let output = covact(folder, &["run", "scene.json", "-o", "out", "--quiet"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let table = "step,time,energy.internal,energy.contact\n1,1,4,1e-10\n";
+    std::fs::write(folder.join("out/history.csv"), table).unwrap();
+    let out = folder.join("out");
+    let found = compare([&out, &out], &[]).unwrap();
+    let of = |name: &str| found.columns.iter().find(|c| c.name == name).unwrap();
+    assert_eq!(of("energy.internal").change(), Some(0.0));
+    assert_eq!(of("energy.contact").change(), None);
 }

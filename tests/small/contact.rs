@@ -1,4 +1,4 @@
-//! Contact linearised at the start: Hertz, superposition, one factorization for every set of points in contact.
+//! Contact linearised at the start: Hertz, superposition, one factorization for every change of the points in contact.
 use crate::support::{Outcome, scene_json, set, solve};
 use crate::{displacements, factorizations, large, off, scene};
 use covact::solve::event::Event;
@@ -235,4 +235,55 @@ fn offsets_and_overclosures() {
     set(&mut deep, motion, json!([0, 0, "-0.01*t"]));
     let flat = solve(&deep).at("force.sphere.z", 1.0);
     assert!(flat < 1.1 * expected, "{flat} {expected}");
+}
+
+/// A block on another one is pressed down, let go to where it was, and pulled off: at rest nothing is left but rounding, of
+/// which no set of points can be drawn.
+#[test]
+fn loads_that_come_back_to_nothing() {
+    let block = |low: f64, high: f64, n: u32| {
+        json!({"mesh": {"block": {
+            "min": [0, 0, low], "max": [1, 1, high], "elements": [n, n, 2]
+        }}, "material": "m"})
+    };
+    let way =
+        json!({"table": [[0, 0], [0.25, -0.01], [0.5, 0], [0.75, -0.01], [0.875, 0], [1, 0.01]]});
+    let small = scene(
+        0.0,
+        json!({
+            "bodies": {"lower": block(-0.5, 0.0, 7), "upper": block(0.0, 0.5, 9)},
+            "contacts": {"press": {
+                "slave": "upper.bottom", "master": "lower.top", "points": {"gauss": 2}
+            }},
+            "supports": {
+                "ground": {"on": "lower.bottom", "displacement": {"z": 0}},
+                "lower_x": {"on": "lower.x_min", "symmetry": "x"},
+                "lower_y": {"on": "lower.y_min", "symmetry": "y"},
+                "upper_x": {"on": "upper.x_min", "symmetry": "x"},
+                "upper_y": {"on": "upper.y_min", "symmetry": "y"},
+                "push": {"on": "upper.top", "displacement": {"z": way}}
+            }
+        }),
+        8,
+    );
+    let outcome = solve(&small);
+    let active = outcome.column("points.active");
+    println!(
+        "{active:?}: {} iterations, {:?}",
+        outcome.summary.newton_iterations, outcome.summary.warnings
+    );
+    assert_eq!(outcome.summary.steps, 8);
+    assert_eq!(outcome.summary.cuts, 0);
+    // At most two sets a step, each with a check.
+    assert!(outcome.summary.newton_iterations <= 4 * 8);
+    assert_eq!(active.last(), Some(&0.0));
+    assert!(active[2] > 300.0, "{active:?}");
+    // Strains of 1 %, and at rest no word of what is rounding.
+    assert!(
+        !outcome
+            .summary
+            .warnings
+            .iter()
+            .any(|w| w.contains("gaps of"))
+    );
 }

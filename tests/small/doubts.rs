@@ -138,3 +138,18 @@ fn points_that_slide_to_other_normals_are_told() {
     let gaps = "gaps of contact `c`: points in contact are off by up to 0.";
     assert!(told.iter().any(|w| w.contains(gaps)), "{told:?}");
 }
+
+/// A load that goes up and comes back to nothing between two kinks is seen where it was large: bent by its thickness at most, the
+/// end face kept upright, the cantilever is stiffened.
+#[test]
+fn what_goes_up_and_down_between_kinks_is_told() {
+    let mut scene = cantilever(1.0, 4, "x_max");
+    set(
+        &mut scene,
+        "/supports/end/displacement/z",
+        json!("-4*t*(1-t)"),
+    );
+    let told = warnings(&scene);
+    let forces = "displacements may not be small enough, forces of the elements: ";
+    assert!(told.iter().any(|w| w.starts_with(forces)), "{told:?}");
+}

@@ -1,4 +1,4 @@
-//! Small displacements (`solution.kinematics: "small"`): the limit of the large ones, linear, factorized once for every set
+//! Small displacements (`solution.kinematics: "small"`): the limit of the large ones, linear, factorized once for every change
 //! of points in contact, and honest about what it neglects.
 mod contact;
 mod doubts;

@@ -142,7 +142,8 @@ impl Maps {
             }
         }
         let mut points = Vec::new();
-        let rigid = |p: &&PairModel| p.rigid_master().is_some();
+        // At small displacements points have a loop of their own.
+        let rigid = |p: &PairModel| p.rigid_master().is_some() && model.small.is_none();
         for (index, pair) in model.pairs.iter().enumerate().filter(|(_, p)| rigid(p)) {
             points.push((index, PointMaps::new(&pair.points, dofs, pattern)?));
         }

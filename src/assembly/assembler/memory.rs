@@ -14,6 +14,8 @@ pub struct AssemblerMemory {
     pub rebuilds: u32,
     /// What was factorized last, where displacements are small.
     pub factored: Option<Factored>,
+    /// Largest displacement of all equilibria so far, where displacements are small (length); else 0.
+    pub farthest: f64,
     /// The solver has not taken the pattern yet.
     pub new_pattern: bool,
 }
@@ -80,6 +82,7 @@ impl Assembler<'_> {
                 .collect(),
             rebuilds: *rebuilds,
             factored: linear.as_ref().and_then(|l| l.factored().cloned()),
+            farthest: linear.as_ref().map_or(0.0, |l| l.farthest()),
             new_pattern: new_pattern.is_some(),
         }
     }
@@ -94,6 +97,7 @@ impl Assembler<'_> {
             couplings,
             rebuilds,
             factored,
+            farthest,
             new_pattern: _,
         } = memory;
         if penalties.len() != self.penalties.len() || couplings.len() != self.model.pairs.len() {
@@ -118,7 +122,7 @@ impl Assembler<'_> {
         self.penalties.copy_from_slice(penalties);
         self.rebuilds = *rebuilds;
         if let Some(linear) = &mut self.linear {
-            linear.restore(factored.clone());
+            linear.restore(factored.clone(), *farthest);
         }
         Ok(())
     }

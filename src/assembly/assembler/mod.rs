@@ -86,6 +86,11 @@ pub enum Fault {
     /// A surface driven by force could not be placed.
     #[error(transparent)]
     Press(#[from] PressFault),
+    /// A tangent was asked for of a model whose displacements are small.
+    #[error(
+        "displacements are small: the system has an assembly of its own, without a tangent at a state"
+    )]
+    Small,
     #[error(transparent)]
     Value(#[from] ValueError),
     /// The system has grown too large.
@@ -324,6 +329,9 @@ impl<'m> Assembler<'m> {
     /// Residual `f_int + f_contact - f_ext` (and what stabilises) at all degrees of freedom (reactions included) and the tangent; the element
     /// states receive what their condensation needs, the point states where their search ended. `increments` are
     /// prescribed displacements still to come: the returned right-hand side is `-residual - K increments`.
+    ///
+    /// # Errors
+    /// What cannot be evaluated; [`Fault::Small`] for models with small displacements.
     pub fn linearize(
         &mut self,
         state: &mut State,
@@ -332,6 +340,7 @@ impl<'m> Assembler<'m> {
         residual: &mut [f64],
         rhs: &mut [f64],
     ) -> Result<Totals, Fault> {
+        self.large()?;
         // First, because it may change the pattern.
         self.meet::<true>(state, time)?;
         self.matrix.clear();
@@ -352,12 +361,16 @@ impl<'m> Assembler<'m> {
     }
 
     /// The residual alone, for a line search; uses the condensation cached by the last [`Self::linearize`].
+    ///
+    /// # Errors
+    /// As [`Self::linearize`].
     pub fn residual(
         &mut self,
         state: &mut State,
         time: f64,
         residual: &mut [f64],
     ) -> Result<Totals, Fault> {
+        self.large()?;
         self.meet::<false>(state, time)?;
         residual.fill(0.0);
         let mut totals = Totals::default();
@@ -390,6 +403,14 @@ impl<'m> Assembler<'m> {
         Ok(totals)
     }
 
+    /// Only for displacements of any size.
+    fn large(&self) -> Result<(), Fault> {
+        match self.linear {
+            Some(_) => Err(Fault::Small),
+            None => Ok(()),
+        }
+    }
+
     /// Sets the tangent to zero, before [`Self::linearize_contact`].
     pub fn clear_matrix(&mut self) {
         self.matrix.clear();
@@ -399,7 +420,7 @@ impl<'m> Assembler<'m> {
     /// `rhs` where there are `increments` ([`Self::linearize`]): what a measurement of contact alone evaluates.
     ///
     /// # Errors
-    /// As [`Self::contact`], and a pattern that has grown too large.
+    /// As [`Self::contact`], a pattern that has grown too large, and [`Fault::Small`].
     pub fn linearize_contact(
         &mut self,
         state: &mut State,
@@ -408,6 +429,7 @@ impl<'m> Assembler<'m> {
         residual: &mut [f64],
         rhs: &mut [f64],
     ) -> Result<Totals, Fault> {
+        self.large()?;
         self.meet::<true>(state, time)?;
         residual.fill(0.0);
         let mut totals = Totals::default();

@@ -13,8 +13,8 @@ use crate::scene::ValueError;
 use covact_geometry::Vec3;
 use std::sync::Arc;
 
-/// Part of the largest displacement or gap by which a gap has to pass zero for its point to change its status: less is
-/// rounding.
+/// Part of the largest displacement so far, or of the gap at the start, by which a gap has to pass zero for its point to
+/// change its status: less is rounding. The present displacements would not do: unloaded, they are rounding themselves.
 const ROUNDING: f64 = 1e-12;
 
 /// What is assembled once, and what was factorized last.
@@ -33,6 +33,10 @@ pub(super) struct Linear {
     forces: Vec<f64>,
     /// Largest `n . (u_s - u_m)` at the last evaluation.
     largest: f64,
+    /// Largest displacement at the last evaluation.
+    way: f64,
+    /// Largest displacement of all equilibria so far: what is left of it at rest is rounding.
+    farthest: f64,
     /// The elements have been evaluated.
     ready: bool,
 }
@@ -86,6 +90,8 @@ impl Linear {
             at_hand: false,
             forces: vec![0.0; dofs.dofs()],
             largest: 0.0,
+            way: 0.0,
+            farthest: 0.0,
             ready: false,
         })))
     }
@@ -100,6 +106,8 @@ impl Linear {
             at_hand: _,
             forces,
             largest: _,
+            way: _,
+            farthest: _,
             ready: _,
         } = self;
         let own = stiffness.bytes()[0] + stiffness.pattern().bytes() + heap(base);
@@ -112,9 +120,15 @@ impl Linear {
         self.factored.as_ref()
     }
 
-    /// Takes over what the run that is continued had factorized.
-    pub fn restore(&mut self, factored: Option<Factored>) {
+    /// Largest displacement of all equilibria so far (length).
+    pub fn farthest(&self) -> f64 {
+        self.farthest
+    }
+
+    /// Takes over what the run that is continued had factorized, and how far it had gone.
+    pub fn restore(&mut self, factored: Option<Factored>, farthest: f64) {
         self.factored = factored;
+        self.farthest = farthest;
         self.at_hand = false;
     }
 }
@@ -298,10 +312,11 @@ impl Assembler<'_> {
             return 0;
         };
         let at = small.pairs.iter().flat_map(|p| &p.points);
+        let way = linear.way.max(linear.farthest);
         let mut changed = 0;
         for ((point, at), &gap) in points.iter_mut().zip(at).zip(&linear.gaps) {
             let Some(at) = at else { continue };
-            let least = ROUNDING * (at.gap.abs() + linear.largest);
+            let least = ROUNDING * (at.gap.abs() + way);
             let closed = if point.closed {
                 gap <= least
             } else {
@@ -382,6 +397,13 @@ impl Assembler<'_> {
                 penalties,
             });
             linear.at_hand = true;
+        }
+    }
+
+    /// Tells that the last evaluation was of an equilibrium.
+    pub fn small_settled(&mut self) {
+        if let Some(linear) = self.linear.as_deref_mut() {
+            linear.farthest = linear.farthest.max(linear.way);
         }
     }
 
@@ -479,6 +501,7 @@ impl Linear {
         time: f64,
     ) -> Result<(), ValueError> {
         let (mut first, mut largest) = (0, 0.0f64);
+        let mut farthest = u.iter().fold(0.0f64, |a, u| a.max(u.abs()));
         for (pair, own) in model.pairs.iter().zip(&small.pairs) {
             let motion = model.small_motion(pair, time)?;
             let offsets = pair.offsets(time);
@@ -486,12 +509,13 @@ impl Linear {
             first += gaps.len();
             for (i, gap) in gaps.iter_mut().enumerate() {
                 let Some(at) = &own.points[i] else { continue };
-                let way = own.approach(i, at, &pair.points[i], motion.as_ref(), u);
+                let (length, way) = own.way(i, at, &pair.points[i], motion.as_ref(), u);
                 largest = largest.max(way.abs());
+                farthest = farthest.max(length);
                 *gap = at.gap - offsets.map_or(0.0, |o| o.at(i)) + way;
             }
         }
-        self.largest = largest;
+        (self.largest, self.way) = (largest, farthest);
         Ok(())
     }
 }

@@ -28,7 +28,7 @@ impl Teller<'_> {
         let mut out = vec![
             self.effect("large_rotation", key, why(!small, large, declared)),
             self.effect("small_displacements", key, why(small, declared, large))
-                .costs("one factorization for every set of points in contact")
+                .costs("one factorization for every change of the points in contact")
                 .holds(vec![
                     Held::assembler("linear", Per::Point, 8, self.model.contact_points()),
                     Held::assembler("linear", Per::Node, 24, nodes),
@@ -160,7 +160,12 @@ impl Teller<'_> {
             let names = listed(all.iter().filter(own).map(|(b, _)| b.name.as_str()));
             let reason = why(
                 first.is_some(),
-                format!("the material of body {names}"),
+                match (word, self.model.small.is_some()) {
+                    ("neo_hooke", true) => format!(
+                        "the material of body {names}; at small displacements it acts as Hooke's law"
+                    ),
+                    _ => format!("the material of body {names}"),
+                },
                 format!("no body has a `{word}` material"),
             );
             self.effect(effect, at, reason)

@@ -80,6 +80,37 @@ pub struct Effect {
     pub held: Vec<Held>,
 }
 
+/// Effects of a contact pair in their order, and whether they are details: what a scene without contacts has off.
+const OF_PAIRS: [(&str, bool); 27] = [
+    ("contact.normal.penalty", false),
+    ("contact.master.rigid", false),
+    ("contact.master.deformable", false),
+    ("contact.master.smooth", false),
+    ("contact.self", false),
+    ("contact.master.rigid.facets.bilinear", false),
+    ("contact.master.rigid.facets.biquadratic", false),
+    ("contact.master.rigid.facets.smooth", false),
+    ("contact.master.rigid.trimmed", true),
+    ("contact.points.nodes", false),
+    ("contact.points.gauss", false),
+    ("contact.points.lobatto", false),
+    ("contact.points.segments", false),
+    ("contact.gap.averaged", false),
+    ("contact.passes.two_half", false),
+    ("contact.tangent.exact", false),
+    ("contact.tangent.published", false),
+    ("contact.tangent.main", true),
+    ("contact.tangent.rotational", true),
+    ("contact.tangent.curvature", true),
+    ("contact.tangent.edges", true),
+    ("contact.friction.coulomb", false),
+    ("contact.friction.orthotropic", false),
+    ("contact.augmentation", false),
+    ("contact.offset", false),
+    ("contact.overclosure.stress_free", true),
+    ("contact.overclosure.shrink", true),
+];
+
 fn as_text<S: Serializer>(kernel: &Kernel, to: S) -> Result<S::Ok, S::Error> {
     to.collect_str(kernel)
 }
@@ -232,12 +263,29 @@ impl Teller<'_> {
 
     fn groups(&self) -> Vec<Group> {
         let group = |name, effects| Group { name, effects };
-        vec![
+        let mut out = vec![
             group("bodies", self.bodies()),
             group("rigid surfaces", self.surfaces()),
             group("supports and loads", self.conditions()),
             group("solution", self.solution()),
             group("output", self.output()),
-        ]
+        ];
+        if self.model.pairs.is_empty() {
+            out.push(group("contact", self.no_contact()));
+        }
+        out
+    }
+
+    /// The effects of contact pairs, where there are none.
+    fn no_contact(&self) -> Vec<Effect> {
+        let off = |(name, detail)| Effect {
+            detail,
+            ..self.effect(
+                name,
+                "/contacts",
+                Err("the scene has no contacts".to_owned()),
+            )
+        };
+        OF_PAIRS.into_iter().map(off).collect()
     }
 }

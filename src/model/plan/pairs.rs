@@ -98,8 +98,10 @@ impl Teller<'_> {
             == Some(told.index);
         let mut held = Vec::new();
         if rigid {
-            let bytes = sizes::RIGID_MAP + sizes::rigid_map(self.model, pair);
-            held.push(Held::assembler("rigid maps", Per::Whole, bytes, 1));
+            if large {
+                let bytes = sizes::RIGID_MAP + sizes::rigid_map(self.model, pair);
+                held.push(Held::assembler("rigid maps", Per::Whole, bytes, 1));
+            }
             let n = if is_first { largest } else { 0 };
             held.push(Held::assembler("rigid points", Per::Point, sizes::TOUCH, n));
             held.push(Held::assembler("points kept", Per::Point, 1, 0).growing());

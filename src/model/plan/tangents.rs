@@ -55,12 +55,16 @@ impl Teller<'_> {
             (true, None) => "`tangent` is `exact`",
             (true, Some(_)) => "`tangent` is `published`",
         };
+        let reason = match (self.still(told), published) {
+            (Some(still), None) => format!("{still}: the tangent is exact as it stands"),
+            _ => reason.to_owned(),
+        };
         let mut out = Vec::new();
         for (name, on) in [
             ("contact.tangent.exact", published.is_none()),
             ("contact.tangent.published", published.is_some()),
         ] {
-            out.push(self.effect(name, &key, why(on, reason, reason)));
+            out.push(self.effect(name, &key, why(on, &*reason, &*reason)));
         }
         let part = |key: &str| match published {
             Some(_) => told.key(&format!("tangent/published/{key}")),
@@ -164,6 +168,9 @@ impl Teller<'_> {
     /// Whether feet may lie on edges and corners, where the traction acts along the distance.
     fn edges(&self, told: &Told) -> Effect {
         let name = "contact.tangent.edges";
+        if let Some(still) = self.still(told) {
+            return self.effect(name, "/solution/kinematics", Err(still));
+        }
         let Some(surface) = told.pair.rigid_master() else {
             let smooth = told.pair.body_master().is_some_and(|m| m.smooth);
             return self.effect(

@@ -195,6 +195,7 @@ fn put_progress(progress: &Progress, out: &mut Writer) {
         steps,
         time,
         ping_pongs,
+        measured,
     } = progress;
     out.count(warnings.len());
     warnings.iter().for_each(|text| out.text(text));
@@ -203,6 +204,7 @@ fn put_progress(progress: &Progress, out: &mut Writer) {
     out.u32(*steps);
     out.f64(*time);
     out.u32(*ping_pongs);
+    out.f64(*measured);
 }
 
 fn take_progress(from: &mut Reader) -> Result<Progress, Malformed> {
@@ -215,6 +217,7 @@ fn take_progress(from: &mut Reader) -> Result<Progress, Malformed> {
         steps: from.u32()?,
         time: from.f64()?,
         ping_pongs: from.u32()?,
+        measured: from.f64()?,
     })
 }
 
@@ -234,6 +237,7 @@ fn put_assembler(memory: &AssemblerMemory, out: &mut Writer) {
         couplings,
         rebuilds,
         factored,
+        farthest,
         // The pattern is built, and analysed, anew in any case.
         new_pattern: _,
     } = memory;
@@ -256,6 +260,7 @@ fn put_assembler(memory: &AssemblerMemory, out: &mut Writer) {
         put_flags(&factored.closed, out);
         out.f64s(&factored.penalties);
     });
+    out.f64(*farthest);
 }
 
 fn take_assembler(model: &Model, from: &mut Reader) -> Result<AssemblerMemory, Malformed> {
@@ -279,11 +284,13 @@ fn take_assembler(model: &Model, from: &mut Reader) -> Result<AssemblerMemory, M
         from.f64s(&mut penalties)?;
         Ok(Factored { closed, penalties })
     })?;
+    let farthest = from.f64()?;
     Ok(AssemblerMemory {
         penalties,
         couplings,
         rebuilds,
         factored,
+        farthest,
         new_pattern: true,
     })
 }

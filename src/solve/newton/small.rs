@@ -1,6 +1,6 @@
 //! The steps of a model with small displacements: linear but for the points in contact, whose set is sought.
 //!
-//! With a given set the system is solved once and for all. The gaps then say which points are in contact, and where these are
+//! With a given set the system is linear, and one solution is exact. The gaps then say which points are in contact, and where these are
 //! the same, that is the answer; if not, they are the next set (the active set method, a Newton method for the piecewise
 //! linear residual: M. Hintermueller, K. Ito, K. Kunisch, "The primal-dual active set strategy as a semismooth Newton
 //! method", SIAM Journal on Optimization 13 (2002)). Penalties make the answer the minimum of a convex energy, so that where
@@ -67,6 +67,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             });
             match norms.judge(self.settings.tolerance, settled) {
                 Verdict::Converged => {
+                    self.assembler.small_settled();
                     return Ok(Converged {
                         iterations: iteration,
                         augmentations: 0,
