@@ -364,7 +364,7 @@ fn output_and_labels() {
     ] {
         refused(
             &grid(json!({ "key": { "name": "output", "at": [at], "values": [value] } })),
-            "/grids/0/choices/0/key/at/0",
+            "/grids/0/choices/0/key/values/0",
             "`/output/every` cannot be chosen",
             "where a quantity is a `field`",
         );

@@ -355,7 +355,7 @@ fn the_size_of_a_penalty_is_its_inverse() {
     }
     assert_eq!(
         section(&record, "Rates"),
-        ["The error of force falls as (1/penalty)^1."]
+        ["The error of punch force falls as (1/penalty)^1."]
     );
 }
 
