@@ -4,6 +4,7 @@ mod check;
 mod convert;
 mod gauntlet;
 mod inspect;
+mod interrupt;
 mod new;
 mod plan;
 mod progress;

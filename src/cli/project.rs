@@ -149,7 +149,7 @@ fn run(args: &ProjectArgs) -> Result<Account, Stop> {
 /// Ctrl-C ends the program where it is (it may wait for points that never come) and removes the half of a table.
 fn leave_nothing_behind(temporary: &Path, out: &Path) {
     let (temporary, out) = (temporary.to_path_buf(), out.display().to_string());
-    let handler = ctrlc::set_handler(move || {
+    let handler = super::interrupt::watch(move || {
         let _ = std::fs::remove_file(&temporary);
         report::error(&format!("interrupted; `{out}` was not written"));
         std::process::exit(exit::NOT_CONVERGED.into());

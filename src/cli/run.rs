@@ -25,7 +25,7 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     }
     let interrupt = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&interrupt);
-    let handler = ctrlc::set_handler(move || {
+    let handler = super::interrupt::watch(move || {
         if flag.swap(true, Ordering::Relaxed) {
             // The second time: at once. 130 is what shells report for this signal.
             std::process::exit(130);

@@ -2,13 +2,13 @@
 use super::{StudyArgs, exit, report};
 use crate::study::record::{Ending, Record};
 use crate::study::{
-    Event, Folder, LoadedStudy, Settings, StudyError, conclude, expand, load, play,
+    Event, Folder, LoadedStudy, Settings, StudyError, conclude, expand, load, play, running,
 };
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 pub(super) fn study(args: &StudyArgs) -> u8 {
     match run(args) {
@@ -71,11 +71,19 @@ fn settings(loaded: &LoadedStudy) -> Result<Settings, StudyError> {
     })
 }
 
+/// Time for the processes of runs to be stopped and waited for.
+const STOPPING: Duration = Duration::from_secs(5);
+
 /// An interrupt ends the study; what is done is kept.
 fn watch(interrupt: &Arc<AtomicBool>) {
     let flag = Arc::clone(interrupt);
-    let handler = ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
+    let handler = super::interrupt::watch(move || {
+        if flag.swap(true, Ordering::SeqCst) {
+            // The first one has them killed; none may outlive the study.
+            let start = Instant::now();
+            while running() > 0 && start.elapsed() < STOPPING {
+                std::thread::sleep(Duration::from_millis(2));
+            }
             std::process::exit(130);
         }
         report::stderr("\nstopping, what is done is kept (the same command goes on)\n");

@@ -61,6 +61,13 @@ impl Variant {
             )
             .help("write `/` and keys, as in `/solution/step/initial`")
         })?;
+        if fields(&tokens, value) {
+            return Err(Fault::new(
+                from,
+                "`/output/every` cannot be chosen: a study sets it for every run",
+            )
+            .help("fields are written at the end, where a quantity is a `field`"));
+        }
         let lost = |depth: usize, node: &Json| lost(&tokens, depth, node, from);
         let Some((last, way)) = tokens.split_last() else {
             return Err(Fault::new(from, "the whole scene cannot be replaced")
@@ -147,6 +154,16 @@ fn tokens(at: &str) -> Option<Vec<String>> {
     };
     let plain = |token: &str| token.replace("~1", "/").replace("~0", "~");
     Some(rest.split('/').map(plain).collect())
+}
+
+/// A change would say how often fields are written.
+fn fields(tokens: &[String], value: &Json) -> bool {
+    let names: Vec<&str> = tokens.iter().map(String::as_str).collect();
+    match names[..] {
+        ["output"] => value.get("every").is_some(),
+        ["output", "every"] => true,
+        _ => false,
+    }
 }
 
 fn index(token: &str, length: usize) -> Option<usize> {

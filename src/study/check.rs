@@ -141,7 +141,15 @@ fn check_values(c: &mut Checker, at: &str, choice: &Choice) {
             );
         }
         Choice::Variants { values, .. } => {
+            let mut labels = BTreeSet::new();
             for (k, variant) in values.iter().enumerate() {
+                if !labels.insert(variant.label.as_str()) {
+                    c.add(
+                        &format!("{at}/values/{k}/label"),
+                        format!("two variants are called `{}`", variant.label),
+                        Some("give every variant a label of its own".into()),
+                    );
+                }
                 if variant.label.trim().is_empty() {
                     c.add(
                         &format!("{at}/values/{k}/label"),

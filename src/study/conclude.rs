@@ -19,13 +19,12 @@ pub fn conclude(loaded: &LoadedStudy, expansion: &Expansion, folder: &Folder) ->
     };
     let (quantities, told) = measure(study, &loaded.dir, &mut runs, &of, &expansion.references);
     warnings.extend(told);
-    let name = study.scene.file_name().unwrap_or(study.scene.as_os_str());
     Record {
         format: RECORD_FORMAT,
         covact: env!("CARGO_PKG_VERSION").to_owned(),
         title: study.title.clone(),
         question: study.question.clone(),
-        scene: name.to_string_lossy().into_owned(),
+        scene: study.scene_name(),
         machine: machine(),
         timing: study.timing,
         choices: expansion.choices.clone(),

@@ -12,6 +12,9 @@ pub enum StudyError {
     /// A file cannot be written or read.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// The folder for results holds a file that is not this study's own.
+    #[error("`{}` {what}: it is left alone, and nothing is written; choose another folder with `-o`", path.display())]
+    Occupied { path: PathBuf, what: String },
     /// The program that does the runs cannot be started.
     #[error("cannot start `{}`: {reason}", program.display())]
     Start { program: PathBuf, reason: String },

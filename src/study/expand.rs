@@ -49,6 +49,11 @@ pub struct Expansion {
 pub fn expand(loaded: &LoadedStudy) -> Result<Expansion, SceneError> {
     let study = &loaded.study;
     let path = loaded.resolve(&study.scene);
+    if path.is_dir() {
+        let message = format!("`{}` is a folder, and no scene file", path.display());
+        let help = "name a file in it".to_owned();
+        return Err(loaded.error(vec![loaded.problem("/scene", message, Some(help))]));
+    }
     if path.as_os_str().is_empty() || !path.is_file() {
         let near = scene::nearest_file(&path).map(|n| format!("did you mean `{n}`?"));
         let help = near.unwrap_or_else(|| "paths are relative to the study file".to_owned());

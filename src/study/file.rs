@@ -41,6 +41,14 @@ pub struct Study {
     pub may_fail: bool,
 }
 
+impl Study {
+    /// File name of the scene, as records have it.
+    pub(super) fn scene_name(&self) -> String {
+        let name = self.scene.file_name().unwrap_or(self.scene.as_os_str());
+        name.to_string_lossy().into_owned()
+    }
+}
+
 fn targets() -> Vec<f64> {
     vec![0.1, 0.03, 0.01, 0.003, 0.001]
 }

@@ -3,8 +3,10 @@
 use super::error::StudyError;
 use super::expand::{Expansion, Planned};
 use super::file::{Measure, Study};
+use super::gather::state;
+use super::record::{Ending, Record};
 use crate::output::OutputError;
-use crate::output::atomic::{make_folder, write_whole};
+use crate::output::atomic::{make_folder, remove_file, write_whole};
 use crate::run;
 use crate::scene::{self, pointer};
 use serde_json::{Value as Json, json};
@@ -36,8 +38,10 @@ impl Folder {
     /// Writes the scenes of a study, with all files that they name. What is there already and the same is left alone.
     ///
     /// # Errors
-    /// Files that cannot be read or written.
+    /// [`StudyError::Occupied`] before anything is written, where `study.json` there is something else than an earlier record
+    /// of this study; files that cannot be read or written.
     pub fn write(path: &Path, study: &Study, expansion: &Expansion) -> Result<Self, StudyError> {
+        own(&path.join("study.json"), study)?;
         make_folder(path)?;
         let fields = (study.quantities.iter()).any(|q| matches!(q.of, Measure::Field { .. }));
         let mut files = Files::new(path, &expansion.dir);
@@ -86,10 +90,11 @@ impl Folder {
         (1..=self.repeats).flat_map(|repeat| (0..self.runs.len()).map(move |run| (run, repeat)))
     }
 
-    /// Writes `jobs.txt`: a command for every repeat of every run, to be called in the study's folder.
+    /// Writes `jobs.txt`: a command for every repeat of every run, to be called in the study's folder. Accounts of processes
+    /// that failed here are removed, since they would pass for those of the jobs.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// The file cannot be written, or an account cannot be removed.
     pub fn write_jobs(&self, program: &str) -> Result<usize, OutputError> {
         let mut text = String::new();
         let mut count = 0;
@@ -97,10 +102,41 @@ impl Folder {
             let arguments = self.arguments(&self.runs[run].id, repeat);
             text += &format!("{} {}\n", quoted(program), arguments.join(" "));
             count += 1;
+            if state(self, run, repeat).ending != Ending::Done {
+                let results = self.results(&self.runs[run].id, repeat);
+                remove_file(&results.join("process.json"))?;
+            }
         }
         write_whole(&self.path.join("jobs.txt"), text.as_bytes())?;
         Ok(count)
     }
+}
+
+/// The record of a study takes the place of an earlier record of the same study, and of nothing else.
+fn own(path: &Path, study: &Study) -> Result<(), StudyError> {
+    let refuse = |what: String| StudyError::Occupied {
+        path: path.to_path_buf(),
+        what,
+    };
+    let bytes = match std::fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(()),
+        Err(e) => return Err(refuse(format!("cannot be read ({e})"))),
+    };
+    let record: Record = serde_json::from_slice(&bytes)
+        .map_err(|_| refuse("is no record of a study that this version reads".to_owned()))?;
+    let (scene, title) = (study.scene_name(), study.title.as_str());
+    let differ = |what: &str, there: &str, here: &str| {
+        let what = format!("is the record of another study: its {what} is `{there}`, not `{here}`");
+        Err(refuse(what))
+    };
+    if record.scene != scene {
+        return differ("scene", &record.scene, &scene);
+    }
+    if record.title != title {
+        return differ("title", &record.title, title);
+    }
+    Ok(())
 }
 
 /// As one word for a shell.

@@ -45,7 +45,13 @@ pub(super) fn state(folder: &Folder, run: usize, repeat: u32) -> State {
     let ready = &folder.runs[run];
     let results = folder.results(&ready.id, repeat);
     let version = env!("CARGO_PKG_VERSION");
-    let found = Summary::read(&results.join("summary.json")).ok();
+    let path = results.join("summary.json");
+    // One that is there and cannot be read tells nothing: the run is done anew.
+    let (found, unreadable) = match (Summary::read(&path), path.exists()) {
+        (Ok(summary), _) => (Some(summary), None),
+        (Err(e), true) => (None, Some(e.to_string())),
+        (Err(_), false) => (None, None),
+    };
     let account = Account::read(&results);
     let mut stale = None;
     let mut fits = |scene: &str, covact: &str, threads: usize| {
@@ -66,7 +72,18 @@ pub(super) fn state(folder: &Folder, run: usize, repeat: u32) -> State {
     };
     let summary = found.filter(|s| fits(&s.scene, &s.versions.covact, s.threads));
     let account = account.filter(|a| fits(&a.scene, &a.covact, a.threads));
+    // A run that was stopped or failed has been done again elsewhere, where its summary says that it is done.
+    let is_done = (summary.as_ref()).is_some_and(|s| s.status == RunStatus::Done);
+    let account = account.filter(|a| !is_done || a.exit_code == Some(0));
+    let lost = match (&summary, &account, unreadable) {
+        (None, _, Some(why)) => Some(why),
+        (None, Some(a), None) if a.exit_code == Some(0) && a.stopped_after.is_none() => {
+            Some("the run ended well, but there is no `summary.json` of it".to_owned())
+        }
+        _ => None,
+    };
     let ending = match (&summary, &account) {
+        (None, _) if lost.is_some() => Ending::Missing,
         (_, Some(account)) if account.stopped_after.is_some() => {
             let after = account.stopped_after.unwrap_or_default();
             Ending::Failed(format!("stopped at its limit of {after} s"))
@@ -79,7 +96,7 @@ pub(super) fn state(folder: &Folder, run: usize, repeat: u32) -> State {
         ending,
         summary,
         account,
-        stale,
+        stale: stale.or(lost),
     }
 }
 
@@ -137,12 +154,12 @@ pub(super) fn gather(
             }
         }
         elsewhere += (states.iter())
-            .filter(|s| s.summary.is_some() && s.account.is_none())
+            .filter(|s| s.ending != Ending::Missing && s.account.is_none())
             .count();
-        let first = states
-            .iter()
-            .position(|s| s.ending != Ending::Missing)
-            .unwrap_or(0);
+        // One that fails now and then has failed.
+        let failed = states.iter().position(|s| is_failed(&s.ending));
+        let done = || states.iter().position(|s| s.ending == Ending::Done);
+        let first = failed.or_else(done).unwrap_or(0);
         let path = folder.results(&planned.id, first as u32 + 1);
         let missing = states
             .iter()
@@ -184,7 +201,11 @@ fn others(folder: &Folder) -> Option<String> {
     ))
 }
 
-/// The record of a run; `first` is the first repeat that is there.
+fn is_failed(ending: &Ending) -> bool {
+    matches!(ending, Ending::Failed(_))
+}
+
+/// The record of a run; `first` is the first repeat that ended as the run did.
 fn record(
     planned: &Planned,
     states: &[State],
@@ -192,14 +213,18 @@ fn record(
     results: &Path,
     warnings: &mut Vec<String>,
 ) -> RunRecord {
-    let is_failed = |s: &&State| matches!(s.ending, Ending::Failed(_));
     let there = states.get(first);
-    // One that fails now and then has failed.
-    let failed = states.iter().find(is_failed);
-    let ending = failed
-        .or(there)
-        .map_or(Ending::Missing, |s| s.ending.clone());
-    let count = states.iter().filter(is_failed).count();
+    let ending = there.map_or(Ending::Missing, |s| s.ending.clone());
+    // Times of a run that is done are those of repeats that are done, and a failed one's those of repeats that failed: what
+    // an interrupted repeat took is no time of either.
+    let alike = || {
+        states.iter().filter(|s| match ending {
+            Ending::Done => s.ending == Ending::Done,
+            Ending::Failed(_) => is_failed(&s.ending),
+            Ending::Missing => false,
+        })
+    };
+    let count = states.iter().filter(|s| is_failed(&s.ending)).count();
     if count > 0 && states.iter().any(|s| s.ending == Ending::Done) {
         warnings.push(format!(
             "run {}: {count} of {} repeats failed, the others did not",
@@ -207,8 +232,8 @@ fn record(
             states.len()
         ));
     }
-    let summary = there.and_then(|s| s.summary.as_ref());
-    let summaries = || states.iter().filter_map(|s| s.summary.as_ref());
+    let summary = alike().next().and_then(|s| s.summary.as_ref());
+    let summaries = || alike().filter_map(|s| s.summary.as_ref());
     let mut phases = BTreeMap::new();
     for name in summaries().flat_map(|s| s.phases.keys()) {
         if !phases.contains_key(name) {
@@ -220,13 +245,15 @@ fn record(
         .filter_map(|s| s.peak_memory_mb)
         .reduce(f64::max);
     let of = |take: &dyn Fn(&Summary) -> u64| summary.map_or(0, take);
+    let wall = spread(alike().filter_map(State::wall));
+    let cpu = spread(summaries().filter_map(|s| s.cpu_s));
     RunRecord {
         id: planned.id.clone(),
         choices: planned.choices.clone(),
         reference: planned.reference.clone(),
         ending,
-        wall: spread(states.iter().filter_map(State::wall)),
-        cpu: spread(summaries().filter_map(|s| s.cpu_s)),
+        wall,
+        cpu,
         phases,
         peak_memory_mb: peak,
         dofs: summary.map_or(0, |s| s.dofs),
@@ -270,4 +297,22 @@ fn spread(values: impl Iterator<Item = f64>) -> Option<Spread> {
         most: *all.last()?,
         repeats: all.len() as u32,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::spread;
+
+    /// One slow repeat moves the most, and the median by no more than its rank does.
+    #[test]
+    fn the_median_does_not_follow_an_outlier() {
+        let odd = spread([2.0, 90.0, 1.0].into_iter()).unwrap();
+        assert_eq!((odd.median, odd.least, odd.most), (2.0, 1.0, 90.0));
+        assert_eq!(odd.repeats, 3);
+        let even = spread([3.0, 90.0, 1.0, 2.0].into_iter()).unwrap();
+        assert_eq!((even.median, even.least, even.most), (2.5, 1.0, 90.0));
+        assert_eq!(even.repeats, 4);
+        assert_eq!(spread([7.0].into_iter()).unwrap().median, 7.0);
+        assert!(spread(std::iter::empty()).is_none());
+    }
 }

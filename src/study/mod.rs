@@ -25,5 +25,5 @@ pub use error::StudyError;
 pub use expand::{Expansion, Planned, expand};
 pub use folder::{Folder, Ready};
 pub use load::{FORMAT, LoadedStudy, load, parse, schema};
-pub use play::{Account, Event, Settings, play};
+pub use play::{Account, Event, Settings, play, running};
 pub use triangles::{TriangleError, Triangles};

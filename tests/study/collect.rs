@@ -162,3 +162,38 @@ fn missing_runs_are_named() {
         .collect();
     assert_eq!(endings, [false, true, true]);
 }
+
+/// A study in the folder of its own study file, or in that of another study, writes nothing.
+#[test]
+fn files_of_others_are_left_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    prepare(folder.path());
+    let before = std::fs::read(folder.path().join("study.json")).unwrap();
+    let output = covact(folder.path(), &["study", "study.json", "-o", ".", "--jobs"]);
+    assert_eq!(output.status.code(), Some(5));
+    let said = stderr(&output);
+    assert!(said.contains("is no record of a study"), "{said}");
+    assert_eq!(
+        std::fs::read(folder.path().join("study.json")).unwrap(),
+        before
+    );
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+
+    let arguments = ["study", "study.json", "-o", "out", "--collect", "--quiet"];
+    for _ in 0..2 {
+        assert_eq!(covact(folder.path(), &arguments).status.code(), Some(4));
+    }
+    let out = folder.path().join("out");
+    let first = record(&out);
+    let mut other: serde_json::Value = serde_json::from_slice(&before).unwrap();
+    other["title"] = json!("another");
+    write(folder.path(), "study.json", &other);
+    let output = covact(folder.path(), &arguments);
+    assert_eq!(output.status.code(), Some(5));
+    let said = stderr(&output);
+    assert!(
+        said.contains("another study: its title is `small`, not `another`"),
+        "{said}"
+    );
+    assert_eq!(record(&out), first);
+}

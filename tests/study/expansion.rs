@@ -360,6 +360,7 @@ fn equal_runs_are_one_and_names_stay() {
 #[test]
 fn shipped_studies_are_right() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/studies");
+    let mut seen = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|e| e != "json") || path.ends_with("schema.json") {
@@ -368,5 +369,7 @@ fn shipped_studies_are_right() {
         let study = covact::study::load(&path).unwrap_or_else(|e| panic!("{e}"));
         let expansion = covact::study::expand(&study).unwrap_or_else(|e| panic!("{e}"));
         assert!(expansion.runs.len() >= 2, "{}", path.display());
+        seen += 1;
     }
+    assert!(seen >= 5, "{seen} studies");
 }

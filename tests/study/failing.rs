@@ -118,3 +118,74 @@ fn a_run_that_takes_too_long() {
     assert!(again(1.0));
     assert!(!again(1.7));
 }
+
+/// Changes a file of JSON.
+fn change(path: &Path, by: impl Fn(&mut Value)) {
+    let mut content: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+    by(&mut content);
+    std::fs::write(path, content.to_string()).unwrap();
+}
+
+/// What is left of runs that were cut short, or done again elsewhere.
+#[test]
+fn what_is_left_of_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut study = beside(folder.path(), json!({ "/solution/end_time": 0.5 }));
+    study["timing"] = json!({ "repeats": 3 });
+    write(folder.path(), "study.json", &study);
+    let play = ["study", "study.json", "-o", "out", "--json"];
+    let collect = ["study", "study.json", "-o", "out", "--collect"];
+    assert_eq!(covact(folder.path(), &play).status.code(), Some(0));
+    let out = folder.path().join("out");
+    let [one, two, three] = ["1", "2", "3"].map(|repeat| out.join("runs/002_failing").join(repeat));
+    // A summary that says done is later than an account of a process that was stopped.
+    change(&one.join("process.json"), |a| {
+        a["stopped_after"] = json!(1e-3);
+        a["exit_code"] = Value::Null;
+        a["wall_s"] = json!(5e5);
+    });
+    // What an interrupted repeat took is no time of the run.
+    change(&two.join("summary.json"), |s| {
+        s["status"] = json!("interrupted");
+        s["cpu_s"] = json!(7e5);
+        s["peak_memory_mb"] = json!(7e9);
+    });
+    let output = covact(folder.path(), &collect);
+    assert_eq!(output.status.code(), Some(4), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(said.contains("1 of 3 repeats are missing"), "{said}");
+    let run = &record(&out).runs[1];
+    assert_eq!(run.ending, Ending::Done);
+    let (wall, cpu) = (run.wall.unwrap(), run.cpu.unwrap());
+    assert_eq!((wall.repeats, cpu.repeats), (2, 2));
+    assert!(wall.most < 1e5 && cpu.most < 1e5, "{wall:?} {cpu:?}");
+    assert!(run.peak_memory_mb.unwrap() < 1e9);
+
+    // Half a summary is none, and jobs that are to be done anew do not inherit failures.
+    std::fs::write(one.join("summary.json"), "{ \"status\": \"do").unwrap();
+    std::fs::remove_file(three.join("summary.json")).unwrap();
+    change(&three.join("process.json"), |a| a["exit_code"] = json!(1));
+    let jobs = ["study", "study.json", "-o", "out", "--jobs", "--quiet"];
+    assert_eq!(covact(folder.path(), &jobs).status.code(), Some(0));
+    assert!(!three.join("process.json").exists());
+    assert!(out.join("runs/001_right/1/process.json").exists());
+    let output = covact(folder.path(), &collect);
+    let said = stderr(&output);
+    assert!(
+        said.contains("results in runs/002_failing/1 are not taken: ")
+            && said.contains("error: missing: 002_failing\n"),
+        "{said}"
+    );
+    // A folder that the program does not know is not removed.
+    for file in std::fs::read_dir(&three).unwrap() {
+        std::fs::remove_file(file.unwrap().path()).unwrap();
+    }
+    std::fs::write(three.join("thesis.tex"), "mine").unwrap();
+    let output = covact(folder.path(), &play);
+    assert_eq!(output.status.code(), Some(5));
+    assert!(stderr(&output).contains("holds something else"));
+    assert!(three.join("thesis.tex").exists());
+    std::fs::remove_file(three.join("thesis.tex")).unwrap();
+    let output = covact(folder.path(), &play);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}

@@ -72,6 +72,12 @@ fn names_of_the_scene() {
         "there is no scene file `",
         "did you mean `scene.json`?",
     );
+    refused(
+        &with(&[("scene", json!("."))]),
+        "/scene",
+        "is a folder, and no scene file",
+        "name a file",
+    );
     let field =
         json!([{ "name": "u", "of": { "field": { "body": "plat", "name": "displacement" } } }]);
     refused(
@@ -346,5 +352,30 @@ fn the_program_points_into_the_study() {
         stderr(&output).contains("scene.json:1:1: the key `materials` is missing"),
         "{}",
         stderr(&output)
+    );
+}
+
+/// What a study says itself, and what could not be told apart.
+#[test]
+fn output_and_labels() {
+    for (at, value) in [
+        ("/output/every", json!(1)),
+        ("/output", json!({ "every": 1 })),
+    ] {
+        refused(
+            &grid(json!({ "key": { "name": "output", "at": [at], "values": [value] } })),
+            "/grids/0/choices/0/key/values/0",
+            "`/output/every` cannot be chosen",
+            "where a quantity is a `field`",
+        );
+    }
+    refused(
+        &grid(json!({ "variants": { "name": "case", "values": [
+            { "label": "a" },
+            { "label": "a", "set": { "/solution/end_time": 0.5 } },
+        ] } })),
+        "/grids/0/choices/0/variants/values/1/label",
+        "two variants are called `a`",
+        "a label of its own",
     );
 }

@@ -168,3 +168,19 @@ fn a_page_that_would_be_too_large_says_what_it_leaves_out() {
     assert!(page.contains("<a href=\"more-11-error-time.svg\">"));
     assert!(pictures(folder.path()).contains(&"more-11-error-time.svg".to_string()));
 }
+
+/// Pictures of an earlier report are removed, files of the user are not.
+#[test]
+fn pictures_that_no_page_shows_any_more() {
+    let folder = written(&records::forty());
+    let before = pictures(folder.path());
+    assert!(!before.is_empty());
+    let out = folder.path().join("new/folder");
+    fs::write(out.join("mine.svg"), "<svg/>").unwrap();
+    write(&records::all_failed(), &out).unwrap();
+    let fresh = pictures(written(&records::all_failed()).path());
+    let mut expected = [fresh, vec!["mine.svg".to_owned()]].concat();
+    expected.sort();
+    assert_eq!(pictures(folder.path()), expected);
+    assert!(before.iter().any(|name| !expected.contains(name)));
+}

@@ -338,3 +338,42 @@ fn values_alone_say_nothing() {
     }
     assert!(sections(&record).is_empty());
 }
+
+/// Gaps fall as the penalty rises: with its inverse.
+#[test]
+fn the_size_of_a_penalty_is_its_inverse() {
+    let mut record = empty(&["penalty"], vec![force(Some(0.0))]);
+    for penalty in [1e2, 1e3, 1e4, 1e5] {
+        let label = label(
+            &format!("penalty {penalty}"),
+            "penalty",
+            Some(1.0 / penalty),
+        );
+        let mut run = run("", &[("penalty", label)], 1.0);
+        run.measured = vec![error(1.0, 3.0 / penalty)];
+        record.runs.push(run);
+    }
+    assert_eq!(
+        section(&record, "Rates"),
+        ["The error of punch force falls as (1/penalty)^1."]
+    );
+}
+
+/// Times of two repeats say nothing; a mean of ratios lies in the range that is printed with it.
+#[test]
+fn times_need_three_repeats_and_means_their_range() {
+    let mut record = empty(&["master", "shell"], vec![force(Some(0.0))]);
+    for (n, seconds) in [(10, [1.0, 1.953]), (20, [1.0, 1.958])] {
+        for (label, seconds) in [(nurbs(), seconds[0]), (master(0.1), seconds[1])] {
+            record.runs.push(one(label, shell("H8", n), seconds, 0.5));
+        }
+    }
+    let said = |record: &Record| section(record, "What gains").concat();
+    // The mean, 1.9555, would be 2 with two digits.
+    let words = "bilinear takes 1.96 times the time of NURBS (1.95 to 1.96 in 2 pairs)";
+    assert!(said(&record).contains(words), "{}", said(&record));
+    for run in &mut record.runs {
+        run.wall = run.wall.map(|w| Spread { repeats: 2, ..w });
+    }
+    assert!(!said(&record).contains("the time"), "{}", said(&record));
+}

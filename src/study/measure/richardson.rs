@@ -1,7 +1,9 @@
 //! How far the finest of a sequence of refined runs is from its limit.
 
-/// Observed orders outside of this are no sign of convergence as it should be.
-const PLAUSIBLE: std::ops::RangeInclusive<f64> = 0.3..=6.0;
+/// With a lower observed order the differences hardly fall, or grow: nothing tells where they lead.
+const LEAST: f64 = 0.3;
+/// Observed orders above this are no sign of convergence as it should be.
+const MOST: f64 = 6.0;
 /// A declared order is doubted where the observed one differs by more.
 const DOUBTFUL: f64 = 0.5;
 
@@ -25,7 +27,7 @@ pub(super) struct Estimate {
 /// of numbers, norms where they are not. `order` is p where it is declared.
 ///
 /// # Errors
-/// In words, where nothing can be estimated.
+/// In words, where nothing can be estimated: above all where the refinement does not converge, whatever order is declared.
 pub(super) fn estimate(
     before: Option<f64>,
     last: f64,
@@ -46,7 +48,12 @@ pub(super) fn estimate(
         return Err("the two finest runs do not differ".into());
     }
     let size = last.abs();
-    let observed = before.map(|before| observe(before, last, ratio));
+    let observed = match before.map(|before| observe(before, last, ratio)) {
+        Some(Seen::Diverging(why)) => return Err(why),
+        Some(Seen::Order(p)) => Some(Ok(p)),
+        Some(Seen::Odd(why)) => Some(Err(why)),
+        None => None,
+    };
     let of_order = |p: f64, observed: bool, doubt: Option<String>| Estimate {
         error: size / (ratio.powf(p) - 1.0),
         order: Some(p),
@@ -80,19 +87,33 @@ pub(super) fn estimate(
     }
 }
 
+/// What three runs tell about their order.
+enum Seen {
+    Order(f64),
+    /// They come closer, but not as an order of convergence says; in words.
+    Odd(String),
+    /// They do not come closer, or hardly; in words.
+    Diverging(String),
+}
+
 /// The order that three runs converge with.
-fn observe(before: f64, last: f64, ratio: f64) -> Result<f64, String> {
+fn observe(before: f64, last: f64, ratio: f64) -> Seen {
     if before == 0.0 {
-        return Err("the two coarsest runs of the refinement do not differ".into());
-    }
-    if before * last < 0.0 {
-        return Err("the refinement's differences change sign".into());
+        return Seen::Odd("the two coarsest runs of the refinement do not differ".into());
     }
     let p = (before.abs() / last.abs()).ln() / ratio.ln();
-    if PLAUSIBLE.contains(&p) {
-        return Ok(p);
+    if p < LEAST {
+        return Seen::Diverging(format!(
+            "the refinement does not converge (observed order {p:.2})"
+        ));
     }
-    Err(format!(
+    if before * last < 0.0 {
+        return Seen::Odd("the refinement's differences change sign".into());
+    }
+    if p <= MOST {
+        return Seen::Order(p);
+    }
+    Seen::Odd(format!(
         "the refinement converges with an observed order of {p:.2}"
     ))
 }

@@ -1,7 +1,7 @@
 //! Does the runs of a study, each in a process of its own, so that a crash or a hang is a result.
 mod process;
 
-pub use process::Account;
+pub use process::{Account, running};
 
 use super::error::StudyError;
 use super::folder::Folder;

@@ -9,11 +9,35 @@ use std::fs::{self, File};
 use std::io;
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// Bounds of the time between two looks at a process: so short that a run's time is known to half a hundredth.
 const LOOK: [Duration; 2] = [Duration::from_micros(500), Duration::from_millis(20)];
+
+/// Processes of runs that have been started and not been waited for.
+static RUNNING: AtomicUsize = AtomicUsize::new(0);
+
+/// Number of processes of runs, of all studies of this program, that may still be there.
+pub fn running() -> usize {
+    RUNNING.load(Ordering::SeqCst)
+}
+
+/// Counts a process for as long as it lives.
+struct Running;
+
+impl Running {
+    fn new() -> Self {
+        RUNNING.fetch_add(1, Ordering::SeqCst);
+        Running
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        RUNNING.fetch_sub(1, Ordering::SeqCst);
+    }
+}
 
 /// `process.json` beside the results of a run: what its process took, and how it ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -75,6 +99,11 @@ impl Process<'_> {
         let ready = &self.folder.runs[self.run];
         let results = self.folder.results(&ready.id, self.repeat);
         clear(&results)?;
+        let _running = Running::new();
+        // Asked after it is counted: whoever interrupts and then sees none running can rely on it.
+        if interrupt.load(Ordering::SeqCst) {
+            return Ok(Ended::Interrupted);
+        }
         let start = Instant::now();
         let mut child = self.start(&results)?;
         let mut stopped_after = None;
@@ -136,15 +165,45 @@ impl Process<'_> {
     }
 }
 
-/// Results of an earlier or unfinished run must not pass for those of this one.
-fn clear(results: &Path) -> Result<(), OutputError> {
+/// Results of an earlier or unfinished run must not pass for those of this one. A folder that does not look like results is
+/// left alone.
+fn clear(results: &Path) -> Result<(), StudyError> {
+    if !removable(results)? {
+        return Err(StudyError::Occupied {
+            path: results.to_path_buf(),
+            what: "should hold results of a run, and holds something else".to_owned(),
+        });
+    }
     match fs::remove_dir_all(results) {
         Err(e) if e.kind() != io::ErrorKind::NotFound => {
-            return Err(OutputError::io("remove the folder", results, e));
+            return Err(OutputError::io("remove the folder", results, e).into());
         }
         _ => {}
     }
-    make_folder(results)
+    Ok(make_folder(results)?)
+}
+
+/// Files that tell a folder of results from others; a job that was killed early leaves no more than its history.
+const OWN: [&str; 4] = ["process.json", "summary.json", "stderr.txt", "history.csv"];
+
+/// It is not there, is empty, or holds a file that this program writes into every folder of results.
+fn removable(results: &Path) -> Result<bool, OutputError> {
+    let entries = match fs::read_dir(results) {
+        Ok(entries) => entries,
+        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(true),
+        Err(e) => return Err(OutputError::io("read the folder", results, e)),
+    };
+    let mut empty = true;
+    for entry in entries {
+        let name = (entry.map_err(|e| OutputError::io("read the folder", results, e))?).file_name();
+        let name = name.to_string_lossy();
+        let own = OWN.contains(&&*name);
+        if own || (name.starts_with("checkpoint.") && name.ends_with(".bin")) {
+            return Ok(true);
+        }
+        empty = false;
+    }
+    Ok(empty)
 }
 
 fn wait(child: &mut Child, results: &Path) -> Result<ExitStatus, OutputError> {

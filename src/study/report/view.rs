@@ -360,8 +360,11 @@ impl<'a> View<'a> {
                 continue;
             };
             let rest = finer(label);
+            let one_over = of_penalty(label);
             let letters: String = rest.chars().take_while(|c| c.is_alphabetic()).collect();
-            let one = if label.series == *name && rest.parse::<f64>().is_ok() {
+            let one = if one_over {
+                "1/penalty".to_owned()
+            } else if label.series == *name && rest.parse::<f64>().is_ok() {
                 name.clone()
             } else {
                 letters
@@ -378,13 +381,23 @@ impl<'a> View<'a> {
     pub fn size_meaning(&self, choice: usize) -> String {
         let name = &self.record.choices[choice];
         match (self.size_word(choice), name.as_str()) {
-            (Some(word), _) if word == *name => word,
+            (Some(word), _) if word == *name || word.starts_with("1/") => word,
             (Some(word), _) => format!("{word} of {name}"),
             (None, "shell") => "relative element size".to_string(),
             (None, "points") => "1/n of the points".to_string(),
             (None, _) => format!("size of {name}"),
         }
     }
+}
+
+/// The label is of a penalty, whose size is the inverse.
+fn of_penalty(label: &Label) -> bool {
+    if !matches!(label.series.as_str(), "penalty" | "automatic penalty") {
+        return false;
+    }
+    let mut words = label.text.split(' ');
+    let factor = words.find_map(|w| w.parse::<f64>().ok()).unwrap_or(1.0);
+    (label.size).is_some_and(|size| (size * factor - 1.0).abs() < 1e-9)
 }
 
 /// What a label says of its size, e.g. "chord 0.1": what follows the name of its series. All of it where the two differ

@@ -54,7 +54,7 @@ fn a_declared_order() {
         // ln 3 / ln 3 is observed where the coarsest run is there: within .5 of what is declared.
         assert!(warnings.is_empty(), "{warnings:?}");
     }
-    let mut bench = three([8.4, 8.0, 8.5]);
+    let mut bench = three([9.0, 8.0, 8.5]);
     let more = refinement(json!({ "ratio": 3.0, "order": 1.5 }));
     let (records, warnings) = bench.measure(of_f_against(json!("end"), finest()), more);
     near(
@@ -69,7 +69,6 @@ fn a_declared_order() {
 fn no_clean_order() {
     for (values, words) in [
         ([8.0, 9.5, 9.0], "change sign"),
-        ([8.0, 8.5, 9.0], "order of 0.00"),
         (
             [8.0, 8.0, 8.5],
             "two coarsest runs of the refinement do not differ",
@@ -90,6 +89,30 @@ fn no_clean_order() {
             &warnings,
             &["`fine`", words, "difference of the two finest"],
         );
+    }
+}
+
+/// Differences that do not fall tell nothing about the limit, with a declared order or without.
+#[test]
+fn refinements_that_do_not_converge() {
+    // Orders ln(d1 / d2) / ln 2 of differences .5 and .5, .5 and 1, -.5 and 1, 1.2 and 1.
+    for (values, order) in [
+        ([8.0, 8.5, 9.0], "0.00"),
+        ([8.0, 8.5, 9.5], "-1.00"),
+        ([9.0, 8.5, 9.5], "-1.00"),
+        ([6.8, 8.0, 9.0], "0.26"),
+    ] {
+        for more in [json!({}), json!({ "order": 2 })] {
+            let mut bench = three(values);
+            let quantity = of_f_against(json!("end"), finest());
+            let (records, warnings) = bench.measure(quantity, refinement(more));
+            let reference = records[0].reference.as_ref().unwrap();
+            assert_eq!(reference.value, Some(values[2]));
+            assert_eq!((reference.error, reference.order), (None, None));
+            assert!(!reference.observed);
+            let words = format!("does not converge (observed order {order})");
+            says(&warnings, &["no estimate", "`fine`", &words]);
+        }
     }
 }
 

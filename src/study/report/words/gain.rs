@@ -131,10 +131,9 @@ fn sentence(base: &str, ratios: &[Ratio], verb: &str, what: &str, as_much: &str)
     let parts: Vec<String> = (ratios.iter().take(4).enumerate())
         .map(|(k, r)| {
             let pairs = several(r.pairs, "pair");
-            let (least, most) = (
-                digits(r.least, figures(r.least)),
-                digits(r.most, figures(r.most)),
-            );
+            // As many for all three, so that the mean lies in the range as printed, too.
+            let figures = figures(r.least);
+            let [mean, least, most] = [r.mean, r.least, r.most].map(|x| digits(x, figures));
             let range = match r.pairs {
                 1 => String::new(),
                 _ if least == most => format!(" ({pairs})"),
@@ -144,11 +143,7 @@ fn sentence(base: &str, ratios: &[Ratio], verb: &str, what: &str, as_much: &str)
                 0 => format!("{what} of {base}"),
                 _ => format!("as {as_much}"),
             };
-            format!(
-                "{} {verb} {} times {compared}{range}",
-                r.name,
-                digits(r.mean, 2)
-            )
+            format!("{} {verb} {mean} times {compared}{range}", r.name)
         })
         .collect();
     let more = match ratios.len().saturating_sub(4) {

@@ -52,9 +52,12 @@ pub(crate) fn of_view(view: &View) -> Vec<Section> {
     out
 }
 
-/// The times were repeated, and every one of the first is less than every one of the second.
+/// Of fewer repeats nobody can tell a time from chance.
+const REPEATS: u32 = 3;
+
+/// The times were repeated often enough, and every one of the first is less than every one of the second.
 fn surely_less(a: &Spread, b: &Spread) -> bool {
-    a.repeats > 1 && b.repeats > 1 && a.most < b.least
+    a.repeats.min(b.repeats) >= REPEATS && a.most < b.least
 }
 
 /// Repeats of both are known and overlap.

@@ -12,6 +12,10 @@ pub(super) fn sentences(view: &View, q: usize) -> Vec<String> {
     for c in view.sized() {
         let word = view.size_word(c);
         let letter = word.as_deref().filter(|w| !w.contains(' ')).unwrap_or("h");
+        let base = match letter.contains('/') {
+            true => format!("({letter})"),
+            false => letter.to_owned(),
+        };
         let mut parts = Vec::new();
         for line in view.lines(c).iter().filter(|l| l.finest) {
             let rate = error_rate(view, line, q, |i| view.size(i, c));
@@ -23,7 +27,7 @@ pub(super) fn sentences(view: &View, q: usize) -> Vec<String> {
                 1 => String::new(),
                 _ => format!(" with {}", view.series[line.series].name),
             };
-            parts.push(format!("as {letter}^{power}{with}"));
+            parts.push(format!("as {base}^{power}{with}"));
         }
         if parts.is_empty() {
             continue;
