@@ -53,7 +53,7 @@ pub struct Joining {
     /// Smallest distance between two points that the source of the patches tells apart, for instance
     /// [`CadFile::resolution`](crate::io::CadFile::resolution). A larger gap between joined edges is reported, and two
     /// patches that leave their edges in the same direction, like sheets on top of each other, are joined over smaller gaps
-    /// only. At least 1e-7 of the size of the set.
+    /// only. At least 1e-6 of the size of the set.
     pub resolution: Option<f64>,
 }
 

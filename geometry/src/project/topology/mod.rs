@@ -21,8 +21,11 @@ pub use report::{Border, EdgeReport, Gap, Joint, Overlap, PartialJoint};
 use super::set::{Joining, PatchSet};
 use crate::surface::Surface;
 
-/// Edges shorter than this share of the size are one point, and gaps below it are rounding.
+/// Edges shorter than this share of the size are one point.
 const POLE: f64 = 1e-7;
+/// Gaps up to this share of the size are rounding: that of the file's digits, and of boundary curves fitted to 1e-7 of their
+/// surface.
+const ROUNDING: f64 = 1e-6;
 /// Default tolerance as a share of the size.
 const TOLERANCE: f64 = 1e-5;
 
@@ -89,7 +92,7 @@ pub(super) fn build<S: Surface>(set: &mut PatchSet<S>, joining: Joining) {
         .collect();
     set.tolerance = tolerance.unwrap_or(TOLERANCE * set.size);
     topology.report.tolerance = set.tolerance;
-    topology.report.resolution = resolution.unwrap_or(0.0).max(POLE * set.size);
+    topology.report.resolution = resolution.unwrap_or(0.0).max(ROUNDING * set.size);
     let chosen: Vec<usize> = (0..edges.len()).filter(|&k| !poles[k]).collect();
     let pairs = matching::pairs(set, edges, &chosen, set.tolerance, tolerance.is_none());
     let touches = matching::link(edges, &poles, pairs, &mut topology.report);

@@ -106,6 +106,6 @@ pub struct EdgeReport {
     pub overlaps: Vec<Overlap>,
     /// The tolerance that edges were joined with.
     pub tolerance: f64,
-    /// Gaps up to this are no gaps: the resolution of the source, at least 1e-7 of the size.
+    /// Gaps up to this are no gaps: the resolution of the source, at least 1e-6 of the size.
     pub resolution: f64,
 }
