@@ -7,6 +7,7 @@ use super::{ProjectArgs, exit, report};
 use crate::output::atomic::AtomicFile;
 use crate::output::peak_memory_mb;
 use crate::scene::nearest_file;
+use covact_geometry::project::Joining;
 use covact_geometry::{Foot, PatchSet};
 use points::{Points, PointsError};
 use rayon::prelude::*;
@@ -85,8 +86,18 @@ fn run(args: &ProjectArgs) -> Result<Account, Stop> {
     let file = cad::read(&args.file, args.unit.as_deref())?;
     let entities: Vec<u32> = file.patches.iter().map(|p| p.entity).collect();
     let patches = file.patches.into_iter().map(|p| p.patch).collect();
-    let set = PatchSet::new(patches, None)
+    let joining = Joining {
+        tolerance: None,
+        resolution: file.resolution,
+    };
+    let set = PatchSet::join(patches, joining)
         .map_err(|e| Stop(format!("{}: {e}", file.path), exit::SCENE))?;
+    if let Err(e) = set.two_sided() {
+        report::warning(&format!(
+            "{}: {e}; distances from it carry no sign",
+            file.path
+        ));
+    }
 
     let mut points: Points<Box<dyn io::BufRead>> = Points::new(match args.points.as_os_str() {
         name if name == "-" => Box::new(io::stdin().lock()),

@@ -40,6 +40,10 @@ impl<S: Surface> PatchSet<S> {
         let location = self.locate(&best);
         let d = q - best.jet.rho;
         let normal = match location {
+            _ if side == 0.0 => {
+                let normal = self.face_normal(&best);
+                normal * if normal.dot(&d) < 0.0 { -1.0 } else { 1.0 }
+            }
             Location::Face => self.face_normal(&best) * side,
             _ => self.pseudo_normal(&best, location),
         };
@@ -50,7 +54,7 @@ impl<S: Surface> PatchSet<S> {
             // The gap of a joint through which the surface goes on smoothly may hold the point aside: it is none of the
             // surface's, nor of the distance from it.
             along
-        } else if along < 0.0 {
+        } else if side != 0.0 && along < 0.0 {
             -distance
         } else {
             distance

@@ -33,7 +33,7 @@ mod turn;
 pub use batch::BatchError;
 pub use neighbour::Neighbour;
 pub use report::{CurvatureExtreme, CurvatureRange};
-pub use set::{PatchSet, PatchSetError};
+pub use set::{Joining, PatchSet, PatchSetError};
 pub use sides::{ComponentSide, SideError, SideOutcome};
 pub use topology::{Border, EdgeReport, Gap, Joint, Overlap, PartialJoint};
 
@@ -110,14 +110,15 @@ pub struct Foot {
     pub status: Status,
     /// Jet of the patch at `xi`; on a crease, of the side the iteration came from.
     pub jet: Jet,
-    /// +1 or -1: `side * (rho_1 x rho_2)` points out of the master on this patch.
+    /// +1 or -1: `side * (rho_1 x rho_2)` points out of the master on this patch. 0 on a component with one side only.
     pub side: f64,
     /// Euclidean distance, >= 0.
     pub distance: f64,
     /// Distance with sign: positive outside, decided by the pseudo-normal at edges and corners. Over the gap between patches
-    /// that join smoothly its part along the normal.
+    /// that join smoothly its part along the normal. Never negative on a component with one side only.
     pub signed_distance: f64,
-    /// Outward unit normal; the angle-weighted pseudo-normal at sharp edges and corners.
+    /// Outward unit normal; the angle-weighted pseudo-normal at sharp edges and corners. On a component with one side only
+    /// the normal of the patch that points to the query's side.
     pub normal: Vec3,
 }
 

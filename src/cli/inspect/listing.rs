@@ -1,5 +1,5 @@
 //! The findings as text.
-use super::findings::{Curvature, EdgeName, Findings, Patch, Surface};
+use super::findings::{Curvature, EdgeName, Findings, GapPlace, Patch, Surface};
 use covact_geometry::io::{FaceBorder, SkipKind};
 use std::fmt::Write;
 
@@ -145,7 +145,7 @@ fn all(out: &mut String, s: &Surface) {
             edge(b)
         );
     }
-    listed(out, "open gap", &s.open_gaps, |g| {
+    let between = |g: &GapPlace| {
         let [a, b] = &g.edges;
         format!(
             "{:.3e} at {}, between {} and {}",
@@ -153,6 +153,18 @@ fn all(out: &mut String, s: &Surface) {
             place(g.at),
             edge(a),
             edge(b)
+        )
+    };
+    let mut bridged: Vec<&GapPlace> = s.bridged.iter().collect();
+    bridged.sort_by(|a, b| b.gap.total_cmp(&a.gap));
+    listed(out, "bridged", &bridged, |g| {
+        format!("gap of {}", between(g))
+    });
+    listed(out, "open gap", &s.open_gaps, between);
+    listed(out, "stacked", &s.stacked, |g| {
+        format!(
+            "{}: not joined, both patches leave the edge in the same direction",
+            between(g)
         )
     });
     listed(out, "overlap", &s.overlaps, |o| {
@@ -177,6 +189,9 @@ fn all(out: &mut String, s: &Surface) {
         let n = p.patches.len();
         let inside = match p.volume {
             Some(volume) => format!("closed, volume {volume:.6}"),
+            None if p.one_sided => {
+                "with one side only: distances from it carry no sign".to_string()
+            }
             None => "open".to_string(),
         };
         format!(

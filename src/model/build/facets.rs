@@ -3,6 +3,7 @@ use super::super::ModelError;
 use super::super::error::{At, cause, number, text};
 use super::super::surface::{FacetModel, SurfaceSet};
 use super::Builder;
+use super::surfaces::joined;
 use crate::limits;
 use crate::scene::{self, FacetKind};
 use covact_geometry::PatchSet;
@@ -54,14 +55,14 @@ impl Builder<'_> {
                 let made = bilinear_facets(&exact, refinement).map_err(told)?;
                 room(made.mesh.facets.len())?;
                 let facets = made.mesh.surfaces().map_err(told)?;
-                let set = PatchSet::new(facets, None).at(here)?;
+                let set = joined(facets).at(here)?;
                 (SurfaceSet::Bilinear(set), Made::of(&made))
             }
             FacetKind::Biquadratic => {
                 let made = biquadratic_facets(&exact, refinement).map_err(told)?;
                 room(made.mesh.facets.len())?;
                 let facets = made.mesh.surfaces().map_err(told)?;
-                let set = PatchSet::new(facets, None).at(here)?;
+                let set = joined(facets).at(here)?;
                 (SurfaceSet::Biquadratic(set), Made::of(&made))
             }
             FacetKind::Smooth => {
@@ -69,7 +70,7 @@ impl Builder<'_> {
                 room(made.mesh.facets.len())?;
                 let patches = smooth_patches(&made.mesh).map_err(told)?;
                 made.deviation = distance_from(&exact, &patches);
-                let set = PatchSet::new(patches, None).at(here)?;
+                let set = joined(patches).at(here)?;
                 (SurfaceSet::Nurbs(set), Made::of(&made))
             }
         };
@@ -176,7 +177,7 @@ impl Builder<'_> {
         let facets = mesh
             .surfaces()
             .map_err(|e| text(field("cad/file"), e.to_string()))?;
-        let set = PatchSet::new(facets, None).at(|| field("cad/file"))?;
+        let set = joined(facets).at(|| field("cad/file"))?;
         let origin: Vec<u32> = (stl.numbers.iter()).flat_map(|&n| [n; 3]).collect();
         Ok(Cut {
             labels: origin

@@ -11,6 +11,7 @@ use super::names::entity_name;
 use super::surfaces::{self, BasePatch, BaseSurface};
 use super::transform::{Affine, matrix_of};
 use super::trimmed::{self, Boundary, Face, Stretch, describe};
+use super::trimmed_areas::{by_parameters, disagreement};
 use super::trimmed_curves::{Tally, add};
 use super::trimmed_extent::grown;
 use super::trimmed_host::Host;
@@ -326,7 +327,7 @@ impl Reader<'_, '_> {
         });
         let note = |text: &str| format!("{}: {text}", describe(entry));
         self.notes.extend(said.iter().map(|text| note(text)));
-        if let Some(grown) = grown.filter(|g| g.continued > 0.0) {
+        if let Some(grown) = grown.as_ref().filter(|g| g.continued > 0.0) {
             let share = grown.continued;
             let text = format!(
                 "its boundary leaves the surface, which was continued by {share:.1e} of its range"
@@ -335,6 +336,10 @@ impl Reader<'_, '_> {
         }
         match trimmed {
             Ok(trimmed) => {
+                let other = (tally.rejected > 0).then(|| by_parameters(&host, face, sort));
+                if let Some(text) = other.and_then(|other| disagreement(&trimmed.patch, &other?)) {
+                    self.notes.push(note(&text));
+                }
                 add(&mut self.out.trims, &tally);
                 let border = match trimmed.patch.trim() {
                     Some(_) => FaceBorder::Trimmed,

@@ -5,7 +5,7 @@
 //! are as NURBS), `trimmed` and `brep` (faces as the file describes them), `groups` (who holds whom, and where copies
 //! stand), and `faces`, which decides what every surface entity becomes. Boundaries become loops of curves in the
 //! parameter plane in `trimmed_loops`, curve by curve in `trimmed_curves`, which projects onto a `trimmed_host` and fits
-//! by `trimmed_fit`.
+//! by `trimmed_fit`; `trimmed_areas` compares the areas that contradicting curves bound.
 
 mod base;
 mod brep;
@@ -29,6 +29,7 @@ mod surface;
 mod surfaces;
 mod transform;
 mod trimmed;
+mod trimmed_areas;
 mod trimmed_curves;
 mod trimmed_extent;
 mod trimmed_fit;

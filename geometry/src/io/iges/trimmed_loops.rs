@@ -141,18 +141,21 @@ fn directed(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Vec<Vec<TrimC
     Ok(stretches)
 }
 
-/// One chain of all stretches. At a pole the turning parameter of the next curve is any: where the chain bounds nothing
-/// (both sides of a seam projected to the same one), it goes on a period away.
+/// One chain of all stretches. At a pole the turning parameter of the next curve is any: of the chains that go on a period
+/// apart from each other there, the one that closes in the parameter plane and bounds an area is meant. (A boundary is a
+/// closed curve of that plane. Space curves alone do not say which way round a pole they go on, and a chain that took the
+/// shorter way may go round the closed surface, or back along the same side of a seam.)
 fn chain_of_area(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Chain, String> {
     let stretches = directed(host, stretches)?;
-    let first = chain(host, &stretches, 0.0)?;
     let whole = host.extent(0) * host.extent(1);
-    if first.turns != [0, 0] || area(&first.curves) > 1e-9 * whole {
+    let bounds = |chain: &Chain| chain.turns == [0, 0] && area(&chain.curves) > 1e-9 * whole;
+    let first = chain(host, &stretches, 0.0)?;
+    if bounds(&first) {
         return Ok(first);
     }
     for turns in [1.0, -1.0] {
         let other = chain(host, &stretches, turns)?;
-        if other.turns == [0, 0] && area(&other.curves) > 1e-9 * whole {
+        if bounds(&other) {
             return Ok(other);
         }
     }
