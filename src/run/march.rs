@@ -19,7 +19,7 @@ use crate::model::error::number;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model, penalty, segments};
 use crate::output::atomic::{make_folder, sweep};
-use crate::output::{History, Phases, Results, RunStatus};
+use crate::output::{History, OutputError, Phases, Results, RunStatus};
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{LinearSolver, Method};
@@ -93,6 +93,14 @@ struct Outputs {
     written: Option<u32>,
 }
 
+impl Outputs {
+    /// Brings the table and the fields to the disk.
+    fn sync(&mut self) -> Result<(), OutputError> {
+        self.table.sync()?;
+        self.results.sync()
+    }
+}
+
 impl<'a, 'm> March<'a, 'm> {
     #[expect(clippy::too_many_arguments)]
     pub fn new(
@@ -143,7 +151,7 @@ impl<'a, 'm> March<'a, 'm> {
             None => self.begin(out, stepping)?,
             Some(kept) => self.go_on(out, stepping, kept)?,
         };
-        self.keep(&committed, &walk, &outputs)?;
+        self.keep(&committed, &walk, &mut outputs)?;
         let ending = self.steps(&mut committed, &mut walk, &mut outputs);
         if let Some(text) = self.watch.drift(self.model) {
             self.warn(text);
@@ -152,13 +160,15 @@ impl<'a, 'm> March<'a, 'm> {
         let reached = |e: &Ending| matches!(e.status, RunStatus::Done | RunStatus::NoContact);
         let flushed = match &ending {
             Ok(ending) if reached(ending) => Ok(()),
-            _ => self.keeper.flush(),
+            _ => self.keeper.flush(|| outputs.sync()),
         };
         if self.scene.output.every > 0 && outputs.written != Some(self.progress.steps) {
             self.write(&mut outputs, &committed)?;
         }
         let ending = ending?;
         flushed?;
+        // Before the summary tells of them.
+        outputs.sync()?;
         Ok(ending)
     }
 
