@@ -24,7 +24,7 @@ use std::process::ExitCode;
 pub mod exit {
     /// A fault of the program itself.
     pub const BUG: u8 = 1;
-    /// The command line is wrong.
+    /// The command line is wrong, or the folder that it names for results is taken.
     pub const USAGE: u8 = 2;
     /// The scene, or a file it names, is wrong.
     pub const SCENE: u8 = 3;
@@ -39,7 +39,7 @@ pub mod exit {
 #[command(
     name = "covact",
     version,
-    after_help = "Exit codes: 0 done, 1 a bug of covact, 2 wrong usage, 3 the scene or a file it names is wrong, \
+    after_help = "Exit codes: 0 done, 1 a bug of covact, 2 wrong usage or a folder that is taken, 3 the scene or a file it names is wrong, \
                   4 not converged or interrupted (what was computed is kept), 5 reading or writing failed."
 )]
 struct Cli {
@@ -81,8 +81,11 @@ struct RunArgs {
     #[arg(short, long, value_name = "FOLDER")]
     out: PathBuf,
     /// Go on with a run that was cut short, from its last accepted step
-    #[arg(long)]
+    #[arg(long, conflicts_with = "force")]
     resume: bool,
+    /// Replace the run that FOLDER holds; files of others stay
+    #[arg(long)]
+    force: bool,
     #[arg(long, value_name = "EFFECT", conflicts_with = "off", help = without::help())]
     without: Vec<String>,
     /// Run only the what-if: the scene without this effect, into FOLDER

@@ -102,7 +102,7 @@ fn lines_without_a_terminal() {
     let folder = tempfile::tempdir().unwrap();
     write_plate(folder.path(), &[("/output", json!({ "every": 0 }))]);
     for set in [false, true] {
-        let mut command = command(folder.path(), &RUN);
+        let mut command = command(folder.path(), &[&RUN[..], &["--force"]].concat());
         if set {
             command.env("NO_COLOR", "1");
         }

@@ -20,7 +20,7 @@ mod tests;
 
 pub use error::CheckpointError;
 pub use fingerprint::Fingerprint;
-pub use slots::Slot;
+pub use slots::{Slot, is_own};
 
 use crate::output::atomic::{overwrite, remove_file, sync_file};
 use crate::output::sum::Sum;
@@ -138,19 +138,9 @@ fn seal(out: &mut Writer, number: u64, put: impl FnOnce(&mut Writer)) {
     out.u64(sum);
 }
 
-/// Makes room for a run that starts anew in `folder`: what it held was of another run. Says whether that was unfinished.
-///
-/// # Errors
-/// What the operating system has against it.
-pub fn start(folder: &Path) -> Result<bool, OutputError> {
-    // An earlier summary must not pass for that of this run, should it be cut short.
-    remove_file(&folder.join("summary.json"))?;
-    let mut unfinished = false;
-    for path in (0..SLOTS).map(|index| place(folder, index)) {
-        unfinished |= path.exists();
-        remove_file(&path)?;
-    }
-    Ok(unfinished)
+/// Where a run may keep checkpoints.
+pub fn places(folder: &Path) -> impl Iterator<Item = PathBuf> + '_ {
+    (0..SLOTS).map(|index| place(folder, index))
 }
 
 /// What there is to continue.
