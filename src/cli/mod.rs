@@ -19,6 +19,7 @@ use clap::{Args, Parser, Subcommand};
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Exit codes of the program; 0 is success.
 pub mod exit {
@@ -232,6 +233,9 @@ struct NewArgs {
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
     std::panic::set_hook(Box::new(report::panic));
+    if !interrupt::survive_large_files() {
+        report::warning("a file that outgrows the limit on its size will end the program");
+    }
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(e) => {
@@ -258,17 +262,28 @@ pub fn main() -> ExitCode {
         Command::New(args) => new::new(&args),
     });
     // The hook has told about the panic.
-    ExitCode::from(result.unwrap_or(exit::BUG))
+    let code = result.unwrap_or(exit::BUG);
+    ExitCode::from(match code {
+        0 if PRINTING_FAILED.load(Ordering::Relaxed) => exit::IO,
+        code => code,
+    })
 }
 
-/// Prints to standard output and returns the exit code. A reader that goes away (`covact schema | head`) is no error.
+/// Whether something could not be printed, which has been told then.
+static PRINTING_FAILED: AtomicBool = AtomicBool::new(false);
+
+/// Prints to standard output and returns the exit code. A reader that goes away (`covact schema | head`) is no error. Whoever
+/// goes on after a failure need not keep the code: the program ends with it unless it has a worse one.
 fn print(text: &str) -> u8 {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => 0,
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => 0,
         Err(e) => {
-            report::error(&format!("cannot write to the standard output: {e}"));
+            // Of many lines that cannot be printed, one error is enough.
+            if !PRINTING_FAILED.swap(true, Ordering::Relaxed) {
+                report::error(&format!("cannot write to the standard output: {e}"));
+            }
             exit::IO
         }
     }

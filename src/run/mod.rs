@@ -31,6 +31,7 @@ pub use error::RunError;
 pub use plan::{PlanReport, plan};
 
 use crate::assembly::Assembler;
+use crate::limits;
 use crate::model;
 use crate::output::{Phases, PlanSummary, RunStatus, Summary, Versions};
 use crate::scene::{LoadedScene, Scene};
@@ -48,7 +49,7 @@ use std::sync::atomic::AtomicBool;
 /// Choices that are the caller's, not the scene's.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RunOptions {
-    /// Threads; 0 takes the scene's number, and where that is 0 too, what the machine has.
+    /// Threads; 0 takes the scene's number, and where that is 0 too, what the machine has. No more are used than that.
     pub threads: usize,
     /// Go on with the run whose checkpoint is in the folder; one that has reached its end is left as it is.
     pub resume: bool,
@@ -84,8 +85,12 @@ pub fn run(
         0 => scene.scene.solution.threads as usize,
         n => n,
     };
+    let (used, capped) = limits::threads(asked);
+    if let Some(text) = capped {
+        observer.event(&Event::Note { text });
+    }
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(asked)
+        .num_threads(used)
         .build()
         .map_err(|e| RunError::scene(scene, "/solution/threads", e.to_string()))?;
     let threads = pool.current_num_threads();
@@ -151,7 +156,8 @@ fn solve(
     let mut solver = solver(&loaded.scene, model.symmetric, threads);
     if let Some(pattern) = assembler.take_new_pattern() {
         let analysis = solver.analyze(&pattern);
-        analysis.map_err(|e| memory::analysis(loaded, &e))?;
+        let factorizing = analysis.map_err(|e| memory::analysis(loaded, &e))?.threads;
+        memory::packing(loaded, factorizing)?;
     }
     if let Some(kept) = &kept {
         solver.expect_indefinite(kept.expects_indefinite);
