@@ -4,6 +4,7 @@ mod rows;
 
 use super::cad::{self, Stop};
 use super::{ProjectArgs, exit, report};
+use crate::limits;
 use crate::output::atomic::AtomicFile;
 use crate::output::peak_memory_mb;
 use crate::scene::nearest_file;
@@ -79,8 +80,12 @@ fn run(args: &ProjectArgs) -> Result<Account, Stop> {
     if args.reach.is_some_and(|r| r.is_nan() || r < 0.0) {
         return Err(Stop("--reach: expected a length >= 0".into(), exit::USAGE));
     }
+    let (threads, capped) = limits::threads(args.threads);
+    if let Some(text) = capped {
+        report::warning(&text);
+    }
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.threads)
+        .num_threads(threads)
         .build()
         .map_err(|e| Stop(format!("cannot start the threads: {e}"), exit::IO))?;
     let file = cad::read(&args.file, args.unit.as_deref())?;

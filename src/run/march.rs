@@ -5,7 +5,7 @@ pub(super) use kept::Kept;
 use kept::lines_behind;
 
 use super::RunError;
-use super::checkpoint::{CheckpointError, Keeper, start};
+use super::checkpoint::{CheckpointError, Keeper};
 use super::commit::{self, FrictionTotals};
 use super::cost::Cost;
 use super::doubt;
@@ -18,8 +18,8 @@ use crate::assembly::{Assembler, Drag, Fault};
 use crate::model::error::number;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model, penalty, segments};
-use crate::output::atomic::{make_folder, sweep};
-use crate::output::{History, Phases, Results, RunStatus};
+use crate::output::atomic::sweep;
+use crate::output::{History, OutputError, Phases, Results, RunStatus};
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{LinearSolver, Method};
@@ -93,6 +93,14 @@ struct Outputs {
     written: Option<u32>,
 }
 
+impl Outputs {
+    /// Brings the table and the fields to the disk.
+    fn sync(&mut self) -> Result<(), OutputError> {
+        self.table.sync()?;
+        self.results.sync()
+    }
+}
+
 impl<'a, 'm> March<'a, 'm> {
     #[expect(clippy::too_many_arguments)]
     pub fn new(
@@ -131,7 +139,12 @@ impl<'a, 'm> March<'a, 'm> {
     }
 
     /// Runs to the end, or to where it gets: from where it was when it was `kept`, else from time 0.
-    pub fn run(&mut self, out: &Path, kept: Option<Kept>) -> Result<Ending, RunError> {
+    pub fn run(
+        &mut self,
+        out: &Path,
+        fields: Fields,
+        kept: Option<Kept>,
+    ) -> Result<Ending, RunError> {
         let settings = &self.scene.solution;
         let stepping = Stepping::new(
             settings.step,
@@ -140,10 +153,10 @@ impl<'a, 'm> March<'a, 'm> {
             &settings.stops,
         );
         let (mut committed, mut walk, mut outputs) = match kept {
-            None => self.begin(out, stepping)?,
-            Some(kept) => self.go_on(out, stepping, kept)?,
+            None => self.begin(out, fields, stepping)?,
+            Some(kept) => self.go_on(out, fields, stepping, kept)?,
         };
-        self.keep(&committed, &walk, &outputs)?;
+        self.keep(&committed, &walk, &mut outputs)?;
         let ending = self.steps(&mut committed, &mut walk, &mut outputs);
         if let Some(text) = self.watch.drift(self.model) {
             self.warn(text);
@@ -152,35 +165,30 @@ impl<'a, 'm> March<'a, 'm> {
         let reached = |e: &Ending| matches!(e.status, RunStatus::Done | RunStatus::NoContact);
         let flushed = match &ending {
             Ok(ending) if reached(ending) => Ok(()),
-            _ => self.keeper.flush(),
+            _ => self.keeper.flush(|| outputs.sync()),
         };
         if self.scene.output.every > 0 && outputs.written != Some(self.progress.steps) {
             self.write(&mut outputs, &committed)?;
         }
         let ending = ending?;
         flushed?;
+        // Before the summary tells of them.
+        outputs.sync()?;
         Ok(ending)
     }
 
-    /// Starts at time 0, in a folder that may hold another run.
+    /// Starts at time 0, in a folder that has been cleared of another run.
     fn begin(
         &mut self,
         out: &Path,
+        fields: Fields,
         stepping: Stepping,
     ) -> Result<(State, Walk, Outputs), RunError> {
-        make_folder(out)?;
         sweep(out);
-        if start(out)? {
-            let text = format!(
-                "an unfinished run in {} is replaced; `--resume` would have continued it",
-                out.display()
-            );
-            self.observer.event(&Event::Note { text });
-        }
         let mut outputs = Outputs {
             results: Results::create(out)?,
             table: History::create(&out.join("history.csv"), history::columns(self.model))?,
-            fields: Fields::new(self.model, &self.scene.output)?,
+            fields,
             written: None,
         };
         for note in outputs.fields.notes() {
@@ -203,6 +211,7 @@ impl<'a, 'm> March<'a, 'm> {
     fn go_on(
         &mut self,
         out: &Path,
+        fields: Fields,
         mut stepping: Stepping,
         kept: Kept,
     ) -> Result<(State, Walk, Outputs), RunError> {
@@ -239,7 +248,6 @@ impl<'a, 'm> March<'a, 'm> {
         };
         self.keeper.go_on(slot);
         sweep(out);
-        let fields = Fields::new(self.model, &self.scene.output)?;
         let parts = fields.part_names(self.model);
         let last = written.last().map(|last| last.0);
         let mut results = Results::resume(out, written, &parts)?;

@@ -7,6 +7,7 @@ mod check;
 mod convert;
 mod inspect;
 mod limits;
+mod occupied;
 mod output;
 mod project;
 mod resume;

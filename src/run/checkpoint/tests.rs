@@ -155,7 +155,10 @@ fn keeper(folder: &Path) -> (Keeper, Fingerprint) {
 }
 
 fn put(keeper: &mut Keeper, x: u64) -> Result<(), OutputError> {
-    keeper.keep(|out| out.section("x", |out| out.u64(x)))
+    match keeper.keep(|out| out.section("x", |out| out.u64(x)))? {
+        true => keeper.flush(|| Ok(())),
+        false => Ok(()),
+    }
 }
 
 /// What is found: the number, where it is, and what is wrong with later ones.

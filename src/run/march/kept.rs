@@ -101,7 +101,7 @@ impl March<'_, '_> {
         &mut self,
         committed: &State,
         walk: &Walk,
-        outputs: &Outputs,
+        outputs: &mut Outputs,
     ) -> Result<(), OutputError> {
         let March {
             scene: _,
@@ -170,6 +170,11 @@ impl March<'_, '_> {
                     out.f64(*time);
                 }
             });
+        });
+        // The table and the fields are brought to the disk as rarely as checkpoints are.
+        let written = written.and_then(|due| match due {
+            true => keeper.flush(|| outputs.sync()),
+            false => Ok(()),
         });
         phases.stop("checkpoint");
         written
