@@ -17,7 +17,7 @@ use super::watch::{Span, Watch, Work};
 use crate::assembly::{Assembler, Drag, Fault};
 use crate::model::error::number;
 use crate::model::state::State;
-use crate::model::{BodyModel, Model, penalty, segments};
+use crate::model::{BodyModel, Model, PairModel, penalty, segments};
 use crate::output::atomic::{make_folder, sweep};
 use crate::output::{History, Phases, Results, RunStatus};
 use crate::scene::Scene;
@@ -47,6 +47,11 @@ fn squeezed(model: &Model, failure: &StepFailure) -> &'static str {
         }
         None => "",
     }
+}
+
+/// Whether a pair is the second of two half passes, which is told with the first.
+fn is_back(pair: &PairModel) -> bool {
+    pair.half.is_some_and(|h| h.back)
 }
 
 /// How a run ended.
@@ -418,8 +423,9 @@ impl<'a, 'm> March<'a, 'm> {
 
     /// How a run that reached its end time ended.
     fn ending(&self) -> Ending {
-        let never: Vec<&str> = (self.touched.iter().zip(&self.model.pairs))
-            .filter(|(touched, _)| !**touched)
+        let pairs = self.model.pairs.iter().enumerate();
+        let never: Vec<&str> = pairs
+            .filter(|(i, pair)| !self.either(&self.touched, *i) && !is_back(pair))
             .map(|(_, pair)| pair.name.as_str())
             .collect();
         if never.is_empty() {
@@ -438,14 +444,21 @@ impl<'a, 'm> March<'a, 'm> {
         }
     }
 
+    /// Whether a flag is set for pair `i`, or for the other pass of a contact of two half passes: of two curved sides one
+    /// may have no slave point where they touch.
+    fn either(&self, flags: &[bool], i: usize) -> bool {
+        flags[i] || self.model.pairs[i].half.is_some_and(|h| flags[h.other])
+    }
+
     fn accept(&mut self, step: u32, end: f64, converged: &Converged) {
         self.progress.steps = step;
         self.progress.time = end;
+        let touching = &converged.totals.touching;
+        let before = std::mem::replace(&mut self.touching, touching.clone());
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let deepest = converged.totals.penetration[i];
-            let touching = converged.totals.touching[i];
-            self.touched[i] |= touching;
-            if std::mem::replace(&mut self.touching[i], touching) && !touching {
+            self.touched[i] |= touching[i];
+            if self.either(&before, i) && !self.either(touching, i) && !is_back(pair) {
                 self.warn(format!(
                     "contact `{}` opened at step {step} (time {}): none of its points touches any more",
                     pair.name,
