@@ -15,6 +15,7 @@ use super::progress::Progress;
 use super::step::Attempts;
 use super::watch::{Span, Watch, Work};
 use crate::assembly::{Assembler, Drag, Fault};
+use crate::contact::law::Penalty;
 use crate::model::error::number;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model, PairModel, penalty, segments};
@@ -529,7 +530,7 @@ impl<'a, 'm> March<'a, 'm> {
     fn gather(&mut self, outputs: &mut Outputs, state: &State, time: f64) -> Result<(), RunError> {
         let assembler = &mut *self.assembler;
         let masters = &mut assembler.masters;
-        (outputs.fields).gather(self.model, &assembler.penalties, masters, state, time)
+        (outputs.fields).gather::<Penalty>(self.model, &assembler.penalties, masters, state, time)
     }
 
     /// The row of an accepted step, and its fields where they are wanted.

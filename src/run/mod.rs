@@ -12,6 +12,8 @@ mod friction_fields;
 mod history;
 mod march;
 mod memory;
+#[cfg(test)]
+mod other_law;
 mod passed;
 mod pieces;
 mod plan;

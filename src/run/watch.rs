@@ -11,6 +11,7 @@
 //!
 //! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
 use crate::assembly::{Assembler, Fault, PointAnswer, SurfaceForce, Totals};
+use crate::contact::law::PairLaw;
 use crate::model::error::number;
 use crate::model::motion::SmallMotion;
 use crate::model::state::State;
@@ -210,10 +211,10 @@ impl Watch {
     ///
     /// # Errors
     /// A motion of a surface without a value at an end of the step, or a point that cannot be evaluated.
-    pub fn work(
+    pub fn work<L: PairLaw>(
         &mut self,
         model: &Model,
-        assembler: &mut Assembler,
+        assembler: &mut Assembler<L>,
         residual: &[f64],
         totals: &Totals,
         span: &Span,
@@ -319,21 +320,21 @@ impl Watch {
     }
 
     /// Work of the normal tractions of points with multipliers that their penalties do not store.
-    fn multipliers(&mut self, model: &Model, assembler: &Assembler) -> f64 {
+    fn multipliers<L: PairLaw>(&mut self, model: &Model, assembler: &Assembler<L>) -> f64 {
         let answers = assembler.answers();
         let mut adjusted = 0.0;
         for (index, pair) in model.pairs.iter().enumerate() {
             let (Some(_), Some(range)) = (&pair.augmentation, pair.history()) else {
                 continue;
             };
-            let half = [self.penalties[index], assembler.penalties[index]].map(|eps| 0.5 * eps);
+            let laws = [self.penalties[index], assembler.penalties[index]].map(L::of);
             let mut sum = 0.0;
             for ((p, was), now) in (pair.points.iter())
                 .zip(&self.tractions[range.clone()])
                 .zip(&answers[range])
             {
                 let [n, g] = traction(now);
-                let stored = half[1] * g * g - half[0] * was[1] * was[1];
+                let stored = laws[1].energy(g) - laws[0].energy(was[1]);
                 sum += (stored - 0.5 * (n + was[0]) * (g - was[1])) * p.area;
             }
             adjusted += pair.share() * sum;
@@ -349,10 +350,10 @@ impl Watch {
     }
 
     /// Energy that penalties put in which were raised in the step, as if they had been at its start.
-    fn raised(
+    fn raised<L: PairLaw>(
         &self,
         model: &Model,
-        assembler: &mut Assembler,
+        assembler: &mut Assembler<L>,
         span: &Span,
         twists: &[Option<Twist>],
     ) -> Result<f64, Fault> {
