@@ -72,6 +72,8 @@ pub(super) struct March<'a, 'm> {
     interrupt: &'a AtomicBool,
     pub phases: Phases,
     pub progress: Progress,
+    /// Iterations of the last accepted step's attempts that failed.
+    failed: u32,
     /// Pairs that were in contact at some accepted step.
     touched: Vec<bool>,
     /// Pairs that are in contact at the last accepted step.
@@ -125,6 +127,7 @@ impl<'a, 'm> March<'a, 'm> {
                 warnings: model.warnings.clone(),
                 ..Progress::default()
             },
+            failed: 0,
             // A pair whose overclosure counts as touching touches from the start.
             touched: (model.pairs.iter())
                 .map(|p| p.overclosure.is_some())
@@ -518,10 +521,16 @@ impl<'a, 'm> March<'a, 'm> {
                 ));
             }
         }
+        let spent = self.progress.iterations - self.progress.counted;
+        self.progress.counted = self.progress.iterations;
+        self.progress.accepted += u64::from(converged.iterations);
+        let failed = spent.saturating_sub(u64::from(converged.iterations));
+        self.failed = u32::try_from(failed).unwrap_or(u32::MAX);
         self.observer.event(&Event::StepAccepted {
             step,
             time: end,
             iterations: converged.iterations,
+            failed_iterations: self.failed,
             active: converged.totals.active,
             penetration: (converged.totals.penetration.iter()).fold(0.0, |a, b| a.max(*b)),
         });
@@ -578,6 +587,7 @@ impl<'a, 'm> March<'a, 'm> {
             time,
             dt: span[1] - span[0],
             cuts,
+            failed: self.failed,
             converged,
             sliding,
             stabilized: (state.stabilized, drag.share),

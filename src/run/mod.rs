@@ -18,6 +18,7 @@ mod passed;
 mod pieces;
 mod plan;
 mod progress;
+mod remedy;
 mod sound;
 mod stabilized;
 mod step;
@@ -167,6 +168,8 @@ fn solve(
     let Progress {
         warnings,
         iterations,
+        accepted,
+        counted: _,
         cuts,
         ping_pongs,
         steps,
@@ -188,6 +191,7 @@ fn solve(
         dofs: model.unknowns(),
         contact_points: model.contact_points(),
         newton_iterations: iterations,
+        failed_iterations: iterations.saturating_sub(accepted),
         factorizations: factorizations
             .map(|(method, count)| (method.name().to_owned(), *count))
             .collect(),
