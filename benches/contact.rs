@@ -98,7 +98,7 @@ fn workloads([set, six]: &[PatchSet; 2]) -> Vec<Workload<'_>> {
             let foot = set.project(x, *hint, f64::INFINITY)?;
             let frame = Frame::new(&foot.jet, foot.side)?;
             let xi3 = foot.signed_distance;
-            Some((frame, xi3, LAW.normal(xi3)))
+            Some((frame, xi3, LAW.response(xi3)))
         })
         .collect();
     assert_eq!(frames.len(), COUNT);

@@ -267,6 +267,7 @@ fn a_summary_reads_back() {
         dofs: 37_800,
         contact_points: 676,
         newton_iterations: 41,
+        failed_iterations: 5,
         factorizations: BTreeMap::from([("llt".to_string(), 40), ("ldlt".to_string(), 1)]),
         steps: 3,
         cuts: 1,

@@ -112,7 +112,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
                 return;
             }
         };
-        let normal = law.normal(xi3);
+        let normal = law.response(xi3);
         // Turned before the tangent is formed: three vectors are less than a matrix from both sides.
         let frame = Frame {
             rho_i: [self.turned(&frame.rho_i[0]), self.turned(&frame.rho_i[1])],
@@ -162,7 +162,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
         tangent: &T,
     ) -> Result<Touch, PointFault> {
         let geometry = self.geometry(local, foot)?;
-        let normal = law.normal(geometry.xi3());
+        let normal = law.response(geometry.xi3());
         let (residual, k) = match self.master.steady(foot, &geometry, law) {
             None => respond_rigid(&geometry, &normal, tangent),
             Some(steady) => respond_steady(&steady, &normal),

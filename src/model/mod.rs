@@ -12,6 +12,7 @@ pub mod loads;
 pub mod master;
 pub mod motion;
 pub mod overclosure;
+pub mod pace;
 pub mod penalty;
 pub mod plan;
 pub mod segments;

@@ -63,6 +63,9 @@ pub struct Summary {
     pub contact_points: usize,
     /// Iterations of all steps, of failed attempts too.
     pub newton_iterations: u64,
+    /// Those of them that failed attempts took.
+    #[serde(default)]
+    pub failed_iterations: u64,
     /// Factorizations by method, `llt`, `ldlt` or `lu`, of failed attempts too.
     #[serde(default)]
     pub factorizations: BTreeMap<String, u64>,

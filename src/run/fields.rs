@@ -4,6 +4,7 @@ use super::averaged::{NodeNow, nodes_now};
 use super::friction_fields::{self, FrictionFields};
 use super::pieces::pieces;
 use crate::contact::friction::history::PointStatus;
+use crate::contact::law::PairLaw;
 use crate::model::master::Masters;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
@@ -113,7 +114,7 @@ impl Fields {
     /// shape functions and areas, `p_I = sum w N_I p / sum w N_I`. With points at nodes that is the point's own
     /// pressure; as the areas are the modelled ones, it is right on symmetry planes too. Where gaps are averaged, they and
     /// the pressures are the nodes' own. Points with history have the pressure and the status that was solved for.
-    pub fn gather(
+    pub fn gather<L: PairLaw>(
         &mut self,
         model: &Model,
         penalties: &[f64],
@@ -140,14 +141,15 @@ impl Fields {
             self.gaps.resize(state.points.len(), f64::NAN);
         }
         let mut first = 0;
-        for (index, (pair, eps_n)) in model.pairs.iter().zip(penalties).enumerate() {
+        for (index, (pair, penalty)) in model.pairs.iter().zip(penalties).enumerate() {
+            let law = L::of(*penalty);
             let master = masters.at(model, index, &state.u, time)?;
             let points = state.slaves(model, index);
             let states = &state.points[first..first + points.len()];
             let fronts = &mut self.front[first..first + points.len()];
             if let Some(nodes) = &pair.averaged {
                 let (now, sunk) = nodes_now(
-                    model, pair, nodes, *eps_n, &master, state, first, time, fronts, &start,
+                    model, pair, nodes, &law, &master, state, first, time, fronts, &start,
                 );
                 self.sunk[index] += sunk;
                 self.pressed[index] = now.iter().map(|n| n.pressed).sum();
@@ -196,7 +198,7 @@ impl Fields {
                 let (closed, pressure) = match history {
                     // The step's own, which may be that of a point slightly above the surface.
                     Some(history) => (history.status != PointStatus::Open, -history.n),
-                    None if gap < 0.0 => (true, -eps_n * gap),
+                    None if gap < 0.0 => (true, -law.response(gap).n),
                     None => (false, 0.0),
                 };
                 let status = match history {

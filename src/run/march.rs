@@ -15,9 +15,10 @@ use super::progress::Progress;
 use super::step::Attempts;
 use super::watch::{Span, Watch, Work};
 use crate::assembly::{Assembler, Drag, Fault};
+use crate::contact::law::Penalty;
 use crate::model::error::number;
 use crate::model::state::State;
-use crate::model::{BodyModel, Model, penalty, segments};
+use crate::model::{BodyModel, Model, PairModel, penalty, segments};
 use crate::output::atomic::sweep;
 use crate::output::{History, OutputError, Phases, Results, RunStatus};
 use crate::scene::Scene;
@@ -49,6 +50,11 @@ fn squeezed(model: &Model, failure: &StepFailure) -> &'static str {
     }
 }
 
+/// Whether a pair is the second of two half passes, which is told with the first.
+fn is_back(pair: &PairModel) -> bool {
+    pair.half.is_some_and(|h| h.back)
+}
+
 /// How a run ended.
 pub(super) struct Ending {
     pub status: RunStatus,
@@ -66,6 +72,8 @@ pub(super) struct March<'a, 'm> {
     interrupt: &'a AtomicBool,
     pub phases: Phases,
     pub progress: Progress,
+    /// Iterations of the last accepted step's attempts that failed.
+    failed: u32,
     /// Pairs that were in contact at some accepted step.
     touched: Vec<bool>,
     /// Pairs that are in contact at the last accepted step.
@@ -127,6 +135,7 @@ impl<'a, 'm> March<'a, 'm> {
                 warnings: model.warnings.clone(),
                 ..Progress::default()
             },
+            failed: 0,
             // A pair whose overclosure counts as touching touches from the start.
             touched: (model.pairs.iter())
                 .map(|p| p.overclosure.is_some())
@@ -426,8 +435,9 @@ impl<'a, 'm> March<'a, 'm> {
 
     /// How a run that reached its end time ended.
     fn ending(&self) -> Ending {
-        let never: Vec<&str> = (self.touched.iter().zip(&self.model.pairs))
-            .filter(|(touched, _)| !**touched)
+        let pairs = self.model.pairs.iter().enumerate();
+        let never: Vec<&str> = pairs
+            .filter(|(i, pair)| !self.either(&self.touched, *i) && !is_back(pair))
             .map(|(_, pair)| pair.name.as_str())
             .collect();
         if never.is_empty() {
@@ -446,14 +456,21 @@ impl<'a, 'm> March<'a, 'm> {
         }
     }
 
+    /// Whether a flag is set for pair `i`, or for the other pass of a contact of two half passes: of two curved sides one
+    /// may have no slave point where they touch.
+    fn either(&self, flags: &[bool], i: usize) -> bool {
+        flags[i] || self.model.pairs[i].half.is_some_and(|h| flags[h.other])
+    }
+
     fn accept(&mut self, step: u32, end: f64, converged: &Converged) {
         self.progress.steps = step;
         self.progress.time = end;
+        let touching = &converged.totals.touching;
+        let before = std::mem::replace(&mut self.touching, touching.clone());
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let deepest = converged.totals.penetration[i];
-            let touching = converged.totals.touching[i];
-            self.touched[i] |= touching;
-            if std::mem::replace(&mut self.touching[i], touching) && !touching {
+            self.touched[i] |= touching[i];
+            if self.either(&before, i) && !self.either(touching, i) && !is_back(pair) {
                 self.warn(format!(
                     "contact `{}` opened at step {step} (time {}): none of its points touches any more",
                     pair.name,
@@ -512,10 +529,16 @@ impl<'a, 'm> March<'a, 'm> {
                 ));
             }
         }
+        let spent = self.progress.iterations - self.progress.counted;
+        self.progress.counted = self.progress.iterations;
+        self.progress.accepted += u64::from(converged.iterations);
+        let failed = spent.saturating_sub(u64::from(converged.iterations));
+        self.failed = u32::try_from(failed).unwrap_or(u32::MAX);
         self.observer.event(&Event::StepAccepted {
             step,
             time: end,
             iterations: converged.iterations,
+            failed_iterations: self.failed,
             active: converged.totals.active,
             penetration: (converged.totals.penetration.iter()).fold(0.0, |a, b| a.max(*b)),
         });
@@ -524,7 +547,7 @@ impl<'a, 'm> March<'a, 'm> {
     fn gather(&mut self, outputs: &mut Outputs, state: &State, time: f64) -> Result<(), RunError> {
         let assembler = &mut *self.assembler;
         let masters = &mut assembler.masters;
-        (outputs.fields).gather(self.model, &assembler.penalties, masters, state, time)
+        (outputs.fields).gather::<Penalty>(self.model, &assembler.penalties, masters, state, time)
     }
 
     /// The row of an accepted step, and its fields where they are wanted.
@@ -572,6 +595,7 @@ impl<'a, 'm> March<'a, 'm> {
             time,
             dt: span[1] - span[0],
             cuts,
+            failed: self.failed,
             converged,
             sliding,
             stabilized: (state.stabilized, drag.share),

@@ -13,10 +13,13 @@ mod friction_fields;
 mod history;
 mod march;
 mod memory;
+#[cfg(test)]
+mod other_law;
 mod passed;
 mod pieces;
 mod plan;
 mod progress;
+mod remedy;
 mod sound;
 mod stabilized;
 mod step;
@@ -203,6 +206,8 @@ fn solve(
     let Progress {
         warnings,
         iterations,
+        accepted,
+        counted: _,
         cuts,
         ping_pongs,
         steps,
@@ -224,6 +229,7 @@ fn solve(
         dofs: model.unknowns(),
         contact_points: model.contact_points(),
         newton_iterations: iterations,
+        failed_iterations: iterations.saturating_sub(accepted),
         factorizations: factorizations
             .map(|(method, count)| (method.name().to_owned(), *count))
             .collect(),

@@ -5,6 +5,7 @@ mod bad_pairs;
 mod bad_text;
 mod check;
 mod convert;
+mod effects;
 mod inspect;
 mod limits;
 mod occupied;

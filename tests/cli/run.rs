@@ -317,3 +317,48 @@ fn a_run_without_hangups() {
     );
     assert_parts(&last, &["\"finished\"", "\"interrupted\""]);
 }
+
+/// A plate that a ball dents in a single step: the first starts of the step fail, and the step ends all the same.
+fn troubled() -> [(&'static str, Value); 4] {
+    [
+        (
+            "/bodies/plate/mesh/plate",
+            json!({"size": [40, 40], "thickness": 0.5, "elements": [8, 8], "origin": [0, 0, 0.75]}),
+        ),
+        ("/surfaces/ball/motion/translation", json!([0, 0, "-10*t"])),
+        ("/contacts/press/penalty", json!({"scaled": 100})),
+        ("/solution", json!({"step": {"initial": 1, "max": 1}})),
+    ]
+}
+
+/// Iterations of failed starts are counted in the table and in the summary, and nothing frightens while all is well.
+#[test]
+fn failed_starts_are_counted_and_told_calmly() {
+    let folder = tempfile::tempdir().unwrap();
+    write_plate(folder.path(), &troubled());
+    let output = run_with(folder.path(), &[]);
+    let told = stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    let history = read_csv(&folder.path().join("out/history.csv")).unwrap();
+    let sum = |name: &str| history.column(name).unwrap().iter().sum::<f64>();
+    let summary = summary(folder.path());
+    let number = |name: &str| summary[name].as_f64().unwrap();
+    let (good, failed) = (sum("iterations"), sum("iterations.failed"));
+    assert!(failed > 0.0, "{told}");
+    assert_eq!(number("newton_iterations"), good + failed);
+    assert_eq!(number("failed_iterations"), failed);
+    let parts = format!(
+        "{} iterations ({failed} of them in attempts that failed)",
+        good + failed
+    );
+    assert!(told.contains(&parts), "{told}");
+    // No step was cut, so that there is nothing to worry about.
+    assert_eq!(number("cuts"), 0.0, "{told}");
+    for word in ["inside out", "again from", "no convergence"] {
+        assert!(!told.contains(word), "{told}");
+    }
+    assert!(
+        told.contains(&format!("({failed} iterations more in other attempts)")),
+        "{told}"
+    );
+}

@@ -2,6 +2,7 @@
 //! along its force until it touches.
 use super::press::Presser;
 use super::{Driven, Model, ModelError, SurfaceModel, text};
+use crate::contact::law::Penalty;
 use crate::model::error::{At, number};
 use crate::scene::Scene;
 use nalgebra::Vector6;
@@ -59,7 +60,7 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
         let name = &surface.name;
         let pointer = || format!("/surfaces/{name}/motion/free");
         resolved(model, entry)?;
-        let mut presser = Presser::new(model, entry, &penalties, &[], &u);
+        let mut presser = Presser::<Penalty>::new(model, entry, &penalties, &[], &u);
         if presser.is_empty() {
             let message =
                 format!("surface `{name}` is driven by force, but takes part in no contact");
@@ -70,7 +71,7 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
             continue;
         }
         let driving = driven.driving(first, &u).at(pointer)?;
-        let Some(e) = Presser::direction(&driving) else {
+        let Some(e) = Presser::<Penalty>::direction(&driving) else {
             let message = format!(
                 "surface `{name}` is driven by force {}, but the force is zero at the end of the first step \
                  (t = {first}): nothing presses it against a body",

@@ -113,6 +113,8 @@ impl March<'_, '_> {
             interrupt: _,
             phases,
             progress,
+            // Of the step that is accepted, and written to the table with it.
+            failed: _,
             touched,
             touching,
             watch,
@@ -196,6 +198,8 @@ fn put_progress(progress: &Progress, out: &mut Writer) {
     let Progress {
         warnings,
         iterations,
+        accepted,
+        counted,
         cuts,
         steps,
         time,
@@ -205,6 +209,8 @@ fn put_progress(progress: &Progress, out: &mut Writer) {
     out.count(warnings.len());
     warnings.iter().for_each(|text| out.text(text));
     out.u64(*iterations);
+    out.u64(*accepted);
+    out.u64(*counted);
     out.u32(*cuts);
     out.u32(*steps);
     out.f64(*time);
@@ -218,6 +224,8 @@ fn take_progress(from: &mut Reader) -> Result<Progress, Malformed> {
     Ok(Progress {
         warnings: warnings?,
         iterations: from.u64()?,
+        accepted: from.u64()?,
+        counted: from.u64()?,
         cuts: from.u32()?,
         steps: from.u32()?,
         time: from.f64()?,
