@@ -1,9 +1,11 @@
 //! A scene from file to results: what `covact run` and `covact check` do, without the printing.
 mod augment;
 mod averaged;
+mod bearing;
 mod check;
 mod checkpoint;
 mod commit;
+mod compliance;
 mod cost;
 mod doubt;
 mod error;
@@ -13,6 +15,7 @@ mod history;
 mod march;
 mod memory;
 mod passed;
+mod peaks;
 mod pieces;
 mod plan;
 mod progress;
@@ -30,7 +33,7 @@ pub use plan::{PlanReport, plan};
 
 use crate::assembly::Assembler;
 use crate::model;
-use crate::output::{Phases, PlanSummary, RunStatus, Summary, Versions};
+use crate::output::{Accuracy, Phases, PlanSummary, RunStatus, Summary, Versions};
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
@@ -150,7 +153,7 @@ fn solve(
         phases,
         cost,
         Keeper::new(out, fingerprint),
-    );
+    )?;
     let (status, reason, failure) = match march.run(out, kept) {
         Ok(ending) => (ending.status, ending.reason, None),
         Err(e) => (RunStatus::Failed, Some(e.to_string()), Some(e)),
@@ -195,6 +198,10 @@ fn solve(
         pattern_rebuilds,
         effects: model.effects.clone(),
         plan,
+        accuracy: Accuracy {
+            contacts: march.peaks.account(&model),
+            ..march.compliance.account(&model)
+        },
         warnings,
         resumed,
         scene,

@@ -2,6 +2,7 @@
 mod augmentation;
 mod ball_by_weight;
 mod body_scenes;
+mod compliance;
 mod die;
 mod draw_bead;
 mod drawn_scenes;
@@ -19,6 +20,7 @@ mod overclosure;
 mod placed;
 mod plate_under_ball;
 mod punch;
+mod resolution;
 mod quadratic;
 mod strip_over_cylinder;
 mod support;
