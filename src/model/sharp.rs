@@ -46,7 +46,11 @@ impl SharpEdges {
         lines.iter().any(|[a, b]| {
             let along = b - a;
             let t = (x - a).dot(&along) / along.norm_squared();
-            let t = if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 };
+            let t = if t.is_finite() {
+                t.clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
             (x - (a + along * t)).norm_squared() <= reach * reach
         })
     }

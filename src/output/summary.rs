@@ -1,7 +1,7 @@
 //! How a run went and what it cost.
-use super::{Accuracy, OutputError};
 use super::atomic::write_whole;
 use super::planned::PlanSummary;
+use super::{Accuracy, OutputError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

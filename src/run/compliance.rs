@@ -150,7 +150,12 @@ impl Compliance {
         let (mut sums, mut measures) = ([0.0; 4], [0.0; 3]);
         from.f64s(&mut sums)?;
         from.f64s(&mut measures)?;
-        [self.largest, self.worst.error, self.worst.energy, self.worst.time] = sums;
+        [
+            self.largest,
+            self.worst.error,
+            self.worst.energy,
+            self.worst.time,
+        ] = sums;
         let [energy, penetration, growth] = measures;
         self.worst.measures = Measures {
             energy,

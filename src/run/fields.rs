@@ -190,7 +190,9 @@ impl Fields {
                 None => None,
             };
             let pose = match (&master, &small) {
-                (MasterNow::Rigid(_), Some(_)) => pair.rigid_master().map(|s| model.surfaces[s].pose(0.0, &state.u)),
+                (MasterNow::Rigid(_), Some(_)) => pair
+                    .rigid_master()
+                    .map(|s| model.surfaces[s].pose(0.0, &state.u)),
                 (MasterNow::Rigid(master), None) => Some(Ok(master.pose)),
                 (MasterNow::Body { .. }, _) => None,
             };

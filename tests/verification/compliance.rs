@@ -97,7 +97,10 @@ fn a_stiffer_penalty_or_augmentation_ends_the_warning() {
             assert!(off.abs() < 5e-3, "t/L {slenderness}: {off}");
             assert_eq!(told(&outcome), Vec::<&String>::new());
             let account = &outcome.summary.accuracy;
-            assert!(account.energy_ratio < 0.01 && account.step > 0, "{account:?}");
+            assert!(
+                account.energy_ratio < 0.01 && account.step > 0,
+                "{account:?}"
+            );
         }
     }
 }
@@ -113,7 +116,10 @@ fn prescribed_penetrations_do_not_count() {
     scene["supports"]["floor"] = json!({ "on": "sheet.bottom", "displacement": { "z": "5e-4*t" } });
     scene["surfaces"]["below"]["motion"]["translation"] = json!([0, 0, "6e-4*t"]);
     let outcome = run(&scene);
-    let (stored, internal) = (outcome.at("energy.contact", 1.0), outcome.at("energy.internal", 1.0));
+    let (stored, internal) = (
+        outcome.at("energy.contact", 1.0),
+        outcome.at("energy.internal", 1.0),
+    );
     assert!(stored > 0.1 * internal, "{stored} {internal}");
     assert_eq!(told(&outcome), Vec::<&String>::new());
     assert!(missing(&outcome).abs() < 5e-3);

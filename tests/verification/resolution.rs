@@ -83,7 +83,10 @@ fn a_sharp_edge_between_slave_points_is_warned_of() {
     // What the warning says: the force is that of the mesh.
     assert!((coarse / fine - 1.0).abs() > 0.01, "{coarse} {fine}");
     for outcome in &outcomes {
-        let told = told(&outcome.summary.warnings, "sharp convex edges of surface `box`");
+        let told = told(
+            &outcome.summary.warnings,
+            "sharp convex edges of surface `box`",
+        );
         assert_eq!(told.len(), 1, "{:?}", outcome.summary.warnings);
         let share = outcome.summary.accuracy.contacts[0].edge_share;
         assert!(share > 0.5, "{share}");
@@ -126,7 +129,12 @@ fn fit([n, m]: [u32; 2], points: Value) -> Value {
     };
     let mut supports = serde_json::Map::new();
     for body in ["inner", "outer"] {
-        for (set, axis) in [("phi_min", "x"), ("phi_max", "z"), ("y_min", "y"), ("y_max", "y")] {
+        for (set, axis) in [
+            ("phi_min", "x"),
+            ("phi_max", "z"),
+            ("y_min", "y"),
+            ("y_max", "y"),
+        ] {
             let support = json!({ "on": format!("{body}.{set}"), "symmetry": axis });
             supports.insert(format!("{body}_{set}"), support);
         }
@@ -166,7 +174,11 @@ fn facets_that_change_an_interference_are_told_by_how_much() {
         let off = pressure(&outcome) / right - 1.0;
         let told = told(&outcome.summary.warnings, "flat facets");
         let expected = off.abs() > 0.01;
-        assert_eq!(told.len(), usize::from(expected), "{elements:?} {off}: {told:?}");
+        assert_eq!(
+            told.len(),
+            usize::from(expected),
+            "{elements:?} {off}: {told:?}"
+        );
         if !expected {
             continue;
         }
@@ -176,7 +188,11 @@ fn facets_that_change_an_interference_are_told_by_how_much() {
             Some(text) => {
                 let number = text.split(' ').next().and_then(|n| n.parse::<f64>().ok());
                 let found = number.expect("a number") / 100.0;
-                assert!(found / off > 1.0 / 3.0 && found / off < 3.0, "{found} {off}: {}", told[0]);
+                assert!(
+                    found / off > 1.0 / 3.0 && found / off < 3.0,
+                    "{found} {off}: {}",
+                    told[0]
+                );
             }
         }
     }
@@ -194,7 +210,14 @@ fn a_tube_shrinks_onto_a_pin_and_check_says_how_it_was_taken() {
     scene["contacts"]["fit"]["slave"] = json!("outer.inner");
     scene["contacts"]["fit"]["master"] = json!("pin");
     let model = model(&scene);
-    assert_eq!(told(&model.notes, "surface `pin`: the slave points start on one side").len(), 1);
+    assert_eq!(
+        told(
+            &model.notes,
+            "surface `pin`: the slave points start on one side"
+        )
+        .len(),
+        1
+    );
     let auto = run(&scene);
     // Lame, plane strain, inner displacement .01 at a = 10, b = 11: p = u E / ((1 + nu) a (1 - 2 nu + (b/a)^2) / ((b/a)^2 - 1)).
     let ratio = 1.21;

@@ -34,10 +34,7 @@ impl Builder<'_> {
             let mut values = Vec::new();
             for (component, value) in &held {
                 let value = (value.as_ref().map(|v| v.compile(&POSITION_AND_TIME))).transpose();
-                values.push((
-                    *component as usize,
-                    value.at(|| pointer("displacement"))?,
-                ));
+                values.push((*component as usize, value.at(|| pointer("displacement"))?));
             }
             let (body, nodes) = self.set_nodes(&support.on, &pointer("on"))?;
             let body = &self.bodies[body];
@@ -63,13 +60,16 @@ impl Builder<'_> {
                     let across = (1.0 - along[*component].powi(2)).sqrt();
                     across > ACROSS && !alike(value.as_ref(), ends, scene.solution.end_time)
                 });
-                let kept = values.iter().any(|(component, _)| {
-                    (1.0 - along[*component].powi(2)).sqrt() > ACROSS
-                });
+                let kept = values
+                    .iter()
+                    .any(|(component, _)| (1.0 - along[*component].powi(2)).sqrt() > ACROSS);
                 fibres += usize::from(kept && !turned);
             }
             if fibres > 0 {
-                let axes: Vec<&str> = held.iter().map(|(c, _)| ["x", "y", "z"][*c as usize]).collect();
+                let axes: Vec<&str> = held
+                    .iter()
+                    .map(|(c, _)| ["x", "y", "z"][*c as usize])
+                    .collect();
                 notes.push(format!(
                     "support `{name}`: it holds both faces of body `{}` alike along {} at {fibres} place(s), so that fibres through \
                      the thickness cannot turn that way: the border is clamped, not hinged. With `mid_surface` they turn freely",
