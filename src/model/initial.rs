@@ -4,7 +4,7 @@ use super::friction::LawNow;
 use super::master::{Master, Masters};
 use super::overclosure::{Deepest, treat};
 use super::sharp::SharpEdges;
-use super::{Model, ModelError, PairModel, SurfaceModel, sagitta};
+use super::{Model, ModelError, PairModel, SurfaceModel, sagitta, sharp};
 use crate::contact::points::SlavePoint;
 use crate::scene::{InitialOverclosure, Scene};
 use covact_geometry::Vec3;
@@ -236,7 +236,7 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
             warnings.extend(without_direction(model, index, &model.surfaces[number]));
             if let Some(edges) = SharpEdges::of(&model.surfaces[number]) {
                 let name = &model.surfaces[number].name;
-                notes.push(edges.note(&pair.name, name, point_spacing(model, index)));
+                notes.push(edges.note(&pair.name, name, sharp::spacing(model, pair)));
             }
         }
         if gap.smallest < -1e-9 * pair.element_size {

@@ -1,7 +1,7 @@
 //! Sharp convex edges of rigid surfaces. Slave points see such an edge only where one of them happens to lie on it: between
 //! two points it sinks into the slave's faces, and what it carries depends on the mesh.
-use super::SurfaceModel;
 use super::error::number;
+use super::{Model, PairModel, SurfaceModel};
 use crate::with_patches;
 use covact_geometry::Vec3;
 
@@ -66,5 +66,24 @@ impl SharpEdges {
             number(spacing),
             number(2.0 * spacing)
         )
+    }
+}
+
+/// Distance of neighbouring slave points of a pair along the longer sides of its faces, on the mean.
+pub fn spacing(model: &Model, pair: &PairModel) -> f64 {
+    let mesh = &model.bodies[pair.body].mesh;
+    let longer = |face: &crate::mesh::Face| {
+        let [a, b, c, d] = mesh.face_corners(*face).map(|n| mesh.nodes[n as usize]);
+        let (u, v) = (b + d - a - c, c + d - a - b);
+        0.5 * u.norm().max(v.norm())
+    };
+    let faces = pair.faces.len().max(1) as f64;
+    let side = pair.faces.iter().map(longer).sum::<f64>() / faces;
+    let at_nodes = pair.points.first().is_none_or(|p| p.count == 1);
+    let quadratic = (pair.faces.first()).is_some_and(|f| mesh.face_nodes(*f).count != [2, 2]);
+    match (at_nodes, quadratic) {
+        (true, false) => side,
+        (true, true) => 0.5 * side,
+        (false, _) => side / (pair.points.len() as f64 / faces).sqrt(),
     }
 }

@@ -2,7 +2,7 @@
 //! [`super::fields::Fields::gather`] makes of what it knows of every point.
 use crate::contact::points::SlavePoint;
 use crate::model::sharp::SharpEdges;
-use crate::model::{Model, initial};
+use crate::model::{Model, sharp};
 use covact_geometry::{Hint, Vec3};
 
 /// Points that carry most of a force are few up to one less than this number.
@@ -113,10 +113,9 @@ impl Bearings {
                 .map(|p| surface(p).is_some_and(|s| s.driven.is_none()))
                 .collect(),
             edges: pairs
-                .enumerate()
-                .map(|(i, p)| {
+                .map(|p| {
                     let edges = SharpEdges::of(surface(p)?)?;
-                    Some((edges, initial::point_spacing(model, i)))
+                    Some((edges, sharp::spacing(model, p)))
                 })
                 .collect(),
         }

@@ -159,6 +159,9 @@ impl<'a, 'm> March<'a, 'm> {
         for text in soft.into_iter().chain(self.peaks.warnings(self.model)) {
             self.warn(text);
         }
+        for text in self.peaks.notes(self.model) {
+            self.observer.event(&Event::Note { text });
+        }
         // Whatever went wrong, the last accepted step is not lost.
         let reached = |e: &Ending| matches!(e.status, RunStatus::Done | RunStatus::NoContact);
         let flushed = match &ending {

@@ -3,7 +3,7 @@
 use super::bearing::{Bearing, Bearings, FEW};
 use crate::model::error::number;
 use crate::model::initial::point_spacing;
-use crate::model::{Model, PairModel};
+use crate::model::{Model, PairModel, sharp};
 use crate::output::ContactAccuracy;
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 
@@ -83,14 +83,18 @@ impl Peaks {
         }
     }
 
-    /// What the user is told at the end of a run.
+    /// What the user is warned of at the end of a run.
     pub fn warnings(&self, model: &Model) -> Vec<String> {
-        let mut out = Vec::new();
-        for (index, (pair, peak)) in model.pairs.iter().zip(&self.0).enumerate() {
-            out.extend(peak.at_edges(model, index, pair));
-            out.extend(peak.few(model, index, pair));
-        }
-        out
+        let pairs = model.pairs.iter().zip(&self.0);
+        let edges = pairs.filter_map(|(pair, peak)| peak.at_edges(model, pair));
+        edges.collect()
+    }
+
+    /// What else is said at the end of a run.
+    pub fn notes(&self, model: &Model) -> Vec<String> {
+        let pairs = model.pairs.iter().zip(&self.0).enumerate();
+        let few = pairs.filter_map(|(index, (pair, peak))| peak.few(model, index, pair));
+        few.collect()
     }
 
     /// The same as it stands in the summary.
@@ -112,8 +116,8 @@ impl Peaks {
 }
 
 impl Peak {
-    fn at_edges(&self, model: &Model, index: usize, pair: &PairModel) -> Option<String> {
-        let spacing = point_spacing(model, index);
+    fn at_edges(&self, model: &Model, pair: &PairModel) -> Option<String> {
+        let spacing = sharp::spacing(model, pair);
         (self.at_edges > AT_EDGES * self.force).then(|| {
             format!(
                 "contact `{}`: {:.0} % of its force at step {} acts within one spacing of slave points ({}) of sharp convex edges \

@@ -10,20 +10,21 @@ use std::collections::BTreeSet;
 
 /// Thickness over the size of the body up to which it is a shell.
 const SHELL: f64 = 0.1;
-/// Part of a held direction that is across a fibre from which on the fibre cannot turn that way.
-const ACROSS: f64 = 0.5;
+/// Part of a held direction that points into the shell, across its border, from which on fibres cannot turn about the border.
+const ACROSS: f64 = 0.7;
 /// Parts of the time of a run at which displacements of both ends of a fibre are compared.
 const TIMES: [f64; 4] = [0.0, 0.31, 0.77, 1.0];
 
 impl Builder<'_> {
-    /// Notes supports that hold the ends of fibres alike across the fibre, and leave another component free. A single
-    /// component that is zero is a symmetry plane, and all three are a clamp: these are meant so.
+    /// Warns of supports that hold both ends of fibres alike in the direction that points into the shell, across its border, and
+    /// leave another component free: the border cannot turn. A single component that is zero is a symmetry plane, and all three
+    /// are a clamp: these are meant so. Held along the border and across the shell alone, as by a diaphragm, fibres turn.
     ///
     /// # Errors
     /// As for [`Builder::supports`].
     pub(super) fn held_fibres(&mut self) -> Result<(), ModelError> {
         let scene = self.scene;
-        let mut notes = Vec::new();
+        let mut warnings = Vec::new();
         for (name, support) in &scene.supports {
             let pointer = |field: &str| format!("/supports/{name}/{field}");
             let held = components(support);
@@ -56,13 +57,24 @@ impl Builder<'_> {
                     continue;
                 }
                 let along = along.normalize();
-                let turned = values.iter().any(|(component, value)| {
-                    let across = (1.0 - along[*component].powi(2)).sqrt();
-                    across > ACROSS && !alike(value.as_ref(), ends, scene.solution.end_time)
+                let beside =
+                    (0..body.mesh.elements()).filter(|&e| body.mesh.element(e).contains(&bottom));
+                let middle = (ends[0] + ends[1]) * 0.5;
+                let inward = beside.fold(Vec3::zeros(), |sum, e| {
+                    let way = body.mesh.element_center(e) - middle;
+                    sum + (way - along * along.dot(&way))
+                        .try_normalize(0.0)
+                        .unwrap_or_default()
                 });
-                let kept = values
-                    .iter()
-                    .any(|(component, _)| (1.0 - along[*component].powi(2)).sqrt() > ACROSS);
+                // Inside of the shell, or at an end of the border, nothing is said.
+                let Some(inward) = inward.try_normalize(0.1) else {
+                    continue;
+                };
+                let turns = |component: usize| inward[component].abs() > ACROSS;
+                let turned = (values.iter()).any(|(component, value)| {
+                    turns(*component) && !alike(value.as_ref(), ends, scene.solution.end_time)
+                });
+                let kept = values.iter().any(|(component, _)| turns(*component));
                 fibres += usize::from(kept && !turned);
             }
             if fibres > 0 {
@@ -70,15 +82,16 @@ impl Builder<'_> {
                     .iter()
                     .map(|(c, _)| ["x", "y", "z"][*c as usize])
                     .collect();
-                notes.push(format!(
+                warnings.push(format!(
                     "support `{name}`: it holds both faces of body `{}` alike along {} at {fibres} place(s), so that fibres through \
-                     the thickness cannot turn that way: the border is clamped, not hinged. With `mid_surface` they turn freely",
+                     the thickness cannot turn: the border is clamped, not hinged, which may change stiffness by a large part. With \
+                     `mid_surface` they turn freely; hold all three components where a clamp is meant",
                     body.name,
                     axes.join(" and ")
                 ));
             }
         }
-        self.notes.extend(notes);
+        self.warnings.extend(warnings);
         Ok(())
     }
 }
