@@ -253,3 +253,25 @@ fn few_points_under_a_force_are_told() {
     assert_eq!(noted(&fine), 0);
     assert_eq!(fine.summary.accuracy.contacts[0].few, None);
 }
+
+/// A tube whose end is held by its rim: a diaphragm across the axis lets fibres turn (the pinched cylinder comes out the same
+/// with `mid_surface`), while what holds both faces along the axis clamps them.
+#[test]
+fn a_border_that_cannot_turn_is_warned_of() {
+    let warnings = |displacement: Value, mid_surface: bool| {
+        let mut scene = fit([8, 8], json!("nodes"));
+        for body in ["inner", "outer"] {
+            scene["bodies"][body]["mesh"]["cylinder_panel"]["y"] = json!([0, 40]);
+        }
+        scene["supports"]["outer_y_max"] = json!({
+            "on": "outer.y_max", "displacement": displacement, "mid_surface": mid_surface
+        });
+        let warnings = model(&scene).warnings;
+        told(&warnings, "support `outer_y_max`: it holds both faces").len()
+    };
+    assert_eq!(warnings(json!({ "x": 0, "z": 0 }), false), 0);
+    assert_eq!(warnings(json!({ "y": 0, "z": 0 }), false), 1);
+    assert_eq!(warnings(json!({ "y": 0, "z": 0 }), true), 0);
+    assert_eq!(warnings(json!({ "x": 0, "y": 0, "z": 0 }), false), 0);
+    assert_eq!(warnings(json!({ "y": 0 }), false), 0);
+}
