@@ -85,6 +85,7 @@ fn listing(found: &CheckReport) -> String {
         for s in &found.supports {
             let text = format!("{} on {} ({} components)", s.kind, s.on, s.components);
             out.line(&s.name, &text);
+            notes(found, "support", &s.name).for_each(|n| out.line("note", n));
         }
     }
     if !found.loads.is_empty() {

@@ -1,6 +1,7 @@
 //! Scene to model.
 mod contacts;
 mod facets;
+mod fibres;
 mod master_faces;
 mod seams;
 mod supports;
@@ -56,6 +57,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     let (pairs, mut surfaces) = builder.contacts()?;
     let held = builder.drive(&mut surfaces)?;
     let supports = builder.supports(&held)?;
+    builder.held_fibres()?;
     let (dead_loads, follower_loads) = builder.loads()?;
     let mut model = Model {
         title: scene.title.clone(),

@@ -12,6 +12,7 @@
 //! deforms them. A rigid surface is written where it is. ParaView draws curved cells as flat ones unless "Nonlinear
 //! Subdivision Level" is raised.
 
+mod accuracy;
 pub mod atomic;
 mod bezier;
 mod body;
@@ -30,6 +31,7 @@ mod surface;
 mod trimmed;
 mod vtu;
 
+pub use accuracy::{Accuracy, ContactAccuracy};
 pub use bezier::{BezierError, MAX_DEGREE, SurfacePiece};
 pub(crate) use body::vtk_cell;
 pub use body::{

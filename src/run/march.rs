@@ -7,10 +7,12 @@ use kept::lines_behind;
 use super::RunError;
 use super::checkpoint::{CheckpointError, Keeper};
 use super::commit::{self, FrictionTotals};
+use super::compliance::{Compliance, StepEnd};
 use super::cost::Cost;
 use super::doubt;
 use super::fields::Fields;
 use super::history;
+use super::peaks::Peaks;
 use super::progress::Progress;
 use super::step::Attempts;
 use super::watch::{Span, Watch, Work};
@@ -79,6 +81,8 @@ pub(super) struct March<'a, 'm> {
     /// Pairs that are in contact at the last accepted step.
     touching: Vec<bool>,
     pub watch: Watch,
+    pub compliance: Compliance,
+    pub peaks: Peaks,
     pub cost: Cost,
     pub keeper: Keeper,
 }
@@ -121,8 +125,9 @@ impl<'a, 'm> March<'a, 'm> {
         phases: Phases,
         cost: Cost,
         keeper: Keeper,
-    ) -> Self {
-        March {
+    ) -> Result<Self, RunError> {
+        let compliance = Compliance::new(model).map_err(|e| RunError::internal(&e))?;
+        Ok(March {
             scene,
             model,
             assembler,
@@ -142,9 +147,11 @@ impl<'a, 'm> March<'a, 'm> {
                 .collect(),
             touching: vec![false; model.pairs.len()],
             watch: Watch::new(model),
+            compliance,
+            peaks: Peaks::new(model),
             cost,
             keeper,
-        }
+        })
     }
 
     /// Runs to the end, or to where it gets: from where it was when it was `kept`, else from time 0.
@@ -169,6 +176,13 @@ impl<'a, 'm> March<'a, 'm> {
         let ending = self.steps(&mut committed, &mut walk, &mut outputs);
         if let Some(text) = self.watch.drift(self.model) {
             self.warn(text);
+        }
+        let soft = (self.compliance).warning(self.model, &self.assembler.penalties);
+        for text in soft.into_iter().chain(self.peaks.warnings(self.model)) {
+            self.warn(text);
+        }
+        for text in self.peaks.notes(self.model) {
+            self.observer.event(&Event::Note { text });
         }
         // Whatever went wrong, the last accepted step is not lost.
         let reached = |e: &Ending| matches!(e.status, RunStatus::Done | RunStatus::NoContact);
@@ -235,6 +249,8 @@ impl<'a, 'm> March<'a, 'm> {
             touched,
             touching,
             watch,
+            compliance,
+            peaks,
             table: mark,
             written,
             factorizations,
@@ -245,7 +261,7 @@ impl<'a, 'm> March<'a, 'm> {
         } = kept;
         self.workspace.factorizations = factorizations;
         (self.progress, self.touched, self.touching) = (progress, touched, touching);
-        self.watch = watch;
+        (self.watch, self.compliance, self.peaks) = (watch, compliance, peaks);
         self.cost.earlier = spent;
         self.cost.earlier.resumed += 1;
         stepping.set_size(dt);
@@ -585,6 +601,17 @@ impl<'a, 'm> March<'a, 'm> {
         if let Some(text) = told {
             self.warn(text);
         }
+        let end = StepEnd {
+            step,
+            time,
+            state,
+            bearings: &outputs.fields.bearings,
+            internal: totals.internal_energy,
+            work: self.watch.external,
+            penalties: &self.assembler.penalties,
+        };
+        (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?;
+        self.peaks.step(step, &outputs.fields.bearings);
         let doubts = doubt::doubts(self.model, &mut self.assembler.masters, state, time);
         for doubt in doubts.map_err(|e| RunError::internal(&e))? {
             self.doubt(doubt);

@@ -1,10 +1,12 @@
 //! A scene from file to results: what `covact run` and `covact check` do, without the printing.
 mod augment;
 mod averaged;
+mod bearing;
 mod check;
 mod checkpoint;
 mod claim;
 mod commit;
+mod compliance;
 mod cost;
 mod doubt;
 mod error;
@@ -16,6 +18,7 @@ mod memory;
 #[cfg(test)]
 mod other_law;
 mod passed;
+mod peaks;
 mod pieces;
 mod plan;
 mod progress;
@@ -36,7 +39,7 @@ pub use plan::{PlanReport, plan};
 use crate::assembly::Assembler;
 use crate::limits;
 use crate::model;
-use crate::output::{Phases, PlanSummary, RunStatus, Summary, Versions};
+use crate::output::{Accuracy, Phases, PlanSummary, RunStatus, Summary, Versions};
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
@@ -191,7 +194,7 @@ fn solve(
         phases,
         cost,
         Keeper::new(out, fingerprint),
-    );
+    )?;
     let (status, reason, failure) = match march.run(out, fields, kept) {
         Ok(ending) => (ending.status, ending.reason, None),
         Err(e) => (RunStatus::Failed, Some(e.to_string()), Some(e)),
@@ -239,6 +242,10 @@ fn solve(
         pattern_rebuilds,
         effects: model.effects.clone(),
         plan,
+        accuracy: Accuracy {
+            contacts: march.peaks.account(&model),
+            ..march.compliance.account(&model)
+        },
         warnings,
         resumed,
         scene,

@@ -23,6 +23,7 @@ mod report;
 mod round;
 mod search;
 pub(crate) mod set;
+mod sharp;
 mod sides;
 mod topology;
 pub(crate) mod tree;
@@ -34,6 +35,7 @@ pub use batch::BatchError;
 pub use neighbour::Neighbour;
 pub use report::{CurvatureExtreme, CurvatureRange};
 pub use set::{Joining, PatchSet, PatchSetError};
+pub use sharp::SharpEdge;
 pub use sides::{ComponentSide, SideError, SideOutcome};
 pub use topology::{Border, EdgeReport, Gap, Joint, Overlap, PartialJoint};
 

@@ -6,7 +6,7 @@ use super::super::{ModelError, PairModel, SurfaceModel};
 use super::Builder;
 use super::facets::Source;
 use crate::contact::closest::ClosestPoint;
-use crate::scene::{self, Side};
+use crate::scene::{self, InitialOverclosure, Side};
 use covact_geometry::project::{ComponentSide, Joining, PatchSetError, SideError, SideOutcome};
 use covact_geometry::{NurbsPatch, PatchSet, Surface, Vec3, io, primitives};
 
@@ -332,7 +332,40 @@ impl Builder<'_> {
             },
         };
         self.undecided(name, (model, labels), &found, "where the slave starts");
+        self.shrunk_on(name, model, &found, &centers);
         Ok(())
+    }
+
+    /// Where a contact shrinks onto the surface, its slave starts on the wrong side: parts of the surface that the slave points
+    /// put on one side and the elements behind them on the other are as the elements say.
+    fn shrunk_on(
+        &mut self,
+        name: &str,
+        model: &mut SurfaceModel,
+        found: &[ComponentSide],
+        centers: &[Vec3],
+    ) {
+        let shrinks = self.scene.contacts.values().any(|c| {
+            c.master == name && matches!(c.initial_overclosure, InitialOverclosure::Shrink { .. })
+        });
+        if !shrinks {
+            return;
+        }
+        let before = model.set.sides().to_vec();
+        if model.set.orient_towards(centers).is_err() {
+            return;
+        }
+        let changed = found.iter().filter(|part| {
+            let patch = model.set.components()[part.component][0];
+            model.set.sides()[patch] != before[patch]
+        });
+        let changed = changed.count();
+        if changed > 0 {
+            self.notes.push(format!(
+                "surface `{name}`: the slave points start on one side of {changed} of its {} unconnected part(s), the elements                  behind them on the other; as a contact asks for `shrink`, the points count as overclosed, and the outside is                  where the elements are: say `side` if that is wrong",
+                found.len()
+            ));
+        }
     }
 
     /// Centres of the elements below the slave faces of all contacts with a surface.
