@@ -25,6 +25,8 @@ mod search;
 pub(crate) mod set;
 mod sharp;
 mod sides;
+mod subdivide;
+mod ties;
 mod topology;
 pub(crate) mod tree;
 mod trimmed;
@@ -82,9 +84,10 @@ pub enum Location {
 /// How sure a foot point is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// Converged; no other point of the set is as close, as far as the search can tell.
+    /// Converged, and no other point of the set is as near up to the tolerance of the search.
     Unique,
-    /// Converged, but the point sits at (or beyond) a centre of curvature: other points are as close.
+    /// Other points are as near: the query lies at a centre of curvature, or as far from another foot elsewhere (halfway
+    /// between two sheets, inside of a box, on an axis of revolution). The one found is given.
     NonUnique,
     /// The iteration did not reach its tolerance; the best point found is given.
     NotConverged,

@@ -3,12 +3,12 @@
 use super::cells::{Cell, cells, cut, parts};
 use super::local::Region;
 use super::piece::Pieces;
-use super::round::Sphere;
+use super::round::{self, Sphere};
 use super::search::Search;
 use super::topology::{self, Topology};
 use super::tree::Tree;
 use super::trimmed::Trimmed;
-use super::{Foot, Hint};
+use super::{Foot, Hint, Status};
 use crate::bezier::BezierPiece;
 use crate::patch::NurbsPatch;
 use crate::surface::{Surface, Vec3};
@@ -252,7 +252,8 @@ impl<S: Surface> PatchSet<S> {
             let own = &pieces.list[grid.first as usize..][..grid.count()];
             Sphere::of(patch, &pieces, own, size)
         });
-        let spheres = spheres.collect();
+        let mut spheres: Vec<Option<Sphere>> = spheres.collect();
+        round::number(&mut spheres);
         let mut set = PatchSet {
             patches,
             grids,
@@ -283,6 +284,21 @@ impl<S: Surface> PatchSet<S> {
     /// size of the set plus 1e-14 of the distance; where several points are equally near, which of them is given
     /// depends on the hint.
     pub fn project(&self, q: &Vec3, hint: Option<Hint>, reach: f64) -> Option<Foot> {
+        self.project_above(q, hint, reach, f64::INFINITY)
+    }
+
+    /// [`project`](Self::project) where points outside need not be certain beyond the distance `above`, as in contact,
+    /// where such a point is open whatever its foot. Where the search takes long because other points are nearly as near
+    /// (on the axis of a surface of revolution), it ends once it has proved that nothing is nearer than `above`, or than
+    /// the foot by more than a ten-thousandth of the distance. The status is then [`Status::NonUnique`], and never
+    /// [`Status::NotConverged`] for a foot whose distance is proved to exceed `above`.
+    pub fn project_above(
+        &self,
+        q: &Vec3,
+        hint: Option<Hint>,
+        reach: f64,
+        above: f64,
+    ) -> Option<Foot> {
         if !(q.x.is_finite() && q.y.is_finite() && q.z.is_finite() && reach >= 0.0) {
             return None;
         }
@@ -290,6 +306,7 @@ impl<S: Surface> PatchSet<S> {
             return None;
         }
         let mut search = Search::new(self, *q, reach);
+        search.above = above;
         if let Some(hint) = hint
             && let Some(patch) = self.patches.get(hint.patch as usize)
             && hint.xi.iter().all(|x| x.is_finite())
@@ -297,9 +314,13 @@ impl<S: Surface> PatchSet<S> {
             search.start(hint.patch, patch.find_span(hint.xi), hint.xi);
         }
         search.run();
-        let complete = search.complete;
+        let (complete, tied) = (search.complete, search.is_tied());
         let (_, local) = search.best?;
-        Some(self.finish(q, local, complete))
+        let mut foot = self.finish(q, local, complete, tied);
+        if complete && foot.status == Status::NotConverged && foot.signed_distance > above {
+            foot.status = Status::NonUnique;
+        }
+        Some(foot)
     }
 
     /// Number of the piece that holds `xi` of a pair of spans.
