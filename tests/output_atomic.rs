@@ -178,7 +178,8 @@ fn what_is_not_a_file_is_left_alone() {
     }
     // A link is replaced, and what it points to stays: a file, a folder, nothing.
     let (target, link) = (inner.join("real.csv"), folder.path().join("link.csv"));
-    let writers: [fn(&Path, &[u8]) -> Result<(), OutputError>; 2] = [write_whole, write_soon];
+    type Writer = fn(&Path, &[u8]) -> Result<(), OutputError>;
+    let writers: [Writer; 2] = [write_whole, write_soon];
     for write in writers {
         fs::write(&target, "old").unwrap();
         for to in [target.as_path(), inner.as_path(), Path::new("nowhere")] {

@@ -238,7 +238,7 @@ fn sector([a, b]: [f64; 2], backwards: bool) -> CadFile {
         )
     };
     let (m, u) = (0.5 * (a + b), [PI / 2.0, PI]);
-    let mut corners = vec![[u[0], m], [u[0], b], [u[1], b], [u[1], a], [u[0], a]];
+    let mut corners = [[u[0], m], [u[0], b], [u[1], b], [u[1], a], [u[0], a]];
     let mut entities = vec![
         entity(144, "3,1,0,5"),
         child(120, &format!("7,9,0.,{TAU:?}")),

@@ -333,7 +333,7 @@ fn askew_box(half: Vec3) -> (PatchSet, [Vec3; 3]) {
 #[test]
 fn feet_as_near_as_each_other_are_not_unique() {
     let mut random = Random(71);
-    let mut check = |set: &PatchSet, tie: Vec3, off: Vec3, what: &str| {
+    let check = |set: &PatchSet, tie: Vec3, off: Vec3, what: &str| {
         let foot = cold(set, tie);
         assert_eq!(foot.status, Status::NonUnique, "{what}: {tie:?} {foot:?}");
         let hint = Some(foot.hint());
