@@ -1,17 +1,20 @@
 //! Reads every CAD file of a folder and prints a line for each: faces read and not read, area, closed bodies.
 //!
-//! `cargo run --release -p covact-geometry --example read_folder -- FOLDER [--notes] [--faces]`
+//! `cargo run --release -p covact-geometry --example read_folder -- FOLDER [--notes] [--faces] [--hidden]`
 
 use covact_geometry::PatchSet;
-use covact_geometry::io::read_path;
+use covact_geometry::io::{ReadOptions, read_path_with};
 use covact_geometry::project::Joining;
 use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let folder = arguments.next().ok_or("expected a folder")?;
-    let options: Vec<String> = arguments.collect();
-    let asked = |option: &str| options.iter().any(|o| o == option);
+    let words: Vec<String> = arguments.collect();
+    let asked = |option: &str| words.iter().any(|w| w == option);
+    let options = ReadOptions {
+        hidden: asked("--hidden"),
+    };
     let entries = std::fs::read_dir(&folder)?.collect::<Result<Vec<_>, _>>()?;
     let mut paths: Vec<PathBuf> = entries.into_iter().map(|e| e.path()).collect();
     paths.sort();
@@ -21,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     for path in paths.iter().filter(|p| p.is_file()) {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let file = match read_path(path) {
+        let file = match read_path_with(path, &options) {
             Ok(file) => file,
             Err(e) => {
                 println!(

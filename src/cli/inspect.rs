@@ -7,12 +7,15 @@ mod stl;
 use super::cad::{Stop, fault};
 use super::{InspectArgs, exit, print, print_json, report};
 use covact_geometry::PatchSet;
-use covact_geometry::io::{CadError, CadFile, read_path, read_stl_path};
+use covact_geometry::io::{CadError, CadFile, ReadOptions, read_path_with, read_stl_path};
 use covact_geometry::project::Joining;
 use findings::Findings;
 
 pub(super) fn inspect(args: &InspectArgs) -> u8 {
-    match read_path(&args.file) {
+    let options = ReadOptions {
+        hidden: args.hidden,
+    };
+    match read_path_with(&args.file, &options) {
         Ok(file) => cad(args, &file),
         Err(e) => {
             // STL holds triangles, no surfaces of CAD: another reader, other findings.

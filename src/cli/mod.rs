@@ -119,6 +119,9 @@ struct InspectArgs {
     /// Print the findings as JSON
     #[arg(long)]
     json: bool,
+    /// Read what the CAD system hides (blanked entities of IGES) as well
+    #[arg(long)]
+    hidden: bool,
 }
 
 #[derive(Debug, Args)]

@@ -52,6 +52,13 @@ fn patches(out: &mut String, f: &Findings) {
              tolerance {:.3e}",
             t.curves, t.exact, t.refitted, t.projected, t.largest_gap, t.largest_error, t.tolerance
         );
+        if t.bridged > 0 {
+            let _ = writeln!(
+                out,
+                "  {} gap(s) between curves of a boundary were closed, the largest {:.1e}",
+                t.bridged, t.largest_bridge
+            );
+        }
         if t.rejected > 0 {
             let _ = writeln!(
                 out,

@@ -11,7 +11,7 @@ use covact_geometry::facet::{
     FacetError, Faceted, Refinement, bilinear_facets, biquadratic_facets, distance_from,
     smooth_patches,
 };
-use covact_geometry::io::{CadError, CadFile, Stl, read_path, read_stl_path};
+use covact_geometry::io::{CadError, CadFile, ReadOptions, Stl, read_path_with, read_stl_path};
 
 /// What the file of a surface holds.
 pub(super) enum Source {
@@ -117,7 +117,8 @@ impl Builder<'_> {
     pub(super) fn read_cad(&self, name: &str, cad: &scene::CadFile) -> Result<Source, ModelError> {
         let field = || format!("/surfaces/{name}/cad/file");
         let path = self.dir.join(&cad.file);
-        let error = match read_path(&path) {
+        let options = ReadOptions { hidden: cad.hidden };
+        let error = match read_path_with(&path, &options) {
             Ok(file) => return Ok(Source::Cad(file)),
             Err(error) => error,
         };

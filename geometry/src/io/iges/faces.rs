@@ -3,11 +3,11 @@
 use super::super::error::Fail;
 use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped, TrimReport};
 use super::brep::{self, Edges};
+use super::bridging::{Bridging, Skip};
 use super::curve;
 use super::directory::Entry;
 use super::grant::Grant;
 use super::groups::{Groups, Placement, members, refusal};
-use super::names::entity_name;
 use super::surfaces::{self, BasePatch, BaseSurface};
 use super::transform::{Affine, matrix_of};
 use super::trimmed::{self, Boundary, Face, Stretch, describe};
@@ -45,9 +45,7 @@ pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
         edges: Edges::default(),
         out: Outcome::default(),
         grant: Grant::of(model),
-        extent: [Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)],
-        bridged: 0.0,
-        open: Vec::new(),
+        bridging: Bridging::new(),
         notes,
     };
     for (index, entry) in model.entries.iter().enumerate() {
@@ -67,10 +65,6 @@ pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
     }
     Ok(reader.out)
 }
-
-/// Gaps between boundary curves up to this share of the size of all surfaces are closed: what whole edges of neighbours may
-/// be apart to be joined.
-const BRIDGED: f64 = 1e-4;
 
 /// Entities that are a surface, or a solid whose boundary would be one.
 fn is_surface(type_number: u32) -> bool {
@@ -95,21 +89,8 @@ struct Reader<'a, 'n> {
     edges: Edges,
     out: Outcome,
     grant: Grant,
-    /// Box around everything that was read or should have been.
-    extent: [Vec3; 2],
-    /// Gaps between boundary curves up to this length are closed.
-    bridged: f64,
-    /// Faces whose boundaries gave no trim, to be read again when the size of the part is known.
-    open: Vec<Skip<'a>>,
+    bridging: Bridging<'a>,
     notes: &'n mut Vec<String>,
-}
-
-/// A surface that was not read.
-struct Skip<'a> {
-    entry: &'a Entry,
-    placed: Vec<Placement>,
-    name: Option<String>,
-    refused: Refusal,
 }
 
 impl<'a> Reader<'a, '_> {
@@ -138,7 +119,7 @@ impl<'a> Reader<'a, '_> {
             self.notes.truncate(before.0);
             self.out.patches.truncate(before.1);
             self.out.trims = before.2;
-            self.open.push(skip);
+            self.bridging.open.push(skip);
         } else {
             self.out.skipped.push(skip.told());
         }
@@ -147,14 +128,8 @@ impl<'a> Reader<'a, '_> {
 
     /// Reads the faces again of which boundaries gave no trim, closing wider gaps now that the size of the part is known.
     fn bridge(&mut self) -> Result<(), Fail> {
-        let [low, high] = self.extent;
-        let size = (high - low).norm();
-        self.bridged = if size.is_finite() {
-            BRIDGED * size
-        } else {
-            0.0
-        };
-        for skip in std::mem::take(&mut self.open) {
+        self.bridging.begin();
+        for skip in std::mem::take(&mut self.bridging.open) {
             let (_, refused) = self.copies(skip.entry, &skip.placed)?;
             if refused.is_some() {
                 // What was said first tells more than what is wrong with a wider tolerance.
@@ -164,12 +139,6 @@ impl<'a> Reader<'a, '_> {
         self.out.patches.sort_by_key(|p| p.entity);
         self.out.skipped.sort_by_key(|s| s.entity);
         Ok(())
-    }
-
-    fn extend(&mut self, points: impl IntoIterator<Item = Vec3>) {
-        for x in points {
-            self.extent = [self.extent[0].inf(&x), self.extent[1].sup(&x)];
-        }
     }
 
     /// Reads every copy; the entity's name, and the first reason why a copy could not be read.
@@ -208,7 +177,8 @@ impl<'a> Reader<'a, '_> {
             match pieces {
                 Ok(pieces) => {
                     let whole = pieces.iter().filter(|p| p.1 == FaceBorder::Natural);
-                    self.extend(whole.flat_map(|p| p.0.bounds()).collect::<Vec<_>>());
+                    self.bridging
+                        .extend(whole.flat_map(|p| p.0.bounds()).collect::<Vec<_>>());
                     self.out
                         .patches
                         .extend(pieces.into_iter().map(|(patch, border)| CadPatch {
@@ -376,13 +346,13 @@ impl<'a> Reader<'a, '_> {
         let global = &self.model.global;
         let resolution = global.resolution.map_or(0.0, |r| r / global.scale);
         match points(face) {
-            points if points.is_empty() => self.extend(base.patch.bounds()),
-            points => self.extend(points),
+            points if points.is_empty() => self.bridging.extend(base.patch.bounds()),
+            points => self.bridging.extend(points),
         }
         let grown = grown(base, face, resolution, &self.grant);
         let patch = grown.as_ref().map_or(&base.patch, |g| &g.patch);
         let host = Host::new(patch, &base.parameters, resolution, &self.grant);
-        let host = host.bridging(self.bridged);
+        let host = host.bridging(self.bridging.length);
         let mut tally = Tally {
             tolerance: host.agree,
             ..Tally::default()
@@ -464,20 +434,6 @@ impl<'a> Reader<'a, '_> {
             return Ok(Some(name));
         }
         Ok(own_name(entry))
-    }
-}
-
-impl Skip<'_> {
-    fn told(self) -> Skipped {
-        let entry = self.entry;
-        let name = self.name.or_else(|| own_name(entry));
-        Skipped {
-            entity: entry.number,
-            type_number: entry.type_number,
-            name: name.unwrap_or_else(|| entity_name(entry.type_number, entry.form).to_owned()),
-            kind: self.refused.0,
-            reason: self.refused.1,
-        }
     }
 }
 

@@ -7,8 +7,9 @@ use super::Model;
 use crate::{NurbsCurve, NurbsPatch};
 use std::cell::Cell;
 
-/// Evaluations of a surface granted to any file, and for each of its lines of parameter data. Files of CAD systems spend at
-/// most 0.2 of it, those whose borders are given in the parameter plane next to nothing.
+/// Evaluations of a surface granted to any file, and for each of its lines of parameter data. A span of a space curve takes a
+/// hundred projections to be followed on its surface, some 6,000 evaluations, and stands on one to three lines. Borders that
+/// are given in the parameter plane take next to nothing.
 const WORK: [u64; 2] = [500_000, 4_000];
 /// Evaluations that one projection counts for.
 pub const FOOT: u64 = 64;

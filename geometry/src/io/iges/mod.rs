@@ -3,12 +3,14 @@
 //! The layers, one file each: 80-column `records` in their sections, `params` (free-format values with their places in
 //! the file), the `global` section, the `directory`, then entities: `transform` (124), `curve*` and `surfaces` (what they
 //! are as NURBS), `trimmed` and `brep` (faces as the file describes them), `groups` (who holds whom, and where copies
-//! stand), and `faces`, which decides what every surface entity becomes. Boundaries become loops of curves in the
+//! stand), and `faces`, which decides what every surface entity becomes (`bridging` holds what waits for the size of the part,
+//! `drawing` says what a file without surfaces is). Boundaries become loops of curves in the
 //! parameter plane in `trimmed_loops`, curve by curve in `trimmed_curves`, which projects onto a `trimmed_host` and fits
 //! by `trimmed_fit`; `trimmed_areas` compares the areas that contradicting curves bound.
 
 mod base;
 mod brep;
+mod bridging;
 mod curve;
 mod curve_conic;
 mod curve_map;

@@ -4,6 +4,7 @@
 //! interpolation in that space is exact. Of any other patch the space is refined until interpolation keeps a tolerance.
 
 use crate::basis::{Basis, WIDTH};
+use crate::frame::Frame;
 use crate::{NurbsPatch, Vec3};
 use nalgebra::{DMatrix, Dyn, LU};
 use std::cell::Cell;
@@ -168,11 +169,9 @@ impl Fit {
         let mut total = 0.0f64;
         let mut check = |xi: [f64; 2]| {
             let off = (patch.point(xi) - at(xi)?).norm();
-            // Beyond the radius of curvature the surface turns back.
-            if let (Some(a), Some(b)) = (normal(space, xi), normal(&patch, xi))
-                && a.dot(&b) < 0.0
-                && off < 1e-3 * distance.abs()
-            {
+            // Beyond a radius of curvature the surface turns back.
+            let curved = Frame::new(&space.jet(xi), 1.0).map(|f| f.principal_curvatures());
+            if curved.is_some_and(|k| k.iter().any(|k| distance * k >= 1.0)) {
                 let reason = "the distance is larger than its radius of curvature";
                 return Err(reason.to_owned());
             }
