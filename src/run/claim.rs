@@ -291,7 +291,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("file");
         for (text, own) in [
-            ("step,time,dt\n1,2,3\n", true),
+            ("step,time,dt,iterations\n1,2,3,4\n", true),
             ("step,time,dt,\"force.a,b.x\"\n", true),
             ("step,time,salary\n1,2,3\n", false),
             ("x,y\n", false),

@@ -380,10 +380,11 @@ mod tests {
             .error()
         };
         // A contact as stiff as the body takes half of the force.
+        let all = |part: f64| assert!((part - 1.0).abs() < 1e-15, "{part}");
         assert_eq!(of(1.0, 0.0), 0.5);
-        assert_eq!(of(f64::INFINITY, 0.0), 1.0);
-        assert_eq!(of(0.0, 1.0), 1.0);
-        assert_eq!(of(0.0, f64::INFINITY), 1.0);
+        all(of(f64::INFINITY, 0.0));
+        all(of(0.0, 1.0));
+        all(of(0.0, f64::INFINITY));
         assert!((of(0.0, 1e-3) / 3e-4 - 1.0).abs() < 1e-3);
     }
 }

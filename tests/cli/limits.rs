@@ -211,7 +211,7 @@ fn driven_surfaces_beyond_all_measure() {
             ),
         ]
     };
-    for (radius, height) in [(1e17, 1e17), (25.0, 1e30), (1e17, 0.0), (1e300, 1e300)] {
+    for (radius, height) in [(1e17, 1e17), (25.0, 1e30), (1e17, 0.0)] {
         plate_refused(
             &sphere(radius, height),
             "/surfaces/ball",
@@ -222,6 +222,12 @@ fn driven_surfaces_beyond_all_measure() {
             ],
         );
     }
+    // Squares of lengths overflow.
+    plate_refused(
+        &sphere(1e300, 1e300),
+        "/surfaces/ball",
+        &["the patches have no usable size"],
+    );
     let folder = tempfile::tempdir().unwrap();
     write_plate(folder.path(), &sphere(1e5, 1e5 + 1.5));
     let check = covact(folder.path(), &["check", "scene.json"]);

@@ -7,8 +7,10 @@ use std::path::Path;
 /// All files of the results.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let name = |p: &Path| p.file_name().unwrap().to_str().unwrap().to_owned();
+    // The lock that a killed run leaves behind is nothing of the run's results.
     (std::fs::read_dir(folder.join("out")).unwrap())
         .map(|e| e.unwrap().path())
+        .filter(|p| name(p) != ".covact.lock")
         .map(|p| (name(&p), std::fs::read(&p).unwrap()))
         .collect()
 }

@@ -140,9 +140,9 @@ fn other_versions_are_named() {
     let error = opened(program).unwrap_err();
     assert!(matches!(&error, CheckpointError::Version { found, .. } if found.starts_with('9')));
     assert!(
-        error
-            .to_string()
-            .contains("continue it with that version, or run without `--resume`")
+        error.to_string().contains(
+            "continue it with that version, or run with `--force` in place of `--resume`"
+        )
     );
 }
 
