@@ -299,16 +299,11 @@ impl<S: Surface> PatchSet<S> {
 /// Whether the Hessian over the metric has an eigenvalue of (nearly) zero in the free directions: `1 - xi3 kappa` of
 /// one of the principal curvatures.
 fn focal(s: &Local) -> bool {
-    nearly_focal(s, 1e-7)
-}
-
-/// [`focal`] up to a given share of the largest eigenvalue.
-pub(super) fn nearly_focal(s: &Local, share: f64) -> bool {
     if let Some(place) = s.trim {
         return place.focal;
     }
     let (f, a) = (&s.hessian, &s.metric);
-    let flat = |value: f64, largest: f64| value <= share * largest.max(1.0);
+    let flat = |value: f64, largest: f64| value <= 1e-7 * largest.max(1.0);
     match s.active {
         [true, true] => false,
         [false, true] => a[0] > 0.0 && flat(f[0] / a[0], 0.0),

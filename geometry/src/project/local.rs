@@ -89,8 +89,8 @@ pub(super) struct TrimPlace {
 }
 
 const ITERATIONS: usize = 40;
-/// Halvings of a step before it is given up.
-const HALVINGS: usize = 12;
+/// Halvings of a step before it is given up: enough for weights that change the surface within a millionth of its domain.
+const HALVINGS: usize = 30;
 /// Share of the predicted decrease that a step must reach (Armijo).
 const ARMIJO: f64 = 1e-4;
 
@@ -361,7 +361,8 @@ impl<S: Surface> PatchSet<S> {
         }
     }
 
-    fn polish_face(&self, q: &Vec3, s: &mut Local) {
+    /// [`polish`](Self::polish) of a point that no trim holds, whatever the trim of its patch.
+    pub(super) fn polish_face(&self, q: &Vec3, s: &mut Local) {
         let start = *s;
         if start.converged {
             self.refine(q, s);

@@ -13,6 +13,8 @@ pub(super) const ROUGH: f64 = 1e-10;
 /// Parts into which pieces may be cut within one query before the search gives up proving.
 pub(super) const MOST_PARTS: usize = 100_000;
 
+/// Pieces that are kept to be looked at for a point as near as the best one.
+const MOST_KEPT: usize = 16;
 /// Parts after which a search that need not be certain settles for less; see [`Search::loosen`].
 const GRANT: usize = 256;
 
@@ -35,6 +37,9 @@ pub(super) struct Search<'a, S: Surface> {
     slack: f64,
     /// A point as near as the best one, elsewhere, with its distance.
     tie: Option<(Vec3, f64)>,
+    /// Pieces that hold nothing nearer, but perhaps a point as near; how many.
+    kept: [u32; MOST_KEPT],
+    kept_count: usize,
     /// Whether nothing in the block of cells around the best point is nearer.
     settled: bool,
     parts: usize,
@@ -44,6 +49,8 @@ pub(super) struct Search<'a, S: Surface> {
     loose: bool,
     /// Whether a start from a sphere's centre was made.
     centred: bool,
+    /// Whether the best point is as exact as it can be.
+    sharp: bool,
 }
 
 impl<'a, S: Surface> Search<'a, S> {
@@ -59,11 +66,14 @@ impl<'a, S: Surface> Search<'a, S> {
             wide: reach,
             slack: 0.0,
             tie: None,
+            kept: [0; MOST_KEPT],
+            kept_count: 0,
             settled: false,
             parts: 0,
             complete: true,
             loose: false,
             centred: false,
+            sharp: false,
         };
         search.slack = search.least_slack();
         search
@@ -100,6 +110,7 @@ impl<'a, S: Surface> Search<'a, S> {
         let tolerance = 1e-11 * set.size + 1e-14 * distance;
         self.distance = distance;
         self.loose = false;
+        self.sharp = false;
         (self.cut, self.wide) = if distance > tolerance {
             (distance - tolerance, (distance + tolerance).min(self.reach))
         } else {
@@ -121,6 +132,20 @@ impl<'a, S: Surface> Search<'a, S> {
         if let Some((_, before)) = before {
             self.compare(&before);
         }
+    }
+
+    /// Brings the best point to machine precision, before its distance is made the bound of a subdivision: on and next to
+    /// the surface the tolerance of local iterations is more than the one of proofs.
+    pub fn sharpen(&mut self) {
+        let Some((piece, mut local)) = self
+            .best
+            .filter(|best| !self.sharp && best.1.trim.is_none())
+        else {
+            return;
+        };
+        self.set.polish_face(&self.q, &mut local);
+        self.offer(piece, &local);
+        self.sharp = true;
     }
 
     /// Takes note of a point that is as near as the best one, unless it belongs to the same foot.
@@ -253,6 +278,9 @@ impl<'a, S: Surface> Search<'a, S> {
             self.piece(piece);
             if self.done() { -1.0 } else { self.limit2() }
         });
+        if self.kept_count > 0 {
+            self.look_for_ties();
+        }
     }
 
     /// Whether nothing in a piece is as near as the best point, by the tests that need no iteration.
@@ -274,12 +302,34 @@ impl<'a, S: Surface> Search<'a, S> {
                     || outside_ball(self.set.pieces.net(piece), piece.degree, &self.q, c))
     }
 
-    /// Whether a piece that the ball of everything as near reaches holds nothing nearer. A point as near would have been
-    /// found by an iteration, or is looked for no more.
-    fn only_as_near(&self, piece: &Piece, id: u32) -> bool {
-        let slab = &self.set.cells[id as usize].slab;
-        (self.wide == self.cut || self.is_around_best(|rho| slab.distance2(rho)))
-            && outside_ball(self.set.pieces.net(piece), piece.degree, &self.q, self.cut)
+    /// Whether a piece that the ball of everything as near reaches is proved to hold nothing nearer; it is kept then.
+    fn only_as_near(&mut self, piece: &Piece, id: u32) -> bool {
+        let found = self.best.is_some()
+            && self.cut < self.wide
+            && outside_ball(self.set.pieces.net(piece), piece.degree, &self.q, self.cut);
+        if found && self.kept_count < MOST_KEPT {
+            self.kept[self.kept_count] = id;
+            self.kept_count += 1;
+        }
+        found
+    }
+
+    /// Looks for a point as near as the best one in the pieces that were kept.
+    #[cold]
+    #[inline(never)]
+    fn look_for_ties(&mut self) {
+        let set = self.set;
+        for k in 0..self.kept_count {
+            let id = self.kept[k];
+            let piece = &set.pieces.list[id as usize];
+            if self.tie.is_some() || self.cut < 0.0 {
+                return;
+            }
+            if !self.excluded(piece, id) {
+                let u = set.cells[id as usize].seed(&self.q);
+                self.iterate(id, piece, u.map(|u| u.clamp(0.05, 0.95)));
+            }
+        }
     }
 
     /// Whether something is so close to the best point that what is as near there is no other foot, by a measure of its
@@ -311,6 +361,12 @@ impl<'a, S: Surface> Search<'a, S> {
                 || set.spheres[best.region.patch as usize]
                     .as_ref()
                     .is_some_and(own))
+    }
+
+    /// Whether the sphere that a patch lies on is nowhere nearer than the best point.
+    pub fn is_on_nearest_sphere(&self, patch: u32) -> bool {
+        let sphere = self.set.spheres[patch as usize];
+        sphere.is_some_and(|sphere| sphere.distance(&self.q) >= self.cut)
     }
 
     /// Next to the centre of a sphere distances differ by less than bounds over pieces tell: starts at the point nearest to
@@ -348,7 +404,7 @@ impl<'a, S: Surface> Search<'a, S> {
         let cell = &set.cells[id as usize];
         let own = |search: &Self| search.best.as_ref().is_some_and(|best| best.0 == id);
         if self.settled || !own(self) {
-            if self.excluded(piece, id) {
+            if self.excluded(piece, id) || self.only_as_near(piece, id) {
                 return;
             }
             if self.best.is_none() {
@@ -367,9 +423,6 @@ impl<'a, S: Surface> Search<'a, S> {
             }
         };
         if cell.settles_itself(&self.q, &local, self.slack) || self.cut < 0.0 {
-            return;
-        }
-        if !own(self) && self.only_as_near(piece, id) {
             return;
         }
         let known = self.known(piece, &local);

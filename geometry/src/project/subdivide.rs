@@ -3,7 +3,6 @@
 use super::ball::outside_ball;
 use super::cells::holds;
 use super::convex::Convex;
-use super::finish::nearly_focal;
 use super::local::{Local, Region};
 use super::piece::{Piece, box_distance2, hull, split};
 use super::search::{ROUGH, Search, at, region_of};
@@ -15,9 +14,11 @@ thread_local! {
     static ROOM: Cell<Room> = Cell::new(Room::default());
 }
 
-/// Where the Hessian over the metric has an eigenvalue below this, points as near as a foot may lie farther from it than
-/// [`Search::is_around_best`] says.
-const NEARLY_FOCAL: f64 = 1e-4;
+/// Parts that have been cut this often are proved by their convexity. Before, the bound on third derivatives about a
+/// stationary point costs less.
+const DEEP: u32 = 8;
+/// Parts of a piece on a sphere that are looked at where the sphere proves that none is nearer.
+const MOST_ON_SPHERE: usize = 1000;
 
 /// Parts that are still to be looked at, with their control nets one after the other.
 #[derive(Default)]
@@ -107,9 +108,16 @@ impl<S: Surface> Search<'_, S> {
         });
         let mut known = [first; 4];
         let mut latest = 0;
+        let mut tries = 0;
         while let Some(part) = parts.pop() {
             let start = parts.len() * size;
+            self.sharpen();
             if self.cut() < 0.0 || self.behind_sphere(piece.patch) {
+                return;
+            }
+            // The sphere itself proves that nothing is nearer; what is left is which of its points is taken.
+            tries += 1;
+            if tries > MOST_ON_SPHERE && self.is_on_nearest_sphere(piece.patch) {
                 return;
             }
             if known.iter().any(|k| covered(piece, k, &part.range)) {
@@ -124,35 +132,47 @@ impl<S: Surface> Search<'_, S> {
             }
             let extent = extents(own, piece.degree);
             let smallest = extent[0].max(extent[1]) < 1e-8 * self.set.size;
+            let middle = part.range.map(|[a, b]| 0.5 * (a + b));
             let mut found = None;
-            let width = [0, 1].map(|k| {
-                let [a, b] = part.range[k];
-                (b - a) * (piece.domain[k][1] - piece.domain[k][0])
-            });
-            let convex = Convex::of_part(own, piece.degree, width);
-            let [low, high] = hull(own);
-            let d = self.q - (low + high) * 0.5;
-            let promising = convex.holds(&d, [0.0; 2], [0.0; 2], 0.0);
-            if promising || smallest {
-                let local = self.iterate_part(piece, &part.range);
+            let deep = part.depth >= DEEP;
+            if deep || smallest {
+                let width = [0, 1].map(|k| {
+                    let [a, b] = part.range[k];
+                    (b - a) * (piece.domain[k][1] - piece.domain[k][0])
+                });
+                let convex = Convex::of_part(own, piece.degree, width);
+                let [low, high] = hull(own);
+                let d = self.q - (low + high) * 0.5;
+                let promising = convex.holds(&d, [0.0; 2], [0.0; 2], 0.0);
+                // Far from convex an iteration takes long and seldom ends in the part: first see whether it is worth it.
+                let local = match promising || smallest {
+                    true => self.iterate_part(piece, &part.range),
+                    false => {
+                        let xi = at(piece, middle);
+                        self.set.state(&self.q, &region_of(piece), xi, piece.span)
+                    }
+                };
                 if let Some(stationary) = self.offer_part(id, piece, &local) {
                     latest = (latest + 1) % known.len();
                     known[latest] = stationary;
                 }
-                if smallest
-                    || local.converged && holds(&convex, &self.q, &local, &width, self.slack())
-                {
+                let settled = || holds(&convex, &self.q, &local, &width, self.slack());
+                if smallest || promising && local.converged && settled() {
                     continue;
                 }
-                found = Some(local);
+                found = promising.then_some(local);
             } else if part.depth > 0 && part.depth % 2 == 0 {
-                // Far from convex an iteration takes long and seldom ends in the part: first see whether it is worth it.
-                let middle = at(piece, part.range.map(|[a, b]| 0.5 * (a + b)));
-                let region = region_of(piece);
-                let local = self.set.state(&self.q, &region, middle, piece.span);
-                if let Some(stationary) = self.offer_part(id, piece, &local) {
+                let local = self.iterate(id, piece, middle);
+                let stationary = self.known(piece, &local);
+                let apart = |k: &Known| {
+                    (k.at[0] - stationary.at[0]).abs() + (k.at[1] - stationary.at[1]).abs() > 1e-9
+                };
+                if known.iter().all(apart) {
                     latest = (latest + 1) % known.len();
                     known[latest] = stationary;
+                }
+                if covered(piece, &stationary, &part.range) {
+                    continue;
                 }
             }
             let dir = usize::from(extent[1] > extent[0]);
@@ -166,8 +186,12 @@ impl<S: Surface> Search<'_, S> {
                 let [a, b] = piece.domain[dir];
                 (s.xi[dir] - a) / (b - a)
             };
+            let near = || {
+                let often = part.depth < 4 || deep;
+                often.then(|| inner(known[latest].at[dir])).flatten()
+            };
             let t = (found.as_ref().and_then(|s| inner(place(s))))
-                .or_else(|| inner(known[latest].at[dir]))
+                .or_else(near)
                 .unwrap_or(0.5);
             nets.resize(start + 2 * size, [0.0; 4]);
             let (left, right) = nets[start..].split_at_mut(size);
@@ -184,17 +208,10 @@ impl<S: Surface> Search<'_, S> {
         }
     }
 
-    /// Whether a part is proved to hold nothing as near as the best point. Around that point itself, and where it is at a
-    /// centre of curvature, nothing nearer is all that can be proved.
+    /// Whether a part is proved to hold nothing nearer than the best point.
     fn misses(&self, net: &[[f64; 4]], degree: [usize; 2]) -> bool {
         let [low, high] = hull(net);
-        let lenient = self.wide() == self.cut()
-            || self.is_around_best(|rho| box_distance2(rho, &low, &high))
-            || self
-                .best
-                .as_ref()
-                .is_some_and(|(_, best)| nearly_focal(best, NEARLY_FOCAL));
-        let c = if lenient { self.cut() } else { self.wide() };
+        let c = self.cut();
         c.is_finite()
             && (box_distance2(&self.q, &low, &high) >= c * c
                 || outside_ball(net, degree, &self.q, c))
