@@ -326,7 +326,7 @@ fn faces_without_usable_boundaries_are_skipped() {
     for (entities, reason) in [
         (
             vec![entity(144, "3,1,0,5"), child(128, FLAT), child(126, "0")],
-            "no curve on a surface",
+            "neither a curve on a surface (142) nor a boundary (141)",
         ),
         (
             vec![

@@ -121,7 +121,7 @@ fn a_surface_with_one_side_takes_no_contact() {
         "/surfaces/ball",
         &[
             "surface `ball` has one side only",
-            "entity 1 and entity 8 cannot be given the same outside",
+            "entity 4 and entity 5 cannot be given the same outside",
             "contact needs an outside",
         ],
     );
