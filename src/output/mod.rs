@@ -39,7 +39,7 @@ pub use columns::{COLUMNS, ColumnDoc, column_table, documented};
 pub use compare::{Compared, Comparison, Cost, compare};
 pub use error::OutputError;
 pub use history::{History, HistoryMark, Table, read_csv};
-pub use measure::{Phases, cpu_seconds, peak_memory_mb};
+pub use measure::peak_memory_mb;
 pub use planned::{EffectSummary, PairSummary, PlanSummary};
 pub use results::{PartNames, Results, SurfaceState, file_stem};
 pub use summary::{RunStatus, SUMMARY_FORMAT, Summary, Versions};

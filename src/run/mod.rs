@@ -29,8 +29,9 @@ pub use error::RunError;
 pub use plan::{PlanReport, plan};
 
 use crate::assembly::Assembler;
+use crate::clock::Phases;
 use crate::model;
-use crate::output::{Phases, PlanSummary, RunStatus, Summary, Versions};
+use crate::output::{PlanSummary, RunStatus, Summary, Versions};
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
