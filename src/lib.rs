@@ -1,6 +1,7 @@
 //! Contact between finite-element shells and CAD surfaces.
 
 pub mod assembly;
+pub mod clock;
 pub mod contact;
 pub mod gauntlet;
 pub mod limits;

@@ -43,7 +43,7 @@ pub use compare::{Compared, Comparison, Cost, compare};
 pub use error::OutputError;
 pub use history::{History, HistoryMark, Table, read_csv};
 pub use lock::{FolderLock, Holder, LOCK_FILE, Locking};
-pub use measure::{Phases, cpu_seconds, peak_memory_mb};
+pub use measure::peak_memory_mb;
 pub use planned::{EffectSummary, PairSummary, PlanSummary};
 pub(crate) use results::{COLLECTIONS, listed};
 pub use results::{PartNames, Results, SurfaceState, file_stem};

@@ -37,9 +37,10 @@ pub use error::RunError;
 pub use plan::{PlanReport, plan};
 
 use crate::assembly::Assembler;
+use crate::clock::Phases;
 use crate::limits;
 use crate::model;
-use crate::output::{Accuracy, Phases, PlanSummary, RunStatus, Summary, Versions};
+use crate::output::{Accuracy, PlanSummary, RunStatus, Summary, Versions};
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
