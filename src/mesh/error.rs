@@ -1,5 +1,5 @@
 //! Errors of mesh generators, readers, checks and sets.
-use crate::limits::Shortage;
+use crate::machine::memory::Shortage;
 use std::fmt;
 use std::path::PathBuf;
 

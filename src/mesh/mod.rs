@@ -14,12 +14,13 @@ mod measure;
 mod orient;
 mod raw;
 mod sets;
+pub(crate) mod size;
 mod spacing;
 mod topology;
 
 pub use build::build;
 pub use error::{MAX_NODES, MeshError, Position, SetKind};
-pub use face::FaceNodes;
+pub use face::tributary_areas;
 pub use facets::MeshFacets;
 pub use generate::{block, cylinder_panel, plate, sphere_panel};
 pub use gmsh::read_gmsh;
