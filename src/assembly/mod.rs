@@ -3,6 +3,6 @@ mod assembler;
 
 pub(crate) use assembler::sizes;
 pub use assembler::{
-    Assembler, AssemblerMemory, CouplingMemory, Drag, Factored, Fault, Line, Manner, MemoryError,
-    Needed, PairForce, PointAnswer, Quadratic, SurfaceForce, Totals,
+    Assembler, AssemblerMemory, CouplingMemory, Drag, Factored, Fault, Line, Linearization,
+    MemoryError, Needed, PairForce, PointAnswer, Quadratic, SurfaceForce, Totals,
 };

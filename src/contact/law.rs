@@ -48,7 +48,7 @@ pub trait PairLaw: NormalLaw + Copy + Send + 'static {
 }
 
 /// What the gaps of slave points are measured from: chosen outside the loop over points, nothing where there is none.
-pub trait GapOffset: Sync {
+pub trait PointLaw: Sync {
     /// What the law is, for a penalty.
     const KIND: LawKind;
     /// The law of a single point.
@@ -63,7 +63,7 @@ pub trait GapOffset: Sync {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoOffset;
 
-impl GapOffset for NoOffset {
+impl PointLaw for NoOffset {
     const KIND: LawKind = LawKind::Penalty;
     type Law<L: PairLaw> = L;
     #[inline]
@@ -95,7 +95,7 @@ impl Offsets<'_> {
     }
 }
 
-impl GapOffset for Offsets<'_> {
+impl PointLaw for Offsets<'_> {
     const KIND: LawKind = LawKind::Offset;
     type Law<L: PairLaw> = Shifted<L>;
     #[inline]
@@ -154,7 +154,7 @@ pub struct Multipliers<'a> {
     pub offsets: Option<Offsets<'a>>,
 }
 
-impl GapOffset for Multipliers<'_> {
+impl PointLaw for Multipliers<'_> {
     const KIND: LawKind = LawKind::Multipliers;
     type Law<L: PairLaw> = Augmented<L>;
     #[inline]
@@ -182,7 +182,7 @@ pub struct Held<'a> {
     pub offsets: Option<Offsets<'a>>,
 }
 
-impl GapOffset for Held<'_> {
+impl PointLaw for Held<'_> {
     const KIND: LawKind = LawKind::Held;
     type Law<L: PairLaw> = Augmented<L>;
     #[inline]

@@ -1,5 +1,5 @@
 //! What a case found.
-use super::Broken;
+use super::CaseError;
 use serde::Serialize;
 
 /// A number held against its limit.
@@ -42,7 +42,7 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    pub(super) fn broken(broken: Broken) -> Self {
+    pub(super) fn broken(broken: CaseError) -> Self {
         Verdict {
             checks: Vec::new(),
             iterations: 0,

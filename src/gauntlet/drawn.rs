@@ -7,7 +7,7 @@
 //!      +-----------+        |_ x
 //!   ~~~~~ surface "tool" ~~~~~
 //! ```
-use super::{Broken, Outcome};
+use super::{CaseError, Outcome};
 use serde_json::{Value, json};
 
 /// Equal steps of `dt` to `end`, at a tolerance below what is compared; the step is cut where it must be, never enlarged.
@@ -84,16 +84,16 @@ pub const FRICTION: [&str; 7] = [
 ///
 /// # Errors
 /// Different numbers of steps, or a column that is zero throughout: it would compare nothing.
-pub fn difference(a: &Outcome, b: &Outcome, columns: &[&str]) -> Result<f64, Broken> {
+pub fn difference(a: &Outcome, b: &Outcome, columns: &[&str]) -> Result<f64, CaseError> {
     let mut largest = 0.0f64;
     for name in columns {
         let (a, b) = (a.column(name)?, b.column(name)?);
         if a.len() != b.len() {
-            return Err(Broken::new("the runs took different steps"));
+            return Err(CaseError::new("the runs took different steps"));
         }
         let scale = a.iter().fold(0.0f64, |s, v| s.max(v.abs()));
         if scale == 0.0 {
-            return Err(Broken::new(format!("`{name}` is zero throughout")));
+            return Err(CaseError::new(format!("`{name}` is zero throughout")));
         }
         let off = a.iter().zip(&b).map(|(a, b)| (a - b).abs() / scale);
         largest = off.fold(largest, f64::max);
@@ -105,12 +105,12 @@ pub fn difference(a: &Outcome, b: &Outcome, columns: &[&str]) -> Result<f64, Bro
 ///
 /// # Errors
 /// No such step, or a column that is zero at `a`.
-pub fn change(outcome: &Outcome, columns: &[&str], a: f64, b: f64) -> Result<f64, Broken> {
+pub fn change(outcome: &Outcome, columns: &[&str], a: f64, b: f64) -> Result<f64, CaseError> {
     let mut largest = 0.0f64;
     for name in columns {
         let (at, then) = (outcome.at(name, a)?, outcome.at(name, b)?);
         if at == 0.0 {
-            return Err(Broken::new(format!("`{name}` is zero at {a}")));
+            return Err(CaseError::new(format!("`{name}` is zero at {a}")));
         }
         largest = largest.max(((then - at) / at).abs());
     }

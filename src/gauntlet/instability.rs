@@ -1,5 +1,5 @@
 //! Equilibria that are lost, and bodies that nothing holds until they touch.
-use super::{Broken, Case, Group, Trial};
+use super::{Case, CaseError, Group, Trial};
 use serde_json::{Value, json};
 
 pub const GROUP: Group = Group {
@@ -89,7 +89,7 @@ fn fixed(n: u32) -> Value {
     json!({ "initial": step, "max": step, "adaptive": false })
 }
 
-fn rests_on_contact_alone(trial: &mut Trial) -> Result<(), Broken> {
+fn rests_on_contact_alone(trial: &mut Trial) -> Result<(), CaseError> {
     trial.iterations(250);
     let dead = [json!(0), json!(0), json!(-10)];
     let outcome = trial.done(&cube(0.2, dead.clone(), 0.0))?;
@@ -122,7 +122,7 @@ fn pulled(pull: f64) -> Value {
     scene
 }
 
-fn first_touch_flush(trial: &mut Trial) -> Result<(), Broken> {
+fn first_touch_flush(trial: &mut Trial) -> Result<(), CaseError> {
     trial.iterations(200);
     let outcome = trial.done(&pulled(2.9))?;
     trial.equal("floor force", outcome.last("force.floor.z")?, 10.0, 1e-7);
@@ -137,7 +137,7 @@ fn first_touch_flush(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn slides_off(trial: &mut Trial) -> Result<(), Broken> {
+fn slides_off(trial: &mut Trial) -> Result<(), CaseError> {
     trial.iterations(250);
     let outcome = trial.solve(&pulled(6.0))?;
     let status = outcome.summary.status.name();
@@ -153,7 +153,7 @@ fn slides_off(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn refused_without(trial: &mut Trial) -> Result<(), Broken> {
+fn refused_without(trial: &mut Trial) -> Result<(), CaseError> {
     let mut scene = pulled(2.9);
     scene["solution"]["stabilization"] = json!("none");
     let message = trial.refused(&scene)?;
@@ -189,7 +189,7 @@ fn refused_without(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn between_tools(trial: &mut Trial) -> Result<(), Broken> {
+fn between_tools(trial: &mut Trial) -> Result<(), CaseError> {
     trial.iterations(60);
     let newton = json!({ "tolerance": 1e-9 });
     let mut scene = cube(0.05, [json!(0), json!(0), json!(0)], 0.0);
@@ -229,7 +229,7 @@ fn between_tools(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn soft_support(trial: &mut Trial) -> Result<(), Broken> {
+fn soft_support(trial: &mut Trial) -> Result<(), CaseError> {
     trial.iterations(1400);
     let mut scene = json!({
         "covact": 1,
@@ -288,7 +288,7 @@ fn roof(n: u32, thickness: f64) -> Value {
     })
 }
 
-fn snap_under_dead_load(trial: &mut Trial) -> Result<(), Broken> {
+fn snap_under_dead_load(trial: &mut Trial) -> Result<(), CaseError> {
     trial.iterations(700);
     let mut prescribed = roof(4, 12.7);
     prescribed["supports"]["push"] = json!({
@@ -340,7 +340,7 @@ fn snap_under_dead_load(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn snap_under_tool(trial: &mut Trial) -> Result<(), Broken> {
+fn snap_under_tool(trial: &mut Trial) -> Result<(), CaseError> {
     trial.iterations(400);
     let mut scene = roof(8, 6.35);
     scene["surfaces"] = json!({ "tool": {

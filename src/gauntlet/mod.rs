@@ -18,7 +18,7 @@ mod trial;
 
 pub use check::{Check, Verdict};
 pub use table::{markdown, plain};
-pub use trial::{Broken, Outcome, Trial};
+pub use trial::{CaseError, Outcome, Trial};
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
@@ -32,7 +32,7 @@ pub struct Case {
     pub what: &'static str,
     /// What is right, and where that is known from, in a few words.
     pub right: &'static str,
-    run: fn(&mut Trial) -> Result<(), Broken>,
+    run: fn(&mut Trial) -> Result<(), CaseError>,
 }
 
 /// Cases of one kind.
@@ -76,7 +76,7 @@ impl Case {
         let broken = match ended {
             Ok(Ok(())) => None,
             Ok(Err(broken)) => Some(broken),
-            Err(_) => Some(Broken::new("the program panicked")),
+            Err(_) => Some(CaseError::new("the program panicked")),
         };
         trial.verdict(broken, start.elapsed().as_secs_f64())
     }

@@ -14,11 +14,11 @@ use tempfile::TempDir;
 /// Why a case could not go on, in words.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
-pub struct Broken(pub(super) String);
+pub struct CaseError(pub(super) String);
 
-impl Broken {
+impl CaseError {
     pub fn new(text: impl Into<String>) -> Self {
-        Broken(text.into())
+        CaseError(text.into())
     }
 }
 
@@ -51,12 +51,12 @@ impl Observer for Recorder {
     }
 }
 
-fn temporary() -> Result<TempDir, Broken> {
-    tempfile::tempdir().map_err(|e| Broken(format!("no temporary folder: {e}")))
+fn temporary() -> Result<TempDir, CaseError> {
+    tempfile::tempdir().map_err(|e| CaseError(format!("no temporary folder: {e}")))
 }
 
 impl Trial {
-    pub(super) fn new(threads: u32) -> Result<Self, Broken> {
+    pub(super) fn new(threads: u32) -> Result<Self, CaseError> {
         Ok(Trial {
             threads,
             checks: Vec::new(),
@@ -66,7 +66,7 @@ impl Trial {
         })
     }
 
-    pub(super) fn verdict(self, broken: Option<Broken>, seconds: f64) -> Verdict {
+    pub(super) fn verdict(self, broken: Option<CaseError>, seconds: f64) -> Verdict {
         Verdict {
             checks: self.checks,
             iterations: self.iterations,
@@ -85,14 +85,14 @@ impl Trial {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn cad(&self, name: &str, patches: Vec<NurbsPatch>) -> Result<String, Broken> {
+    pub fn cad(&self, name: &str, patches: Vec<NurbsPatch>) -> Result<String, CaseError> {
         let unit = LengthUnit {
             name: "mm".into(),
             to_metre: Some(1e-3),
         };
         let file = format!("{name}.json");
-        let text = write_json(&CadFile::of(patches, unit)).map_err(|e| Broken(e.to_string()))?;
-        std::fs::write(self.folder().join(&file), text).map_err(|e| Broken(e.to_string()))?;
+        let text = write_json(&CadFile::of(patches, unit)).map_err(|e| CaseError(e.to_string()))?;
+        std::fs::write(self.folder().join(&file), text).map_err(|e| CaseError(e.to_string()))?;
         Ok(file)
     }
 
@@ -100,21 +100,21 @@ impl Trial {
     ///
     /// # Errors
     /// The scene is refused, or its results cannot be written.
-    pub fn solve(&mut self, scene: &Value) -> Result<Outcome, Broken> {
+    pub fn solve(&mut self, scene: &Value) -> Result<Outcome, CaseError> {
         self.run(scene)?
-            .map_err(|e| Broken(format!("the scene is refused: {e}")))
+            .map_err(|e| CaseError(format!("the scene is refused: {e}")))
     }
 
     /// Runs a scene that must reach its end, in contact.
     ///
     /// # Errors
     /// It does not.
-    pub fn done(&mut self, scene: &Value) -> Result<Outcome, Broken> {
+    pub fn done(&mut self, scene: &Value) -> Result<Outcome, CaseError> {
         let outcome = self.solve(scene)?;
         if outcome.summary.status != RunStatus::Done {
             let reason = outcome.summary.reason.unwrap_or_default();
             let status = outcome.summary.status.name();
-            return Err(Broken(format!("the run ended as {status}: {reason}")));
+            return Err(CaseError(format!("the run ended as {status}: {reason}")));
         }
         Ok(outcome)
     }
@@ -123,13 +123,13 @@ impl Trial {
     ///
     /// # Errors
     /// It is not.
-    pub fn refused(&mut self, scene: &Value) -> Result<String, Broken> {
+    pub fn refused(&mut self, scene: &Value) -> Result<String, CaseError> {
         match self.run(scene)? {
             Err(RunError::Scene { message, help, .. }) => {
                 Ok([message, help.unwrap_or_default()].join(" "))
             }
-            Err(e) => Err(Broken(e.to_string())),
-            Ok(outcome) => Err(Broken(format!(
+            Err(e) => Err(CaseError(e.to_string())),
+            Ok(outcome) => Err(CaseError(format!(
                 "the scene is not refused, but ended as {}",
                 outcome.summary.status.name()
             ))),
@@ -137,19 +137,19 @@ impl Trial {
     }
 
     /// Reads, checks and runs a scene as `covact run` does.
-    fn run(&mut self, scene: &Value) -> Result<Result<Outcome, RunError>, Broken> {
+    fn run(&mut self, scene: &Value) -> Result<Result<Outcome, RunError>, CaseError> {
         let mut scene = scene.clone();
         if scene["solution"]["threads"].is_null() {
             scene["solution"]["threads"] = self.threads.into();
         }
         let text = scene.to_string();
         let mut loaded =
-            scene::parse(&text, "scene.json").map_err(|e| Broken(format!("the scene: {e}")))?;
+            scene::parse(&text, "scene.json").map_err(|e| CaseError(format!("the scene: {e}")))?;
         loaded.dir = self.folder().to_path_buf();
         let problems = scene::check(&loaded);
         if !problems.is_empty() {
             let error = loaded.error(problems);
-            return Err(Broken(format!("the scene: {error}")));
+            return Err(CaseError(format!("the scene: {error}")));
         }
         let folder = temporary()?;
         let mut recorder = Recorder::default();
@@ -161,7 +161,7 @@ impl Trial {
         };
         self.iterations += summary.newton_iterations;
         let history =
-            read_csv(&folder.path().join("history.csv")).map_err(|e| Broken(e.to_string()))?;
+            read_csv(&folder.path().join("history.csv")).map_err(|e| CaseError(e.to_string()))?;
         Ok(Ok(Outcome {
             summary,
             history,
@@ -214,28 +214,28 @@ impl Outcome {
     ///
     /// # Errors
     /// There is none of this name.
-    pub fn column(&self, name: &str) -> Result<Vec<f64>, Broken> {
+    pub fn column(&self, name: &str) -> Result<Vec<f64>, CaseError> {
         let found = self.history.column(name);
-        found.ok_or_else(|| Broken(format!("the history has no column `{name}`")))
+        found.ok_or_else(|| CaseError(format!("the history has no column `{name}`")))
     }
 
     /// The last value of a column.
     ///
     /// # Errors
     /// There is none of this name, or no step.
-    pub fn last(&self, name: &str) -> Result<f64, Broken> {
+    pub fn last(&self, name: &str) -> Result<f64, CaseError> {
         let found = self.column(name)?.last().copied();
-        found.ok_or_else(|| Broken::new("no step was accepted"))
+        found.ok_or_else(|| CaseError::new("no step was accepted"))
     }
 
     /// Value of a column at the step that ends at `time`.
     ///
     /// # Errors
     /// There is no such column or step.
-    pub fn at(&self, name: &str, time: f64) -> Result<f64, Broken> {
+    pub fn at(&self, name: &str, time: f64) -> Result<f64, CaseError> {
         let times = self.column("time")?;
         let row = times.iter().position(|t| (t - time).abs() < 1e-9);
-        let row = row.ok_or_else(|| Broken(format!("no step ends at {time}")))?;
+        let row = row.ok_or_else(|| CaseError(format!("no step ends at {time}")))?;
         Ok(self.column(name)?[row])
     }
 

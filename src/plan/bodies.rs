@@ -1,5 +1,5 @@
 //! The effects of bodies: their elements and materials.
-use super::{Effect, Held, Per, Teller, why};
+use super::{Effect, Held, Per, Reporter, why};
 use crate::assembly::sizes;
 use crate::model::BodyModel;
 use crate::model::EffectKind;
@@ -11,7 +11,7 @@ fn listed<'n>(names: impl Iterator<Item = &'n str>) -> String {
     names.join(", ")
 }
 
-impl Teller<'_> {
+impl Reporter<'_> {
     fn described(&self) -> impl Iterator<Item = (&BodyModel, &Body)> {
         let scene = &self.loaded.scene;
         (self.model.bodies.iter()).filter_map(|b| Some((b, scene.bodies.get(&b.name)?)))

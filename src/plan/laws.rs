@@ -1,6 +1,6 @@
 //! The laws of a contact pair beyond the penalty: friction, augmentation, offset, overclosures.
-use super::pairs::Told;
-use super::{Effect, Held, Per, Teller, why};
+use super::pairs::EffectContext;
+use super::{Effect, Held, Per, Reporter, why};
 use crate::assembly::sizes;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::kind::FrictionKind;
@@ -9,8 +9,8 @@ use crate::model::PairModel;
 use crate::model::error::number;
 use crate::scene::{Friction, InitialOverclosure, Penalty};
 
-impl Teller<'_> {
-    pub(super) fn friction(&self, told: &Told) -> Vec<Effect> {
+impl Reporter<'_> {
+    pub(super) fn friction(&self, told: &EffectContext) -> Vec<Effect> {
         let pair = told.pair;
         let off = |word: &str| match &told.contact.friction {
             None => {
@@ -85,7 +85,7 @@ impl Teller<'_> {
     }
 
     /// What driven surfaces hold for the friction of their pairs, told with the first of these.
-    fn slides(&self, told: &Told) -> Option<Held> {
+    fn slides(&self, told: &EffectContext) -> Option<Held> {
         let surface = told.pair.rigid_master();
         let rubs = |p: &&PairModel| p.rigid_master() == surface && p.friction.is_some();
         let first = self.model.pairs.iter().find(rubs)?;
@@ -95,13 +95,13 @@ impl Teller<'_> {
     }
 
     /// Histories, once for friction and augmentation.
-    fn history(&self, told: &Told) -> Vec<Held> {
+    fn history(&self, told: &EffectContext) -> Vec<Held> {
         let each = size_of::<PointHistory>();
         vec![Held::state("histories", Per::Point, each, told.points())]
     }
 
     /// Augmentation, offset, and what becomes of overclosures at the start.
-    pub(super) fn further(&self, told: &Told) -> Vec<Effect> {
+    pub(super) fn further(&self, told: &EffectContext) -> Vec<Effect> {
         let pair = told.pair;
         let mut held = Vec::new();
         if pair.augmentation.is_some() {

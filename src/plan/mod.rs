@@ -88,7 +88,7 @@ fn as_text<S: Serializer>(kernel: &Kernel, to: S) -> Result<S::Ok, S::Error> {
 impl Plan {
     /// The plan of a model.
     pub fn new(loaded: &LoadedScene, model: &Model) -> Plan {
-        let teller = Teller { loaded, model };
+        let teller = Reporter { loaded, model };
         let pairs = model.pairs.iter().enumerate().map(|(index, pair)| {
             let kernel = Kernel::of(model, pair);
             PairPlan {
@@ -190,12 +190,12 @@ fn why(on: bool, yes: impl Into<String>, no: impl Into<String>) -> Why {
 }
 
 /// Makes the entries of a plan.
-struct Teller<'a> {
+struct Reporter<'a> {
     loaded: &'a LoadedScene,
     model: &'a Model,
 }
 
-impl Teller<'_> {
+impl Reporter<'_> {
     /// An effect that the key at `pointer` decides about.
     fn effect(&self, kind: EffectKind, pointer: impl Into<String>, why: Why) -> Effect {
         let pointer = pointer.into();

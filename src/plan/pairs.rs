@@ -1,5 +1,5 @@
 //! The effects of a contact pair: slave points, and what they meet.
-use super::{Effect, Held, Per, Teller, why};
+use super::{Effect, Held, Per, Reporter, why};
 use crate::assembly::sizes;
 use crate::contact::points::SlavePoint;
 use crate::model::EffectKind;
@@ -11,7 +11,7 @@ use crate::model::surface::SurfaceSet;
 use crate::scene::{Contact, FacetKind, Penalty, Points};
 
 /// A contact pair that is told about.
-pub(super) struct Told<'a> {
+pub(super) struct EffectContext<'a> {
     pub index: usize,
     pub pair: &'a PairModel,
     pub contact: &'a Contact,
@@ -20,7 +20,7 @@ pub(super) struct Told<'a> {
     pub at: String,
 }
 
-impl Told<'_> {
+impl EffectContext<'_> {
     /// Pointer of one of the contact's keys.
     pub fn key(&self, key: &str) -> String {
         format!("{}/{key}", self.at)
@@ -31,14 +31,14 @@ impl Told<'_> {
     }
 }
 
-impl Teller<'_> {
+impl Reporter<'_> {
     /// All effects of a pair.
     pub(super) fn pair(&self, index: usize, kernel: &Kernel) -> Vec<Effect> {
         let pair = &self.model.pairs[index];
         let Some(contact) = self.loaded.scene.contacts.get(&pair.name) else {
             return Vec::new();
         };
-        let told = Told {
+        let told = EffectContext {
             index,
             pair,
             contact,
@@ -56,7 +56,7 @@ impl Teller<'_> {
         out
     }
 
-    fn penalty(&self, told: &Told) -> Effect {
+    fn penalty(&self, told: &EffectContext) -> Effect {
         let why = match told.contact.penalty {
             Penalty::Auto => format!(
                 "the stiffness of the elements makes it {}: no `penalty` is given",
@@ -81,7 +81,7 @@ impl Teller<'_> {
             .holds(held)
     }
 
-    fn masters(&self, told: &Told) -> Vec<Effect> {
+    fn masters(&self, told: &EffectContext) -> Vec<Effect> {
         let (pair, key) = (told.pair, told.key("master"));
         let name = pair.master_name(self.model);
         let slave = 3 * pair.points.iter().map(|p| p.count).max().unwrap_or(0) as usize;
@@ -180,7 +180,7 @@ impl Teller<'_> {
     }
 
     /// What a rigid surface is made of.
-    fn facets(&self, told: &Told) -> Vec<Effect> {
+    fn facets(&self, told: &EffectContext) -> Vec<Effect> {
         let surface = told.pair.rigid_master().map(|s| &self.model.surfaces[s]);
         let of_surface = |key: &str| match surface {
             Some(surface) => format!(
@@ -243,7 +243,7 @@ impl Teller<'_> {
         out
     }
 
-    fn sampling(&self, told: &Told) -> Vec<Effect> {
+    fn sampling(&self, told: &EffectContext) -> Vec<Effect> {
         let points = told.contact.points;
         let [n, faces] = [told.points(), told.pair.faces.len()];
         let words = match points {
@@ -284,7 +284,7 @@ impl Teller<'_> {
         out
     }
 
-    fn gaps(&self, told: &Told) -> Vec<Effect> {
+    fn gaps(&self, told: &EffectContext) -> Vec<Effect> {
         let (pair, on) = (told.pair, told.kernel.gap == GapKind::Averaged);
         let mut held = Vec::new();
         if let Some(nodes) = &pair.averaged {

@@ -1,11 +1,11 @@
 //! The effects of rigid surfaces, supports, loads, the solution and the output.
-use super::{Effect, Held, Per, Teller, why};
+use super::{Effect, Held, Per, Reporter, why};
 use crate::assembly::sizes;
 use crate::model::EffectKind;
 use crate::model::error::number;
 use crate::scene::{Stabilization, pointer};
 
-impl Teller<'_> {
+impl Reporter<'_> {
     pub(super) fn surfaces(&self) -> Vec<Effect> {
         let model = self.model;
         let first = model.driven().next();

@@ -1,6 +1,6 @@
 //! The tangent of a contact pair and its parts: which of them there are for its geometry.
-use super::pairs::Told;
-use super::{Effect, Teller, Why, why};
+use super::pairs::EffectContext;
+use super::{Effect, Reporter, Why, why};
 use crate::contact::kind::TangentKind;
 use crate::model::EffectKind;
 use crate::model::error::number;
@@ -43,8 +43,8 @@ fn creases<S: Surface>(patches: &[S]) -> usize {
     count
 }
 
-impl Teller<'_> {
-    pub(super) fn tangents(&self, told: &Told) -> Vec<Effect> {
+impl Reporter<'_> {
+    pub(super) fn tangents(&self, told: &EffectContext) -> Vec<Effect> {
         let key = told.key("tangent");
         let given = self.loaded.has(&key);
         let published = match told.kernel.tangent {
@@ -113,13 +113,13 @@ impl Teller<'_> {
     }
 
     /// Why the tangent of normals is nothing, where they stay.
-    fn still(&self, told: &Told) -> Option<String> {
+    fn still(&self, told: &EffectContext) -> Option<String> {
         (told.kernel.gap == GapKind::Linearised)
             .then(|| "displacements are small: normals and feet stay as at the start".to_owned())
     }
 
     /// Whether the master is curved anywhere, and what tells.
-    fn curvature(&self, told: &Told) -> (String, Why) {
+    fn curvature(&self, told: &EffectContext) -> (String, Why) {
         let Some(number_of) = told.pair.rigid_master() else {
             let smooth = told.pair.body_master().is_some_and(|m| m.smooth);
             let why = match smooth {
@@ -158,7 +158,7 @@ impl Teller<'_> {
     }
 
     /// Whether feet may lie on edges and corners, where the traction acts along the distance.
-    fn edges(&self, told: &Told) -> Effect {
+    fn edges(&self, told: &EffectContext) -> Effect {
         let kind = EffectKind::TangentEdges;
         if let Some(still) = self.still(told) {
             return self.effect(kind, "/solution/kinematics", Err(still));

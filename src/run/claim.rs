@@ -55,7 +55,7 @@ pub enum ClaimError {
 
 /// How a run treats what its folder holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Manner {
+pub enum Entry {
     /// A run that is there stands against it.
     Start,
     /// A run that is there is replaced.
@@ -81,7 +81,7 @@ struct Holdings {
 #[derive(Debug)]
 pub struct Claim<'a> {
     folder: &'a Path,
-    manner: Manner,
+    entry: Entry,
     lock: Option<FolderLock>,
     /// Why it could not be locked; to be told.
     pub unlocked: Option<String>,
@@ -93,17 +93,17 @@ impl<'a> Claim<'a> {
     ///
     /// # Errors
     /// [`FolderError`], or what the operating system has against it.
-    pub fn new(folder: &'a Path, manner: Manner) -> Result<Self, ClaimError> {
+    pub fn new(folder: &'a Path, entry: Entry) -> Result<Self, ClaimError> {
         let mut claim = Claim {
             folder,
-            manner,
+            entry,
             lock: None,
             unlocked: None,
         };
         if folder.is_dir() {
             match claim.lock() {
                 // A run that has ended can be told of in a folder that is read-only.
-                Err(ClaimError::Output(_)) if manner == Manner::Resume => {}
+                Err(ClaimError::Output(_)) if entry == Entry::Resume => {}
                 locked => locked?,
             }
             claim.admit()?;
@@ -123,7 +123,7 @@ impl<'a> Claim<'a> {
         }
         let holdings = self.admit()?;
         parts.map_or(Ok(()), |parts| self.admit_fields(parts))?;
-        if self.manner == Manner::Resume {
+        if self.entry == Entry::Resume {
             return Ok(false);
         }
         for path in holdings.own.iter().chain(&holdings.links) {
@@ -162,7 +162,7 @@ impl<'a> Claim<'a> {
     /// What the folder holds, where that does not stand against the run.
     fn admit(&self) -> Result<Holdings, ClaimError> {
         let mut holdings = look(self.folder)?;
-        if self.manner == Manner::Resume {
+        if self.entry == Entry::Resume {
             // Whether there is a run to continue, and of which scene, is for the reader of checkpoints to say.
             (holdings.foreign)
                 .retain(|path| path.extension().is_some_and(|e| e == "json" || e == "pvd"));
@@ -170,7 +170,7 @@ impl<'a> Claim<'a> {
         if let Some(path) = holdings.foreign.pop() {
             return Err(FolderError::Foreign { path }.into());
         }
-        if self.manner == Manner::Start && !holdings.own.is_empty() {
+        if self.entry == Entry::Start && !holdings.own.is_empty() {
             return Err(FolderError::Occupied {
                 folder: self.folder.to_path_buf(),
                 unfinished: holdings.unfinished,
@@ -189,7 +189,7 @@ impl<'a> Claim<'a> {
 pub fn vacant(folder: &Path) -> Result<(), ClaimError> {
     let claim = Claim {
         folder,
-        manner: Manner::Start,
+        entry: Entry::Start,
         lock: None,
         unlocked: None,
     };

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 /// What a run has cost.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Spent {
+pub(super) struct ResourceUse {
     pub wall_s: f64,
     pub cpu_s: Option<f64>,
     /// Seconds by phase.
@@ -22,7 +22,7 @@ pub(super) struct Cost {
     since: Instant,
     cpu: Option<f64>,
     /// What earlier parts of the run cost, up to the step that this one goes on from.
-    pub earlier: Spent,
+    pub earlier: ResourceUse,
 }
 
 impl Cost {
@@ -31,13 +31,13 @@ impl Cost {
         Cost {
             since: Instant::now(),
             cpu: cpu_seconds(),
-            earlier: Spent::default(),
+            earlier: ResourceUse::default(),
         }
     }
 
     /// All so far, with the phases of this part.
-    pub fn spent(&self, phases: &Phases) -> Spent {
-        let Spent {
+    pub fn spent(&self, phases: &Phases) -> ResourceUse {
+        let ResourceUse {
             wall_s,
             cpu_s,
             phases: by_phase,
@@ -49,7 +49,7 @@ impl Cost {
         for (name, seconds) in by_phase {
             *all.entry(name.clone()).or_default() += seconds;
         }
-        Spent {
+        ResourceUse {
             wall_s: wall_s + self.since.elapsed().as_secs_f64(),
             cpu_s: cpu.map(|s| s + cpu_s.unwrap_or(0.0)),
             phases: all,
@@ -63,9 +63,9 @@ impl Cost {
     }
 }
 
-impl Spent {
+impl ResourceUse {
     pub fn put(&self, out: &mut Writer) {
-        let Spent {
+        let ResourceUse {
             wall_s,
             cpu_s,
             phases,
@@ -91,7 +91,7 @@ impl Spent {
             let name = from.text()?.to_owned();
             phases.insert(name, from.f64()?);
         }
-        Ok(Spent {
+        Ok(ResourceUse {
             wall_s,
             cpu_s,
             phases,

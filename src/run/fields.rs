@@ -3,7 +3,7 @@ use super::RunError;
 use super::averaged::{NodeNow, nodes_now};
 use super::bearing::{Bearings, Carrier, Place};
 use super::friction_fields::{self, FrictionFields};
-use super::pieces::pieces;
+use super::surface_cells::pieces;
 use crate::contact::friction::history::PointStatus;
 use crate::contact::law::PairLaw;
 use crate::model::master::{MasterNow, Masters};

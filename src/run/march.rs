@@ -1,17 +1,17 @@
 //! The march through time: steps, roll-back, output.
-mod kept;
+mod restart;
 
-pub(super) use kept::Kept;
-use kept::lines_behind;
+pub(super) use restart::Kept;
+use restart::lines_behind;
 
 use super::RunError;
 use super::checkpoint::{CheckpointError, Keeper};
 use super::commit::{self, FrictionTotals};
 use super::compliance::{Compliance, StepEnd};
 use super::cost::Cost;
-use super::doubt;
 use super::fields::Fields;
 use super::history;
+use super::linearity_check;
 use super::peaks::Peaks;
 use super::progress::Progress;
 use super::step::Attempts;
@@ -89,7 +89,7 @@ pub(super) struct March<'a, 'm> {
 }
 
 /// What carries over from one step to the next, beside the accepted state.
-struct Walk {
+struct StepControl {
     stepping: Stepping,
     /// The state before the last accepted step and that step's size, while the path is smooth.
     before: Option<(State, f64)>,
@@ -207,7 +207,7 @@ impl<'a, 'm> March<'a, 'm> {
         out: &Path,
         fields: Fields,
         stepping: Stepping,
-    ) -> Result<(State, Walk, Outputs), RunError> {
+    ) -> Result<(State, StepControl, Outputs), RunError> {
         sweep(out);
         let mut outputs = Outputs {
             results: Results::create(out)?,
@@ -223,7 +223,7 @@ impl<'a, 'm> March<'a, 'm> {
         commit::start(self.model, masters, &mut committed).map_err(|e| RunError::internal(&e))?;
         self.gather(&mut outputs, &committed, 0.0)?;
         self.write(&mut outputs, &committed)?;
-        let walk = Walk {
+        let walk = StepControl {
             stepping,
             before: None,
             hold: false,
@@ -238,7 +238,7 @@ impl<'a, 'm> March<'a, 'm> {
         fields: Fields,
         mut stepping: Stepping,
         kept: Kept,
-    ) -> Result<(State, Walk, Outputs), RunError> {
+    ) -> Result<(State, StepControl, Outputs), RunError> {
         let Kept {
             slot,
             passed_over,
@@ -300,7 +300,7 @@ impl<'a, 'm> March<'a, 'm> {
         }
         let text = format!("continued after step {step} (time {})", number(time));
         self.observer.event(&Event::Note { text });
-        let walk = Walk {
+        let walk = StepControl {
             stepping,
             before,
             hold,
@@ -311,7 +311,7 @@ impl<'a, 'm> March<'a, 'm> {
     fn steps(
         &mut self,
         committed: &mut State,
-        walk: &mut Walk,
+        walk: &mut StepControl,
         outputs: &mut Outputs,
     ) -> Result<Ending, RunError> {
         let settings = &self.scene.solution;
@@ -613,7 +613,7 @@ impl<'a, 'm> March<'a, 'm> {
         };
         (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?;
         self.peaks.step(step, &outputs.fields.bearings);
-        let doubts = doubt::doubts(self.model, &mut self.assembler.masters, state, time);
+        let doubts = linearity_check::doubts(self.model, &mut self.assembler.masters, state, time);
         for doubt in doubts.map_err(|e| RunError::internal(&e))? {
             self.doubt(doubt);
         }

@@ -8,25 +8,25 @@ mod claim;
 mod commit;
 mod compliance;
 mod cost;
-mod doubt;
 mod error;
 mod estimate;
 mod fields;
 mod friction_fields;
 mod history;
+mod linearity_check;
 mod march;
 mod memory;
 #[cfg(test)]
 mod other_law;
-mod passed;
 mod peaks;
-mod pieces;
 mod plan;
 mod progress;
 mod remedy;
-mod sound;
 mod stabilized;
 mod step;
+mod surface_cells;
+mod tunneling;
+mod validity;
 pub mod watch;
 
 pub use check::{
@@ -48,8 +48,8 @@ use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::system::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
 use checkpoint::{Fingerprint, Found, Keeper};
-use claim::{Claim, Manner};
-use cost::{Cost, Spent};
+use claim::{Claim, Entry};
+use cost::{Cost, ResourceUse};
 use fields::Fields;
 use march::{Kept, March};
 use progress::Progress;
@@ -69,11 +69,11 @@ pub struct RunOptions {
 }
 
 impl RunOptions {
-    fn manner(&self) -> Manner {
+    fn entry(&self) -> Entry {
         match (self.resume, self.force) {
-            (true, _) => Manner::Resume,
-            (false, true) => Manner::Replace,
-            (false, false) => Manner::Start,
+            (true, _) => Entry::Resume,
+            (false, true) => Entry::Replace,
+            (false, false) => Entry::Start,
         }
     }
 }
@@ -121,7 +121,7 @@ fn solve(
     interrupt: &AtomicBool,
 ) -> Result<Summary, RunError> {
     let cost = Cost::start();
-    let mut claim = Claim::new(out, options.manner())?;
+    let mut claim = Claim::new(out, options.entry())?;
     let fingerprint = Fingerprint::new(loaded);
     let found = match options.resume {
         true => Some(checkpoint::find(out, &fingerprint)?),
@@ -204,7 +204,7 @@ fn solve(
         Ok(ending) => (ending.status, ending.reason, None),
         Err(e) => (RunStatus::Failed, Some(e.to_string()), Some(e)),
     };
-    let Spent {
+    let ResourceUse {
         wall_s,
         cpu_s,
         phases,

@@ -11,9 +11,9 @@
 //!
 //! What fails all three is cut.
 use super::augment::{self, Left};
-use super::passed;
 use super::progress::Progress;
-use super::sound;
+use super::tunneling;
+use super::validity;
 use super::watch::Span;
 use crate::assembly::{Assembler, Fault};
 use crate::contact::law::Penalty;
@@ -73,7 +73,7 @@ impl Attempts<'_, '_> {
         trial: &mut State,
     ) -> Result<Converged, StepFailure> {
         let penalties = self.assembler.penalties.clone();
-        let result = match sound::turns(self.model, end - dt, end) {
+        let result = match validity::turns(self.model, end - dt, end) {
             Ok(None) => self.attempt(step, end, dt, before, trial, &penalties),
             Ok(Some(failure)) => Err(failure),
             Err(error) => Err(Fault::from(error).into()),
@@ -234,7 +234,7 @@ impl Attempts<'_, '_> {
     ) -> Result<Converged, StepFailure> {
         let converged = self.penalized(step, end, trial, patience)?;
         let from = (self.committed, self.progress.time);
-        sound::far_side(self.model, from, (trial, end))?;
+        validity::far_side(self.model, from, (trial, end))?;
         match self.model.pairs.iter().any(|p| p.augmentation.is_some()) {
             true => self.augment(step, end, trial, patience, converged),
             false => Ok(converged),
@@ -395,7 +395,7 @@ impl Attempts<'_, '_> {
             from: (self.committed, self.progress.time),
             to: (trial, end),
         };
-        passed::none_passed(self.model, masters, &span)
+        tunneling::none_passed(self.model, masters, &span)
     }
 
     fn newton(
@@ -430,7 +430,7 @@ impl Attempts<'_, '_> {
         self.progress.ping_pongs += newton.ping_pongs;
         self.progress.iterations += u64::from(newton.iterations);
         if result.is_ok() && self.model.small.is_none() {
-            result = sound::inside_out(self.model, trial).and(result);
+            result = validity::inside_out(self.model, trial).and(result);
         }
         result
     }

@@ -11,7 +11,7 @@ use super::event::{Event, Observer};
 pub use super::failure::StepFailure;
 use super::place;
 use super::unstable::{Unstable, singular};
-use crate::assembly::{Assembler, Fault, Manner, Totals};
+use crate::assembly::{Assembler, Fault, Linearization, Totals};
 use crate::machine::clock::Phases;
 use crate::model::Model;
 use crate::model::state::{PointState, State, heap};
@@ -207,7 +207,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             let norms = self.norms(trial, &totals);
             floor = floor.max(norms.floor / norms.force.max(f64::MIN_POSITIVE));
             history.push((norms.relative(), totals.changed));
-            let held = self.assembler.manner.hold;
+            let held = self.assembler.linearization.keep_active;
             // The state before the first solve may be converged as it stands only if nothing was prescribed to move.
             let settled = !pending && !held && (iteration == 0 || totals.changed == 0);
             observer.event(&Event::Iteration {
@@ -282,9 +282,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             }
             factorization = Some(self.solve_linear(pending)?);
             self.iterations += 1;
-            self.assembler.manner = Manner {
-                hold: false,
-                secant: iteration + 1 < secants,
+            self.assembler.linearization = Linearization {
+                keep_active: false,
+                secant_slip: iteration + 1 < secants,
             };
             let search = self.settings.line_search && !pending && since_best >= UNTIL_SEARCH;
             let largest = if damped > 0 { 0.5 } else { 1.0 };
@@ -306,9 +306,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         pending: bool,
     ) -> Result<(Totals, u32), Fault> {
         let secants = if self.first.secants { SECANTS } else { 0 };
-        self.assembler.manner = Manner {
-            hold: false,
-            secant: secants > 0,
+        self.assembler.linearization = Linearization {
+            keep_active: false,
+            secant_slip: secants > 0,
         };
         self.workspace.base.points.clone_from(&trial.points);
         let totals = self.linearize(trial, time, pending)?;
@@ -317,9 +317,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             return Ok((totals, secants));
         }
         trial.points.copy_from_slice(&self.workspace.base.points);
-        self.assembler.manner = Manner {
-            hold: true,
-            secant: true,
+        self.assembler.linearization = Linearization {
+            keep_active: true,
+            secant_slip: true,
         };
         Ok((self.linearize(trial, time, pending)?, SECANTS))
     }
@@ -334,17 +334,17 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         if trial.points == now {
             return Ok(false);
         }
-        let manner = self.assembler.manner;
-        self.assembler.manner = Manner {
-            hold: true,
-            secant: true,
+        let linearization = self.assembler.linearization;
+        self.assembler.linearization = Linearization {
+            keep_active: true,
+            secant_slip: true,
         };
         match self.linearize(trial, time, false) {
             Ok(_) => Ok(true),
             // A point that cannot be kept: all as it was.
             Err(_) => {
                 trial.points = now;
-                self.assembler.manner = manner;
+                self.assembler.linearization = linearization;
                 self.linearize(trial, time, false)?;
                 Ok(false)
             }

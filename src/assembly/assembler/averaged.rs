@@ -3,7 +3,7 @@
 //! A closed node couples all slave nodes of the faces around it with each other, and with all master nodes that the
 //! points of these faces meet: the rank-one part of [`crate::contact::averaged`].
 use super::couplings::Couplings;
-use super::driven::Border;
+use super::driven::DrivenBlock;
 use super::per_pair::PerPair;
 use super::rigid::rounding;
 use super::{Assembler, Fault, SurfaceForce, Totals, put};
@@ -12,7 +12,7 @@ use crate::contact::carried::carried;
 use crate::contact::fault::{Piece, PointFault};
 use crate::contact::kernel::{Normal, assemble_force};
 use crate::contact::kind::{LawKind, TangentKind};
-use crate::contact::law::{GapOffset, NoOffset, NormalLaw, PairLaw};
+use crate::contact::law::{NoOffset, NormalLaw, PairLaw, PointLaw};
 use crate::contact::meeting::Meeting;
 use crate::contact::point::FaceTangent;
 use crate::contact::rigid::{Exact, RigidMaster};
@@ -161,7 +161,7 @@ impl Averaged {
     }
 
     /// Shares the gaps of the points, measured from `offsets`, among the nodes; the fault of the first point that has one.
-    fn share<O: GapOffset>(
+    fn share<O: PointLaw>(
         &mut self,
         pair: &PairModel,
         nodes: &SlaveNodes,
@@ -526,7 +526,7 @@ impl SurfaceForce {
     }
 }
 
-impl Border {
+impl DrivenBlock {
     /// Adds a point with residual `r` and tangent `k`, at `arm` from the centre.
     fn carry<const TANGENT: bool>(
         &mut self,

@@ -13,7 +13,7 @@ pub(crate) mod sizes {
     use super::super::PointAnswer;
     use super::super::averaged::Averaged;
     use super::super::couplings::Couplings;
-    use super::super::driven::Border;
+    use super::super::driven::DrivenBlock;
     use super::super::elements::pairs;
     use super::super::maps::PointMaps;
     use super::super::moving::Meetings;
@@ -46,9 +46,9 @@ pub(crate) mod sizes {
     /// What small displacements are computed with, but for what it holds.
     pub const LINEAR: usize = size_of::<Linear>();
     /// A slave node of a driven surface.
-    pub const BORDER_NODE: usize = Border::NODE;
+    pub const BORDER_NODE: usize = DrivenBlock::NODE;
     /// The same with friction: more.
-    pub const BELOW: usize = Border::BELOW;
+    pub const BELOW: usize = DrivenBlock::BELOW;
 
     /// The list of where the points of a pair with a rigid master go, beside [`RIGID_MAP`].
     pub fn rigid_map(model: &Model, pair: &PairModel) -> usize {
@@ -72,7 +72,7 @@ pub(crate) mod sizes {
 
     /// For a driven surface, beside its nodes.
     pub fn border(model: &Model) -> usize {
-        Border::whole(model)
+        DrivenBlock::whole(model)
     }
 
     /// Slave nodes of all pairs of a rigid surface.
@@ -133,7 +133,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             borders,
             viscous,
             penalties,
-            manner: _,
+            linearization: _,
             linear,
             law: _,
         } = self;

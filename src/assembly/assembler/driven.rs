@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 
 /// A direction of a driven surface's motion that the contact does not resist as it stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Loose {
+pub struct UnresistedMotion {
     /// Index of the surface in the model.
     pub surface: usize,
     /// Unit direction among its six degrees of freedom.
@@ -25,7 +25,7 @@ pub struct Loose {
 }
 
 /// Sums of one driven surface, and where they go.
-pub(super) struct Border {
+pub(super) struct DrivenBlock {
     surface: usize,
     /// Slave nodes of all its pairs.
     nodes: Vec<u32>,
@@ -75,19 +75,19 @@ pub(super) fn groups(model: &Model, extend: impl Fn(&[u32], &mut Vec<u32>)) -> V
     groups
 }
 
-impl Border {
+impl DrivenBlock {
     /// Bytes of heap for each slave node of a surface, and with friction more.
     pub const NODE: usize = size_of::<u32>() * (1 + THREE) + size_of::<[Matrix3<f64>; 2]>();
     pub const BELOW: usize = size_of::<[Matrix3<f64>; 2]>();
 
     /// Bytes of heap for a surface, beside those of its nodes.
     pub fn whole(model: &Model) -> usize {
-        size_of::<Border>() + size_of::<u32>() * (model.nodes.len() + TWO)
+        size_of::<DrivenBlock>() + size_of::<u32>() * (model.nodes.len() + TWO)
     }
 
     /// Bytes of heap that it holds, and those that friction adds.
     pub fn bytes(&self) -> [usize; 2] {
-        let Border {
+        let DrivenBlock {
             surface: _,
             nodes,
             place,
@@ -105,9 +105,9 @@ impl Border {
     }
 
     /// The borders of all driven surfaces.
-    pub fn all(model: &Model, pattern: &Pattern) -> Result<Vec<Border>, PatternError> {
-        let borders: Result<Vec<Border>, _> = (model.driven())
-            .map(|(surface, _, driven)| Border::new(model, surface, driven, pattern))
+    pub fn all(model: &Model, pattern: &Pattern) -> Result<Vec<DrivenBlock>, PatternError> {
+        let borders: Result<Vec<DrivenBlock>, _> = (model.driven())
+            .map(|(surface, _, driven)| DrivenBlock::new(model, surface, driven, pattern))
             .collect();
         let mut borders = borders?;
         borders.shrink_to_fit();
@@ -119,7 +119,7 @@ impl Border {
         surface: usize,
         driven: &Driven,
         pattern: &Pattern,
-    ) -> Result<Border, PatternError> {
+    ) -> Result<DrivenBlock, PatternError> {
         let mut place = vec![u32::MAX; model.nodes.len()];
         let mut nodes = Vec::new();
         let mut element_size = f64::INFINITY;
@@ -147,7 +147,7 @@ impl Border {
         let mut own_map = Vec::new();
         pattern.element_map(&[t, s], &mut own_map)?;
         own_map.shrink_to_fit();
-        Ok(Border {
+        Ok(DrivenBlock {
             surface,
             blocks: vec![[Matrix3::zeros(); 2]; nodes.len()],
             below: match slides {
@@ -187,7 +187,7 @@ impl Border {
 impl<L: PairLaw> Assembler<'_, L> {
     /// Forgets the sums of the last evaluation.
     pub(super) fn clear_borders(&mut self) {
-        self.borders.iter_mut().for_each(Border::clear);
+        self.borders.iter_mut().for_each(DrivenBlock::clear);
     }
 
     /// Adds what the points of pair `index`, evaluated just now, do to the driven surface they touch.
@@ -362,7 +362,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 let stiffness =
                     (STAND_IN * largest).max(force.abs() / (STRIDE * border.element_size));
                 own += v * v.transpose() * (stiffness - value);
-                totals.loose.push(Loose {
+                totals.loose.push(UnresistedMotion {
                     surface: border.surface,
                     direction: std::array::from_fn(|c| v[c]),
                     force: -force,
@@ -386,7 +386,7 @@ impl<L: PairLaw> Assembler<'_, L> {
     }
 
     /// The fault of a run that forces drive on and on, where one of `loose` is more than rounding.
-    pub fn runs_away(&self, loose: &[Loose], force: f64) -> Option<Fault> {
+    pub fn runs_away(&self, loose: &[UnresistedMotion], force: f64) -> Option<Fault> {
         let worst = loose
             .iter()
             .max_by(|a, b| a.force.abs().total_cmp(&b.force.abs()))?;

@@ -70,7 +70,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             contact: _,
             borders: _,
             penalties,
-            manner: _,
+            linearization: _,
             // Written by the first evaluation of a step.
             viscous: _,
             // All else of it is given by the model.

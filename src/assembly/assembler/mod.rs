@@ -42,14 +42,14 @@ use sliding::Sliding;
 use small::Linear;
 use viscous::Viscous;
 
-use driven::Border;
+use driven::DrivenBlock;
 use elements::Systems;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
 pub use answer::PointAnswer;
 pub(crate) use bytes::sizes;
-pub use driven::Loose;
+pub use driven::UnresistedMotion;
 pub use elements::Quadratic;
 pub use memory::{AssemblerMemory, CouplingMemory, MemoryError};
 pub use small::{Factored, Line, Needed};
@@ -149,7 +149,7 @@ pub struct Totals {
     pub active: usize,
     /// Points or nodes whose status differs from the one in the state when the evaluation began.
     pub changed: usize,
-    /// Points closed in the state when the evaluation began that are open, of those that [`Manner::hold`] would keep closed.
+    /// Number of points that opened during this evaluation (rigid masters only).
     pub opened: usize,
     /// Deepest penetration, >= 0, per pair.
     pub penetration: Vec<f64>,
@@ -161,7 +161,7 @@ pub struct Totals {
     /// the points in contact.
     pub contact_rounding: f64,
     /// Motions of driven surfaces that the contact does not resist, found with the tangent.
-    pub loose: Vec<Loose>,
+    pub loose: Vec<UnresistedMotion>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -173,12 +173,12 @@ enum Kind {
 
 /// How contact is linearised where the state is far from equilibrium: the first iterates of a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Manner {
+pub struct Linearization {
     /// Points that are closed in the state stay so wherever they are, on rigid surfaces that are not driven by force. The
     /// residual is then not that of the state.
-    pub hold: bool,
+    pub keep_active: bool,
     /// Sliding points have the tangent of their secant. The residual is that of the state.
-    pub secant: bool,
+    pub secant_slip: bool,
 }
 
 /// Evaluates the model into a sparse system. The law of normal contact is a type, chosen where the assembler is made: every
@@ -195,7 +195,7 @@ pub struct Assembler<'m, L = Penalty> {
     systems: Systems,
     /// Room for the points of a pair with a rigid master.
     touches: Vec<Result<Option<Touch>, PointFault>>,
-    /// Points of a pair that [`Manner::hold`] keeps closed.
+    /// Points of a pair that [`Linearization::keep_active`] keeps closed.
     held: Vec<bool>,
     /// Per point with history, of pairs with friction or augmentation; nothing where it is open. Empty without augmentation.
     answers: Vec<Option<PointAnswer>>,
@@ -219,7 +219,7 @@ pub struct Assembler<'m, L = Penalty> {
     external: Vec<f64>,
     /// Empty where the scene has no contacts.
     contact: Vec<f64>,
-    borders: Vec<Border>,
+    borders: Vec<DrivenBlock>,
     /// Where the scene asks for stabilisation.
     viscous: Option<Viscous>,
     /// Where displacements are small.
@@ -227,7 +227,7 @@ pub struct Assembler<'m, L = Penalty> {
     /// Penalty per pair; an automatic one may be raised in the course of a run.
     pub penalties: Vec<f64>,
     /// How contact is linearised.
-    pub manner: Manner,
+    pub linearization: Linearization,
     law: PhantomData<fn() -> L>,
 }
 
@@ -269,7 +269,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
         let large = model.small.is_none();
         let pairs = || model.pairs.iter().filter(|_| large);
         let vector = |needed: bool| vec![0.0; if needed { n } else { 0 }];
-        let borders = Border::all(model, &pattern)?;
+        let borders = DrivenBlock::all(model, &pattern)?;
         let linear = Linear::new(model, dofs, &pattern)?;
         Ok(Assembler {
             model,
@@ -301,7 +301,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
             viscous: Viscous::new(model),
             linear,
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
-            manner: Manner::default(),
+            linearization: Linearization::default(),
             law: PhantomData,
         })
     }

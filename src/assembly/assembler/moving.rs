@@ -2,7 +2,7 @@
 //! is summed in order.
 use super::answer::PointAnswer;
 use super::couplings::Couplings;
-use super::driven::Border;
+use super::driven::DrivenBlock;
 use super::links;
 use super::per_pair::PerPair;
 use super::rigid::rounding;
@@ -11,7 +11,7 @@ use super::{Assembler, Fault, PairForce, PatternError, SurfaceForce, Totals, map
 use crate::contact::friction::history::PointHistory;
 use crate::contact::kernel::assemble_force;
 use crate::contact::kind::{FrictionKind, LawKind, MasterKind, TangentKind};
-use crate::contact::law::{GapOffset, Multipliers, NoOffset, Offsets, PairLaw};
+use crate::contact::law::{Multipliers, NoOffset, Offsets, PairLaw, PointLaw};
 use crate::contact::moving::{MovingMaster, MovingTouch};
 use crate::contact::point::FaceTangent;
 use crate::contact::points::SlavePoint;
@@ -232,7 +232,11 @@ impl<L: PairLaw> Assembler<'_, L> {
                     self.model,
                     (pair, &kernel),
                     (master, surface),
-                    (friction, self.penalties[index], self.manner.secant),
+                    (
+                        friction,
+                        self.penalties[index],
+                        self.linearization.secant_slip,
+                    ),
                     &state.u,
                     time,
                     &mut state.points[range],
@@ -342,7 +346,7 @@ impl<L: PairLaw> Assembler<'_, L> {
     pub(super) fn build_pattern(&mut self) -> Result<(), PatternError> {
         let pattern = std::sync::Arc::new(maps::pattern(self.model, self.dofs, &self.couplings)?);
         let maps = maps::Maps::new(self.model, self.dofs, &pattern)?;
-        self.borders = Border::all(self.model, &pattern)?;
+        self.borders = DrivenBlock::all(self.model, &pattern)?;
         self.element_maps = maps.elements;
         self.kinds = maps.kinds;
         self.point_maps = maps.points;
@@ -534,7 +538,7 @@ impl<L: PairLaw> Batch<'_, L> {
     }
 
     /// Evaluates every point under the tangent that the plan names.
-    fn choose<O: GapOffset, A: Accept>(
+    fn choose<O: PointLaw, A: Accept>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<MovingTouch>, PointFault>],
@@ -551,7 +555,7 @@ impl<L: PairLaw> Batch<'_, L> {
 
     /// Evaluates every point; law, offsets, tangent and the facets that exist are types here, nothing is chosen inside the
     /// loop.
-    fn evaluate<O: GapOffset, A: Accept, T: FaceTangent>(
+    fn evaluate<O: PointLaw, A: Accept, T: FaceTangent>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<MovingTouch>, PointFault>],

@@ -2,14 +2,14 @@
 use super::answer::PointAnswer;
 use super::maps::PointMaps;
 use super::pressed::{Pressed, PressedSums};
-use super::{Assembler, Fault, Manner, PairForce, SurfaceForce, Totals, touched};
+use super::{Assembler, Fault, Linearization, PairForce, SurfaceForce, Totals, touched};
 use crate::contact::closest::ClosestPoint;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::{FrictionLaw, Secant};
 use crate::contact::friction::rigid::{Friction, FrictionTouch};
 use crate::contact::kind::{FrictionKind, LawKind, TangentKind};
 use crate::contact::law::{
-    Augmented, GapOffset, Held, Multipliers, NoOffset, NormalLaw, Offsets, PairLaw,
+    Augmented, Held, Multipliers, NoOffset, NormalLaw, Offsets, PairLaw, PointLaw,
 };
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
@@ -69,7 +69,10 @@ impl<L: PairLaw> Assembler<'_, L> {
             let master = surface.at(time, &state.u)?;
             let n = pair.points.len();
             let points = &mut state.points[first..first + n];
-            let Manner { hold, secant } = self.manner;
+            let Linearization {
+                keep_active: hold,
+                secant_slip: secant,
+            } = self.linearization;
             // A surface driven by force follows the points as they are.
             let hold = hold && surface.driven.is_none();
             self.held.clear();
@@ -278,7 +281,7 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
 
 impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
     /// Evaluates every point with the tangent that the plan names. Returns what was run.
-    fn choose<O: GapOffset>(
+    fn choose<O: PointLaw>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<Touch>, PointFault>],
@@ -291,7 +294,7 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
     }
 
     /// Evaluates every point; surface, law, tangent and offset are types here, nothing is chosen inside the loop.
-    fn evaluate<T: RigidTangent, O: GapOffset>(
+    fn evaluate<T: RigidTangent, O: PointLaw>(
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<Touch>, PointFault>],

@@ -1,6 +1,6 @@
 //! Blocks pressed by planes: springs in series.
 use super::super::scenes::{block_under, solution};
-use super::super::{Broken, Trial};
+use super::super::{CaseError, Trial};
 use serde_json::{Value, json};
 
 /// A block of edge 1 on a frictionless floor, pressed from above by a plane that comes down by `depth` in `steps` steps.
@@ -31,7 +31,7 @@ fn pressed(element: &str, law: Value, depth: f64, steps: u32) -> Value {
     })
 }
 
-pub fn poisson(trial: &mut Trial) -> Result<(), Broken> {
+pub fn poisson(trial: &mut Trial) -> Result<(), CaseError> {
     let (e, depth) = (100.0, 1e-3);
     for element in ["h8", "q18", "h8_displacement"] {
         for nu in [0.0, 0.3, 0.49, 0.4999] {
@@ -94,7 +94,7 @@ fn bar(e: f64, d: f64) -> f64 {
 /// The elements are 1/2 high: their stiffness is 2 E.
 const MULTIPLES: [f64; 8] = [0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6];
 
-pub fn penalty(trial: &mut Trial) -> Result<(), Broken> {
+pub fn penalty(trial: &mut Trial) -> Result<(), CaseError> {
     let (e, depth) = (100.0, 1e-2);
     let rigid = bar(e, depth);
     for multiple in MULTIPLES {
@@ -126,7 +126,7 @@ pub fn penalty(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn under_ball(trial: &mut Trial) -> Result<(), Broken> {
+pub fn under_ball(trial: &mut Trial) -> Result<(), CaseError> {
     let mut forces = Vec::new();
     for multiple in MULTIPLES {
         let ball = json!({
@@ -159,7 +159,7 @@ pub fn under_ball(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn stiffness_ratio(trial: &mut Trial) -> Result<(), Broken> {
+pub fn stiffness_ratio(trial: &mut Trial) -> Result<(), CaseError> {
     let depth = 1e-2;
     for (lower, upper) in [(1e2, 1e8), (1e8, 1e2)] {
         let mut forces = Vec::new();

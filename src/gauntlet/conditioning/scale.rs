@@ -1,6 +1,6 @@
 //! One scene in other units and at other places.
 use super::super::scenes::solution;
-use super::super::{Broken, Outcome, Trial};
+use super::super::{CaseError, Outcome, Trial};
 use serde_json::{Value, json};
 
 /// A ball pressed into a plate of edge `size` clamped at two sides, `away` plate lengths from the origin along each axis;
@@ -41,7 +41,7 @@ fn with_friction(mut scene: Value) -> Value {
 }
 
 /// Largest relative difference of forces, energies, pressure and penetration at the end.
-fn difference(a: &Outcome, b: &Outcome, length: f64, modulus: f64) -> Result<f64, Broken> {
+fn difference(a: &Outcome, b: &Outcome, length: f64, modulus: f64) -> Result<f64, CaseError> {
     let (force, energy) = (modulus * length * length, modulus * length.powi(3));
     let mut worst = 0.0f64;
     for (name, unit) in [
@@ -56,7 +56,7 @@ fn difference(a: &Outcome, b: &Outcome, length: f64, modulus: f64) -> Result<f64
     Ok(worst)
 }
 
-pub fn scale(trial: &mut Trial) -> Result<(), Broken> {
+pub fn scale(trial: &mut Trial) -> Result<(), CaseError> {
     let one = trial.done(&with_friction(ball_on_plate(1.0, 1.0, 0.0, 1.0)))?;
     trial.holds(
         "contact and slip",
@@ -81,7 +81,7 @@ pub fn scale(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn far(trial: &mut Trial) -> Result<(), Broken> {
+pub fn far(trial: &mut Trial) -> Result<(), CaseError> {
     let near = trial.done(&ball_on_plate(1.0, 1.0, 0.0, 1.0))?;
     let far = trial.done(&ball_on_plate(1.0, 1.0, 1e4, 1.0))?;
     trial.holds("contact", near.last("force.tool.z")? < -1e-3);
@@ -99,7 +99,7 @@ pub fn far(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn time_unit(trial: &mut Trial) -> Result<(), Broken> {
+pub fn time_unit(trial: &mut Trial) -> Result<(), CaseError> {
     let one = trial.done(&with_friction(ball_on_plate(1.0, 1.0, 0.0, 1.0)))?;
     trial.holds("contact", one.last("force.tool.z")? < -1e-3);
     for end in [1e-9, 1e9] {

@@ -1,6 +1,6 @@
 //! Strips from thick to paper-thin.
 use super::super::scenes::solution;
-use super::super::{Broken, Trial};
+use super::super::{CaseError, Trial};
 use serde_json::json;
 
 const E: f64 = 1e4;
@@ -12,7 +12,7 @@ const WIDTH: f64 = 0.1;
 /// |                              (o)  d
 /// |================================
 /// ```
-pub fn thickness(trial: &mut Trial) -> Result<(), Broken> {
+pub fn thickness(trial: &mut Trial) -> Result<(), CaseError> {
     let depth = 1e-2;
     for (element, n, tolerance) in [("h8", 20, 1e-2), ("q18", 10, 5e-3)] {
         for t in [1e-1_f64, 1e-2, 1e-3, 1e-4] {

@@ -1,6 +1,6 @@
 //! Bending.
 use super::super::scenes::solution;
-use super::super::{Broken, Trial};
+use super::super::{CaseError, Trial};
 use serde_json::json;
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ const E: f64 = 1000.0;
 const WIDTH: f64 = 0.1;
 
 /// The free end of a strip of length 1 follows the end of an arc of that length, from straight to a full circle.
-pub fn full_circle(trial: &mut Trial) -> Result<(), Broken> {
+pub fn full_circle(trial: &mut Trial) -> Result<(), CaseError> {
     let t = 1e-3;
     let moment = E * WIDTH * t * t * t / 12.0 * 2.0 * PI;
     let mut errors = Vec::new();
@@ -71,7 +71,7 @@ pub fn full_circle(trial: &mut Trial) -> Result<(), Broken> {
 }
 
 /// The strip of `conditioning/thickness`, in layers.
-pub fn layers(trial: &mut Trial) -> Result<(), Broken> {
+pub fn layers(trial: &mut Trial) -> Result<(), CaseError> {
     let (t, depth) = (0.02_f64, 1e-2);
     for layers in [1, 2, 8] {
         let scene = json!({

@@ -1,6 +1,6 @@
 //! Meshes at the edge of inversion, and beyond.
 use super::super::scenes::solution;
-use super::super::{Broken, Trial};
+use super::super::{CaseError, Trial};
 use super::squeezed::between_planes;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -39,9 +39,9 @@ fn pressed(
     place: [[f64; 2]; 3],
     element: &str,
     amount: f64,
-) -> Result<Value, Broken> {
+) -> Result<Value, CaseError> {
     let path = trial.folder().join("block.inp");
-    std::fs::write(path, block(place)).map_err(|e| Broken::new(e.to_string()))?;
+    std::fs::write(path, block(place)).map_err(|e| CaseError::new(e.to_string()))?;
     let near = |normal: [i32; 3]| json!({ "nodes_near_plane": { "point": [0, 0, 0], "normal": normal, "tolerance": 1e-9 } });
     Ok(json!({
         "covact": 1,
@@ -77,7 +77,7 @@ const EDGE: [[f64; 2]; 3] = [[0.5, 0.0], [0.25025, 0.25025], [0.5, 1.0]];
 /// A whole line so near the left one that an edge is 1e-3 of its neighbours: wedges.
 const WEDGE: [[f64; 2]; 3] = [[0.5, 0.0], [5e-4, 0.5], [0.5, 1.0]];
 
-pub fn distorted(trial: &mut Trial) -> Result<(), Broken> {
+pub fn distorted(trial: &mut Trial) -> Result<(), CaseError> {
     let amount = 0.3;
     let (right, _) = between_planes(1.0 - amount, false, 1e4);
     for (name, place) in [("edge", EDGE), ("wedge", WEDGE)] {
@@ -107,7 +107,7 @@ pub fn distorted(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn inverted(trial: &mut Trial) -> Result<(), Broken> {
+pub fn inverted(trial: &mut Trial) -> Result<(), CaseError> {
     // The middle line beyond the left one: the elements there are inside out.
     let scene = pressed(trial, [[0.5, 0.0], [-0.4, 0.5], [0.5, 1.0]], "h8", 0.1)?;
     let message = trial.refused(&scene)?;

@@ -1,6 +1,6 @@
 //! Large compression between plates.
 use super::super::scenes::solution;
-use super::super::{Broken, Outcome, Trial};
+use super::super::{CaseError, Outcome, Trial};
 use serde_json::{Value, json};
 
 const E: f64 = 100.0;
@@ -78,7 +78,7 @@ fn uniform(
     out: &Outcome,
     area: f64,
     right: f64,
-) -> Result<(), Broken> {
+) -> Result<(), CaseError> {
     let force = out.last("force.tool.z")? / area;
     trial.equal(format!("pressure, {name}"), force, right, 1e-9);
     trial.equal(
@@ -96,7 +96,7 @@ fn uniform(
     Ok(())
 }
 
-pub fn squeezed(trial: &mut Trial) -> Result<(), Broken> {
+pub fn squeezed(trial: &mut Trial) -> Result<(), CaseError> {
     for (element, n, layers) in [
         ("h8", 3, 1),
         ("h8", 4, 2),
@@ -121,7 +121,7 @@ pub fn squeezed(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn sheet(trial: &mut Trial) -> Result<(), Broken> {
+pub fn sheet(trial: &mut Trial) -> Result<(), CaseError> {
     for layers in [1, 2] {
         let out = trial.done(&block("h8", 4, layers, [16.0, 1.0], 0.3, false))?;
         let (right, _) = between_planes(0.7, false, PENALTY);

@@ -3,7 +3,7 @@
 //! With `q = mu p w` the friction per length and `EA` the bar's stiffness, slip has gone the length `F / q` when its end is
 //! pulled by `F`, and the end has moved by `F^2 / (2 EA q)`. Turned back it follows the same curve at twice the scale
 //! (G. Masing, 1926); a full cycle between `-u` and `u` dissipates `4/3 F u`.
-use crate::gauntlet::{Broken, Outcome, Trial};
+use crate::gauntlet::{CaseError, Outcome, Trial};
 use serde_json::json;
 
 const LENGTH: f64 = 8.0;
@@ -21,7 +21,7 @@ fn way() -> f64 {
 }
 
 /// The end at parts of the way at times; 20 steps for the whole of it.
-fn bar(trial: &mut Trial, path: &[[f64; 2]]) -> Result<Outcome, Broken> {
+fn bar(trial: &mut Trial, path: &[[f64; 2]]) -> Result<Outcome, CaseError> {
     let end: Vec<[f64; 2]> = path.iter().map(|[t, part]| [*t, part * way()]).collect();
     let scene = json!({
         "covact": 1,
@@ -57,7 +57,7 @@ fn bar(trial: &mut Trial, path: &[[f64; 2]]) -> Result<Outcome, Broken> {
     trial.done(&scene)
 }
 
-pub fn slip_front(trial: &mut Trial) -> Result<(), Broken> {
+pub fn slip_front(trial: &mut Trial) -> Result<(), CaseError> {
     let outcome = bar(trial, &[[0.0, 0.0], [0.2, 0.0], [1.2, 1.0]])?;
     let normal = outcome.last("force.plane.z")?;
     trial.equal(
@@ -92,7 +92,7 @@ pub fn slip_front(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn hysteresis(trial: &mut Trial) -> Result<(), Broken> {
+pub fn hysteresis(trial: &mut Trial) -> Result<(), CaseError> {
     let outcome = bar(
         trial,
         &[[0.0, 0.0], [0.2, 0.0], [1.2, 1.0], [3.2, -1.0], [5.2, 1.0]],

@@ -1,6 +1,6 @@
 //! A block on rigid surfaces, its top moved.
 use crate::gauntlet::drawn::{FRICTION, block, change, difference, flat, plane, steps};
-use crate::gauntlet::{Broken, Trial};
+use crate::gauntlet::{CaseError, Trial};
 use covact_geometry::{NurbsPatch, Vec3, primitives};
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ fn missed(
     outcome: &crate::gauntlet::Outcome,
     mu: impl Fn(f64) -> f64,
     start: f64,
-) -> Result<f64, Broken> {
+) -> Result<f64, CaseError> {
     let (x, z) = (
         outcome.column("force.tool.x")?,
         outcome.column("force.tool.z")?,
@@ -23,7 +23,7 @@ fn missed(
     Ok(missed)
 }
 
-pub fn coefficients(trial: &mut Trial) -> Result<(), Broken> {
+pub fn coefficients(trial: &mut Trial) -> Result<(), CaseError> {
     for mu in [0.0, 0.1, 0.5, 1.0, 2.0] {
         // Its shear stiffness is 50 x 0.5 / 0.1 = 250 under N = 2: a quarter of mu N is reached by t = 0.2.
         let far = 0.002 * mu;
@@ -61,7 +61,7 @@ pub fn coefficients(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn mu_in_time(trial: &mut Trial) -> Result<(), Broken> {
+pub fn mu_in_time(trial: &mut Trial) -> Result<(), CaseError> {
     let table = [
         [0.0, 0.0],
         [0.2, 0.0],
@@ -93,7 +93,7 @@ pub fn mu_in_time(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn closing_again(trial: &mut Trial) -> Result<(), Broken> {
+pub fn closing_again(trial: &mut Trial) -> Result<(), CaseError> {
     let run = |trial: &mut Trial, x: Value, z: Value| {
         let top = json!({ "x": { "table": x }, "y": 0, "z": { "table": z } });
         trial.done(&block(plane(), top, Some(json!(0.3)), 20))
@@ -151,11 +151,12 @@ pub fn closing_again(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn pole(trial: &mut Trial) -> Result<(), Broken> {
+pub fn pole(trial: &mut Trial) -> Result<(), CaseError> {
     let center = Vec3::new(0.1, 0.05, -2.0);
-    let broken = |e: primitives::PrimitiveError| Broken::new(e.to_string());
-    let one =
-        |axis: Vec3| Ok::<_, Broken>(vec![primitives::sphere(2.0, center, axis).map_err(broken)?]);
+    let broken = |e: primitives::PrimitiveError| CaseError::new(e.to_string());
+    let one = |axis: Vec3| {
+        Ok::<_, CaseError>(vec![primitives::sphere(2.0, center, axis).map_err(broken)?])
+    };
     let six =
         primitives::sphere_without_poles(2.0, center, Vec3::new(1.0, 0.2, 1.0)).map_err(broken)?;
     let top = json!({
@@ -178,7 +179,7 @@ pub fn pole(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn fast_turn(trial: &mut Trial) -> Result<(), Broken> {
+pub fn fast_turn(trial: &mut Trial) -> Result<(), CaseError> {
     // 360 degrees in 0.8, from t = 0.2 on.
     let run = |trial: &mut Trial, a_step: f64, end: f64| {
         let mut tool = plane();

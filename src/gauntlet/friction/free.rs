@@ -1,6 +1,6 @@
 //! Tools that forces drive and friction holds.
 use crate::gauntlet::drawn::{plane, steps};
-use crate::gauntlet::{Broken, Trial};
+use crate::gauntlet::{CaseError, Trial};
 use crate::output::RunStatus;
 use serde_json::{Value, json};
 
@@ -39,7 +39,7 @@ fn driven(degrees: f64, mu: f64, force: Value) -> Value {
     })
 }
 
-pub fn wedge(trial: &mut Trial) -> Result<(), Broken> {
+pub fn wedge(trial: &mut Trial) -> Result<(), CaseError> {
     let degrees = 10.0f64;
     let a = degrees.to_radians();
     // tan a = 0.1763.
@@ -50,7 +50,7 @@ pub fn wedge(trial: &mut Trial) -> Result<(), Broken> {
         let force = json!({ "table": [[0, 0], [0.5, -2], [1, end]] });
         let outcome = trial.solve(&driven(degrees, mu, force))?;
         let ratio = |t: f64| {
-            Ok::<_, Broken>(-outcome.at("force.wedge.z", t)? / outcome.at("force.wedge.x", t)?)
+            Ok::<_, CaseError>(-outcome.at("force.wedge.z", t)? / outcome.at("force.wedge.x", t)?)
         };
         for t in [0.25, 0.5] {
             trial.equal(
@@ -95,11 +95,11 @@ pub fn wedge(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn last_ratio(outcome: &crate::gauntlet::Outcome) -> Result<f64, Broken> {
+fn last_ratio(outcome: &crate::gauntlet::Outcome) -> Result<f64, CaseError> {
     Ok(-outcome.last("force.wedge.z")? / outcome.last("force.wedge.x")?)
 }
 
-pub fn sled(trial: &mut Trial) -> Result<(), Broken> {
+pub fn sled(trial: &mut Trial) -> Result<(), CaseError> {
     let run = |trial: &mut Trial, push: f64, end: f64| {
         let mut plate = plane();
         plate["plane"]["size"] = json!([4, 4]);

@@ -1,6 +1,6 @@
 //! Where a surface ends: gaps between patches, trims, free edges.
 use super::super::scenes::block_under;
-use super::{Broken, Case, Trial, difference, tool};
+use super::{Case, CaseError, Trial, difference, tool};
 use covact_geometry::curve::NurbsCurve;
 use covact_geometry::primitives::{cylinder, plane};
 use covact_geometry::{NurbsPatch, TrimCurve, TrimLoop, Vec3};
@@ -29,7 +29,7 @@ pub const FREE_EDGE: Case = Case {
 
 const DOWN: [&str; 3] = ["0", "0", "-0.05*t"];
 
-fn face(corners: [[f64; 3]; 4]) -> Result<NurbsPatch, Broken> {
+fn face(corners: [[f64; 3]; 4]) -> Result<NurbsPatch, CaseError> {
     let knots = || vec![0.0, 0.0, 1.0, 1.0];
     let corners = corners.map(Vec3::from);
     Ok(NurbsPatch::new(
@@ -42,11 +42,11 @@ fn face(corners: [[f64; 3]; 4]) -> Result<NurbsPatch, Broken> {
 }
 
 /// The plane z = 0.5 between x = a and b.
-fn part(a: f64, b: f64) -> Result<NurbsPatch, Broken> {
+fn part(a: f64, b: f64) -> Result<NurbsPatch, CaseError> {
     face([[a, -1.0, 0.5], [a, 1.0, 0.5], [b, -1.0, 0.5], [b, 1.0, 0.5]])
 }
 
-fn gaps(trial: &mut Trial) -> Result<(), Broken> {
+fn gaps(trial: &mut Trial) -> Result<(), CaseError> {
     let size = 8f64.sqrt();
     let mut run = |name: &str, patches: Vec<NurbsPatch>| {
         let tool = tool(trial, name, patches, DOWN)?;
@@ -88,14 +88,14 @@ fn gaps(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn trim(trial: &mut Trial) -> Result<(), Broken> {
+fn trim(trial: &mut Trial) -> Result<(), CaseError> {
     // The parameters of this plane are x + 2 and 2 - y.
     let whole = plane(Vec3::new(0.0, 0.0, 0.5), -Vec3::z(), [4.0, 4.0])?;
     let corners = [[0.0, 0.0], [2.1, 0.0], [2.3, 4.0], [0.0, 4.0]].map(Vector2::from);
-    let line = |k: usize| -> Result<TrimCurve, Broken> {
+    let line = |k: usize| -> Result<TrimCurve, CaseError> {
         let parameter = NurbsCurve::line(corners[k], corners[(k + 1) % 4]);
         Ok(TrimCurve {
-            parameter: parameter.map_err(|e| Broken(e.to_string()))?,
+            parameter: parameter.map_err(|e| CaseError(e.to_string()))?,
             space: None,
             entity: 0,
         })
@@ -112,7 +112,7 @@ fn trim(trial: &mut Trial) -> Result<(), Broken> {
         at(corners[2]),
     ])?;
     // A round hole of radius .3, and a ring around it.
-    let circle = |k: usize| -> Result<TrimCurve, Broken> {
+    let circle = |k: usize| -> Result<TrimCurve, CaseError> {
         let turn = |angle: f64| Vector2::new(angle.cos(), angle.sin());
         let (a, b) = (
             k as f64 * std::f64::consts::FRAC_PI_2,
@@ -123,7 +123,7 @@ fn trim(trial: &mut Trial) -> Result<(), Broken> {
         let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         let parameter = NurbsCurve::new(2, knots, &points, Some(&[1.0, 0.5f64.sqrt(), 1.0]));
         Ok(TrimCurve {
-            parameter: parameter.map_err(|e| Broken(e.to_string()))?,
+            parameter: parameter.map_err(|e| CaseError(e.to_string()))?,
             space: None,
             entity: 0,
         })
@@ -165,7 +165,7 @@ fn whole_point(patch: &NurbsPatch, p: Vector2<f64>) -> [f64; 3] {
     patch.point([p.x, p.y]).into()
 }
 
-fn free_edge(trial: &mut Trial) -> Result<(), Broken> {
+fn free_edge(trial: &mut Trial) -> Result<(), CaseError> {
     let a = 0.1;
     let lower = part(a, 2.0)?;
     let side = face([[a, -1.0, 0.5], [a, -1.0, 1.5], [a, 1.0, 0.5], [a, 1.0, 1.5]])?;

@@ -1,6 +1,6 @@
 //! Radii far from the size of what is in contact.
 use super::super::scenes::{block_under, solution};
-use super::{Broken, Case, Trial, difference, tool};
+use super::{Case, CaseError, Trial, difference, tool};
 use crate::output::RunStatus;
 use covact_geometry::primitives::{cylinder, plane};
 use covact_geometry::{NurbsPatch, Vec3};
@@ -23,7 +23,7 @@ pub const SMALL_RADIUS: Case = Case {
 const DOWN: [&str; 3] = ["0", "0", "-0.05*t"];
 
 /// A patch of a cylinder along y, 2 wide, that touches z = 0.5 from above.
-fn flat_patch(radius: f64) -> Result<NurbsPatch, Broken> {
+fn flat_patch(radius: f64) -> Result<NurbsPatch, CaseError> {
     let x = 1.0;
     // Ends of the arc at x = -1 and 1, the middle point where their tangents meet.
     let root = (radius * radius - x * x).sqrt();
@@ -49,7 +49,7 @@ fn flat_patch(radius: f64) -> Result<NurbsPatch, Broken> {
     )?)
 }
 
-fn flat_cylinder(trial: &mut Trial) -> Result<(), Broken> {
+fn flat_cylinder(trial: &mut Trial) -> Result<(), CaseError> {
     const RADIUS: f64 = 1e6;
     let flat = plane(Vec3::new(0.0, 0.0, 0.5), -Vec3::z(), [2.0, 2.0])?;
     let center = Vec3::new(0.0, 0.0, 0.5 + RADIUS);
@@ -63,7 +63,7 @@ fn flat_cylinder(trial: &mut Trial) -> Result<(), Broken> {
     let patch = run("patch", flat_patch(RADIUS)?)?;
     trial.holds("contact", flat.last("force.tool.z")? < -1.0);
     // The sagitta of the block, 1.25e-7, against the depth .05: 2.5e-6, and a part of that in the force.
-    let off = |other| -> Result<f64, Broken> { Ok(flat.last("force.tool.z")? / other - 1.0) };
+    let off = |other| -> Result<f64, CaseError> { Ok(flat.last("force.tool.z")? / other - 1.0) };
     let bent = off(patch.last("force.tool.z")?)?;
     trial.equal("loss of force of the patch", bent, 8e-7, 0.5);
     trial.within("whole and patch", difference(&patch, &whole)?, 1e-8);
@@ -102,7 +102,7 @@ fn strip(radius: f64, elements: u32, gauss: u32) -> Value {
     })
 }
 
-fn small_radius(trial: &mut Trial) -> Result<(), Broken> {
+fn small_radius(trial: &mut Trial) -> Result<(), CaseError> {
     // Half of a beam of length 20 held at both ends, line load in its middle: w = F L^3 / (192 E I) + F L / (4 k G A).
     let (e, nu, l, w): (f64, f64, f64, f64) = (1000.0, 0.3, 20.0, 0.1);
     let bending = l.powi(3) * (1.0 - nu * nu) * 12.0 / (192.0 * e);

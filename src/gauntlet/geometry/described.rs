@@ -1,6 +1,6 @@
 //! The same surface in another description.
 use super::super::scenes::block_under;
-use super::{Broken, Case, Trial, difference, tool};
+use super::{Case, CaseError, Trial, difference, tool};
 use covact_geometry::basis::Basis;
 use covact_geometry::primitives::{cylinder, sphere, sphere_without_poles};
 use covact_geometry::{NurbsPatch, Vec3};
@@ -64,7 +64,7 @@ fn at_nodes(tool: Value) -> Value {
     scene
 }
 
-fn pole(trial: &mut Trial) -> Result<(), Broken> {
+fn pole(trial: &mut Trial) -> Result<(), CaseError> {
     for (shift, name) in [
         (0.0, "on"),
         (1e-9, "1e-9"),
@@ -90,7 +90,7 @@ fn pole(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn seam(trial: &mut Trial) -> Result<(), Broken> {
+fn seam(trial: &mut Trial) -> Result<(), CaseError> {
     // The seam lies where x is largest; a turn about y takes it down.
     let round = cylinder(RADIUS, 3.0, Vec3::zeros(), Vec3::y())?;
     let turned = |angle: f64| {
@@ -114,7 +114,7 @@ fn seam(trial: &mut Trial) -> Result<(), Broken> {
 }
 
 /// The patch with weights `c^(i + j)` times as large: of one Bezier piece another parametrisation.
-fn reweighted(patch: &NurbsPatch, c: f64) -> Result<NurbsPatch, Broken> {
+fn reweighted(patch: &NurbsPatch, c: f64) -> Result<NurbsPatch, CaseError> {
     let columns = patch.counts()[0];
     let points = patch.homogeneous().iter().enumerate();
     let points = points.map(|(k, p)| p.map(|x| x * c.powi((k % columns + k / columns) as i32)));
@@ -122,7 +122,7 @@ fn reweighted(patch: &NurbsPatch, c: f64) -> Result<NurbsPatch, Broken> {
     Ok(NurbsPatch::from_homogeneous(basis, points.collect())?)
 }
 
-fn weights(trial: &mut Trial) -> Result<(), Broken> {
+fn weights(trial: &mut Trial) -> Result<(), CaseError> {
     let six = sphere_without_poles(RADIUS, center(), Vec3::z())?;
     let even = tool(trial, "even", six.to_vec(), DOWN)?;
     let even = trial.done(&block_under(even, 6, 3))?;
@@ -141,12 +141,12 @@ fn weights(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn short_span(trial: &mut Trial) -> Result<(), Broken> {
+fn short_span(trial: &mut Trial) -> Result<(), CaseError> {
     let six = sphere_without_poles(RADIUS, center(), Vec3::z())?.to_vec();
     let plain = tool(trial, "plain", six.clone(), DOWN)?;
     let plain = trial.done(&at_nodes(plain))?;
     trial.holds("contact", plain.last("force.tool.z")? < -1.0);
-    let cut = |p: NurbsPatch| -> Result<NurbsPatch, Broken> {
+    let cut = |p: NurbsPatch| -> Result<NurbsPatch, CaseError> {
         let mut p = p;
         for dir in 0..2 {
             let [a, b] = p.domain()[dir];
@@ -163,7 +163,7 @@ fn short_span(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn sliver(trial: &mut Trial) -> Result<(), Broken> {
+fn sliver(trial: &mut Trial) -> Result<(), CaseError> {
     let round = cylinder(RADIUS, 3.0, center(), Vec3::y())?;
     let whole = tool(trial, "whole", vec![round.clone()], DOWN)?;
     let whole = trial.done(&at_nodes(whole))?;
@@ -186,7 +186,7 @@ fn sliver(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn reversed_patch(trial: &mut Trial) -> Result<(), Broken> {
+fn reversed_patch(trial: &mut Trial) -> Result<(), CaseError> {
     let six = sphere_without_poles(RADIUS, center(), Vec3::new(1.0, 2.0, 3.0))?.to_vec();
     let out = tool(trial, "out", six.clone(), DOWN)?;
     let out = trial.done(&block_under(out, 6, 3))?;

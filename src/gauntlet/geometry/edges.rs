@@ -1,6 +1,6 @@
 //! Creases, edges and corners.
 use super::super::scenes::{block_under, solution};
-use super::{Broken, Case, Trial, difference, tool};
+use super::{Case, CaseError, Trial, difference, tool};
 use covact_geometry::{NurbsPatch, Vec3};
 use serde_json::{Value, json};
 
@@ -42,7 +42,7 @@ pub const THIN_TOOL: Case = Case {
 const DOWN: [&str; 3] = ["0", "0", "-0.1*t"];
 
 /// A patch through points, bilinear between them.
-fn bilinear(counts: [usize; 2], points: &[Vec3]) -> Result<NurbsPatch, Broken> {
+fn bilinear(counts: [usize; 2], points: &[Vec3]) -> Result<NurbsPatch, CaseError> {
     let knots = counts.map(|n| {
         let last = (n - 1) as f64;
         let inner = (0..n).map(|i| i as f64);
@@ -51,12 +51,12 @@ fn bilinear(counts: [usize; 2], points: &[Vec3]) -> Result<NurbsPatch, Broken> {
     Ok(NurbsPatch::new([1, 1], knots, counts, points, None)?)
 }
 
-fn face(corners: [[f64; 3]; 4]) -> Result<NurbsPatch, Broken> {
+fn face(corners: [[f64; 3]; 4]) -> Result<NurbsPatch, CaseError> {
     bilinear([2, 2], &corners.map(Vec3::from))
 }
 
 /// `z = 0.5 + height + slope |x|` for x from -1 to 1 in one patch with a crease.
-fn creased(height: f64, slope: f64) -> Result<NurbsPatch, Broken> {
+fn creased(height: f64, slope: f64) -> Result<NurbsPatch, CaseError> {
     let mut points = Vec::new();
     for y in [-1.0, 1.0] {
         points.extend([-1.0f64, 0.0, 1.0].map(|x| Vec3::new(x, y, 0.5 + height + slope * x.abs())));
@@ -64,7 +64,7 @@ fn creased(height: f64, slope: f64) -> Result<NurbsPatch, Broken> {
     bilinear([3, 2], &points)
 }
 
-fn crease(trial: &mut Trial) -> Result<(), Broken> {
+fn crease(trial: &mut Trial) -> Result<(), CaseError> {
     for (name, height, slope, points) in [
         ("ridge", 0.0, 1.0, json!({ "gauss": 2 })),
         ("valley", 0.15, -0.3, json!({ "gauss": 2 })),
@@ -89,7 +89,7 @@ fn crease(trial: &mut Trial) -> Result<(), Broken> {
 }
 
 /// The ridge of slope 1 with a fillet of radius `r`.
-fn rounded(r: f64) -> Result<Vec<NurbsPatch>, Broken> {
+fn rounded(r: f64) -> Result<Vec<NurbsPatch>, CaseError> {
     let [left, right] = creased(0.0, 1.0)?.split(0, 1.0)?;
     if r == 0.0 {
         return Ok(vec![left, right]);
@@ -109,7 +109,7 @@ fn rounded(r: f64) -> Result<Vec<NurbsPatch>, Broken> {
     Ok(vec![left, fillet, right])
 }
 
-fn convex_edge(trial: &mut Trial) -> Result<(), Broken> {
+fn convex_edge(trial: &mut Trial) -> Result<(), CaseError> {
     let mut run = |r: f64, points: Value, shift: &str| {
         let mut tool = tool(trial, "ridge", rounded(r)?, DOWN)?;
         tool["motion"]["translation"][0] = shift.into();
@@ -206,7 +206,7 @@ fn cornered(tool: Value, axes: usize, points: &Value, press: f64) -> Value {
 }
 
 /// Planes x = 0, z = 0 and y = 0 that meet in the origin.
-fn planes() -> Result<[NurbsPatch; 3], Broken> {
+fn planes() -> Result<[NurbsPatch; 3], CaseError> {
     let (a, b) = (-1.0, 2.0);
     Ok([
         face([[0.0, a, 0.0], [0.0, b, 0.0], [0.0, a, b], [0.0, b, b]])?,
@@ -216,13 +216,13 @@ fn planes() -> Result<[NurbsPatch; 3], Broken> {
 }
 
 /// Faces of the corner of a cube, its edges along `e`.
-fn trihedron(at: Vec3, e: [Vec3; 3]) -> Result<Vec<NurbsPatch>, Broken> {
+fn trihedron(at: Vec3, e: [Vec3; 3]) -> Result<Vec<NurbsPatch>, CaseError> {
     let faces = [[0, 1], [1, 2], [2, 0]]
         .map(|[i, j]| bilinear([2, 2], &[at, at + e[i], at + e[j], at + e[i] + e[j]]));
     faces.into_iter().collect()
 }
 
-fn concave_edge(trial: &mut Trial) -> Result<(), Broken> {
+fn concave_edge(trial: &mut Trial) -> Result<(), CaseError> {
     let [x, z, _] = planes()?;
     let (_, pressure) = compressed(2.0, 0.05, 2e4, 100.0, 0.3);
     let still = ["0", "0", "0"];
@@ -240,7 +240,7 @@ fn concave_edge(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn corner(trial: &mut Trial) -> Result<(), Broken> {
+fn corner(trial: &mut Trial) -> Result<(), CaseError> {
     let still = ["0", "0", "0"];
     let (_, pressure) = compressed(3.0, 0.05, 2e4, 100.0, 0.3);
     let s = 2.0;
@@ -291,7 +291,7 @@ fn corner(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-fn thin_tool(trial: &mut Trial) -> Result<(), Broken> {
+fn thin_tool(trial: &mut Trial) -> Result<(), CaseError> {
     // A plate 0.04 thick that covers a part of the block, taken down by a little less than half of that in a step.
     let (a, b, low, high) = (-0.25, 2.0, 0.5, 0.54);
     let lower = face([[a, -1.0, low], [a, 1.0, low], [b, -1.0, low], [b, 1.0, low]])?;

@@ -1,6 +1,6 @@
 //! Slave points near the centre of curvature of a hollow tool, and beyond it.
 use super::super::scenes::solution;
-use super::{Broken, Case, Trial, difference};
+use super::{Case, CaseError, Trial, difference};
 use serde_json::{Value, json};
 
 pub const FOCAL: Case = Case {
@@ -54,7 +54,7 @@ fn tube([a, b]: [f64; 2], n: u32, bore: f64, offset: f64, pressure: f64) -> Valu
     })
 }
 
-fn focal(trial: &mut Trial) -> Result<(), Broken> {
+fn focal(trial: &mut Trial) -> Result<(), CaseError> {
     let [a, b] = [0.75, 1.0];
     let pressure = 1e-3;
     // Lame in plane strain, u = A r + B / r: s_r(a) = -p and s_r(b) = -k u(b), k = E / b.
@@ -131,7 +131,7 @@ fn in_bore(start: f64, table: &Value) -> Value {
     })
 }
 
-fn beyond_focal(trial: &mut Trial) -> Result<(), Broken> {
+fn beyond_focal(trial: &mut Trial) -> Result<(), CaseError> {
     // The edges at x = 0.5 touch when the axis is this high above the bottom.
     let touch = (16.0f64 - 0.25).sqrt();
     let near = touch - 0.01;

@@ -5,7 +5,7 @@ mod described;
 mod edges;
 mod focal;
 
-use super::{Broken, Case, Group, Outcome, Trial};
+use super::{Case, CaseError, Group, Outcome, Trial};
 use covact_geometry::primitives::PrimitiveError;
 use covact_geometry::trim::TrimError;
 use covact_geometry::{NurbsPatch, PatchError};
@@ -35,21 +35,21 @@ pub const GROUP: Group = Group {
     ],
 };
 
-impl From<PrimitiveError> for Broken {
+impl From<PrimitiveError> for CaseError {
     fn from(error: PrimitiveError) -> Self {
-        Broken::new(error.to_string())
+        CaseError::new(error.to_string())
     }
 }
 
-impl From<PatchError> for Broken {
+impl From<PatchError> for CaseError {
     fn from(error: PatchError) -> Self {
-        Broken::new(error.to_string())
+        CaseError::new(error.to_string())
     }
 }
 
-impl From<TrimError> for Broken {
+impl From<TrimError> for CaseError {
     fn from(error: TrimError) -> Self {
-        Broken::new(error.to_string())
+        CaseError::new(error.to_string())
     }
 }
 
@@ -59,7 +59,7 @@ fn tool(
     name: &str,
     patches: Vec<NurbsPatch>,
     motion: [&str; 3],
-) -> Result<Value, Broken> {
+) -> Result<Value, CaseError> {
     let file = trial.cad(name, patches)?;
     Ok(json!({ "cad": { "file": file }, "motion": { "translation": motion } }))
 }
@@ -83,7 +83,7 @@ const COMPARED: [&[&str]; 6] = [
 ];
 
 /// Largest difference of two runs that press with `tool`, at the end, relative to the largest number of the same kind.
-fn difference(a: &Outcome, b: &Outcome) -> Result<f64, Broken> {
+fn difference(a: &Outcome, b: &Outcome) -> Result<f64, CaseError> {
     let mut largest = 0.0f64;
     for columns in COMPARED {
         let mut pairs = Vec::new();
@@ -92,7 +92,7 @@ fn difference(a: &Outcome, b: &Outcome) -> Result<f64, Broken> {
         }
         let scale = pairs.iter().fold(0.0f64, |s, p| s.max(p[0].abs()));
         if scale == 0.0 {
-            return Err(Broken(format!("{columns:?} is nothing")));
+            return Err(CaseError(format!("{columns:?} is nothing")));
         }
         for [a, b] in pairs {
             // A difference that is no number must not pass for a small one.

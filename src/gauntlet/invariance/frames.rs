@@ -1,12 +1,12 @@
 //! The same scene elsewhere, on its way, and in the mirror.
 use super::{SAME, block_and_ball, difference, rotation, run, some};
-use crate::gauntlet::{Broken, Trial};
+use crate::gauntlet::{CaseError, Trial};
 use crate::soak::{Frame, RandomScene, Tool};
 use covact_geometry::Vec3;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use serde_json::json;
 
-pub fn placed(trial: &mut Trial) -> Result<(), Broken> {
+pub fn placed(trial: &mut Trial) -> Result<(), CaseError> {
     for scene in some(6, false) {
         let turn = rotation([1.0, -2.0, 0.5], 40.0 + 50.0 * scene.seed as f64);
         let to = Translation3::new(7.0, -3.0, 12.0);
@@ -24,7 +24,7 @@ pub fn placed(trial: &mut Trial) -> Result<(), Broken> {
 }
 
 /// The superposed motion is a rotation about the x axis by 90 degrees t, and a translation.
-pub fn carried(trial: &mut Trial) -> Result<(), Broken> {
+pub fn carried(trial: &mut Trial) -> Result<(), CaseError> {
     let rest = block_and_ball(json!({
         "translation": ["0.1*t", 0, "-0.1*t"]
     }));
@@ -49,7 +49,7 @@ pub fn carried(trial: &mut Trial) -> Result<(), Broken> {
     let times = at_rest.column("time")?;
     let (mut worst, mut largest) = (0.0f64, 0.0f64);
     for name in ["tool", "floor"] {
-        let read = |o: &crate::gauntlet::Outcome| -> Result<Vec<Vec3>, Broken> {
+        let read = |o: &crate::gauntlet::Outcome| -> Result<Vec<Vec3>, CaseError> {
             let [x, y, z] = ["x", "y", "z"].map(|a| o.column(&format!("force.{name}.{a}")));
             let (x, y, z) = (x?, y?, z?);
             Ok((0..x.len()).map(|i| Vec3::new(x[i], y[i], z[i])).collect())
@@ -69,7 +69,7 @@ pub fn carried(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn mirrored(trial: &mut Trial) -> Result<(), Broken> {
+pub fn mirrored(trial: &mut Trial) -> Result<(), CaseError> {
     for mut scene in some(6, false) {
         // Facets of a mirrored sphere are others.
         scene.facets = None;
@@ -85,7 +85,7 @@ pub fn mirrored(trial: &mut Trial) -> Result<(), Broken> {
 }
 
 /// The scene in the mirror x -> -x; meshes are their own images.
-fn mirror(scene: &RandomScene) -> Result<RandomScene, Broken> {
+fn mirror(scene: &RandomScene) -> Result<RandomScene, CaseError> {
     let mut image = scene.clone();
     image.center[0] = -image.center[0];
     for (_, v) in &mut image.motion.path {
@@ -101,7 +101,7 @@ fn mirror(scene: &RandomScene) -> Result<RandomScene, Broken> {
             let flipped = patch.transformed(&|p| Vec3::new(-p.x, p.y, p.z));
             // Turned round, so that its normal is the image of the normal.
             let flipped = flipped.and_then(|p| p.reversed(0));
-            **patch = flipped.map_err(|e| Broken::new(e.to_string()))?;
+            **patch = flipped.map_err(|e| CaseError::new(e.to_string()))?;
         }
     }
     Ok(image)

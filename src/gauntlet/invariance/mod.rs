@@ -3,7 +3,7 @@ mod frames;
 mod numbering;
 mod parameters;
 
-use super::{Broken, Case, Group, Outcome, Trial};
+use super::{Case, CaseError, Group, Outcome, Trial};
 use crate::soak::{BodyKind, Frame, RandomScene, Tool, draw};
 use covact_geometry::Vec3;
 use nalgebra::Rotation3;
@@ -92,7 +92,7 @@ fn some(count: usize, patches: bool) -> Vec<RandomScene> {
 }
 
 /// Runs a random scene in a frame, with equal steps and a tolerance below what is compared.
-fn run(trial: &mut Trial, scene: &RandomScene, frame: &Frame) -> Result<Outcome, Broken> {
+fn run(trial: &mut Trial, scene: &RandomScene, frame: &Frame) -> Result<Outcome, CaseError> {
     let written = scene.write(frame);
     let mut json = written.scene;
     if !written.patches.is_empty() {
@@ -101,7 +101,7 @@ fn run(trial: &mut Trial, scene: &RandomScene, frame: &Frame) -> Result<Outcome,
     json["solution"]["step"]["adaptive"] = json!(false);
     json["solution"]["newton"] = json!({ "tolerance": 1e-11, "max_iterations": 40 });
     let outcome = trial.done(&json);
-    outcome.map_err(|e| Broken::new(format!("seed {}: {e}", scene.seed)))
+    outcome.map_err(|e| CaseError::new(format!("seed {}: {e}", scene.seed)))
 }
 
 /// Columns that turn with the scene: vectors named up to their axis.
@@ -128,10 +128,10 @@ const SCALARS: [&str; 5] = [
 
 /// Largest difference of two runs over all steps: forces, which `turn` takes from the first to the second, relative to the
 /// largest of them, and scalars relative to their largest value.
-fn difference(a: &Outcome, b: &Outcome, turn: impl Fn(Vec3) -> Vec3) -> Result<f64, Broken> {
+fn difference(a: &Outcome, b: &Outcome, turn: impl Fn(Vec3) -> Vec3) -> Result<f64, CaseError> {
     let times = [a.column("time")?, b.column("time")?];
     if times[0].len() != times[1].len() {
-        return Err(Broken::new(format!(
+        return Err(CaseError::new(format!(
             "{} steps against {}",
             times[0].len(),
             times[1].len()
@@ -140,7 +140,7 @@ fn difference(a: &Outcome, b: &Outcome, turn: impl Fn(Vec3) -> Vec3) -> Result<f
     let mut worst = 0.0f64;
     let mut largest = 0.0f64;
     for head in vectors(a) {
-        let read = |o: &Outcome| -> Result<Vec<Vec3>, Broken> {
+        let read = |o: &Outcome| -> Result<Vec<Vec3>, CaseError> {
             let [x, y, z] = ["x", "y", "z"].map(|axis| o.column(&format!("{head}.{axis}")));
             let (x, y, z) = (x?, y?, z?);
             Ok((0..x.len()).map(|i| Vec3::new(x[i], y[i], z[i])).collect())
@@ -151,7 +151,7 @@ fn difference(a: &Outcome, b: &Outcome, turn: impl Fn(Vec3) -> Vec3) -> Result<f
         }
     }
     if largest <= 0.0 {
-        return Err(Broken::new("no force acts"));
+        return Err(CaseError::new("no force acts"));
     }
     worst /= largest;
     for name in SCALARS {

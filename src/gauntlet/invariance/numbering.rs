@@ -1,7 +1,7 @@
 //! The same model in another order.
 use super::{SAME, difference, some, still};
 use crate::gauntlet::scenes::{block_under, solution};
-use crate::gauntlet::{Broken, Trial};
+use crate::gauntlet::{CaseError, Trial};
 use crate::mesh::{self, ElementKind, Mesh};
 use crate::scene::Block;
 use crate::soak::Frame;
@@ -9,7 +9,7 @@ use fastrand::Rng;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-pub fn threads(trial: &mut Trial) -> Result<(), Broken> {
+pub fn threads(trial: &mut Trial) -> Result<(), CaseError> {
     for scene in some(6, false) {
         let written = scene.write(&Frame::default());
         let mut json = written.scene;
@@ -67,14 +67,14 @@ fn inp(mesh: &Mesh, nodes: &[usize], elements: &[usize]) -> String {
     text
 }
 
-pub fn renumbered(trial: &mut Trial) -> Result<(), Broken> {
+pub fn renumbered(trial: &mut Trial) -> Result<(), CaseError> {
     let block = Block {
         min: [-0.5, -0.5, 0.0],
         max: [0.5, 0.5, 0.5],
         elements: [5, 5, 2],
         spacing: Default::default(),
     };
-    let mesh = mesh::block(&block, ElementKind::H8).map_err(|e| Broken::new(e.to_string()))?;
+    let mesh = mesh::block(&block, ElementKind::H8).map_err(|e| CaseError::new(e.to_string()))?;
     let ball = json!({
         "sphere": { "radius": 0.5, "center": [0.03, 0.01, 1.01] },
         "motion": { "translation": ["0.1*t", 0, "-0.12*t"] }
@@ -90,7 +90,7 @@ pub fn renumbered(trial: &mut Trial) -> Result<(), Broken> {
     for order in 0..4 {
         let text = inp(&mesh, &nodes, &elements);
         std::fs::write(trial.folder().join("block.inp"), text)
-            .map_err(|e| Broken::new(e.to_string()))?;
+            .map_err(|e| CaseError::new(e.to_string()))?;
         let outcome = trial.done(&scene)?;
         match &given {
             None => given = Some(outcome),
@@ -140,7 +140,7 @@ fn named(names: [&str; 7]) -> Value {
     })
 }
 
-pub fn order(trial: &mut Trial) -> Result<(), Broken> {
+pub fn order(trial: &mut Trial) -> Result<(), CaseError> {
     let names = ["a_upper", "b_lower", "c_above", "d_below", "e", "f", "g"];
     let others = ["z_upper", "a_lower", "y_above", "c_below", "n", "p", "b"];
     let given = trial.done(&named(names))?;

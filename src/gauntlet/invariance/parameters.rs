@@ -1,19 +1,19 @@
 //! The same surface in other parameters.
 use super::{SAME, difference, run, some, still};
-use crate::gauntlet::{Broken, Trial};
+use crate::gauntlet::{CaseError, Trial};
 use crate::soak::{Frame, Tool};
 use covact_geometry::{NurbsPatch, PatchError};
 
 type Change = fn(&NurbsPatch) -> Result<NurbsPatch, PatchError>;
 
-fn changed(trial: &mut Trial, changes: &[(&str, Change)]) -> Result<(), Broken> {
+fn changed(trial: &mut Trial, changes: &[(&str, Change)]) -> Result<(), CaseError> {
     for mut scene in some(3, true) {
         let Tool::Patch(patch) = scene.tool.clone() else {
-            return Err(Broken::new("no patch"));
+            return Err(CaseError::new("no patch"));
         };
         let given = run(trial, &scene, &Frame::default())?;
         for (name, change) in changes {
-            let other = change(&patch).map_err(|e| Broken::new(e.to_string()))?;
+            let other = change(&patch).map_err(|e| CaseError::new(e.to_string()))?;
             scene.tool = Tool::Patch(Box::new(other));
             let off = difference(&given, &run(trial, &scene, &Frame::default())?, still)?;
             trial.within(
@@ -26,7 +26,7 @@ fn changed(trial: &mut Trial, changes: &[(&str, Change)]) -> Result<(), Broken> 
     Ok(())
 }
 
-pub fn turned(trial: &mut Trial) -> Result<(), Broken> {
+pub fn turned(trial: &mut Trial) -> Result<(), CaseError> {
     trial.iterations(1900);
     changed(
         trial,
@@ -38,7 +38,7 @@ pub fn turned(trial: &mut Trial) -> Result<(), Broken> {
     )
 }
 
-pub fn refined(trial: &mut Trial) -> Result<(), Broken> {
+pub fn refined(trial: &mut Trial) -> Result<(), CaseError> {
     trial.iterations(1900);
     changed(
         trial,

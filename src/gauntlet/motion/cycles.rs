@@ -1,9 +1,9 @@
 //! Steps too large, and ways to and fro.
 use crate::gauntlet::drawn::{FRICTION, STATE, block, plane, steps};
-use crate::gauntlet::{Broken, Outcome, Trial};
+use crate::gauntlet::{CaseError, Outcome, Trial};
 use serde_json::json;
 
-pub fn through(trial: &mut Trial) -> Result<(), Broken> {
+pub fn through(trial: &mut Trial) -> Result<(), CaseError> {
     // A quarter of a clamped sheet, 0.2 thick; the ball goes 1.49 deep.
     let scene = |steps: u32| {
         let step = 1.0 / f64::from(steps);
@@ -43,7 +43,7 @@ pub fn through(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn mirrored(trial: &mut Trial) -> Result<(), Broken> {
+pub fn mirrored(trial: &mut Trial) -> Result<(), CaseError> {
     // A sphere beside the axis that it turns about: half a turn carries its crown by more than half of the block.
     let run = |trial: &mut Trial, a_step: f64| {
         let tool = json!({
@@ -69,7 +69,7 @@ pub fn mirrored(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn reversal(trial: &mut Trial) -> Result<(), Broken> {
+pub fn reversal(trial: &mut Trial) -> Result<(), CaseError> {
     let push = json!({ "table": [[0, 0], [1, 0.1], [3, -0.1], [5, 0.1], [6, 0]] });
     for mu in [0.0, 0.3] {
         let tool = |z: f64| json!({ "cylinder": { "radius": 1, "length": 4, "center": [2.5, 0.5, z], "axis": [0, 1, 0] } });
@@ -138,7 +138,7 @@ pub fn reversal(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn fifty_times(trial: &mut Trial) -> Result<(), Broken> {
+pub fn fifty_times(trial: &mut Trial) -> Result<(), CaseError> {
     const CYCLES: usize = 50;
     const STEPS: usize = 6;
     let mut tool = plane();
@@ -193,12 +193,12 @@ pub fn fifty_times(trial: &mut Trial) -> Result<(), Broken> {
 }
 
 /// Largest size of a column.
-fn largest(outcome: &Outcome, name: &str) -> Result<f64, Broken> {
+fn largest(outcome: &Outcome, name: &str) -> Result<f64, CaseError> {
     Ok((outcome.column(name)?.iter()).fold(0.0f64, |s, v| s.max(v.abs())))
 }
 
 /// Largest difference of a column between the first and the last cycle.
-fn drift(outcome: &Outcome, name: &str) -> Result<f64, Broken> {
+fn drift(outcome: &Outcome, name: &str) -> Result<f64, CaseError> {
     let (times, column) = (outcome.column("time")?, outcome.column(name)?);
     let a_cycle = times.iter().filter(|t| **t < 1.0 + 1e-9).count();
     let last = column.len().saturating_sub(a_cycle);

@@ -1,6 +1,6 @@
 //! Tools that turn, by large angles a step.
 use crate::gauntlet::drawn::{STATE, block, change, cylinder, difference, plane, steps};
-use crate::gauntlet::{Broken, Trial};
+use crate::gauntlet::{CaseError, Trial};
 use serde_json::{Value, json};
 
 /// Pressed until t = 0.2; what turns does so from then on.
@@ -15,7 +15,7 @@ fn turning(degrees: f64, a_step: f64) -> Value {
     solution
 }
 
-pub fn full_turn(trial: &mut Trial) -> Result<(), Broken> {
+pub fn full_turn(trial: &mut Trial) -> Result<(), CaseError> {
     let mut tool = cylinder(0.0);
     tool["motion"] = json!({ "rotation": {
         "center": [0, 0, -2], "axis": [0, 1, 0], "angle": { "table": [[0, 0], [0.2, 0], [1, 720]] }
@@ -66,7 +66,7 @@ pub fn full_turn(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn cam(trial: &mut Trial) -> Result<(), Broken> {
+pub fn cam(trial: &mut Trial) -> Result<(), CaseError> {
     let e = 0.02;
     let mut turned = cylinder(0.0);
     turned["motion"] = json!({ "rotation": {
@@ -110,7 +110,7 @@ pub fn cam(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn together(trial: &mut Trial) -> Result<(), Broken> {
+pub fn together(trial: &mut Trial) -> Result<(), CaseError> {
     let a = "(2*pi*max(0,t-0.2)/0.8)";
     let (dx, dz) = ("(0.002*min(t/0.2,1))", "(-0.02*min(t/0.2,1))");
     let columns = [
@@ -145,7 +145,7 @@ pub fn together(trial: &mut Trial) -> Result<(), Broken> {
         let force = |t: f64| {
             let f = ["x", "y", "z"].map(|c| outcome.at(&format!("force.tool.{c}"), t));
             let [x, y, z] = f;
-            Ok::<_, Broken>([x?, y?, z?])
+            Ok::<_, CaseError>([x?, y?, z?])
         };
         let [before, after] = [force(0.2)?, force(1.0)?];
         trial.holds(

@@ -1,12 +1,12 @@
 //! Straight ways over what surfaces are made of.
 use crate::gauntlet::drawn::{FRICTION, STATE, block, cylinder, difference, steps};
-use crate::gauntlet::{Broken, Outcome, Trial};
+use crate::gauntlet::{CaseError, Outcome, Trial};
 use covact_geometry::{NurbsPatch, Vec3, primitives};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
-fn broken(e: impl std::fmt::Display) -> Broken {
-    Broken::new(e.to_string())
+fn broken(e: impl std::fmt::Display) -> CaseError {
+    CaseError::new(e.to_string())
 }
 
 /// Part of a cylinder along y about (x, 0, z), from angle `from` to `to` (from x towards z, radians).
@@ -16,7 +16,7 @@ fn arc(
     from: f64,
     to: f64,
     y: [f64; 2],
-) -> Result<NurbsPatch, Broken> {
+) -> Result<NurbsPatch, CaseError> {
     let (half, middle) = (0.5 * (to - from), 0.5 * (to + from));
     let w = half.cos();
     let at = |angle: f64, r: f64, y: f64| Vec3::new(x + r * angle.cos(), y, z + r * angle.sin());
@@ -34,7 +34,7 @@ fn arc(
     NurbsPatch::new([2, 1], knots, [3, 2], &points, Some(&weights)).map_err(broken)
 }
 
-pub fn borders(trial: &mut Trial) -> Result<(), Broken> {
+pub fn borders(trial: &mut Trial) -> Result<(), CaseError> {
     let top = json!({
         "x": { "table": [[0, 0], [0.25, 0], [1, 0.6]] }, "y": 0,
         "z": { "table": [[0, 0], [0.25, -0.06], [1, -0.06]] }
@@ -103,7 +103,7 @@ fn panel(x: Value, z: Value, solution: Value) -> Value {
     })
 }
 
-pub fn open_edges(trial: &mut Trial) -> Result<(), Broken> {
+pub fn open_edges(trial: &mut Trial) -> Result<(), CaseError> {
     let down = -0.05;
     let pressed = json!({ "table": [[0, 0], [1, down]] });
     let there = trial.done(&panel(json!(0), pressed, steps(0.25, 1.0)))?;
@@ -162,7 +162,7 @@ struct Corner {
 }
 
 impl Corner {
-    fn run(&self, trial: &mut Trial) -> Result<Outcome, Broken> {
+    fn run(&self, trial: &mut Trial) -> Result<Outcome, CaseError> {
         let Corner {
             fillet: r,
             bend: b,
@@ -228,7 +228,7 @@ impl Corner {
 }
 
 /// Pull of the end from t = 1 on; the tool must balance it and the tension.
-fn pull(trial: &mut Trial, outcome: &Outcome) -> Result<Vec<f64>, Broken> {
+fn pull(trial: &mut Trial, outcome: &Outcome) -> Result<Vec<f64>, CaseError> {
     let times = outcome.column("time")?;
     let [ex, ez] = [
         outcome.column("force.end.x")?,
@@ -251,7 +251,7 @@ fn pull(trial: &mut Trial, outcome: &Outcome) -> Result<Vec<f64>, Broken> {
     Ok(pull)
 }
 
-pub fn fillet(trial: &mut Trial) -> Result<(), Broken> {
+pub fn fillet(trial: &mut Trial) -> Result<(), CaseError> {
     // Ten elements of 0.4.
     let corner = Corner {
         fillet: 3.0,
@@ -270,7 +270,7 @@ pub fn fillet(trial: &mut Trial) -> Result<(), Broken> {
     Ok(())
 }
 
-pub fn sharp_corner(trial: &mut Trial) -> Result<(), Broken> {
+pub fn sharp_corner(trial: &mut Trial) -> Result<(), CaseError> {
     // Four elements of 0.4; the first two are the way into steady motion.
     let corner = Corner {
         fillet: 0.0,

@@ -2,7 +2,7 @@
 //!
 //! Everything that evolves is taken apart field by field: a new field does not compile until it is decided here whether it
 //! is kept. What is kept needs a line in `put` and one in `take`, and a new [format](crate::run::checkpoint).
-use super::{March, Outputs, Walk};
+use super::{March, Outputs, StepControl};
 use crate::assembly::{AssemblerMemory, CouplingMemory, Factored};
 use crate::model::Model;
 use crate::model::state::State;
@@ -10,7 +10,7 @@ use crate::output::{HistoryMark, OutputError};
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::run::checkpoint::{CheckpointError, Sections, Slot, state};
 use crate::run::compliance::Compliance;
-use crate::run::cost::Spent;
+use crate::run::cost::ResourceUse;
 use crate::run::peaks::Peaks;
 use crate::run::progress::Progress;
 use crate::run::watch::Watch;
@@ -41,7 +41,7 @@ pub struct Kept {
     pub(super) factorizations: BTreeMap<Method, u64>,
     pub assembler: AssemblerMemory,
     pub expects_indefinite: bool,
-    pub(super) spent: Spent,
+    pub(super) spent: ResourceUse,
 }
 
 impl Kept {
@@ -54,8 +54,9 @@ impl Kept {
     }
 
     fn take(model: &Model, sections: &Sections, from: &mut Reader) -> Result<Self, Malformed> {
-        let (progress, spent) =
-            from.section("progress", |r| Ok((take_progress(r)?, Spent::take(r)?)))?;
+        let (progress, spent) = from.section("progress", |r| {
+            Ok((take_progress(r)?, ResourceUse::take(r)?))
+        })?;
         let (dt, hold, touched, touching) = from.section("path", |r| {
             let pairs = model.pairs.len();
             let (dt, hold) = (r.f64()?, r.bool()?);
@@ -114,7 +115,7 @@ impl March<'_, '_> {
     pub(super) fn keep(
         &mut self,
         committed: &State,
-        walk: &Walk,
+        walk: &StepControl,
         outputs: &mut Outputs,
     ) -> Result<(), OutputError> {
         let March {
@@ -137,7 +138,7 @@ impl March<'_, '_> {
             cost,
             keeper,
         } = self;
-        let Walk {
+        let StepControl {
             stepping,
             before,
             hold,

@@ -27,7 +27,7 @@ const WRONG: f64 = 5.0;
 const NO_WAY: f64 = 1e-9;
 
 /// A doubt: told once, when it comes up.
-pub(super) struct Doubt {
+pub(super) struct LinearityWarning {
     /// Text that such a warning begins with.
     pub about: String,
     pub text: String,
@@ -58,7 +58,7 @@ pub(super) fn doubts(
     masters: &mut Masters,
     state: &State,
     time: f64,
-) -> Result<Vec<Doubt>, Fault> {
+) -> Result<Vec<LinearityWarning>, Fault> {
     let mut out = Vec::new();
     if model.small.is_none() {
         return Ok(out);
@@ -109,7 +109,7 @@ pub(super) fn doubts(
 }
 
 /// The doubt that a value above its limit raises.
-fn doubt(what: &str, of: &str, value: f64, text: &str, time: f64) -> Option<Doubt> {
+fn doubt(what: &str, of: &str, value: f64, text: &str, time: f64) -> Option<LinearityWarning> {
     if value <= DOUBTFUL {
         return None;
     }
@@ -124,7 +124,7 @@ fn doubt(what: &str, of: &str, value: f64, text: &str, time: f64) -> Option<Doub
         ),
     };
     let about = format!("{about}, {what}{of}:");
-    Some(Doubt {
+    Some(LinearityWarning {
         text: format!("{about} {text} (time {}); {help}", number(time)),
         about,
     })
@@ -132,7 +132,7 @@ fn doubt(what: &str, of: &str, value: f64, text: &str, time: f64) -> Option<Doub
 
 /// The doubt about the forces of the linear elements; `next` are the terms that follow, of strain energy `internal`, and
 /// `released` what further displacements release.
-fn forces(next: &Quadratic, released: f64, internal: f64, time: f64) -> Option<Doubt> {
+fn forces(next: &Quadratic, released: f64, internal: f64, time: f64) -> Option<LinearityWarning> {
     let fourth = (next.even - internal - released).max(0.0);
     let share = (1.5 * next.odd.abs() + 2.0 * fourth) / internal;
     let text = format!(
@@ -179,7 +179,7 @@ impl March<'_, '_> {
     }
 
     /// Tells a doubt, once.
-    pub(super) fn doubt(&mut self, doubt: Doubt) {
+    pub(super) fn doubt(&mut self, doubt: LinearityWarning) {
         let told = |w: &String| w.starts_with(&doubt.about);
         if !self.progress.warnings.iter().any(told) {
             self.warn(doubt.text);
