@@ -10,6 +10,7 @@ mkdir -p "$corpus"
 case $target in
 json) cp -n fuzz/seeds/json/* tests/data/json/* ../assets/cad/*.json "$corpus" ;;
 iges | iges_entities) cp -n fuzz/seeds/iges/* ../assets/cad/*.igs ../assets/sphere.igs "$corpus" ;;
+step) cp -n tests/data/step/*.step "$corpus" ;;
 stl) cp -n fuzz/seeds/stl/* "$corpus" ;;
 esac
 [ -f "fuzz/$target.dict" ] && dictionary=-dict=fuzz/$target.dict

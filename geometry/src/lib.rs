@@ -1,7 +1,7 @@
 //! CAD surfaces for computation: NURBS patches read from CAD files, evaluated with their derivatives, and the closest
 //! point on any number of them to a point of space.
 //!
-//! - **Read** ([`io`]): IGES, and JSON of Kratos, geomdl and our own. Trimmed faces are trimmed; what could not be read
+//! - **Read** ([`io`]): STEP, IGES, and JSON of Kratos, geomdl and our own. Trimmed faces are trimmed; what could not be read
 //!   is named.
 //! - **Evaluate** ([`NurbsPatch`], [`Surface`]): point, tangents and second derivatives in one [`Jet`]; normal, metric,
 //!   curvature and Christoffel symbols in a [`Frame`]. No allocation.

@@ -428,14 +428,14 @@ fn subfigures_are_placed() {
     assert!(message.contains("fewer copies"), "{message}");
 }
 
-/// A STEP file is told from its content, with the formats that are read.
+/// What is no CAD file is named, with the formats that are read.
 #[test]
-fn step_files_are_named() {
+fn files_of_other_kinds_are_named() {
     let path = std::env::temp_dir().join(format!("covact-{}.igs", std::process::id()));
-    std::fs::write(&path, "ISO-10303-21;\nHEADER;\n").unwrap();
+    std::fs::write(&path, "a\0b").unwrap();
     let message = read_path(&path).unwrap_err().to_string();
     std::fs::remove_file(&path).unwrap();
-    for word in ["a STEP file", "IGES", "JSON"] {
+    for word in ["binary data", "STEP", "IGES", "JSON"] {
         assert!(message.contains(word), "{message}");
     }
 }

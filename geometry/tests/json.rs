@@ -2,8 +2,8 @@
 //! trims are known, `trimmed.geomdl.json` written by geomdl 5.3.1 itself.
 
 use covact_geometry::io::{
-    CadFile, CadFormat, CadPatch, FaceBorder, LengthUnit, TrimReport, read_json, read_path,
-    write_json,
+    CadFile, CadFormat, CadPatch, CadTags, FaceBorder, LengthUnit, TrimReport, read_json,
+    read_path, write_json,
 };
 use covact_geometry::{NurbsCurve, NurbsPatch, Trim, TrimCurve, TrimLoop};
 use nalgebra::{Vector2, Vector3};
@@ -214,6 +214,7 @@ fn awkward() -> CadFile {
         instance: 3,
         border,
         name: name.map(str::to_owned),
+        tags: CadTags::default(),
     };
     let plain = patch.clone();
     CadFile {
@@ -230,6 +231,7 @@ fn awkward() -> CadFile {
             ),
             part(plain, 9, FaceBorder::Rectangle, None),
         ],
+        bodies: Vec::new(),
         entities: Vec::new(),
         skipped: Vec::new(),
         trims: TrimReport::default(),
@@ -361,6 +363,7 @@ fn random_numbers_keep_every_bit() {
             instance: 0,
             border: FaceBorder::Natural,
             name: None,
+            tags: CadTags::default(),
         }
     });
     assert_lossless(&CadFile {

@@ -74,12 +74,6 @@ pub(super) fn fault(path: &Path, error: &CadError) -> Stop {
             Stop(text, exit::SCENE)
         }
         CadError::Read { .. } => Stop(error.to_string(), exit::IO),
-        CadError::Format { found, .. } if found.contains("STEP") => {
-            let text = format!(
-                "{error}; save the model as IGES, with trimmed surfaces (144) or as a solid (186)"
-            );
-            Stop(text, exit::SCENE)
-        }
         _ => Stop(error.to_string(), exit::SCENE),
     }
 }

@@ -114,7 +114,7 @@ struct CheckArgs {
 
 #[derive(Debug, Args)]
 struct InspectArgs {
-    /// IGES file, JSON of Kratos, geomdl or `covact convert`, or STL
+    /// STEP or IGES file, JSON of Kratos, geomdl or `covact convert`, or STL
     file: PathBuf,
     /// Print the findings as JSON
     #[arg(long)]
@@ -126,7 +126,7 @@ struct InspectArgs {
 
 #[derive(Debug, Args)]
 struct ProjectArgs {
-    /// IGES file, or JSON of Kratos, geomdl or `covact convert`
+    /// STEP or IGES file, or JSON of Kratos, geomdl or `covact convert`
     file: PathBuf,
     /// Text file with `x y z` in every line, separated by blanks or commas; what follows a # is a comment; - reads
     /// the standard input
@@ -151,7 +151,7 @@ struct ProjectArgs {
 
 #[derive(Debug, Args)]
 struct ConvertArgs {
-    /// IGES file, or JSON of Kratos or geomdl
+    /// STEP or IGES file, or JSON of Kratos or geomdl
     file: PathBuf,
     /// File to write; - is the standard output
     #[arg(short, long, value_name = "FILE")]

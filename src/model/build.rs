@@ -1,4 +1,5 @@
 //! Scene to model.
+mod cad_bodies;
 mod contacts;
 mod facets;
 mod fibres;

@@ -76,7 +76,10 @@ fn a_truncated_iges_file() {
         folder.path(),
         &cad("punch.igs"),
         FILE,
-        &["punch.igs: expected an IGES file", "found an empty file"],
+        &[
+            "punch.igs: expected a STEP or IGES file",
+            "found an empty file",
+        ],
     );
 }
 
@@ -108,6 +111,29 @@ fn skipped_surfaces_are_refused() {
         FILE,
         &["holds no surface that can be used: entity 1", "neither"],
     );
+}
+
+#[test]
+fn bodies_are_chosen_by_name() {
+    // The box is one body, which has the name of its product.
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry/tests/data/step/box.step");
+    let whole = std::fs::read_to_string(path).unwrap();
+    let name = "Open CASCADE STEP translator 7.9 6";
+    let folder = folder_with("tool.step", &whole);
+    let mut change = cad("tool.step");
+    change[0].1["placement"] = json!({ "translation": [0, 0, 8] });
+    change[0].1["cad"]["bodies"] = json!(["Open CASCADE STEP translator 7.9 7"]);
+    plate_refused_in(
+        folder.path(),
+        &change,
+        "/surfaces/ball/cad/bodies",
+        &["tool.step has no body or product", "did you mean", name],
+    );
+    change[0].1["cad"]["bodies"] = json!([name]);
+    write_plate(folder.path(), &change);
+    let output = covact(folder.path(), &["check", "scene.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_parts(&stdout(&output), &["patches         6, all connected"]);
 }
 
 #[test]

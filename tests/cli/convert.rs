@@ -103,7 +103,7 @@ fn units_and_faults() {
         (
             &["t.stp", "-o", "out.json"],
             3,
-            "found a STEP file; save the model as IGES",
+            "t.stp:2:1: expected a section (HEADER, DATA) or END-ISO-10303-21",
         ),
     ] {
         let output = run(arguments);

@@ -77,16 +77,54 @@ fn files_that_cannot_be_read() {
         error,
         "error: there is no file `tol.igs`; did you mean `tool.igs`?\n"
     );
-    let (code, _, error) = inspect("tool.igs", "ISO-10303-21;\n", &["tool.igs"]);
+    let (code, _, error) = inspect("tool.igs", "a\0b", &["tool.igs"]);
     assert_eq!(code, Some(3));
     assert!(
-        error.contains("tool.igs: expected an IGES file")
-            && error.contains("found a STEP file; save the model as IGES"),
+        error.contains("tool.igs: expected a STEP or IGES file, or JSON")
+            && error.contains("found binary data"),
         "{error}"
+    );
+    let (code, _, error) = inspect(
+        "tool.step",
+        "ISO-10303-21;\nHEADER;\nENDSEC\n",
+        &["tool.step"],
+    );
+    assert_eq!(code, Some(3));
+    assert_eq!(
+        error,
+        "error: tool.step:4:1: expected a semicolon after ENDSEC, found the end of the file\n"
     );
     let (code, _, error) = inspect("tool.json", "{\"shape\": ", &["tool.json"]);
     assert_eq!(code, Some(3));
     assert!(error.starts_with("error: tool.json:1:"), "{error}");
+}
+
+/// A STEP file with its body, by its product's name, and the exact area of a torus of radii 10 and 3.
+#[test]
+fn bodies_of_step_files() {
+    let path = format!(
+        "{}/geometry/tests/data/step/torus.step",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let output = covact(Path::new("."), &["inspect", &path]);
+    let text = stdout(&output);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    for part in [
+        "Step file, unit mm",
+        "ADVANCED_FACE",
+        "bodies: 1",
+        "solid",
+        "patches: 1",
+    ] {
+        assert!(text.contains(part), "no {part} in\n{text}");
+    }
+    let output = covact(Path::new("."), &["inspect", &path, "--json"]);
+    let found: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(found["format"], "step");
+    assert_eq!(found["bodies"][0]["faces"], 1);
+    assert_eq!(found["patches"][0]["body"], 0);
+    let area = found["surface"]["area"].as_f64().unwrap();
+    assert!((area / (120.0 * PI * PI) - 1.0).abs() < 1e-4, "{area}");
 }
 
 /// The findings of an asset, as data.

@@ -6,7 +6,7 @@ mod entities;
 pub use bounds::{Budget, bounded};
 pub use entities::mutate;
 
-use covact_geometry::io::{CadFile, read_iges, read_iges_geometry};
+use covact_geometry::io::{CadFile, read_iges, read_iges_geometry, read_step};
 use covact_geometry::{PatchSet, Vec3};
 
 /// Sets of more patches than this are not made.
@@ -24,6 +24,18 @@ pub fn iges(bytes: &[u8]) {
     let _ = bounded(Budget::reader(bytes.len()), || {
         read_iges_geometry(bytes, "fuzz.igs")
     });
+}
+
+/// Reads bytes as a STEP file within the bounds of a reader.
+pub fn step(bytes: &[u8]) {
+    let file = bounded(Budget::reader(bytes.len()), || {
+        read_step(bytes, "fuzz.step")
+    });
+    if let Ok(file) = file
+        && one_in_four(bytes)
+    {
+        use_patches(file);
+    }
 }
 
 /// Chooses inputs for what takes long, always the same ones.

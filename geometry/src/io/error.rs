@@ -13,7 +13,9 @@ pub enum CadError {
         source: std::io::Error,
     },
     /// The file is of a kind that is not read.
-    #[error("{path}: expected an IGES file, or JSON as Kratos or geomdl write it, found {found}")]
+    #[error(
+        "{path}: expected a STEP or IGES file, or JSON as Kratos or geomdl write it, found {found}"
+    )]
     Format {
         /// Path or name of the file.
         path: String,

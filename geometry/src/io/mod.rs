@@ -1,14 +1,16 @@
-//! Readers of CAD files: IGES 5.3 and JSON of Kratos, geomdl and our own ([`write_json`]).
+//! Readers of CAD files: STEP (AP203, AP214, AP242), IGES 5.3, and JSON of Kratos, geomdl and our own ([`write_json`]).
 //!
 //! [`read_path`] tells the format from the content. What comes back is a [`CadFile`]: NURBS patches with
 //! their trims, and an account of everything else the file holds. Nothing is dropped silently: a surface that was not read is
 //! [`Skipped`] with its reason, and what was tolerated although the standard does not allow it is in the notes.
 
+mod brep;
 mod error;
 mod file;
 mod iges;
 mod json;
 mod report;
+mod step;
 mod stl;
 mod unit;
 
@@ -20,8 +22,10 @@ pub use iges::{
 };
 pub use json::{read_json, write_json};
 pub use report::{
-    CadFile, CadFormat, CadPatch, EntityCount, FaceBorder, SkipKind, Skipped, Summary, TrimReport,
+    CadBody, CadFile, CadFormat, CadPatch, CadTags, EntityCount, FaceBorder, SkipKind, Skipped,
+    Summary, TrimReport,
 };
+pub use step::read_step;
 pub use stl::{Stl, StlError, StlReport, read_stl, read_stl_path, write_stl};
 pub use unit::LengthUnit;
 
@@ -34,11 +38,11 @@ pub struct ReadOptions {
     pub hidden: bool,
 }
 
-/// Reads a CAD file, IGES or JSON by its content (the extension plays no part).
+/// Reads a CAD file, STEP, IGES or JSON by its content (the extension plays no part).
 ///
 /// # Errors
 /// [`CadError::Read`] when the file cannot be opened, [`CadError::Content`] with line and column when it is damaged,
-/// and [`CadError::Format`] when it is neither IGES nor JSON (a STEP file, for one).
+/// and [`CadError::Format`] when it is none of these (an STL file, for one).
 pub fn read_path(path: &Path) -> Result<CadFile, CadError> {
     read_path_with(path, &ReadOptions::default())
 }
@@ -58,10 +62,11 @@ pub fn read_path_with(path: &Path, options: &ReadOptions) -> Result<CadFile, Cad
     if start.starts_with(b"{") || start.starts_with(b"[") {
         return read_json(text, &name);
     }
+    if step::is_step(start) {
+        return read_step(text, &name);
+    }
     let kind = if start.is_empty() {
         Some("an empty file")
-    } else if start.starts_with(b"ISO-10303-21") {
-        Some("a STEP file")
     } else if start.starts_with(b"solid") && !text[..text.len().min(80)].ends_with(b"S      1") {
         // An IGES comment may begin with the same word, but then its first line is 80 columns of section S.
         (text

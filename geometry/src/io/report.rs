@@ -10,6 +10,8 @@ use serde::Serialize;
 pub enum CadFormat {
     /// IGES (ANS US PRO/IPO-100), fixed-length ASCII records.
     Iges,
+    /// STEP (ISO 10303-21), shapes of AP203, AP214 and AP242.
+    Step,
     /// `*.cad.json` of Kratos Multiphysics.
     Kratos,
     /// JSON of the Python package geomdl (NURBS-Python).
@@ -23,19 +25,52 @@ pub enum CadFormat {
 pub struct CadPatch {
     /// The patch, in the unit of the file.
     pub patch: NurbsPatch,
-    /// IGES: directory sequence number; Kratos: `brep_id` of the face; geomdl: place in the list, from 1.
+    /// IGES: directory sequence number; STEP: name of the instance (`12` for `#12`); Kratos: `brep_id` of the face; geomdl:
+    /// place in the list, from 1.
     pub entity: u32,
-    /// IGES: type of the entity: 144, 143, 510 for a face, else that of the surface itself. JSON: 0.
+    /// IGES: type of the entity: 144, 143, 510 for a face, else that of the surface itself. STEP, JSON: 0.
     pub type_number: u32,
-    /// IGES: number of the surface that carries the face, `entity` itself where there is no face. JSON: `entity`.
+    /// IGES, STEP: number of the surface that carries the face, `entity` itself where there is no face. JSON: `entity`.
     pub base: u32,
-    /// IGES: number of the subfigure or solid instance (408, 430) that places this copy of the entity; 0 where it stands
-    /// where it is defined.
+    /// Number of what places this copy of the entity: in IGES a subfigure or solid instance (408, 430), in STEP the
+    /// outermost occurrence in an assembly or mapped item; 0 where it stands where it is defined.
     pub instance: u32,
     /// What bounds it.
     pub border: FaceBorder,
     /// Name in the file, if it gives one.
     pub name: Option<String>,
+    /// What else the file says of it.
+    pub tags: CadTags,
+}
+
+/// Which body of a file a surface belongs to, and how the file sorts and shows it. Only STEP files say so.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+pub struct CadTags {
+    /// Index of its body in [`CadFile::bodies`].
+    pub body: Option<usize>,
+    /// Name of its layer.
+    pub layer: Option<String>,
+    /// Name of its colour, or `#rrggbb`.
+    pub colour: Option<String>,
+}
+
+/// A solid or a sheet of a file, where it stands in the assembly.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct CadBody {
+    /// Its own name, or else that of its product.
+    pub name: Option<String>,
+    /// Names of the products from the assembly as a whole down to the one that the body belongs to.
+    pub path: Vec<String>,
+    /// Number in the file.
+    pub entity: u32,
+    /// As in [`CadPatch::instance`].
+    pub instance: u32,
+    /// Whether the file says that its faces enclose a volume.
+    pub solid: bool,
+    /// Number of its faces that were read.
+    pub faces: usize,
+    /// Number of its faces that were not.
+    pub skipped: usize,
 }
 
 impl CadPatch {
@@ -161,6 +196,8 @@ pub struct CadFile {
     pub resolution: Option<f64>,
     /// The surfaces that were read, in the order of the file.
     pub patches: Vec<CadPatch>,
+    /// The bodies that the surfaces belong to, where the file says so.
+    pub bodies: Vec<CadBody>,
     /// Every entity of the file by type and form, in ascending order.
     pub entities: Vec<EntityCount>,
     /// Every surface that was not read.
@@ -185,6 +222,7 @@ impl CadFile {
             base: entity,
             instance: 0,
             name: None,
+            tags: CadTags::default(),
         });
         CadFile {
             path: String::new(),
@@ -192,6 +230,7 @@ impl CadFile {
             unit,
             resolution: None,
             patches: patches.collect(),
+            bodies: Vec::new(),
             entities: Vec::new(),
             skipped: Vec::new(),
             trims: TrimReport::default(),

@@ -65,6 +65,21 @@ impl LengthUnit {
         })
     }
 
+    /// The unit of a length of `metres`: a known one where the two differ by less than 1e-9 of it, else one called
+    /// `name`.
+    pub fn from_metres(metres: f64, name: Option<&str>) -> Self {
+        let known = UNITS.iter().find(|u| (u.2 / metres - 1.0).abs() < 1e-9);
+        let name = match (known, name) {
+            (Some(unit), _) => unit.0.to_owned(),
+            (None, Some(name)) => name.to_owned(),
+            (None, None) => format!("{metres:e} m"),
+        };
+        Self {
+            name,
+            to_metre: Some(known.map_or(metres, |u| u.2)),
+        }
+    }
+
     /// Symbols of all units.
     pub fn names() -> [&'static str; 11] {
         UNITS.map(|u| u.0)

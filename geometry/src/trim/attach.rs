@@ -9,6 +9,8 @@ use nalgebra::{Matrix2, Vector2};
 /// Sides of an outer loop that lie this close (a share of the domain) to a rectangle make it one, and sides of the
 /// rectangle this close to the border of the domain are the border.
 const RECTANGLE: f64 = 1e-7;
+/// Sides of a rectangle this near to a knot, as a share of the domain, lie on it.
+const BESIDE: f64 = 1e-9;
 /// Loops may leave the domain by this much (a share of it); the surface is continued there.
 const BEYOND: f64 = 1e-6;
 /// A polygon with less than this share of the area of the square on its diagonal has none.
@@ -107,6 +109,7 @@ impl NurbsPatch {
             && let Some(first) = items.first()
             && let Some(rectangle) = rectangle(&first.trim, patch.domain())
         {
+            let rectangle = on_knots(rectangle, &patch);
             if rectangle != patch.domain() {
                 patch = patch
                     .with_domain(rectangle)
@@ -154,6 +157,21 @@ fn renumber(error: TrimError, number: usize) -> TrimError {
         TrimError::Open(_, curve, gap) => TrimError::Open(number, curve, gap),
         other => other,
     }
+}
+
+/// A rectangle with its sides on the knots that they lie beside by rounding, so that no span without an extent is cut off.
+fn on_knots(mut rectangle: [[f64; 2]; 2], patch: &NurbsPatch) -> [[f64; 2]; 2] {
+    for (dir, sides) in rectangle.iter_mut().enumerate() {
+        let [a, b] = patch.domain()[dir];
+        let knots: Vec<f64> = patch.spans(dir).into_iter().flatten().collect();
+        for side in sides {
+            let beside = knots
+                .iter()
+                .find(|&&t| (t - *side).abs() <= BESIDE * (b - a));
+            *side = beside.copied().unwrap_or(*side);
+        }
+    }
+    rectangle
 }
 
 /// How far bounds leave the domain, as a share of it.

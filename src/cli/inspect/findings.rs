@@ -1,8 +1,8 @@
 //! What `covact inspect` finds in a CAD file.
 use super::extent::{extent, join};
 use covact_geometry::io::{
-    CadFile, CadFormat, EntityCount, FaceBorder, LengthUnit, SkipKind, Skipped, TrimReport,
-    entity_name,
+    CadBody, CadFile, CadFormat, EntityCount, FaceBorder, LengthUnit, SkipKind, Skipped,
+    TrimReport, entity_name,
 };
 use covact_geometry::project::{Border, CurvatureExtreme, CurvatureRange, Gap, Overlap};
 use covact_geometry::{NurbsPatch, PatchSet, Vec3};
@@ -21,6 +21,8 @@ pub(super) struct Findings<'a> {
     pub summary: Summary,
     /// What became of the boundary curves.
     pub trims: &'a TrimReport,
+    /// Solids and sheets, where the file says which patches make one.
+    pub bodies: &'a [CadBody],
     pub patches: Vec<Patch<'a>>,
     pub skipped: &'a [Skipped],
     pub notes: &'a [String],
@@ -52,6 +54,13 @@ pub(super) struct Patch<'a> {
     /// Number of the entity that places this copy; 0 where it stands where it is defined.
     pub instance: u32,
     pub name: Option<&'a str>,
+    /// Number in the list of bodies, from 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub body: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layer: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub colour: Option<&'a str>,
     pub border: FaceBorder,
     pub trimmed: bool,
     pub degree: [usize; 2],
@@ -180,6 +189,7 @@ impl<'a> Findings<'a> {
                 skipped_by_kind: summary.reasons.into_iter().collect(),
             },
             trims: &file.trims,
+            bodies: &file.bodies,
             surface: set.map(|set| Surface::new(set, &patches)),
             patches,
             skipped: &file.skipped,
@@ -202,6 +212,9 @@ fn patches(file: &CadFile) -> Vec<Patch<'_>> {
             base: p.base,
             instance: p.instance,
             name: p.name.as_deref(),
+            body: p.tags.body,
+            layer: p.tags.layer.as_deref(),
+            colour: p.tags.colour.as_deref(),
             border: p.border,
             trimmed: p.trimmed(),
             degree: p.patch.degree(),

@@ -1,6 +1,7 @@
 //! The findings as text.
 use super::findings::{Curvature, EdgeName, Findings, GapPlace, Patch, Surface};
 use covact_geometry::io::{FaceBorder, SkipKind};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// Gaps, overlaps, rims and parts that are listed one by one; `--json` has them all.
@@ -21,6 +22,7 @@ pub(super) fn listing(f: &Findings) -> String {
         };
         let _ = writeln!(out, "{:>7} x {number:<7} {}", e.count, e.name);
     }
+    bodies(&mut out, f);
     patches(&mut out, f);
     if let Some(surface) = &f.surface {
         all(&mut out, surface);
@@ -30,6 +32,45 @@ pub(super) fn listing(f: &Findings) -> String {
         let _ = writeln!(out, "note: {note}");
     }
     out
+}
+
+/// Every solid and sheet with its names, layers and colours.
+fn bodies(out: &mut String, f: &Findings) {
+    if f.bodies.is_empty() {
+        return;
+    }
+    let _ = writeln!(out, "\nbodies: {}", f.bodies.len());
+    let _ = writeln!(
+        out,
+        "{:>8} {:>8} {:>5} {:>6} {:>8}  name",
+        "entity", "instance", "kind", "faces", "not read"
+    );
+    for (k, body) in f.bodies.iter().enumerate() {
+        let own = || f.patches.iter().filter(|p| p.body == Some(k));
+        let listed = |what: &str, names: BTreeSet<&str>| match names.is_empty() {
+            true => String::new(),
+            false => format!(
+                "; {what} {}",
+                names.into_iter().collect::<Vec<_>>().join(", ")
+            ),
+        };
+        let place = match body.path.is_empty() {
+            true => String::new(),
+            false => format!(" ({})", body.path.join(" / ")),
+        };
+        let _ = writeln!(
+            out,
+            "{:>8} {:>8} {:>5} {:>6} {:>8}  {}{place}{}{}",
+            body.entity,
+            body.instance,
+            if body.solid { "solid" } else { "sheet" },
+            body.faces,
+            body.skipped,
+            body.name.as_deref().unwrap_or("-"),
+            listed("layer", own().filter_map(|p| p.layer).collect()),
+            listed("colour", own().filter_map(|p| p.colour).collect()),
+        );
+    }
 }
 
 fn patches(out: &mut String, f: &Findings) {

@@ -157,7 +157,7 @@ impl Builder<'_> {
                 ),
                 _ => format!("{shown} is an STL file, whose triangles are facets already"),
             };
-            let help = "leave out `facets`, or take the CAD file (IGES or JSON) that the triangles were made from";
+            let help = "leave out `facets`, or take the CAD file (STEP, IGES or JSON) that the triangles were made from";
             return Err(text(field("facets"), message).help(help));
         }
         if !cad.entities.is_empty() {

@@ -4,6 +4,7 @@ use super::super::motion::Motion;
 use super::super::surface::{FacetModel, SurfaceSet};
 use super::super::{ModelError, PairModel, SurfaceModel};
 use super::Builder;
+use super::cad_bodies::Bodies;
 use super::facets::Source;
 use crate::contact::closest::ClosestPoint;
 use crate::scene::{self, InitialOverclosure, Side};
@@ -63,7 +64,8 @@ impl Builder<'_> {
             Some(cad) => match self.read_cad(name, cad)? {
                 Source::Stl(_) => {
                     let message = format!("{} is an STL file", cad.file.display());
-                    let help = "facets are made of exact surfaces: take a CAD file (IGES or JSON)";
+                    let help =
+                        "facets are made of exact surfaces: take a CAD file (STEP, IGES or JSON)";
                     return Err(text(format!("/surfaces/{name}/cad/file"), message).help(help));
                 }
                 Source::Cad(file) => self.cad_patches(name, cad, &file)?,
@@ -152,7 +154,11 @@ impl Builder<'_> {
             }
         };
         let wanted = |entity: u32| cad.entities.is_empty() || cad.entities.contains(&entity);
-        let skipped: Vec<_> = file.skipped.iter().filter(|s| wanted(s.entity)).collect();
+        let bodies = Bodies::chosen(cad, file)
+            .map_err(|(message, help)| text(field("bodies"), message).help(help))?;
+        // Bodies that were read as a whole miss nothing.
+        let asked = |s: &&io::Skipped| wanted(s.entity) && !bodies.are_complete(file);
+        let skipped: Vec<_> = file.skipped.iter().filter(asked).collect();
         let list = || {
             let shown = skipped.iter().take(LISTED).map(|s| {
                 format!(
@@ -198,7 +204,8 @@ impl Builder<'_> {
                 )));
             }
         }
-        let chosen: Vec<_> = file.patches.iter().filter(|p| wanted(p.entity)).collect();
+        let taken = |p: &&io::CadPatch| wanted(p.entity) && bodies.hold(p);
+        let chosen: Vec<_> = file.patches.iter().filter(taken).collect();
         if chosen.is_empty() {
             let why = match skipped.is_empty() {
                 true => String::new(),

@@ -28,17 +28,21 @@ pub struct Surface {
     pub motion: Motion,
 }
 
-/// A CAD file: IGES (`.igs`, `.iges`), JSON (Kratos `.cad.json`, geomdl, `covact convert`), or STL, whose triangles are
-/// facets already.
+/// A CAD file: STEP (`.step`, `.stp`), IGES (`.igs`, `.iges`), JSON (Kratos `.cad.json`, geomdl, `covact convert`), or
+/// STL, whose triangles are facets already.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CadFile {
     /// Path relative to the scene file.
     pub file: PathBuf,
-    /// Use only these entities (IGES: directory sequence numbers, as `covact inspect` prints them; JSON: face ids).
-    /// Default: all.
+    /// Use only these entities (STEP: instance names without `#`; IGES: directory sequence numbers; JSON: face ids; as
+    /// `covact inspect` prints them). Default: all.
     #[serde(default)]
     pub entities: Vec<u32>,
+    /// Use only the bodies of these names, or all of the products and assemblies of these names (STEP; `covact inspect`
+    /// lists them). Default: all.
+    #[serde(default)]
+    pub bodies: Vec<String>,
     /// Go on although the file holds surfaces that cannot be read (they are reported).
     #[serde(default)]
     pub allow_skipped: bool,

@@ -4,12 +4,11 @@ use super::super::error::Fail;
 use super::super::report::{SkipKind, Skipped};
 use super::super::{CadError, LengthUnit};
 use super::curve::{self, JoinedCurve};
-use super::curve_map::ParameterMap;
-use super::grant::Grant;
 use super::surfaces::{self, BaseSurface};
 use super::transform::Affine;
 use super::{Model, describe_entity, model_of};
 use crate::NurbsCurve;
+use crate::io::brep::ParameterMap;
 
 /// A curve entity (100, 102, 104, 106, 110, 112, 126, 130) as NURBS.
 #[derive(Debug, Clone)]
@@ -75,7 +74,7 @@ fn all(model: &Model, notes: Vec<String>) -> Result<IgesGeometry, Fail> {
         notes,
     };
     let outer = Affine::identity();
-    let grant = Grant::of(model);
+    let grant = model.grant();
     for entry in &model.entries {
         let notes = &mut found.notes;
         let skipped = if let Err(reason) = grant.open() {

@@ -9,7 +9,8 @@ use super::directory::Entry;
 use super::groups::pointer;
 use super::params::Params;
 use super::transform::Affine;
-use super::trimmed::{Boundary, Face, Stretch, describe, parameter_list, reversed, space_parts};
+use super::trimmed::{describe, parameter_list, space_parts};
+use crate::io::brep::{Boundary, Face, Stretch, reversed};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry as Slot;
 

@@ -2,13 +2,13 @@
 
 use super::super::error::Fail;
 use super::Model;
-use super::curve_map::ParameterMap;
 use super::directory::Entry;
 use super::params::Params;
 use super::transform::{Affine, matrix_of};
 use super::{curve_conic, curve_offset, curve_points, curve_spline, entity_name};
 use crate::NurbsCurve;
 use crate::curve::CurveError;
+use crate::io::brep::ParameterMap;
 
 /// Why reading an entity ended.
 pub enum Stop {

@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use super::curve::{Reader, Shape, Stop};
-use super::curve_map::ParameterMap;
 use super::directory::Entry;
 use super::params::Params;
 use crate::curve::conic::{arc_knots, elliptic_arc, hyperbolic_arc, parabolic_arc};
+use crate::io::brep::ParameterMap;
 use crate::{NurbsCurve, Vec3};
 use nalgebra::Vector2;
 

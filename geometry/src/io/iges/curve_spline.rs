@@ -3,8 +3,8 @@
 use super::curve::{Reader, Shape, Stop};
 use super::directory::Entry;
 use super::params::Params;
-use super::surface::merge_close;
 use crate::basis::Basis;
+use crate::io::brep::{merge_close, pieces};
 use crate::{NurbsCurve, Vec3};
 
 /// Values of a 126 up to its first knot: type, K, M, PROP1 to PROP4.
@@ -70,25 +70,6 @@ pub fn rational(reader: &mut Reader, entry: &Entry, params: &Params) -> Result<V
         reader.note(entry, &text);
     }
     restricted(reader, entry, shapes, [range[0], range[1]])
-}
-
-/// Ranges of control points that hang together: a knot inside that is repeated `degree + 1` times ends one and begins the
-/// next (control points between, of knots repeated even more often, act nowhere). One range where the knots are no good.
-pub fn pieces(degree: usize, knots: &[f64], count: usize) -> Vec<std::ops::Range<usize>> {
-    let mut ranges = Vec::new();
-    let mut start = 0;
-    let mut i = degree + 1;
-    while i < count {
-        let m = knots[i..].iter().take_while(|&&t| t == knots[i]).count();
-        // Knots i .. i + m: the piece before ends with `degree + 1` of them, the next begins with the last as many.
-        if m > degree && knots[i] > knots[start + degree] && knots[i] < knots[count] {
-            ranges.push(start..i);
-            start = i + m - degree - 1;
-        }
-        i += m;
-    }
-    ranges.push(start..count);
-    ranges
 }
 
 /// Cuts the curves at the parameter range V0, V1 of the file.

@@ -1,22 +1,20 @@
 //! What becomes of every surface entity of a file: patches, or a reason why not.
 
 use super::super::error::Fail;
-use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped, TrimReport};
+use super::super::report::{CadPatch, CadTags, FaceBorder, SkipKind, Skipped, TrimReport};
 use super::brep::{self, Edges};
 use super::bridging::{Bridging, Skip};
 use super::curve;
 use super::directory::Entry;
-use super::grant::Grant;
 use super::groups::{Groups, Placement, members, refusal};
 use super::surfaces::{self, BasePatch, BaseSurface};
 use super::transform::{Affine, matrix_of};
-use super::trimmed::{self, Boundary, Face, Stretch, describe};
-use super::trimmed_areas::{by_parameters, disagreement};
-use super::trimmed_curves::{Tally, add};
-use super::trimmed_extent::grown;
-use super::trimmed_host::Host;
-use super::trimmed_loops::{GAP, loops, widest_gap};
+use super::trimmed::{self, describe};
 use super::{Model, params::Params};
+use crate::io::brep::{
+    Boundary, Face, GAP, Grant, Host, Stretch, Tally, add, by_parameters, disagreement, grown,
+    loops, widest_gap,
+};
 use crate::{NurbsPatch, Vec3};
 
 /// All surfaces of a file.
@@ -44,7 +42,7 @@ pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
         model,
         edges: Edges::default(),
         out: Outcome::default(),
-        grant: Grant::of(model),
+        grant: model.grant(),
         bridging: Bridging::new(),
         notes,
     };
@@ -190,6 +188,7 @@ impl<'a> Reader<'a, '_> {
                             instance: copy.instance,
                             border,
                             name: name.clone(),
+                            tags: CadTags::default(),
                         }));
                 }
                 Err(reason) => {

@@ -4,16 +4,13 @@
 //! the file), the `global` section, the `directory`, then entities: `transform` (124), `curve*` and `surfaces` (what they
 //! are as NURBS), `trimmed` and `brep` (faces as the file describes them), `groups` (who holds whom, and where copies
 //! stand), and `faces`, which decides what every surface entity becomes (`bridging` holds what waits for the size of the part,
-//! `drawing` says what a file without surfaces is). Boundaries become loops of curves in the
-//! parameter plane in `trimmed_loops`, curve by curve in `trimmed_curves`, which projects onto a `trimmed_host` and fits
-//! by `trimmed_fit`; `trimmed_areas` compares the areas that contradicting curves bound.
+//! `drawing` says what a file without surfaces is). What boundaries do to a surface is in `io::brep`.
 
 mod base;
 mod brep;
 mod bridging;
 mod curve;
 mod curve_conic;
-mod curve_map;
 mod curve_offset;
 mod curve_points;
 mod curve_spline;
@@ -21,29 +18,20 @@ mod directory;
 mod drawing;
 mod faces;
 mod global;
-mod grant;
 mod groups;
 mod names;
 mod number;
 mod params;
 mod records;
-mod reparametrise;
 mod surface;
 mod surfaces;
 mod transform;
 mod trimmed;
-mod trimmed_areas;
-mod trimmed_curves;
-mod trimmed_extent;
-mod trimmed_fit;
-mod trimmed_host;
-mod trimmed_loops;
 
+pub use super::brep::{BasePatch, ParameterMap, Reparametrise};
 pub use base::{IgesCurve, IgesGeometry, IgesSurface, read_iges_geometry};
-pub use curve_map::ParameterMap;
 pub use names::entity_name;
-pub use reparametrise::Reparametrise;
-pub use surfaces::{BasePatch, BaseSurface, Border, Unbounded};
+pub use surfaces::{BaseSurface, Border, Unbounded};
 
 use super::CadError;
 use super::ReadOptions;
@@ -64,6 +52,12 @@ struct Model<'a> {
 }
 
 impl<'a> Model<'a> {
+    /// The work and memory that a file of this length is granted.
+    fn grant(&self) -> super::brep::Grant {
+        let parameter = self.sections.parameter.len();
+        super::brep::Grant::of_lines(parameter, parameter + self.sections.directory.len())
+    }
+
     /// The values of an entity.
     fn params(&'a self, entry: &directory::Entry) -> Result<params::Params<'a>, Fail> {
         entry.params(&self.sections, self.global.delimiters)
@@ -144,6 +138,7 @@ fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<CadFile, Fail
         unit: model.global.unit.clone(),
         resolution: model.global.resolution.map(|r| r / model.global.scale),
         patches: read.patches,
+        bodies: Vec::new(),
         entities,
         skipped: read.skipped,
         trims: read.trims,
@@ -156,7 +151,7 @@ fn model_of<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Result<Model<'a>, F
     let sections = records::split(bytes, notes)?;
     let global = global::read(&sections, notes)?;
     let entries = directory::read(&sections, notes)?;
-    let evaluations = grant::evaluations(sections.parameter.len());
+    let evaluations = super::brep::evaluations(sections.parameter.len());
     Ok(Model {
         sections,
         global,

@@ -2,10 +2,10 @@
 
 use super::super::error::Fail;
 use super::Model;
-use super::curve_spline::pieces;
 use super::directory::Entry;
 use super::params::Params;
 use super::transform::Affine;
+use crate::io::brep::{merge_close, pieces};
 use crate::{NurbsPatch, PatchError, Vec3};
 
 /// The patches of a surface, or why there is none; and how many values its own data took (pointers to properties
@@ -327,22 +327,6 @@ fn cut(patch: NurbsPatch, domain: [[f64; 2]; 2]) -> Option<Result<NurbsPatch, Pa
     } else {
         Some(patch.with_domain(part))
     }
-}
-
-/// Knots that rounding has set apart: differences up to 1e-9 of the whole range, of either sign, are closed. Writers
-/// print as few as 9 digits; a span of that size has no extent in space but spoils derivatives.
-pub fn merge_close(knots: &mut [f64]) -> usize {
-    let range = knots.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b))
-        - knots.iter().fold(f64::INFINITY, |a, &b| a.min(b));
-    let mut moved = 0;
-    for i in 1..knots.len() {
-        let step = knots[i] - knots[i - 1];
-        if step != 0.0 && step.abs() <= 1e-9 * range {
-            knots[i] = knots[i - 1];
-            moved += 1;
-        }
-    }
-    moved
 }
 
 /// The part of the knots' range that the parameter range U0, U1, V0, V1 of the file leaves.

@@ -2,7 +2,7 @@
 //! multiplied by their weights.
 
 use super::super::error::Fail;
-use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped};
+use super::super::report::{CadPatch, CadTags, FaceBorder, SkipKind, Skipped};
 use super::trims::{Part, trimmed};
 use super::{Content, counts, parse};
 use crate::curve::NurbsCurve;
@@ -262,6 +262,7 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
             instance: 0,
             border,
             name: face.name,
+            tags: CadTags::default(),
         });
     }
     Ok(content)

@@ -67,6 +67,7 @@ pub fn read_json(bytes: &[u8], name: &str) -> Result<CadFile, CadError> {
         unit: content.unit.unwrap_or_else(LengthUnit::unspecified),
         resolution: content.resolution,
         patches: content.patches,
+        bodies: Vec::new(),
         entities: content.entities,
         skipped: content.skipped,
         trims: TrimReport::default(),

@@ -13,7 +13,7 @@
 //! what they allow.
 
 use super::super::error::Fail;
-use super::super::report::{CadFile, CadPatch, FaceBorder};
+use super::super::report::{CadFile, CadPatch, CadTags, FaceBorder};
 use super::{Content, LengthUnit, counts, parse};
 use crate::basis::Basis;
 use crate::curve::{CurveError, NurbsCurve};
@@ -169,6 +169,7 @@ impl TryFrom<RawPatch> for Patch {
                 (None, false) => FaceBorder::Natural,
             },
             name: raw.name,
+            tags: CadTags::default(),
             patch: patch.with_trim(trim),
         }))
     }

@@ -2,7 +2,6 @@
 //! cylinder (122), offset (140), planes (108, 190), quadrics (192 to 198). Entity 128 is in `surface`.
 
 mod offset;
-mod offset_fit;
 mod parametric;
 mod plane;
 mod quadric;
@@ -15,33 +14,11 @@ use super::Model;
 use super::curve::{self, CurveChain, JoinedCurve, Stop, describe};
 use super::directory::Entry;
 use super::params::Params;
-use super::reparametrise::Reparametrise;
 use super::transform::{Affine, matrix_of};
-use crate::{NurbsPatch, Vec3};
+use crate::Vec3;
 
+pub use crate::io::brep::BasePatch;
 pub use plane::{Border, Unbounded};
-
-/// A patch with the parameters that the file means.
-#[derive(Debug, Clone)]
-pub struct BasePatch {
-    /// The patch.
-    pub patch: NurbsPatch,
-    /// From the parameters that IGES gives the entity to the patch's.
-    pub parameters: Reparametrise,
-    /// Largest distance of the patch from what the entity defines; 0 where the form is exact.
-    pub deviation: f64,
-}
-
-impl BasePatch {
-    /// A patch with the file's own parameters, exact.
-    fn exact(patch: NurbsPatch) -> Self {
-        Self {
-            parameters: Reparametrise::identity(patch.domain()),
-            patch,
-            deviation: 0.0,
-        }
-    }
-}
 
 /// What a surface entity gives, in model space divided by its scale.
 #[derive(Debug, Clone)]

@@ -1,8 +1,8 @@
 //! Offset surfaces (140).
 
 use super::super::curve::{Stop, describe};
-use super::offset_fit::{normal, offset};
 use super::{BasePatch, BaseSurface, Found, SurfaceReader, is_base};
+use crate::io::brep::{normal, offset};
 use crate::{NurbsPatch, Vec3};
 
 /// A 140: the offset indicator N (a vector that says on which side), the distance D and the surface. Its parameters are

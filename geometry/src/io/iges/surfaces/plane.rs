@@ -4,12 +4,11 @@
 use std::f64::consts::TAU;
 
 use super::super::curve::Stop;
-use super::super::curve_map::ParameterMap;
-use super::super::reparametrise::Reparametrise;
 use super::super::transform::Affine;
-use super::revolution::revolved;
 use super::{BasePatch, BaseSurface, Found, SurfaceReader};
 use crate::curve::conic::arc_knots;
+use crate::io::brep::revolved;
+use crate::io::brep::{ParameterMap, Reparametrise};
 use crate::{NurbsCurve, NurbsPatch, Vec3};
 
 /// How far a sized patch reaches beyond the points it is sized by, as a share of their extent.

@@ -3,12 +3,12 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::super::curve::Stop;
-use super::super::reparametrise::Reparametrise;
 use super::plane::degrees;
-use super::revolution::revolved;
 use super::{BasePatch, BaseSurface, Found, SurfaceReader};
 use crate::Vec3;
 use crate::curve::conic::elliptic_arc;
+use crate::io::brep::Reparametrise;
+use crate::io::brep::revolved;
 
 /// A 196: center, radius and, in form 1, axis and reference direction. Parameters of the file: longitude from the
 /// reference direction and latitude, in degrees.

@@ -1,12 +1,12 @@
 //! Ruled surfaces (118).
 
 use super::super::curve::{JoinedCurve, Stop};
-use super::super::curve_map::ParameterMap;
 use super::{BasePatch, BaseSurface, Found, SurfaceReader};
 use crate::basis::Basis;
 use crate::curve::fit::fit;
 use crate::curve::join::inner_knots;
 use crate::curve::{CurveError, CurveJet};
+use crate::io::brep::{ParameterMap, Reparametrise};
 use crate::{NurbsCurve, NurbsPatch, Vec3};
 
 /// Largest deviation of a rail that must be given a new parameter, as a share of the surface's size.
@@ -87,7 +87,7 @@ pub fn read(mut reader: SurfaceReader) -> Found {
     let patch = NurbsPatch::from_homogeneous([first.basis().clone(), across], points)?;
     let base = BasePatch {
         patch: patch.transformed(&|x| reader.place(x))?,
-        parameters: super::Reparametrise {
+        parameters: Reparametrise {
             directions: [map, ParameterMap::identity(unit)],
         },
         deviation: deviation / reader.model.global.scale,

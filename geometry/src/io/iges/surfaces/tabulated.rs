@@ -1,10 +1,9 @@
 //! Tabulated cylinders (122).
 
 use super::super::curve::Stop;
-use super::super::curve_map::ParameterMap;
-use super::super::reparametrise::Reparametrise;
 use super::{BasePatch, BaseSurface, Found, SurfaceReader};
 use crate::basis::Basis;
+use crate::io::brep::{ParameterMap, Reparametrise};
 use crate::{NurbsPatch, Vec3};
 
 /// A 122: the directrix C moved along a line, S(u, v) = C(t) + v (L - C(a)) with t = a + u (b - a) on the directrix's range

@@ -1,9 +1,9 @@
 //! What it makes of a face to choose one of two kinds of boundary curves that contradict each other.
 
-use super::trimmed::{Boundary, Face, Stretch};
-use super::trimmed_curves::Tally;
-use super::trimmed_host::Host;
-use super::trimmed_loops::{GAP, loops};
+use super::curves::Tally;
+use super::face::{Boundary, Face, Stretch};
+use super::host::Host;
+use super::loops::{GAP, loops};
 use crate::{NurbsPatch, PatchSet};
 
 /// Areas that differ by less than this share are the same face.

@@ -1,9 +1,9 @@
 //! Closed loops of parameter curves from the boundaries of a face: curves moved by periods to follow each other, poles
 //! bridged, loops that go round a closed surface joined to one another or to its border.
 
-use super::trimmed::Boundary;
-use super::trimmed_curves::{Tally, curves};
-use super::trimmed_host::{Host, Xi};
+use super::curves::{Tally, curves};
+use super::face::Boundary;
+use super::host::{Host, Xi};
 use crate::NurbsCurve;
 use crate::curve::CurveError;
 use crate::trim::{TrimCurve, TrimLoop};
@@ -309,7 +309,8 @@ fn joined(host: &Host, mut winding: Vec<Chain>) -> Result<Vec<TrimCurve>, String
             if round(&second) != Some(dir) {
                 return Err(cannot());
             }
-            let mut curves = match second.turns[dir] == -turn {
+            let opposed = second.turns[dir] == -turn;
+            let mut curves = match opposed {
                 true => second.curves,
                 false => second
                     .curves
@@ -323,11 +324,15 @@ fn joined(host: &Host, mut winding: Vec<Chain>) -> Result<Vec<TrimCurve>, String
             // Starts where the first loop ends, and runs back by a period.
             let begin = start(&curves[0]);
             let mut by = host.nearest_copy(begin, from + period) - begin;
-            by[1 - dir] = if host.closed[1 - dir] {
-                by[1 - dir]
-            } else {
-                0.0
-            };
+            if !host.closed[1 - dir] {
+                by[1 - dir] = 0.0;
+            } else if opposed {
+                // Closed both ways: of the two parts between the loops the face is the one to the left of the first.
+                let upper = (turn > 0) == (dir == 0);
+                let period = host.extent(1 - dir) * if upper { 1.0 } else { -1.0 };
+                let ahead = (begin[1 - dir] - from[1 - dir]) / period;
+                by[1 - dir] = -(ahead - 1e-9).floor() * period;
+            }
             let curves = curves
                 .into_iter()
                 .map(|c| shifted(c, by))

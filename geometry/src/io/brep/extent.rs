@@ -1,10 +1,10 @@
 //! The part of a surface that a face needs: files cut surfaces, or even end them, a little short of the boundaries on them.
 
+use super::base::BasePatch;
+use super::curves::{BEYOND, NOISE, bounds, bounds_of};
+use super::face::Face;
 use super::grant::Grant;
-use super::surfaces::BasePatch;
-use super::trimmed::Face;
-use super::trimmed_curves::{BEYOND, NOISE, bounds, bounds_of};
-use super::trimmed_host::Host;
+use super::host::Host;
 use crate::NurbsPatch;
 use crate::basis::Basis;
 

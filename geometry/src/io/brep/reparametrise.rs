@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::curve_map::ParameterMap;
+use super::parameter_map::ParameterMap;
 use crate::NurbsCurve;
 use crate::curve::CurveJet;
 use crate::curve::fit::{FitError, fit};

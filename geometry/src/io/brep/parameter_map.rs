@@ -28,7 +28,7 @@ pub struct ParameterMap {
 
 impl ParameterMap {
     /// The affine map of the file's range `file` onto the range `own` of the NURBS form; neither is empty.
-    pub(super) fn affine(file: [f64; 2], own: [f64; 2]) -> Self {
+    pub(in crate::io) fn affine(file: [f64; 2], own: [f64; 2]) -> Self {
         Self {
             pieces: vec![Piece {
                 file,
@@ -40,13 +40,13 @@ impl ParameterMap {
     }
 
     /// Both parameters are the same.
-    pub(super) fn identity(range: [f64; 2]) -> Self {
+    pub(in crate::io) fn identity(range: [f64; 2]) -> Self {
         Self::affine(range, range)
     }
 
     /// The map of an angle onto the parameter of rational quadratic pieces whose knots are `knots` and whose parameter is
     /// affine in tan((angle - m) / 2), with m the middle of each piece.
-    pub(super) fn arcs(knots: &[f64]) -> Self {
+    pub(in crate::io) fn arcs(knots: &[f64]) -> Self {
         let pieces = knots.windows(2).map(|k| {
             let half = 0.5 * (k[1] - k[0]);
             Piece {
@@ -62,7 +62,7 @@ impl ParameterMap {
     }
 
     /// The map of an angle onto a parameter of the same range that is affine in tan(angle / 2).
-    pub(super) fn half_angle(range: [f64; 2]) -> Self {
+    pub(in crate::io) fn half_angle(range: [f64; 2]) -> Self {
         Self {
             pieces: vec![Piece {
                 file: range,
@@ -75,7 +75,7 @@ impl ParameterMap {
 
     /// Maps one after the other: the file's ranges and the NURBS form's ranges are moved to follow each other from `file`
     /// and `own` on. Nothing where there are no maps.
-    pub(super) fn chain<'a>(
+    pub(in crate::io) fn chain<'a>(
         maps: impl IntoIterator<Item = &'a Self>,
         mut file: f64,
         mut own: f64,
@@ -105,7 +105,7 @@ impl ParameterMap {
     }
 
     /// The map on a part of the file's range.
-    pub(super) fn restricted(&self, file: [f64; 2]) -> Self {
+    pub(in crate::io) fn restricted(&self, file: [f64; 2]) -> Self {
         let mut pieces = Vec::new();
         for p in &self.pieces {
             let part = [p.file[0].max(file[0]), p.file[1].min(file[1])];
@@ -133,7 +133,7 @@ impl ParameterMap {
 
     /// The same map for a file parameter that is affine in this one: its range becomes `file`, backwards where
     /// `reversed`.
-    pub(super) fn with_file_range(&self, file: [f64; 2], reversed: bool) -> Self {
+    pub(in crate::io) fn with_file_range(&self, file: [f64; 2], reversed: bool) -> Self {
         let [a, b] = self.file_range();
         let to = |t: f64| {
             let s = (t - a) / (b - a);
@@ -170,7 +170,7 @@ impl ParameterMap {
 
     /// The same map onto a NURBS parameter that is affine in this one's and has the range `own`, descending where that
     /// form runs backwards.
-    pub(super) fn with_own_range(&self, own: [f64; 2]) -> Self {
+    pub(in crate::io) fn with_own_range(&self, own: [f64; 2]) -> Self {
         let [a, b] = self.own_range();
         let to = |t: f64| {
             if t == b {
@@ -242,7 +242,7 @@ impl ParameterMap {
     }
 
     /// Whether equal shares of this map's range and of the other's are mapped onto equal shares.
-    pub(super) fn same_shape(&self, other: &Self) -> bool {
+    pub(in crate::io) fn same_shape(&self, other: &Self) -> bool {
         let unit = |m: &Self| {
             m.with_file_range([0.0, 1.0], false)
                 .with_own_range([0.0, 1.0])

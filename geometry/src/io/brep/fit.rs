@@ -1,7 +1,7 @@
 //! Curves in the parameter plane that follow a given path there: straight lines where it is one, else cubic Hermite pieces,
 //! halved until they keep to it.
 
-use super::trimmed_host::{Host, Xi};
+use super::host::{Host, Xi};
 use crate::NurbsCurve;
 use crate::basis::{Basis, MAX_DEGREE};
 use crate::curve::CurveError;

@@ -2,9 +2,9 @@
 //! in space, else the space curves projected.
 
 use super::super::report::TrimReport;
-use super::trimmed::{Part, Stretch};
-use super::trimmed_fit::{Fitted, fit, smooth_breaks};
-use super::trimmed_host::{Host, Xi};
+use super::face::{Part, Stretch};
+use super::fit::{Fitted, fit, smooth_breaks};
+use super::host::{Host, Xi};
 use crate::trim::TrimCurve;
 use crate::{NurbsCurve, Vec3};
 

@@ -3,7 +3,6 @@
 //! A few numbers can ask for any number of pieces (a curve far from the surface it should lie on, a surface without its
 //! digits), and a few pointers for any number of copies of a long curve. Files of CAD systems stay far below both limits.
 
-use super::Model;
 use crate::{NurbsCurve, NurbsPatch};
 use std::cell::Cell;
 
@@ -20,6 +19,8 @@ const BYTES: [u64; 2] = [500_000, 50 * 80];
 const PATCH_POINT: usize = 100;
 const CURVE_POINT: usize = 100;
 const TRIM_POINT: usize = 500;
+/// Bytes that a body stands for, beside its faces and its names.
+const BODY: usize = 200;
 
 /// After so many refusals, surfaces are refused unread.
 const REFUSALS: u32 = 20;
@@ -37,14 +38,18 @@ pub struct Grant {
 }
 
 impl Grant {
-    pub fn of(model: &Model) -> Self {
-        let parameter = model.sections.parameter.len();
-        let all = parameter + model.sections.directory.len();
+    /// For a file with so many lines of 80 bytes, of which `parameter` describe geometry.
+    pub fn of_lines(parameter: usize, all: usize) -> Self {
         Self {
             work: Cell::new(evaluations(parameter)),
             bytes: Cell::new(BYTES[0] + BYTES[1] * all as u64),
             refusals: Cell::new(0),
         }
+    }
+
+    /// For a format without records of fixed length: 80 bytes count as one line.
+    pub fn of_length(bytes: usize) -> Self {
+        Self::of_lines(bytes / 80, bytes / 80)
     }
 
     /// An error when more of the file is not worth reading.
@@ -68,6 +73,11 @@ impl Grant {
     pub fn patch(&self, patch: &NurbsPatch) -> Result<(), String> {
         let [m, n] = patch.counts();
         self.memory(m.saturating_mul(n).saturating_mul(PATCH_POINT))
+    }
+
+    /// Takes the memory of a body with names of so many bytes.
+    pub fn body(&self, names: usize) -> Result<(), String> {
+        self.memory(BODY.saturating_add(names))
     }
 
     /// Takes the memory of a curve in space.

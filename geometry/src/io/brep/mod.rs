@@ -1,0 +1,36 @@
+//! Faces on surfaces, whatever the format: boundaries become loops of curves in the parameter plane, space curves are
+//! projected, and the patch is trimmed by the loops. Readers of IGES and STEP stand on it.
+//!
+//! A reader hands over a [`BasePatch`] and a [`Face`] of [`Boundary`]s. `loops` chains the curves of each, which `curves`
+//! brings to the patch's parameters: those of the file by a [`ParameterMap`] each way, those in space by projection onto the
+//! `host`; `fit` makes splines of what has no exact form. `extent` continues a patch that its boundary leaves, and `areas`
+//! compares what contradicting curves bound. [`Grant`] bounds work and memory by the length of the file.
+
+mod areas;
+mod base;
+mod curves;
+mod extent;
+mod face;
+mod fit;
+mod grant;
+mod host;
+mod knots;
+mod loops;
+mod offset_fit;
+mod parameter_map;
+mod reparametrise;
+mod revolve;
+
+pub use areas::{by_parameters, disagreement};
+pub use base::BasePatch;
+pub use curves::{Tally, add};
+pub use extent::grown;
+pub use face::{Boundary, Face, Part, Stretch, reversed};
+pub use grant::{Grant, evaluations};
+pub use host::Host;
+pub use knots::{merge_close, pieces};
+pub use loops::{GAP, loops, widest_gap};
+pub use offset_fit::{normal, offset};
+pub use parameter_map::ParameterMap;
+pub use reparametrise::Reparametrise;
+pub use revolve::revolved;
