@@ -77,20 +77,22 @@ fn stray_and_coincident_nodes_are_named() {
         })
     ));
 
-    // Two parts that touch in a face but have nodes of their own.
-    let mut mesh = sheet();
-    let other = sheet();
-    let n = mesh.nodes.len() as u32;
-    mesh.connectivity
-        .extend(other.connectivity.iter().map(|i| i + n));
-    mesh.nodes.extend(
-        other
-            .nodes
-            .iter()
-            .map(|x| x + Vec3::new(4.0 + 1e-9, 0.0, 0.0)),
-    );
-    assert_eq!(mesh.components(), 2);
-    let error = mesh.check().unwrap_err();
+    // Two parts that touch in a face with nodes of their own are kept apart: they may be partners in contact.
+    let joined = |shift: f64| {
+        let mut mesh = sheet();
+        let other = sheet();
+        let n = mesh.nodes.len() as u32;
+        mesh.connectivity
+            .extend(other.connectivity.iter().map(|i| i + n));
+        let moved = other.nodes.iter().map(|x| x + Vec3::new(shift, 0.0, 0.0));
+        mesh.nodes.extend(moved);
+        assert_eq!(mesh.components(), 2);
+        mesh
+    };
+    joined(4.0 + 1e-9).check().unwrap();
+    joined(4.01).check().unwrap();
+    // One part twice in the same place is a mistake.
+    let error = joined(1e-9).check().unwrap_err();
     let MeshError::DuplicateNodes {
         first,
         second,
@@ -100,10 +102,15 @@ fn stray_and_coincident_nodes_are_named() {
     else {
         panic!("{error}");
     };
-    assert_eq!((first, second, count), (4, 60, 4 * 3));
-    // Apart, they are fine.
-    mesh.nodes[60..].iter_mut().for_each(|x| x.x += 0.01);
-    mesh.check().unwrap();
+    assert_eq!((first, second, count), (0, 60, 60));
+    // And so are two nodes at one place within a part: a slit.
+    let mut mesh = sheet();
+    let shared = mesh.connectivity[1];
+    assert!(mesh.element(1).contains(&shared));
+    mesh.nodes.push(mesh.nodes[shared as usize]);
+    mesh.connectivity[1] = mesh.nodes.len() as u32 - 1;
+    let error = mesh.check().unwrap_err();
+    assert!(matches!(error, MeshError::DuplicateNodes { .. }), "{error}");
 
     let mut mesh = sheet();
     mesh.nodes[3].y = f64::NAN;
