@@ -181,11 +181,9 @@ fn the_corner_of_a_cube() {
         let least = x.iter().copied().fold(f64::INFINITY, f64::min);
         assert!((least - 0.5 * t).abs() < 1e-12, "{x}");
     }
-    // Shells inside and outside of the three faces: (3 + t/2)^3 - (3 - t/2)^3 with mitred rims.
-    let outer = 27.0 + 3.0 * 9.0 * 0.5 * t;
-    let inner = 27.0 - 3.0 * 9.0 * 0.5 * t;
-    let rims = mesh.volume() - (outer - inner);
-    assert!(rims.abs() < 3.0 * 6.0 * t * t, "{rims}");
+    // The faces at the distance d have the area (3 - d)^2.
+    let expected = (3.0 + 0.5 * t).powi(3) - (3.0 - 0.5 * t).powi(3);
+    close(mesh.volume(), expected, 1e-12);
 }
 
 /// A ring of n plane facets: each is a trapezium of the true thickness, mitred with its neighbours.
@@ -254,12 +252,13 @@ fn noise_does_not_tilt_the_thickness() {
     let (r, t) = (10.0f64, 1.0);
     let surface = grid(12, 8, |u, v| {
         let phi = 2.0 * (u - 0.5);
-        [r * phi.sin(), 8.0 * v, r * phi.cos()].map(|x| x as f32 as f64)
+        let noisy = r + 1e-6 * (7300.0 * u + 3100.0 * v).sin();
+        [noisy * phi.sin(), 8.0 * v, noisy * phi.cos()]
     });
     let (mesh, _) = h8(&surface.inp(), &file(t)).unwrap();
     let count = surface.points.len();
     for k in 0..count {
         let through = mesh.nodes[k + count] - mesh.nodes[k];
-        assert!(through.y.abs() < 1e-4, "{through}");
+        assert!(through.y.abs() < 5e-4, "{through}");
     }
 }
