@@ -261,7 +261,7 @@ fn vtu(s: &Surface, how: Xml) -> Vec<u8> {
     };
     let numbers = |values: &[usize]| {
         let text: Vec<String> = values.iter().map(usize::to_string).collect();
-        let bytes = values.iter().flat_map(|v| (*v as i64).to_le_bytes()).collect();
+        let bytes: Vec<u8> = values.iter().flat_map(|v| (*v as i64).to_le_bytes()).collect();
         (text.join(" "), bytes)
     };
     let flat: Vec<f64> = s.points.iter().flatten().copied().collect();

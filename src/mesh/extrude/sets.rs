@@ -9,6 +9,9 @@ use covact_geometry::Vec3;
 /// The border counts as on a side of the bounding box within this part of the box's diagonal.
 const ON_SIDE: f64 = 1e-6;
 
+/// More borders than this have no sets of their own.
+const MOST_BORDERS: usize = 1000;
+
 /// Adds all sets to the body.
 pub(super) fn name(
     mesh: &mut Mesh,
@@ -137,6 +140,13 @@ impl Names<'_> {
         if let Some(name) = free(self, "border".to_string()) {
             let faces = self.edge_faces(edges.border());
             self.faces(&name, faces);
+        }
+        if loops.len() > MOST_BORDERS {
+            notes.push(format!(
+                "the surface has {} borders, which are no sets of their own: they are all in `border`",
+                loops.len()
+            ));
+            lengths.clear();
         }
         let mut told = Vec::new();
         for (k, &(length, which)) in lengths.iter().enumerate() {

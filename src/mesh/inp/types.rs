@@ -17,11 +17,10 @@ pub(super) enum Shape {
 
 /// Families of hexahedra and other solids, of surfaces, of lines; longer names before those that they begin with.
 const SOLIDS: [&str; 9] = ["C3D", "DC3D", "AC3D", "FC3D", "F3D", "Q3D", "CSS", "SC", "CCL"];
-const FACETS: [&str; 20] = [
-    "SFM3D", "STRI", "DC2D", "AC2D", "DCAX", "ACAX", "CPEG", "R3D", "M3D", "F2D", "CPS", "CPE", "CAX", "CGAX", "DS", "S",
-    "MEMB", "QUAD", "MCL", "U2D",
+const FACETS: [&str; 16] = [
+    "SFM3D", "STRI", "DC2D", "AC2D", "DCAX", "ACAX", "CPEG", "R3D", "M3D", "F2D", "CPS", "CPE", "CGAX", "CAX", "DS", "S",
 ];
-const LINES: [&str; 10] = ["T3D", "T2D", "R2D", "RAX", "RB3D", "SAX", "MAX", "F3DL", "D2D", "DCC2D"];
+const LINES: [&str; 5] = ["T3D", "T2D", "RB3D", "R2D", "RAX"];
 
 impl Shape {
     /// The shape of a type, its name in capitals.
