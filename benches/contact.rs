@@ -72,7 +72,7 @@ fn slide_all(master: &RigidMaster, queries: &[Query], chord: f64) -> usize {
             base: x + Vec3::new(0.0, chord, 0.0),
             ..PointHistory::default()
         };
-        let law = history.law(LAW.eps_n, 0.0);
+        let law = history.law(LAW, 0.0);
         let touch = master.touch_with_friction(black_box(x), &mut hint, &law, &friction, &history);
         black_box(touch).is_ok_and(|t| t.is_some_and(|t| t.traction.slip.slides))
     };
@@ -98,7 +98,7 @@ fn workloads([set, six]: &[PatchSet; 2]) -> Vec<Workload<'_>> {
             let foot = set.project(x, *hint, f64::INFINITY)?;
             let frame = Frame::new(&foot.jet, foot.side)?;
             let xi3 = foot.signed_distance;
-            Some((frame, xi3, LAW.normal(xi3)))
+            Some((frame, xi3, LAW.response(xi3)))
         })
         .collect();
     assert_eq!(frames.len(), COUNT);

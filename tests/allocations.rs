@@ -128,3 +128,43 @@ fn an_evaluation_of_contact_allocates_no_more_for_many_points() {
         assert!(many[..2].iter().all(|n| *n <= 8), "{name}: {many:?}");
     }
 }
+
+/// Rows and fields are brought to the disk together, from time to time, and not one by one.
+#[test]
+fn files_are_not_waited_for_one_by_one() {
+    use covact::output::atomic::waits;
+    use covact::run::{RunOptions, run};
+    let mut scene = json!({
+        "covact": 1,
+        "materials": { "m": { "st_venant_kirchhoff": { "E": 100, "nu": 0.3 } } },
+        "bodies": { "strip": {
+            "mesh": { "plate": { "size": [4, 1], "thickness": 0.5, "elements": [4, 1] } }, "material": "m"
+        } },
+        "supports": {
+            "wall": { "on": "strip.x_min", "fixed": true },
+            "pull": { "on": "strip.x_max", "displacement": { "x": "0.1*t", "y": 0 } }
+        },
+        "solution": { "step": { "initial": 0.02, "max": 0.02 }, "threads": 1 }
+    });
+    for every in [0, 1] {
+        scene["output"] = json!({ "every": every });
+        let loaded = scene::parse(&scene.to_string(), "scene.json").unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let before = waits();
+        let flag = std::sync::atomic::AtomicBool::new(false);
+        let mut silent = covact::solve::event::Silent;
+        let summary = run(
+            &loaded,
+            folder.path(),
+            &RunOptions::default(),
+            &mut silent,
+            &flag,
+        )
+        .unwrap();
+        assert_eq!(summary.steps, 50);
+        // At the end; in the course of it after two seconds at the earliest, which this run does not take.
+        let waited = waits() - before;
+        println!("every {every}: {waited} waits");
+        assert!(waited <= 25, "every {every}: {waited} waits");
+    }
+}

@@ -1,6 +1,8 @@
 //! Files are written whole or not at all.
 use covact::output::OutputError;
-use covact::output::atomic::{Sink, make_folder, write_fully, write_whole, write_whole_with};
+use covact::output::atomic::{
+    Sink, make_folder, write_fully, write_soon, write_through, write_whole, write_whole_with,
+};
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::Path;
@@ -174,11 +176,26 @@ fn what_is_not_a_file_is_left_alone() {
         let error = write_whole(path, b"x").unwrap_err();
         assert!(matches!(error, OutputError::NotAFile { .. }), "{error:?}");
     }
-    // A link stays a link and its target gets the bytes.
+    // A link is replaced, and what it points to stays: a file, a folder, nothing.
     let (target, link) = (inner.join("real.csv"), folder.path().join("link.csv"));
-    fs::write(&target, "old").unwrap();
+    type Writer = fn(&Path, &[u8]) -> Result<(), OutputError>;
+    let writers: [Writer; 2] = [write_whole, write_soon];
+    for write in writers {
+        fs::write(&target, "old").unwrap();
+        for to in [target.as_path(), inner.as_path(), Path::new("nowhere")] {
+            let _ = fs::remove_file(&link);
+            std::os::unix::fs::symlink(to, &link).unwrap();
+            write(&link, b"new").unwrap();
+            assert!(fs::symlink_metadata(&link).unwrap().is_file());
+            assert_eq!(fs::read(&link).unwrap(), b"new");
+        }
+        assert_eq!(fs::read(&target).unwrap(), b"old");
+    }
+    assert_eq!(names(&inner), ["real.csv"]);
+    // A file that the user names is where the link says.
+    fs::remove_file(&link).unwrap();
     std::os::unix::fs::symlink(&target, &link).unwrap();
-    write_whole(&link, b"new").unwrap();
+    write_through(&link, b"new").unwrap();
     assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
     assert_eq!(fs::read(&target).unwrap(), b"new");
 }

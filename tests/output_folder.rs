@@ -1,8 +1,9 @@
 //! The folder of a run: collections, history, summary.
 use covact::mesh::{ElementKind, Mesh};
 use covact::output::{
-    BodyFields, COLUMNS, History, OutputError, Results, RunStatus, Summary, SurfaceOutput,
-    SurfacePiece, SurfaceState, Versions, column_table, documented, file_stem, read_csv,
+    Accuracy, BodyFields, COLUMNS, History, OutputError, Results, RunStatus, Summary,
+    SurfaceOutput, SurfacePiece, SurfaceState, Versions, column_table, documented, file_stem,
+    read_csv,
 };
 use covact_geometry::Vec3;
 use nalgebra::Isometry3;
@@ -267,6 +268,7 @@ fn a_summary_reads_back() {
         dofs: 37_800,
         contact_points: 676,
         newton_iterations: 41,
+        failed_iterations: 5,
         factorizations: BTreeMap::from([("llt".to_string(), 40), ("ldlt".to_string(), 1)]),
         steps: 3,
         cuts: 1,
@@ -275,6 +277,11 @@ fn a_summary_reads_back() {
         effects: vec!["normal contact".into()],
         plan: Default::default(),
         warnings: vec!["slave points are coarse".into()],
+        accuracy: Accuracy {
+            force_error: 0.003,
+            contact: Some("press".into()),
+            ..Accuracy::default()
+        },
         resumed: 0,
         scene: String::new(),
         versions: Versions::default(),

@@ -1,11 +1,10 @@
 //! Projects a million points onto the surfaces of a CAD file:
-//! `cargo run --release -p covact-geometry --example project_points [FILE] [POINTS]`
+//! `cargo run --release -p covact-geometry --example project_points FILE [POINTS]`
 use covact_geometry::{Location, PatchSet, Status, Vec3, io};
 use std::{env, error::Error, path::Path, time::Instant};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/punch.igs");
-    let path = env::args().nth(1).unwrap_or_else(|| default.into());
+    let path = env::args().nth(1).ok_or("name a CAD file")?;
     let n: u32 = env::args().nth(2).map_or(Ok(1_000_000), |n| n.parse())?;
     let file = io::read_path(Path::new(&path))?;
     for skipped in &file.skipped {

@@ -45,6 +45,11 @@
 // The one exception is the evaluation kernel for AVX2.
 #![deny(unsafe_code)]
 
+/// The examples of README.md, which are compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 pub mod basis;
 pub mod bezier;
 pub mod curve;

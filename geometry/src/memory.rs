@@ -85,11 +85,16 @@ pub fn available() -> Available {
     let groups = read("/proc/self/cgroup").unwrap_or_default();
     let (memberships, root) = (memberships(&groups), Path::new("/sys/fs/cgroup"));
     see(control_groups(&memberships, root), Limit::ControlGroup);
-    let space = read("/proc/self/limits")
-        .zip(read("/proc/self/status"))
-        .and_then(|(limits, status)| address_space(&limits, &status));
-    see(space, Limit::AddressSpace);
+    see(address_space_left(), Limit::AddressSpace);
     least
+}
+
+/// What the limit on the process's address space (`ulimit -v`) leaves; none where there is no limit, or the system does not
+/// tell. Memory that is asked for and never touched counts here, and here alone.
+pub fn address_space_left() -> Option<u64> {
+    let read = |path: &str| std::fs::read_to_string(path).ok();
+    let (limits, status) = (read("/proc/self/limits")?, read("/proc/self/status")?);
+    address_space(&limits, &status)
 }
 
 /// Bytes of a line such as `MemAvailable:  123 kB`.

@@ -201,6 +201,108 @@ fn loops_round_a_cylinder_are_projected_and_joined() {
     assert!(file.trims.largest_gap < 1e-9, "{}", file.trims.largest_gap);
 }
 
+/// Radius of the ball in [`sector`].
+const BALL: f64 = 7.0;
+
+/// A face of a ball: a 120 over a half circle that begins at one pole. The face reaches from the equator to the other pole
+/// and turns from angle `a` to `b`; its boundary runs along the equator, down to the pole and back from it, or the other
+/// way round. The curves in the parameter plane count the angle of the half circle from its start, as one writer does,
+/// so that those in space are projected.
+fn sector([a, b]: [f64; 2], backwards: bool) -> CadFile {
+    let r = BALL;
+    let at = |v: f64, y: f64| [-r * v.cos(), y, -r * v.sin()];
+    let meridian = |v: f64, up: bool| {
+        let mut points = [at(v, 0.0), at(v, -r), [0.0, -r, 0.0]];
+        if up {
+            points.reverse();
+        }
+        let [p, q, s] = points.map(|p| p.map(|x| format!("{x:?}")).join(","));
+        let w = 0.5f64.sqrt();
+        child(
+            126,
+            &format!("2,2,0,0,0,0,0.,0.,0.,1.,1.,1.,1.,{w:?},1.,{p},{q},{s},0.,1.,0.,0.,0."),
+        )
+    };
+    // Angles grow with v in the plane of x and z; halves, as an arc that closes would be a full circle.
+    let arc = |a: f64, b: f64| {
+        let end = |v: f64| format!("{:?},{:?}", -r * v.cos(), -r * v.sin());
+        Entity {
+            matrix: 21,
+            ..child(100, &format!("0.,0.,0.,{},{}", end(a), end(b)))
+        }
+    };
+    let line = |p: [f64; 2], q: [f64; 2]| {
+        child(
+            110,
+            &format!("{:?},{:?},0.,{:?},{:?},0.", p[0], p[1], q[0], q[1]),
+        )
+    };
+    let (m, u) = (0.5 * (a + b), [PI / 2.0, PI]);
+    let mut corners = [[u[0], m], [u[0], b], [u[1], b], [u[1], a], [u[0], a]];
+    let mut entities = vec![
+        entity(144, "3,1,0,5"),
+        child(120, &format!("7,9,0.,{TAU:?}")),
+        child(142, "1,3,11,13,1"),
+        child(110, "0.,0.,0.,0.,-7.,0."),
+        child(100, "0.,0.,0.,0.,7.,0.,-7."),
+        child(102, "5,23,25,27,29,31"),
+        child(102, "4,33,35,37,39"),
+        child(110, "0.,0.,0.,1.,0.,0."),
+        child(110, "0.,0.,0.,1.,0.,0."),
+        child(110, "0.,0.,0.,1.,0.,0."),
+        child(124, "1.,0.,0.,0.,0.,0.,-1.,0.,0.,1.,0.,0."),
+    ];
+    let space = [arc(m, b), meridian(b, false), meridian(a, true), arc(a, m)];
+    if backwards {
+        corners.reverse();
+        corners.rotate_left(4);
+        // Arcs run counterclockwise only: turned about the x axis they run the other way.
+        let turned = |from: f64, to: f64| {
+            let end = |v: f64| format!("{:?},{:?}", -r * v.cos(), r * v.sin());
+            Entity {
+                matrix: 15,
+                ..child(100, &format!("0.,0.,0.,{},{}", end(from), end(to)))
+            }
+        };
+        entities[7] = child(124, "1.,0.,0.,0.,0.,0.,1.,0.,0.,-1.,0.,0.");
+        entities.extend((0..5).map(|k| line(corners[k], corners[(k + 1) % 5])));
+        entities.extend([
+            turned(m, a),
+            meridian(a, false),
+            meridian(b, true),
+            turned(b, m),
+        ]);
+    } else {
+        entities.extend((0..5).map(|k| line(corners[k], corners[(k + 1) % 5])));
+        entities.extend(space);
+    }
+    read(&entities)
+}
+
+/// Loops that go to a pole along the seam and leave it at any angle bound the part of the ball between the two angles, not
+/// the rest of it, whichever way they run.
+#[test]
+fn loops_through_pole_and_seam_bound_their_inside() {
+    let [q, h] = [PI / 2.0, PI];
+    for range in [
+        [h, TAU],
+        [q, TAU],
+        [0.0, h],
+        [0.0, h + q],
+        [h, h + q],
+        [1.0, 5.0],
+    ] {
+        for backwards in [false, true] {
+            let file = sector(range, backwards);
+            let area = (range[1] - range[0]) * BALL * BALL;
+            near(single(&file), area, 1e-5);
+            assert_eq!((file.trims.rejected, file.trims.projected), (1, 4));
+            let set = PatchSet::new(vec![file.patches[0].patch.clone()], None).unwrap();
+            assert_eq!(set.volumes(), [None], "{range:?} {backwards}");
+        }
+    }
+}
+
 /// A hole across the seam of a cylinder, given in the parameter plane where angles are not the patch's parameter: a circle
 /// about angle 0.
 #[test]
@@ -224,7 +326,7 @@ fn faces_without_usable_boundaries_are_skipped() {
     for (entities, reason) in [
         (
             vec![entity(144, "3,1,0,5"), child(128, FLAT), child(126, "0")],
-            "no curve on a surface",
+            "neither a curve on a surface (142) nor a boundary (141)",
         ),
         (
             vec![

@@ -311,3 +311,134 @@ fn batches_do_not_depend_on_the_number_of_threads() {
             .is_err()
     );
 }
+
+/// A closed box from `-half` to `half`, the axes of one corner turned askew.
+fn askew_box(half: Vec3) -> (PatchSet, [Vec3; 3]) {
+    let a = Vec3::new(0.8, 0.36, 0.48);
+    let b = Vec3::new(-0.6, 0.48, 0.64);
+    let axes = [a, b, a.cross(&b)];
+    let faces = (0..6).map(|k| {
+        let (dir, sign) = (k / 2, if k % 2 == 0 { 1.0 } else { -1.0 });
+        let n = axes[dir] * sign;
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]].map(|[s, t]| {
+            let (i, j) = ((dir + 1) % 3, (dir + 2) % 3);
+            n * half[dir] + axes[i] * (sign * s * half[i]) + axes[j] * (t * half[j])
+        });
+        let knots = || vec![0.0, 0.0, 1.0, 1.0];
+        NurbsPatch::new([1, 1], [knots(), knots()], [2, 2], &corners, None).unwrap()
+    });
+    (set(faces.collect()), axes)
+}
+
+#[test]
+fn feet_as_near_as_each_other_are_not_unique() {
+    let mut random = Random(71);
+    let check = |set: &PatchSet, tie: Vec3, off: Vec3, what: &str| {
+        let foot = cold(set, tie);
+        assert_eq!(foot.status, Status::NonUnique, "{what}: {tie:?} {foot:?}");
+        let hint = Some(foot.hint());
+        let warm = set.project(&tie, hint, f64::INFINITY).unwrap();
+        assert_eq!(
+            warm.status,
+            Status::NonUnique,
+            "{what}, warm: {tie:?} {warm:?}"
+        );
+        // Well above rounding the two feet can be told from each other.
+        for away in [1e-7, 1e-3] {
+            let q = tie + off * (away * set.size());
+            let foot = cold(set, q);
+            assert_eq!(foot.status, Status::Unique, "{what}, off: {q:?} {foot:?}");
+        }
+    };
+    // The medial axis of a hollow parabola.
+    let points: Vec<Vec3> = (0..6)
+        .map(|k| {
+            Vec3::new(
+                f64::from(k % 3) - 1.0,
+                f64::from(k / 3),
+                f64::from((k % 3 + 1) % 2),
+            )
+        })
+        .map(|p| Vec3::new(p.x, p.y, 2.0 * p.z - 1.0))
+        .collect();
+    let knots = [vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]];
+    let parabola = NurbsPatch::new([2, 1], knots, [3, 2], &points, None).unwrap();
+    let parabola = set(vec![parabola]);
+    for _ in 0..100 {
+        // z = x^2; the focus is at 1 / 4, the centre of curvature of the bottom at 1 / 2.
+        let q = Vec3::new(0.0, random.between(0.1, 0.9), random.between(0.6, 1.2));
+        check(&parabola, q, Vec3::x(), "parabola");
+    }
+    // Inside of a box: as far from two faces, and from three.
+    let (solid, axes) = askew_box(Vec3::new(1.0, 1.3, 1.7));
+    let place = |x: [f64; 3]| axes[0] * x[0] + axes[1] * x[1] + axes[2] * x[2];
+    for _ in 0..100 {
+        let d = random.between(0.05, 0.9);
+        let c = random.between(-0.1, 0.1);
+        let two = place([1.0 - d, 1.3 - d, c]);
+        check(&solid, two, axes[0], "box");
+        let three = place([1.0 - d, d - 1.3, 1.7 - d]);
+        check(&solid, three, axes[2] - axes[0], "box, corner");
+    }
+    // Between two sheets: flat ones, and bumpy ones that mirror each other.
+    let flat = [-0.5, 0.5].map(|z| plane(Vec3::z() * z, Vec3::z(), [4.0, 2.0]).unwrap());
+    let flat = set(flat.to_vec());
+    let sheet = bumpy(3, 12, true, 5);
+    let mirrored = sheet
+        .transformed(&|p: Vec3| Vec3::new(p.x, p.y, 4.0 - p.z))
+        .unwrap();
+    let bumps = set(vec![sheet, mirrored]);
+    for _ in 0..100 {
+        let q = Vec3::new(random.between(-1.4, 1.4), random.between(-0.4, 0.4), 0.0);
+        check(&flat, q, Vec3::z(), "two planes");
+        let q = Vec3::new(random.between(2.0, 8.0), random.between(2.0, 8.0), 2.0);
+        check(&bumps, q, Vec3::z(), "two sheets");
+    }
+    // A circle of feet.
+    let ring = set(vec![torus(3.0, 1.0, Vec3::zeros(), Vec3::z()).unwrap()]);
+    for _ in 0..20 {
+        let q = Vec3::z() * random.between(-4.0, 4.0);
+        assert_eq!(cold(&ring, q).status, Status::NonUnique, "{q:?}");
+        let q = q + Vec3::x() * 1e-3;
+        assert_eq!(cold(&ring, q).status, Status::Unique, "{q:?}");
+    }
+}
+
+#[test]
+fn points_of_sharp_edges_and_corners_lie_on_them() {
+    let half = Vec3::new(1.0, 1.3, 1.7);
+    let (solid, axes) = askew_box(half);
+    let at = |x: [f64; 3]| (0..3).map(|k| axes[k] * (x[k] * half[k])).sum::<Vec3>();
+    let mut random = Random(72);
+    for k in 0..120 {
+        let sign = |bit: usize| if k >> bit & 1 == 0 { -1.0 } else { 1.0 };
+        let corner = [sign(0), sign(1), sign(2)];
+        let foot = cold(&solid, at(corner));
+        let kind = EdgeKind::Sharp;
+        let on_corner = matches!(foot.location, Location::Corner { kind: k, .. } if k == kind);
+        assert!(on_corner && foot.status == Status::Unique, "{foot:?}");
+        let n: Vec3 = (0..3).map(|k| axes[k] * corner[k]).sum();
+        assert!((foot.normal - n.normalize()).norm() < 1e-12, "{foot:?}");
+        let mut edge = corner;
+        edge[k % 3] = random.between(-0.9, 0.9);
+        let foot = cold(&solid, at(edge));
+        let on_edge = matches!(foot.location, Location::Edge { kind: k, .. } if k == kind);
+        assert!(on_edge && foot.status == Status::Unique, "{foot:?}");
+        let n = n - axes[k % 3] * corner[k % 3];
+        assert!((foot.normal - n.normalize()).norm() < 1e-12, "{foot:?}");
+        assert!(foot.distance < 1e-14 && foot.signed_distance.abs() < 1e-14);
+        // On a face a little beside the edge.
+        edge[(k + 1) % 3] *= 1.0 - 1e-6;
+        assert_eq!(cold(&solid, at(edge)).location, Location::Face);
+    }
+    // A crease, and a free border, which belongs to its face.
+    let roof = set(vec![creased()]);
+    for _ in 0..50 {
+        let t = random.between(0.05, 0.95);
+        let foot = cold(&roof, roof.patches()[0].point([0.5, t]));
+        assert_eq!(foot.location, Location::Crease { dir: 0 }, "{foot:?}");
+        assert!(foot.normal.x.abs() < 1e-9, "{foot:?}");
+        let foot = cold(&roof, roof.patches()[0].point([0.0, t]));
+        assert_eq!(foot.location, Location::Face, "{foot:?}");
+    }
+}

@@ -139,48 +139,185 @@ fn feet_on_smooth_joints_are_face_feet() {
     }
 }
 
-#[test]
-fn moebius_strip_is_refused() {
-    let knots = vec![0.0, 0.0, 1.0, 1.0];
-    let mut patches = Vec::new();
+/// A band of eight bilinear patches about the z axis that is turned over once.
+fn moebius_band() -> Vec<NurbsPatch> {
     let point = |k: usize, end: f64| {
         let angle = std::f64::consts::TAU * k as f64 / 8.0;
         let r = 2.0 + end * 0.5 * (0.5 * angle).cos();
-        Vec3::new(
+        [
             r * angle.cos(),
             r * angle.sin(),
             end * 0.5 * (0.5 * angle).sin(),
-        )
+        ]
     };
-    for k in 0..8 {
-        let points = [
+    let part = |k: usize| {
+        quad([
             point(k, -1.0),
             point(k + 1, -1.0),
             point(k, 1.0),
             point(k + 1, 1.0),
-        ];
-        patches.push(
-            NurbsPatch::new(
-                [1; 2],
-                [knots.clone(), knots.clone()],
-                [2; 2],
-                &points,
-                None,
-            )
-            .unwrap(),
+        ])
+    };
+    (0..8).map(part).collect()
+}
+
+#[test]
+fn a_moebius_band_has_distances_without_a_sign() {
+    let band = moebius_band();
+    let mut set = PatchSet::new(band.clone(), None).unwrap();
+    let error = set.two_sided().unwrap_err();
+    assert!(matches!(error, PatchSetError::NotOrientable(..)));
+    let text = error.to_string();
+    assert!(text.contains("[0, 1, 2, 3, 4, 5, 6, 7]"), "{text}");
+    assert_eq!((set.sides(), set.volumes()), (&[0.0; 8][..], &[None][..]));
+
+    // Nearest is the nearest of the patches, each by itself; from both sides of each.
+    let parts: Vec<PatchSet> = (band.iter())
+        .map(|p| PatchSet::new(vec![p.clone()], None).unwrap())
+        .collect();
+    for k in 0..400 {
+        let a = f64::from(k);
+        let q = Vec3::new(
+            2.5 * (0.7 * a).sin(),
+            2.5 * (1.1 * a).cos(),
+            (0.37 * a).sin(),
         );
+        let foot = set.project(&q, None, f64::INFINITY).unwrap();
+        let nearest = (parts.iter())
+            .map(|p| p.project(&q, None, f64::INFINITY).unwrap().distance)
+            .fold(f64::INFINITY, f64::min);
+        assert!((foot.distance - nearest).abs() < 1e-12, "{q:?}");
+        assert!((foot.distance - (q - foot.jet.rho).norm()).abs() < 1e-14);
+        assert!(foot.side == 0.0 && foot.signed_distance >= 0.0);
+        assert!((foot.normal.norm() - 1.0).abs() < 1e-12);
+        assert!(foot.normal.dot(&(q - foot.jet.rho)) >= 0.0);
+        assert_eq!(foot.status, covact_geometry::Status::Unique);
     }
-    match PatchSet::new(patches.clone(), None) {
-        Err(error @ PatchSetError::NotOrientable(..)) => {
-            assert!(
-                error.to_string().contains("[0, 1, 2, 3, 4, 5, 6, 7]"),
-                "{error}"
-            );
+    // Nothing is there to decide, and nothing to set.
+    let sides = set.orient_towards(&[Vec3::new(3.0, 0.0, 0.5)]).unwrap();
+    assert_eq!(
+        (sides[0].side, sides[0].outcome),
+        (0.0, SideOutcome::OneSided)
+    );
+    set.set_side_as_given(true);
+    assert_eq!(set.sides(), [0.0; 8]);
+    let range = set.curvature_range();
+    assert!(range.convex.is_some() && range.concave.is_some());
+
+    // Beside an ordinary sheet only the band goes without a sign.
+    let mut both = band.clone();
+    both.push(plane(Vec3::new(0.0, 0.0, 9.0), Vec3::z(), [2.0, 2.0]).unwrap());
+    let both = PatchSet::new(both, None).unwrap();
+    assert_eq!(foot(&both, 0.0, 0.0, 8.5).signed_distance, -0.5);
+    assert_eq!(foot(&both, 0.0, 0.0, 9.5).signed_distance, 0.5);
+
+    // Cut open it has two sides.
+    let open = PatchSet::new(band[..7].to_vec(), None).unwrap();
+    assert!(open.two_sided().is_ok() && open.sides().iter().all(|s| s.abs() == 1.0));
+}
+
+/// Two bent sheets of 15 x 15, one above the other by `gap`.
+fn sheets(gap: f64) -> Vec<NurbsPatch> {
+    let sheet = |z: f64| {
+        quad([
+            [0.0, 0.0, z],
+            [15.0, 0.0, z + 2.0],
+            [0.0, 15.0, z],
+            [15.0, 15.0, z],
+        ])
+    };
+    vec![sheet(0.0), sheet(gap)]
+}
+
+#[test]
+fn sheets_on_top_of_each_other_are_not_welded() {
+    use covact_geometry::project::Joining;
+    let joined = |patches: &[NurbsPatch], tolerance, resolution| {
+        let joining = Joining {
+            tolerance,
+            resolution,
+        };
+        PatchSet::join(patches.to_vec(), joining).unwrap()
+    };
+    let gap = 1e-3;
+    let sheets = sheets(gap);
+    // By default and even if the tolerance says more: no body of volume 0.2, but two sheets, and what was not joined is
+    // told.
+    for tolerance in [None, Some(2e-3)] {
+        let set = joined(&sheets, tolerance, Some(1e-6));
+        assert_eq!(set.components(), [vec![0], vec![1]]);
+        assert_eq!(set.volumes(), [None, None]);
+        let report = set.edges();
+        assert_eq!((report.joints.len(), report.free.len()), (0, 8));
+        assert_eq!((report.stacked.len(), report.open_gaps.len()), (4, 0));
+        for (k, pair) in report.stacked.iter().enumerate() {
+            assert_eq!(pair.edges, [(0, k as u32), (1, k as u32)]);
+            assert!(pair.gap <= gap + 1e-12 && pair.gap > 0.9 * gap, "{pair:?}");
         }
-        other => panic!("{other:?}"),
+        // Both are as they were given: a point between them is above one and below the other.
+        let near = |z: f64| {
+            let foot = set.project(&Vec3::new(3.0, 13.0, z), None, f64::INFINITY);
+            let foot = foot.unwrap();
+            (foot.patch, foot.signed_distance > 0.0)
+        };
+        let z = set.patches()[0].point([0.2, 13.0 / 15.0]).z;
+        assert_eq!(near(z + 0.2 * gap), (0, true));
+        assert_eq!(near(z + 0.8 * gap), (1, false));
+        assert_eq!(near(z + 1.2 * gap), (1, true));
+        assert_eq!(near(z - 0.2 * gap), (0, false));
     }
-    patches.pop();
-    assert!(PatchSet::new(patches, None).is_ok());
+    // A source that cannot tell the two edges apart means one edge.
+    let coarse = joined(&sheets, None, Some(2e-3));
+    assert_eq!(
+        (coarse.components().len(), coarse.edges().joints.len()),
+        (1, 4)
+    );
+    assert!(coarse.volumes()[0].is_some() && coarse.edges().stacked.is_empty());
+
+    // Patches that leave the edge in different directions are joined as before, and the gap is told where the source is
+    // finer.
+    let left = plane(Vec3::zeros(), Vec3::z(), [15.0, 15.0]).unwrap();
+    let right = plane(Vec3::new(15.0 + gap, 0.0, 0.0), Vec3::z(), [15.0, 15.0]).unwrap();
+    let pair = [left, right];
+    for (resolution, told) in [(None, 1), (Some(1e-6), 1), (Some(2e-3), 0)] {
+        let set = joined(&pair, None, resolution);
+        assert_eq!((set.components().len(), set.edges().joints.len()), (1, 1));
+        let bridged = &set.edges().bridged;
+        assert_eq!(bridged.len(), told, "{resolution:?}");
+        for b in bridged {
+            assert!(
+                (b.gap - gap).abs() < 1e-12 && (b.at.x - 7.5).abs() < 0.01,
+                "{b:?}"
+            );
+            assert_eq!(b.edges.map(|e| e.0), [0, 1]);
+        }
+    }
+    // A plate as thin whose rim is closed by strips is a closed body.
+    let z = |x: f64, top: f64| [x, 0.0, top];
+    let side = |a: [f64; 3], b: [f64; 3]| {
+        let up = |p: [f64; 3]| [p[0], p[1], p[2] + gap];
+        quad([a, b, up(a), up(b)])
+    };
+    let corners = [
+        z(0.0, 0.0),
+        z(15.0, 0.0),
+        [15.0, 15.0, 0.0],
+        [0.0, 15.0, 0.0],
+    ];
+    let flat = |top: f64| {
+        quad([
+            [0.0, 0.0, top],
+            [15.0, 0.0, top],
+            [0.0, 15.0, top],
+            [15.0, 15.0, top],
+        ])
+    };
+    let mut plate = vec![flat(0.0), flat(gap)];
+    plate.extend((0..4).map(|k| side(corners[k], corners[(k + 1) % 4])));
+    let set = joined(&plate, None, Some(1e-6));
+    assert_eq!((set.components().len(), set.edges().joints.len()), (1, 12));
+    assert!((set.volumes()[0].unwrap() / (225.0 * gap) - 1.0).abs() < 1e-9);
+    assert!(set.edges().stacked.is_empty() && set.edges().bridged.is_empty());
 }
 
 #[test]

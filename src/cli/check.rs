@@ -2,6 +2,7 @@
 use super::{CheckArgs, print, print_json, report};
 use crate::limits::Size;
 use crate::model::error::number;
+use crate::model::plan::EffectKind;
 use crate::run::{self, BodyReport, CheckReport, PairReport, SurfaceReport};
 use crate::scene::{self, LoadedScene, SceneError};
 
@@ -84,6 +85,7 @@ fn listing(found: &CheckReport) -> String {
         for s in &found.supports {
             let text = format!("{} on {} ({} components)", s.kind, s.on, s.components);
             out.line(&s.name, &text);
+            notes(found, "support", &s.name).for_each(|n| out.line("note", n));
         }
     }
     if !found.loads.is_empty() {
@@ -93,8 +95,9 @@ fn listing(found: &CheckReport) -> String {
         }
     }
     out.head("effects that are on (nothing else is computed)");
-    for effect in &found.effects {
-        out.0 += &format!("  {effect:<30} {}\n", meaning(effect));
+    for effect in found.effects.iter().chain(&found.details) {
+        let meaning = EffectKind::named(effect).map_or("", EffectKind::meaning);
+        out.0 += &format!("  {effect:<30} {meaning}\n");
     }
     out.head(&match found.warnings.len() {
         0 => "no warnings".to_owned(),
@@ -233,52 +236,5 @@ fn contact<'n>(out: &mut Paragraphs, p: &PairReport, notes: impl Iterator<Item =
                 None => out.line("note", n),
             },
         }
-    }
-}
-
-/// An effect in plain words; empty for one that needs none.
-fn meaning(effect: &str) -> &'static str {
-    match effect {
-        "large_rotation" => "displacements and rotations of any size",
-        "small_displacements" => {
-            "linear elements, and contact linearised where it starts: for displacements that stay small"
-        }
-        "element.h8_solid_shell" => "8-node solid-shell elements that do not lock when thin",
-        "element.q18_solid_shell" => "18-node quadratic solid-shells, for thin and curved sheets",
-        "element.h8_displacement" => "plain 8-node bricks, for solids (they lock when thin)",
-        "material.st_venant_kirchhoff" => "linear stress-strain law for small strains",
-        "material.neo_hooke" => "rubber-like law for large strains",
-        "contact.normal.penalty" => "contact pressure = penalty times penetration",
-        "contact.friction.orthotropic" => {
-            "friction with two coefficients, along a direction of the master and across it"
-        }
-        "contact.augmentation" => "multipliers beside the penalties, until gaps have vanished",
-        "contact.offset" => "contact begins at a distance from the master",
-        "contact.friction.coulomb" => "friction: at most `mu` times the pressure (Coulomb)",
-        "contact.master.rigid" => "rigid surfaces",
-        "contact.master.rigid.facets.bilinear" => "plane or twisted facets for a rigid surface",
-        "contact.master.rigid.facets.biquadratic" => "curved facets for a rigid surface",
-        "contact.master.rigid.facets.smooth" => {
-            "one smooth surface over the facets of a rigid surface"
-        }
-        "contact.master.deformable" => "faces of bodies that deform",
-        "contact.self" => "faces of a body touch faces of the same body",
-        "contact.master.smooth" => "one smooth surface through the nodes of the faces",
-        "surface.driven_by_force" => {
-            "components of a surface's motion are unknowns with given forces"
-        }
-        "contact.points.nodes" => "contact is sampled at nodes",
-        "contact.points.gauss" => "contact is sampled at Gauss points of the faces",
-        "contact.points.lobatto" => "contact is sampled at Lobatto points of the faces",
-        "contact.gap.averaged" => "gaps averaged over the faces around slave nodes",
-        "contact.points.segments" => "contact is integrated over faces cut by those they meet",
-        "contact.passes.two_half" => "each side of a contact is the slave once, no side preferred",
-        "contact.tangent.exact" => "tangent matrix exact at every penetration",
-        "contact.tangent.published" => "tangent matrix of the published form",
-        "load.dead" => "loads of constant direction",
-        "load.follower_pressure" => "pressures that follow the deformed faces",
-        "system.unsymmetric" => "unsymmetric tangent matrix, factorized by LU",
-        "support.mid_surface" => "supports on the mean of both faces of a shell",
-        _ => "",
     }
 }

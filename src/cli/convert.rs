@@ -1,7 +1,7 @@
 //! `covact convert`.
 use super::cad::{self, Stop};
 use super::{ConvertArgs, exit, print, report};
-use crate::output::atomic::write_whole;
+use crate::output::atomic::write_through;
 use covact_geometry::io::write_json;
 
 pub(super) fn convert(args: &ConvertArgs) -> u8 {
@@ -19,7 +19,7 @@ fn run(args: &ConvertArgs) -> Result<u8, Stop> {
     if args.out.as_os_str() == "-" {
         return Ok(print(&text));
     }
-    write_whole(&args.out, text.as_bytes())?;
+    write_through(&args.out, text.as_bytes())?;
     let count = file.summary();
     report::stderr(&format!(
         "{} patch{} ({} trimmed), unit {}, in {}\n",

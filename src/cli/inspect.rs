@@ -7,11 +7,15 @@ mod stl;
 use super::cad::{Stop, fault};
 use super::{InspectArgs, exit, print, print_json, report};
 use covact_geometry::PatchSet;
-use covact_geometry::io::{CadError, CadFile, read_path, read_stl_path};
+use covact_geometry::io::{CadError, CadFile, ReadOptions, read_path_with, read_stl_path};
+use covact_geometry::project::Joining;
 use findings::Findings;
 
 pub(super) fn inspect(args: &InspectArgs) -> u8 {
-    match read_path(&args.file) {
+    let options = ReadOptions {
+        hidden: args.hidden,
+    };
+    match read_path_with(&args.file, &options) {
         Ok(file) => cad(args, &file),
         Err(e) => {
             // STL holds triangles, no surfaces of CAD: another reader, other findings.
@@ -34,12 +38,20 @@ pub(super) fn inspect(args: &InspectArgs) -> u8 {
     }
 }
 
+/// How edges of a file are joined where nobody says otherwise.
+fn joining(file: &CadFile) -> Joining {
+    Joining {
+        tolerance: None,
+        resolution: file.resolution,
+    }
+}
+
 fn cad(args: &InspectArgs, file: &CadFile) -> u8 {
     let patches = file.patches.iter().map(|p| p.patch.clone()).collect();
     let mut wrong = None;
     let set = match file.patches.is_empty() {
         true => None,
-        false => PatchSet::new(patches, None)
+        false => PatchSet::join(patches, joining(file))
             .map_err(|e| wrong = Some(e.to_string()))
             .ok(),
     };

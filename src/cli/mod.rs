@@ -19,12 +19,13 @@ use clap::{Args, Parser, Subcommand};
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Exit codes of the program; 0 is success.
 pub mod exit {
     /// A fault of the program itself.
     pub const BUG: u8 = 1;
-    /// The command line is wrong.
+    /// The command line is wrong, or the folder that it names for results is taken.
     pub const USAGE: u8 = 2;
     /// The scene, or a file it names, is wrong.
     pub const SCENE: u8 = 3;
@@ -39,7 +40,7 @@ pub mod exit {
 #[command(
     name = "covact",
     version,
-    after_help = "Exit codes: 0 done, 1 a bug of covact, 2 wrong usage, 3 the scene or a file it names is wrong, \
+    after_help = "Exit codes: 0 done, 1 a bug of covact, 2 wrong usage or a folder that is taken, 3 the scene or a file it names is wrong, \
                   4 not converged or interrupted (what was computed is kept), 5 reading or writing failed."
 )]
 struct Cli {
@@ -81,8 +82,11 @@ struct RunArgs {
     #[arg(short, long, value_name = "FOLDER")]
     out: PathBuf,
     /// Go on with a run that was cut short, from its last accepted step
-    #[arg(long)]
+    #[arg(long, conflicts_with = "force")]
     resume: bool,
+    /// Replace the run that FOLDER holds; files of others stay
+    #[arg(long)]
+    force: bool,
     #[arg(long, value_name = "EFFECT", conflicts_with = "off", help = without::help())]
     without: Vec<String>,
     /// Run only the what-if: the scene without this effect, into FOLDER
@@ -115,6 +119,9 @@ struct InspectArgs {
     /// Print the findings as JSON
     #[arg(long)]
     json: bool,
+    /// Read what the CAD system hides (blanked entities of IGES) as well
+    #[arg(long)]
+    hidden: bool,
 }
 
 #[derive(Debug, Args)]
@@ -229,6 +236,9 @@ struct NewArgs {
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
     std::panic::set_hook(Box::new(report::panic));
+    if !interrupt::survive_large_files() {
+        report::warning("a file that outgrows the limit on its size will end the program");
+    }
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(e) => {
@@ -255,17 +265,28 @@ pub fn main() -> ExitCode {
         Command::New(args) => new::new(&args),
     });
     // The hook has told about the panic.
-    ExitCode::from(result.unwrap_or(exit::BUG))
+    let code = result.unwrap_or(exit::BUG);
+    ExitCode::from(match code {
+        0 if PRINTING_FAILED.load(Ordering::Relaxed) => exit::IO,
+        code => code,
+    })
 }
 
-/// Prints to standard output and returns the exit code. A reader that goes away (`covact schema | head`) is no error.
+/// Whether something could not be printed, which has been told then.
+static PRINTING_FAILED: AtomicBool = AtomicBool::new(false);
+
+/// Prints to standard output and returns the exit code. A reader that goes away (`covact schema | head`) is no error. Whoever
+/// goes on after a failure need not keep the code: the program ends with it unless it has a worse one.
 fn print(text: &str) -> u8 {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => 0,
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => 0,
         Err(e) => {
-            report::error(&format!("cannot write to the standard output: {e}"));
+            // Of many lines that cannot be printed, one error is enough.
+            if !PRINTING_FAILED.swap(true, Ordering::Relaxed) {
+                report::error(&format!("cannot write to the standard output: {e}"));
+            }
             exit::IO
         }
     }

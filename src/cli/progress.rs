@@ -1,5 +1,6 @@
 //! The progress of a run, as people and programs want to see it.
 use super::{print, report};
+use crate::output::RunStatus;
 use crate::solve::event::{Event, Observer};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -93,6 +94,8 @@ struct Table {
     end_time: f64,
     iterations: bool,
     dt: f64,
+    /// What went wrong in the step under way: told only where the step fails, which other starts mostly save it from.
+    trouble: Vec<String>,
 }
 
 impl Table {
@@ -101,6 +104,7 @@ impl Table {
             end_time,
             iterations,
             dt: 0.0,
+            trouble: Vec::new(),
         }
     }
 
@@ -139,6 +143,7 @@ impl Table {
             }
             Event::StepStarted { dt, .. } => {
                 self.dt = *dt;
+                self.trouble.clear();
                 Vec::new()
             }
             Event::Iteration {
@@ -167,8 +172,13 @@ impl Table {
                  slip {slip:.3e}",
                 "", ""
             )],
-            Event::Iteration { .. } | Event::Augmented { .. } | Event::Finished { .. } => {
-                Vec::new()
+            Event::Iteration { .. } | Event::Augmented { .. } => Vec::new(),
+            Event::Finished { status, .. } => {
+                let trouble = std::mem::take(&mut self.trouble);
+                match RunStatus::NotConverged.name() == status {
+                    true => trouble,
+                    false => Vec::new(),
+                }
             }
             Event::PenaltyRaised {
                 step,
@@ -189,25 +199,34 @@ impl Table {
                 period,
                 broken,
                 ..
-            } => vec![format!(
-                "{step:>5} {:>10} {:>10} contact `{contact}`: {points} point(s) switch every {period} iterations the same; {broken}",
-                "", ""
-            )],
+            } => {
+                self.trouble.push(format!(
+                    "{step:>5} {:>10} {:>10} contact `{contact}`: {points} point(s) switch every {period} iterations the same; {broken}",
+                    "", ""
+                ));
+                Vec::new()
+            }
             Event::StepAccepted {
                 step,
                 time,
                 iterations,
+                failed_iterations,
                 active,
                 penetration,
             } => {
+                self.trouble.clear();
                 let (time, dt) = (short(*time), short(self.dt));
+                let failed = match failed_iterations {
+                    0 => String::new(),
+                    n => format!("  ({n} iterations more in other attempts)"),
+                };
                 vec![match self.iterations {
                     true => format!(
                         "{step:>5} {time:>10} {dt:>10} {iterations:>5} accepted, {active} points active, penetration \
-                         {penetration:.3e}"
+                         {penetration:.3e}{failed}"
                     ),
                     false => format!(
-                        "{step:>5} {time:>10} {dt:>10} {iterations:>5} {active:>8} {penetration:>12.3e}"
+                        "{step:>5} {time:>10} {dt:>10} {iterations:>5} {active:>8} {penetration:>12.3e}{failed}"
                     ),
                 }]
             }
@@ -218,19 +237,26 @@ impl Table {
                 reason,
             } => {
                 let (dt, next) = (short(*dt), short(*next_dt));
-                vec![format!(
+                let mut lines = std::mem::take(&mut self.trouble);
+                lines.push(format!(
                     "{step:>5} {:>10} {dt:>10} cut to {next}: {reason}",
                     ""
-                )]
+                ));
+                lines
             }
             Event::StepRetried {
                 step,
                 start,
                 reason,
-            } => vec![format!(
-                "{step:>5} {:>10} {:>10} again from {start}: {reason}",
-                "", ""
-            )],
+            } => {
+                let again = format!("{step:>5} {:>10} {:>10} again from {start}", "", "");
+                self.trouble.push(format!("{again}: {reason}"));
+                // The numbers of iterations start anew, where they are shown.
+                match self.iterations {
+                    true => vec![again],
+                    false => Vec::new(),
+                }
+            }
             Event::Note { text } => vec![format!("note: {text}")],
             Event::Warning { text } => vec![format!("warning: {text}")],
         }
@@ -288,5 +314,63 @@ mod tests {
         assert_eq!(line[0].len(), head[2].len());
         assert!(line[0].contains("1.250e-7"));
         assert!(Table::new(1.0, false).lines(&iteration).is_empty());
+    }
+
+    /// What went wrong with a start is told where the step fails, and not where another start saves it.
+    #[test]
+    fn trouble_is_told_only_where_the_step_fails() {
+        let start = Event::StepStarted {
+            step: 1,
+            time: 1.0,
+            dt: 1.0,
+        };
+        let retried = Event::StepRetried {
+            step: 1,
+            start: "a softened penalty".into(),
+            reason: "turned inside out".into(),
+        };
+        let accepted = Event::StepAccepted {
+            step: 1,
+            time: 1.0,
+            iterations: 7,
+            failed_iterations: 12,
+            active: 5,
+            penetration: 1e-6,
+        };
+        let cut = Event::StepCut {
+            step: 1,
+            dt: 1.0,
+            next_dt: 0.5,
+            reason: "no convergence".into(),
+        };
+        let finished = |status: &str| Event::Finished {
+            status: status.into(),
+            wall_s: 1.0,
+        };
+        for live in [false, true] {
+            let lines = |events: &[&Event]| {
+                let mut table = Table::new(1.0, live);
+                let told: Vec<String> = events.iter().flat_map(|e| table.lines(e)).collect();
+                told.join("\n")
+            };
+            let calm = lines(&[&start, &retried, &accepted, &finished("done")]);
+            assert!(!calm.contains("inside out"), "{calm}");
+            assert!(calm.contains("12 iterations more"), "{calm}");
+            // Where iterations are shown, so is where they start anew.
+            assert_eq!(
+                calm.contains("again from a softened penalty"),
+                live,
+                "{calm}"
+            );
+            for end in [&cut, &finished("not_converged")] {
+                let told = lines(&[&start, &retried, end]);
+                assert!(
+                    told.contains("a softened penalty: turned inside out"),
+                    "{told}"
+                );
+            }
+            let stopped = lines(&[&start, &retried, &finished("interrupted")]);
+            assert!(!stopped.contains("inside out"), "{stopped}");
+        }
     }
 }

@@ -4,9 +4,11 @@ mod rows;
 
 use super::cad::{self, Stop};
 use super::{ProjectArgs, exit, report};
+use crate::limits;
 use crate::output::atomic::AtomicFile;
 use crate::output::peak_memory_mb;
 use crate::scene::nearest_file;
+use covact_geometry::project::Joining;
 use covact_geometry::{Foot, PatchSet};
 use points::{Points, PointsError};
 use rayon::prelude::*;
@@ -78,15 +80,29 @@ fn run(args: &ProjectArgs) -> Result<Account, Stop> {
     if args.reach.is_some_and(|r| r.is_nan() || r < 0.0) {
         return Err(Stop("--reach: expected a length >= 0".into(), exit::USAGE));
     }
+    let (threads, capped) = limits::threads(args.threads);
+    if let Some(text) = capped {
+        report::warning(&text);
+    }
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.threads)
+        .num_threads(threads)
         .build()
         .map_err(|e| Stop(format!("cannot start the threads: {e}"), exit::IO))?;
     let file = cad::read(&args.file, args.unit.as_deref())?;
     let entities: Vec<u32> = file.patches.iter().map(|p| p.entity).collect();
     let patches = file.patches.into_iter().map(|p| p.patch).collect();
-    let set = PatchSet::new(patches, None)
+    let joining = Joining {
+        tolerance: None,
+        resolution: file.resolution,
+    };
+    let set = PatchSet::join(patches, joining)
         .map_err(|e| Stop(format!("{}: {e}", file.path), exit::SCENE))?;
+    if let Err(e) = set.two_sided() {
+        report::warning(&format!(
+            "{}: {e}; distances from it carry no sign",
+            file.path
+        ));
+    }
 
     let mut points: Points<Box<dyn io::BufRead>> = Points::new(match args.points.as_os_str() {
         name if name == "-" => Box::new(io::stdin().lock()),

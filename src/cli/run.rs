@@ -23,6 +23,9 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     if let Err(code) = without::check_names(&scene, args) {
         return code;
     }
+    if let Err(code) = without::check_folders(&scene, args) {
+        return code;
+    }
     let interrupt = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&interrupt);
     let handler = super::interrupt::watch(move || {
@@ -51,6 +54,7 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     let options = RunOptions {
         threads: args.threads,
         resume: args.resume,
+        force: args.force,
     };
     let result = run::run(&scene, &args.out, &options, observer.as_mut(), &interrupt);
     // Clears the progress bar before anything else is printed.
@@ -79,8 +83,12 @@ pub(super) fn run(args: &RunArgs) -> u8 {
         );
         report::error(&format!("{status}{reason}; {kept}"));
     } else if !args.quiet && !args.json {
+        let failed = match summary.failed_iterations {
+            0 => String::new(),
+            n => format!(" ({n} of them in attempts that failed)"),
+        };
         report::stderr(&format!(
-            "{status}: {} steps, {} iterations, {:.2} s; results in {}\n",
+            "{status}: {} steps, {} iterations{failed}, {:.2} s; results in {}\n",
             summary.steps,
             summary.newton_iterations,
             summary.wall_s,

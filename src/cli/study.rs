@@ -1,5 +1,6 @@
 //! `covact study`.
 use super::{StudyArgs, exit, report};
+use crate::limits;
 use crate::study::record::{Ending, Record};
 use crate::study::{
     Event, Folder, LoadedStudy, Settings, StudyError, conclude, expand, load, play, running,
@@ -21,7 +22,7 @@ pub(super) fn study(args: &StudyArgs) -> u8 {
 fn run(args: &StudyArgs) -> Result<u8, StudyError> {
     let loaded = load(&args.study)?;
     let expansion = expand(&loaded)?;
-    let folder = Folder::write(&args.out, &loaded.study, &expansion)?;
+    let mut folder = Folder::write(&args.out, &loaded.study, &expansion)?;
     if args.jobs {
         let program = args.program.as_deref().unwrap_or("covact");
         let count = folder.write_jobs(program)?;
@@ -36,6 +37,12 @@ fn run(args: &StudyArgs) -> Result<u8, StudyError> {
     let interrupt = Arc::new(AtomicBool::new(false));
     if !args.collect {
         watch(&interrupt);
+        // Results tell how many threads they took, and are compared with what the study asks for.
+        let (threads, capped) = limits::threads(folder.threads as usize);
+        if let Some(text) = capped {
+            report::warning(&format!("`/timing/threads`: {text}"));
+            folder.threads = threads as u32;
+        }
         let settings = settings(&loaded)?;
         let width = expansion.runs.iter().map(|r| r.id.len()).max().unwrap_or(0);
         play(&folder, &settings, &interrupt, &|event| {

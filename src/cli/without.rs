@@ -3,6 +3,7 @@ use super::{RunArgs, exit, print, report};
 use crate::model::build;
 use crate::model::without::{REMOVABLE, Removable, WithoutError};
 use crate::output::{Compared, Comparison, Cost, RunStatus, Summary, compare};
+use crate::run;
 use crate::scene::{self, LoadedScene};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -49,6 +50,23 @@ pub(super) fn check_names(loaded: &LoadedScene, args: &RunArgs) -> Result<(), u8
     Ok(())
 }
 
+/// Whether every what-if can write to its folder, before anything is run; else an exit code.
+pub(super) fn check_folders(loaded: &LoadedScene, args: &RunArgs) -> Result<(), u8> {
+    for name in names(args) {
+        let out = folder(&args.out, name);
+        if args.force || goes_on(args, &out) {
+            continue;
+        }
+        run::vacant(&out).map_err(|e| report::run_error(&e.into(), loaded, args.json))?;
+    }
+    Ok(())
+}
+
+/// Whether a what-if continues what is in its folder: the full run may have been interrupted before it began.
+fn goes_on(args: &RunArgs, out: &Path) -> bool {
+    args.resume && out.join("history.csv").exists()
+}
+
 /// The effects to turn off by their own names, each once; names of none stay, to be told.
 fn names(args: &RunArgs) -> Vec<&str> {
     let mut out = Vec::new();
@@ -85,7 +103,7 @@ pub(super) fn what_ifs(
         if !args.json && !args.quiet {
             report::stderr(&format!("\nwithout {name}: into {}\n", out.display()));
         }
-        let own = match run(args, name, &out) {
+        let own = match run_without(args, name, &out) {
             Ok(own) => own,
             Err(e) => {
                 report::error(&format!("cannot run the scene without {name}: {e}"));
@@ -115,7 +133,7 @@ pub(super) fn what_ifs(
     code
 }
 
-fn run(args: &RunArgs, name: &str, out: &Path) -> std::io::Result<u8> {
+fn run_without(args: &RunArgs, name: &str, out: &Path) -> std::io::Result<u8> {
     let mut command = Command::new(std::env::current_exe()?);
     command.arg("run").arg(&args.scene).arg("-o").arg(out);
     command.args(["--off", name]);
@@ -123,8 +141,8 @@ fn run(args: &RunArgs, name: &str, out: &Path) -> std::io::Result<u8> {
     for (flag, on) in [
         ("--json", args.json),
         ("--quiet", args.quiet),
-        // The full run may have been interrupted before this one began.
-        ("--resume", args.resume && out.join("history.csv").exists()),
+        ("--resume", goes_on(args, out)),
+        ("--force", args.force),
     ] {
         if on {
             command.arg(flag);

@@ -59,7 +59,7 @@ impl NodalGap {
     /// Traction `lambda_A` and stiffness of the node; zero where it is open.
     pub fn normal<L: NormalLaw>(&self, law: &L) -> Normal {
         match self.gap() {
-            Some(gap) if gap < 0.0 => law.normal(gap),
+            Some(gap) if gap < 0.0 => law.response(gap),
             _ => Normal { n: 0.0, dn: 0.0 },
         }
     }

@@ -7,6 +7,10 @@ pub trait ClosestPoint: Sync {
     /// Closest point to `q` within `reach`; see [`PatchSet::project`].
     fn project(&self, q: &Vec3, hint: Option<Hint>, reach: f64) -> Option<Foot>;
 
+    /// Closest point to `q` within `reach`, which need not be certain where `q` lies outside and farther away than
+    /// `above`; see [`PatchSet::project_above`].
+    fn project_above(&self, q: &Vec3, hint: Option<Hint>, reach: f64, above: f64) -> Option<Foot>;
+
     /// First and second derivative along an edge; see [`PatchSet::edge_derivatives`].
     fn edge_derivatives(&self, patch: u32, edge: u32, xi: [f64; 2]) -> Option<[Vec3; 2]>;
 
@@ -24,6 +28,11 @@ impl<S: Surface> ClosestPoint for PatchSet<S> {
     #[inline]
     fn project(&self, q: &Vec3, hint: Option<Hint>, reach: f64) -> Option<Foot> {
         self.project(q, hint, reach)
+    }
+
+    #[inline]
+    fn project_above(&self, q: &Vec3, hint: Option<Hint>, reach: f64, above: f64) -> Option<Foot> {
+        self.project_above(q, hint, reach, above)
     }
 
     #[inline]

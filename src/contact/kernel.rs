@@ -172,6 +172,12 @@ pub(super) fn main_and_curvature<D: DualNum<f64> + Copy>(
 }
 
 /// A node's place in the slots of a point: slave node `{N_s, 0, 0}`, master node `{-N_k, N_k,1, N_k,2}`.
+///
+/// These are the node's columns of `A`, which gives the relative displacement `dr_s - drho = A du` (7), and of `B_j`, which
+/// gives the change of the tangents `drho_,j = B_j du` (8). `B_j` is not the derivative of `A`: its sign on the master's nodes
+/// is the opposite.
+#[doc(alias = "A")]
+#[doc(alias = "B_j")]
 pub type NodeRow = [f64; 3];
 
 /// 3 x 3 block of a pair of nodes from the point's 9 x 9 tangent: `sum_ab row_a col_b K_ab`.

@@ -5,8 +5,11 @@ use super::kind::LawKind;
 
 /// A law between the normal coordinate `xi3` (negative = penetration) and the normal traction.
 pub trait NormalLaw: Sync {
-    /// Traction at a point in contact.
-    fn normal(&self, xi3: f64) -> Normal;
+    /// Traction of a point in contact at a normal coordinate, and its slope.
+    fn response(&self, xi3: f64) -> Normal;
+
+    /// Energy that the traction stores at a normal coordinate: its integral from where it vanishes (force / length).
+    fn energy(&self, xi3: f64) -> f64;
 
     /// The gap that the law sees at a normal coordinate (length).
     #[inline]
@@ -35,16 +38,25 @@ pub trait NormalLaw: Sync {
     }
 }
 
+/// The law of a contact pair, between the gap and the traction: what wrappers shift and add multipliers to.
+pub trait PairLaw: NormalLaw + Copy + Send + 'static {
+    /// The law of a penalty; a larger penalty is a stiffer law.
+    fn of(penalty: f64) -> Self;
+
+    /// The gap at which the traction is `n`, continued to pulling tractions above the surface (length).
+    fn gap_under(&self, n: f64) -> f64;
+}
+
 /// What the gaps of slave points are measured from: chosen outside the loop over points, nothing where there is none.
 pub trait GapOffset: Sync {
     /// What the law is, for a penalty.
     const KIND: LawKind;
     /// The law of a single point.
-    type Law<L: NormalLaw>: NormalLaw;
+    type Law<L: PairLaw>: NormalLaw;
     /// What the gap of point `index` is measured from (length).
     fn z0(&self, index: usize) -> f64;
     /// The law of point `index` of a pair.
-    fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Self::Law<L>;
+    fn law<L: PairLaw>(&self, index: usize, law: &L) -> Self::Law<L>;
 }
 
 /// Gaps are normal coordinates.
@@ -53,13 +65,13 @@ pub struct NoOffset;
 
 impl GapOffset for NoOffset {
     const KIND: LawKind = LawKind::Penalty;
-    type Law<L: NormalLaw> = L;
+    type Law<L: PairLaw> = L;
     #[inline]
     fn z0(&self, _index: usize) -> f64 {
         0.0
     }
     #[inline]
-    fn law<L: NormalLaw + Copy>(&self, _index: usize, law: &L) -> L {
+    fn law<L: PairLaw>(&self, _index: usize, law: &L) -> L {
         *law
     }
 }
@@ -85,13 +97,13 @@ impl Offsets<'_> {
 
 impl GapOffset for Offsets<'_> {
     const KIND: LawKind = LawKind::Offset;
-    type Law<L: NormalLaw> = Shifted<L>;
+    type Law<L: PairLaw> = Shifted<L>;
     #[inline]
     fn z0(&self, index: usize) -> f64 {
         self.at(index)
     }
     #[inline]
-    fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Shifted<L> {
+    fn law<L: PairLaw>(&self, index: usize, law: &L) -> Shifted<L> {
         Shifted {
             law: *law,
             z0: self.at(index),
@@ -109,8 +121,12 @@ pub struct Shifted<L> {
 
 impl<L: NormalLaw> NormalLaw for Shifted<L> {
     #[inline]
-    fn normal(&self, xi3: f64) -> Normal {
-        self.law.normal(xi3 - self.z0)
+    fn response(&self, xi3: f64) -> Normal {
+        self.law.response(xi3 - self.z0)
+    }
+    #[inline]
+    fn energy(&self, xi3: f64) -> f64 {
+        self.law.energy(xi3 - self.z0)
     }
     #[inline]
     fn gap(&self, xi3: f64) -> f64 {
@@ -126,8 +142,7 @@ impl<L: NormalLaw> NormalLaw for Shifted<L> {
     }
     #[inline]
     fn steady_radius(&self, small: f64) -> f64 {
-        let Normal { n, dn } = self.normal(0.0);
-        (n / dn).abs().min(small)
+        self.response(0.0).extent().min(small)
     }
 }
 
@@ -141,13 +156,13 @@ pub struct Multipliers<'a> {
 
 impl GapOffset for Multipliers<'_> {
     const KIND: LawKind = LawKind::Multipliers;
-    type Law<L: NormalLaw> = Augmented<L>;
+    type Law<L: PairLaw> = Augmented<L>;
     #[inline]
     fn z0(&self, index: usize) -> f64 {
         self.offsets.map_or(0.0, |o| o.at(index))
     }
     #[inline]
-    fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Augmented<L> {
+    fn law<L: PairLaw>(&self, index: usize, law: &L) -> Augmented<L> {
         Augmented {
             law: *law,
             z0: self.offsets.map_or(0.0, |o| o.at(index)),
@@ -169,13 +184,13 @@ pub struct Held<'a> {
 
 impl GapOffset for Held<'_> {
     const KIND: LawKind = LawKind::Held;
-    type Law<L: NormalLaw> = Augmented<L>;
+    type Law<L: PairLaw> = Augmented<L>;
     #[inline]
     fn z0(&self, index: usize) -> f64 {
         self.offsets.map_or(0.0, |o| o.at(index))
     }
     #[inline]
-    fn law<L: NormalLaw + Copy>(&self, index: usize, law: &L) -> Augmented<L> {
+    fn law<L: PairLaw>(&self, index: usize, law: &L) -> Augmented<L> {
         Augmented {
             law: *law,
             z0: self.offsets.map_or(0.0, |o| o.at(index)),
@@ -194,10 +209,36 @@ pub struct Penalty {
 
 impl NormalLaw for Penalty {
     #[inline]
-    fn normal(&self, xi3: f64) -> Normal {
+    fn response(&self, xi3: f64) -> Normal {
         Normal {
             n: self.eps_n * xi3,
             dn: self.eps_n,
+        }
+    }
+    #[inline]
+    fn energy(&self, xi3: f64) -> f64 {
+        0.5 * self.eps_n * xi3 * xi3
+    }
+}
+
+impl PairLaw for Penalty {
+    #[inline]
+    fn of(penalty: f64) -> Self {
+        Penalty { eps_n: penalty }
+    }
+    #[inline]
+    fn gap_under(&self, n: f64) -> f64 {
+        n / self.eps_n
+    }
+}
+
+impl Normal {
+    /// Distance over which the traction would vanish at its slope; nothing where there is no traction (length).
+    #[inline]
+    fn extent(&self) -> f64 {
+        match self.n == 0.0 {
+            true => 0.0,
+            false => (self.n / self.dn).abs(),
         }
     }
 }
@@ -215,14 +256,19 @@ pub struct Augmented<L = Penalty> {
     pub held: bool,
 }
 
-impl<L: NormalLaw> NormalLaw for Augmented<L> {
+impl<L: PairLaw> NormalLaw for Augmented<L> {
     #[inline]
-    fn normal(&self, xi3: f64) -> Normal {
-        let Normal { n, dn } = self.law.normal(xi3 - self.z0);
+    fn response(&self, xi3: f64) -> Normal {
+        let Normal { n, dn } = self.law.response(xi3 - self.z0);
         Normal {
             n: self.lambda_n + n,
             dn,
         }
+    }
+    #[inline]
+    fn energy(&self, xi3: f64) -> f64 {
+        let (gap, free) = (xi3 - self.z0, self.law.gap_under(-self.lambda_n));
+        self.lambda_n * (gap - free) + self.law.energy(gap) - self.law.energy(free)
     }
     #[inline]
     fn gap(&self, xi3: f64) -> f64 {
@@ -230,16 +276,14 @@ impl<L: NormalLaw> NormalLaw for Augmented<L> {
     }
     #[inline]
     fn closes(&self, xi3: f64) -> bool {
-        self.held || self.normal(xi3).n < 0.0
+        self.held || self.response(xi3).n < 0.0
     }
     #[inline]
     fn reach(&self) -> f64 {
-        let Normal { n, dn } = self.law.normal(0.0);
-        self.z0 - (self.lambda_n + n) / dn
+        self.z0 + self.law.gap_under(-self.lambda_n)
     }
     #[inline]
     fn steady_radius(&self, small: f64) -> f64 {
-        let Normal { n, dn } = self.normal(0.0);
-        (n / dn).abs().min(small)
+        self.response(0.0).extent().min(small)
     }
 }

@@ -76,7 +76,7 @@ impl Meeting {
     #[inline]
     pub(super) fn pressed<L: NormalLaw>(&self, law: &L) -> Result<Normal, PointFault> {
         self.check()?;
-        let normal = law.normal(self.xi3);
+        let normal = law.response(self.xi3);
         match self.geometry.directs(&normal) {
             true => Ok(normal),
             false => Err(PointFault::NoDirection {

@@ -112,7 +112,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
                 return;
             }
         };
-        let normal = law.normal(xi3);
+        let normal = law.response(xi3);
         // Turned before the tangent is formed: three vectors are less than a matrix from both sides.
         let frame = Frame {
             rho_i: [self.turned(&frame.rho_i[0]), self.turned(&frame.rho_i[1])],
@@ -129,17 +129,22 @@ impl<P: ClosestPoint> Placed<'_, P> {
         }));
     }
 
-    /// The foot of a point at `local`.
+    /// The foot of a point at `local`. Outside, beyond the reach of the law, it need not be certain: such a point is open.
     #[inline(always)]
     fn search<L: NormalLaw>(&self, local: &Vec3, hint: Option<Hint>, law: &L) -> Option<Foot> {
         let reach = self.master.depth.max(law.reach());
-        self.master.surface.project(local, hint, reach)
+        let above = match law.closes(reach) {
+            true => reach,
+            false => law.reach().max(0.0),
+        };
+        (self.master.surface).project_above(local, hint, reach, above)
     }
 
     /// Whether a foot means contact.
     #[inline(always)]
     fn closes<L: NormalLaw>(&self, foot: &Foot, law: &L) -> Result<bool, PointFault> {
-        // On either side: an uncertain foot must not pass for an open point.
+        // On either side: an uncertain foot must not pass for an open point. Beyond the reach of the law the search says
+        // so only where it has not even proved that.
         if foot.status == Status::NotConverged {
             return Err(PointFault::ProjectionNotConverged {
                 piece: Piece::Patch(foot.patch),
@@ -162,7 +167,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
         tangent: &T,
     ) -> Result<Touch, PointFault> {
         let geometry = self.geometry(local, foot)?;
-        let normal = law.normal(geometry.xi3());
+        let normal = law.response(geometry.xi3());
         let (residual, k) = match self.master.steady(foot, &geometry, law) {
             None => respond_rigid(&geometry, &normal, tangent),
             Some(steady) => respond_steady(&steady, &normal),
@@ -254,5 +259,38 @@ fn beyond(foot: &Foot) -> PointFault {
         piece: Piece::Patch(foot.patch),
         xi: foot.xi,
         xi3: foot.signed_distance,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::law::Penalty;
+    use crate::contact::rigid::Exact;
+    use covact_geometry::PatchSet;
+    use covact_geometry::primitives::torus;
+    use nalgebra::Isometry3;
+
+    #[test]
+    fn points_on_the_axis_of_a_die_are_open() {
+        // The shoulder of a drawing die: a circle of feet for every point of its axis, far within the depth.
+        let die = torus(28.0, 5.0, Vec3::zeros(), Vec3::z()).unwrap();
+        let set = PatchSet::new(vec![die], None).unwrap();
+        let master = RigidMaster {
+            surface: &set,
+            pose: Isometry3::translation(0.3, -0.2, -0.5),
+            depth: 40.0,
+        };
+        let law = Penalty { eps_n: 5.0 };
+        for z in [-8.0, -0.5, 0.0, 0.7, 4.0, 11.0] {
+            let x = Vec3::new(0.3, -0.2, z);
+            let foot = master.foot(&x, None, 40.0).unwrap();
+            assert_eq!(foot.status, Status::NonUnique, "{z}");
+            let mut hint = None;
+            for _ in 0..2 {
+                assert_eq!(master.touch(&x, &mut hint, &law, &Exact), Ok(None), "{z}");
+                assert!(hint.is_some());
+            }
+        }
     }
 }

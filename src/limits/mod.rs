@@ -6,10 +6,13 @@
 //! being large.
 mod estimate;
 mod grid;
+mod packing;
 
+use covact_geometry::memory::address_space_left;
 pub use covact_geometry::memory::{Available, Limit, Size, available};
 pub use estimate::{Estimate, facet_bytes, mesh, slave_points, tessellation};
 pub use grid::Grid;
+pub use packing::packing;
 
 use std::fmt;
 
@@ -55,6 +58,43 @@ pub fn ask(bytes: u64) -> Result<(), Shortage> {
     }
 }
 
+/// Whether so many bytes of the address space can be had, which may never be touched.
+///
+/// # Errors
+/// [`Shortage`] where the process's limit leaves less.
+pub fn ask_address_space(bytes: u64) -> Result<(), Shortage> {
+    match address_space_left() {
+        Some(left) if bytes > left => Err(Shortage {
+            needed: bytes,
+            available: Available {
+                bytes: left,
+                limit: Limit::AddressSpace,
+            },
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Threads that run at once on what this process has of the machine.
+pub fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// `asked` threads, or as many as there are processors where those are fewer, with what is to be told then. 0 stays, and
+/// stands for all of them.
+pub fn threads(asked: usize) -> (usize, Option<String>) {
+    let there = processors();
+    match asked > there {
+        true => {
+            let told = format!(
+                "{asked} threads are asked for, and {there} can run at once here: {there} are used"
+            );
+            (there, Some(told))
+        }
+        false => (asked, None),
+    }
+}
+
 /// Bytes of `count` things of `each`, the largest number where that overflows.
 pub fn times(count: u64, each: u64) -> u64 {
     count.saturating_mul(each)
@@ -63,6 +103,18 @@ pub fn times(count: u64, each: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_more_threads_than_processors() {
+        let there = processors();
+        assert_eq!(threads(0), (0, None));
+        assert_eq!(threads(there), (there, None));
+        let (used, told) = threads(there + 5);
+        assert_eq!(used, there);
+        assert!(
+            told.is_some_and(|t| t.starts_with(&format!("{} threads are asked for", there + 5)))
+        );
+    }
 
     #[test]
     fn what_no_machine_has_is_refused() {

@@ -1,6 +1,7 @@
 //! Scene to model.
 mod contacts;
 mod facets;
+mod fibres;
 mod master_faces;
 mod seams;
 mod supports;
@@ -19,7 +20,7 @@ use crate::limits;
 use crate::mesh::{self, Face, Mesh};
 use crate::scene::{
     self, InitialOverclosure, LoadedScene, MeshSource, POSITION_AND_TIME, Scene, Stabilization,
-    TIME, TimeFunction, Value,
+    TIME, Value,
 };
 use crate::shell::{Block, Law, bytes_per_element};
 use covact_geometry::{PatchSet, Vec3};
@@ -56,6 +57,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     let (pairs, mut surfaces) = builder.contacts()?;
     let held = builder.drive(&mut surfaces)?;
     let supports = builder.supports(&held)?;
+    builder.held_fibres()?;
     let (dead_loads, follower_loads) = builder.loads()?;
     let mut model = Model {
         title: scene.title.clone(),
@@ -187,18 +189,8 @@ fn kinks(scene: &Scene, model: &Model) -> Vec<f64> {
         InitialOverclosure::Shrink { until } => Some(until),
         _ => None,
     });
-    let mut times: Vec<f64> = (model.surfaces.iter().flat_map(|s| s.motion.functions()))
-        .chain(model.dead_loads.iter().flat_map(|(_, l)| l.functions()))
-        .chain(model.follower_loads.iter().map(|(_, l)| &l.value))
-        .chain(model.prescribed.iter().filter_map(|p| p.value.as_ref()))
-        .chain(model.means.iter().filter_map(|p| p.mean.as_ref()))
-        .chain((model.pairs.iter().filter_map(|p| p.friction.as_ref())).flat_map(|f| f.functions()))
-        .chain(
-            model
-                .driven()
-                .flat_map(|(_, _, d)| d.loads.iter().flatten()),
-        )
-        .flat_map(TimeFunction::breakpoints)
+    let mut times: Vec<f64> = (model.functions())
+        .flat_map(|(f, _)| f.breakpoints())
         .chain(shrunk)
         .chain(match scene.solution.stabilization {
             Stabilization::Viscous { until, .. } => until,

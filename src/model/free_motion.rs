@@ -1,7 +1,7 @@
 //! Can a body move without being strained? Six rigid motions against its supports.
 use super::Model;
 use covact_geometry::Vec3;
-use nalgebra::{Matrix6, SymmetricEigen, Vector6};
+use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 
 /// A rigid motion that no support hinders.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +13,37 @@ pub struct FreeMotion {
     pub motion: String,
     /// Nodes of the piece that moves, in the model.
     pub nodes: Vec<u32>,
+}
+
+impl FreeMotion {
+    /// Part of the increments `du` (3 per node of the model) of its nodes, at these positions, that is one rigid motion: the
+    /// sum of its squares over that of all, zero where nothing moves.
+    pub fn rigid_share(&self, position: impl Fn(u32) -> Vec3, du: &[f64]) -> f64 {
+        let moved = |n: u32| Vec3::from_column_slice(&du[3 * n as usize..3 * n as usize + 3]);
+        let nodes = || self.nodes.iter().copied();
+        let count = self.nodes.len() as f64;
+        let center = nodes().map(&position).sum::<Vec3>() / count;
+        let shift = nodes().map(moved).sum::<Vec3>() / count;
+        // The rotation nearest to the increments in the mean.
+        let (mut inertia, mut momentum) = (Matrix3::zeros(), Vec3::zeros());
+        for n in nodes() {
+            let r = position(n) - center;
+            inertia += Matrix3::identity() * r.norm_squared() - r * r.transpose();
+            momentum += r.cross(&moved(n));
+        }
+        let spin = inertia
+            .try_inverse()
+            .map_or_else(Vec3::zeros, |i| i * momentum);
+        let (mut rigid, mut all) = (0.0, 0.0);
+        for n in nodes() {
+            rigid += (shift + spin.cross(&(position(n) - center))).norm_squared();
+            all += moved(n).norm_squared();
+        }
+        match all > 0.0 {
+            true => rigid / all,
+            false => 0.0,
+        }
+    }
 }
 
 /// Checks every connected piece of every body.
@@ -135,5 +166,33 @@ fn describe(share: &[f64; 6], count: usize) -> String {
         Some((last, [])) => last.clone(),
         Some((last, before)) => format!("{} and {last}", before.join(", ")),
         None => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A shift and a turn are one rigid motion; a stretch is none.
+    #[test]
+    fn a_rigid_motion_is_told_from_a_deformation() {
+        let motion = FreeMotion {
+            body: String::new(),
+            count: 6,
+            motion: String::new(),
+            nodes: (0..8).collect(),
+        };
+        let at = |n: u32| Vec3::from_fn(|c, _| f64::from(n >> c & 1) + 3.0);
+        let share = |field: &dyn Fn(Vec3) -> Vec3| {
+            let du: Vec<f64> = (0..8).flat_map(|n| field(at(n)).data.0[0]).collect();
+            motion.rigid_share(at, &du)
+        };
+        let spin = Vec3::new(0.3, -0.2, 0.9);
+        let rigid = share(&|x| Vec3::new(5.0, 1.0, -2.0) + spin.cross(&x));
+        assert!((rigid - 1.0).abs() < 1e-12, "{rigid}");
+        let middle = Vec3::repeat(3.5);
+        let stretched = share(&|x| (x - middle).component_mul(&Vec3::new(2.0, -1.0, 0.5)));
+        assert!(stretched < 1e-24, "{stretched}");
+        assert_eq!(share(&|_| Vec3::zeros()), 0.0);
     }
 }

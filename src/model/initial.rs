@@ -3,7 +3,8 @@ use super::error::{number, text};
 use super::friction::LawNow;
 use super::master::{Master, Masters};
 use super::overclosure::{Deepest, treat};
-use super::{Model, ModelError, PairModel, SurfaceModel};
+use super::sharp::SharpEdges;
+use super::{Model, ModelError, PairModel, SurfaceModel, sagitta, sharp};
 use crate::contact::points::SlavePoint;
 use crate::scene::{InitialOverclosure, Scene};
 use covact_geometry::Vec3;
@@ -233,6 +234,10 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
             warnings.extend(too_coarse(model, index, &model.surfaces[number]));
             warnings.extend(too_hollow(pair, &model.surfaces[number]));
             warnings.extend(without_direction(model, index, &model.surfaces[number]));
+            if let Some(edges) = SharpEdges::of(&model.surfaces[number]) {
+                let name = &model.surfaces[number].name;
+                notes.push(edges.note(&pair.name, name, sharp::spacing(model, pair)));
+            }
         }
         if gap.smallest < -1e-9 * pair.element_size {
             let choice = (scene.contacts.get(&pair.name))
@@ -241,6 +246,9 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
                 gap: gap.smallest,
                 at: gap.place,
             };
+            if choice.is_resolved() {
+                warnings.extend(sagitta::beside(model, index, &overclosures));
+            }
             let told = treat(model, index, choice, overclosures, deepest)?;
             match choice {
                 InitialOverclosure::Strain => warnings.push(told),

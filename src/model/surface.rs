@@ -65,6 +65,10 @@ impl ClosestPoint for SurfaceSet {
         with_patches!(self, s => s.project(q, hint, reach))
     }
 
+    fn project_above(&self, q: &Vec3, hint: Option<Hint>, reach: f64, above: f64) -> Option<Foot> {
+        with_patches!(self, s => s.project_above(q, hint, reach, above))
+    }
+
     fn edge_derivatives(&self, patch: u32, edge: u32, xi: [f64; 2]) -> Option<[Vec3; 2]> {
         with_patches!(self, s => s.edge_derivatives(patch, edge, xi))
     }

@@ -1,6 +1,7 @@
 //! Which effects make the tangent unsymmetric. Decided once, before anything is solved.
 use super::Model;
 use super::friction::LawModel;
+use super::plan::EffectKind;
 use crate::assembly::Dof;
 use crate::mesh::FaceNodes;
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,8 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// An effect that makes the tangent unsymmetric.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unsymmetric {
-    /// Its name in plans.
-    pub effect: &'static str,
+    pub effect: EffectKind,
     /// The contact or load that has it.
     pub of: String,
     /// Why, in a sentence.
@@ -31,7 +31,7 @@ pub fn unsymmetric_effects(model: &Model) -> Vec<Unsymmetric> {
     let halves = (model.pairs.iter())
         .filter(|p| p.half.is_some_and(|h| !h.back))
         .map(|p| Unsymmetric {
-            effect: "contact.passes.two_half",
+            effect: EffectKind::TwoHalfPasses,
             of: p.name.clone(),
             why: format!(
                 "contact `{}` is made of two half passes, in each of which the traction acts on the slave alone",
@@ -41,7 +41,7 @@ pub fn unsymmetric_effects(model: &Model) -> Vec<Unsymmetric> {
     let follower = (model.follower_loads.iter())
         .filter(|(_, load)| border(&load.faces).any(|edge| !quiet(model, &still, edge)))
         .map(|(name, _)| Unsymmetric {
-            effect: "load.follower_pressure",
+            effect: EffectKind::FollowerPressure,
             of: name.clone(),
             why: format!(
                 "the follower pressure `{name}` acts on faces whose border is free to move"
@@ -49,17 +49,20 @@ pub fn unsymmetric_effects(model: &Model) -> Vec<Unsymmetric> {
         });
     // The second of two half passes has the friction of the first.
     let friction = (model.pairs.iter())
-        .filter(|p| p.friction.is_some() && !p.half.is_some_and(|h| h.back))
-        .map(|p| Unsymmetric {
-            effect: match p.friction.as_ref().map(|f| &f.law) {
-                Some(LawModel::Orthotropic { .. }) => "contact.friction.orthotropic",
-                _ => "contact.friction.coulomb",
-            },
-            of: p.name.clone(),
-            why: format!(
-                "the friction of contact `{}` depends on its pressure",
-                p.name
-            ),
+        .filter(|p| !p.half.is_some_and(|h| h.back))
+        .filter_map(|p| {
+            let effect = match p.friction.as_ref()?.law {
+                LawModel::Coulomb { .. } => EffectKind::Coulomb,
+                LawModel::Orthotropic { .. } => EffectKind::Orthotropic,
+            };
+            Some(Unsymmetric {
+                effect,
+                of: p.name.clone(),
+                why: format!(
+                    "the friction of contact `{}` depends on its pressure",
+                    p.name
+                ),
+            })
         });
     follower.chain(halves).chain(friction).collect()
 }

@@ -30,6 +30,11 @@ pub const COLUMNS: &[ColumnDoc] = &[
         "Newton iterations of the accepted attempt",
     ),
     doc(
+        "iterations.failed",
+        "-",
+        "Newton iterations of the step's attempts that failed before: other starts, and longer steps that were cut",
+    ),
+    doc(
         "cuts",
         "-",
         "attempts of this step that failed and were rolled back",

@@ -1,6 +1,6 @@
 //! The history table: a line of numbers per accepted step.
 use super::OutputError;
-use super::atomic::{Sink, write_fully, write_whole};
+use super::atomic::{Replaceable, replaceable, sync, write_soon};
 use super::columns::documented;
 use super::sum::Sum;
 use std::collections::HashMap;
@@ -47,7 +47,7 @@ impl History {
             .collect::<Vec<_>>()
             .join(",");
         line.push('\n');
-        write_whole(path, line.as_bytes())?;
+        write_soon(path, line.as_bytes())?;
         let file = OpenOptions::new()
             .append(true)
             .open(path)
@@ -77,6 +77,10 @@ impl History {
     ) -> Result<Option<Self>, OutputError> {
         let index = places(&columns)?;
         let failed = |action, e| OutputError::io(action, path, e);
+        // A run leaves no links; what one points to is not ours to write to.
+        if replaceable(path)? == Replaceable::Link {
+            return Ok(None);
+        }
         let mut options = OpenOptions::new();
         let mut file = match options.read(true).append(true).open(path) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -128,8 +132,16 @@ impl History {
         self.index.get(name).copied()
     }
 
-    /// Appends a row, one number per column (NaN where there is none), and waits until it is on the disk. When that
-    /// fails, what was written of the line is taken back.
+    /// Brings all rows to the disk.
+    ///
+    /// # Errors
+    /// The operating system's.
+    pub fn sync(&self) -> Result<(), OutputError> {
+        (sync(&self.file)).map_err(|e| OutputError::io("write", &self.path, e))
+    }
+
+    /// Appends a row, one number per column (NaN where there is none). The row outlives the process, but not a crash of the
+    /// machine before [`History::sync`]. On failure, what was written of the line is taken back.
     pub fn push(&mut self, row: &[f64]) -> Result<(), OutputError> {
         if row.len() != self.columns.len() {
             return Err(OutputError::RowLength {
@@ -191,7 +203,7 @@ fn places(columns: &[String]) -> Result<HashMap<String, usize>, OutputError> {
 }
 
 /// A sink whose end can be taken back.
-pub(crate) trait Truncate: Sink {
+pub(crate) trait Truncate: io::Write {
     fn truncate(&mut self, length: u64) -> io::Result<()>;
 }
 
@@ -203,7 +215,7 @@ impl Truncate for File {
 
 /// Appends all of `line` or nothing: on failure the sink is cut to its `length` before.
 pub(crate) fn append<S: Truncate>(sink: &mut S, line: &[u8], length: u64) -> io::Result<()> {
-    write_fully(sink, line).inspect_err(|_| {
+    (sink.write_all(line).and_then(|()| sink.flush())).inspect_err(|_| {
         // The first error is the one to report.
         let _ = sink.truncate(length);
     })
@@ -338,12 +350,6 @@ mod tests {
             Ok(n)
         }
         fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
-    }
-
-    impl Sink for Full {
-        fn sync(&mut self) -> io::Result<()> {
             Ok(())
         }
     }

@@ -12,6 +12,7 @@
 //! deforms them. A rigid surface is written where it is. ParaView draws curved cells as flat ones unless "Nonlinear
 //! Subdivision Level" is raised.
 
+mod accuracy;
 pub mod atomic;
 mod bezier;
 mod body;
@@ -20,6 +21,7 @@ mod columns;
 mod compare;
 mod error;
 mod history;
+mod lock;
 mod measure;
 mod planned;
 mod results;
@@ -29,6 +31,7 @@ mod surface;
 mod trimmed;
 mod vtu;
 
+pub use accuracy::{Accuracy, ContactAccuracy};
 pub use bezier::{BezierError, MAX_DEGREE, SurfacePiece};
 pub(crate) use body::vtk_cell;
 pub use body::{
@@ -39,8 +42,10 @@ pub use columns::{COLUMNS, ColumnDoc, column_table, documented};
 pub use compare::{Compared, Comparison, Cost, compare};
 pub use error::OutputError;
 pub use history::{History, HistoryMark, Table, read_csv};
+pub use lock::{FolderLock, Holder, LOCK_FILE, Locking};
 pub use measure::{Phases, cpu_seconds, peak_memory_mb};
 pub use planned::{EffectSummary, PairSummary, PlanSummary};
+pub(crate) use results::{COLLECTIONS, listed};
 pub use results::{PartNames, Results, SurfaceState, file_stem};
 pub use summary::{RunStatus, SUMMARY_FORMAT, Summary, Versions};
 pub use surface::SurfaceOutput;

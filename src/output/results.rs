@@ -1,5 +1,5 @@
 //! A folder of results: one `.vtu` per part and step, listed with their times in `.pvd` collections.
-use super::atomic::{make_folder, remove_file, write_whole};
+use super::atomic::{make_folder, remove_file, sync_files, write_soon};
 use super::vtu::escape;
 use super::{BodyFields, OutputError, PointCloud, SurfaceOutput};
 use nalgebra::Isometry3;
@@ -25,6 +25,10 @@ pub struct Results {
     tessellated: Vec<Entry>,
     /// Steps that were written, with their times.
     written: Vec<(u32, f64)>,
+    /// Field files that may not be on the disk yet.
+    unsynced: Vec<PathBuf>,
+    /// Whether that holds of the collections.
+    listed: bool,
 }
 
 /// Names of the parts of a run, in the order they are written.
@@ -49,7 +53,7 @@ impl Results {
     /// does not pass for this one's.
     pub fn create(folder: &Path) -> Result<Self, OutputError> {
         make_folder(folder)?;
-        let results = Results::empty(folder);
+        let mut results = Results::empty(folder);
         results.write_collections(&[], &[])?;
         Ok(results)
     }
@@ -68,7 +72,8 @@ impl Results {
                 results.tessellated.push(tessellated);
             }
         }
-        results.write_collections(&results.exact, &results.tessellated)?;
+        let (exact, tessellated) = (results.exact.clone(), results.tessellated.clone());
+        results.write_collections(&exact, &tessellated)?;
         results.written = written;
         Ok(results)
     }
@@ -80,7 +85,25 @@ impl Results {
             exact: Vec::new(),
             tessellated: Vec::new(),
             written: Vec::new(),
+            unsynced: Vec::new(),
+            listed: true,
         }
+    }
+
+    /// Brings every file written so far to the disk, and the folder that names them.
+    ///
+    /// # Errors
+    /// The operating system's; the next call tries again.
+    pub fn sync(&mut self) -> Result<(), OutputError> {
+        if self.unsynced.is_empty() && self.listed {
+            return Ok(());
+        }
+        let listings = COLLECTIONS.map(|name| self.folder.join(name));
+        self.unsynced.extend(listings);
+        sync_files(&self.folder, &self.unsynced)?;
+        self.unsynced.clear();
+        self.listed = true;
+        Ok(())
     }
 
     /// Steps that were written, with their times.
@@ -98,7 +121,7 @@ impl Results {
 
     /// Writes every part at an accepted step, then the collections. The part numbers and file names are those of the
     /// first call that brought the part, so parts may come and go. When a file cannot be written, the collections stay
-    /// as they were.
+    /// as they were. Files are whole at once, and on the disk after [`Results::sync`].
     pub fn write(
         &mut self,
         step: u32,
@@ -113,14 +136,19 @@ impl Results {
             .collect();
         let entries = self.entries(step, time, &parts);
         let mut next = entries.iter();
+        let (folder, unsynced) = (&self.folder, &mut self.unsynced);
+        let mut put_one = |file: &str, bytes: &[u8]| -> Result<(), OutputError> {
+            let path = folder.join(file);
+            write_soon(&path, bytes)?;
+            unsynced.push(path);
+            Ok(())
+        };
         let mut put = |bytes: Vec<u8>, tessellated: Option<Vec<u8>>| {
             let Some([exact, other]) = next.next() else {
                 return Ok(());
             };
-            write_whole(&self.folder.join(&exact.file), &bytes)?;
-            tessellated.map_or(Ok(()), |bytes| {
-                write_whole(&self.folder.join(&other.file), &bytes)
-            })
+            put_one(&exact.file, &bytes)?;
+            tessellated.map_or(Ok(()), |bytes| put_one(&other.file, &bytes))
         };
         for (body, [entry, _]) in bodies.iter().zip(&entries) {
             put(body.to_vtu(entry.part as u32)?, None)?;
@@ -167,19 +195,55 @@ impl Results {
             .collect()
     }
 
-    fn write_collections(&self, exact: &[Entry], tessellated: &[Entry]) -> Result<(), OutputError> {
-        write_whole(
-            &self.folder.join("results.pvd"),
-            collection(exact).as_bytes(),
-        )?;
-        write_whole(
-            &self.folder.join("results_tessellated.pvd"),
-            collection(tessellated).as_bytes(),
-        )
+    fn write_collections(
+        &mut self,
+        exact: &[Entry],
+        tessellated: &[Entry],
+    ) -> Result<(), OutputError> {
+        self.listed = false;
+        for (name, entries) in COLLECTIONS.iter().zip([exact, tessellated]) {
+            write_soon(&self.folder.join(name), collection(entries).as_bytes())?;
+        }
+        Ok(())
     }
 }
 
+/// The collections: of exact surfaces, and of tessellated ones.
+pub(crate) const COLLECTIONS: [&str; 2] = ["results.pvd", "results_tessellated.pvd"];
+/// First lines of a collection.
+const HEAD: &str = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n\
+     <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n";
+/// Its last ones.
+const FOOT: &str = "  </Collection>\n</VTKFile>\n";
+
+/// File names that a collection of this program lists; none where the text is not one.
+pub(crate) fn listed(text: &str) -> Option<BTreeSet<String>> {
+    let entries = text.strip_prefix(HEAD)?.strip_suffix(FOOT)?;
+    let file = |line: &str| {
+        let name = line.strip_prefix("    <DataSet timestep=\"")?;
+        let name = name.strip_suffix("\"/>")?.rsplit_once(" file=\"")?.1;
+        // Names are those of files in the same folder.
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+        (name.ends_with(".vtu") && name.chars().all(plain)).then(|| name.to_owned())
+    };
+    entries.lines().map(file).collect()
+}
+
 impl PartNames {
+    /// What the names of their files begin with, up to the number of the step.
+    pub(crate) fn stems(&self) -> BTreeSet<String> {
+        let mut stems = Stems::default();
+        for (kind, name) in self.listed() {
+            stems.part(kind, name);
+        }
+        let surfaces = stems.of.iter().filter(|part| part.kind == Kind::Surface);
+        let tessellated: Vec<String> =
+            (surfaces.map(|part| format!("{}_tessellated", part.stem))).collect();
+        (stems.of.into_iter().map(|part| part.stem))
+            .chain(tessellated)
+            .collect()
+    }
+
     fn listed(&self) -> Vec<(Kind, &str)> {
         (self.bodies.iter().map(|n| (Kind::Body, n.as_str())))
             .chain(self.surfaces.iter().map(|n| (Kind::Surface, n.as_str())))
@@ -190,10 +254,7 @@ impl PartNames {
 
 /// ParaView's collection format; file names are relative to it.
 fn collection(entries: &[Entry]) -> String {
-    let mut text = String::from(
-        "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n\
-         <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n",
-    );
+    let mut text = String::from(HEAD);
     for e in entries {
         // Writing to a String does not fail.
         let _ = writeln!(
@@ -205,7 +266,7 @@ fn collection(entries: &[Entry]) -> String {
             e.file
         );
     }
-    text.push_str("  </Collection>\n</VTKFile>\n");
+    text.push_str(FOOT);
     text
 }
 

@@ -1,7 +1,7 @@
 //! How a run went and what it cost.
-use super::OutputError;
 use super::atomic::write_whole;
 use super::planned::PlanSummary;
+use super::{Accuracy, OutputError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -63,6 +63,9 @@ pub struct Summary {
     pub contact_points: usize,
     /// Iterations of all steps, of failed attempts too.
     pub newton_iterations: u64,
+    /// Those of them that failed attempts took.
+    #[serde(default)]
+    pub failed_iterations: u64,
     /// Factorizations by method, `llt`, `ldlt` or `lu`, of failed attempts too.
     #[serde(default)]
     pub factorizations: BTreeMap<String, u64>,
@@ -84,6 +87,9 @@ pub struct Summary {
     pub plan: Option<PlanSummary>,
     /// What the user should know, in words.
     pub warnings: Vec<String>,
+    /// What was found about the accuracy of contact forces.
+    #[serde(default)]
+    pub accuracy: Accuracy,
     /// Times that the run was continued after an interruption. Seconds and phases are then those of all parts, each up to
     /// the step that the next one went on from.
     #[serde(default)]

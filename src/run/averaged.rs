@@ -1,6 +1,6 @@
 //! Nodes of a pair with averaged gaps, as the output shows them.
 use crate::contact::averaged::NodalGap;
-use crate::contact::law::Penalty;
+use crate::contact::law::NormalLaw;
 use crate::model::averaged::{Share, SlaveNodes};
 use crate::model::master::MasterNow;
 use crate::model::state::State;
@@ -36,11 +36,11 @@ struct Sums {
 /// and `front` becomes whether each is in front of the master or in contact. Also says how many of them are no longer,
 /// but lie below it and deeper than its depth.
 #[allow(clippy::too_many_arguments)]
-pub(super) fn nodes_now(
+pub(super) fn nodes_now<L: NormalLaw>(
     model: &Model,
     pair: &PairModel,
     nodes: &SlaveNodes,
-    eps_n: f64,
+    law: &L,
     master: &MasterNow,
     state: &State,
     first: usize,
@@ -75,10 +75,9 @@ pub(super) fn nodes_now(
             }
         }
     }
-    let law = Penalty { eps_n };
     let now = nodes.nodes().iter().zip(&sums).map(|(&node, s)| {
         let closed = s.gap.gap().filter(|g| *g < 0.0);
-        let n = s.gap.normal(&law).n;
+        let n = s.gap.normal(law).n;
         NodeNow {
             node: node as usize,
             closed: closed.is_some(),

@@ -30,6 +30,8 @@ pub struct CheckReport {
     pub loads: Vec<LoadReport>,
     /// Effects that are on, by name.
     pub effects: Vec<String>,
+    /// Details of them that are on, by name.
+    pub details: Vec<String>,
     /// Choices the program made, in words.
     pub notes: Vec<String>,
     pub warnings: Vec<String>,
@@ -198,6 +200,7 @@ pub fn check(scene: &LoadedScene) -> Result<CheckReport, RunError> {
         supports: supports(scene, &model),
         loads: loads(scene),
         effects: model.effects.clone(),
+        details: model.plan.details(),
         notes: model.notes.clone(),
         warnings,
     })

@@ -5,7 +5,7 @@ use crate::assembly::{Assembler, Fault, PointAnswer};
 use crate::contact::friction::history::{PointHistory, PointStatus, Turn};
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::Friction;
-use crate::contact::law::Offsets;
+use crate::contact::law::{Offsets, PairLaw, Penalty};
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::RigidMaster;
 use crate::model::master::{Master, Masters};
@@ -74,7 +74,7 @@ pub fn start(model: &Model, masters: &mut Masters, state: &mut State) -> Result<
             continue;
         };
         let Master::Rigid(surface) = &pair.master else {
-            let batch = moving::Batch::new(model, masters, index, &state.u, 0.0, 0.0);
+            let batch = moving::Batch::new(model, masters, index, &state.u, 0.0, Penalty::of(0.0));
             if let Some(batch) = batch {
                 batch.start(&state.points[points], &mut state.histories[range]);
             }
@@ -115,9 +115,9 @@ fn release(
 ///
 /// # Errors
 /// A point that cannot be evaluated, or a motion or a coefficient without a value at `time`.
-pub fn commit(
+pub fn commit<L: PairLaw>(
     model: &Model,
-    assembler: &mut Assembler,
+    assembler: &mut Assembler<L>,
     state: &mut State,
     (before, start): (&[f64], f64),
     time: f64,
@@ -142,8 +142,8 @@ pub fn commit(
         };
         let (was, now) = (friction.law.at(start)?, friction.law.at(time)?);
         let limited = |trial: &Vec3, normal: &Vec3, pressure: f64| with_law!(was, law => law.slip(trial, normal, pressure).t);
-        let eps_n = penalties[index];
-        let eps_t = friction.ratio * eps_n;
+        let law_n = L::of(penalties[index]);
+        let eps_t = friction.ratio * penalties[index];
         // What the tangential penalties carry beside the multipliers.
         let elastic = pair.augmentation.map(|_| &answers[range.clone()]);
         let (hints, histories) = (&state.points[points], &mut state.histories[range]);
@@ -160,7 +160,7 @@ pub fn commit(
                     master,
                     u: &state.u,
                     offsets: pair.offsets(time),
-                    eps_n,
+                    law: law_n,
                 };
                 with_law!(now, law => {
                     let friction = Friction { law, eps_t };
@@ -172,7 +172,7 @@ pub fn commit(
                 });
             }
             Master::Body(_) => {
-                let batch = moving::Batch::new(model, masters, index, &state.u, time, eps_n);
+                let batch = moving::Batch::new(model, masters, index, &state.u, time, law_n);
                 if let Some(batch) = batch {
                     batch.commit(hints, histories, (now, eps_t), &limited)?;
                 }
@@ -199,17 +199,17 @@ fn press(answers: &[Option<PointAnswer>], histories: &mut [PointHistory]) {
 }
 
 /// The points of a pair with a rigid master at an accepted state.
-struct Batch<'a> {
+struct Batch<'a, L> {
     model: &'a Model,
     pair: &'a PairModel,
     master: RigidMaster<'a, SurfaceSet>,
     turn: Turn,
     u: &'a [f64],
     offsets: Option<Offsets<'a>>,
-    eps_n: f64,
+    law: L,
 }
 
-impl Batch<'_> {
+impl<L: PairLaw> Batch<'_, L> {
     /// `limited` is the traction that the law allowed at the start of the step, for a trial traction, a normal and a
     /// pressure.
     fn accept<F: FrictionLaw>(
@@ -222,7 +222,7 @@ impl Batch<'_> {
     ) -> Result<(), Fault> {
         let x = (self.model).point_position(&self.pair.points[i], self.u);
         let z0 = self.offsets.map_or(0.0, |o| o.at(i));
-        let law = history.law(self.eps_n, z0);
+        let law = history.law(self.law, z0);
         let touch = (self.master)
             .touch_with_friction(&x, &mut hint, &law, friction, history)
             .map_err(|fault| Fault::contact(self.pair, i, &x, fault))?;
@@ -242,7 +242,7 @@ impl Batch<'_> {
                 let local = (pose.inverse_transform_point(&Point3::from(x))).coords;
                 let foot = self.master.foot(&x, hint, f64::INFINITY);
                 let foot = foot.map(|f| (f.signed_distance - z0, f.normal));
-                history.leave(&local, foot, self.eps_n, friction.eps_t, &self.turn);
+                history.leave(&local, foot, &self.law, friction.eps_t, &self.turn);
             }
         }
         Ok(())

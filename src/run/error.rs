@@ -1,11 +1,13 @@
 //! Why a run could not be done.
 use super::checkpoint::CheckpointError;
+use super::claim::{ClaimError, FolderError};
 use crate::model::ModelError;
 use crate::output::OutputError;
 use crate::scene::{LoadedScene, Place, ValueError};
 
 /// An error with the process's exit code: 3 where the scene or a file it names is wrong (or not the one that is to be
-/// continued), 5 where a result cannot be written or a checkpoint not be used, 1 where the program is.
+/// continued), 2 where the folder of the results is not to be written to, 5 where a result cannot be written or a checkpoint
+/// not be used, 1 where the program is.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The scene, or a file it names, is wrong.
@@ -21,6 +23,9 @@ pub enum RunError {
     },
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// The folder of the results is in use, or holds what nobody asked to replace.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
     /// A run cannot be continued.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
@@ -56,6 +61,7 @@ impl RunError {
     pub fn exit_code(&self) -> u8 {
         match self {
             RunError::Scene { .. } => 3,
+            RunError::Folder(_) => 2,
             RunError::Checkpoint(e) if e.is_scene() => 3,
             RunError::Output(_) | RunError::Checkpoint(_) => 5,
             RunError::Internal(_) => 1,
@@ -67,6 +73,15 @@ impl RunError {
         match self {
             RunError::Scene { place, .. } => *place,
             _ => None,
+        }
+    }
+}
+
+impl From<ClaimError> for RunError {
+    fn from(e: ClaimError) -> Self {
+        match e {
+            ClaimError::Folder(e) => e.into(),
+            ClaimError::Output(e) => e.into(),
         }
     }
 }

@@ -1,10 +1,12 @@
 //! Fields of an accepted state, gathered on nodes for the output.
 use super::RunError;
 use super::averaged::{NodeNow, nodes_now};
+use super::bearing::{Bearings, Carrier, Place};
 use super::friction_fields::{self, FrictionFields};
 use super::pieces::pieces;
 use crate::contact::friction::history::PointStatus;
-use crate::model::master::Masters;
+use crate::contact::law::PairLaw;
+use crate::model::master::{MasterNow, Masters};
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::output::{
@@ -44,6 +46,8 @@ pub struct Fields {
     /// Per pair whose overclosure shrinks, or is resolved by the first step and in its row only: sum of normal traction,
     /// overclosure at the start and area (energy).
     pub pressed: Vec<f64>,
+    /// What the points in contact carry.
+    pub bearings: Bearings,
     /// Gaps at the start where they are negative, between the first two times of gathering; empty where none are.
     start: Vec<f64>,
     gathered: bool,
@@ -87,6 +91,7 @@ impl Fields {
             largest_pressure: 0.0,
             area: 0.0,
             pressed: vec![0.0; model.pairs.len()],
+            bearings: Bearings::new(model),
             start: Vec::new(),
             gathered: false,
         })
@@ -113,7 +118,7 @@ impl Fields {
     /// shape functions and areas, `p_I = sum w N_I p / sum w N_I`. With points at nodes that is the point's own
     /// pressure; as the areas are the modelled ones, it is right on symmetry planes too. Where gaps are averaged, they and
     /// the pressures are the nodes' own. Points with history have the pressure and the status that was solved for.
-    pub fn gather(
+    pub fn gather<L: PairLaw>(
         &mut self,
         model: &Model,
         penalties: &[f64],
@@ -132,6 +137,7 @@ impl Fields {
         self.area = 0.0;
         self.sunk.fill(0);
         self.pressed.fill(0.0);
+        self.bearings.clear();
         let start = std::mem::take(&mut self.start);
         self.friction.clear();
         // Of a run that is continued, the segments may be other ones than the model's.
@@ -140,14 +146,15 @@ impl Fields {
             self.gaps.resize(state.points.len(), f64::NAN);
         }
         let mut first = 0;
-        for (index, (pair, eps_n)) in model.pairs.iter().zip(penalties).enumerate() {
+        for (index, (pair, penalty)) in model.pairs.iter().zip(penalties).enumerate() {
+            let law = L::of(*penalty);
             let master = masters.at(model, index, &state.u, time)?;
             let points = state.slaves(model, index);
             let states = &state.points[first..first + points.len()];
             let fronts = &mut self.front[first..first + points.len()];
             if let Some(nodes) = &pair.averaged {
                 let (now, sunk) = nodes_now(
-                    model, pair, nodes, *eps_n, &master, state, first, time, fronts, &start,
+                    model, pair, nodes, &law, &master, state, first, time, fronts, &start,
                 );
                 self.sunk[index] += sunk;
                 self.pressed[index] = now.iter().map(|n| n.pressed).sum();
@@ -162,6 +169,16 @@ impl Fields {
                     }
                 }
                 now.iter().for_each(|n| self.take(n));
+                for n in now.iter().filter(|n| n.closed) {
+                    let carrier = Carrier {
+                        pressure: n.pressure,
+                        gap: n.gap,
+                        area: n.area,
+                        share: pair.share(),
+                        place: None,
+                    };
+                    self.bearings.add(index, &carrier);
+                }
                 first += points.len();
                 continue;
             }
@@ -174,16 +191,31 @@ impl Fields {
                 Some(small) => Some((&small.pairs[index], model.small_motion(pair, time)?)),
                 None => None,
             };
+            let pose = match (&master, &small) {
+                (MasterNow::Rigid(_), Some(_)) => pair
+                    .rigid_master()
+                    .map(|s| model.surfaces[s].pose(0.0, &state.u)),
+                (MasterNow::Rigid(master), None) => Some(Ok(master.pose)),
+                (MasterNow::Body { .. }, _) => None,
+            };
+            let pose = pose.transpose()?;
+            let into_master = |x: Vec3| match &pose {
+                Some(pose) => pose.inverse_transform_point(&x.into()).coords,
+                None => x,
+            };
             for (i, ((p, s), front)) in points.iter().zip(states).zip(fronts).enumerate() {
                 let z0 = offsets.map_or(0.0, |o| o.at(i));
+                let place;
                 // A point with no foot at all keeps the gap unknown.
                 let gap = if let Some((own, motion)) = &small {
+                    place = own.points[i].map(|at| (at.foot, at.hint, at.normal));
                     own.points[i].map_or(f64::NAN, |at| {
                         at.gap - z0 + own.approach(i, &at, p, motion.as_ref(), &state.u)
                     })
                 } else {
                     let x = model.point_position(p, &state.u);
                     let seen = master.see(i, &x, s.hint);
+                    place = seen.map(|s| (x, s.hint, s.normal));
                     let sunk = seen.is_some_and(|s| s.behind);
                     self.sunk[index] += usize::from(*front && sunk);
                     *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
@@ -196,7 +228,7 @@ impl Fields {
                 let (closed, pressure) = match history {
                     // The step's own, which may be that of a point slightly above the surface.
                     Some(history) => (history.status != PointStatus::Open, -history.n),
-                    None if gap < 0.0 => (true, -eps_n * gap),
+                    None if gap < 0.0 => (true, -law.response(gap).n),
                     None => (false, 0.0),
                 };
                 let status = match history {
@@ -204,6 +236,22 @@ impl Fields {
                     None if closed => CLOSED,
                     None => OPEN,
                 };
+                if closed && let Some((x, hint, normal)) = place {
+                    let carrier = Carrier {
+                        pressure,
+                        gap,
+                        area: p.area,
+                        share: pair.share(),
+                        place: Some(Place {
+                            point: p,
+                            x,
+                            local: into_master(x),
+                            hint,
+                            normal,
+                        }),
+                    };
+                    self.bearings.add(index, &carrier);
+                }
                 if gap < self.smallest_gap {
                     self.smallest_gap = gap;
                 }

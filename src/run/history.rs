@@ -14,6 +14,8 @@ pub struct Record<'a> {
     pub time: f64,
     pub dt: f64,
     pub cuts: u32,
+    /// Iterations of the step's attempts that failed.
+    pub failed: u32,
     pub converged: &'a Converged,
     pub sliding: &'a FrictionTotals,
     /// Energy that stabilisation has dissipated since the start, and the share of its forces in this step.
@@ -30,9 +32,16 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Column names of a model, in the order of [`row`].
 pub fn columns(model: &Model) -> Vec<String> {
-    let mut names: Vec<String> = ["step", "time", "dt", "iterations", "cuts", "residual"]
-        .map(String::from)
-        .to_vec();
+    let start = [
+        "step",
+        "time",
+        "dt",
+        "iterations",
+        "iterations.failed",
+        "cuts",
+        "residual",
+    ];
+    let mut names: Vec<String> = start.map(String::from).to_vec();
     let acting = (model.surfaces.iter().map(|s| &s.name)).chain(&model.supports);
     for name in acting {
         for quantity in ["force", "moment"] {
@@ -103,6 +112,7 @@ pub fn row(r: &Record) -> Vec<f64> {
         r.time,
         r.dt,
         f64::from(r.converged.iterations),
+        f64::from(r.failed),
         f64::from(r.cuts),
         last.0,
     ];

@@ -5,21 +5,24 @@ pub(super) use kept::Kept;
 use kept::lines_behind;
 
 use super::RunError;
-use super::checkpoint::{CheckpointError, Keeper, start};
+use super::checkpoint::{CheckpointError, Keeper};
 use super::commit::{self, FrictionTotals};
+use super::compliance::{Compliance, StepEnd};
 use super::cost::Cost;
 use super::doubt;
 use super::fields::Fields;
 use super::history;
+use super::peaks::Peaks;
 use super::progress::Progress;
 use super::step::Attempts;
 use super::watch::{Span, Watch, Work};
 use crate::assembly::{Assembler, Drag, Fault};
+use crate::contact::law::Penalty;
 use crate::model::error::number;
 use crate::model::state::State;
-use crate::model::{BodyModel, Model, penalty, segments};
-use crate::output::atomic::{make_folder, sweep};
-use crate::output::{History, Phases, Results, RunStatus};
+use crate::model::{BodyModel, Model, PairModel, penalty, segments};
+use crate::output::atomic::sweep;
+use crate::output::{History, OutputError, Phases, Results, RunStatus};
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{LinearSolver, Method};
@@ -49,6 +52,11 @@ fn squeezed(model: &Model, failure: &StepFailure) -> &'static str {
     }
 }
 
+/// Whether a pair is the second of two half passes, which is told with the first.
+fn is_back(pair: &PairModel) -> bool {
+    pair.half.is_some_and(|h| h.back)
+}
+
 /// How a run ended.
 pub(super) struct Ending {
     pub status: RunStatus,
@@ -66,11 +74,15 @@ pub(super) struct March<'a, 'm> {
     interrupt: &'a AtomicBool,
     pub phases: Phases,
     pub progress: Progress,
+    /// Iterations of the last accepted step's attempts that failed.
+    failed: u32,
     /// Pairs that were in contact at some accepted step.
     touched: Vec<bool>,
     /// Pairs that are in contact at the last accepted step.
     touching: Vec<bool>,
     pub watch: Watch,
+    pub compliance: Compliance,
+    pub peaks: Peaks,
     pub cost: Cost,
     pub keeper: Keeper,
 }
@@ -93,6 +105,14 @@ struct Outputs {
     written: Option<u32>,
 }
 
+impl Outputs {
+    /// Brings the table and the fields to the disk.
+    fn sync(&mut self) -> Result<(), OutputError> {
+        self.table.sync()?;
+        self.results.sync()
+    }
+}
+
 impl<'a, 'm> March<'a, 'm> {
     #[expect(clippy::too_many_arguments)]
     pub fn new(
@@ -105,8 +125,9 @@ impl<'a, 'm> March<'a, 'm> {
         phases: Phases,
         cost: Cost,
         keeper: Keeper,
-    ) -> Self {
-        March {
+    ) -> Result<Self, RunError> {
+        let compliance = Compliance::new(model).map_err(|e| RunError::internal(&e))?;
+        Ok(March {
             scene,
             model,
             assembler,
@@ -119,19 +140,27 @@ impl<'a, 'm> March<'a, 'm> {
                 warnings: model.warnings.clone(),
                 ..Progress::default()
             },
+            failed: 0,
             // A pair whose overclosure counts as touching touches from the start.
             touched: (model.pairs.iter())
                 .map(|p| p.overclosure.is_some())
                 .collect(),
             touching: vec![false; model.pairs.len()],
             watch: Watch::new(model),
+            compliance,
+            peaks: Peaks::new(model),
             cost,
             keeper,
-        }
+        })
     }
 
     /// Runs to the end, or to where it gets: from where it was when it was `kept`, else from time 0.
-    pub fn run(&mut self, out: &Path, kept: Option<Kept>) -> Result<Ending, RunError> {
+    pub fn run(
+        &mut self,
+        out: &Path,
+        fields: Fields,
+        kept: Option<Kept>,
+    ) -> Result<Ending, RunError> {
         let settings = &self.scene.solution;
         let stepping = Stepping::new(
             settings.step,
@@ -140,47 +169,49 @@ impl<'a, 'm> March<'a, 'm> {
             &settings.stops,
         );
         let (mut committed, mut walk, mut outputs) = match kept {
-            None => self.begin(out, stepping)?,
-            Some(kept) => self.go_on(out, stepping, kept)?,
+            None => self.begin(out, fields, stepping)?,
+            Some(kept) => self.go_on(out, fields, stepping, kept)?,
         };
-        self.keep(&committed, &walk, &outputs)?;
+        self.keep(&committed, &walk, &mut outputs)?;
         let ending = self.steps(&mut committed, &mut walk, &mut outputs);
         if let Some(text) = self.watch.drift(self.model) {
             self.warn(text);
+        }
+        let soft = (self.compliance).warning(self.model, &self.assembler.penalties);
+        for text in soft.into_iter().chain(self.peaks.warnings(self.model)) {
+            self.warn(text);
+        }
+        for text in self.peaks.notes(self.model) {
+            self.observer.event(&Event::Note { text });
         }
         // Whatever went wrong, the last accepted step is not lost.
         let reached = |e: &Ending| matches!(e.status, RunStatus::Done | RunStatus::NoContact);
         let flushed = match &ending {
             Ok(ending) if reached(ending) => Ok(()),
-            _ => self.keeper.flush(),
+            _ => self.keeper.flush(|| outputs.sync()),
         };
         if self.scene.output.every > 0 && outputs.written != Some(self.progress.steps) {
             self.write(&mut outputs, &committed)?;
         }
         let ending = ending?;
         flushed?;
+        // Before the summary tells of them.
+        outputs.sync()?;
         Ok(ending)
     }
 
-    /// Starts at time 0, in a folder that may hold another run.
+    /// Starts at time 0, in a folder that has been cleared of another run.
     fn begin(
         &mut self,
         out: &Path,
+        fields: Fields,
         stepping: Stepping,
     ) -> Result<(State, Walk, Outputs), RunError> {
-        make_folder(out)?;
         sweep(out);
-        if start(out)? {
-            let text = format!(
-                "an unfinished run in {} is replaced; `--resume` would have continued it",
-                out.display()
-            );
-            self.observer.event(&Event::Note { text });
-        }
         let mut outputs = Outputs {
             results: Results::create(out)?,
             table: History::create(&out.join("history.csv"), history::columns(self.model))?,
-            fields: Fields::new(self.model, &self.scene.output)?,
+            fields,
             written: None,
         };
         for note in outputs.fields.notes() {
@@ -203,6 +234,7 @@ impl<'a, 'm> March<'a, 'm> {
     fn go_on(
         &mut self,
         out: &Path,
+        fields: Fields,
         mut stepping: Stepping,
         kept: Kept,
     ) -> Result<(State, Walk, Outputs), RunError> {
@@ -217,6 +249,8 @@ impl<'a, 'm> March<'a, 'm> {
             touched,
             touching,
             watch,
+            compliance,
+            peaks,
             table: mark,
             written,
             factorizations,
@@ -227,7 +261,7 @@ impl<'a, 'm> March<'a, 'm> {
         } = kept;
         self.workspace.factorizations = factorizations;
         (self.progress, self.touched, self.touching) = (progress, touched, touching);
-        self.watch = watch;
+        (self.watch, self.compliance, self.peaks) = (watch, compliance, peaks);
         self.cost.earlier = spent;
         self.cost.earlier.resumed += 1;
         stepping.set_size(dt);
@@ -239,7 +273,6 @@ impl<'a, 'm> March<'a, 'm> {
         };
         self.keeper.go_on(slot);
         sweep(out);
-        let fields = Fields::new(self.model, &self.scene.output)?;
         let parts = fields.part_names(self.model);
         let last = written.last().map(|last| last.0);
         let mut results = Results::resume(out, written, &parts)?;
@@ -418,8 +451,9 @@ impl<'a, 'm> March<'a, 'm> {
 
     /// How a run that reached its end time ended.
     fn ending(&self) -> Ending {
-        let never: Vec<&str> = (self.touched.iter().zip(&self.model.pairs))
-            .filter(|(touched, _)| !**touched)
+        let pairs = self.model.pairs.iter().enumerate();
+        let never: Vec<&str> = pairs
+            .filter(|(i, pair)| !self.either(&self.touched, *i) && !is_back(pair))
             .map(|(_, pair)| pair.name.as_str())
             .collect();
         if never.is_empty() {
@@ -438,14 +472,21 @@ impl<'a, 'm> March<'a, 'm> {
         }
     }
 
+    /// Whether a flag is set for pair `i`, or for the other pass of a contact of two half passes: of two curved sides one
+    /// may have no slave point where they touch.
+    fn either(&self, flags: &[bool], i: usize) -> bool {
+        flags[i] || self.model.pairs[i].half.is_some_and(|h| flags[h.other])
+    }
+
     fn accept(&mut self, step: u32, end: f64, converged: &Converged) {
         self.progress.steps = step;
         self.progress.time = end;
+        let touching = &converged.totals.touching;
+        let before = std::mem::replace(&mut self.touching, touching.clone());
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let deepest = converged.totals.penetration[i];
-            let touching = converged.totals.touching[i];
-            self.touched[i] |= touching;
-            if std::mem::replace(&mut self.touching[i], touching) && !touching {
+            self.touched[i] |= touching[i];
+            if self.either(&before, i) && !self.either(touching, i) && !is_back(pair) {
                 self.warn(format!(
                     "contact `{}` opened at step {step} (time {}): none of its points touches any more",
                     pair.name,
@@ -504,10 +545,16 @@ impl<'a, 'm> March<'a, 'm> {
                 ));
             }
         }
+        let spent = self.progress.iterations - self.progress.counted;
+        self.progress.counted = self.progress.iterations;
+        self.progress.accepted += u64::from(converged.iterations);
+        let failed = spent.saturating_sub(u64::from(converged.iterations));
+        self.failed = u32::try_from(failed).unwrap_or(u32::MAX);
         self.observer.event(&Event::StepAccepted {
             step,
             time: end,
             iterations: converged.iterations,
+            failed_iterations: self.failed,
             active: converged.totals.active,
             penetration: (converged.totals.penetration.iter()).fold(0.0, |a, b| a.max(*b)),
         });
@@ -516,7 +563,7 @@ impl<'a, 'm> March<'a, 'm> {
     fn gather(&mut self, outputs: &mut Outputs, state: &State, time: f64) -> Result<(), RunError> {
         let assembler = &mut *self.assembler;
         let masters = &mut assembler.masters;
-        (outputs.fields).gather(self.model, &assembler.penalties, masters, state, time)
+        (outputs.fields).gather::<Penalty>(self.model, &assembler.penalties, masters, state, time)
     }
 
     /// The row of an accepted step, and its fields where they are wanted.
@@ -554,6 +601,17 @@ impl<'a, 'm> March<'a, 'm> {
         if let Some(text) = told {
             self.warn(text);
         }
+        let end = StepEnd {
+            step,
+            time,
+            state,
+            bearings: &outputs.fields.bearings,
+            internal: totals.internal_energy,
+            work: self.watch.external,
+            penalties: &self.assembler.penalties,
+        };
+        (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?;
+        self.peaks.step(step, &outputs.fields.bearings);
         let doubts = doubt::doubts(self.model, &mut self.assembler.masters, state, time);
         for doubt in doubts.map_err(|e| RunError::internal(&e))? {
             self.doubt(doubt);
@@ -564,6 +622,7 @@ impl<'a, 'm> March<'a, 'm> {
             time,
             dt: span[1] - span[0],
             cuts,
+            failed: self.failed,
             converged,
             sliding,
             stabilized: (state.stabilized, drag.share),

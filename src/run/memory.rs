@@ -7,6 +7,9 @@ use crate::model::build::{FEWER, elements_key};
 use crate::scene::{self, LoadedScene};
 use crate::solve::linear::{DirectSolver, LinearError, LuSolver, SolverOptions};
 
+/// Bytes that a run takes beside what has been asked for when factorizations begin: rows, fields and files.
+const WORK: u64 = 16 << 20;
+
 /// The flat copies of surfaces for the output fit in memory.
 ///
 /// # Errors
@@ -48,6 +51,28 @@ pub(super) fn analysis(loaded: &LoadedScene, error: &LinearError) -> RunError {
         }
         other => RunError::internal(other),
     }
+}
+
+/// The dense kernels of factorizations on so many threads have room for their buffers, for want of which they would end the
+/// process.
+///
+/// # Errors
+/// [`RunError::Scene`] with what is needed.
+pub(super) fn packing(loaded: &LoadedScene, threads: usize) -> Result<(), RunError> {
+    let needed = limits::packing(threads).saturating_add(WORK);
+    let Err(shortage) = limits::ask_address_space(needed) else {
+        return Ok(());
+    };
+    let threads_ = match threads {
+        1 => "a thread".to_owned(),
+        n => format!("{n} threads"),
+    };
+    let message = format!("factorizations on {threads_}: {shortage}");
+    let help = match threads {
+        1 => "raise the limit on the address space (`ulimit -v`)",
+        _ => "raise the limit on the address space (`ulimit -v`), or take fewer threads",
+    };
+    Err(at(loaded, "/solution", message, help))
 }
 
 /// What a run of this model takes, from its pattern and the symbolic analysis of its system.

@@ -1,9 +1,12 @@
 //! A scene from file to results: what `covact run` and `covact check` do, without the printing.
 mod augment;
 mod averaged;
+mod bearing;
 mod check;
 mod checkpoint;
+mod claim;
 mod commit;
+mod compliance;
 mod cost;
 mod doubt;
 mod error;
@@ -12,10 +15,14 @@ mod friction_fields;
 mod history;
 mod march;
 mod memory;
+#[cfg(test)]
+mod other_law;
 mod passed;
+mod peaks;
 mod pieces;
 mod plan;
 mod progress;
+mod remedy;
 mod sound;
 mod stabilized;
 mod step;
@@ -25,17 +32,21 @@ pub use check::{
     BodyReport, CheckReport, LoadReport, PairReport, SupportReport, SurfaceReport, check,
 };
 pub use checkpoint::CheckpointError;
+pub use claim::{ClaimError, FolderError, vacant};
 pub use error::RunError;
 pub use plan::{PlanReport, plan};
 
 use crate::assembly::Assembler;
+use crate::limits;
 use crate::model;
-use crate::output::{Phases, PlanSummary, RunStatus, Summary, Versions};
+use crate::output::{Accuracy, Phases, PlanSummary, RunStatus, Summary, Versions};
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
 use checkpoint::{Fingerprint, Found, Keeper};
+use claim::{Claim, Manner};
 use cost::{Cost, Spent};
+use fields::Fields;
 use march::{Kept, March};
 use progress::Progress;
 use std::path::Path;
@@ -44,17 +55,31 @@ use std::sync::atomic::AtomicBool;
 /// Choices that are the caller's, not the scene's.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RunOptions {
-    /// Threads; 0 takes the scene's number, and where that is 0 too, what the machine has.
+    /// Threads; 0 takes the scene's number, and where that is 0 too, what the machine has. No more are used than that.
     pub threads: usize,
     /// Go on with the run whose checkpoint is in the folder; one that has reached its end is left as it is.
     pub resume: bool,
+    /// Replace a run that is in the folder: its files are removed, those of others never are. Without it, and without
+    /// `resume`, such a folder is refused.
+    pub force: bool,
+}
+
+impl RunOptions {
+    fn manner(&self) -> Manner {
+        match (self.resume, self.force) {
+            (true, _) => Manner::Resume,
+            (false, true) => Manner::Replace,
+            (false, false) => Manner::Start,
+        }
+    }
 }
 
 /// Solves a scene and writes its results into the folder `out`. A run that does not reach its end returns its summary
 /// with a status that says so: what was computed is kept.
 ///
 /// # Errors
-/// [`RunError`] where the scene or a file it names is wrong, a result cannot be written, or there is no run to continue.
+/// [`RunError`] where the scene or a file it names is wrong, a result cannot be written, the folder is in use or holds a
+/// run already, or there is no run to continue.
 pub fn run(
     scene: &LoadedScene,
     out: &Path,
@@ -66,12 +91,16 @@ pub fn run(
         0 => scene.scene.solution.threads as usize,
         n => n,
     };
+    let (used, capped) = limits::threads(asked);
+    if let Some(text) = capped {
+        observer.event(&Event::Note { text });
+    }
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(asked)
+        .num_threads(used)
         .build()
         .map_err(|e| RunError::scene(scene, "/solution/threads", e.to_string()))?;
     let threads = pool.current_num_threads();
-    pool.install(|| solve(scene, out, threads, options.resume, observer, interrupt))
+    pool.install(|| solve(scene, out, threads, options, observer, interrupt))
 }
 
 /// Checksum of a scene and of the files that it names, as [`Summary::scene`] tells it.
@@ -83,13 +112,14 @@ fn solve(
     loaded: &LoadedScene,
     out: &Path,
     threads: usize,
-    resume: bool,
+    options: &RunOptions,
     observer: &mut (dyn Observer + Send),
     interrupt: &AtomicBool,
 ) -> Result<Summary, RunError> {
     let cost = Cost::start();
+    let mut claim = Claim::new(out, options.manner())?;
     let fingerprint = Fingerprint::new(loaded);
-    let found = match resume {
+    let found = match options.resume {
         true => Some(checkpoint::find(out, &fingerprint)?),
         false => None,
     };
@@ -131,14 +161,28 @@ fn solve(
     }
     let mut solver = solver(&loaded.scene, model.symmetric, threads);
     if let Some(pattern) = assembler.take_new_pattern() {
-        solver
-            .analyze(&pattern)
-            .map_err(|e| memory::analysis(loaded, &e))?;
+        let analysis = solver.analyze(&pattern);
+        let factorizing = analysis.map_err(|e| memory::analysis(loaded, &e))?.threads;
+        memory::packing(loaded, factorizing)?;
     }
     if let Some(kept) = &kept {
         solver.expect_indefinite(kept.expects_indefinite);
     }
     phases.stop("analysis");
+    let fields = Fields::new(&model, &loaded.scene.output)?;
+    let parts = (loaded.scene.output.every > 0).then(|| fields.part_names(&model));
+    let replaced = claim.enter(parts.as_ref())?;
+    if let Some(reason) = &claim.unlocked {
+        let text = format!(
+            "{} cannot be locked ({reason}): nothing keeps another run from writing there",
+            out.display()
+        );
+        observer.event(&Event::Note { text });
+    }
+    if replaced {
+        let text = format!("the run in {} is replaced", out.display());
+        observer.event(&Event::Note { text });
+    }
     let scene = checkpoint::name(&fingerprint);
     let mut march = March::new(
         &loaded.scene,
@@ -150,8 +194,8 @@ fn solve(
         phases,
         cost,
         Keeper::new(out, fingerprint),
-    );
-    let (status, reason, failure) = match march.run(out, kept) {
+    )?;
+    let (status, reason, failure) = match march.run(out, fields, kept) {
         Ok(ending) => (ending.status, ending.reason, None),
         Err(e) => (RunStatus::Failed, Some(e.to_string()), Some(e)),
     };
@@ -165,6 +209,8 @@ fn solve(
     let Progress {
         warnings,
         iterations,
+        accepted,
+        counted: _,
         cuts,
         ping_pongs,
         steps,
@@ -186,6 +232,7 @@ fn solve(
         dofs: model.unknowns(),
         contact_points: model.contact_points(),
         newton_iterations: iterations,
+        failed_iterations: iterations.saturating_sub(accepted),
         factorizations: factorizations
             .map(|(method, count)| (method.name().to_owned(), *count))
             .collect(),
@@ -195,6 +242,10 @@ fn solve(
         pattern_rebuilds,
         effects: model.effects.clone(),
         plan,
+        accuracy: Accuracy {
+            contacts: march.peaks.account(&model),
+            ..march.compliance.account(&model)
+        },
         warnings,
         resumed,
         scene,

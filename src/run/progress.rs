@@ -6,6 +6,10 @@ pub(super) struct Progress {
     pub warnings: Vec<String>,
     /// Newton iterations, those of failed attempts included.
     pub iterations: u64,
+    /// Newton iterations that accepted steps are made of.
+    pub accepted: u64,
+    /// [`Self::iterations`] when the last step was accepted.
+    pub counted: u64,
     pub cuts: u32,
     /// Cycles of contact points that were broken.
     pub ping_pongs: u32,

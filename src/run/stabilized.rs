@@ -36,6 +36,7 @@ impl March<'_, '_> {
                     number(way.z),
                     way.norm() / model.size
                 ),
+                loaded: self.model.loaded(),
             };
             return Some(Ending {
                 status: RunStatus::NotConverged,

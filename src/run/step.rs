@@ -16,6 +16,7 @@ use super::progress::Progress;
 use super::sound;
 use super::watch::Span;
 use crate::assembly::{Assembler, Fault};
+use crate::contact::law::Penalty;
 use crate::model::driven::press::{Placed, Presser};
 use crate::model::state::State;
 use crate::model::{Model, penalty};
@@ -197,7 +198,7 @@ impl Attempts<'_, '_> {
             let mut q = Vector6::from_column_slice(&trial.u[at.clone()]);
             let penalties = &self.assembler.penalties;
             let mut presser =
-                Presser::new(self.model, entry, penalties, &trial.histories, &trial.u);
+                Presser::<Penalty>::new(self.model, entry, penalties, &trial.histories, &trial.u);
             if presser.only_friction_resists() || touches && presser.press(end, &q)?.active > 0 {
                 continue;
             }

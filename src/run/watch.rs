@@ -10,7 +10,9 @@
 //! moves: what that stores at once counts, and the forces at the start of the step are those under the new penalty. A point with a multiplier does the work of its tractions; what of that the penalty does not hold counts, with its sign.
 //!
 //! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
+use super::remedy::smoother;
 use crate::assembly::{Assembler, Fault, PointAnswer, SurfaceForce, Totals};
+use crate::contact::law::PairLaw;
 use crate::model::error::number;
 use crate::model::motion::SmallMotion;
 use crate::model::state::State;
@@ -45,6 +47,8 @@ pub struct Watch {
     pub worst_step: u32,
     /// Largest displacement of a node by the time it took, in the last step and in the one before.
     pub speed: [f64; 2],
+    /// Start and end of the last step; both zero before the first.
+    pub span: [f64; 2],
     /// Reactions and loads, 3 per node of the bodies (force); no loads where the scene has none.
     reactions: Vec<f64>,
     loads: Vec<f64>,
@@ -88,7 +92,7 @@ pub struct Jump {
 
 impl Jump {
     /// What the user is told; `softened` says that the step was solved from a softened penalty only.
-    fn told(&self, step: u32, time: f64, softened: bool) -> String {
+    fn told(&self, model: &Model, (step, [from, to]): (u32, [f64; 2]), softened: bool) -> String {
         let (did, what) = match self.lost > 0.0 {
             true => ("lost", "went"),
             false => ("gained", "came"),
@@ -101,11 +105,11 @@ impl Jump {
         };
         format!(
             "step {step} (time {}) {did} an energy of {:.3e} that {what} nowhere, {:.1} % of the work so far and more than the \
-             size of the step explains: {why}. Take smaller steps, drive by displacements what is driven by \
-             forces, or ask for `solution.stabilization`; otherwise what follows is one of several states that are possible after the jump",
-            number(time),
+             size of the step explains: {why}. {}; otherwise what follows is one of several states that are possible after the jump",
+            number(to),
             self.lost.abs(),
-            100.0 * self.part
+            100.0 * self.part,
+            smoother(model, from)
         )
     }
 }
@@ -149,6 +153,7 @@ impl Watch {
             worst,
             worst_step,
             speed,
+            span,
             reactions,
             loads,
             surfaces,
@@ -159,6 +164,7 @@ impl Watch {
         out.f64s(&[*external, *adjusted, *imbalance, *turnover, *worst]);
         out.u32(*worst_step);
         out.f64s(speed);
+        out.f64s(span);
         for numbers in [reactions, loads, penalties, pressed] {
             out.count(numbers.len());
             out.f64s(numbers);
@@ -186,6 +192,7 @@ impl Watch {
         ] = sums;
         watch.worst_step = from.u32()?;
         from.f64s(&mut watch.speed)?;
+        from.f64s(&mut watch.span)?;
         for numbers in [
             &mut watch.reactions,
             &mut watch.loads,
@@ -210,10 +217,10 @@ impl Watch {
     ///
     /// # Errors
     /// A motion of a surface without a value at an end of the step, or a point that cannot be evaluated.
-    pub fn work(
+    pub fn work<L: PairLaw>(
         &mut self,
         model: &Model,
-        assembler: &mut Assembler,
+        assembler: &mut Assembler<L>,
         residual: &[f64],
         totals: &Totals,
         span: &Span,
@@ -282,19 +289,29 @@ impl Watch {
         let before = self.imbalance;
         self.imbalance = self.external + self.adjusted - energy;
         let lost = self.imbalance - before;
+        let last_span = std::mem::replace(&mut self.span, [from, to]);
         if lost.abs() > self.worst.abs() {
             (self.worst, self.worst_step) = (lost, step);
         }
         let part = lost.abs() / self.turnover.max(energy.abs());
         let limit = if softened { OTHER } else { JUMP };
         if lost.abs() > work.coarse && part > limit {
-            return Some(Jump { lost, part }.told(step, to, softened));
+            return Some(Jump { lost, part }.told(model, (step, [from, to]), softened));
         }
         let [speed, last] = self.speed;
-        (softened && last > 0.0 && speed > FASTER * last).then(|| {
+        if !softened || last <= 0.0 || speed <= FASTER * last {
+            return None;
+        }
+        // What is prescribed may go that much faster itself.
+        let pace = model.quickened(last_span, [from, to]).max(1.0);
+        (speed > FASTER * pace * last).then(|| {
+            let prescribed = match pace > 1.0 {
+                true => format!(", and what is prescribed {pace:.1} times as fast"),
+                false => String::new(),
+            };
             format!(
                 "step {step} (time {}) was solved from a softened penalty only, and moved {:.0} times as fast as the step \
-                 before: it may have come to another equilibrium. Take smaller steps",
+                 before{prescribed}: it may have come to another equilibrium. Take smaller steps",
                 number(to),
                 speed / last
             )
@@ -319,21 +336,21 @@ impl Watch {
     }
 
     /// Work of the normal tractions of points with multipliers that their penalties do not store.
-    fn multipliers(&mut self, model: &Model, assembler: &Assembler) -> f64 {
+    fn multipliers<L: PairLaw>(&mut self, model: &Model, assembler: &Assembler<L>) -> f64 {
         let answers = assembler.answers();
         let mut adjusted = 0.0;
         for (index, pair) in model.pairs.iter().enumerate() {
             let (Some(_), Some(range)) = (&pair.augmentation, pair.history()) else {
                 continue;
             };
-            let half = [self.penalties[index], assembler.penalties[index]].map(|eps| 0.5 * eps);
+            let laws = [self.penalties[index], assembler.penalties[index]].map(L::of);
             let mut sum = 0.0;
             for ((p, was), now) in (pair.points.iter())
                 .zip(&self.tractions[range.clone()])
                 .zip(&answers[range])
             {
                 let [n, g] = traction(now);
-                let stored = half[1] * g * g - half[0] * was[1] * was[1];
+                let stored = laws[1].energy(g) - laws[0].energy(was[1]);
                 sum += (stored - 0.5 * (n + was[0]) * (g - was[1])) * p.area;
             }
             adjusted += pair.share() * sum;
@@ -349,10 +366,10 @@ impl Watch {
     }
 
     /// Energy that penalties put in which were raised in the step, as if they had been at its start.
-    fn raised(
+    fn raised<L: PairLaw>(
         &self,
         model: &Model,
-        assembler: &mut Assembler,
+        assembler: &mut Assembler<L>,
         span: &Span,
         twists: &[Option<Twist>],
     ) -> Result<f64, Fault> {

@@ -54,14 +54,62 @@ pub struct ElementFault {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum FaultCause {
     /// The right Cauchy-Green tensor of the modified strain is not positive definite, so no deformation has it.
-    #[error("det C / det G = {ratio:e} at Gauss point {point}: the material is turned inside out")]
+    #[error("{}", collapsed(*point, *ratio))]
     Collapsed {
         /// Gauss point `i + 2 j + 4 k`.
         point: u8,
-        /// det C over det G, the square of the volume ratio (positive where two stretches are negative).
+        /// det C over det G, the square of the volume ratio (positive where the squares of two stretches are negative).
         ratio: f64,
     },
     /// The stiffness of the enhanced strains has a pivot that is zero or not a number.
-    #[error("pivot {pivot:e} of enhanced strain {mode}")]
+    #[error("{}", pivot_words(*mode, *pivot))]
     Pivot { mode: u8, pivot: f64 },
+}
+
+/// What a strain means that no deformation has.
+fn collapsed(point: u8, ratio: f64) -> String {
+    if !ratio.is_finite() {
+        return format!("the strain at Gauss point {point} is not a finite number ({ratio})");
+    }
+    let why = match ratio > 0.0 {
+        true => "the squares of two stretches are negative, which no deformation has",
+        false => "the material is turned inside out",
+    };
+    format!("det C / det G = {ratio:e} at Gauss point {point}: {why}")
+}
+
+fn pivot_words(mode: u8, pivot: f64) -> String {
+    match pivot.is_finite() {
+        true => format!("pivot {pivot:e} of enhanced strain {mode}"),
+        false => {
+            format!("the stiffness of enhanced strain {mode} is not a finite number ({pivot})")
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each cause is told as what it is: inside out is what has a negative determinant, and nothing else.
+    #[test]
+    fn collapsed_strains_are_told_as_what_they_are() {
+        let told = |ratio| FaultCause::Collapsed { point: 3, ratio }.to_string();
+        assert!(told(-0.5).contains("inside out"), "{}", told(-0.5));
+        assert!(told(0.0).contains("inside out"), "{}", told(0.0));
+        for (ratio, words) in [
+            (3.6, "the squares of two stretches are negative"),
+            (f64::NAN, "not a finite number (NaN)"),
+            (f64::INFINITY, "not a finite number (inf)"),
+        ] {
+            let text = told(ratio);
+            assert!(
+                text.contains(words) && !text.contains("inside out"),
+                "{text}"
+            );
+        }
+        let pivot = |pivot| FaultCause::Pivot { mode: 2, pivot }.to_string();
+        assert_eq!(pivot(0.0), "pivot 0e0 of enhanced strain 2");
+        assert!(pivot(f64::NAN).contains("is not a finite number (NaN)"));
+    }
 }

@@ -55,7 +55,10 @@ pub enum Event {
     StepAccepted {
         step: u32,
         time: f64,
+        /// Iterations of the attempt that was accepted.
         iterations: u32,
+        /// Iterations of the step's attempts that failed before.
+        failed_iterations: u32,
         active: usize,
         penetration: f64,
     },

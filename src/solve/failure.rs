@@ -39,16 +39,15 @@ pub enum StepFailure {
     /// Nothing resists a motion of a body.
     #[error("linear solver: {error}; {words}")]
     Singular { error: LinearError, words: String },
-    #[error(
-        "body `{body}` runs away: loads drive it on, no support hinders it {motion}, and contact does not stop it ({reached}): \
-         add a support or a contact, more friction, or turn the loads"
-    )]
+    #[error("body `{body}` runs away: {}", runs_away(motion, reached, *loaded))]
     RunsAway {
         body: String,
         /// Its free motions, in words.
         motion: String,
         /// How far it has got, in words.
         reached: String,
+        /// Whether the scene has loads that may drive it.
+        loaded: bool,
     },
     /// The last raise, in words that name the contact.
     #[error(
@@ -123,4 +122,39 @@ pub enum StepFailure {
     },
     #[error("interrupted")]
     Interrupted,
+}
+
+/// Why a body runs away, and what helps; of loads only where there are any.
+fn runs_away(motion: &str, reached: &str, loaded: bool) -> String {
+    let (driven, remedy) = match loaded {
+        true => ("loads drive it on, ", "more friction, or turn the loads"),
+        false => ("", "or more friction"),
+    };
+    format!(
+        "{driven}no support hinders it {motion}, and contact does not stop it ({reached}): add a support or a contact, {remedy}"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A body that surfaces push is not driven by loads.
+    #[test]
+    fn loads_are_named_only_where_there_are_any() {
+        let told = |loaded| {
+            StepFailure::RunsAway {
+                body: "cube".into(),
+                motion: "along x".into(),
+                reached: "far".into(),
+                loaded,
+            }
+            .to_string()
+        };
+        assert!(told(true).contains("loads drive it on") && told(true).ends_with("turn the loads"));
+        assert!(!told(false).contains("load"), "{}", told(false));
+        for text in [told(true), told(false)] {
+            assert!(text.contains("no support hinders it along x"), "{text}");
+        }
+    }
 }

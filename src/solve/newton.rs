@@ -171,6 +171,8 @@ const UNTIL_SEARCH: u32 = 6;
 /// Iterations without headway after which a start is given up where another is at hand. A thin shell may take six to
 /// come down from the jump of its first iterate.
 const UNTIL_GIVEN_UP: u32 = 9;
+/// Part of an increment, by its square, that has to be a rigid motion for a body to run away.
+const MOSTLY: f64 = 0.5;
 /// Smallest factor of the line search.
 const SMALLEST: f64 = 1.0 / 64.0;
 
@@ -243,7 +245,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             }
             let stuck = self.patience == Patience::Short && since_best >= UNTIL_GIVEN_UP;
             if iteration >= self.settings.max_iterations || stuck {
-                if let Some(failure) = self.runs_away() {
+                if let Some(failure) = self.runs_away(&trial.u) {
                     return Err(failure);
                 }
                 let negligible = norms.target(self.settings.tolerance);
@@ -407,14 +409,16 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         StepFailure::Solve { error, place }
     }
 
-    /// A free body that the iterations ended with holding back.
-    fn runs_away(&self) -> Option<StepFailure> {
-        let (part, piece) = self
-            .model
-            .stabilization
-            .as_ref()?
-            .stride(&self.workspace.du);
+    /// A free body at displacements `u` that the iterations ended with holding back. An increment that deforms it more than
+    /// it moves it is that of a body that gives way, not of one that goes.
+    fn runs_away(&self, u: &[f64]) -> Option<StepFailure> {
+        let stabilization = self.model.stabilization.as_ref()?;
+        let (part, piece) = stabilization.stride(&self.workspace.du);
         let motion = &piece?.motion;
+        let position = |n: u32| self.model.position(n as usize, u);
+        if motion.rigid_share(position, &self.workspace.du) < MOSTLY {
+            return None;
+        }
         Some(StepFailure::RunsAway {
             body: motion.body.clone(),
             motion: motion.motion.clone(),
@@ -422,6 +426,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 "the last iteration wanted {:.1e} times the way that an iteration may go",
                 1.0 / part
             ),
+            loaded: self.model.loaded(),
         })
     }
 

@@ -91,8 +91,9 @@ fn remedy(model: &Model, stabilized: bool) -> &'static str {
         (false, Some(_)) => {
             "let `solution.stabilization` act for longer (`until`), or hold it with a support"
         }
-        (false, None) => {
+        (false, None) if model.loaded() => {
             "ask for `solution.stabilization`, hold it with a support, or prescribe its displacement instead of a force"
         }
+        (false, None) => "ask for `solution.stabilization`, or hold it with a support",
     }
 }

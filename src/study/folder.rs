@@ -73,13 +73,15 @@ impl Folder {
     }
 
     /// Arguments of the program, in the study's folder, for a repeat of a run.
-    pub fn arguments(&self, id: &str, repeat: u32) -> [String; 7] {
+    pub fn arguments(&self, id: &str, repeat: u32) -> [String; 8] {
         [
             "run".to_owned(),
             format!("runs/{id}/scene.json"),
             "-o".to_owned(),
             format!("runs/{id}/{repeat}"),
             "--quiet".to_owned(),
+            // A job that was cut short begins anew when it is called again.
+            "--force".to_owned(),
             "--threads".to_owned(),
             self.threads.to_string(),
         ]

@@ -3,7 +3,7 @@ use crate::blocks::{done, exact, patch, pressures};
 use crate::convergence::{C, FLOOR, endings};
 use crate::shells::arch_on_plate;
 use crate::support::solve;
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// Each side integrates its own shape functions, so that no kink lies within a face: few points suffice on meshes that do
 /// not match (Sauer and De Lorenzis (2013)).
@@ -120,4 +120,44 @@ fn smooth_surfaces_in_two_half_passes_draw_a_warning() {
             .count()
     };
     assert_eq!([warnings("faces"), warnings("smooth")], [0, 1]);
+}
+
+/// An arch above a coarse plate, touched lightly: slave points of the arch are in contact along its lowest line, those of the
+/// plate lie too far from it.
+fn lightly_touched(push: Value) -> Value {
+    let mut scene = arch_on_plate(0.02, 8, json!({"gauss": 2}));
+    scene["bodies"]["plate"]["mesh"]["plate"]["elements"] = json!([3, 2]);
+    scene["contacts"]["press"]["passes"] = json!("two_half");
+    scene["supports"]["push"]["displacement"]["z"] = push;
+    scene
+}
+
+/// A contact of two passes touches where either of them does.
+#[test]
+fn one_pass_in_contact_is_contact() {
+    let outcome = solve(&lightly_touched(json!("-0.02*t")));
+    assert_eq!(outcome.summary.reason, None);
+    assert_eq!(outcome.summary.status.name(), "done");
+    let last = |name: &str| *outcome.column(name).last().expect("steps");
+    // The pass of the plate has no point in contact: it does not push back.
+    let (slave, master) = (last("slave.force.press.z"), last("master.force.press.z"));
+    println!("{slave} {master}");
+    assert!(slave > 0.0 && master == 0.0, "{slave} {master}");
+    // Where neither touches, that is said once.
+    let outcome = solve(&lightly_touched(json!("-0.001*t")));
+    assert_eq!(outcome.summary.status.name(), "no_contact");
+    let reason = outcome.summary.reason.expect("a reason");
+    assert!(reason.contains("contact `press` never touched"), "{reason}");
+}
+
+/// Contact is lost where neither pass touches any more, and that is said once.
+#[test]
+fn contact_that_both_passes_have_lost_is_told_once() {
+    let push = json!({"table": [[0, 0], [0.5, -0.02], [1, 0]]});
+    let outcome = solve(&lightly_touched(push));
+    assert_eq!(outcome.summary.status.name(), "done");
+    let force = |t: f64| outcome.at("slave.force.press.z", t);
+    assert!(force(0.5) > 0.0 && force(1.0) == 0.0);
+    let told = |w: &&String| w.contains("contact `press` opened at step");
+    assert_eq!(outcome.summary.warnings.iter().filter(told).count(), 1);
 }

@@ -111,6 +111,23 @@ fn skipped_surfaces_are_refused() {
 }
 
 #[test]
+fn a_surface_with_one_side_takes_no_contact() {
+    let folder = folder_with("band.json", &moebius_band());
+    let mut change = cad("band.json");
+    change[0].1["placement"] = json!({ "translation": [0, 0, 8] });
+    plate_refused_in(
+        folder.path(),
+        &change,
+        "/surfaces/ball",
+        &[
+            "surface `ball` has one side only",
+            "entity 4 and entity 5 cannot be given the same outside",
+            "contact needs an outside",
+        ],
+    );
+}
+
+#[test]
 fn skipped_surfaces_can_be_left_out() {
     // A quarter of a cylinder, entity 2, and a trimmed plane, entity 3.
     let folder = folder_with("tool.cad.json", &text_of("cad/quarter_cylinder.cad.json"));

@@ -61,43 +61,6 @@ fn everything_a_scene_amounts_to() {
 }
 
 #[test]
-fn every_effect_has_a_meaning() {
-    let folder = tempfile::tempdir().unwrap();
-    write_plate(
-        folder.path(),
-        &[
-            (
-                "/materials/steel",
-                json!({ "neo_hooke": { "E": 12000, "nu": 0.3 } }),
-            ),
-            ("/contacts/press/points", json!({ "lobatto": 2 })),
-            ("/contacts/press/tangent", json!({ "published": {} })),
-            (
-                "/loads",
-                json!({
-                    "p": { "on": "plate.top", "pressure": 1e-3, "follower": true },
-                    "q": { "on": "plate.top", "force": [0, 0, "-t"] }
-                }),
-            ),
-            ("/supports/clamp_x/mid_surface", json!(true)),
-        ],
-    );
-    let output = covact(folder.path(), &["check", "scene.json"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let text = stdout(&output);
-    let effects = text.split_once("effects that are on").unwrap().1;
-    let lines: Vec<&str> = effects
-        .lines()
-        .skip(1)
-        .take_while(|l| !l.is_empty())
-        .collect();
-    assert!(lines.len() >= 10, "{effects}");
-    for line in lines {
-        assert!(line.split_whitespace().count() > 2, "no meaning: {line}");
-    }
-}
-
-#[test]
 fn the_same_as_data() {
     let folder = tempfile::tempdir().unwrap();
     write_plate(folder.path(), &[]);

@@ -242,6 +242,59 @@ fn gaps_are_named_with_their_places() {
     assert_eq!(found["surface"]["parts"].as_array().unwrap().len(), 2);
 }
 
+/// Two plates of 15 x 15: one in the plane z = 0, the other moved by (x, 0, z).
+fn plates(x: f64, z: f64) -> String {
+    let patch = |entity: u32, x: f64, z: f64| {
+        serde_json::json!({
+            "entity": entity,
+            "degree": [1, 1],
+            "knots": [[0, 0, 1, 1], [0, 0, 1, 1]],
+            "points": [[x, 0, z, 1], [x + 15.0, 0, z, 1], [x, 15, z, 1], [x + 15.0, 15, z, 1]],
+        })
+    };
+    let patches = [patch(7, 0.0, 0.0), patch(8, x, z)];
+    serde_json::json!({"covact_geometry": 1, "unit": "mm", "resolution": null, "patches": patches})
+        .to_string()
+}
+
+#[test]
+fn what_is_joined_over_a_gap_and_what_is_not_is_told() {
+    let (code, text, _) = inspect("two.json", &plates(0.0, 1e-3), &["two.json"]);
+    assert_eq!(code, Some(0));
+    for part in [
+        "edges      0 shared",
+        "  stacked    1.000e-3 at (",
+        "between entity 7 side 0 and entity 8 side 0: not joined, both patches leave the edge in the same direction",
+        "1 patch, area 225.000000, open",
+    ] {
+        assert!(text.contains(part), "no {part} in\n{text}");
+    }
+    assert!(!text.contains("closed, volume"), "{text}");
+    let (_, text, _) = inspect("two.json", &plates(15.001, 0.0), &["two.json"]);
+    for part in [
+        "edges      1 shared",
+        "  bridged    gap of 1.000e-3 at (15.000500, ",
+        "between entity 7 side 1 and entity 8 side 0",
+        "2 patches, area 450.000000, open",
+    ] {
+        assert!(text.contains(part), "no {part} in\n{text}");
+    }
+}
+
+#[test]
+fn a_moebius_band_has_one_side() {
+    let band = crate::support::moebius_band();
+    let (code, text, error) = inspect("band.json", &band, &["band.json"]);
+    assert_eq!((code, error.as_str()), (Some(0), ""));
+    assert!(
+        text.contains("8 patches, area ") && text.contains("with one side only"),
+        "{text}"
+    );
+    let (_, text, _) = inspect("band.json", &band, &["band.json", "--json"]);
+    let found: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(found["surface"]["parts"][0]["one_sided"], true);
+}
+
 #[test]
 fn skipped_surfaces_are_counted_by_reason() {
     let bad = QUARTER.replace(

@@ -129,6 +129,111 @@ fn limits_of_the_process_count() {
     }
 }
 
+/// The dense kernels end the process where they cannot have the buffers they pack into; the run is refused before.
+#[cfg(target_os = "linux")]
+#[test]
+fn room_for_the_kernels_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    write_plate(folder.path(), &[("/output", json!({ "every": 0 }))]);
+    let buffers = covact::limits::packing(1) / 1_000_000;
+    let run = "run scene.json -o out --quiet --threads 1";
+    let mut refused = 0;
+    for megabytes in [60, 100, 150, 300, 600, buffers + 20, buffers + 60] {
+        let output = with_memory(folder.path(), megabytes, run);
+        let message = stderr(&output);
+        // Whatever the machine's caches are: done, or refused with the number.
+        match output.status.code() {
+            Some(0) => {
+                assert!(
+                    megabytes > buffers,
+                    "{megabytes} MB, {buffers} MB of buffers"
+                );
+                std::fs::remove_dir_all(folder.path().join("out")).unwrap();
+            }
+            Some(3) => {
+                refused += 1;
+                assert_parts(
+                    &message,
+                    &[
+                        "memory are needed",
+                        "are left of the process's limit",
+                        "help: ",
+                    ],
+                );
+                assert!(!folder.path().join("out").exists());
+            }
+            code => panic!("{megabytes} MB: exit code {code:?}\n{message}"),
+        }
+    }
+    assert!(refused >= 1);
+    let output = with_memory(folder.path(), buffers + 400, run);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+/// No more threads are started than can run.
+#[test]
+fn threads_beyond_the_machine() {
+    let there = covact::limits::processors() as u64;
+    let told = format!("threads are asked for, and {there} can run at once here: {there} are used");
+    let folder = tempfile::tempdir().unwrap();
+    let (no_fields, many) = (("/output", json!({ "every": 0 })), 100_000);
+    for (scene, arguments, asked) in [
+        (vec![no_fields.clone()], &["--threads", "100000"][..], many),
+        (
+            vec![no_fields, ("/solution/threads", json!(there + 1))],
+            &[],
+            there + 1,
+        ),
+    ] {
+        write_plate(folder.path(), &scene);
+        let run = ["run", "scene.json", "-o", "out", "--force"];
+        let output = covact(folder.path(), &[&run[..], arguments].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert_parts(&stderr(&output), &[&format!("note: {asked} {told}")]);
+        let summary = std::fs::read(folder.path().join("out/summary.json")).unwrap();
+        let summary: Value = serde_json::from_slice(&summary).unwrap();
+        assert_eq!(summary["threads"], json!(there));
+    }
+}
+
+/// A driven surface whose coordinates leave no digits for gaps is refused at once; one that is merely large is not.
+#[test]
+fn driven_surfaces_beyond_all_measure() {
+    let sphere = |radius: f64, height: f64| {
+        [
+            (
+                "/surfaces/ball/sphere",
+                json!({ "radius": radius, "center": [0, 0, height] }),
+            ),
+            (
+                "/surfaces/ball/motion",
+                json!({ "free": { "force": { "z": "-t" } } }),
+            ),
+        ]
+    };
+    for (radius, height) in [(1e17, 1e17), (25.0, 1e30), (1e17, 0.0)] {
+        plate_refused(
+            &sphere(radius, height),
+            "/surfaces/ball",
+            &[
+                "surface `ball` has coordinates up to ",
+                "the contact cannot be resolved",
+                "help: check the units",
+            ],
+        );
+    }
+    // Squares of lengths overflow.
+    plate_refused(
+        &sphere(1e300, 1e300),
+        "/surfaces/ball",
+        &["the patches have no usable size"],
+    );
+    let folder = tempfile::tempdir().unwrap();
+    write_plate(folder.path(), &sphere(1e5, 1e5 + 1.5));
+    let check = covact(folder.path(), &["check", "scene.json"]);
+    assert_eq!(check.status.code(), Some(0), "{}", stderr(&check));
+}
+
 /// Pipes, devices and folders are not read, and files larger than the memory are not either.
 #[cfg(unix)]
 #[test]

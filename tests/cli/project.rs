@@ -1,5 +1,5 @@
 //! `covact project`.
-use crate::support::{covact, stderr, stdout};
+use crate::support::{covact, moebius_band, stderr, stdout};
 use std::fmt::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -326,4 +326,19 @@ fn memory_does_not_grow_with_the_points() {
     };
     let (few, many) = (peak(35_000), peak(105_000));
     assert!(many < few + 4.0, "{few} MB, then {many} MB");
+}
+
+#[test]
+fn distances_from_a_moebius_band_carry_no_sign() {
+    let folder = folder("2 0 0.5\n2 0 -0.5\n0 0 0\n");
+    std::fs::write(folder.path().join("band.json"), moebius_band()).unwrap();
+    let output = covact(folder.path(), &["project", "band.json", "points.txt"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("distances from it carry no sign"));
+    let text = stdout(&output);
+    let distances: Vec<f64> = (text.lines().skip(1))
+        .map(|l| l.split(',').nth(7).unwrap().parse().unwrap())
+        .collect();
+    assert_eq!(distances.len(), 3);
+    assert!(distances.iter().all(|d| *d > 0.1), "{text}");
 }

@@ -102,7 +102,7 @@ fn lines_without_a_terminal() {
     let folder = tempfile::tempdir().unwrap();
     write_plate(folder.path(), &[("/output", json!({ "every": 0 }))]);
     for set in [false, true] {
-        let mut command = command(folder.path(), &RUN);
+        let mut command = command(folder.path(), &[&RUN[..], &["--force"]].concat());
         if set {
             command.env("NO_COLOR", "1");
         }
@@ -268,4 +268,97 @@ fn an_interrupted_run() {
     let history = read_csv(&folder.path().join("out/history.csv")).unwrap();
     assert_eq!(history.column("step").unwrap().len(), steps);
     assert!(folder.path().join("out/plate_0001.vtu").exists());
+}
+
+/// Under `nohup` a run outlives its terminal, and stops after its step when it is asked to.
+#[cfg(unix)]
+#[test]
+fn a_run_without_hangups() {
+    let folder = tempfile::tempdir().unwrap();
+    let steps = json!({ "step": { "initial": 1e-4, "max": 1e-4 } });
+    write_plate(
+        folder.path(),
+        &[("/output", json!({ "every": 0 })), ("/solution", steps)],
+    );
+    let program = env!("CARGO_BIN_EXE_covact");
+    let script = format!("trap '' HUP; exec {program} run scene.json -o out --json");
+    let mut child = std::process::Command::new("sh")
+        .current_dir(folder.path())
+        .args(["-c", &script])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    let mut goes_on = || {
+        let accepted = |line: std::io::Result<String>| line.unwrap().contains("\"step_accepted\"");
+        (0..3).all(|_| lines.any(accepted))
+    };
+    assert!(goes_on());
+    let pid = child.id().to_string();
+    let signal = |name: &str| {
+        let killed = std::process::Command::new("kill")
+            .args([name, &pid])
+            .status();
+        assert!(killed.unwrap().success());
+    };
+    signal("-HUP");
+    assert!(goes_on());
+    signal("-TERM");
+    let last = lines.last().unwrap().unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(4), "{}", stderr(&output));
+    assert_parts(
+        &stderr(&output),
+        &[
+            "stopping after this step",
+            "error: interrupted: stopped by the user;",
+        ],
+    );
+    assert_parts(&last, &["\"finished\"", "\"interrupted\""]);
+}
+
+/// A plate that a ball dents in a single step: the first starts of the step fail, and the step ends all the same.
+fn troubled() -> [(&'static str, Value); 4] {
+    [
+        (
+            "/bodies/plate/mesh/plate",
+            json!({"size": [40, 40], "thickness": 0.5, "elements": [8, 8], "origin": [0, 0, 0.75]}),
+        ),
+        ("/surfaces/ball/motion/translation", json!([0, 0, "-10*t"])),
+        ("/contacts/press/penalty", json!({"scaled": 100})),
+        ("/solution", json!({"step": {"initial": 1, "max": 1}})),
+    ]
+}
+
+/// Iterations of failed starts are counted in the table and in the summary, and nothing frightens while all is well.
+#[test]
+fn failed_starts_are_counted_and_told_calmly() {
+    let folder = tempfile::tempdir().unwrap();
+    write_plate(folder.path(), &troubled());
+    let output = run_with(folder.path(), &[]);
+    let told = stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    let history = read_csv(&folder.path().join("out/history.csv")).unwrap();
+    let sum = |name: &str| history.column(name).unwrap().iter().sum::<f64>();
+    let summary = summary(folder.path());
+    let number = |name: &str| summary[name].as_f64().unwrap();
+    let (good, failed) = (sum("iterations"), sum("iterations.failed"));
+    assert!(failed > 0.0, "{told}");
+    assert_eq!(number("newton_iterations"), good + failed);
+    assert_eq!(number("failed_iterations"), failed);
+    let parts = format!(
+        "{} iterations ({failed} of them in attempts that failed)",
+        good + failed
+    );
+    assert!(told.contains(&parts), "{told}");
+    // No step was cut, so that there is nothing to worry about.
+    assert_eq!(number("cuts"), 0.0, "{told}");
+    for word in ["inside out", "again from", "no convergence"] {
+        assert!(!told.contains(word), "{told}");
+    }
+    assert!(
+        told.contains(&format!("({failed} iterations more in other attempts)")),
+        "{told}"
+    );
 }

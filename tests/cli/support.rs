@@ -134,3 +134,23 @@ pub fn write_plate(folder: &Path, changes: &[(&str, Value)]) {
     let text = serde_json::to_string_pretty(&plate_with(changes)).unwrap();
     std::fs::write(folder.join("scene.json"), text).unwrap();
 }
+
+/// JSON of a Moebius band of eight patches with entities 1 to 8 about the z axis, of radius 2 and width 1.
+pub fn moebius_band() -> String {
+    let point = |k: usize, end: f64| {
+        let angle = std::f64::consts::TAU * k as f64 / 8.0;
+        let r = 2.0 + end * 0.5 * (0.5 * angle).cos();
+        let z = end * 0.5 * (0.5 * angle).sin();
+        json!([r * angle.cos(), r * angle.sin(), z, 1])
+    };
+    let patch = |k: usize| {
+        json!({
+            "entity": k + 1,
+            "degree": [1, 1],
+            "knots": [[0, 0, 1, 1], [0, 0, 1, 1]],
+            "points": [point(k, -1.0), point(k + 1, -1.0), point(k, 1.0), point(k + 1, 1.0)],
+        })
+    };
+    let patches: Vec<Value> = (0..8).map(patch).collect();
+    json!({"covact_geometry": 1, "unit": "mm", "resolution": null, "patches": patches}).to_string()
+}

@@ -224,7 +224,7 @@ fn a_step_that_is_cut_leaves_no_trace_in_the_last_bit() {
     assert!(cuts > 0 && at_once.at("cuts", first) == 0.0);
     assert_eq!(first, at_once.column("time")[0]);
     for name in &cut.history.columns {
-        if name != "cuts" {
+        if name != "cuts" && name != "iterations.failed" {
             let (a, b) = (at_once.at(name, first), cut.at(name, first));
             assert!(a.to_bits() == b.to_bits(), "{name}: {a:e} {b:e}");
         }

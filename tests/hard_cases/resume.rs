@@ -69,7 +69,11 @@ fn part(
         flag: &flag,
         notes: Vec::new(),
     };
-    let options = RunOptions { threads, resume };
+    let options = RunOptions {
+        threads,
+        resume,
+        ..RunOptions::default()
+    };
     let summary = run(scene, out, &options, &mut observer, &flag)?;
     Ok((summary, observer.notes))
 }

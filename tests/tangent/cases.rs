@@ -18,11 +18,14 @@ pub const EPS_N: f64 = 3.0;
 const B: f64 = 20.0;
 
 impl NormalLaw for Hardening {
-    fn normal(&self, xi3: f64) -> Normal {
+    fn response(&self, xi3: f64) -> Normal {
         Normal {
             n: EPS_N * xi3 * (1.0 + B * xi3 * xi3),
             dn: EPS_N * (1.0 + 3.0 * B * xi3 * xi3),
         }
+    }
+    fn energy(&self, xi3: f64) -> f64 {
+        energy(xi3 * xi3)
     }
 }
 
@@ -258,7 +261,7 @@ fn on_patch(points: &[V<f64>; 16], weights: &[f64; 16], q: &V<f64>) -> Option<Ev
     let frame = Frame::new(&support::jet(points, weights, xi), 1.0)?;
     let xi3 = (q - frame.rho).dot(&frame.n);
     let geometry = PointGeometry::Face { frame, xi3 };
-    let (residual, tangent) = respond(&geometry, &Hardening.normal(xi3), &Exact);
+    let (residual, tangent) = respond(&geometry, &Hardening.response(xi3), &Exact);
     (xi3 < 0.0).then_some(Evaluated {
         facet: 0,
         xi,

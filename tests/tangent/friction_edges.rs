@@ -250,7 +250,7 @@ fn exact_tangent_where_the_pseudo_normal_stands_in() {
             }
             let error = (steady.turn - turn).norm() / turn.norm().max(1.0);
             assert!(error < 1e-11, "{what}: turning {error:e}");
-            let normal = case.law().normal(xi3);
+            let normal = case.law().response(xi3);
             for (mu, slides) in [(100.0, false), (0.2, true)] {
                 let attraction = case.history(&x).attraction(EPS_T);
                 let law = Coulomb { mu };
@@ -351,7 +351,7 @@ fn forces_next_to_edges_creases_and_vertices_are_continuous() {
             &x,
             &Case::PLAIN.history(&x),
         );
-        let normal = Case::PLAIN.law().normal(-0.3 * radius);
+        let normal = Case::PLAIN.law().response(-0.3 * radius);
         assert!((plain.touch.residual.norm() - normal.n.abs()).abs() < 1e-9 * normal.n.abs());
         assert_eq!(Case::PLAIN.law().steady_radius(1.0), 0.0);
     }

@@ -129,7 +129,7 @@ fn translation_and_spin_of_a_rigid_body() {
             let p = support::patch(shape);
             let (geometry, xi, q, rho) = point(&p, held);
             let (g, h) = reference(&p, &centre, &q, (&xi, held));
-            let normal = Hardening.normal(geometry.xi3());
+            let normal = Hardening.response(geometry.xi3());
             let (r, k) = respond(&geometry, &normal, &Exact);
             let (f, k) = assembled(&RigidRows::new(rho - centre, &geometry), &r, &k);
             assert!(g.rows(6, 3).norm() > 0.1, "{name}: no moment");
@@ -182,7 +182,7 @@ fn the_moment_in_space_turns_with_the_body() {
             let moment = d.cross(&arm) * scale;
             (0..3).for_each(|c| reference[(c, dof)] = moment[c].eps);
         }
-        let (r, k) = respond(&geometry, &Hardening.normal(geometry.xi3()), &Exact);
+        let (r, k) = respond(&geometry, &Hardening.response(geometry.xi3()), &Exact);
         let rows = RigidRows::new(rho - centre, &geometry);
         let (f, k) = assembled(&rows, &r, &k);
         let moment = V::new(f[6], f[7], f[8]);

@@ -18,7 +18,11 @@ fn run_to_end(scene: &Value, most: f64) -> Outcome {
     let outcome = solve(scene);
     let summary = &outcome.summary;
     assert_eq!(summary.status.name(), "done", "{:?}", summary.reason);
-    assert!(summary.warnings.is_empty(), "{:?}", summary.warnings);
+    // What the penalty takes from forces is measured and told where it is 1 % or more.
+    let told =
+        |w: &&String| w.starts_with("contact gives way") && summary.accuracy.force_error >= 0.01;
+    let others: Vec<&String> = summary.warnings.iter().filter(|w| !told(w)).collect();
+    assert!(others.is_empty(), "{others:?}");
     let iterations = outcome.column("iterations");
     let mean = iterations.iter().sum::<f64>() / iterations.len() as f64;
     let cuts: f64 = outcome.column("cuts").iter().sum();

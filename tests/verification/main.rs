@@ -2,6 +2,7 @@
 mod augmentation;
 mod ball_by_weight;
 mod body_scenes;
+mod compliance;
 mod die;
 mod draw_bead;
 mod drawn_scenes;
@@ -21,6 +22,7 @@ mod placed;
 mod plate_under_ball;
 mod punch;
 mod quadratic;
+mod resolution;
 mod strip_over_cylinder;
 mod support;
 mod supports;

@@ -16,7 +16,7 @@ pub use error::CadError;
 pub use file::{MOST_BYTES, not_regular, read_whole, read_within};
 pub use iges::{
     BasePatch, BaseSurface, Border, IgesCurve, IgesGeometry, IgesSurface, ParameterMap,
-    Reparametrise, Unbounded, entity_name, read_iges, read_iges_geometry,
+    Reparametrise, Unbounded, entity_name, read_iges, read_iges_geometry, read_iges_with,
 };
 pub use json::{read_json, write_json};
 pub use report::{
@@ -27,12 +27,27 @@ pub use unit::LengthUnit;
 
 use std::path::Path;
 
+/// What to read of a CAD file.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// Read what the CAD system hides (blanked entities) as well; otherwise it is skipped.
+    pub hidden: bool,
+}
+
 /// Reads a CAD file, IGES or JSON by its content (the extension plays no part).
 ///
 /// # Errors
 /// [`CadError::Read`] when the file cannot be opened, [`CadError::Content`] with line and column when it is damaged,
 /// and [`CadError::Format`] when it is neither IGES nor JSON (a STEP file, for one).
 pub fn read_path(path: &Path) -> Result<CadFile, CadError> {
+    read_path_with(path, &ReadOptions::default())
+}
+
+/// Reads a CAD file as [`read_path`] does, with options.
+///
+/// # Errors
+/// As [`read_path`].
+pub fn read_path_with(path: &Path, options: &ReadOptions) -> Result<CadFile, CadError> {
     let name = path.display().to_string();
     let bytes = read_whole(path).map_err(|source| CadError::Read {
         path: name.clone(),
@@ -54,6 +69,10 @@ pub fn read_path(path: &Path) -> Result<CadFile, CadError> {
             .next()
             .is_none_or(|l| l.len() < 73))
         .then_some("an STL file")
+    } else if is_dxf(start) {
+        Some("a DXF file, which holds a drawing")
+    } else if start.starts_with(b"AC10") && text.len() > 6 {
+        Some("a DWG file, which holds a drawing")
     } else if text[..text.len().min(400)].contains(&0) {
         Some("binary data")
     } else {
@@ -64,6 +83,20 @@ pub fn read_path(path: &Path) -> Result<CadFile, CadError> {
             path: name,
             found: found.to_owned(),
         }),
-        None => read_iges(text, &name),
+        None => read_iges_with(text, &name, options),
+    }
+}
+
+/// A DXF file begins with the pair 0, SECTION (after comments 999), a value on each line.
+fn is_dxf(text: &[u8]) -> bool {
+    let mut lines = text.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
+    let first = lines.next();
+    let second = lines.next();
+    match first {
+        Some(b"0") => second == Some(b"SECTION"),
+        Some(b"999") => lines
+            .next()
+            .is_some_and(|code| code == b"0" || code == b"999"),
+        _ => false,
     }
 }

@@ -126,6 +126,11 @@ pub struct TrimReport {
     pub largest_error: f64,
     /// Distance at which two curves count as the same (the largest of all faces).
     pub tolerance: f64,
+    /// Gaps between curves of a boundary that are wider than ten times the tolerance of their face, but were closed, as they
+    /// are small beside the whole part.
+    pub bridged: usize,
+    /// The largest of these.
+    pub largest_bridge: f64,
 }
 
 /// Numbers of a file at a glance.
@@ -250,6 +255,7 @@ impl CadFile {
             &mut self.trims.largest_gap,
             &mut self.trims.largest_error,
             &mut self.trims.tolerance,
+            &mut self.trims.largest_bridge,
         ] {
             *length *= factor;
         }

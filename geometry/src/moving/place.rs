@@ -20,7 +20,7 @@ impl MovingFacets {
         &self,
         facet: u32,
         s: &Local,
-        accept: &impl Fn(u32) -> bool,
+        accept: &dyn Fn(u32) -> bool,
     ) -> (MovingPlace, Vec3) {
         let own = || unit_normal(&s.jet).unwrap_or_else(|| self.normal_near::<M>(facet, s.xi));
         if s.at == [0, 0] {
@@ -55,7 +55,7 @@ impl MovingFacets {
         facet: u32,
         edge: usize,
         s: f64,
-        accept: &impl Fn(u32) -> bool,
+        accept: &dyn Fn(u32) -> bool,
     ) -> Option<(MovingPlace, Vec3)> {
         let n = self.normal_near::<M>(facet, on_edge(edge, s));
         let mut kind = EdgeKind::Free;
@@ -78,7 +78,7 @@ impl MovingFacets {
         &self,
         facet: u32,
         corner: usize,
-        accept: &impl Fn(u32) -> bool,
+        accept: &dyn Fn(u32) -> bool,
     ) -> Option<(MovingPlace, Vec3)> {
         let mut kind = EdgeKind::Smooth;
         let mut sum = Vec3::zeros();

@@ -27,6 +27,18 @@ impl MovingFacets {
         reach: f64,
         accept: impl Fn(u32) -> bool,
     ) -> Option<MovingFoot> {
+        self.project_among(q, hint, reach, &accept)
+    }
+
+    /// [`project`](Self::project) compiled once, not once for each caller's closure: an indirect call per facet is nothing
+    /// beside the iteration on it, and copies made the larger half of what callers compiled.
+    fn project_among(
+        &self,
+        q: &Vec3,
+        hint: Option<Hint>,
+        reach: f64,
+        accept: &dyn Fn(u32) -> bool,
+    ) -> Option<MovingFoot> {
         match self.degree {
             1 => self.project_in::<2, 3>(q, hint, reach, accept),
             2 => self.project_in::<3, 5>(q, hint, reach, accept),
@@ -39,7 +51,7 @@ impl MovingFacets {
         q: &Vec3,
         hint: Option<Hint>,
         reach: f64,
-        accept: impl Fn(u32) -> bool,
+        accept: &dyn Fn(u32) -> bool,
     ) -> Option<MovingFoot> {
         let tree = self.tree.as_ref()?;
         if !(q.iter().all(|x| x.is_finite()) && reach >= 0.0) {
@@ -77,8 +89,8 @@ impl MovingFacets {
         });
         let complete = search.complete;
         let (facet, local) = search.best?;
-        let (facet, local) = self.settle::<M>(q, facet, &local, &accept);
-        let (place, normal) = self.place::<M>(facet, &local, &accept);
+        let (facet, local) = self.settle::<M>(q, facet, &local, accept);
+        let (place, normal) = self.place::<M>(facet, &local, accept);
         let distance = local.d2.sqrt();
         let status = if !complete {
             Status::NotConverged
@@ -122,7 +134,7 @@ impl MovingFacets {
         q: &Vec3,
         facet: u32,
         found: &Local,
-        accept: &impl Fn(u32) -> bool,
+        accept: &dyn Fn(u32) -> bool,
     ) -> (u32, Local) {
         let problem = |facet: u32| Problem {
             net: self.net::<M>(facet),

@@ -196,24 +196,20 @@ impl Cell {
     /// Whether a stationary point of this cell (which is `piece`) is proved to be the nearest point of the block. Points
     /// that the cell's own border holds inside of the block are not stationary in the block.
     #[inline]
-    pub fn settles_block(&self, piece: &Piece, q: &Vec3, s: &Local) -> bool {
+    pub fn settles_block(&self, piece: &Piece, q: &Vec3, s: &Local, slack: f64) -> bool {
         let stationary = (0..2).all(|k| {
             let [first, end] = self.block[k];
             !s.active[k]
                 || s.at[k] < 0 && piece.cell[k] == first
                 || s.at[k] > 0 && piece.cell[k] + 1 == end
         });
-        stationary
-            && s.converged
-            && self
-                .around
-                .holds(&(q - s.jet.rho), held(s, &self.around_width))
+        stationary && s.converged && holds(&self.around, q, s, &self.around_width, slack)
     }
 
     /// Whether a stationary point of this cell is proved to be the nearest point of the cell.
     #[inline]
-    pub fn settles_itself(&self, q: &Vec3, s: &Local) -> bool {
-        s.converged && self.own.holds(&(q - s.jet.rho), held(s, &self.own_width))
+    pub fn settles_itself(&self, q: &Vec3, s: &Local, slack: f64) -> bool {
+        s.converged && holds(&self.own, q, s, &self.own_width, slack)
     }
 
     /// Where to look for the foot of `q` (parameters 0 to 1 of the cell, outside of it by half of its width at most).
@@ -225,16 +221,17 @@ impl Cell {
     }
 }
 
-/// What active bounds add to the forms of [`Convex::holds`].
+/// Whether a stationary point of a rectangle is proved to be its nearest point, up to `slack` in the squared distance.
 #[inline]
-fn held(s: &Local, width: &[f64; 2]) -> [f64; 2] {
-    [0, 1].map(|k| {
+pub(super) fn holds(convex: &Convex, q: &Vec3, s: &Local, width: &[f64; 2], slack: f64) -> bool {
+    let (mut held, mut slope) = ([0.0; 2], s.gradient);
+    for k in 0..2 {
         if s.active[k] {
-            2.0 * s.gradient[k].abs() / width[k]
-        } else {
-            0.0
+            held[k] = 2.0 * s.gradient[k].abs() / width[k];
+            slope[k] = 0.0;
         }
-    })
+    }
+    convex.holds(&(q - s.jet.rho), held, slope, slack)
 }
 
 /// All cells, in the order of the pieces.

@@ -12,7 +12,7 @@
 //! so the proof costs less than an evaluation; it holds on the side where the surface bends away however far the
 //! point is, and on the other side up to about the radius of curvature.
 
-use super::piece::{Piece, Pieces, difference, hull, row_of_pascal};
+use super::piece::{Pieces, difference, hull, row_of_pascal};
 use crate::basis::WIDTH;
 use crate::surface::Vec3;
 
@@ -111,9 +111,16 @@ impl Derivatives {
         }
     }
 
-    /// Of a piece: its control nets' derivatives hold those of numerator and weight, the quotient rule in ranges the
-    /// rest.
-    fn of(piece: &Piece, net: &[[f64; 4]], tangents: &Tangents, axes: &Axes) -> Derivatives {
+    /// Of a rational Bezier net over a rectangle of the given widths: the control nets' derivatives hold those of
+    /// numerator and weight, the quotient rule in ranges the rest. The first derivatives are taken from `tangents` where
+    /// there are any.
+    fn of(
+        net: &[[f64; 4]],
+        degree: [usize; 2],
+        width: [f64; 2],
+        tangents: [&[Vec3]; 2],
+        axes: &Axes,
+    ) -> Derivatives {
         let [low, high] = hull(net);
         let middle = (low + high) * 0.5;
         let mut turned = [[0.0; 4]; WIDTH * WIDTH];
@@ -127,19 +134,18 @@ impl Derivatives {
             }
             out[3] = w;
         }
-        let of = |orders| ranges(turned, piece.degree, orders);
+        let of = |orders| ranges(turned, degree, orders);
         let w0 = of([0, 0])[3];
         let nets = [of([1, 0]), of([0, 1]), of([2, 0]), of([1, 1]), of([0, 2])];
         let w = nets.map(|n| n[3]);
-        let width = [0, 1].map(|k| piece.domain[k][1] - piece.domain[k][0]);
         let mut out = Derivatives::NONE;
         for k in 0..3 {
             let first = [0, 1].map(|i| {
                 if tangents[i].is_empty() {
-                    return nets[i][k].over(w0);
+                    return nets[i][k].minus(place[k].times(w[i])).over(w0);
                 }
                 let mut range = EMPTY;
-                for tangent in &tangents[i] {
+                for tangent in tangents[i] {
                     range.take(tangent.dot(&axes[k]));
                 }
                 range
@@ -266,7 +272,8 @@ fn ranges(net: &[[f64; 4]], degree: [usize; 2], orders: [usize; 2]) -> [Range; 4
 #[derive(Debug, Clone)]
 pub(super) struct Convex {
     axes: Axes,
-    /// `(1 - e)^2 G`: 11, 12, 22. Zero where there is no proof.
+    /// `(1 - e)^2 G`: 11, 12, 22. Minus infinity where there is no proof, so that nothing that holds a point makes up
+    /// for it.
     metric: [f64; 3],
     /// Middle and half width of the ranges of `rho_11`, `rho_12`, `rho_22` along the axes.
     middle: [Vec3; 3],
@@ -277,7 +284,7 @@ impl Convex {
     /// No proof for any point.
     pub const NEVER: Convex = Convex {
         axes: [Vec3::new(0.0, 0.0, 0.0); 3],
-        metric: [0.0; 3],
+        metric: [f64::NEG_INFINITY, 0.0, f64::NEG_INFINITY],
         middle: [Vec3::new(0.0, 0.0, 0.0); 3],
         half: [Vec3::new(0.0, 0.0, 0.0); 3],
     };
@@ -293,8 +300,26 @@ impl Convex {
         for number in members {
             let piece = &pieces.list[number as usize];
             let tangents = &tangents[number as usize];
-            all.join(&Derivatives::of(piece, pieces.net(piece), tangents, axes));
+            let width = piece.domain.map(|[a, b]| b - a);
+            let tangents = [&tangents[0][..], &tangents[1][..]];
+            let net = pieces.net(piece);
+            all.join(&Derivatives::of(net, piece.degree, width, tangents, axes));
         }
+        Convex::from_ranges(&all, axes)
+    }
+
+    /// For a part of a piece with the given control net and widths in the parameters.
+    pub fn of_part(net: &[[f64; 4]], degree: [usize; 2], width: [f64; 2]) -> Convex {
+        match axes(net, degree) {
+            Some(axes) => {
+                let all = Derivatives::of(net, degree, width, [&[], &[]], &axes);
+                Convex::from_ranges(&all, &axes)
+            }
+            None => Convex::NEVER,
+        }
+    }
+
+    fn from_ranges(all: &Derivatives, axes: &Axes) -> Convex {
         let d = &all.0;
         let tangent = [0, 1].map(|i| [d[i][0].middle(), d[i][1].middle()]);
         let off = [0, 1].map(|i| d[i][0].half().hypot(d[i][1].half()));
@@ -325,22 +350,28 @@ impl Convex {
 
     /// Whether the stationary point with `d = q - rho` is proved to be the nearest of the rectangle. `held` are twice the
     /// slopes `|rho_i . d|` that hold it on active bounds over the widths of the rectangle: on such a bound
-    /// `-2 d.rho_i D_i` is at least that times `D_i^2`.
+    /// `-2 d.rho_i D_i` is at least that times `D_i^2`. `slope` is what the iteration has left over of `rho_i . d` in the
+    /// free directions: the squares of other distances may be less than that of the point by what it is worth, which
+    /// must not exceed `slack`.
     #[inline]
-    pub fn holds(&self, d: &Vec3, held: [f64; 2]) -> bool {
+    pub fn holds(&self, d: &Vec3, held: [f64; 2], slope: [f64; 2], slack: f64) -> bool {
         let local = Vec3::new(
             self.axes[0].dot(d),
             self.axes[1].dot(d),
             self.axes[2].dot(d),
         );
         let size = local.abs();
-        // A thousandth is left for rounding and for the gradient that the iteration has left over.
+        // A thousandth is left for rounding.
         let free = |k: usize| {
             let spread = self.half[k].dot(&size);
             (0.999 * self.metric[k] - self.middle[k].dot(&local), spread)
         };
         let (a, b, c) = (free(0), free(1), free(2));
         let (a, b, c) = (a.0 - a.1 + held[0], b.0.abs() + b.1, c.0 - c.1 + held[1]);
-        a > 0.0 && c > 0.0 && a * c > b * b
+        let det = a * c - b * b;
+        let worth = c * slope[0] * slope[0]
+            + 2.0 * b * (slope[0] * slope[1]).abs()
+            + a * slope[1] * slope[1];
+        a > 0.0 && c > 0.0 && det > 0.0 && worth <= slack * det
     }
 }

@@ -1,47 +1,37 @@
 //! From the winner of the search to a foot: last Newton steps, location, normal and sign.
 
 use super::local::{Local, Region, TrimPlace};
+use super::location::HELD;
 use super::set::PatchSet;
 use super::topology::{EdgeCurve, EdgePoint, Link, corner_at, edges_at, nearest_on_edge};
 use super::{Foot, Location, Status};
 use crate::surface::{Surface, Vec3};
 
 /// Most patches that the winner of a search is moved through at the end.
-const HOPS: usize = 4;
+pub(super) const HOPS: usize = 4;
 
 impl<S: Surface> PatchSet<S> {
-    pub(super) fn finish(&self, q: &Vec3, rough: Local, complete: bool) -> Foot {
-        self.finish_within(q, rough, complete, HOPS)
+    /// The foot that a rough point leads to. `complete` says whether the search has come to its end, `tied` whether
+    /// other points are known to be as near.
+    pub(super) fn finish(&self, q: &Vec3, rough: Local, complete: bool, tied: bool) -> Foot {
+        let best = self.settled_foot(q, rough, HOPS);
+        self.as_foot(q, &best, complete, tied)
     }
 
-    /// [`finish`](Self::finish) that moves on over at most `hops` borders.
-    pub(super) fn finish_within(
-        &self,
-        q: &Vec3,
-        rough: Local,
-        complete: bool,
-        hops: usize,
-    ) -> Foot {
-        // The search may have stopped at the border of a piece, which is none of the surface's.
-        let region = self.region(rough.region.patch, rough.span);
-        let mut best = if rough.trim.is_some() || rough.region == region {
-            self.polish(q, rough)
-        } else {
-            self.polish(q, self.state(q, &region, rough.xi, rough.span))
-        };
-        if best.at != [0, 0] || best.trim.is_some() {
-            best = self.cross(q, best, hops);
-        }
-        if let Some(turn) = self.near_pole(&best) {
-            best = self.snap_to_pole(q, best, turn);
-        }
+    /// The foot at a point that [`settled_foot`](Self::settled_foot) gave.
+    #[inline]
+    pub(super) fn as_foot(&self, q: &Vec3, best: &Local, complete: bool, tied: bool) -> Foot {
         let patch = best.region.patch;
         let side = self.sides[patch as usize];
-        let location = self.locate(&best);
+        let location = self.locate(best);
         let d = q - best.jet.rho;
         let normal = match location {
-            Location::Face => self.face_normal(&best) * side,
-            _ => self.pseudo_normal(&best, location),
+            _ if side == 0.0 => {
+                let normal = self.face_normal(best);
+                normal * if normal.dot(&d) < 0.0 { -1.0 } else { 1.0 }
+            }
+            Location::Face => self.face_normal(best) * side,
+            _ => self.pseudo_normal(best, location),
         };
         let distance = best.d2.sqrt();
         let along = d.dot(&normal);
@@ -50,7 +40,7 @@ impl<S: Surface> PatchSet<S> {
             // The gap of a joint through which the surface goes on smoothly may hold the point aside: it is none of the
             // surface's, nor of the distance from it.
             along
-        } else if along < 0.0 {
+        } else if side != 0.0 && along < 0.0 {
             -distance
         } else {
             distance
@@ -59,7 +49,7 @@ impl<S: Surface> PatchSet<S> {
         // At a centre of curvature the equations are singular and their residual says little.
         let status = if !complete {
             Status::NotConverged
-        } else if !pole && focal(&best) {
+        } else if tied || !pole && focal(best) {
             Status::NonUnique
         } else if !best.converged {
             Status::NotConverged
@@ -77,6 +67,27 @@ impl<S: Surface> PatchSet<S> {
             signed_distance,
             normal,
         }
+    }
+
+    /// The last Newton steps from a rough point, on over at most `hops` borders behind which the surface is nearer.
+    #[inline]
+    pub(super) fn settled_foot(&self, q: &Vec3, rough: Local, hops: usize) -> Local {
+        // The search may have stopped at the border of a piece, which is none of the surface's.
+        let region = self.region(rough.region.patch, rough.span);
+        let mut best = if rough.trim.is_some() || rough.region == region {
+            self.polish(q, rough)
+        } else {
+            self.polish(q, self.state(q, &region, rough.xi, rough.span))
+        };
+        if best.at != [0, 0] || best.trim.is_some() {
+            best = self.cross(q, best, hops);
+        }
+        if let Some(turn) = self.near_pole(&best) {
+            best = self.snap_to_pole(q, best, turn);
+        } else if self.is_on_surface(&best) {
+            best = self.snap_to_border(q, best);
+        }
+        best
     }
 
     /// Moves a point next to a pole, where the turning parameter is lost in rounding, onto it if that is no farther from
@@ -97,6 +108,37 @@ impl<S: Surface> PatchSet<S> {
         } else {
             s
         }
+    }
+
+    /// Moves a foot that is the query itself onto the border of its region or of the trim if it lies there up to rounding.
+    #[cold]
+    #[inline(never)]
+    fn snap_to_border(&self, q: &Vec3, s: Local) -> Local {
+        let limit = HELD * self.size;
+        let xi = [0, 1].map(|k| {
+            let near = |border: &f64| {
+                let off = border - s.xi[k];
+                off * off * s.metric[2 * k] <= limit * limit
+            };
+            let border = s.region.domain[k].into_iter().find(near);
+            border.unwrap_or(s.xi[k])
+        });
+        let mut out = s;
+        if s.trim.is_none() && xi != s.xi {
+            out = self.state(q, &s.region, xi, s.span);
+        }
+        let patch = s.region.patch;
+        if out.trim.is_none()
+            && self
+                .trimmed
+                .is_cut(self.piece_number(patch, out.span, out.xi))
+            && let Some(on_trim) = self.slide_on_trim(q, patch, out.xi)
+            && self.is_on_surface(&on_trim)
+        {
+            out = on_trim;
+        }
+        out.converged = s.converged;
+        if self.is_on_surface(&out) { out } else { s }
     }
 
     /// From a point on a border of its region, looks whether the regions behind the border hold a nearer point: the

@@ -89,8 +89,8 @@ pub(super) struct TrimPlace {
 }
 
 const ITERATIONS: usize = 40;
-/// Halvings of a step before it is given up.
-const HALVINGS: usize = 12;
+/// Halvings of a step before it is given up: enough for weights that change the surface within a millionth of its domain.
+const HALVINGS: usize = 30;
 /// Share of the predicted decrease that a step must reach (Armijo).
 const ARMIJO: f64 = 1e-4;
 
@@ -158,7 +158,30 @@ impl<S: Surface> PatchSet<S> {
         } else {
             tolerance
         };
-        self.residual2(s, floor) <= tolerance * tolerance * s.d2.max(self.size * self.size)
+        let limit = tolerance * tolerance * s.d2.max(self.size * self.size);
+        if self.residual2(s, floor) > limit {
+            return false;
+        }
+        let scale = &self.grids[s.region.patch as usize].scale;
+        let short =
+            |k: usize| !s.active[k] && s.metric[2 * k] < floor * floor * scale[k] * scale[k];
+        !(short(0) || short(1)) || self.is_lost_in_rounding(s, floor, limit)
+    }
+
+    /// Whether the slope at a point with a short tangent is below rounding also by the bounds of the cell that it lies in:
+    /// where weights spread over orders of magnitude, tangents differ as much without any pole.
+    #[cold]
+    #[inline(never)]
+    fn is_lost_in_rounding(&self, s: &Local, floor: f64, limit: f64) -> bool {
+        let patch = s.region.patch;
+        let piece = &self.pieces.list[self.piece_number(patch, s.span, s.xi) as usize];
+        (0..2).all(|k| {
+            let [a, b] = piece.domain[k];
+            // Rounding comes from the neighbourhood, which is a little larger than the cell.
+            let scale = (8.0 * piece.scale[k] / (b - a)).min(self.grids[patch as usize].scale[k]);
+            let length2 = s.metric[2 * k].max(floor * floor * scale * scale);
+            s.active[k] || s.gradient[k] * s.gradient[k] <= limit * length2
+        })
     }
 
     /// Whether a search may stop at a point from which the full step with this slope would gain less than 1e-12 of the
@@ -338,7 +361,8 @@ impl<S: Surface> PatchSet<S> {
         }
     }
 
-    fn polish_face(&self, q: &Vec3, s: &mut Local) {
+    /// [`polish`](Self::polish) of a point that no trim holds, whatever the trim of its patch.
+    pub(super) fn polish_face(&self, q: &Vec3, s: &mut Local) {
         let start = *s;
         if start.converged {
             self.refine(q, s);

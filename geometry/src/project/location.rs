@@ -9,7 +9,7 @@ use crate::frame::Frame;
 use crate::surface::{Surface, Vec3};
 
 /// A foot that its edge holds by less than this (relative) counts as lying on the face.
-const HELD: f64 = 1e-10;
+pub(super) const HELD: f64 = 1e-10;
 
 impl<S: Surface> PatchSet<S> {
     /// Location of a finished point.
@@ -30,6 +30,9 @@ impl<S: Surface> PatchSet<S> {
         if self.patches[s.region.patch as usize].trim().is_some() && on[0].is_some() {
             return self.locate_on_trim(s, on);
         }
+        if self.is_on_surface(s) {
+            return self.locate_on_surface(s, on);
+        }
         // Held from how many directions, and by what.
         let limit = HELD * HELD * s.d2.max(self.size * self.size);
         let held = |k: usize| s.gradient[k] * s.gradient[k] > limit * s.metric[2 * k];
@@ -47,15 +50,7 @@ impl<S: Surface> PatchSet<S> {
             [Some(a), None] if held(0) => self.edge_location(s, a),
             [None, Some(b)] if held(1) => self.edge_location(s, b),
             _ => {
-                let grid = &self.grids[s.region.patch as usize];
-                let crease = |k: usize| {
-                    let border = match s.at[k] {
-                        -1 => s.region.spans[k][0],
-                        1 => s.region.spans[k][1],
-                        _ => return false,
-                    };
-                    on[k].is_none() && held(k) && grid.kinks[k][border] == 2
-                };
+                let crease = |k: usize| on[k].is_none() && held(k) && self.is_at_crease(s, k);
                 match (crease(0), crease(1)) {
                     (true, _) => Location::Crease { dir: 0 },
                     (_, true) => Location::Crease { dir: 1 },
@@ -63,6 +58,49 @@ impl<S: Surface> PatchSet<S> {
                 }
             }
         }
+    }
+
+    /// Whether a foot is the query itself: then nothing holds it, and no slope tells an edge from the face beside it.
+    #[inline]
+    pub(super) fn is_on_surface(&self, s: &Local) -> bool {
+        s.d2 <= HELD * HELD * self.size * self.size
+    }
+
+    /// Location of a query that lies on the border of a face: on the edge or the corner if that is sharp. A free border
+    /// belongs to its face.
+    fn locate_on_surface(&self, s: &Local, on: [Option<(usize, f64)>; 2]) -> Location {
+        let edges = &self.topology.edges;
+        let patch = s.region.patch;
+        if let [Some((k, t)), Some(_)] = on {
+            let first = self.topology.first[patch as usize];
+            let end = usize::from(t == edges[k].interval[1]);
+            let of = self.topology.of(patch);
+            let corner = corner_at(of, k - first, end);
+            let location = self.corner_location(patch, corner, of[corner].number);
+            let sharp = EdgeKind::Sharp;
+            if matches!(location, Location::Corner { kind, .. } if kind == sharp) {
+                return location;
+            }
+        }
+        let sharp = |at: (usize, f64)| match self.edge_location(s, at) {
+            Location::Edge { kind, .. } if kind != EdgeKind::Sharp => None,
+            Location::Face => None,
+            location => Some(location),
+        };
+        let edge = on.into_iter().flatten().find_map(sharp);
+        let crease = || (0..2).find(|&k| on[k].is_none() && self.is_at_crease(s, k));
+        edge.or_else(|| crease().map(|dir| Location::Crease { dir: dir as u8 }))
+            .unwrap_or(Location::Face)
+    }
+
+    /// Whether a point lies on an inner knot line that breaks the tangent plane.
+    fn is_at_crease(&self, s: &Local, dir: usize) -> bool {
+        let border = match s.at[dir] {
+            -1 => s.region.spans[dir][0],
+            1 => s.region.spans[dir][1],
+            _ => return false,
+        };
+        self.grids[s.region.patch as usize].kinks[dir][border] == 2
     }
 
     /// Location of a point on a trim curve. The curve holds it where the distance would fall across it.

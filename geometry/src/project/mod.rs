@@ -23,7 +23,10 @@ mod report;
 mod round;
 mod search;
 pub(crate) mod set;
+mod sharp;
 mod sides;
+mod subdivide;
+mod ties;
 mod topology;
 pub(crate) mod tree;
 mod trimmed;
@@ -33,7 +36,8 @@ mod turn;
 pub use batch::BatchError;
 pub use neighbour::Neighbour;
 pub use report::{CurvatureExtreme, CurvatureRange};
-pub use set::{PatchSet, PatchSetError};
+pub use set::{Joining, PatchSet, PatchSetError};
+pub use sharp::SharpEdge;
 pub use sides::{ComponentSide, SideError, SideOutcome};
 pub use topology::{Border, EdgeReport, Gap, Joint, Overlap, PartialJoint};
 
@@ -80,9 +84,10 @@ pub enum Location {
 /// How sure a foot point is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// Converged; no other point of the set is as close, as far as the search can tell.
+    /// Converged, and no other point of the set is as near up to the tolerance of the search.
     Unique,
-    /// Converged, but the point sits at (or beyond) a centre of curvature: other points are as close.
+    /// Other points are as near: the query lies at a centre of curvature, or as far from another foot elsewhere (halfway
+    /// between two sheets, inside of a box, on an axis of revolution). The one found is given.
     NonUnique,
     /// The iteration did not reach its tolerance; the best point found is given.
     NotConverged,
@@ -110,14 +115,15 @@ pub struct Foot {
     pub status: Status,
     /// Jet of the patch at `xi`; on a crease, of the side the iteration came from.
     pub jet: Jet,
-    /// +1 or -1: `side * (rho_1 x rho_2)` points out of the master on this patch.
+    /// +1 or -1: `side * (rho_1 x rho_2)` points out of the master on this patch. 0 on a component with one side only.
     pub side: f64,
     /// Euclidean distance, >= 0.
     pub distance: f64,
     /// Distance with sign: positive outside, decided by the pseudo-normal at edges and corners. Over the gap between patches
-    /// that join smoothly its part along the normal.
+    /// that join smoothly its part along the normal. Never negative on a component with one side only.
     pub signed_distance: f64,
-    /// Outward unit normal; the angle-weighted pseudo-normal at sharp edges and corners.
+    /// Outward unit normal; the angle-weighted pseudo-normal at sharp edges and corners. On a component with one side only
+    /// the normal of the patch that points to the query's side.
     pub normal: Vec3,
 }
 

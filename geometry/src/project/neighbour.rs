@@ -96,7 +96,8 @@ impl<S: Surface> PatchSet<S> {
         let span = patch.find_span(hint.xi);
         let region = self.region(hint.patch, span);
         let local = self.descend(q, &region, hint.xi, span, ROUGH);
-        Some(self.finish_within(q, local, true, HOPS))
+        let local = self.settled_foot(q, local, HOPS);
+        Some(self.as_foot(q, &local, true, false))
     }
 }
 

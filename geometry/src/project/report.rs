@@ -76,7 +76,10 @@ impl<S: Surface> PatchSet<S> {
                     continue;
                 }
                 let jet = patch.jet_in_span(piece.span, xi);
-                let Some(frame) = Frame::new(&jet, self.sides[piece.patch as usize]) else {
+                // Without a side of the component, that of the patch.
+                let side = self.sides[piece.patch as usize];
+                let side = if side == 0.0 { 1.0 } else { side };
+                let Some(frame) = Frame::new(&jet, side) else {
                     range.skipped += 1;
                     continue;
                 };

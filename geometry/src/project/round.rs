@@ -13,6 +13,20 @@ pub(super) struct Sphere {
     radius: f64,
     /// Bound on how far the patch is off the sphere.
     slack: f64,
+    /// The same for patches of the same sphere.
+    pub number: u32,
+}
+
+/// Gives equal numbers to patches of the same sphere.
+pub(super) fn number(spheres: &mut [Option<Sphere>]) {
+    let mut seen: Vec<Sphere> = Vec::new();
+    for sphere in spheres.iter_mut().flatten() {
+        let known = seen.iter().position(|other| other.is_same(sphere));
+        sphere.number = known.unwrap_or(seen.len()) as u32;
+        if known.is_none() {
+            seen.push(*sphere);
+        }
+    }
 }
 
 impl Sphere {
@@ -53,7 +67,14 @@ impl Sphere {
             centre,
             radius,
             slack,
+            number: 0,
         })
+    }
+
+    /// Whether another sphere is the same up to rounding.
+    fn is_same(&self, other: &Sphere) -> bool {
+        let off = (self.centre - other.centre).norm() + (self.radius - other.radius).abs();
+        off <= 4.0 * (self.slack + other.slack) + 1e-12 * self.radius
     }
 
     /// Whether `q` lies within 1e-8 of the radius from the centre.

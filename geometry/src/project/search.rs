@@ -3,26 +3,20 @@
 use super::PatchSet;
 use super::ball::outside_ball;
 use super::local::{Local, Region};
-use super::piece::{Piece, box_distance2, hull, split};
+use super::piece::Piece;
+use super::round::Sphere;
+use super::subdivide::covered;
 use crate::surface::{Surface, Vec3};
-use std::cell::Cell;
-
-thread_local! {
-    /// Room for subdivision, kept from query to query.
-    static ROOM: Cell<Room> = Cell::new(Room::default());
-}
-
-/// Parts that are still to be looked at, with their control nets one after the other.
-#[derive(Default)]
-struct Room {
-    nets: Vec<[f64; 4]>,
-    parts: Vec<Part>,
-}
 
 /// Tolerance of local iterations during the search; the winner is polished afterwards.
 pub(super) const ROUGH: f64 = 1e-10;
 /// Parts into which pieces may be cut within one query before the search gives up proving.
 pub(super) const MOST_PARTS: usize = 100_000;
+
+/// Pieces that are kept to be looked at for a point as near as the best one.
+const MOST_KEPT: usize = 16;
+/// Parts after which a search that need not be certain settles for less; see [`Search::loosen`].
+const GRANT: usize = 256;
 
 /// The nearest point so far.
 pub(super) struct Search<'a, S: Surface> {
@@ -30,52 +24,62 @@ pub(super) struct Search<'a, S: Surface> {
     pub q: Vec3,
     /// Points farther away than this are of no interest.
     reach: f64,
+    /// Points outside that are farther away than this need not be certain; see [`Search::loosen`].
+    pub above: f64,
     pub best: Option<(u32, Local)>,
     /// Distance of the best point, or the reach.
     distance: f64,
     /// See [`cut`](Self::cut).
     cut: f64,
+    /// See [`wide`](Self::wide).
+    wide: f64,
+    /// See [`slack`](Self::slack).
+    slack: f64,
+    /// A point as near as the best one, elsewhere, with its distance.
+    tie: Option<(Vec3, f64)>,
+    /// Pieces that hold nothing nearer, but perhaps a point as near; how many.
+    kept: [u32; MOST_KEPT],
+    kept_count: usize,
     /// Whether nothing in the block of cells around the best point is nearer.
     settled: bool,
-    pub parts: usize,
+    parts: usize,
     /// False where the number of parts ran out before the proof was complete.
     pub complete: bool,
+    /// Whether the proofs settled for less.
+    loose: bool,
     /// Whether a start from a sphere's centre was made.
     centred: bool,
-}
-
-/// Part of a piece.
-struct Part {
-    /// Parameters from 0 to 1 of the piece.
-    range: [[f64; 2]; 2],
-    depth: u32,
-}
-
-/// A stationary point of a piece, with the radius (in scaled parameters) around it in which no point of the piece is
-/// nearer to the query.
-#[derive(Clone, Copy)]
-struct Known {
-    at: [f64; 2],
-    radius: f64,
+    /// Whether the best point is as exact as it can be.
+    sharp: bool,
 }
 
 impl<'a, S: Surface> Search<'a, S> {
     pub fn new(set: &'a PatchSet<S>, q: Vec3, reach: f64) -> Self {
-        Search {
+        let mut search = Search {
             set,
             q,
             reach,
+            above: f64::INFINITY,
             best: None,
             distance: reach,
             cut: reach,
+            wide: reach,
+            slack: 0.0,
+            tie: None,
+            kept: [0; MOST_KEPT],
+            kept_count: 0,
             settled: false,
             parts: 0,
             complete: true,
+            loose: false,
             centred: false,
-        }
+            sharp: false,
+        };
+        search.slack = search.least_slack();
+        search
     }
 
-    /// Takes a point of a piece if it is nearer than the best one.
+    /// Takes a point of a piece if it is nearer than the best one, and takes note of it if it is as near.
     pub fn offer(&mut self, piece: u32, local: &Local) {
         let distance = local.d2.sqrt();
         if distance < self.distance || self.best.is_none() && distance <= self.reach {
@@ -84,17 +88,136 @@ impl<'a, S: Surface> Search<'a, S> {
             if !inside && set.trimmed_away(local.region.patch, local.xi) {
                 return;
             }
-            self.distance = distance;
             let tolerance = 1e-11 * set.size + 1e-14 * distance;
-            self.cut = if distance > tolerance {
-                distance - tolerance
+            if self.best.is_some() && self.distance - distance <= tolerance {
+                self.take_as_near(piece, local, distance);
             } else {
-                -1.0
-            };
-            self.best = Some((piece, *local));
-            let id = piece as usize;
-            self.settled = local.trim.is_none()
-                && set.cells[id].settles_block(&set.pieces.list[id], &self.q, local);
+                self.tie = None;
+                self.take(piece, local, distance);
+            }
+        } else if distance <= self.wide && self.tie.is_none() && self.best.is_some() {
+            let inside = local.trim.is_some() || self.set.trimmed.is_inside(piece);
+            if inside || !self.set.trimmed_away(local.region.patch, local.xi) {
+                self.compare(local);
+            }
+        }
+    }
+
+    /// Makes a point the best one.
+    #[inline(always)]
+    fn take(&mut self, piece: u32, local: &Local, distance: f64) {
+        let set = self.set;
+        let tolerance = 1e-11 * set.size + 1e-14 * distance;
+        self.distance = distance;
+        self.loose = false;
+        self.sharp = false;
+        (self.cut, self.wide) = if distance > tolerance {
+            (distance - tolerance, (distance + tolerance).min(self.reach))
+        } else {
+            (-1.0, -1.0)
+        };
+        self.slack = self.least_slack() + 2.0 * tolerance * distance;
+        self.best = Some((piece, *local));
+        let id = piece as usize;
+        self.settled = local.trim.is_none()
+            && set.cells[id].settles_block(&set.pieces.list[id], &self.q, local, self.slack);
+    }
+
+    /// Makes a point the best one that is nearer than the last one by no more than the tolerance.
+    #[cold]
+    #[inline(never)]
+    fn take_as_near(&mut self, piece: u32, local: &Local, distance: f64) {
+        let before = self.best.take();
+        self.take(piece, local, distance);
+        if let Some((_, before)) = before {
+            self.compare(&before);
+        }
+    }
+
+    /// Brings the best point to machine precision, before its distance is made the bound of a subdivision: on and next to
+    /// the surface the tolerance of local iterations is more than the one of proofs.
+    pub fn sharpen(&mut self) {
+        let Some((piece, mut local)) = self
+            .best
+            .filter(|best| !self.sharp && best.1.trim.is_none())
+        else {
+            return;
+        };
+        self.set.polish_face(&self.q, &mut local);
+        self.offer(piece, &local);
+        self.sharp = true;
+    }
+
+    /// Takes note of a point that is as near as the best one, unless it belongs to the same foot.
+    #[cold]
+    #[inline(never)]
+    fn compare(&mut self, other: &Local) {
+        let Some((_, best)) = &self.best else {
+            return;
+        };
+        let elsewhere = |rho: &Vec3| !self.is_around_best(|best| (rho - best).norm_squared());
+        if self.cut < 0.0 {
+            self.tie = None;
+            return;
+        }
+        let known = self
+            .tie
+            .filter(|(rho, distance)| *distance <= self.wide && elsewhere(rho));
+        self.tie = known.or_else(|| {
+            if !elsewhere(&other.jet.rho) {
+                return None;
+            }
+            let found = self.set.other_foot(&self.q, best, other)?;
+            (found.1 <= self.wide && elsewhere(&found.0)).then_some(found)
+        });
+        if self.tie.is_some() {
+            self.wide = self.cut;
+        }
+    }
+
+    /// Whether another point of the set may be as near as the best one.
+    pub fn is_tied(&self) -> bool {
+        self.tie.is_some() || self.loose
+    }
+
+    fn least_slack(&self) -> f64 {
+        let size = 4.0 * ROUGH * self.set.size;
+        size * size
+    }
+
+    /// What the square of a distance may be less than that of a stationary point, because of what the iteration has left
+    /// over of the gradient: 1e-11 of the size in distance, or what the last Newton steps gain in any case.
+    #[inline]
+    pub fn slack(&self) -> f64 {
+        self.slack
+    }
+
+    /// Counts a part; whether the search may go on.
+    pub fn spend(&mut self) -> bool {
+        self.parts += 1;
+        if self.parts.is_multiple_of(GRANT) && self.above < self.reach {
+            self.loosen();
+        }
+        self.complete &= self.parts <= MOST_PARTS;
+        self.complete
+    }
+
+    /// Where points outside need not be certain beyond `above`, and the best one is such a point: a nearer one is only
+    /// looked for if it is nearer than `above`, or by more than a ten-thousandth of the distance (and no more than
+    /// the tolerance for joining edges). On the axis of a surface of revolution, where a circle of points is as near, that
+    /// ends the search.
+    #[cold]
+    #[inline(never)]
+    fn loosen(&mut self) {
+        let Some((_, best)) = &self.best else {
+            return;
+        };
+        let foot = self.set.finish(&self.q, *best, true, false);
+        if foot.signed_distance > self.above {
+            let less = (1e-4 * (self.distance - self.above)).min(self.set.tolerance);
+            self.cut = (self.distance - less).max(self.above);
+            self.wide = self.cut;
+            self.loose = true;
         }
     }
 
@@ -120,7 +243,7 @@ impl<'a, S: Surface> Search<'a, S> {
         let Some((best, _)) = self.best else {
             return false;
         };
-        self.settled && 2.0 * self.distance < self.set.cells[best as usize].clear
+        self.settled && 2.0 * self.wide < self.set.cells[best as usize].clear
     }
 
     /// Radius of the ball that pieces must be proved to lie outside of: the best distance less a tolerance well above
@@ -130,9 +253,16 @@ impl<'a, S: Surface> Search<'a, S> {
         self.cut
     }
 
+    /// Radius of the ball that holds everything as near as the best point: its distance and the tolerance; no more than
+    /// [`cut`](Self::cut) where another point as near is known.
+    #[inline]
+    pub fn wide(&self) -> f64 {
+        self.wide
+    }
+
     #[inline]
     fn limit2(&self) -> f64 {
-        let c = self.cut();
+        let c = self.wide;
         if c < 0.0 { -1.0 } else { c * c }
     }
 
@@ -148,9 +278,12 @@ impl<'a, S: Surface> Search<'a, S> {
             self.piece(piece);
             if self.done() { -1.0 } else { self.limit2() }
         });
+        if self.kept_count > 0 {
+            self.look_for_ties();
+        }
     }
 
-    /// Whether nothing in a piece is nearer than the best point, by the tests that need no iteration.
+    /// Whether nothing in a piece is as near as the best point, by the tests that need no iteration.
     #[inline]
     pub fn excluded(&self, piece: &Piece, id: u32) -> bool {
         if self.behind_sphere(piece.patch) {
@@ -162,25 +295,78 @@ impl<'a, S: Surface> Search<'a, S> {
         {
             return true;
         }
-        let c = self.cut();
+        let c = self.wide;
         c < 0.0
             || c.is_finite()
                 && (self.set.cells[id as usize].slab.distance2(&self.q) >= c * c
                     || outside_ball(self.set.pieces.net(piece), piece.degree, &self.q, c))
     }
 
+    /// Whether a piece that the ball of everything as near reaches is proved to hold nothing nearer; it is kept then.
+    fn only_as_near(&mut self, piece: &Piece, id: u32) -> bool {
+        let found = self.best.is_some()
+            && self.cut < self.wide
+            && outside_ball(self.set.pieces.net(piece), piece.degree, &self.q, self.cut);
+        if found && self.kept_count < MOST_KEPT {
+            self.kept[self.kept_count] = id;
+            self.kept_count += 1;
+        }
+        found
+    }
+
+    /// Looks for a point as near as the best one in the pieces that were kept.
+    #[cold]
+    #[inline(never)]
+    fn look_for_ties(&mut self) {
+        let set = self.set;
+        for k in 0..self.kept_count {
+            let id = self.kept[k];
+            let piece = &set.pieces.list[id as usize];
+            if self.tie.is_some() || self.cut < 0.0 {
+                return;
+            }
+            if !self.excluded(piece, id) {
+                let u = set.cells[id as usize].seed(&self.q);
+                self.iterate(id, piece, u.map(|u| u.clamp(0.05, 0.95)));
+            }
+        }
+    }
+
+    /// Whether something is so close to the best point that what is as near there is no other foot, by a measure of its
+    /// squared distance. Next to a centre of curvature the distance grows with the fourth power of the way only, and the
+    /// tolerance is reached after `(48 * 1e-11 size / d)^(1/4)` of it; four times as much is left out.
+    pub fn is_around_best(&self, distance2: impl FnOnce(&Vec3) -> f64) -> bool {
+        let Some((_, best)) = &self.best else {
+            return false;
+        };
+        let d = self.distance;
+        distance2(&best.jet.rho) <= 4e-4 * d * (d * self.set.size).sqrt()
+    }
+
     /// Whether the best point is as near as the sphere that a patch lies on, up to rounding, and stationary: next to a pole
-    /// only the slope tells the nearest point from others.
+    /// only the slope tells the nearest point from others. A sphere that the best point is not one of must be farther away.
     #[inline]
-    fn behind_sphere(&self, patch: u32) -> bool {
+    pub fn behind_sphere(&self, patch: u32) -> bool {
         let set = self.set;
         let (Some(sphere), Some((_, best))) = (&set.spheres[patch as usize], &self.best) else {
             return false;
         };
         let bound = sphere.distance(&self.q);
         // At the centre all points are as near, and which of them is taken means nothing.
-        sphere.has_near_centre(&self.q) && bound >= self.cut()
-            || bound + 1e-14 * (set.size + self.distance) >= self.distance && set.flat(best)
+        let nothing_nearer = sphere.has_near_centre(&self.q) && bound >= self.cut
+            || bound + 1e-14 * (set.size + self.distance) >= self.distance && set.flat(best);
+        let own = |other: &Sphere| other.number == sphere.number;
+        nothing_nearer
+            && (bound >= self.wide
+                || set.spheres[best.region.patch as usize]
+                    .as_ref()
+                    .is_some_and(own))
+    }
+
+    /// Whether the sphere that a patch lies on is nowhere nearer than the best point.
+    pub fn is_on_nearest_sphere(&self, patch: u32) -> bool {
+        let sphere = self.set.spheres[patch as usize];
+        sphere.is_some_and(|sphere| sphere.distance(&self.q) >= self.cut)
     }
 
     /// Next to the centre of a sphere distances differ by less than bounds over pieces tell: starts at the point nearest to
@@ -218,7 +404,7 @@ impl<'a, S: Surface> Search<'a, S> {
         let cell = &set.cells[id as usize];
         let own = |search: &Self| search.best.as_ref().is_some_and(|best| best.0 == id);
         if self.settled || !own(self) {
-            if self.excluded(piece, id) {
+            if self.excluded(piece, id) || self.only_as_near(piece, id) {
                 return;
             }
             if self.best.is_none() {
@@ -236,16 +422,13 @@ impl<'a, S: Surface> Search<'a, S> {
                 self.iterate(id, piece, u)
             }
         };
-        if cell.settles_itself(&self.q, &local) {
+        if cell.settles_itself(&self.q, &local, self.slack) || self.cut < 0.0 {
             return;
         }
         let known = self.known(piece, &local);
-        if covered(piece, &known, &[[0.0, 1.0]; 2]) || self.cut() < 0.0 {
-            return;
+        if !covered(piece, &known, &[[0.0, 1.0]; 2]) {
+            self.subdivide(id, piece, known);
         }
-        let mut room = ROOM.take();
-        self.subdivide(id, piece, known, &mut room);
-        ROOM.set(room);
     }
 
     /// Local iteration within a piece from `u` (0 to 1 in each direction).
@@ -260,157 +443,6 @@ impl<'a, S: Surface> Search<'a, S> {
         self.offer(id, &local);
         local
     }
-
-    /// Where a stationary point is, and how far around it the piece is proved to be no nearer.
-    ///
-    /// With `F = |q - rho|^2 / 2` and `g = F_,i`, every point of the piece satisfies
-    /// `F >= F* + g.D + D.F_ij.D / 2 - L |D|^3 / 6`, `L` a bound on the third derivative; on an active bound `g.D >= 0`
-    /// is worth `2 g / extent` of the Hessian. So `F >= F*` for `|D| <= 3 lambda / L`.
-    fn known(&self, piece: &Piece, s: &Local) -> Known {
-        let width = [0, 1].map(|k| piece.domain[k][1] - piece.domain[k][0]);
-        let at = [0, 1].map(|k| (s.xi[k] - piece.domain[k][0]) / width[k]);
-        if !s.converged {
-            return Known { at, radius: 0.0 };
-        }
-        let [m1, m2] = piece.scale;
-        let (c1, c2) = (width[0] / m1, width[1] / m2);
-        let mut h = [
-            s.hessian[0] * c1 * c1,
-            s.hessian[1] * c1 * c2,
-            s.hessian[2] * c2 * c2,
-        ];
-        if s.active[0] {
-            h[0] += 2.0 * s.gradient[0].abs() * c1 / m1;
-        }
-        if s.active[1] {
-            h[2] += 2.0 * s.gradient[1].abs() * c2 / m2;
-        }
-        let (mean, half) = (0.5 * (h[0] + h[2]), 0.5 * (h[0] - h[2]));
-        let lambda = mean - (half * half + h[1] * h[1]).sqrt();
-        let far = s.d2.sqrt() + 1.5 * (m1 + m2);
-        let third = 3.0 * std::f64::consts::SQRT_2 * piece.second + piece.third * far;
-        let radius = if lambda > 0.0 {
-            // 0.999 leaves room for rounding and for the gradient that the iteration has left over.
-            0.999 * 3.0 * lambda / third
-        } else {
-            0.0
-        };
-        Known { at, radius }
-    }
-
-    /// Proves or improves by bisection.
-    #[cold]
-    #[inline(never)]
-    fn subdivide(&mut self, id: u32, piece: &Piece, first: Known, room: &mut Room) {
-        let net = self.set.pieces.net(piece);
-        let size = net.len();
-        let Room { nets, parts } = room;
-        nets.clear();
-        nets.reserve(64 * size);
-        nets.extend_from_slice(net);
-        parts.clear();
-        parts.reserve(64);
-        parts.push(Part {
-            range: [[0.0, 1.0]; 2],
-            depth: 0,
-        });
-        let mut known = [first; 4];
-        let mut latest = 0;
-        while let Some(part) = parts.pop() {
-            let start = parts.len() * size;
-            let c = self.cut();
-            if c < 0.0 || self.behind_sphere(piece.patch) {
-                return;
-            }
-            if known.iter().any(|k| covered(piece, k, &part.range)) {
-                continue;
-            }
-            let own = &nets[start..start + size];
-            if part.depth > 0 && c.is_finite() {
-                let [low, high] = hull(own);
-                if box_distance2(&self.q, &low, &high) >= c * c
-                    || outside_ball(own, piece.degree, &self.q, c)
-                {
-                    continue;
-                }
-            }
-            let middle = part.range.map(|[a, b]| 0.5 * (a + b));
-            if part.depth > 0 && part.depth % 2 == 0 {
-                let local = self.iterate(id, piece, middle);
-                let found = self.known(piece, &local);
-                let apart = |k: &Known| {
-                    (k.at[0] - found.at[0]).abs() + (k.at[1] - found.at[1]).abs() > 1e-9
-                };
-                if known.iter().all(apart) {
-                    latest = (latest + 1) % known.len();
-                    known[latest] = found;
-                }
-                if covered(piece, &found, &part.range) {
-                    continue;
-                }
-            }
-            let extent = extents(&nets[start..start + size], piece.degree);
-            self.parts += 1;
-            if self.parts > MOST_PARTS {
-                self.complete = false;
-                return;
-            }
-            if extent[0].max(extent[1]) < 1e-8 * self.set.size {
-                continue;
-            }
-            let dir = usize::from(extent[1] > extent[0]);
-            let [a, b] = part.range[dir];
-            // A stationary point on the cut leaves parts in which the distance only grows, where the bounds are sharp.
-            let wanted = (known[latest].at[dir] - a) / (b - a);
-            let t = if part.depth < 4 && wanted > 0.05 && wanted < 0.95 {
-                wanted
-            } else {
-                0.5
-            };
-            nets.resize(start + 2 * size, [0.0; 4]);
-            let (left, right) = nets[start..].split_at_mut(size);
-            split(left, &mut right[..size], piece.degree, dir, t);
-            let cut = a + t * (b - a);
-            for half in [[a, cut], [cut, b]] {
-                let mut range = part.range;
-                range[dir] = half;
-                parts.push(Part {
-                    range,
-                    depth: part.depth + 1,
-                });
-            }
-        }
-    }
-}
-
-/// Whether a part lies within the radius of a stationary point.
-#[inline]
-fn covered(piece: &Piece, known: &Known, range: &[[f64; 2]; 2]) -> bool {
-    let far = [0, 1].map(|k| {
-        let [a, b] = range[k];
-        piece.scale[k] * (known.at[k] - a).abs().max((known.at[k] - b).abs())
-    });
-    far[0] * far[0] + far[1] * far[1] <= known.radius * known.radius
-}
-
-/// Longest control polygon in each direction. Next to a pole the one around it is short, so no cuts are wasted on it.
-pub(super) fn extents(net: &[[f64; 4]], degree: [usize; 2]) -> [f64; 2] {
-    let n1 = degree[0] + 1;
-    let point = |k: usize| {
-        let [x, y, z, w] = net[k];
-        Vec3::new(x, y, z) / w
-    };
-    let rows = (0..=degree[1]).map(|j| {
-        (0..degree[0])
-            .map(|i| (point(i + 1 + n1 * j) - point(i + n1 * j)).norm())
-            .sum::<f64>()
-    });
-    let columns = (0..n1).map(|i| {
-        (0..degree[1])
-            .map(|j| (point(i + n1 * (j + 1)) - point(i + n1 * j)).norm())
-            .sum::<f64>()
-    });
-    [rows.fold(0.0, f64::max), columns.fold(0.0, f64::max)]
 }
 
 /// The region that a piece is.

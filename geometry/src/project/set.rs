@@ -3,12 +3,12 @@
 use super::cells::{Cell, cells, cut, parts};
 use super::local::Region;
 use super::piece::Pieces;
-use super::round::Sphere;
+use super::round::{self, Sphere};
 use super::search::Search;
 use super::topology::{self, Topology};
 use super::tree::Tree;
 use super::trimmed::Trimmed;
-use super::{Foot, Hint};
+use super::{Foot, Hint, Status};
 use crate::bezier::BezierPiece;
 use crate::patch::NurbsPatch;
 use crate::surface::{Surface, Vec3};
@@ -26,18 +26,35 @@ pub enum PatchSetError {
     /// The tolerance is not a positive finite number.
     #[error("the tolerance {0} for joining edges is not a positive number")]
     Tolerance(f64),
+    /// The resolution is negative or not finite.
+    #[error("the resolution {0} of the patches is not a length")]
+    Resolution(f64),
     /// Every patch is a point, or so large that squared lengths overflow.
     #[error("the patches have no usable size: {0}")]
     Size(f64),
     /// More pieces than can be numbered.
     #[error("the patches have too many spans")]
     TooLarge,
-    /// Going round over common edges leads back to the other side (a Moebius strip).
+    /// Going round over common edges leads back to the other side (a Moebius strip). Only
+    /// [`two_sided`](PatchSet::two_sided) says so: closest points and distances need no side.
     #[error(
         "patches {0} and {1} cannot be oriented alike: the surface that they belong to has one side \
          only (patches {2:?})"
     )]
     NotOrientable(usize, usize, Vec<usize>),
+}
+
+/// How near edges must be to each other to be joined. The default knows nothing of where the patches come from.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Joining {
+    /// Edges within this length of each other are joined. `None`: 1e-5 of the size of the set, and ten times as much where
+    /// all of an edge coincides with another one.
+    pub tolerance: Option<f64>,
+    /// Smallest distance between two points that the source of the patches tells apart, for instance
+    /// [`CadFile::resolution`](crate::io::CadFile::resolution). A larger gap between joined edges is reported, and two
+    /// patches that leave their edges in the same direction, like sheets on top of each other, are joined over smaller gaps
+    /// only. At least 1e-6 of the size of the set.
+    pub resolution: Option<f64>,
 }
 
 /// Numbers of the pieces of one patch, and where it may break.
@@ -158,26 +175,45 @@ pub struct PatchSet<S: Surface = NurbsPatch> {
 }
 
 impl<S: Surface> PatchSet<S> {
+    /// [`join`](Self::join) with the given tolerance and no knowledge of the resolution.
+    ///
+    /// # Errors
+    /// As [`join`](Self::join).
+    pub fn new(patches: Vec<S>, tolerance: Option<f64>) -> Result<Self, PatchSetError> {
+        let joining = Joining {
+            tolerance,
+            resolution: None,
+        };
+        Self::join(patches, joining)
+    }
+
     /// Joins patches to a set: finds common edges, connected components and a consistent orientation. A component without
     /// free edges gets the volume that it encloses inside; of any other the first patch keeps its own side (`rho_1 x rho_2`
-    /// points out).
+    /// points out). A component with one side only (a Moebius strip) can be projected on, but has no sides; see
+    /// [`two_sided`](Self::two_sided).
     ///
     /// Edges are joined where they are within `tolerance` (a length) of each other; by default that is 1e-5 of
     /// [`size`](Self::size), and ten times as much where all of an edge coincides with another one. For two edges it is no
     /// more than 5 % of the shorter one's length, and a hundred times as much where both carry the same number of the
-    /// file. [`edges`](Self::edges) tells what was joined, the largest gap and where, and where edges come near each other
-    /// without being joined.
+    /// file. Patches that leave their edges in the same direction are joined only if the gap is within
+    /// [`Joining::resolution`]. [`edges`](Self::edges) tells what was joined, the gaps that were bridged, and where edges
+    /// come near each other without being joined.
     ///
     /// # Errors
-    /// No patches, a useless tolerance or size, or a surface with one side only.
-    pub fn new(patches: Vec<S>, tolerance: Option<f64>) -> Result<Self, PatchSetError> {
+    /// No patches, or a useless tolerance, resolution or size.
+    pub fn join(patches: Vec<S>, joining: Joining) -> Result<Self, PatchSetError> {
         if patches.is_empty() {
             return Err(PatchSetError::Empty);
         }
-        if let Some(tolerance) = tolerance
+        if let Some(tolerance) = joining.tolerance
             && !(tolerance.is_finite() && tolerance > 0.0)
         {
             return Err(PatchSetError::Tolerance(tolerance));
+        }
+        if let Some(resolution) = joining.resolution
+            && !(resolution.is_finite() && resolution >= 0.0)
+        {
+            return Err(PatchSetError::Resolution(resolution));
         }
         let mut pieces = Pieces::default();
         let mut trimmed = Trimmed::default();
@@ -216,7 +252,8 @@ impl<S: Surface> PatchSet<S> {
             let own = &pieces.list[grid.first as usize..][..grid.count()];
             Sphere::of(patch, &pieces, own, size)
         });
-        let spheres = spheres.collect();
+        let mut spheres: Vec<Option<Sphere>> = spheres.collect();
+        round::number(&mut spheres);
         let mut set = PatchSet {
             patches,
             grids,
@@ -230,7 +267,7 @@ impl<S: Surface> PatchSet<S> {
             topology: Topology::default(),
             sides,
         };
-        topology::build(&mut set, tolerance)?;
+        topology::build(&mut set, joining);
         Ok(set)
     }
 
@@ -247,6 +284,21 @@ impl<S: Surface> PatchSet<S> {
     /// size of the set plus 1e-14 of the distance; where several points are equally near, which of them is given
     /// depends on the hint.
     pub fn project(&self, q: &Vec3, hint: Option<Hint>, reach: f64) -> Option<Foot> {
+        self.project_above(q, hint, reach, f64::INFINITY)
+    }
+
+    /// [`project`](Self::project) where points outside need not be certain beyond the distance `above`, as in contact,
+    /// where such a point is open whatever its foot. Where the search takes long because other points are nearly as near
+    /// (on the axis of a surface of revolution), it ends once it has proved that nothing is nearer than `above`, or than
+    /// the foot by more than a ten-thousandth of the distance. The status is then [`Status::NonUnique`], and never
+    /// [`Status::NotConverged`] for a foot whose distance is proved to exceed `above`.
+    pub fn project_above(
+        &self,
+        q: &Vec3,
+        hint: Option<Hint>,
+        reach: f64,
+        above: f64,
+    ) -> Option<Foot> {
         if !(q.x.is_finite() && q.y.is_finite() && q.z.is_finite() && reach >= 0.0) {
             return None;
         }
@@ -254,6 +306,7 @@ impl<S: Surface> PatchSet<S> {
             return None;
         }
         let mut search = Search::new(self, *q, reach);
+        search.above = above;
         if let Some(hint) = hint
             && let Some(patch) = self.patches.get(hint.patch as usize)
             && hint.xi.iter().all(|x| x.is_finite())
@@ -261,9 +314,13 @@ impl<S: Surface> PatchSet<S> {
             search.start(hint.patch, patch.find_span(hint.xi), hint.xi);
         }
         search.run();
-        let complete = search.complete;
+        let (complete, tied) = (search.complete, search.is_tied());
         let (_, local) = search.best?;
-        Some(self.finish(q, local, complete))
+        let mut foot = self.finish(q, local, complete, tied);
+        if complete && foot.status == Status::NotConverged && foot.signed_distance > above {
+            foot.status = Status::NonUnique;
+        }
+        Some(foot)
     }
 
     /// Number of the piece that holds `xi` of a pair of spans.

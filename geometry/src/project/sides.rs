@@ -1,6 +1,6 @@
 //! Which side of every component is the outside.
 
-use super::set::PatchSet;
+use super::set::{PatchSet, PatchSetError};
 use super::{EdgeKind, Foot, Location};
 use crate::surface::{Surface, Vec3};
 
@@ -20,6 +20,8 @@ pub enum SideOutcome {
         /// Points whose foot lies on the component.
         ignored: usize,
     },
+    /// The component has one side only, so there is nothing to decide.
+    OneSided,
 }
 
 /// The side of one connected component.
@@ -27,7 +29,7 @@ pub enum SideOutcome {
 pub struct ComponentSide {
     /// Number of the component.
     pub component: usize,
-    /// Side of its first patch: +1 where `rho_1 x rho_2` points out.
+    /// Side of its first patch: +1 where `rho_1 x rho_2` points out; 0 where the component has one side only.
     pub side: f64,
     /// How it was decided.
     pub outcome: SideOutcome,
@@ -61,9 +63,24 @@ const FAR: f64 = 3.0;
 const NEAR: f64 = 0.05;
 
 impl<S: Surface> PatchSet<S> {
-    /// Side of every patch: +1 where `rho_1 x rho_2` points out of the master, -1 where it points in.
+    /// Side of every patch: +1 where `rho_1 x rho_2` points out of the master, -1 where it points in, 0 where the component
+    /// has one side only.
     pub fn sides(&self) -> &[f64] {
         &self.sides
+    }
+
+    /// Checks that every component has two sides, as contact needs them.
+    ///
+    /// # Errors
+    /// [`PatchSetError::NotOrientable`] with the patches of the first component that has one side only.
+    pub fn two_sided(&self) -> Result<(), PatchSetError> {
+        let components = (self.topology.one_sided.iter()).zip(&self.topology.components);
+        for (one_sided, members) in components {
+            if let &Some([a, b]) = one_sided {
+                return Err(PatchSetError::NotOrientable(a, b, members.clone()));
+            }
+        }
+        Ok(())
     }
 
     /// Patches of every connected component.
@@ -79,7 +96,7 @@ impl<S: Surface> PatchSet<S> {
     }
 
     /// Gives the first patch of every component the side of its own parametrisation, or the other one if `reversed`; the
-    /// rest of the component follows.
+    /// rest of the component follows. A component with one side only keeps side 0.
     pub fn set_side_as_given(&mut self, reversed: bool) {
         for component in 0..self.topology.components.len() {
             self.set_component_side(component, if reversed { -1.0 } else { 1.0 });
@@ -119,6 +136,9 @@ impl<S: Surface> PatchSet<S> {
             };
             hint = Some(foot.hint());
             let component = self.topology.component_of[foot.patch as usize];
+            if self.topology.one_sided[component].is_some() {
+                continue;
+            }
             if beside(&foot) || foot.signed_distance.abs() <= ON_SURFACE * self.size {
                 ignored[component] += 1;
                 continue;
@@ -152,7 +172,9 @@ impl<S: Surface> PatchSet<S> {
                     patches: members.clone(),
                 });
             }
-            let (side, outcome) = if votes.is_empty() {
+            let (side, outcome) = if self.topology.one_sided[component].is_some() {
+                (0.0, SideOutcome::OneSided)
+            } else if votes.is_empty() {
                 (self.sides[members[0]], SideOutcome::Undecided { ignored })
             } else {
                 let votes = votes.len();

@@ -12,7 +12,8 @@ use super::PatchSet;
 use super::ball::outside_ball;
 use super::local::{Local, Region, TrimPlace};
 use super::piece::{Piece, box_distance2, hull, split};
-use super::search::{MOST_PARTS, ROUGH, Search, at, extents, region_of};
+use super::search::{ROUGH, Search, at, region_of};
+use super::subdivide::extents;
 use super::trimmed::{CurveLeaf, curve_outside_ball, split_curve};
 use crate::surface::{Surface, Vec3};
 use crate::trim::Part;
@@ -279,23 +280,20 @@ impl<S: Surface> Search<'_, S> {
         curves.push([0.0, 1.0]);
         while let Some([a, b]) = curves.pop() {
             let start = curves.len() * size;
-            let c = self.cut();
+            // One iteration on the whole leaf finds a point that is only as near.
+            let c = if start == 0 { self.wide() } else { self.cut() };
             if c < 0.0 {
                 return;
             }
             let own = &nets[start..start + size];
-            if c.is_finite() {
-                let [low, high] = hull(own);
-                if box_distance2(&self.q, &low, &high) >= c * c
-                    || curve_outside_ball(own, &self.q, c, ball)
-                {
-                    continue;
-                }
-            }
             let [low, high] = hull(own);
-            self.parts += 1;
-            if self.parts > MOST_PARTS {
-                self.complete = false;
+            if c.is_finite()
+                && (box_distance2(&self.q, &low, &high) >= c * c
+                    || curve_outside_ball(own, &self.q, c, ball))
+            {
+                continue;
+            }
+            if !self.spend() {
                 return;
             }
             // Where the chord is nearest.
@@ -354,7 +352,8 @@ impl<S: Surface> Search<'_, S> {
         let cell = &set.cells[id as usize];
         let u = cell.seed(&self.q).map(|u| u.clamp(0.05, 0.95));
         let local = self.iterate(id, piece, u);
-        if !set.trimmed_away(piece.patch, local.xi) && cell.settles_itself(&self.q, &local) {
+        let inside = !set.trimmed_away(piece.patch, local.xi);
+        if inside && cell.settles_itself(&self.q, &local, self.slack()) || self.cut() < 0.0 {
             return;
         }
         let mut room = ROOM.take();
@@ -386,7 +385,7 @@ impl<S: Surface> Search<'_, S> {
                 return;
             }
             let own = &nets[start..start + size];
-            if part.depth > 0 && c.is_finite() {
+            if c.is_finite() {
                 let [low, high] = hull(own);
                 if box_distance2(&self.q, &low, &high) >= c * c
                     || outside_ball(own, piece.degree, &self.q, c)
@@ -399,9 +398,7 @@ impl<S: Surface> Search<'_, S> {
             if part.depth > 0 && trim.part(domain) == Part::Outside {
                 continue;
             }
-            self.parts += 1;
-            if self.parts > MOST_PARTS {
-                self.complete = false;
+            if !self.spend() {
                 return;
             }
             let middle = at(piece, part.range.map(|[a, b]| 0.5 * (a + b)));

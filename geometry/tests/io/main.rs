@@ -2,8 +2,10 @@
 //! examples.
 
 mod damage;
+mod habits;
 mod iges;
 mod json;
+mod offsets;
 mod punch;
 mod samples;
 mod support;

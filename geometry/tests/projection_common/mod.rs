@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub mod sets;
+pub mod wild;
 
 use covact_geometry::{Foot, NurbsPatch, PatchSet, Vec3};
 
@@ -154,7 +155,7 @@ pub fn exhaustive(patches: &[NurbsPatch], q: &Vec3, per_span: usize, starts: usi
     best.sqrt()
 }
 
-fn refine(patch: &NurbsPatch, span: [usize; 2], mut xi: [f64; 2], q: &Vec3) -> f64 {
+pub fn refine(patch: &NurbsPatch, span: [usize; 2], mut xi: [f64; 2], q: &Vec3) -> f64 {
     let range = [0, 1].map(|k| patch.spans(k)[span[k]]);
     let value = |xi: [f64; 2]| (patch.jet_in_span(span, xi).rho - q).norm_squared();
     let mut now = value(xi);

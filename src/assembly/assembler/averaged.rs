@@ -5,13 +5,14 @@
 use super::couplings::Couplings;
 use super::driven::Border;
 use super::per_pair::PerPair;
+use super::rigid::rounding;
 use super::{Assembler, Fault, SurfaceForce, Totals, put};
 use crate::contact::averaged::{self, GapRow, NodalGap};
 use crate::contact::carried::carried;
 use crate::contact::fault::{Piece, PointFault};
 use crate::contact::kernel::{Normal, assemble_force};
 use crate::contact::kind::{LawKind, TangentKind};
-use crate::contact::law::{GapOffset, NoOffset, Penalty};
+use crate::contact::law::{GapOffset, NoOffset, NormalLaw, PairLaw};
 use crate::contact::meeting::Meeting;
 use crate::contact::point::FaceTangent;
 use crate::contact::rigid::{Exact, RigidMaster};
@@ -108,11 +109,11 @@ impl Averaged {
 
     /// Finds the closest point of every slave point, and from them the gaps and tractions of the nodes.
     #[allow(clippy::too_many_arguments)]
-    pub fn meet<F>(
+    pub fn meet<L: NormalLaw, F>(
         &mut self,
         model: &Model,
         pair: &PairModel,
-        eps_n: f64,
+        law: &L,
         u: &[f64],
         time: f64,
         states: &mut [PointState],
@@ -146,9 +147,8 @@ impl Averaged {
             Some(offsets) => self.share(pair, nodes, reaches, &offsets),
         }
         .map_err(|(i, e)| fault(i, e))?;
-        let law = Penalty { eps_n };
         for (normal, gap) in self.normals.iter_mut().zip(&self.gaps) {
-            *normal = gap.normal(&law);
+            *normal = gap.normal(law);
         }
         for (i, p) in pair.points.iter().enumerate() {
             let closed = nodes.terms(i, p).any(|(at, _)| self.closed(at));
@@ -194,7 +194,13 @@ impl Averaged {
     }
 
     /// Tells the state what is closed, and the totals of the nodes.
-    fn count(&self, points: &mut [PointState], nodes: &mut [bool], totals: &mut Totals) {
+    fn count<L: NormalLaw>(
+        &self,
+        law: &L,
+        points: &mut [PointState],
+        nodes: &mut [bool],
+        totals: &mut Totals,
+    ) {
         for (state, carries) in points.iter_mut().zip(&self.carries) {
             state.closed = *carries;
         }
@@ -203,10 +209,10 @@ impl Averaged {
             let closed = self.closed(at);
             totals.changed += usize::from(closed != *was);
             *was = closed;
-            let (gap, normal) = (&self.gaps[at], &self.normals[at]);
+            let gap = &self.gaps[at];
             if let (true, Some(g)) = (closed, gap.gap()) {
                 totals.active += 1;
-                totals.contact_energy += 0.5 * normal.n * g * gap.area;
+                totals.contact_energy += law.energy(g) * gap.area;
                 deepest = deepest.max(-g);
             }
         }
@@ -250,7 +256,7 @@ pub(super) fn groups(pair: &PairModel, couplings: Option<&Couplings>, mut add: i
     }
 }
 
-impl Assembler<'_> {
+impl<L: PairLaw> Assembler<'_, L> {
     /// Finds the points of a pair with a rigid master; those of bodies are found before the pattern is known to do.
     pub(super) fn meet_rigid(
         &mut self,
@@ -265,14 +271,14 @@ impl Assembler<'_> {
             return Ok(());
         };
         let master = model.surfaces[*number].at(time, u)?;
-        let (eps_n, reach) = (self.penalties[index], pair.reach(model));
+        let (of_pair, reach) = (L::of(self.penalties[index]), pair.reach(model));
         let law = with_patches!(master.surface, patches => {
             let master = RigidMaster {
                 surface: patches,
                 pose: master.pose,
                 depth: master.depth,
             };
-            averaged.meet(model, pair, eps_n, u, time, states, |_, x, hint| {
+            averaged.meet(model, pair, &of_pair, u, time, states, |_, x, hint| {
                 master.meet(x, hint, reach)
             })
         })?;
@@ -307,8 +313,15 @@ impl Assembler<'_> {
         };
         let mut own = std::mem::take(own);
         let points = &mut state.points[first..first + pair.points.len()];
-        own.count(points, &mut state.nodes[nodes.range()], totals);
+        let law = L::of(self.penalties[index]);
+        own.count(&law, points, &mut state.nodes[nodes.range()], totals);
         let u = &state.u;
+        for (i, p) in pair.points.iter().enumerate() {
+            if let (true, Share::Gap(gap)) = (own.carries[i], own.shares[i]) {
+                let x = self.model.point_position(p, u);
+                totals.contact_rounding += rounding(&law, gap, p, &x);
+            }
+        }
         let center = match pair.rigid_master() {
             Some(surface) => self.model.surfaces[surface].center(time, u)?,
             None => Vec3::zeros(),

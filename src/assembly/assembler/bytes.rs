@@ -5,6 +5,7 @@ use super::maps::PointMaps;
 use super::moving::Meetings;
 use super::sliding::Sliding;
 use super::viscous::Viscous;
+use crate::contact::law::PairLaw;
 use crate::model::state::heap;
 
 /// Bytes of heap by what they are for, from the sizes of types alone: for plans.
@@ -101,7 +102,7 @@ pub(crate) mod sizes {
     }
 }
 
-impl Assembler<'_> {
+impl<L: PairLaw> Assembler<'_, L> {
     /// Bytes of heap that it holds, by part.
     pub fn parts(&self) -> Vec<(&'static str, usize)> {
         // Whoever adds a field decides here which part it belongs to.
@@ -134,6 +135,7 @@ impl Assembler<'_> {
             penalties,
             manner: _,
             linear,
+            law: _,
         } = self;
         let [values, transposed] = matrix.bytes();
         let followers: usize = follower_maps.iter().map(heap).sum();

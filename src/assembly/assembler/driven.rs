@@ -6,6 +6,7 @@
 use super::{Assembler, Fault, Totals, put};
 use crate::assembly::{Pattern, PatternError};
 use crate::contact::carried::{carried, carried_with_friction};
+use crate::contact::law::PairLaw;
 use crate::model::driven::{Driven, press, turn};
 use crate::model::state::{State, heap};
 use crate::model::{Model, SurfaceModel};
@@ -183,7 +184,7 @@ impl Border {
     }
 }
 
-impl Assembler<'_> {
+impl<L: PairLaw> Assembler<'_, L> {
     /// Forgets the sums of the last evaluation.
     pub(super) fn clear_borders(&mut self) {
         self.borders.iter_mut().for_each(Border::clear);

@@ -2,6 +2,7 @@
 //! elements, which is chosen once for each body.
 use super::{Assembler, Fault, Kind, Totals, element_fault};
 use crate::assembly::{ConstrainedScatter, DofMap, SystemMatrix};
+use crate::contact::law::PairLaw;
 use crate::model::state::{State, heap};
 use crate::model::{BodyModel, Model};
 use crate::shell::{
@@ -60,7 +61,7 @@ struct Sums<'a> {
     energy: &'a mut f64,
 }
 
-impl Assembler<'_> {
+impl<L: PairLaw> Assembler<'_, L> {
     pub(super) fn elements(
         &mut self,
         state: &mut State,

@@ -1,10 +1,11 @@
 //! Dead loads and follower pressure.
 use super::{Assembler, Fault, put};
+use crate::contact::law::PairLaw;
 use crate::model::loads::{follower_force, follower_stiffness};
 use crate::model::state::State;
 use covact_geometry::Vec3;
 
-impl Assembler<'_> {
+impl<L: PairLaw> Assembler<'_, L> {
     pub(super) fn loads<const TANGENT: bool>(
         &mut self,
         state: &State,

@@ -1,6 +1,7 @@
 //! What an assembler carries from one evaluation to the next: what a run that is continued has to set up again.
 use super::couplings::Couplings;
 use super::{Assembler, Factored, PatternError};
+use crate::contact::law::PairLaw;
 
 /// What the next evaluation depends on, beside the state.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +40,7 @@ pub enum MemoryError {
     Pattern(#[from] PatternError),
 }
 
-impl Assembler<'_> {
+impl<L: PairLaw> Assembler<'_, L> {
     /// What a run that is continued gives to [`Assembler::restore`].
     pub fn memory(&self) -> AssemblerMemory {
         // Whoever adds a field decides here whether it outlives an accepted step. All that is left out is given by the model,
@@ -74,6 +75,8 @@ impl Assembler<'_> {
             viscous: _,
             // All else of it is given by the model.
             linear,
+            // A type, no value.
+            law: _,
         } = self;
         AssemblerMemory {
             penalties: penalties.clone(),

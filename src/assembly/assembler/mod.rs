@@ -23,6 +23,7 @@ mod viscous;
 
 use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
+use crate::contact::law::{PairLaw, Penalty};
 use crate::contact::rigid::{PointFault, Touch};
 use crate::model::driven::press::PressFault;
 use crate::model::master::Masters;
@@ -43,6 +44,7 @@ use viscous::Viscous;
 
 use driven::Border;
 use elements::Systems;
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 pub use answer::PointAnswer;
@@ -179,8 +181,9 @@ pub struct Manner {
     pub secant: bool,
 }
 
-/// Evaluates the model into a sparse system.
-pub struct Assembler<'m> {
+/// Evaluates the model into a sparse system. The law of normal contact is a type, chosen where the assembler is made: every
+/// traction, energy and stiffness of contact is asked of it.
+pub struct Assembler<'m, L = Penalty> {
     model: &'m Model,
     dofs: &'m DofMap,
     matrix: SystemMatrix,
@@ -225,11 +228,37 @@ pub struct Assembler<'m> {
     pub penalties: Vec<f64>,
     /// How contact is linearised.
     pub manner: Manner,
+    law: PhantomData<fn() -> L>,
 }
 
 impl<'m> Assembler<'m> {
-    /// Builds the pattern of the model under its constraints.
+    /// Builds the pattern of the model under its constraints. Contact has the linear penalty.
+    ///
+    /// # Errors
+    /// A system that is too large.
     pub fn new(model: &'m Model, dofs: &'m DofMap) -> Result<Self, PatternError> {
+        Self::with_law(model, dofs)
+    }
+
+    /// The pattern of a model under its constraints at the start, and nothing else of an assembler.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn pattern_of(model: &Model, dofs: &DofMap) -> Result<Pattern, PatternError> {
+        let couplings = moving::first_couplings(model, &Masters::new(model));
+        let pattern = maps::pattern(model, dofs, &couplings)?;
+        pattern.fits(model.symmetric)?;
+        Ok(pattern)
+    }
+}
+
+impl<'m, L: PairLaw> Assembler<'m, L> {
+    /// [`Assembler::new`] with another law of normal contact. At small displacements it is the linear penalty throughout,
+    /// because one stiffness has to hold for the whole run.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_law(model: &'m Model, dofs: &'m DofMap) -> Result<Self, PatternError> {
         let masters = Masters::new(model);
         let couplings = moving::first_couplings(model, &masters);
         let pattern = Arc::new(maps::pattern(model, dofs, &couplings)?);
@@ -273,18 +302,8 @@ impl<'m> Assembler<'m> {
             linear,
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             manner: Manner::default(),
+            law: PhantomData,
         })
-    }
-
-    /// The pattern of a model under its constraints at the start, and nothing else of an assembler.
-    ///
-    /// # Errors
-    /// As [`Self::new`].
-    pub fn pattern_of(model: &Model, dofs: &DofMap) -> Result<Pattern, PatternError> {
-        let couplings = moving::first_couplings(model, &Masters::new(model));
-        let pattern = maps::pattern(model, dofs, &couplings)?;
-        pattern.fits(model.symmetric)?;
-        Ok(pattern)
     }
 
     /// The pattern, if it is another than when it was last taken: the solver has to analyse it.

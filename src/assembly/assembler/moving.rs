@@ -5,12 +5,13 @@ use super::couplings::Couplings;
 use super::driven::Border;
 use super::links;
 use super::per_pair::PerPair;
+use super::rigid::rounding;
 use super::touched::{self, Touched};
 use super::{Assembler, Fault, PairForce, PatternError, SurfaceForce, Totals, maps, put};
 use crate::contact::friction::history::PointHistory;
 use crate::contact::kernel::assemble_force;
 use crate::contact::kind::{FrictionKind, LawKind, MasterKind, TangentKind};
-use crate::contact::law::{GapOffset, Multipliers, NoOffset, NormalLaw, Offsets, Penalty};
+use crate::contact::law::{GapOffset, Multipliers, NoOffset, Offsets, PairLaw};
 use crate::contact::moving::{MovingMaster, MovingTouch};
 use crate::contact::point::FaceTangent;
 use crate::contact::points::SlavePoint;
@@ -163,7 +164,7 @@ fn near(
         .collect()
 }
 
-impl Assembler<'_> {
+impl<L: PairLaw> Assembler<'_, L> {
     /// Evaluates the points of all pairs with bodies as masters. Where a matrix is to be made, and one of them touches a
     /// facet that the pattern does not couple it with, the pattern is built anew.
     pub(super) fn meet<const TANGENT: bool>(
@@ -195,10 +196,10 @@ impl Assembler<'_> {
                     facets: &surface.facets,
                     depth: master.depth,
                 };
-                let (model, u, eps_n) = (self.model, &state.u, self.penalties[index]);
+                let (model, u, law) = (self.model, &state.u, L::of(self.penalties[index]));
                 let (states, reach) = (&mut state.points[range], pair.reach(model));
                 let law = match &master.own {
-                    None => averaged.meet(model, pair, eps_n, u, time, states, |_, x, hint| {
+                    None => averaged.meet(model, pair, &law, u, time, states, |_, x, hint| {
                         facets.meet(x, hint, reach, |_| true)
                     }),
                     Some(own) => {
@@ -207,7 +208,7 @@ impl Assembler<'_> {
                             normals: &surface.normals,
                             position: |n: u32| model.position(n as usize, u),
                         };
-                        averaged.meet(model, pair, eps_n, u, time, states, |i, x, hint| {
+                        averaged.meet(model, pair, &law, u, time, states, |i, x, hint| {
                             let at = accept.point(i);
                             facets.meet(x, hint, reach, |f| accept.facet(at, f))
                         })
@@ -227,7 +228,7 @@ impl Assembler<'_> {
             if let (Some(friction), Some(histories), Some(sliding)) =
                 (&pair.friction, pair.history(), self.sliding.get_mut(index))
             {
-                let ran = sliding.meet(
+                let ran = sliding.meet::<L>(
                     self.model,
                     (pair, &kernel),
                     (master, surface),
@@ -255,9 +256,7 @@ impl Assembler<'_> {
                 meetings.resize(points.len());
                 couplings.resample(points);
             }
-            let law = Penalty {
-                eps_n: self.penalties[index],
-            };
+            let law = L::of(self.penalties[index]);
             let batch = Batch {
                 model: self.model,
                 points,
@@ -417,7 +416,7 @@ impl Assembler<'_> {
         let mut deepest = 0.0f64;
         // Both passes of two are one contact with two sides, whose energy is the mean of both.
         let mut force = PairForce::default();
-        let share = if HALF { 0.25 } else { 0.5 };
+        let (law, share) = (L::of(self.penalties[index]), pair.share());
         let offsets = pair.offsets(time);
         for chunk in touched.active.chunks(CHUNK) {
             (chunk.par_iter())
@@ -450,7 +449,9 @@ impl Assembler<'_> {
                 let offset = offsets.map_or(0.0, |o| o.at(i as usize));
                 let gap = touch.xi3 - offset;
                 deepest = deepest.max(-gap);
-                totals.contact_energy += share * self.penalties[index] * gap * gap * p.area;
+                totals.contact_energy += share * law.energy(gap) * p.area;
+                let x = self.model.point_position(p, u);
+                totals.contact_rounding += rounding(&law, gap, p, &x);
                 let r = touch.residual * p.area;
                 let mut add = |node: usize, f: &Vec3, side: &mut SurfaceForce| {
                     side.force -= f;
@@ -511,7 +512,7 @@ struct Batch<'a, L> {
     u: &'a [f64],
 }
 
-impl<L: NormalLaw + Copy> Batch<'_, L> {
+impl<L: PairLaw> Batch<'_, L> {
     /// Evaluates every point under the law that the plan names: with gaps measured from where the pair says, and with
     /// multipliers where it has any. Returns what was run.
     fn offset<A: Accept>(

@@ -2,14 +2,15 @@
 use super::maps::PointMaps;
 use super::{Assembler, SurfaceForce, Totals};
 use crate::assembly::{ConstrainedScatter, DofMap, SystemMatrix};
+use crate::contact::law::{NormalLaw, PairLaw};
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::Touch;
 use nalgebra::Matrix3;
 
 /// Where the points of a pair go.
-pub(super) struct Pressed<'a> {
-    /// Penalty (force / length^3).
-    pub eps_n: f64,
+pub(super) struct Pressed<'a, L> {
+    /// Between gap and traction.
+    pub law: L,
     pub residual: &'a mut [f64],
     /// Contact forces alone.
     pub contact: &'a mut [f64],
@@ -45,7 +46,7 @@ impl PressedSums {
     }
 }
 
-impl Pressed<'_> {
+impl<L: NormalLaw> Pressed<'_, L> {
     /// Adds point `index` of the pair. The number of its nodes is known to the compiler for all faces but rare ones, so that
     /// the loops over nodes are none.
     #[inline(always)]
@@ -71,7 +72,7 @@ impl Pressed<'_> {
         let sums = &mut self.sums;
         sums.active += 1;
         sums.deepest = sums.deepest.max(-touch.gap);
-        sums.energy += 0.5 * self.eps_n * touch.gap * touch.gap * p.area;
+        sums.energy += self.law.energy(touch.gap) * p.area;
         sums.on.force -= force;
         sums.on.moment -= touch.x.cross(&force);
         for (node, w) in nodes.iter().zip(shape) {
@@ -104,7 +105,7 @@ impl Pressed<'_> {
     }
 }
 
-impl Assembler<'_> {
+impl<L: PairLaw> Assembler<'_, L> {
     /// Adds the tangent `k` of point `index` of a pair, whose master is rigid.
     pub(super) fn put_point(
         &mut self,

@@ -9,14 +9,16 @@ use crate::contact::friction::law::{FrictionLaw, Secant};
 use crate::contact::friction::rigid::{Friction, FrictionTouch};
 use crate::contact::kind::{FrictionKind, LawKind, TangentKind};
 use crate::contact::law::{
-    Augmented, GapOffset, Held, Multipliers, NoOffset, NormalLaw, Offsets, Penalty,
+    Augmented, GapOffset, Held, Multipliers, NoOffset, NormalLaw, Offsets, PairLaw,
 };
+use crate::contact::points::SlavePoint;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
 use crate::model::master::Master;
 use crate::model::plan::{GapKind, Kernel, SideKind};
 use crate::model::state::{PointState, State};
 use crate::model::{Model, PairModel};
 use crate::{with_law, with_patches};
+use covact_geometry::Vec3;
 use rayon::prelude::*;
 
 /// Most points of a pair that are evaluated at once.
@@ -28,7 +30,7 @@ pub(super) fn most(model: &Model) -> usize {
     rigid.map(|p| p.points.len()).max().unwrap_or(0)
 }
 
-impl Assembler<'_> {
+impl<L: PairLaw> Assembler<'_, L> {
     pub(super) fn contacts<const TANGENT: bool>(
         &mut self,
         state: &mut State,
@@ -42,7 +44,7 @@ impl Assembler<'_> {
         totals.pairs = vec![PairForce::default(); self.model.pairs.len()];
         self.contact.fill(0.0);
         self.clear_borders();
-        let (mut first, mut rounding) = (0, 0.0);
+        let mut first = 0;
         for (index, pair) in self.model.pairs.iter().enumerate() {
             let kernel = self.model.plan.kernel(index);
             if kernel.gap == GapKind::Averaged {
@@ -51,7 +53,6 @@ impl Assembler<'_> {
                 self.average::<TANGENT>(
                     index, first, state, time, increments, residual, rhs, totals,
                 )?;
-                self.rounding(state, index, first, &mut rounding);
                 first += n;
                 continue;
             }
@@ -61,7 +62,6 @@ impl Assembler<'_> {
                 self.moving::<TANGENT>(
                     index, state, range, time, increments, residual, rhs, totals,
                 );
-                self.rounding(state, index, first, &mut rounding);
                 first += count;
                 continue;
             };
@@ -78,13 +78,11 @@ impl Assembler<'_> {
             }
             let touches = &mut self.touches[..n];
             let u = &state.u;
-            let law = Penalty {
-                eps_n: self.penalties[index],
-            };
+            let law = L::of(self.penalties[index]);
             let friction = match (&pair.friction, pair.history()) {
                 (Some(friction), Some(range)) => Some((
                     friction.law.at(time)?,
-                    friction.ratio * law.eps_n,
+                    friction.ratio * self.penalties[index],
                     &state.histories[range],
                 )),
                 _ => None,
@@ -159,7 +157,7 @@ impl Assembler<'_> {
             }
             let none = PointMaps::default();
             let mut pressed = Pressed {
-                eps_n: law.eps_n,
+                law,
                 residual,
                 contact: &mut self.contact,
                 matrix: &mut self.matrix,
@@ -184,7 +182,7 @@ impl Assembler<'_> {
                 totals.opened += usize::from(state.closed && touch.is_none() && may_open);
                 state.closed = touch.is_some();
                 let Some(touch) = touch else { continue };
-                rounding += (law.eps_n * p.area * f64::EPSILON * touch.x.norm()).powi(2);
+                totals.contact_rounding += rounding(&law, touch.gap, p, &touch.x);
                 pressed.add::<TANGENT>(i, p, touch);
             }
             pressed.sums.note(number, totals);
@@ -194,22 +192,16 @@ impl Assembler<'_> {
             }
         }
         self.close_borders::<TANGENT>(&state.u, increments, residual, rhs)?;
-        totals.contact_rounding = rounding.sqrt();
+        totals.contact_rounding = totals.contact_rounding.sqrt();
         totals.contact_norm = self.contact.iter().map(|f| f * f).sum::<f64>().sqrt();
         Ok(())
     }
+}
 
-    /// What a pair adds to the square of [`Totals::contact_rounding`]. A gap is a difference of positions, whose digits end at
-    /// theirs, however small the displacements are.
-    fn rounding(&self, state: &State, index: usize, first: usize, sum: &mut f64) {
-        let eps = self.penalties[index];
-        let slaves = state.slaves(self.model, index);
-        let points = &state.points[first..first + slaves.len()];
-        for (p, _) in slaves.iter().zip(points).filter(|(_, s)| s.closed) {
-            let x = self.model.point_position(p, &state.u).norm();
-            *sum += (eps * p.area * f64::EPSILON * x).powi(2);
-        }
-    }
+/// What a point in contact adds to the square of [`Totals::contact_rounding`]. A gap is a difference of positions, whose
+/// digits end at theirs, however small the displacements are.
+pub(super) fn rounding(law: &impl NormalLaw, gap: f64, p: &SlavePoint, x: &Vec3) -> f64 {
+    (law.response(gap).dn * p.area * f64::EPSILON * x.norm()).powi(2)
 }
 
 /// The slave points of a pair at one trial state.
@@ -242,7 +234,7 @@ impl Told for Option<PointAnswer> {
     }
 }
 
-impl<P: ClosestPoint> Batch<'_, P, Penalty> {
+impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
     /// Evaluates every point with friction; surface, law of friction and what is told are types here. `hold` keeps closed
     /// points closed. Returns what was run.
     #[allow(clippy::too_many_arguments)]
@@ -268,7 +260,7 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
                 let x = self.model.position_of(p, self.u);
                 let law = Augmented {
                     held: hold && s.closed,
-                    ..history.law(self.law.eps_n, offsets.map_or(0.0, |o| o.at(i)))
+                    ..history.law(*self.law, offsets.map_or(0.0, |o| o.at(i)))
                 };
                 let touch = placed.touch_with_friction(&x, &mut s.hint, &law, friction, history);
                 answer.tell(touched::of(&touch), history, friction.eps_t);
@@ -284,7 +276,7 @@ impl<P: ClosestPoint> Batch<'_, P, Penalty> {
     }
 }
 
-impl<P: ClosestPoint, L: NormalLaw + Copy> Batch<'_, P, L> {
+impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
     /// Evaluates every point with the tangent that the plan names. Returns what was run.
     fn choose<O: GapOffset>(
         &self,

@@ -2,6 +2,7 @@
 //! attraction points.
 use super::answer::PointAnswer;
 use super::per_pair::PerPair;
+use super::rigid::rounding;
 use super::touched::{self, Touched};
 use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
 use crate::contact::friction::history::PointHistory;
@@ -11,7 +12,7 @@ use crate::contact::friction::rigid::Friction;
 use crate::contact::friction::scatter::PointNodes;
 use crate::contact::friction::touch::MovingFrictionTouch;
 use crate::contact::kind::{LawKind, TangentKind};
-use crate::contact::law::Offsets;
+use crate::contact::law::{Offsets, PairLaw};
 use crate::contact::moving::MovingMaster;
 use crate::contact::rigid::PointFault;
 use crate::model::friction::FrictionModel;
@@ -118,12 +119,12 @@ impl Sliding {
 
     /// Evaluates every point of a pair; returns what was run.
     #[allow(clippy::too_many_arguments)]
-    pub fn meet(
+    pub fn meet<L: PairLaw>(
         &mut self,
         model: &Model,
         (pair, kernel): (&PairModel, &Kernel),
         (master, surface): (&BodyMaster, &BodySurface),
-        (friction, eps_n, secant): (&FrictionModel, f64, bool),
+        (friction, penalty, secant): (&FrictionModel, f64, bool),
         u: &[f64],
         time: f64,
         states: &mut [PointState],
@@ -137,12 +138,12 @@ impl Sliding {
                 facets: &surface.facets,
                 depth: master.depth,
             },
-            eps_n,
+            law: L::of(penalty),
             u,
             histories,
             offsets: pair.offsets(time),
         };
-        let eps_t = friction.ratio * eps_n;
+        let eps_t = friction.ratio * penalty;
         let touches = &mut self.touched.all;
         let now = friction.law.at(time)?;
         let ran = with_law!(now, law => {
@@ -168,7 +169,7 @@ impl Sliding {
     }
 }
 
-impl Assembler<'_> {
+impl<L: PairLaw> Assembler<'_, L> {
     /// Sums up a pair with friction that [`Assembler::meet`] has evaluated.
     #[allow(clippy::too_many_arguments)]
     pub(super) fn slide<const TANGENT: bool>(
@@ -223,10 +224,10 @@ impl Assembler<'_> {
             stride,
         } = sliding;
         touched.note(&mut state.points[range], totals);
-        let eps_n = self.penalties[index];
+        let law = L::of(self.penalties[index]);
         let mut deepest = 0.0f64;
         let mut force = PairForce::default();
-        let share = if half { 0.25 } else { 0.5 };
+        let share = pair.share();
         for chunk in touched.active.chunks(CHUNK) {
             (chunk.par_iter())
                 .zip(work.par_iter_mut())
@@ -266,7 +267,9 @@ impl Assembler<'_> {
                 };
                 let p = &points[i as usize];
                 deepest = deepest.max(-touch.gap);
-                totals.contact_energy += share * eps_n * touch.gap * touch.gap * p.area;
+                totals.contact_energy += share * law.energy(touch.gap) * p.area;
+                let x = self.model.point_position(p, u);
+                totals.contact_rounding += rounding(&law, touch.gap, p, &x);
                 let nodes = &work.nodes;
                 for (k, (node, f)) in nodes.forces(&touch.response, p.area).enumerate() {
                     let node = node as usize;
@@ -313,12 +316,12 @@ impl Assembler<'_> {
 }
 
 /// The slave points of a pair at one trial state.
-struct Batch<'a> {
+struct Batch<'a, L> {
     model: &'a Model,
     pair: &'a PairModel,
     kernel: &'a Kernel,
     master: MovingMaster<'a>,
-    eps_n: f64,
+    law: L,
     u: &'a [f64],
     histories: &'a [PointHistory],
     offsets: Option<Offsets<'a>>,
@@ -326,7 +329,7 @@ struct Batch<'a> {
 
 type Touches = [Result<Option<MovingFrictionTouch>, PointFault>];
 
-impl Batch<'_> {
+impl<L: PairLaw> Batch<'_, L> {
     /// Evaluates every point with the virtual work that the pair needs.
     fn choose<F: FrictionLaw, A: Accept>(
         &self,
@@ -358,7 +361,7 @@ impl Batch<'_> {
             .with_min_len(32)
             .for_each(|(i, (((p, s), out), history))| {
                 let x = self.model.point_position(p, self.u);
-                let law = history.law(self.eps_n, self.offsets.map_or(0.0, |o| o.at(i)));
+                let law = history.law(self.law, self.offsets.map_or(0.0, |o| o.at(i)));
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
                 let hint = &mut s.hint;

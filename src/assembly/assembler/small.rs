@@ -3,6 +3,7 @@
 use super::elements::{Quadratic, Systems, quadratic, undeformed};
 use super::{Assembler, Fault, Kind, PairForce, PatternError, SurfaceForce, Totals};
 use crate::assembly::{DofMap, Pattern, SystemMatrix};
+use crate::contact::law::{NormalLaw, PairLaw, Penalty};
 use crate::model::Model;
 use crate::model::loads::follower_force;
 use crate::model::motion::SmallMotion;
@@ -133,7 +134,7 @@ impl Linear {
     }
 }
 
-impl Assembler<'_> {
+impl<L: PairLaw> Assembler<'_, L> {
     /// The small displacements of the model.
     fn linear(&mut self) -> Option<(&mut Linear, &SmallModel)> {
         let model = self.model;
@@ -242,6 +243,7 @@ impl Assembler<'_> {
             let range = first..first + pair.points.len();
             first = range.end;
             let eps = self.penalties[index];
+            let law = Penalty { eps_n: eps };
             let before = totals.active;
             let (mut deepest, mut force) = (0.0f64, PairForce::default());
             for (i, (p, state)) in pair
@@ -256,9 +258,9 @@ impl Assembler<'_> {
                 let gap = linear.gaps[range.start + i];
                 totals.active += 1;
                 deepest = deepest.max(-gap);
-                totals.contact_energy += 0.5 * eps * gap * gap * p.area;
+                totals.contact_energy += law.energy(gap) * p.area;
                 rounding += (eps * p.area * f64::EPSILON * (at.gap.abs() + linear.largest)).powi(2);
-                let f = at.normal * (eps * gap * p.area);
+                let f = at.normal * (law.response(gap).n * p.area);
                 let contact = &mut self.contact;
                 let mut add = |node: usize, f: Vec3, side: &mut SurfaceForce| {
                     side.force -= f;

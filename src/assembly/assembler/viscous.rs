@@ -1,6 +1,7 @@
 //! Viscous stabilisation: a force on every unknown of a body along its way since the start of the step, and a diagonal of the
 //! tangent. Linear, so exact. Nothing is allocated where the scene does not ask for it.
 use super::Assembler;
+use crate::contact::law::PairLaw;
 use crate::model::Model;
 use crate::model::state::heap;
 use covact_geometry::Vec3;
@@ -36,7 +37,7 @@ impl Viscous {
     }
 }
 
-impl Assembler<'_> {
+impl<L: PairLaw> Assembler<'_, L> {
     /// Tells that a step from `start` to `end` begins at the displacements `u`.
     pub fn begin_step(&mut self, u: &[f64], start: f64, end: f64) {
         if let (Some(viscous), Some(model)) = (&mut self.viscous, &self.model.stabilization) {

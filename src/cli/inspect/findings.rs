@@ -98,8 +98,14 @@ pub(super) struct Surface {
     pub branching_edges: usize,
     pub largest_gap: f64,
     pub largest_gap_at: Option<GapPlace>,
+    /// Distance up to which gaps are no gaps.
+    pub resolution: f64,
+    /// Joints over wider gaps.
+    pub bridged: Vec<GapPlace>,
     /// Free edges that come near each other without being joined.
     pub open_gaps: Vec<GapPlace>,
+    /// Free edges near each other that were not joined because both patches leave them in the same direction.
+    pub stacked: Vec<GapPlace>,
     pub overlaps: Vec<OverlapPlace>,
     pub borders: Vec<Rim>,
     pub parts: Vec<Part>,
@@ -146,6 +152,8 @@ pub(super) struct Rim {
 #[derive(Debug, Serialize)]
 pub(super) struct Part {
     pub closed: bool,
+    /// Whether it has one side only, so that distances from it carry no sign.
+    pub one_sided: bool,
     /// What a closed part encloses.
     pub volume: Option<f64>,
     pub area: f64,
@@ -252,6 +260,7 @@ impl Surface {
         let areas = set.areas();
         let part = |(members, volume): (&Vec<usize>, &Option<f64>)| Part {
             closed: volume.is_some(),
+            one_sided: members.iter().any(|&p| set.sides()[p] == 0.0),
             volume: volume.map(f64::abs),
             area: members.iter().map(|&p| areas[p]).sum(),
             patches: members.clone(),
@@ -271,7 +280,10 @@ impl Surface {
             branching_edges: edges.branching.len(),
             largest_gap: edges.largest_gap,
             largest_gap_at: edges.largest_gap_at.as_ref().map(gap),
+            resolution: edges.resolution,
+            bridged: edges.bridged.iter().map(gap).collect(),
             open_gaps: edges.open_gaps.iter().map(gap).collect(),
+            stacked: edges.stacked.iter().map(gap).collect(),
             overlaps: edges.overlaps.iter().map(overlap).collect(),
             borders: edges.borders.iter().map(rim).collect(),
             parts: set

@@ -1,5 +1,5 @@
 //! The findings as text.
-use super::findings::{Curvature, EdgeName, Findings, Patch, Surface};
+use super::findings::{Curvature, EdgeName, Findings, GapPlace, Patch, Surface};
 use covact_geometry::io::{FaceBorder, SkipKind};
 use std::fmt::Write;
 
@@ -52,6 +52,13 @@ fn patches(out: &mut String, f: &Findings) {
              tolerance {:.3e}",
             t.curves, t.exact, t.refitted, t.projected, t.largest_gap, t.largest_error, t.tolerance
         );
+        if t.bridged > 0 {
+            let _ = writeln!(
+                out,
+                "  {} gap(s) between curves of a boundary were closed, the largest {:.1e}",
+                t.bridged, t.largest_bridge
+            );
+        }
         if t.rejected > 0 {
             let _ = writeln!(
                 out,
@@ -145,7 +152,7 @@ fn all(out: &mut String, s: &Surface) {
             edge(b)
         );
     }
-    listed(out, "open gap", &s.open_gaps, |g| {
+    let between = |g: &GapPlace| {
         let [a, b] = &g.edges;
         format!(
             "{:.3e} at {}, between {} and {}",
@@ -153,6 +160,18 @@ fn all(out: &mut String, s: &Surface) {
             place(g.at),
             edge(a),
             edge(b)
+        )
+    };
+    let mut bridged: Vec<&GapPlace> = s.bridged.iter().collect();
+    bridged.sort_by(|a, b| b.gap.total_cmp(&a.gap));
+    listed(out, "bridged", &bridged, |g| {
+        format!("gap of {}", between(g))
+    });
+    listed(out, "open gap", &s.open_gaps, between);
+    listed(out, "stacked", &s.stacked, |g| {
+        format!(
+            "{}: not joined, both patches leave the edge in the same direction",
+            between(g)
         )
     });
     listed(out, "overlap", &s.overlaps, |o| {
@@ -177,6 +196,9 @@ fn all(out: &mut String, s: &Surface) {
         let n = p.patches.len();
         let inside = match p.volume {
             Some(volume) => format!("closed, volume {volume:.6}"),
+            None if p.one_sided => {
+                "with one side only: distances from it carry no sign".to_string()
+            }
             None => "open".to_string(),
         };
         format!(

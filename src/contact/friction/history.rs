@@ -1,6 +1,6 @@
 //! What a slave point remembers between steps.
 use super::trial::Traction;
-use crate::contact::law::{Augmented, Penalty};
+use crate::contact::law::{Augmented, NormalLaw};
 use covact_geometry::{Hint, Vec3};
 use nalgebra::UnitQuaternion;
 
@@ -59,11 +59,11 @@ impl Turn {
 }
 
 impl PointHistory {
-    /// Law of the normal traction of the point, its gap measured from `z0` (length).
+    /// Law of the normal traction of the point under the law of its pair, its gap measured from `z0` (length).
     #[inline]
-    pub fn law(&self, eps_n: f64, z0: f64) -> Augmented {
+    pub fn law<L>(&self, law: L, z0: f64) -> Augmented<L> {
         Augmented {
-            law: Penalty { eps_n },
+            law,
             z0,
             lambda_n: self.lambda_n,
             held: false,
@@ -132,12 +132,12 @@ impl PointHistory {
     /// Takes over the end of an accepted step in which a point that was in contact has opened, at `local` in the coordinates
     /// of the base. `foot` is its gap (length) and the unit normal at its foot, nothing where there is none. It slides, and its
     /// traction falls to nothing, in the part of the step before it opens: the normal traction is taken to pass evenly to
-    /// what the penalty `eps_n` would make of the gap.
+    /// what the law of the pair would make of the gap.
     pub fn leave(
         &mut self,
         local: &Vec3,
         foot: Option<(f64, Vec3)>,
-        eps_n: f64,
+        law: &impl NormalLaw,
         eps_t: f64,
         to_space: &Turn,
     ) {
@@ -146,7 +146,7 @@ impl PointHistory {
             // Without a foot the point has gone at once.
             let mut trial = before;
             if let Some((gap, normal)) = foot {
-                let beyond = self.lambda_n + eps_n * gap;
+                let beyond = self.lambda_n + law.response(gap).n;
                 if beyond > self.n {
                     let part = self.n / (self.n - beyond);
                     let v = self.attraction(eps_t).unprojected(local);
@@ -177,6 +177,7 @@ impl PointHistory {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::law::Penalty;
 
     /// A point that half of the step takes to open: `N` from -1 to 1.
     fn left(traction: Vec3, to: Vec3) -> PointHistory {
@@ -188,7 +189,8 @@ mod tests {
             ..PointHistory::default()
         };
         let foot = Some((to.z, Vec3::z()));
-        history.leave(&to, foot, 1.0 / to.z, 1.0, &Turn::none());
+        let law = Penalty { eps_n: 1.0 / to.z };
+        history.leave(&to, foot, &law, 1.0, &Turn::none());
         assert_eq!((history.base, history.approach), (to, to.z));
         assert_eq!((history.lambda, history.t), (Vec3::zeros(), Vec3::zeros()));
         history
@@ -215,7 +217,8 @@ mod tests {
             ..PointHistory::default()
         };
         let still = Turn::none();
-        history.leave(&Vec3::new(5.0, 0.0, 9.0), None, 2.0, 1.0, &still);
+        let law = Penalty { eps_n: 2.0 };
+        history.leave(&Vec3::new(5.0, 0.0, 9.0), None, &law, 1.0, &still);
         assert!((history.slip - 0.3).abs() < 1e-15 && (history.dissipated - 0.045).abs() < 1e-15);
         assert!(history.approach.is_infinite() && history.status == PointStatus::Open);
     }

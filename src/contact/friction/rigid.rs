@@ -6,7 +6,7 @@ use crate::contact::closest::ClosestPoint;
 use crate::contact::corner::Steady;
 use crate::contact::fault::PointFault;
 use crate::contact::kernel::Normal;
-use crate::contact::law::{Augmented, NormalLaw};
+use crate::contact::law::{Augmented, NormalLaw, PairLaw};
 use crate::contact::placed::Placed;
 use crate::contact::rigid::{Exact, RigidMaster, Touch, respond_rigid, respond_steady};
 use covact_geometry::{Hint, Vec3};
@@ -50,11 +50,11 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
     ///
     /// # Errors
     /// [`PointFault`] as there.
-    pub fn touch_with_friction<F: FrictionLaw>(
+    pub fn touch_with_friction<L: PairLaw, F: FrictionLaw>(
         &self,
         x: &Vec3,
         hint: &mut Option<Hint>,
-        law: &Augmented,
+        law: &Augmented<L>,
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Result<Option<FrictionTouch>, PointFault> {
@@ -68,18 +68,18 @@ impl<P: ClosestPoint> Placed<'_, P> {
     /// # Errors
     /// [`PointFault`] as there.
     #[inline]
-    pub fn touch_with_friction<F: FrictionLaw>(
+    pub fn touch_with_friction<L: PairLaw, F: FrictionLaw>(
         &self,
         x: &Vec3,
         hint: &mut Option<Hint>,
-        law: &Augmented,
+        law: &Augmented<L>,
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Result<Option<FrictionTouch>, PointFault> {
         self.at_foot(x, hint, law, |local, foot| {
             let geometry = self.geometry(local, foot)?;
             let xi3 = geometry.xi3();
-            let normal = law.normal(xi3);
+            let normal = law.response(xi3);
             // The pressure of a point that is held is nothing to go by: it is far from the surface.
             let limit = match law.held {
                 true => Normal {

@@ -5,7 +5,7 @@ use super::law::FrictionLaw;
 use super::moving::{Form, Response, respond_with_friction};
 use super::rigid::Friction;
 use crate::contact::fault::{Piece, PointFault};
-use crate::contact::law::{Augmented, NormalLaw};
+use crate::contact::law::{Augmented, NormalLaw, PairLaw};
 use crate::contact::moving::MovingMaster;
 use covact_geometry::{Hint, Vec3};
 
@@ -32,11 +32,11 @@ impl MovingMaster<'_> {
     /// # Errors
     /// [`PointFault`] as there, and where the facet of the attraction point has degenerated.
     #[expect(clippy::too_many_arguments)]
-    pub fn touch_with_friction<F: FrictionLaw, M: Form>(
+    pub fn touch_with_friction<L: PairLaw, F: FrictionLaw, M: Form>(
         &self,
         x: &Vec3,
         hint: &mut Option<Hint>,
-        law: &Augmented,
+        law: &Augmented<L>,
         friction: &Friction<F>,
         history: &PointHistory,
         form: &M,

@@ -3,6 +3,7 @@ use super::super::ModelError;
 use super::super::error::{At, cause, number, text};
 use super::super::surface::{FacetModel, SurfaceSet};
 use super::Builder;
+use super::surfaces::joined;
 use crate::limits;
 use crate::scene::{self, FacetKind};
 use covact_geometry::PatchSet;
@@ -10,7 +11,7 @@ use covact_geometry::facet::{
     FacetError, Faceted, Refinement, bilinear_facets, biquadratic_facets, distance_from,
     smooth_patches,
 };
-use covact_geometry::io::{CadError, CadFile, Stl, read_path, read_stl_path};
+use covact_geometry::io::{CadError, CadFile, ReadOptions, Stl, read_path_with, read_stl_path};
 
 /// What the file of a surface holds.
 pub(super) enum Source {
@@ -54,14 +55,14 @@ impl Builder<'_> {
                 let made = bilinear_facets(&exact, refinement).map_err(told)?;
                 room(made.mesh.facets.len())?;
                 let facets = made.mesh.surfaces().map_err(told)?;
-                let set = PatchSet::new(facets, None).at(here)?;
+                let set = joined(facets).at(here)?;
                 (SurfaceSet::Bilinear(set), Made::of(&made))
             }
             FacetKind::Biquadratic => {
                 let made = biquadratic_facets(&exact, refinement).map_err(told)?;
                 room(made.mesh.facets.len())?;
                 let facets = made.mesh.surfaces().map_err(told)?;
-                let set = PatchSet::new(facets, None).at(here)?;
+                let set = joined(facets).at(here)?;
                 (SurfaceSet::Biquadratic(set), Made::of(&made))
             }
             FacetKind::Smooth => {
@@ -69,7 +70,7 @@ impl Builder<'_> {
                 room(made.mesh.facets.len())?;
                 let patches = smooth_patches(&made.mesh).map_err(told)?;
                 made.deviation = distance_from(&exact, &patches);
-                let set = PatchSet::new(patches, None).at(here)?;
+                let set = joined(patches).at(here)?;
                 (SurfaceSet::Nurbs(set), Made::of(&made))
             }
         };
@@ -116,7 +117,8 @@ impl Builder<'_> {
     pub(super) fn read_cad(&self, name: &str, cad: &scene::CadFile) -> Result<Source, ModelError> {
         let field = || format!("/surfaces/{name}/cad/file");
         let path = self.dir.join(&cad.file);
-        let error = match read_path(&path) {
+        let options = ReadOptions { hidden: cad.hidden };
+        let error = match read_path_with(&path, &options) {
             Ok(file) => return Ok(Source::Cad(file)),
             Err(error) => error,
         };
@@ -176,7 +178,7 @@ impl Builder<'_> {
         let facets = mesh
             .surfaces()
             .map_err(|e| text(field("cad/file"), e.to_string()))?;
-        let set = PatchSet::new(facets, None).at(|| field("cad/file"))?;
+        let set = joined(facets).at(|| field("cad/file"))?;
         let origin: Vec<u32> = (stl.numbers.iter()).flat_map(|&n| [n; 3]).collect();
         Ok(Cut {
             labels: origin

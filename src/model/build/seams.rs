@@ -34,6 +34,29 @@ impl Builder<'_> {
                 number(edges.tolerance)
             ));
         }
+        let label_pair = |gap: &Gap| gap.edges.map(|e| format!("{} {}", label(e.0), edge(e.1)));
+        if let Some(gap) = edges.bridged.iter().max_by(widest) {
+            let [one, other] = label_pair(gap);
+            self.notes.push(format!(
+                "surface `{name}`: {} pair(s) of edges were joined over gaps wider than {}, the widest {} at {} between \
+                 {one} and {other}",
+                edges.bridged.len(),
+                number(edges.resolution),
+                number(gap.gap),
+                at(&gap.at),
+            ));
+        }
+        let nearest = |a: &&Gap, b: &&Gap| a.gap.total_cmp(&b.gap);
+        if let Some(gap) = edges.stacked.iter().min_by(nearest) {
+            let [one, other] = label_pair(gap);
+            self.notes.push(format!(
+                "surface `{name}`: {} pair(s) of edges lie near each other but were not joined, as both patches leave them \
+                 in the same direction, like sheets on top of each other; the nearest {} apart at {}: {one} and {other}",
+                edges.stacked.len(),
+                number(gap.gap),
+                at(&gap.at),
+            ));
+        }
         let deepest = |a: &&Overlap, b: &&Overlap| a.depth.total_cmp(&b.depth);
         if let Some(overlap) = edges.overlaps.iter().max_by(deepest) {
             let [one, other] = [overlap.edge.0, overlap.patch].map(label);
@@ -45,5 +68,13 @@ impl Builder<'_> {
                 at(&overlap.at)
             ));
         }
+    }
+}
+
+/// An edge of a patch in words.
+fn edge(number: u32) -> String {
+    match number {
+        n @ 0..4 => format!("side {n}"),
+        n => format!("trim curve {}", n - 4),
     }
 }

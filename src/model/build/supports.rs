@@ -223,7 +223,7 @@ fn agree(others: &[(&Prescription, Vec3)], value: &Prescription, x: Vec3, end: f
 }
 
 /// Constrained components of a support, `None` standing for zero.
-fn components(support: &Support) -> Vec<(u32, Option<Value>)> {
+pub(super) fn components(support: &Support) -> Vec<(u32, Option<Value>)> {
     if support.fixed {
         return (0..3).map(|c| (c, None)).collect();
     }

@@ -6,17 +6,17 @@ use super::super::{ModelError, PairModel, SurfaceModel};
 use super::Builder;
 use super::facets::Source;
 use crate::contact::closest::ClosestPoint;
-use crate::scene::{self, Side};
-use covact_geometry::project::{ComponentSide, SideError, SideOutcome};
-use covact_geometry::{NurbsPatch, PatchSet, Vec3, io, primitives};
+use crate::scene::{self, InitialOverclosure, Side};
+use covact_geometry::project::{ComponentSide, Joining, PatchSetError, SideError, SideOutcome};
+use covact_geometry::{NurbsPatch, PatchSet, Surface, Vec3, io, primitives};
 
 /// Patches of a surface as its source gives them.
 struct Patches {
     patches: Vec<NurbsPatch>,
     /// What the user knows them by, in the same order.
     labels: Vec<String>,
-    /// Edges closer than this are the same (length).
-    tolerance: Option<f64>,
+    /// How near edges must be to each other to be the same.
+    joining: Joining,
 }
 
 /// Surfaces that are listed one by one in a message; the rest is counted.
@@ -102,7 +102,7 @@ impl Builder<'_> {
             r.map(|patches| Patches {
                 labels: vec![format!("the {f}"); patches.len()],
                 patches,
-                tolerance: None,
+                joining: Joining::default(),
             })
             .map_err(|e| text(field(f), e.to_string()))
         };
@@ -234,7 +234,10 @@ impl Builder<'_> {
                 .map(|p| format!("entity {}", p.entity))
                 .collect(),
             patches,
-            tolerance: cad.tolerance,
+            joining: Joining {
+                tolerance: cad.tolerance,
+                resolution: file.resolution.map(|r| r * factor),
+            },
         })
     }
 
@@ -329,7 +332,40 @@ impl Builder<'_> {
             },
         };
         self.undecided(name, (model, labels), &found, "where the slave starts");
+        self.shrunk_on(name, model, &found, &centers);
         Ok(())
+    }
+
+    /// Where a contact shrinks onto the surface, its slave starts on the wrong side: parts of the surface that the slave points
+    /// put on one side and the elements behind them on the other are as the elements say.
+    fn shrunk_on(
+        &mut self,
+        name: &str,
+        model: &mut SurfaceModel,
+        found: &[ComponentSide],
+        centers: &[Vec3],
+    ) {
+        let shrinks = self.scene.contacts.values().any(|c| {
+            c.master == name && matches!(c.initial_overclosure, InitialOverclosure::Shrink { .. })
+        });
+        if !shrinks {
+            return;
+        }
+        let before = model.set.sides().to_vec();
+        if model.set.orient_towards(centers).is_err() {
+            return;
+        }
+        let changed = found.iter().filter(|part| {
+            let patch = model.set.components()[part.component][0];
+            model.set.sides()[patch] != before[patch]
+        });
+        let changed = changed.count();
+        if changed > 0 {
+            self.notes.push(format!(
+                "surface `{name}`: the slave points start on one side of {changed} of its {} unconnected part(s), the elements                  behind them on the other; as a contact asks for `shrink`, the points count as overclosed, and the outside is                  where the elements are: say `side` if that is wrong",
+                found.len()
+            ));
+        }
     }
 
     /// Centres of the elements below the slave faces of all contacts with a surface.
@@ -389,8 +425,32 @@ fn scaled(
             .collect::<Result<Vec<_>, _>>()
             .map_err(|e| text(here(), e.to_string()))?
     };
-    let set = PatchSet::new(patches, source.tolerance.map(|t| t * scale)).at(here)?;
+    let joining = Joining {
+        tolerance: source.joining.tolerance.map(|t| t * scale),
+        resolution: source.joining.resolution.map(|r| r * scale),
+    };
+    let set = PatchSet::join(patches, joining).at(here)?;
+    if let Err(PatchSetError::NotOrientable(a, b, members)) = set.two_sided() {
+        let label = |patch: usize| source.labels.get(patch).map_or("?", String::as_str);
+        let message = format!(
+            "surface `{name}` has one side only, like a Moebius band: {} and {} cannot be given the same outside in a part \
+             of {} patch(es), and contact needs an outside",
+            label(a),
+            label(b),
+            members.len()
+        );
+        return Err(text(here(), message).help(
+            "leave out one of the patches with `cad.entities`, or cut the surface open in the CAD system",
+        ));
+    }
     Ok((set, source.labels))
+}
+
+/// Facets joined where their edges coincide.
+pub(super) fn joined<S: Surface>(facets: Vec<S>) -> Result<PatchSet<S>, PatchSetError> {
+    let set = PatchSet::new(facets, None)?;
+    set.two_sided()?;
+    Ok(set)
 }
 
 fn undecided(found: &ComponentSide) -> bool {

@@ -4,7 +4,7 @@ use super::turn;
 use super::{Driven, Model, SurfaceModel};
 use crate::contact::carried::{Carried, carried, cross_matrix};
 use crate::contact::friction::history::PointHistory;
-use crate::contact::law::{Augmented, Penalty};
+use crate::contact::law::{Augmented, NormalLaw, PairLaw, Penalty};
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, behind, free};
 use crate::model::PairModel;
 use crate::model::surface::SurfaceSet;
@@ -50,19 +50,19 @@ pub enum Placed {
 }
 
 /// Slave points of all pairs of a surface, at rest.
-pub struct Presser<'m> {
+pub struct Presser<'m, L = Penalty> {
     surface: &'m SurfaceModel,
     driven: &'m Driven,
-    pairs: Vec<PairAtRest<'m>>,
+    pairs: Vec<PairAtRest<'m, L>>,
     /// Whether any pair has friction, which resists what the normal tractions here do not.
     slides: bool,
     /// Largest step: a fraction of an element and of the depth.
     stride: f64,
 }
 
-struct PairAtRest<'m> {
+struct PairAtRest<'m, L> {
     model: &'m PairModel,
-    law: Penalty,
+    law: L,
     points: Vec<PointAtRest>,
 }
 
@@ -81,7 +81,7 @@ const GRAZE: f64 = 0.01;
 /// Steps of a search.
 const STEPS: usize = 400;
 
-impl<'m> Presser<'m> {
+impl<'m, L: PairLaw> Presser<'m, L> {
     /// The slave points of surface `index` at displacements `u`; penalties per pair of the model, histories of all points
     /// that have one, or none before there are any.
     pub fn new(
@@ -94,7 +94,7 @@ impl<'m> Presser<'m> {
         let mut size = surface.depth;
         let mut slides = false;
         let mut pairs = Vec::new();
-        for (pair, &eps_n) in model.pairs.iter().zip(penalties) {
+        for (pair, &penalty) in model.pairs.iter().zip(penalties) {
             if pair.rigid_master() != Some(index) {
                 continue;
             }
@@ -113,7 +113,7 @@ impl<'m> Presser<'m> {
                 .collect();
             pairs.push(PairAtRest {
                 model: pair,
-                law: Penalty { eps_n },
+                law: L::of(penalty),
                 points,
             });
         }
@@ -168,15 +168,16 @@ impl<'m> Presser<'m> {
         };
         for pair in &mut self.pairs {
             let (law, offsets) = (pair.law, pair.model.offsets(t));
+            let law_of = |i: usize, p: &PointAtRest| Augmented {
+                law,
+                z0: offsets.map_or(0.0, |o| o.at(i)),
+                lambda_n: p.lambda_n,
+                held: false,
+            };
             let touches: Vec<_> = (pair.points.par_iter_mut().enumerate())
                 .with_min_len(64)
                 .map(|(i, p)| {
-                    let law = Augmented {
-                        law,
-                        z0: offsets.map_or(0.0, |o| o.at(i)),
-                        lambda_n: p.lambda_n,
-                        held: false,
-                    };
+                    let law = law_of(i, p);
                     master.touch(&p.x, &mut p.hint, &law, &Exact)
                 })
                 .collect();
@@ -192,7 +193,7 @@ impl<'m> Presser<'m> {
                 let c = carried(&r, &k, &(p.x - center));
                 out.active += 1;
                 // Its derivative is the traction.
-                out.energy += 0.5 * touch.n.powi(2) / pair.law.eps_n * p.area;
+                out.energy += law_of(point, p).energy(touch.xi3) * p.area;
                 add(&mut out.residual, &-r, &c.spin);
                 add_tangent(&mut out.tangent, &k, &c);
             }

@@ -1,10 +1,44 @@
 //! Where driven surfaces stand before the first step: a surface that touches nothing has no stiffness, so it is moved
 //! along its force until it touches.
 use super::press::Presser;
-use super::{Model, ModelError, text};
-use crate::model::error::At;
+use super::{Driven, Model, ModelError, SurfaceModel, text};
+use crate::contact::law::Penalty;
+use crate::model::error::{At, number};
 use crate::scene::Scene;
 use nalgebra::Vector6;
+
+/// Part of an element below which lengths have to be told apart: contact rests on penetrations not much larger.
+const RESOLVED: f64 = 1e-6;
+
+/// The surface is neither so large nor so far away that its closest points have no digits left on the scale of the elements
+/// it meets. The search for its first contact would creep on for hours there, and find nothing of meaning.
+fn resolved(
+    model: &Model,
+    (index, surface, driven): (usize, &SurfaceModel, &Driven),
+) -> Result<(), ModelError> {
+    let pairs = model
+        .pairs
+        .iter()
+        .filter(|p| p.rigid_master() == Some(index));
+    let element = pairs.fold(f64::INFINITY, |a, p| a.min(p.element_size));
+    let name = &surface.name;
+    let pose = (surface.motion.pose(0.0)).at(|| format!("/surfaces/{name}/motion"))?;
+    let corners = surface.set.bounds().map(|b| b.norm());
+    let placed = [driven.center.norm(), pose.translation.vector.norm()];
+    let largest = corners.into_iter().chain(placed).fold(0.0, f64::max);
+    let rounding = f64::EPSILON * largest;
+    // Not finite is no better.
+    if rounding <= RESOLVED * element || element.is_infinite() {
+        return Ok(());
+    }
+    let message = format!(
+        "surface `{name}` has coordinates up to {largest:.1e}, where double precision tells lengths of {rounding:.1e} apart, \
+         and presses on elements of {}: the contact cannot be resolved",
+        number(element)
+    );
+    Err(text(format!("/surfaces/{name}"), message)
+        .help("check the units, the radius and the centre of the surface"))
+}
 
 /// Moves every driven surface along its force (where it has none, about its moment) until it first touches, and notes
 /// how far. One that is free to turn only, which friction alone resists, stays where it is.
@@ -25,7 +59,8 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
         let (index, surface, driven) = entry;
         let name = &surface.name;
         let pointer = || format!("/surfaces/{name}/motion/free");
-        let mut presser = Presser::new(model, entry, &penalties, &[], &u);
+        resolved(model, entry)?;
+        let mut presser = Presser::<Penalty>::new(model, entry, &penalties, &[], &u);
         if presser.is_empty() {
             let message =
                 format!("surface `{name}` is driven by force, but takes part in no contact");
@@ -36,7 +71,7 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
             continue;
         }
         let driving = driven.driving(first, &u).at(pointer)?;
-        let Some(e) = Presser::direction(&driving) else {
+        let Some(e) = Presser::<Penalty>::direction(&driving) else {
             let message = format!(
                 "surface `{name}` is driven by force {}, but the force is zero at the end of the first step \
                  (t = {first}): nothing presses it against a body",

@@ -1,5 +1,5 @@
 //! The effects of bodies: their elements and materials.
-use super::{Effect, Held, Per, Teller, why};
+use super::{Effect, EffectKind, Held, Per, Teller, why};
 use crate::assembly::sizes;
 use crate::model::BodyModel;
 use crate::scene::{Body, Element, Material, pointer};
@@ -26,14 +26,18 @@ impl Teller<'_> {
         let declared = "`kinematics` is `small`";
         let nodes = self.model.nodes.len();
         let mut out = vec![
-            self.effect("large_rotation", key, why(!small, large, declared)),
-            self.effect("small_displacements", key, why(small, declared, large))
-                .costs("one factorization for every change of the points in contact")
-                .holds(vec![
-                    Held::assembler("linear", Per::Point, 8, self.model.contact_points()),
-                    Held::assembler("linear", Per::Node, 24, nodes),
-                    Held::assembler("linear", Per::Whole, sizes::LINEAR, 1).growing(),
-                ]),
+            self.effect(EffectKind::LargeRotation, key, why(!small, large, declared)),
+            self.effect(
+                EffectKind::SmallDisplacements,
+                key,
+                why(small, declared, large),
+            )
+            .costs("one factorization for every change of the points in contact")
+            .holds(vec![
+                Held::assembler("linear", Per::Point, 8, self.model.contact_points()),
+                Held::assembler("linear", Per::Node, 24, nodes),
+                Held::assembler("linear", Per::Whole, sizes::LINEAR, 1).growing(),
+            ]),
         ];
         out.extend(self.elements());
         out.extend(self.strains());
@@ -43,13 +47,13 @@ impl Teller<'_> {
 
     fn elements(&self) -> Vec<Effect> {
         let kinds = [
-            (Element::H8, "element.h8_solid_shell", "h8"),
+            (Element::H8, EffectKind::H8SolidShell, "h8"),
             (
                 Element::H8Displacement,
-                "element.h8_displacement",
+                EffectKind::H8Displacement,
                 "h8_displacement",
             ),
-            (Element::Q18, "element.q18_solid_shell", "q18"),
+            (Element::Q18, EffectKind::Q18SolidShell, "q18"),
         ];
         let effect = |(element, effect, word)| {
             let own: Vec<_> = (self.described())
@@ -103,7 +107,7 @@ impl Teller<'_> {
         };
         let none = "no element has any: `h8_displacement` takes strains as they are";
         let assumed = self.effect(
-            "element.assumed_strains",
+            EffectKind::AssumedStrains,
             at(&with),
             why(
                 !with.is_empty(),
@@ -122,7 +126,7 @@ impl Teller<'_> {
         let numbers: Vec<String> = numbers.iter().map(usize::to_string).collect();
         let enhanced = self
             .effect(
-                "element.enhanced_strains",
+                EffectKind::EnhancedStrains,
                 at(&with),
                 why(
                     !with.is_empty(),
@@ -135,16 +139,16 @@ impl Teller<'_> {
                 ),
             )
             .holds(held);
-        vec![assumed.detail(), enhanced.detail()]
+        vec![assumed, enhanced]
     }
 
     fn materials(&self) -> Vec<Effect> {
-        type Kind = (&'static str, &'static str, fn(&Material) -> bool);
+        type Kind = (EffectKind, &'static str, fn(&Material) -> bool);
         let kinds: [Kind; 2] = [
-            ("material.st_venant_kirchhoff", "st_venant_kirchhoff", |m| {
+            (EffectKind::StVenantKirchhoff, "st_venant_kirchhoff", |m| {
                 matches!(m, Material::StVenantKirchhoff(_))
             }),
-            ("material.neo_hooke", "neo_hooke", |m| {
+            (EffectKind::NeoHooke, "neo_hooke", |m| {
                 matches!(m, Material::NeoHooke(_))
             }),
         ];

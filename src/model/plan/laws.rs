@@ -1,6 +1,6 @@
 //! The laws of a contact pair beyond the penalty: friction, augmentation, offset, overclosures.
 use super::pairs::Told;
-use super::{Effect, Held, Per, Teller, why};
+use super::{Effect, EffectKind, Held, Per, Teller, why};
 use crate::assembly::sizes;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::kind::FrictionKind;
@@ -23,10 +23,10 @@ impl Teller<'_> {
         };
         let moving = pair.body_master().is_some();
         let kinds = [
-            (FrictionKind::Coulomb, "contact.friction.coulomb", "coulomb"),
+            (FrictionKind::Coulomb, EffectKind::Coulomb, "coulomb"),
             (
                 FrictionKind::Orthotropic,
-                "contact.friction.orthotropic",
+                EffectKind::Orthotropic,
                 "orthotropic",
             ),
         ];
@@ -117,7 +117,7 @@ impl Teller<'_> {
         }
         let augmentation = self
             .effect(
-                "contact.augmentation",
+                EffectKind::Augmentation,
                 told.key("augmentation"),
                 match &pair.augmentation {
                     Some(a) => Ok(format!(
@@ -131,7 +131,7 @@ impl Teller<'_> {
             .costs("a solve more for each augmentation of a step")
             .holds(held);
         let offset = self.effect(
-            "contact.offset",
+            EffectKind::Offset,
             told.key("offset"),
             why(
                 pair.offset > 0.0,
@@ -146,11 +146,11 @@ impl Teller<'_> {
         let choice = told.contact.initial_overclosure;
         let kinds = [
             (
-                "contact.overclosure.stress_free",
+                EffectKind::OverclosureStressFree,
                 choice == InitialOverclosure::StressFree,
             ),
             (
-                "contact.overclosure.shrink",
+                EffectKind::OverclosureShrink,
                 matches!(choice, InitialOverclosure::Shrink { .. }),
             ),
         ];
@@ -178,7 +178,7 @@ impl Teller<'_> {
                 size_of::<f64>(),
                 n,
             )]);
-            out.push(effect.detail());
+            out.push(effect);
         }
         out
     }

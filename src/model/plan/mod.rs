@@ -3,6 +3,7 @@
 mod bodies;
 mod held;
 mod kernel;
+mod kinds;
 mod laws;
 mod pairs;
 mod rest;
@@ -10,6 +11,7 @@ mod tangents;
 
 pub use held::{Held, Holder, Per};
 pub use kernel::{GapKind, Kernel, SideKind};
+pub use kinds::EffectKind;
 
 use super::Model;
 use super::symmetry::Unsymmetric;
@@ -80,37 +82,6 @@ pub struct Effect {
     pub held: Vec<Held>,
 }
 
-/// Effects of a contact pair in their order, and whether they are details: what a scene without contacts has off.
-const OF_PAIRS: [(&str, bool); 27] = [
-    ("contact.normal.penalty", false),
-    ("contact.master.rigid", false),
-    ("contact.master.deformable", false),
-    ("contact.master.smooth", false),
-    ("contact.self", false),
-    ("contact.master.rigid.facets.bilinear", false),
-    ("contact.master.rigid.facets.biquadratic", false),
-    ("contact.master.rigid.facets.smooth", false),
-    ("contact.master.rigid.trimmed", true),
-    ("contact.points.nodes", false),
-    ("contact.points.gauss", false),
-    ("contact.points.lobatto", false),
-    ("contact.points.segments", false),
-    ("contact.gap.averaged", false),
-    ("contact.passes.two_half", false),
-    ("contact.tangent.exact", false),
-    ("contact.tangent.published", false),
-    ("contact.tangent.main", true),
-    ("contact.tangent.rotational", true),
-    ("contact.tangent.curvature", true),
-    ("contact.tangent.edges", true),
-    ("contact.friction.coulomb", false),
-    ("contact.friction.orthotropic", false),
-    ("contact.augmentation", false),
-    ("contact.offset", false),
-    ("contact.overclosure.stress_free", true),
-    ("contact.overclosure.shrink", true),
-];
-
 fn as_text<S: Serializer>(kernel: &Kernel, to: S) -> Result<S::Ok, S::Error> {
     to.collect_str(kernel)
 }
@@ -157,7 +128,16 @@ impl Plan {
 
     /// Names of the effects that are on, details left out, sorted.
     pub fn names(&self) -> Vec<String> {
-        let on = self.effects().filter(|e| e.on && !e.detail);
+        self.named(false)
+    }
+
+    /// Names of the details that are on, sorted.
+    pub fn details(&self) -> Vec<String> {
+        self.named(true)
+    }
+
+    fn named(&self, details: bool) -> Vec<String> {
+        let on = self.effects().filter(|e| e.on && e.detail == details);
         let mut names: Vec<String> = on.map(|e| e.name.to_owned()).collect();
         names.sort();
         names.dedup();
@@ -191,11 +171,6 @@ impl Effect {
         }
         let bytes = parts.values().sum();
         (bytes > 0).then_some(bytes)
-    }
-
-    fn detail(mut self) -> Self {
-        self.detail = true;
-        self
     }
 
     fn costs(mut self, cost: impl Into<String>) -> Self {
@@ -234,7 +209,7 @@ struct Teller<'a> {
 
 impl Teller<'_> {
     /// An effect that the key at `pointer` decides about.
-    fn effect(&self, name: &'static str, pointer: impl Into<String>, why: Why) -> Effect {
+    fn effect(&self, kind: EffectKind, pointer: impl Into<String>, why: Why) -> Effect {
         let pointer = pointer.into();
         let (on, why) = match why {
             Ok(why) => (true, why),
@@ -242,12 +217,12 @@ impl Teller<'_> {
         };
         let place = self.loaded.place_of(&pointer);
         Effect {
-            name,
+            name: kind.name(),
             on,
             why,
             pointer,
             place,
-            detail: false,
+            detail: kind.is_detail(),
             unsymmetric: false,
             cost: String::new(),
             held: Vec::new(),
@@ -256,7 +231,7 @@ impl Teller<'_> {
 
     /// The effect of `of`, a contact or a load, takes the symmetry where the model says so.
     fn unsymmetric(&self, mut effect: Effect, of: &str) -> Effect {
-        let takes = |u: &Unsymmetric| u.effect == effect.name && u.of == of;
+        let takes = |u: &Unsymmetric| u.effect.name() == effect.name && u.of == of;
         effect.unsymmetric = effect.on && self.unsymmetric.iter().any(takes);
         effect
     }
@@ -278,14 +253,11 @@ impl Teller<'_> {
 
     /// The effects of contact pairs, where there are none.
     fn no_contact(&self) -> Vec<Effect> {
-        let off = |(name, detail)| Effect {
-            detail,
-            ..self.effect(
-                name,
-                "/contacts",
-                Err("the scene has no contacts".to_owned()),
-            )
+        let off = |kind| {
+            let why = Err("the scene has no contacts".to_owned());
+            self.effect(kind, "/contacts", why)
         };
-        OF_PAIRS.into_iter().map(off).collect()
+        let kinds = EffectKind::ALL.iter().copied();
+        kinds.filter(|kind| kind.of_pairs()).map(off).collect()
     }
 }

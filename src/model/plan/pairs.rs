@@ -1,6 +1,6 @@
 //! The effects of a contact pair: slave points, and what they meet.
 use super::kernel::{GapKind, Kernel};
-use super::{Effect, Held, Per, Teller, why};
+use super::{Effect, EffectKind, Held, Per, Teller, why};
 use crate::assembly::sizes;
 use crate::contact::points::SlavePoint;
 use crate::model::PairModel;
@@ -76,7 +76,7 @@ impl Teller<'_> {
             Held::assembler("contact forces", Per::Node, 24, nodes),
             Held::assembler("pairs", Per::Whole, sizes::PAIR, 1),
         ];
-        self.effect("contact.normal.penalty", told.key("penalty"), Ok(why))
+        self.effect(EffectKind::NormalPenalty, told.key("penalty"), Ok(why))
             .holds(held)
     }
 
@@ -108,7 +108,7 @@ impl Teller<'_> {
         }
         let rigid = self
             .effect(
-                "contact.master.rigid",
+                EffectKind::MasterRigid,
                 &key,
                 why(
                     rigid,
@@ -140,7 +140,7 @@ impl Teller<'_> {
         }
         let deformable = self
             .effect(
-                "contact.master.deformable",
+                EffectKind::MasterDeformable,
                 &key,
                 why(
                     of_body.is_some(),
@@ -152,7 +152,7 @@ impl Teller<'_> {
             .holds(held);
         let smooth = of_body.is_some_and(|m| m.smooth);
         let smooth = self.effect(
-            "contact.master.smooth",
+            EffectKind::MasterSmooth,
             told.key("master_surface"),
             why(
                 smooth,
@@ -164,7 +164,7 @@ impl Teller<'_> {
             ),
         );
         let own = self.effect(
-            "contact.self",
+            EffectKind::SelfContact,
             &key,
             why(
                 own.is_some(),
@@ -189,21 +189,13 @@ impl Teller<'_> {
             None => told.key("master"),
         };
         let kinds = [
-            (
-                FacetKind::Bilinear,
-                "contact.master.rigid.facets.bilinear",
-                "bilinear",
-            ),
+            (FacetKind::Bilinear, EffectKind::FacetsBilinear, "bilinear"),
             (
                 FacetKind::Biquadratic,
-                "contact.master.rigid.facets.biquadratic",
+                EffectKind::FacetsBiquadratic,
                 "biquadratic",
             ),
-            (
-                FacetKind::Smooth,
-                "contact.master.rigid.facets.smooth",
-                "smooth",
-            ),
+            (FacetKind::Smooth, EffectKind::FacetsSmooth, "smooth"),
         ];
         let mut out: Vec<Effect> = (kinds.into_iter())
             .map(|(kind, effect, word)| {
@@ -238,7 +230,7 @@ impl Teller<'_> {
             _ => 0,
         });
         let trimmed = self.effect(
-            "contact.master.rigid.trimmed",
+            EffectKind::MasterTrimmed,
             of_surface("cad"),
             why(
                 trims > 0,
@@ -246,7 +238,7 @@ impl Teller<'_> {
                 "no patch of the master is trimmed",
             ),
         );
-        out.push(trimmed.detail());
+        out.push(trimmed);
         out
     }
 
@@ -266,14 +258,14 @@ impl Teller<'_> {
             _ => format!("`points` are {words}: {n} on {faces} faces"),
         };
         let kinds = [
-            ("contact.points.nodes", matches!(points, Points::Nodes)),
-            ("contact.points.gauss", matches!(points, Points::Gauss(_))),
+            (EffectKind::PointsNodes, matches!(points, Points::Nodes)),
+            (EffectKind::PointsGauss, matches!(points, Points::Gauss(_))),
             (
-                "contact.points.lobatto",
+                EffectKind::PointsLobatto,
                 matches!(points, Points::Lobatto(_)),
             ),
             (
-                "contact.points.segments",
+                EffectKind::PointsSegments,
                 matches!(points, Points::Segments(_)),
             ),
         ];
@@ -307,7 +299,7 @@ impl Teller<'_> {
         }
         let averaged = self
             .effect(
-                "contact.gap.averaged",
+                EffectKind::AveragedGap,
                 told.key("gap"),
                 why(
                     on,
@@ -324,7 +316,7 @@ impl Teller<'_> {
             .costs("a closed node couples all nodes of the faces around it")
             .holds(held);
         let halves = self.effect(
-            "contact.passes.two_half",
+            EffectKind::TwoHalfPasses,
             told.key("passes"),
             why(
                 pair.half.is_some(),

@@ -1,5 +1,5 @@
 //! The effects of rigid surfaces, supports, loads, the solution and the output.
-use super::{Effect, Held, Per, Teller, why};
+use super::{Effect, EffectKind, Held, Per, Teller, why};
 use crate::assembly::sizes;
 use crate::model::error::number;
 use crate::scene::{Stabilization, pointer};
@@ -33,7 +33,7 @@ impl Teller<'_> {
         }
         let driven = self
             .effect(
-                "surface.driven_by_force",
+                EffectKind::DrivenByForce,
                 match &first {
                     Some((_, surface, _)) => at(&surface.name, "motion/free"),
                     None => "/surfaces".to_owned(),
@@ -58,7 +58,7 @@ impl Teller<'_> {
         };
         let moving = model.surfaces.iter().find(|s| moves(&s.name));
         let motion = self.effect(
-            "surface.motion",
+            EffectKind::SurfaceMotion,
             match moving {
                 Some(surface) => at(&surface.name, "motion"),
                 None => "/surfaces".to_owned(),
@@ -69,7 +69,7 @@ impl Teller<'_> {
                 None => Err("no surface has a `motion`".to_owned()),
             },
         );
-        vec![driven, motion.detail()]
+        vec![driven, motion]
     }
 
     pub(super) fn conditions(&self) -> Vec<Effect> {
@@ -77,7 +77,7 @@ impl Teller<'_> {
         let mid = scene.supports.iter().find(|(_, s)| s.mid_surface);
         let mid = self
             .effect(
-                "support.mid_surface",
+                EffectKind::MidSurface,
                 match mid {
                     Some((name, _)) => pointer(&["supports", name, "mid_surface"]),
                     None => "/supports".to_owned(),
@@ -118,7 +118,7 @@ impl Teller<'_> {
         let is_first = dead.is_some();
         out.push(
             self.effect(
-                "load.dead",
+                EffectKind::DeadLoad,
                 load(dead),
                 match dead {
                     Some(name) => Ok(format!("load `{name}` keeps its direction")),
@@ -132,7 +132,7 @@ impl Teller<'_> {
         let maps = sizes::followers(model);
         let follows = self
             .effect(
-                "load.follower_pressure",
+                EffectKind::FollowerPressure,
                 match follower {
                     Some(name) => format!("{}/follower", load(Some(name))),
                     None => load(None),
@@ -173,7 +173,7 @@ impl Teller<'_> {
         ];
         let viscous = self
             .effect(
-                "stabilization.viscous",
+                EffectKind::Viscous,
                 "/solution/stabilization",
                 match self.loaded.scene.solution.stabilization {
                     Stabilization::Viscous { factor, until } => Ok(format!(
@@ -195,7 +195,7 @@ impl Teller<'_> {
         let reasons: Vec<&str> = self.unsymmetric.iter().map(|u| u.why.as_str()).collect();
         let unsymmetric = self
             .effect(
-                "system.unsymmetric",
+                EffectKind::UnsymmetricSystem,
                 "/solution/linear_solver",
                 why(!reasons.is_empty(), reasons.join("; "), why_not),
             )
@@ -205,7 +205,7 @@ impl Teller<'_> {
             ]);
         let watch = self
             .effect(
-                "energy.watch",
+                EffectKind::EnergyWatch,
                 "/solution",
                 Ok("the energies of every run are balanced step by step".to_owned()),
             )
@@ -214,34 +214,31 @@ impl Teller<'_> {
                 Per::Node,
                 24,
                 model.body_nodes(),
-            )])
-            .detail();
+            )]);
         vec![viscous, unsymmetric, watch]
     }
 
     pub(super) fn output(&self) -> Vec<Effect> {
         let output = &self.loaded.scene.output;
         let given = self.loaded.has("/output/every");
-        let fields = self
-            .effect(
-                "output.fields",
-                "/output/every",
-                why(
-                    output.every > 0,
-                    match given {
-                        true => format!(
-                            "`every` is {}: fields of every accepted step whose number it divides",
-                            output.every
-                        ),
-                        false => "no `every`: of every step".to_owned(),
-                    },
-                    "`every` is 0: no fields are written",
-                ),
-            )
-            .detail();
+        let fields = self.effect(
+            EffectKind::OutputFields,
+            "/output/every",
+            why(
+                output.every > 0,
+                match given {
+                    true => format!(
+                        "`every` is {}: fields of every accepted step whose number it divides",
+                        output.every
+                    ),
+                    false => "no `every`: of every step".to_owned(),
+                },
+                "`every` is 0: no fields are written",
+            ),
+        );
         let points = self
             .effect(
-                "output.contact_points",
+                EffectKind::OutputContactPoints,
                 "/output/contact_points",
                 why(
                     output.contact_points,
@@ -254,8 +251,7 @@ impl Teller<'_> {
                 Per::Point,
                 size_of::<f64>(),
                 self.model.contact_points(),
-            )])
-            .detail();
+            )]);
         vec![fields, points]
     }
 }

@@ -1,7 +1,7 @@
 //! The tangent of a contact pair and its parts: which of them there are for its geometry.
 use super::kernel::GapKind;
 use super::pairs::Told;
-use super::{Effect, Teller, Why, why};
+use super::{Effect, EffectKind, Teller, Why, why};
 use crate::contact::kind::TangentKind;
 use crate::model::error::number;
 use crate::scene::FacetKind;
@@ -61,8 +61,8 @@ impl Teller<'_> {
         };
         let mut out = Vec::new();
         for (name, on) in [
-            ("contact.tangent.exact", published.is_none()),
-            ("contact.tangent.published", published.is_some()),
+            (EffectKind::TangentExact, published.is_none()),
+            (EffectKind::TangentPublished, published.is_some()),
         ] {
             out.push(self.effect(name, &key, why(on, &*reason, &*reason)));
         }
@@ -70,14 +70,11 @@ impl Teller<'_> {
             Some(_) => told.key(&format!("tangent/published/{key}")),
             None => told.key("tangent"),
         };
-        out.push(
-            self.effect(
-                "contact.tangent.main",
-                &key,
-                Ok("penalty times normal by normal".to_owned()),
-            )
-            .detail(),
-        );
+        out.push(self.effect(
+            EffectKind::TangentMain,
+            &key,
+            Ok("penalty times normal by normal".to_owned()),
+        ));
         let rotational = match (published, told.pair.body_master()) {
             (Some(parts), Some(_)) if !parts.rotational => {
                 Err("`rotational` is false in `tangent`".to_owned())
@@ -96,10 +93,7 @@ impl Teller<'_> {
             Some(why) => ("/solution/kinematics".to_owned(), Err(why)),
             None => (at, rotational),
         };
-        out.push(
-            self.effect("contact.tangent.rotational", at, rotational)
-                .detail(),
-        );
+        out.push(self.effect(EffectKind::TangentRotational, at, rotational));
         let (at, curvature) = self.curvature(told);
         let (at, curvature) = match published {
             Some(parts) if !parts.curvature => (
@@ -112,11 +106,8 @@ impl Teller<'_> {
             Some(why) => ("/solution/kinematics".to_owned(), Err(why)),
             None => (at, curvature),
         };
-        out.push(
-            self.effect("contact.tangent.curvature", at, curvature)
-                .detail(),
-        );
-        out.push(self.edges(told).detail());
+        out.push(self.effect(EffectKind::TangentCurvature, at, curvature));
+        out.push(self.edges(told));
         out
     }
 
@@ -167,14 +158,14 @@ impl Teller<'_> {
 
     /// Whether feet may lie on edges and corners, where the traction acts along the distance.
     fn edges(&self, told: &Told) -> Effect {
-        let name = "contact.tangent.edges";
+        let kind = EffectKind::TangentEdges;
         if let Some(still) = self.still(told) {
-            return self.effect(name, "/solution/kinematics", Err(still));
+            return self.effect(kind, "/solution/kinematics", Err(still));
         }
         let Some(surface) = told.pair.rigid_master() else {
             let smooth = told.pair.body_master().is_some_and(|m| m.smooth);
             return self.effect(
-                name,
+                kind,
                 told.key("master"),
                 why(
                     !smooth,
@@ -188,7 +179,7 @@ impl Teller<'_> {
         let [sharp, partial] = [edges.sharp, edges.partial.len()];
         let creases = with_patches!(&surface.set, s => creases(s.patches()));
         self.effect(
-            name,
+            kind,
             crate::scene::pointer(&["surfaces", &surface.name]),
             why(
                 sharp + partial + creases > 0,

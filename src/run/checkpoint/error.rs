@@ -10,17 +10,17 @@ pub enum CheckpointError {
     )]
     Missing { path: PathBuf },
     #[error(
-        "`{}` is no checkpoint of covact; run without `--resume` to start anew",
+        "`{}` is no checkpoint of covact: move it, or choose another folder",
         path.display()
     )]
     Foreign { path: PathBuf },
     #[error(
-        "`{}` is damaged: {reason}; run without `--resume` to start anew",
+        "`{}` is damaged: {reason}; run with `--force` in place of `--resume` to start anew",
         path.display()
     )]
     Damaged { path: PathBuf, reason: String },
     #[error(
-        "`{}` is of covact {found}, this is covact {}: continue it with that version, or run without `--resume` to start anew",
+        "`{}` is of covact {found}, this is covact {}: continue it with that version, or run with `--force` in place of `--resume` to start anew",
         path.display(),
         env!("CARGO_PKG_VERSION")
     )]
@@ -30,7 +30,7 @@ pub enum CheckpointError {
         found: String,
     },
     #[error(
-        "the run in `{}` is of another scene: {difference}; take the scene as it was, or run without `--resume` to start anew",
+        "the run in `{}` is of another scene: {difference}; take the scene as it was, or run with `--force` in place of `--resume` to start anew",
         folder.display()
     )]
     Scene {
@@ -39,7 +39,7 @@ pub enum CheckpointError {
         difference: String,
     },
     #[error(
-        "`{}` is not as the run left it: put it back, or run without `--resume` to start anew",
+        "`{}` is not as the run left it: put it back, or run with `--force` in place of `--resume` to start anew",
         path.display()
     )]
     History { path: PathBuf },

@@ -4,8 +4,8 @@
 //! never the one that was written last: whoever ends the process at any moment leaves the checkpoint of the last accepted
 //! step, or of the one before where the last is torn, and files that are as new or newer. A run that goes on from it does
 //! anew what came after. Nothing is waited for: a step costs a copy of its state into the memory of the system, which a
-//! crash of the machine may lose or tear. So the newest slot is brought to the disk as often as costs half a hundredth of the
-//! time, and is left alone until another is there. At the end of the run the files are removed.
+//! crash of the machine may lose or tear. So the table, the fields and the newest slot are brought to the disk, in this order,
+//! as often as costs half a hundredth of the time, and that slot is left alone until another is there. At the end of the run the files are removed.
 //!
 //! The layout: a mark, the version of the format, the length, a number that grows by one with every checkpoint of a run, the
 //! version of the program, the sections ([`bytes`]), and a checksum of all of it. What lies behind is left of an earlier and
@@ -20,9 +20,9 @@ mod tests;
 
 pub use error::CheckpointError;
 pub use fingerprint::Fingerprint;
-pub use slots::Slot;
+pub use slots::{Slot, is_own};
 
-use crate::output::atomic::{Sink, open_in_place, overwrite, remove_file};
+use crate::output::atomic::{overwrite, remove_file, sync_file};
 use crate::output::sum::Sum;
 use crate::output::{OutputError, RunStatus, Summary};
 use crate::run::RunError;
@@ -34,7 +34,7 @@ use std::time::{Duration, Instant};
 /// First bytes of a file; the line ends show where it was taken for text.
 const MARK: &[u8; 8] = b"covact\r\n";
 /// Version of the layout and of the sections; to be raised with every change of them.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 /// Mark, format, length and number.
 const HEAD: usize = 28;
 /// Time between two checkpoints that are brought to the disk, in times of what the last one took.
@@ -75,8 +75,9 @@ impl Keeper {
         (self.newest, self.safe) = (Some(from), Some(from.index));
     }
 
-    /// Writes a checkpoint with the sections that `put` writes. On failure the one before is as it was.
-    pub fn keep(&mut self, put: impl FnOnce(&mut Writer)) -> Result<(), OutputError> {
+    /// Writes a checkpoint with the sections that `put` writes, and says whether it is time for [`Keeper::flush`]. On failure
+    /// the one before is as it was.
+    pub fn keep(&mut self, put: impl FnOnce(&mut Writer)) -> Result<bool, OutputError> {
         let slot = self.next();
         let out = &mut self.out;
         out.clear();
@@ -84,29 +85,22 @@ impl Keeper {
             out.section("scene", |out| self.scene.put(out));
             put(out);
         });
-        let path = place(&self.folder, slot.index);
-        let mut file = overwrite(&path, self.out.bytes())?;
+        overwrite(&place(&self.folder, slot.index), self.out.bytes())?;
         self.newest = Some(slot);
-        match self.synced.elapsed() < RARELY * self.cost {
-            true => Ok(()),
-            false => self.sync(&path, slot, &mut file),
-        }
+        Ok(self.synced.elapsed() >= RARELY * self.cost)
     }
 
-    /// Brings the last checkpoint to the disk.
-    pub fn flush(&mut self) -> Result<(), OutputError> {
-        let Some(slot) = self.newest else {
-            return Ok(());
-        };
-        let path = place(&self.folder, slot.index);
-        let mut file = open_in_place(&path)?;
-        self.sync(&path, slot, &mut file)
-    }
-
-    fn sync(&mut self, path: &Path, slot: Slot, file: &mut impl Sink) -> Result<(), OutputError> {
+    /// Brings the last checkpoint to the disk, after the files that it goes on from, which `others` brings there.
+    pub fn flush(
+        &mut self,
+        others: impl FnOnce() -> Result<(), OutputError>,
+    ) -> Result<(), OutputError> {
         let start = Instant::now();
-        file.sync().map_err(|e| OutputError::io("write", path, e))?;
-        self.safe = Some(slot.index);
+        others()?;
+        if let Some(slot) = self.newest {
+            sync_file(&place(&self.folder, slot.index))?;
+            self.safe = Some(slot.index);
+        }
         (self.synced, self.cost) = (Instant::now(), start.elapsed());
         Ok(())
     }
@@ -144,19 +138,9 @@ fn seal(out: &mut Writer, number: u64, put: impl FnOnce(&mut Writer)) {
     out.u64(sum);
 }
 
-/// Makes room for a run that starts anew in `folder`: what it held was of another run. Says whether that was unfinished.
-///
-/// # Errors
-/// What the operating system has against it.
-pub fn start(folder: &Path) -> Result<bool, OutputError> {
-    // An earlier summary must not pass for that of this run, should it be cut short.
-    remove_file(&folder.join("summary.json"))?;
-    let mut unfinished = false;
-    for path in (0..SLOTS).map(|index| place(folder, index)) {
-        unfinished |= path.exists();
-        remove_file(&path)?;
-    }
-    Ok(unfinished)
+/// Where a run may keep checkpoints.
+pub fn places(folder: &Path) -> impl Iterator<Item = PathBuf> + '_ {
+    (0..SLOTS).map(|index| place(folder, index))
 }
 
 /// What there is to continue.

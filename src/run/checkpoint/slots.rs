@@ -109,6 +109,12 @@ fn start(path: &Path) -> io::Result<Result<(File, Vec<u8>), CheckpointError>> {
     }
 }
 
+/// Whether a file is a checkpoint of any version, whole or torn.
+pub fn is_own(path: &Path) -> io::Result<bool> {
+    let found = start(path)?;
+    Ok(!matches!(found, Err(CheckpointError::Foreign { .. })))
+}
+
 fn word(head: &[u8], at: usize) -> u64 {
     let mut word = [0; 8];
     word.copy_from_slice(&head[at..at + 8]);

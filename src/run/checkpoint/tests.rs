@@ -140,9 +140,9 @@ fn other_versions_are_named() {
     let error = opened(program).unwrap_err();
     assert!(matches!(&error, CheckpointError::Version { found, .. } if found.starts_with('9')));
     assert!(
-        error
-            .to_string()
-            .contains("continue it with that version, or run without `--resume`")
+        error.to_string().contains(
+            "continue it with that version, or run with `--force` in place of `--resume`"
+        )
     );
 }
 
@@ -155,7 +155,10 @@ fn keeper(folder: &Path) -> (Keeper, Fingerprint) {
 }
 
 fn put(keeper: &mut Keeper, x: u64) -> Result<(), OutputError> {
-    keeper.keep(|out| out.section("x", |out| out.u64(x)))
+    match keeper.keep(|out| out.section("x", |out| out.u64(x)))? {
+        true => keeper.flush(|| Ok(())),
+        false => Ok(()),
+    }
 }
 
 /// What is found: the number, where it is, and what is wrong with later ones.

@@ -5,7 +5,7 @@ use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::moving::Reduced;
 use crate::contact::friction::rigid::Friction;
 use crate::contact::friction::trial::Traction;
-use crate::contact::law::Offsets;
+use crate::contact::law::{Offsets, PairLaw};
 use crate::contact::moving::MovingMaster;
 use crate::model::friction::LawNow;
 use crate::model::master::{BodyMaster, BodySurface, Masters};
@@ -18,17 +18,17 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 /// The points of a pair whose master is a body, at an accepted state.
-pub(super) struct Batch<'a> {
+pub(super) struct Batch<'a, L> {
     model: &'a Model,
     pair: &'a PairModel,
     body: &'a BodyMaster,
     surface: &'a BodySurface,
     u: &'a [f64],
     offsets: Option<Offsets<'a>>,
-    eps_n: f64,
+    law: L,
 }
 
-impl<'a> Batch<'a> {
+impl<'a, L: PairLaw> Batch<'a, L> {
     /// Of a pair, its master where [`Masters::update`] put it last; none where that is a rigid surface.
     pub fn new(
         model: &'a Model,
@@ -36,7 +36,7 @@ impl<'a> Batch<'a> {
         index: usize,
         u: &'a [f64],
         time: f64,
-        eps_n: f64,
+        law: L,
     ) -> Option<Self> {
         let pair = &model.pairs[index];
         Some(Batch {
@@ -46,7 +46,7 @@ impl<'a> Batch<'a> {
             surface: masters.surface(index)?,
             u,
             offsets: pair.offsets(time),
-            eps_n,
+            law,
         })
     }
 
@@ -144,7 +144,7 @@ impl<'a> Batch<'a> {
         accept: impl Fn(u32) -> bool + Copy,
     ) -> Result<(), Fault> {
         let x = (self.model).point_position(&self.pair.points[i], self.u);
-        let law = history.law(self.eps_n, self.offset(i));
+        let law = history.law(self.law, self.offset(i));
         let touch = master
             .touch_with_friction(&x, &mut hint, &law, friction, history, &Reduced, accept)
             .map_err(|fault| Fault::contact(self.pair, i, &x, fault))?;
@@ -173,7 +173,7 @@ impl<'a> Batch<'a> {
                 let foot = (master.facets).project(&x, hint, f64::INFINITY, accept);
                 let gap = |f: &MovingFoot| f.signed_distance - self.offset(i);
                 let left = foot.as_ref().map(|f| (gap(f), f.normal));
-                history.leave(&x, left, self.eps_n, friction.eps_t, &still);
+                history.leave(&x, left, &self.law, friction.eps_t, &still);
                 foot.map(|f| f.hint())
             }
         };

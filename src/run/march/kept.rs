@@ -9,7 +9,9 @@ use crate::model::state::State;
 use crate::output::{HistoryMark, OutputError};
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::run::checkpoint::{CheckpointError, Sections, Slot, state};
+use crate::run::compliance::Compliance;
 use crate::run::cost::Spent;
+use crate::run::peaks::Peaks;
 use crate::run::progress::Progress;
 use crate::run::watch::Watch;
 use crate::solve::linear::Method;
@@ -31,6 +33,8 @@ pub struct Kept {
     pub(super) touched: Vec<bool>,
     pub(super) touching: Vec<bool>,
     pub(super) watch: Watch,
+    pub(super) compliance: Compliance,
+    pub(super) peaks: Peaks,
     pub(super) table: HistoryMark,
     /// Steps whose fields were written, with their times.
     pub(super) written: Vec<(u32, f64)>,
@@ -58,6 +62,14 @@ impl Kept {
             Ok((dt, hold, take_flags(pairs, r)?, take_flags(pairs, r)?))
         })?;
         let watch = from.section("watch", |r| Watch::take(model, r))?;
+        let (compliance, peaks) = from.section("accuracy", |r| {
+            let malformed = |_| r.malformed("a motion without a value at the start");
+            let mut compliance = Compliance::new(model).map_err(malformed)?;
+            let mut peaks = Peaks::new(model);
+            compliance.take(model, r)?;
+            peaks.take(r)?;
+            Ok((compliance, peaks))
+        })?;
         let committed = from.section("state", |r| state::take(model, r))?;
         let before = from.section("before", |r| {
             r.option(|r| Ok((state::take_before(model, &committed, r)?, r.f64()?)))
@@ -85,6 +97,8 @@ impl Kept {
             touched,
             touching,
             watch,
+            compliance,
+            peaks,
             table,
             written,
             factorizations,
@@ -101,7 +115,7 @@ impl March<'_, '_> {
         &mut self,
         committed: &State,
         walk: &Walk,
-        outputs: &Outputs,
+        outputs: &mut Outputs,
     ) -> Result<(), OutputError> {
         let March {
             scene: _,
@@ -113,9 +127,13 @@ impl March<'_, '_> {
             interrupt: _,
             phases,
             progress,
+            // Of the step that is accepted, and written to the table with it.
+            failed: _,
             touched,
             touching,
             watch,
+            compliance,
+            peaks,
             cost,
             keeper,
         } = self;
@@ -147,6 +165,10 @@ impl March<'_, '_> {
                 put_flags(touching, out);
             });
             out.section("watch", |out| watch.put(out));
+            out.section("accuracy", |out| {
+                compliance.put(out);
+                peaks.put(out);
+            });
             out.section("state", |out| state::put(model, committed, out));
             out.section("before", |out| {
                 out.option(before.as_ref(), |out, (state, size)| {
@@ -171,6 +193,11 @@ impl March<'_, '_> {
                 }
             });
         });
+        // The table and the fields are brought to the disk as rarely as checkpoints are.
+        let written = written.and_then(|due| match due {
+            true => keeper.flush(|| outputs.sync()),
+            false => Ok(()),
+        });
         phases.stop("checkpoint");
         written
     }
@@ -191,6 +218,8 @@ fn put_progress(progress: &Progress, out: &mut Writer) {
     let Progress {
         warnings,
         iterations,
+        accepted,
+        counted,
         cuts,
         steps,
         time,
@@ -200,6 +229,8 @@ fn put_progress(progress: &Progress, out: &mut Writer) {
     out.count(warnings.len());
     warnings.iter().for_each(|text| out.text(text));
     out.u64(*iterations);
+    out.u64(*accepted);
+    out.u64(*counted);
     out.u32(*cuts);
     out.u32(*steps);
     out.f64(*time);
@@ -213,6 +244,8 @@ fn take_progress(from: &mut Reader) -> Result<Progress, Malformed> {
     Ok(Progress {
         warnings: warnings?,
         iterations: from.u64()?,
+        accepted: from.u64()?,
+        counted: from.u64()?,
         cuts: from.u32()?,
         steps: from.u32()?,
         time: from.f64()?,

@@ -95,6 +95,13 @@ pub enum InitialOverclosure {
     Refuse,
 }
 
+impl InitialOverclosure {
+    /// Whether overclosures at the start become strain, at once or in the course of the run.
+    pub fn is_resolved(self) -> bool {
+        matches!(self, Self::Strain | Self::Shrink { .. })
+    }
+}
+
 /// The surface that a deformable body offers to its slaves.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -1,8 +1,8 @@
 //! From folders of results to values, errors and what the references themselves are worth.
 //!
-//! A number, a curve or a field of a run is a [`Sample`]; samples of one kind have a distance, and errors are distances to a
+//! A number, a curve or a field of a run is a `Sample`; samples of one kind have a distance, and errors are distances to a
 //! reference, relative to its size or to the scale that the study gives. A reference that is the finest run of a refinement
-//! has an error of its own, which [`richardson`] estimates from the distances between the runs of the refinement.
+//! has an error of its own, which `richardson` estimates from the distances between the runs of the refinement.
 mod column;
 mod curve;
 mod field;

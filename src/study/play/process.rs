@@ -1,7 +1,7 @@
 //! One repeat of a run: a process, its limit, and the account of it.
 use super::Settings;
 use crate::output::atomic::{make_folder, write_whole};
-use crate::output::{OutputError, RunStatus, Summary};
+use crate::output::{FolderLock, LOCK_FILE, Locking, OutputError, RunStatus, Summary};
 use crate::study::error::StudyError;
 use crate::study::folder::Folder;
 use serde::{Deserialize, Serialize};
@@ -165,13 +165,25 @@ impl Process<'_> {
     }
 }
 
-/// Results of an earlier or unfinished run must not pass for those of this one. A folder that does not look like results is
-/// left alone.
+/// Results of an earlier or unfinished run must not pass for those of this one. A folder that does not look like results, or
+/// that another run is writing to, is left alone.
 fn clear(results: &Path) -> Result<(), StudyError> {
     if !removable(results)? {
         return Err(StudyError::Occupied {
             path: results.to_path_buf(),
             what: "should hold results of a run, and holds something else".to_owned(),
+        });
+    }
+    // Held until the folder is gone.
+    let lock = match results.is_dir() {
+        true => Some(FolderLock::take(results)?),
+        false => None,
+    };
+    if let Some(Locking::InUse(holder)) = &lock {
+        let by = (holder.as_ref()).map_or(String::new(), |holder| format!(" ({holder})"));
+        return Err(StudyError::Occupied {
+            path: results.to_path_buf(),
+            what: format!("is written to by another run{by}"),
         });
     }
     match fs::remove_dir_all(results) {
@@ -198,7 +210,7 @@ fn removable(results: &Path) -> Result<bool, OutputError> {
         let name = (entry.map_err(|e| OutputError::io("read the folder", results, e))?).file_name();
         let name = name.to_string_lossy();
         let own = OWN.contains(&&*name);
-        if own || (name.starts_with("checkpoint.") && name.ends_with(".bin")) {
+        if own || name == LOCK_FILE || (name.starts_with("checkpoint.") && name.ends_with(".bin")) {
             return Ok(true);
         }
         empty = false;

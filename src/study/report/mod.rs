@@ -1,6 +1,6 @@
 //! The report of a study: tables, pictures and sentences, all computed from its [`Record`].
 //!
-//! [`write`] makes, in a folder:
+//! [`write()`] makes, in a folder:
 //!
 //! - `report.html`: one self-contained page, light and dark, readable without scripts;
 //! - `study.csv`: a row per run;

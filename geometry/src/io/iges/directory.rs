@@ -4,6 +4,7 @@ use super::super::error::{Fail, show};
 use super::number;
 use super::params::{Delimiters, Params};
 use super::records::{Record, Sections};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// Status number (directory field 9), two digits each.
@@ -75,6 +76,14 @@ pub fn read(sections: &Sections, notes: &mut Vec<String>) -> Result<Vec<Entry>, 
     let mut entries = Vec::with_capacity(sections.directory.len() / 2);
     let mut owner: Vec<u32> = vec![0; sections.parameter.len()];
     let mut astray = (0usize, 0usize);
+    let mut long = (0usize, 0usize);
+    // Where the data of any entity begins, from 0.
+    let starts = (sections.directory.iter().step_by(2)).filter_map(|r| {
+        field(r, 2, "")
+            .ok()
+            .and_then(|s| usize::try_from(s).ok()?.checked_sub(1))
+    });
+    let starts: BTreeSet<usize> = starts.collect();
     for (i, pair) in sections.directory.chunks(2).enumerate() {
         let [first, second] = pair else {
             let expected = "an even number of directory records, two for each entity";
@@ -99,7 +108,13 @@ pub fn read(sections: &Sections, notes: &mut Vec<String>) -> Result<Vec<Entry>, 
         }
         let records = match kind {
             0 => 0..0,
-            _ => claim(sections, first, second, number, &mut owner)?,
+            _ => {
+                let (records, cut) = claim(sections, first, second, number, &starts, &mut owner)?;
+                if cut {
+                    long = (long.0 + 1, if long.0 == 0 { second.line } else { long.1 });
+                }
+                records
+            }
         };
         for record in &sections.parameter[records.clone()] {
             // Columns 66 to 72 point back to the directory. The reader does not need them.
@@ -125,6 +140,13 @@ pub fn read(sections: &Sections, notes: &mut Vec<String>) -> Result<Vec<Entry>, 
             records,
         });
     }
+    if long.0 > 0 {
+        notes.push(format!(
+            "line {}: {} entities state more parameter records than there are before those of the next one; the records \
+             up to there were read",
+            long.1, long.0
+        ));
+    }
     if astray.0 > 0 {
         notes.push(format!(
             "line {}: {} parameter records do not point back to their directory entry",
@@ -134,15 +156,16 @@ pub fn read(sections: &Sections, notes: &mut Vec<String>) -> Result<Vec<Entry>, 
     Ok(entries)
 }
 
-/// The parameter records that an entry points to. No two entities may share one: that also bounds the work that a
-/// damaged file can cause.
+/// The parameter records that an entry points to, and whether it states more of them than there are before those of the next
+/// entity. No two entities may share one: that also bounds the work that a damaged file can cause.
 fn claim(
     sections: &Sections,
     first: &Record,
     second: &Record,
     number: u32,
+    starts: &BTreeSet<usize>,
     owner: &mut [u32],
-) -> Result<Range<usize>, Fail> {
+) -> Result<(Range<usize>, bool), Fail> {
     let total = owner.len();
     let start = field(first, 2, "the sequence number of the parameter data")?;
     let start = usize::try_from(start)
@@ -156,6 +179,9 @@ fn claim(
         )
     })? - 1;
     let count = field(second, 4, "the number of parameter records")?;
+    let next = starts.range(start + 1..).next().copied();
+    let room = next.unwrap_or(total).min(total) - start;
+    let mut cut = false;
     let count = match usize::try_from(count) {
         // Left out: the records say themselves whose they are.
         Ok(0) => sections.parameter[start..]
@@ -164,12 +190,13 @@ fn claim(
                 number::integer(r.columns(65, 72).trim_ascii()) == Some(i64::from(number))
             })
             .count(),
-        Ok(count) if count <= total - start => count,
-        _ => {
-            let expected = format!(
-                "the number of parameter records, {} are left",
-                total - start
-            );
+        Ok(count) if count <= room => count,
+        Ok(_) => {
+            cut = true;
+            room
+        }
+        Err(_) => {
+            let expected = format!("the number of parameter records, {room} are left");
             return Err(wrong(second, 4, expected));
         }
     };
@@ -184,7 +211,7 @@ fn claim(
         }
         *slot = number;
     }
-    Ok(start..start + count)
+    Ok((start..start + count, cut))
 }
 
 fn bytes<'a>(record: &'a Record, field: usize) -> &'a [u8] {

@@ -3,18 +3,19 @@
 use super::super::error::Fail;
 use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped, TrimReport};
 use super::brep::{self, Edges};
+use super::bridging::{Bridging, Skip};
 use super::curve;
 use super::directory::Entry;
 use super::grant::Grant;
 use super::groups::{Groups, Placement, members, refusal};
-use super::names::entity_name;
 use super::surfaces::{self, BasePatch, BaseSurface};
 use super::transform::{Affine, matrix_of};
 use super::trimmed::{self, Boundary, Face, Stretch, describe};
+use super::trimmed_areas::{by_parameters, disagreement};
 use super::trimmed_curves::{Tally, add};
 use super::trimmed_extent::grown;
 use super::trimmed_host::Host;
-use super::trimmed_loops::{GAP, loops};
+use super::trimmed_loops::{GAP, loops, widest_gap};
 use super::{Model, params::Params};
 use crate::{NurbsPatch, Vec3};
 
@@ -38,11 +39,13 @@ type Found = Result<Vec<Piece>, Refusal>;
 /// Reads all surfaces, in the order of the file.
 pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
     let mut groups = Groups::read(model, notes)?;
+    let mut hidden = 0;
     let mut reader = Reader {
         model,
         edges: Edges::default(),
         out: Outcome::default(),
         grant: Grant::of(model),
+        bridging: Bridging::new(),
         notes,
     };
     for (index, entry) in model.entries.iter().enumerate() {
@@ -51,7 +54,14 @@ pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
         }
         let placed = groups.placements(model, index, reader.notes)?;
         let refused = refusal(model, &groups, index, &placed);
+        let blanked = entry.status.blanked || placed.iter().any(|p| p.hidden_in != 0);
+        hidden += usize::from(model.hidden && blanked && refused.is_none());
         reader.entity(entry, &placed, refused)?;
+    }
+    reader.bridge()?;
+    if hidden > 0 {
+        let text = format!("{hidden} hidden (blanked) surface(s) were asked for and read as well");
+        reader.notes.push(text);
     }
     Ok(reader.out)
 }
@@ -79,31 +89,56 @@ struct Reader<'a, 'n> {
     edges: Edges,
     out: Outcome,
     grant: Grant,
+    bridging: Bridging<'a>,
     notes: &'n mut Vec<String>,
 }
 
-impl Reader<'_, '_> {
+impl<'a> Reader<'a, '_> {
     /// One surface entity in all its copies.
     fn entity(
         &mut self,
-        entry: &Entry,
+        entry: &'a Entry,
         placed: &[Placement],
         refused: Option<Refusal>,
     ) -> Result<(), Fail> {
+        let before = (self.notes.len(), self.out.patches.len(), self.out.trims);
         let (name, refused) = match refused {
             Some(refused) => (None, Some(refused)),
             None => self.copies(entry, placed)?,
         };
-        if let Some((kind, reason)) = refused {
-            let name = name.or_else(|| own_name(entry));
-            self.out.skipped.push(Skipped {
-                entity: entry.number,
-                type_number: entry.type_number,
-                name: name.unwrap_or_else(|| entity_name(entry.type_number, entry.form).to_owned()),
-                kind,
-                reason,
-            });
+        let Some(refused) = refused else {
+            return Ok(());
+        };
+        let skip = Skip {
+            entry,
+            placed: placed.to_vec(),
+            name,
+            refused,
+        };
+        // Copies that were read are kept: what refused the next one is not the boundary, which is theirs as well.
+        let none_read = self.out.patches.len() == before.1;
+        if skip.refused.0 == SkipKind::Boundary && none_read {
+            self.notes.truncate(before.0);
+            self.out.trims = before.2;
+            self.bridging.open.push(skip);
+        } else {
+            self.out.skipped.push(skip.told());
         }
+        Ok(())
+    }
+
+    /// Reads the faces again of which boundaries gave no trim, closing wider gaps now that the size of the part is known.
+    fn bridge(&mut self) -> Result<(), Fail> {
+        self.bridging.begin();
+        for skip in std::mem::take(&mut self.bridging.open) {
+            let (_, refused) = self.copies(skip.entry, &skip.placed)?;
+            if refused.is_some() {
+                // What was said first tells more than what is wrong with a wider tolerance.
+                self.out.skipped.push(skip.told());
+            }
+        }
+        self.out.patches.sort_by_key(|p| p.entity);
+        self.out.skipped.sort_by_key(|s| s.entity);
         Ok(())
     }
 
@@ -124,7 +159,8 @@ impl Reader<'_, '_> {
             return Ok((None, Some((SkipKind::Unsupported, reason.to_owned()))));
         }
         let (mut name, mut refused) = (None, None);
-        for copy in placed.iter().filter(|p| p.hidden_in == 0) {
+        let all = self.model.hidden;
+        for copy in placed.iter().filter(|p| all || p.hidden_in == 0) {
             let map = copy.map.after(&matrix_of(self.model, entry, self.notes)?);
             let (found, pieces, base) = match is_face(entry.type_number) {
                 true => self.face(entry, &map)?,
@@ -140,18 +176,22 @@ impl Reader<'_, '_> {
                 Ok(pieces)
             });
             match pieces {
-                Ok(pieces) => self
-                    .out
-                    .patches
-                    .extend(pieces.into_iter().map(|(patch, border)| CadPatch {
-                        patch,
-                        entity: entry.number,
-                        type_number: entry.type_number,
-                        base,
-                        instance: copy.instance,
-                        border,
-                        name: name.clone(),
-                    })),
+                Ok(pieces) => {
+                    let whole = pieces.iter().filter(|p| p.1 == FaceBorder::Natural);
+                    self.bridging
+                        .extend(whole.flat_map(|p| p.0.bounds()).collect::<Vec<_>>());
+                    self.out
+                        .patches
+                        .extend(pieces.into_iter().map(|(patch, border)| CadPatch {
+                            patch,
+                            entity: entry.number,
+                            type_number: entry.type_number,
+                            base,
+                            instance: copy.instance,
+                            border,
+                            name: name.clone(),
+                        }));
+                }
                 Err(reason) => {
                     refused.get_or_insert(reason);
                     // The copies differ in place only.
@@ -306,9 +346,14 @@ impl Reader<'_, '_> {
     ) -> Result<Piece, Refusal> {
         let global = &self.model.global;
         let resolution = global.resolution.map_or(0.0, |r| r / global.scale);
+        match points(face) {
+            points if points.is_empty() => self.bridging.extend(base.patch.bounds()),
+            points => self.bridging.extend(points),
+        }
         let grown = grown(base, face, resolution, &self.grant);
         let patch = grown.as_ref().map_or(&base.patch, |g| &g.patch);
         let host = Host::new(patch, &base.parameters, resolution, &self.grant);
+        let host = host.bridging(self.bridging.length);
         let mut tally = Tally {
             tolerance: host.agree,
             ..Tally::default()
@@ -321,12 +366,16 @@ impl Reader<'_, '_> {
         let made =
             granted.and_then(|()| loops(&host, &face.boundaries, sort, &mut tally, &mut said));
         let trimmed = made.and_then(|loops| {
-            let trimmed = patch.trimmed_by(loops, face.outer, GAP);
+            let gap = match tally.bridged {
+                0 => GAP,
+                _ => GAP.max(1.001 * widest_gap(&host, &loops)),
+            };
+            let trimmed = patch.trimmed_by(loops, face.outer, gap);
             trimmed.map_err(|e| e.to_string())
         });
         let note = |text: &str| format!("{}: {text}", describe(entry));
         self.notes.extend(said.iter().map(|text| note(text)));
-        if let Some(grown) = grown.filter(|g| g.continued > 0.0) {
+        if let Some(grown) = grown.as_ref().filter(|g| g.continued > 0.0) {
             let share = grown.continued;
             let text = format!(
                 "its boundary leaves the surface, which was continued by {share:.1e} of its range"
@@ -335,6 +384,17 @@ impl Reader<'_, '_> {
         }
         match trimmed {
             Ok(trimmed) => {
+                let other = (tally.rejected > 0).then(|| by_parameters(&host, face, sort));
+                if let Some(text) = other.and_then(|other| disagreement(&trimmed.patch, &other?)) {
+                    self.notes.push(note(&text));
+                }
+                if tally.bridged > 0 {
+                    let (n, widest) = (tally.bridged, tally.largest_bridge);
+                    let text = format!(
+                        "{n} gap(s) of up to {widest:.1e} between its boundary curves were closed"
+                    );
+                    self.notes.push(note(&text));
+                }
                 add(&mut self.out.trims, &tally);
                 let border = match trimmed.patch.trim() {
                     Some(_) => FaceBorder::Trimmed,

@@ -162,6 +162,16 @@ fn unit(params: &Params, notes: &mut Vec<String>) -> Result<LengthUnit, Fail> {
             )
         });
     }
+    if flag == 0 {
+        // No flag of the standard; the name counts, if there is one.
+        let unit = known.unwrap_or_else(LengthUnit::unspecified);
+        notes.push(format!(
+            "line {}: the units flag is 0, which stands for no unit; the unit is {}",
+            params.place_of(11).0,
+            unit.name
+        ));
+        return Ok(unit);
+    }
     let symbol = FLAGS.iter().find(|f| f.0 == flag).map(|f| f.1);
     let unit = symbol.and_then(LengthUnit::from_name);
     let unit = unit.ok_or_else(|| params.fail(11, "a units flag from 1 to 11"))?;

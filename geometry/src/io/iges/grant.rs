@@ -7,9 +7,10 @@ use super::Model;
 use crate::{NurbsCurve, NurbsPatch};
 use std::cell::Cell;
 
-/// Evaluations of a surface granted to any file, and for each of its lines of parameter data. Files of CAD systems spend at
-/// most 0.2 of it, those whose borders are given in the parameter plane next to nothing.
-const WORK: [u64; 2] = [200_000, 1_000];
+/// Evaluations of a surface granted to any file, and for each of its lines of parameter data. A span of a space curve takes a
+/// hundred projections to be followed on its surface, some 6,000 evaluations, and stands on one to three lines. Borders that
+/// are given in the parameter plane take next to nothing.
+const WORK: [u64; 2] = [500_000, 4_000];
 /// Evaluations that one projection counts for.
 pub const FOOT: u64 = 64;
 /// Bytes granted to any file, and for each of its records (of 80 bytes).
@@ -23,6 +24,11 @@ const TRIM_POINT: usize = 500;
 /// After so many refusals, surfaces are refused unread.
 const REFUSALS: u32 = 20;
 
+/// Evaluations granted to a file with so many lines of parameter data.
+pub fn evaluations(lines: usize) -> u64 {
+    WORK[0] + WORK[1] * lines as u64
+}
+
 /// What is left.
 pub struct Grant {
     work: Cell<u64>,
@@ -35,7 +41,7 @@ impl Grant {
         let parameter = model.sections.parameter.len();
         let all = parameter + model.sections.directory.len();
         Self {
-            work: Cell::new(WORK[0] + WORK[1] * parameter as u64),
+            work: Cell::new(evaluations(parameter)),
             bytes: Cell::new(BYTES[0] + BYTES[1] * all as u64),
             refusals: Cell::new(0),
         }

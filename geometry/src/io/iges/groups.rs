@@ -327,7 +327,7 @@ pub fn refusal(
     placed: &[Placement],
 ) -> Option<(SkipKind, String)> {
     let entry = &model.entries[index];
-    if entry.status.blanked {
+    if entry.status.blanked && !model.hidden {
         let reason = "blanked (hidden) in the file".to_owned();
         return Some((SkipKind::Blanked, reason));
     }
@@ -359,6 +359,7 @@ pub fn refusal(
         return Some((SkipKind::Template, reason));
     }
     if let Some(copy) = placed.iter().find(|p| p.hidden_in != 0)
+        && !model.hidden
         && placed.iter().all(|p| p.hidden_in != 0)
     {
         let reason = format!(

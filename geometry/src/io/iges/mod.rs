@@ -3,12 +3,14 @@
 //! The layers, one file each: 80-column `records` in their sections, `params` (free-format values with their places in
 //! the file), the `global` section, the `directory`, then entities: `transform` (124), `curve*` and `surfaces` (what they
 //! are as NURBS), `trimmed` and `brep` (faces as the file describes them), `groups` (who holds whom, and where copies
-//! stand), and `faces`, which decides what every surface entity becomes. Boundaries become loops of curves in the
+//! stand), and `faces`, which decides what every surface entity becomes (`bridging` holds what waits for the size of the part,
+//! `drawing` says what a file without surfaces is). Boundaries become loops of curves in the
 //! parameter plane in `trimmed_loops`, curve by curve in `trimmed_curves`, which projects onto a `trimmed_host` and fits
-//! by `trimmed_fit`.
+//! by `trimmed_fit`; `trimmed_areas` compares the areas that contradicting curves bound.
 
 mod base;
 mod brep;
+mod bridging;
 mod curve;
 mod curve_conic;
 mod curve_map;
@@ -16,6 +18,7 @@ mod curve_offset;
 mod curve_points;
 mod curve_spline;
 mod directory;
+mod drawing;
 mod faces;
 mod global;
 mod grant;
@@ -29,6 +32,7 @@ mod surface;
 mod surfaces;
 mod transform;
 mod trimmed;
+mod trimmed_areas;
 mod trimmed_curves;
 mod trimmed_extent;
 mod trimmed_fit;
@@ -42,8 +46,10 @@ pub use reparametrise::Reparametrise;
 pub use surfaces::{BasePatch, BaseSurface, Border, Unbounded};
 
 use super::CadError;
+use super::ReadOptions;
 use super::error::Fail;
 use super::report::{CadFile, CadFormat, EntityCount};
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 /// What all layers above the directory look at.
@@ -51,6 +57,10 @@ struct Model<'a> {
     sections: records::Sections<'a>,
     global: global::Global,
     entries: Vec<directory::Entry>,
+    /// Hidden (blanked) surfaces are read as well.
+    hidden: bool,
+    /// Evaluations of surfaces that may still be spent on offsets.
+    evaluations: Cell<u64>,
 }
 
 impl<'a> Model<'a> {
@@ -92,12 +102,25 @@ impl<'a> Model<'a> {
 /// # Errors
 /// [`CadError::Content`] with the place of the damage. A sound file that holds no surface is no error.
 pub fn read_iges(bytes: &[u8], name: &str) -> Result<CadFile, CadError> {
-    read(bytes, name).map_err(|fail| fail.in_file(name))
+    read_iges_with(bytes, name, &ReadOptions::default())
 }
 
-fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
+/// Reads an IGES file as [`read_iges`] does, with options.
+///
+/// # Errors
+/// As [`read_iges`].
+pub fn read_iges_with(
+    bytes: &[u8],
+    name: &str,
+    options: &ReadOptions,
+) -> Result<CadFile, CadError> {
+    read(bytes, name, options).map_err(|fail| fail.in_file(name))
+}
+
+fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<CadFile, Fail> {
     let mut notes = Vec::new();
-    let model = model_of(bytes, &mut notes)?;
+    let mut model = model_of(bytes, &mut notes)?;
+    model.hidden = options.hidden;
     let mut counts = BTreeMap::new();
     for entry in &model.entries {
         *counts.entry((entry.type_number, entry.form)).or_insert(0) += 1;
@@ -112,6 +135,9 @@ fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
         })
         .collect();
     let read = faces::read(&model, &mut notes)?;
+    if read.patches.is_empty() && read.skipped.is_empty() {
+        notes.push(drawing::account(&model.entries));
+    }
     Ok(CadFile {
         path: name.to_owned(),
         format: CadFormat::Iges,
@@ -130,10 +156,13 @@ fn model_of<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Result<Model<'a>, F
     let sections = records::split(bytes, notes)?;
     let global = global::read(&sections, notes)?;
     let entries = directory::read(&sections, notes)?;
+    let evaluations = grant::evaluations(sections.parameter.len());
     Ok(Model {
         sections,
         global,
         entries,
+        hidden: false,
+        evaluations: Cell::new(evaluations),
     })
 }
 

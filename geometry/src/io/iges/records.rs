@@ -1,6 +1,7 @@
 //! The 80-column records of an IGES file and their sections: start, global, directory, parameter data, terminate.
 
 use super::super::error::{Fail, show};
+use super::drawing::is_annotation;
 use std::borrow::Cow;
 
 /// One record: its data (columns 1 to 72) and the line it stands on.
@@ -88,11 +89,11 @@ pub fn split<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Result<Sections<'a
     }
     if counts[4] == 0 {
         let expected = "the terminate record T (the file is cut off)";
-        return Err(Fail::new(
-            (last.0.max(1), last.1 + 1),
-            expected,
-            "the end of the file",
-        ));
+        let found = match of_drawing(&sections) {
+            true => "the end of the file (what there is of it is a drawing, without surfaces)",
+            false => "the end of the file",
+        };
+        return Err(Fail::new((last.0.max(1), last.1 + 1), expected, found));
     }
     if let Some((number, _)) = lines.find(|(_, text)| !text.trim_ascii().is_empty()) {
         notes.push(format!(
@@ -100,6 +101,14 @@ pub fn split<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Result<Sections<'a
         ));
     }
     Ok(sections)
+}
+
+/// Whether the directory holds annotation, views or drawings and nothing that may be a surface or carry one.
+fn of_drawing(sections: &Sections) -> bool {
+    let types = (sections.directory.iter().step_by(2)).filter_map(|r| parse_count(r.columns(1, 8)));
+    let types: Vec<u32> = types.filter_map(|t| u32::try_from(t).ok()).collect();
+    let solid = |t: &u32| matches!(t, 108 | 114 | 118..=122 | 128 | 140..=198 | 502..=514);
+    types.iter().any(|&t| is_annotation(t)) && !types.iter().any(solid)
 }
 
 /// The terminate record holds the number of records of each section, S, G, D, P, in 8 columns each.

@@ -126,6 +126,25 @@ pub fn read(
             ));
         }
     }
+    let resolution = model.global.resolution.unwrap_or(0.0) / scale;
+    let mut net = Net {
+        counts,
+        knots,
+        points: net,
+        weights: if rational { weights } else { Vec::new() },
+    };
+    let joined: usize = (0..2).map(|d| net.join(d, degree[d], resolution)).sum();
+    if joined > 0 {
+        note(format!(
+            "{joined} knot(s) repeated more often than the degree, with equal points on both sides: the surface goes on there"
+        ));
+    }
+    let Net {
+        counts,
+        knots,
+        points: net,
+        weights,
+    } = net;
     let weights = rational.then_some(&weights[..]);
     let whole = match in_pieces(degree, &knots, counts, &net, weights) {
         Ok(pieces) => pieces,
@@ -174,6 +193,84 @@ pub fn read(
         patches: Ok(patches),
         values,
     })
+}
+
+/// Control points of a surface, those of the first direction fastest.
+struct Net {
+    counts: [usize; 2],
+    knots: [Vec<f64>; 2],
+    points: Vec<Vec3>,
+    /// Empty where all are equal.
+    weights: Vec<f64>,
+}
+
+impl Net {
+    /// Joins the surface at knots inside that are repeated more often than the degree, if the points on both sides are equal
+    /// (to rounding, or to the resolution where that is finer than a millionth of the size): some systems write all splines
+    /// as a row of Bezier pieces. Returns at how many knots.
+    fn join(&mut self, dir: usize, degree: usize, resolution: f64) -> usize {
+        let count = self.counts[dir];
+        if degree == 0 || self.knots[dir].len() != count + degree + 1 {
+            return 0;
+        }
+        let low = self
+            .points
+            .iter()
+            .fold(Vec3::repeat(f64::INFINITY), |a, b| a.inf(b));
+        let high = self
+            .points
+            .iter()
+            .fold(Vec3::repeat(f64::NEG_INFINITY), |a, b| a.sup(b));
+        let size = (high - low).norm();
+        let slack = (1e-9 * size).max(resolution.min(1e-6 * size));
+        let across = self.counts[1 - dir];
+        let place = |i: usize, line: usize, counts: [usize; 2]| match dir {
+            0 => i + counts[0] * line,
+            _ => line + counts[0] * i,
+        };
+        let weight = |k: usize| self.weights.get(k).copied().unwrap_or(1.0);
+        let same = |i: usize, j: usize| {
+            (0..across).all(|line| {
+                let (a, b) = (place(i, line, self.counts), place(j, line, self.counts));
+                let (v, w) = (weight(a), weight(b));
+                (self.points[a] - self.points[b]).norm() <= slack
+                    && (v - w).abs() <= 1e-9 * v.abs().max(w.abs())
+            })
+        };
+        let ranges = pieces(degree, &self.knots[dir], count);
+        let mut dropped = vec![false; count];
+        let mut joined = 0;
+        for pair in ranges.windows(2) {
+            let (last, next) = (pair[0].end - 1, pair[1].start);
+            if same(last, next) {
+                dropped[last + 1..=next].iter_mut().for_each(|d| *d = true);
+                joined += 1;
+            }
+        }
+        if joined == 0 {
+            return 0;
+        }
+        let kept: Vec<usize> = (0..count).filter(|&i| !dropped[i]).collect();
+        let mut counts = self.counts;
+        counts[dir] = kept.len();
+        let mut order = vec![0; kept.len() * across];
+        for (new, &old) in kept.iter().enumerate() {
+            for line in 0..across {
+                order[place(new, line, counts)] = place(old, line, self.counts);
+            }
+        }
+        self.points = order.iter().map(|&k| self.points[k]).collect();
+        if !self.weights.is_empty() {
+            self.weights = order.iter().map(|&k| self.weights[k]).collect();
+        }
+        // A point that goes takes one of the knots of its place with it: that of its own number is one of them.
+        let knots = std::mem::take(&mut self.knots[dir]);
+        let left = knots.into_iter().enumerate();
+        let left = left.filter(|(k, _)| !dropped.get(*k).copied().unwrap_or(false));
+        self.knots[dir] = left.map(|(_, t)| t).collect();
+        self.counts = counts;
+        joined
+    }
 }
 
 /// The patches into which a net falls at knots that are repeated `degree + 1` times or more.

@@ -93,7 +93,7 @@ pub fn read_144(
     for i in wanted {
         let what = if i == 4 { "outer" } else { "inner" };
         let index = pointer(model, &params, i, &format!("the {what} boundary curve"))?;
-        let boundary = read_142(model, index, base, outer, notes);
+        let boundary = read_boundary(model, index, base, outer, notes);
         match curve::settle(boundary)? {
             Ok(boundary) => face.boundaries.push(boundary),
             Err(reason) => {
@@ -102,6 +102,29 @@ pub fn read_144(
         }
     }
     Ok(face)
+}
+
+/// Reads what bounds a face. The standard gives a trimmed surface (144) curves on a surface (142) and a bounded surface (143)
+/// boundaries (141); some writers exchange them.
+fn read_boundary(
+    model: &Model,
+    index: usize,
+    base: usize,
+    outer: &Affine,
+    notes: &mut Vec<String>,
+) -> Result<Boundary, Stop> {
+    let entry = &model.entries[index];
+    match entry.type_number {
+        142 => read_142(model, index, base, outer, notes),
+        141 => read_141(model, index, outer, notes),
+        _ => {
+            let reason = format!(
+                "{} bounds it, which is neither a curve on a surface (142) nor a boundary (141)",
+                describe(entry)
+            );
+            Err(Stop::Reason(reason))
+        }
+    }
 }
 
 /// Reads a 142: a curve in the parameter plane (BPTR), in space (CPTR), or in both.
@@ -114,10 +137,6 @@ fn read_142(
 ) -> Result<Boundary, Stop> {
     let entry = &model.entries[index];
     let name = describe(entry);
-    if entry.type_number != 142 {
-        let reason = format!("{name} bounds it, which is no curve on a surface (142)");
-        return Err(Stop::Reason(reason));
-    }
     let params = model.params(entry)?;
     let surface = params.integer(2, "the surface of a curve on a surface (142)")?;
     if surface != 0 && surface != i64::from(model.entries[base].number) {
@@ -226,7 +245,7 @@ pub fn read_143(
         fault: None,
     };
     for index in list {
-        match curve::settle(read_141(model, index, outer, notes))? {
+        match curve::settle(read_boundary(model, index, base, outer, notes))? {
             Ok(boundary) => face.boundaries.push(boundary),
             Err(reason) => {
                 face.fault.get_or_insert(reason);
@@ -245,16 +264,14 @@ fn read_141(
 ) -> Result<Boundary, Stop> {
     let entry = &model.entries[index];
     let name = describe(entry);
-    if entry.type_number != 141 {
-        let reason = format!("{name} bounds it, which is no boundary (141)");
-        return Err(Stop::Reason(reason));
-    }
     let params = model.params(entry)?;
     let map = outer.after(&matrix_of(model, entry, notes)?);
     // 1: space, 2: the parameter plane, 3: both alike, 0: it does not say.
     let space_first = params.integer(2, "the preference PREF of a boundary (141)")? == 1;
     let count = params.count(4, "the number of curves of a boundary (141)")?;
-    if count > params.len().saturating_sub(5) / 3 {
+    // Boundaries of curves in space alone (type 0) are also written without the counts K, which are all 0.
+    let without_counts = params.len() == 5 + 2 * count && params.integer(1, "the type")? == 0;
+    if count > params.len().saturating_sub(5) / 3 && !without_counts {
         let expected = format!("{count} curves with sense and parameter curves");
         return Err(params.fail(params.len(), expected).into());
     }
@@ -263,14 +280,25 @@ fn read_141(
     for _ in 0..count {
         let curve = pointer(model, &params, at, "a curve of a boundary (141)")?;
         let sense = params.integer(at + 1, "the sense of a curve of a boundary (141)")?;
-        if !(1..=2).contains(&sense) {
+        // Sense 1 or 2 by the standard. Stretches that do not follow each other are turned when the chain is made.
+        if !(-1..=2).contains(&sense) {
             return Err(params.fail(at + 1, "sense 1 or 2").into());
         }
+        if sense < 1 {
+            notes.push(format!(
+                "{name}: the sense {sense} of entity {} is neither 1 nor 2; read as {}",
+                model.entries[curve].number,
+                if sense == 0 { "1" } else { "2" }
+            ));
+        }
         let mut space = space_parts(model, &model.entries[curve], &map, notes)?;
-        if sense == 2 {
+        if sense == 2 || sense == -1 {
             space = reversed(space)?;
         }
-        let (parameter, next) = parameter_list(model, &params, at + 2, false, notes)?;
+        let (parameter, next) = match without_counts {
+            true => (Vec::new(), at + 2),
+            false => parameter_list(model, &params, at + 2, false, notes)?,
+        };
         at = next;
         stretches.push(Stretch {
             parameter,

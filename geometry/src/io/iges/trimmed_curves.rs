@@ -32,6 +32,8 @@ pub fn add(total: &mut TrimReport, face: &Tally) {
     total.largest_gap = total.largest_gap.max(face.largest_gap);
     total.largest_error = total.largest_error.max(face.largest_error);
     total.tolerance = total.tolerance.max(face.tolerance);
+    total.bridged += face.bridged;
+    total.largest_bridge = total.largest_bridge.max(face.largest_bridge);
 }
 
 /// A stretch in the parameter plane of the patch.

@@ -23,6 +23,8 @@ pub struct Host<'a> {
     pub size: f64,
     /// Distance at which points count as the same.
     pub agree: f64,
+    /// Gaps between boundary curves up to this are closed, and told.
+    pub bridged: f64,
     /// A parallelogram: its origin, and the rows that take `x - origin` to shares of the domain.
     flat: Option<(Vec3, [Vec3; 2])>,
     set: OnceCell<Option<PatchSet>>,
@@ -47,10 +49,17 @@ impl<'a> Host<'a> {
             domain,
             size,
             agree,
+            bridged: 0.0,
             flat: flat(patch, size),
             set: OnceCell::new(),
             grant,
         }
+    }
+
+    /// The same where gaps between boundary curves up to `length` are closed, within a hundredth of the surface.
+    pub fn bridging(self, length: f64) -> Self {
+        let bridged = length.min(1e-2 * self.size);
+        Self { bridged, ..self }
     }
 
     /// Length of the domain in a direction, the period where the surface is closed.

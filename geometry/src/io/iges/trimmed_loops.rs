@@ -15,6 +15,8 @@ pub const GAP: f64 = 1e-3;
 struct Chain {
     curves: Vec<TrimCurve>,
     turns: [i32; 2],
+    /// Gaps (lengths in space) between curves that are one in the file's tolerance only.
+    gaps: Vec<f64>,
 }
 
 /// The loops of a face. `outer_first` orders them so that the first is the one that bounds most.
@@ -36,6 +38,8 @@ pub fn loops(
         }
         complaints.extend(said.into_iter().map(named));
         let chain = chain_of_area(host, found).map_err(named)?;
+        tally.bridged += chain.gaps.len();
+        tally.largest_bridge = (chain.gaps.iter()).fold(tally.largest_bridge, |a, &b| a.max(b));
         if chain.turns == [0, 0] {
             closed.push(chain.curves);
         } else {
@@ -107,7 +111,7 @@ fn follows(host: &Host, stretches: &[Vec<TrimCurve>]) -> bool {
 
 /// Ends of curves this near to each other in space are one point.
 fn joint(host: &Host) -> f64 {
-    10.0 * host.agree
+    (10.0 * host.agree).max(host.bridged)
 }
 
 /// Turns stretches round where their flags do not make them follow each other.
@@ -141,18 +145,21 @@ fn directed(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Vec<Vec<TrimC
     Ok(stretches)
 }
 
-/// One chain of all stretches. At a pole the turning parameter of the next curve is any: where the chain bounds nothing
-/// (both sides of a seam projected to the same one), it goes on a period away.
+/// One chain of all stretches. At a pole the turning parameter of the next curve is any: of the chains that go on a period
+/// apart from each other there, the one that closes in the parameter plane and bounds an area is meant. (A boundary is a
+/// closed curve of that plane. Space curves alone do not say which way round a pole they go on, and a chain that took the
+/// shorter way may go round the closed surface, or back along the same side of a seam.)
 fn chain_of_area(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Chain, String> {
     let stretches = directed(host, stretches)?;
-    let first = chain(host, &stretches, 0.0)?;
     let whole = host.extent(0) * host.extent(1);
-    if first.turns != [0, 0] || area(&first.curves) > 1e-9 * whole {
+    let bounds = |chain: &Chain| chain.turns == [0, 0] && area(&chain.curves) > 1e-9 * whole;
+    let first = chain(host, &stretches, 0.0)?;
+    if bounds(&first) {
         return Ok(first);
     }
     for turns in [1.0, -1.0] {
         let other = chain(host, &stretches, turns)?;
-        if other.turns == [0, 0] && area(&other.curves) > 1e-9 * whole {
+        if bounds(&other) {
             return Ok(other);
         }
     }
@@ -162,6 +169,7 @@ fn chain_of_area(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Chain, S
 /// The chain that goes on `turns` periods away after the first pole.
 fn chain(host: &Host, stretches: &[Vec<TrimCurve>], turns: f64) -> Result<Chain, String> {
     let mut out: Vec<TrimCurve> = Vec::new();
+    let mut gaps = Vec::new();
     let mut left = turns;
     let at_pole = |xi: Xi| {
         let stuck = host.stuck(xi);
@@ -182,7 +190,7 @@ fn chain(host: &Host, stretches: &[Vec<TrimCurve>], turns: f64) -> Result<Chain,
             left = 0.0;
         }
         let curve = shifted(curve, by).map_err(|e| e.to_string())?;
-        bridge(host, &mut out, last, start(&curve))?;
+        gaps.extend(bridge(host, &mut out, last, start(&curve))?);
         out.push(curve);
     }
     let (Some(first), Some(last)) = (out.first().map(start), out.last().map(end)) else {
@@ -194,18 +202,23 @@ fn chain(host: &Host, stretches: &[Vec<TrimCurve>], turns: f64) -> Result<Chain,
     for d in (0..2).filter(|&d| pole[d]) {
         target[d] = first[d];
     }
-    bridge(host, &mut out, last, target)?;
+    gaps.extend(bridge(host, &mut out, last, target)?);
     let turns = [0, 1].map(|d| ((target[d] - first[d]) / host.extent(d)).round() as i32);
-    Ok(Chain { curves: out, turns })
+    Ok(Chain {
+        curves: out,
+        turns,
+        gaps,
+    })
 }
 
 /// Adds a straight line from `from` to `to` where they are one point in space (a pole) but not in the parameter plane.
-fn bridge(host: &Host, out: &mut Vec<TrimCurve>, from: Xi, to: Xi) -> Result<(), String> {
+/// Returns the length of a gap in space that is left to be closed by moving ends.
+fn bridge(host: &Host, out: &mut Vec<TrimCurve>, from: Xi, to: Xi) -> Result<Option<f64>, String> {
     let share = (0..2)
         .map(|d| (to[d] - from[d]).abs() / host.extent(d))
         .fold(0.0, f64::max);
     if share <= 1e-9 {
-        return Ok(());
+        return Ok(None);
     }
     let start = host.point(from);
     let away = (1..=8)
@@ -216,11 +229,29 @@ fn bridge(host: &Host, out: &mut Vec<TrimCurve>, from: Xi, to: Xi) -> Result<(),
             "is open: a gap of {away:.1e} in space, {share:.1e} of the domain of the surface"
         ));
     }
+    // A line across a gap would be an edge that no neighbour has.
+    if away > 10.0 * host.agree {
+        return Ok(Some(away));
+    }
     // Small gaps are closed where the trim is made, without a curve of their own.
     if share > GAP {
         out.push(line(from, to)?);
     }
-    Ok(())
+    Ok(None)
+}
+
+/// The widest gap between curves that follow each other, as a share of the domain.
+pub fn widest_gap(host: &Host, loops: &[TrimLoop]) -> f64 {
+    let share = |from: Xi, to: Xi| {
+        let shares = (0..2).map(|d| (to[d] - from[d]).abs() / host.extent(d));
+        shares.fold(0.0, f64::max)
+    };
+    let gaps = loops.iter().flat_map(|l| {
+        let next = l.curves.iter().cycle().skip(1);
+        l.curves.iter().zip(next)
+    });
+    gaps.map(|(a, b)| share(end(a), start(b)))
+        .fold(0.0, f64::max)
 }
 
 /// Area that a loop bounds in the parameter plane, by a polygon.

@@ -25,6 +25,8 @@ pub(super) struct Contact {
     pub sense: f64,
     /// Largest angle of normals, with the other normal taken as it is and reversed.
     pub angles: [f64; 2],
+    /// Smallest angle of normals, likewise.
+    pub least_angles: [f64; 2],
     /// Ends of the other edge that lie on this one between its ends: which end, and the parameter here.
     pub ends: Vec<(usize, f64)>,
 }
@@ -37,6 +39,7 @@ impl Contact {
         gap_at: Vec3::new(0.0, 0.0, 0.0),
         sense: 0.0,
         angles: [0.0; 2],
+        least_angles: [f64::INFINITY; 2],
         ends: Vec::new(),
     };
 }
@@ -211,8 +214,13 @@ impl<S: Surface> Compare<'_, S> {
         let normals = (Frame::new(&probe.point.jet, 1.0), Frame::new(&at.jet, 1.0));
         if let (Some(a), Some(b)) = normals {
             let angle = a.n.cross(&b.n).norm().atan2(a.n.dot(&b.n));
-            self.out.angles[0] = self.out.angles[0].max(angle);
-            self.out.angles[1] = self.out.angles[1].max(std::f64::consts::PI - angle);
+            for (k, angle) in [angle, std::f64::consts::PI - angle]
+                .into_iter()
+                .enumerate()
+            {
+                self.out.angles[k] = self.out.angles[k].max(angle);
+                self.out.least_angles[k] = self.out.least_angles[k].min(angle);
+            }
         }
     }
 }

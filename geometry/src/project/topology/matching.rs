@@ -34,6 +34,8 @@ pub(super) struct Pair {
     relation: f64,
     reversed: bool,
     angle: f64,
+    /// Both patches leave the edge in the same direction everywhere, like sheets on top of each other.
+    stacked: bool,
     gap: f64,
     tolerance: f64,
 }
@@ -175,6 +177,8 @@ fn pair<S: Surface>(
         relation,
         reversed: sense < 0.0,
         angle: contacts[0].angles[which].max(contacts[1].angles[which]),
+        stacked: contacts.iter().all(|c| c.least_angles[which] > FOLDED)
+            && contacts.iter().any(|c| c.least_angles[which].is_finite()),
         gap: contacts[0].gap.max(contacts[1].gap),
         tolerance,
         contacts,
@@ -215,6 +219,11 @@ pub(super) fn link(
         // Patches that run over each other a little: their sides meet in part, each turned back onto the other. Joining them
         // there would take one of the patches for the back of the other.
         if pair.angle > FOLDED && !pair.full[0] && !pair.full[1] {
+            continue;
+        }
+        // Sheets on top of each other are no closed body, however near they are, unless the file cannot tell their edges
+        // apart or says that they are one.
+        if pair.stacked && !pair.same_entity && pair.gap > report.resolution {
             continue;
         }
         // A part that is taken already is not linked again.
@@ -261,13 +270,17 @@ pub(super) fn link(
         let names = pair.edges.map(|k| name(&edges[k]));
         let widest = usize::from(pair.contacts[1].gap > pair.contacts[0].gap);
         let gap_at = pair.contacts[widest].gap_at;
+        let gap = Gap {
+            edges: names,
+            gap: pair.gap,
+            at: gap_at,
+        };
+        if pair.gap > report.resolution {
+            report.bridged.push(gap.clone());
+        }
         if pair.gap > report.largest_gap || report.largest_gap_at.is_none() {
             report.largest_gap = pair.gap;
-            report.largest_gap_at = Some(Gap {
-                edges: names,
-                gap: pair.gap,
-                at: gap_at,
-            });
+            report.largest_gap_at = Some(gap);
         }
         if pair.whole {
             pair.edges.iter().for_each(|&k| joined[k] = true);
@@ -336,7 +349,7 @@ fn settle(edges: &[Edge], k: usize, joined: bool, report: &mut EdgeReport) -> Ed
     if full { kind } else { EdgeKind::Free }
 }
 
-/// Pairs of free edges that are near each other but were not joined.
+/// Pairs of free edges that are near each other but were not joined, by why they were not.
 pub(super) fn open_gaps<S: Surface>(set: &PatchSet<S>, edges: &[Edge], report: &mut EdgeReport) {
     let free: Vec<usize> = (0..edges.len())
         .filter(|&k| edges[k].kind == Some(EdgeKind::Free))
@@ -350,10 +363,14 @@ pub(super) fn open_gaps<S: Surface>(set: &PatchSet<S>, edges: &[Edge], report: &
             continue;
         }
         let widest = usize::from(pair.contacts[1].gap > pair.contacts[0].gap);
-        report.open_gaps.push(Gap {
+        let gap = Gap {
             edges: [name(&edges[a]), name(&edges[b])],
             gap: pair.gap,
             at: pair.contacts[widest].gap_at,
-        });
+        };
+        match pair.stacked {
+            true => report.stacked.push(gap),
+            false => report.open_gaps.push(gap),
+        }
     }
 }

@@ -16,14 +16,16 @@ mod report;
 
 pub(super) use corners::{CornerGroup, corner_at, edges_at};
 pub(super) use edge::{Edge, EdgeCurve, EdgePoint, Link, edge_point, nearest_on_edge};
-pub(super) use orient::Components;
 pub use report::{Border, EdgeReport, Gap, Joint, Overlap, PartialJoint};
 
-use super::set::{PatchSet, PatchSetError};
+use super::set::{Joining, PatchSet};
 use crate::surface::Surface;
 
 /// Edges shorter than this share of the size are one point.
 const POLE: f64 = 1e-7;
+/// Gaps up to this share of the size are rounding: that of the file's digits, and of boundary curves fitted to 1e-7 of their
+/// surface.
+const ROUNDING: f64 = 1e-6;
 /// Default tolerance as a share of the size.
 const TOLERANCE: f64 = 1e-5;
 
@@ -41,6 +43,8 @@ pub(super) struct Topology {
     /// Patches that hang together.
     pub components: Vec<Vec<usize>>,
     pub component_of: Vec<usize>,
+    /// For each component with one side only: two patches that cannot be oriented alike.
+    pub one_sided: Vec<Option<[usize; 2]>>,
     /// Volume enclosed by each component with outward sides, where it is closed.
     pub volumes: Vec<Option<f64>>,
     pub report: EdgeReport,
@@ -62,10 +66,11 @@ impl Topology {
 }
 
 /// Finds edges, joints, components and sides of a set whose patches and tree are complete.
-pub(super) fn build<S: Surface>(
-    set: &mut PatchSet<S>,
-    tolerance: Option<f64>,
-) -> Result<(), PatchSetError> {
+pub(super) fn build<S: Surface>(set: &mut PatchSet<S>, joining: Joining) {
+    let Joining {
+        tolerance,
+        resolution,
+    } = joining;
     let mut topology = Topology {
         first: vec![0],
         ..Topology::default()
@@ -87,12 +92,13 @@ pub(super) fn build<S: Surface>(
         .collect();
     set.tolerance = tolerance.unwrap_or(TOLERANCE * set.size);
     topology.report.tolerance = set.tolerance;
+    topology.report.resolution = resolution.unwrap_or(0.0).max(ROUNDING * set.size);
     let chosen: Vec<usize> = (0..edges.len()).filter(|&k| !poles[k]).collect();
     let pairs = matching::pairs(set, edges, &chosen, set.tolerance, tolerance.is_none());
     let touches = matching::link(edges, &poles, pairs, &mut topology.report);
     matching::open_gaps(set, edges, &mut topology.report);
     topology.report.borders = borders::borders(set, edges);
-    let components = orient::orient(edges, &topology.first, &mut set.sides)?;
+    let components = orient::orient(edges, &topology.first, &mut set.sides);
     topology.volumes = orient::volumes(set, edges, &topology.first, &components);
     for (members, volume) in components.members.iter().zip(&mut topology.volumes) {
         if let Some(volume) = volume
@@ -102,10 +108,9 @@ pub(super) fn build<S: Surface>(
             members.iter().for_each(|&patch| set.sides[patch] *= -1.0);
         }
     }
-    let Components { members, of } = components;
-    (topology.components, topology.component_of) = (members, of);
+    (topology.components, topology.component_of) = (components.members, components.of);
+    topology.one_sided = components.one_sided;
     corners::group(set, &mut topology, &touches);
     topology.report.overlaps = overlap::overlaps(set, &topology);
     set.topology = topology;
-    Ok(())
 }

@@ -1,7 +1,7 @@
 //! Connected components, a consistent side for every patch, and the outside of closed components.
 
 use super::super::EdgeKind;
-use super::super::set::{PatchSet, PatchSetError};
+use super::super::set::PatchSet;
 use super::edge::Edge;
 use crate::surface::{Surface, Vec3};
 
@@ -12,16 +12,15 @@ pub(in crate::project) struct Components {
     pub members: Vec<Vec<usize>>,
     /// Number of the component of every patch.
     pub of: Vec<usize>,
+    /// For a component with one side only: two patches that cannot be oriented alike.
+    pub one_sided: Vec<Option<[usize; 2]>>,
 }
 
-/// Components and sides relative to the first patch of each.
-pub(super) fn orient(
-    edges: &[Edge],
-    first: &[usize],
-    sides: &mut [f64],
-) -> Result<Components, PatchSetError> {
+/// Components and sides relative to the first patch of each. The patches of a one-sided component get side 0.
+pub(super) fn orient(edges: &[Edge], first: &[usize], sides: &mut [f64]) -> Components {
     let mut of = vec![usize::MAX; sides.len()];
     let mut components: Vec<Vec<usize>> = Vec::new();
+    let mut one_sided = Vec::new();
     for seed in 0..sides.len() {
         if of[seed] != usize::MAX {
             continue;
@@ -46,24 +45,26 @@ pub(super) fn orient(
                     sides[other] = side;
                     members.push(other);
                 } else if sides[other] != side && conflict.is_none() {
-                    conflict = Some((patch.min(other), patch.max(other)));
+                    conflict = Some([patch.min(other), patch.max(other)]);
                 }
             }
         }
         members.sort_unstable();
-        if let Some((a, b)) = conflict {
-            return Err(PatchSetError::NotOrientable(a, b, members));
+        if conflict.is_some() {
+            members.iter().for_each(|&patch| sides[patch] = 0.0);
         }
         components.push(members);
+        one_sided.push(conflict);
     }
-    Ok(Components {
+    Components {
         members: components,
         of,
-    })
+        one_sided,
+    }
 }
 
-/// The volume that each component encloses, with the sign of the present sides; `None` for a component with free edges or
-/// without volume. By the divergence theorem it is a third of the integral of `(rho - c) . n` for any point `c`.
+/// The volume that each component encloses, with the sign of the present sides; `None` for a component with free edges, with
+/// one side only, or without volume. By the divergence theorem it is a third of the integral of `(rho - c) . n` for any point `c`.
 pub(super) fn volumes<S: Surface>(
     set: &PatchSet<S>,
     edges: &[Edge],
@@ -73,7 +74,11 @@ pub(super) fn volumes<S: Surface>(
     components
         .members
         .iter()
-        .map(|members| {
+        .zip(&components.one_sided)
+        .map(|(members, one_sided)| {
+            if one_sided.is_some() {
+                return None;
+            }
             let own = || members.iter().flat_map(|&p| &edges[first[p]..first[p + 1]]);
             if own().any(|e| e.kind == Some(EdgeKind::Free)) {
                 return None;

@@ -95,10 +95,17 @@ pub struct EdgeReport {
     pub largest_gap: f64,
     /// Where the largest gap is; `None` where nothing is joined.
     pub largest_gap_at: Option<Gap>,
+    /// Joints over gaps wider than [`resolution`](Self::resolution), those of parts included.
+    pub bridged: Vec<Gap>,
     /// Pairs of free edges too far from each other to be joined, but within a hundred times the tolerance: likely gaps.
     pub open_gaps: Vec<Gap>,
+    /// Pairs of free edges within a hundred times the tolerance that were not joined because both patches leave the edge in
+    /// the same direction: the borders of sheets on top of each other.
+    pub stacked: Vec<Gap>,
     /// Free edges that lie inside another patch.
     pub overlaps: Vec<Overlap>,
     /// The tolerance that edges were joined with.
     pub tolerance: f64,
+    /// Gaps up to this are no gaps: the resolution of the source, at least 1e-6 of the size.
+    pub resolution: f64,
 }

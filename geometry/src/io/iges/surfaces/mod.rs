@@ -2,6 +2,7 @@
 //! cylinder (122), offset (140), planes (108, 190), quadrics (192 to 198). Entity 128 is in `surface`.
 
 mod offset;
+mod offset_fit;
 mod parametric;
 mod plane;
 mod quadric;
@@ -87,7 +88,7 @@ pub fn read(
         118 => ruled::read(reader),
         120 => revolution::read(reader),
         122 => tabulated::read(reader),
-        140 => offset::read(reader, outer),
+        140 => offset::read(reader),
         190 => plane::plane_190(reader),
         192 => plane::cylinder(reader),
         194 => plane::cone(reader),

@@ -129,6 +129,37 @@ impl Unbounded {
         })
     }
 
+    /// The surface at `distance` (in the entity's own coordinates) on the side of `indicator`, a vector of model space.
+    ///
+    /// # Errors
+    /// A plane with a border of its own; a radius that is not left; an indicator that does not tell the side.
+    pub(super) fn offset(&self, distance: f64, indicator: &Vec3) -> Result<Self, String> {
+        if self.border.is_some() {
+            return Err("its border would not move with it".to_owned());
+        }
+        let back = self.map.inverse().ok_or("the matrix is singular")?;
+        let to = back.linear * indicator;
+        let [_, _, e3] = self.triad;
+        let mut moved = self.clone();
+        // On a cylinder or cone the indicator stands somewhere around the axis: no more than in or out could be said, and
+        // not even that without the point at which it stands.
+        match &mut moved.kind {
+            Kind::Plane => {
+                let cosine = to.dot(&e3) / to.norm();
+                if cosine.is_nan() || cosine.abs() < 0.1 {
+                    let reason = "the offset indicator does not say on which side it lies";
+                    return Err(reason.to_owned());
+                }
+                moved.origin += e3 * (distance * cosine.signum());
+                Ok(moved)
+            }
+            _ => Err(
+                "the offset indicator of a surface without an end does not say on which side it lies"
+                    .to_owned(),
+            ),
+        }
+    }
+
     fn flat(&self, [u, v]: [[f64; 2]; 2]) -> Result<NurbsPatch, Stop> {
         let [e1, e2, _] = self.triad;
         let at = |x: f64, y: f64| self.origin + e1 * x + e2 * y;

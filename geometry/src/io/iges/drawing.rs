@@ -1,0 +1,28 @@
+//! Files without surfaces: drawings and wireframes.
+
+use super::curve::is_curve;
+use super::directory::Entry;
+
+/// Annotation, symbols, views and drawings.
+pub fn is_annotation(type_number: u32) -> bool {
+    matches!(type_number, 202..=230 | 312 | 404 | 410)
+}
+
+/// What a file without surfaces holds, in words.
+pub fn account(entries: &[Entry]) -> String {
+    // A 106 is a polyline or, in most of its forms, a part of a drawing (witness lines, hatching, ...).
+    let annotation = |e: &&Entry| match e.type_number {
+        106 => e.form >= 20 && e.form != 63,
+        other => is_annotation(other),
+    };
+    let drawn = entries.iter().filter(annotation).count();
+    let curves = entries.iter().filter(|e| is_curve(e.type_number));
+    let curves = curves.filter(|e| !annotation(e)).count();
+    match (drawn, curves) {
+        (1.., _) => format!(
+            "the file is a drawing: {drawn} dimension(s), notes, symbols and views, {curves} curve(s), no surfaces"
+        ),
+        (0, 1..) => format!("the file is a wireframe: {curves} curve(s), no surfaces"),
+        (0, 0) => "the file holds neither surfaces nor curves".to_owned(),
+    }
+}

@@ -1,0 +1,48 @@
+//! What it makes of a face to choose one of two kinds of boundary curves that contradict each other.
+
+use super::trimmed::{Boundary, Face, Stretch};
+use super::trimmed_curves::Tally;
+use super::trimmed_host::Host;
+use super::trimmed_loops::{GAP, loops};
+use crate::{NurbsPatch, PatchSet};
+
+/// Areas that differ by less than this share are the same face.
+const SAME: f64 = 0.01;
+
+/// The face that the curves in the parameter plane bound by themselves, if they do.
+pub fn by_parameters(host: &Host, face: &Face, sort: bool) -> Option<NurbsPatch> {
+    let stretch = |s: &Stretch| Stretch {
+        parameter: s.parameter.clone(),
+        ..Stretch::default()
+    };
+    let boundaries: Vec<Boundary> = (face.boundaries.iter())
+        .map(|b| Boundary {
+            name: b.name.clone(),
+            stretches: b.stretches.iter().map(stretch).collect(),
+        })
+        .collect();
+    let made = loops(
+        host,
+        &boundaries,
+        sort,
+        &mut Tally::default(),
+        &mut Vec::new(),
+    )
+    .ok()?;
+    let trimmed = host.patch.trimmed_by(made, face.outer, GAP).ok()?;
+    Some(trimmed.patch)
+}
+
+/// Says how far the areas of a face as it was read and of the `other` one differ, if they do.
+pub fn disagreement(read: &NurbsPatch, other: &NurbsPatch) -> Option<String> {
+    let area = |patch: &NurbsPatch| {
+        let set = PatchSet::new(vec![patch.clone()], None).ok()?;
+        Some(set.areas()[0])
+    };
+    let (read, other) = (area(read)?, area(other)?);
+    ((read - other).abs() > SAME * read.max(other)).then(|| {
+        format!(
+            "as read its area is {read:.6}; its curves in the parameter plane would make it {other:.6}"
+        )
+    })
+}

@@ -1,0 +1,109 @@
+//! Supports that hold both faces of a shell where its mid-surface may have been meant: fibres, the lines through the thickness,
+//! cannot turn there.
+use super::supports::components;
+use super::{Builder, ModelError};
+use crate::mesh::ThicknessColumns;
+use crate::model::error::At;
+use crate::scene::{POSITION_AND_TIME, TimeFunction};
+use covact_geometry::Vec3;
+use std::collections::BTreeSet;
+
+/// Thickness over the size of the body up to which it is a shell.
+const SHELL: f64 = 0.1;
+/// Part of a held direction that points into the shell, across its border, from which on fibres cannot turn about the border.
+const ACROSS: f64 = 0.7;
+/// Parts of the time of a run at which displacements of both ends of a fibre are compared.
+const TIMES: [f64; 4] = [0.0, 0.31, 0.77, 1.0];
+
+impl Builder<'_> {
+    /// Warns of supports that hold both ends of fibres alike in the direction that points into the shell, across its border, and
+    /// leave another component free: the border cannot turn. A single component that is zero is a symmetry plane, and all three
+    /// are a clamp: these are meant so. Held along the border and across the shell alone, as by a diaphragm, fibres turn.
+    ///
+    /// # Errors
+    /// As for [`Builder::supports`].
+    pub(super) fn held_fibres(&mut self) -> Result<(), ModelError> {
+        let scene = self.scene;
+        let mut warnings = Vec::new();
+        for (name, support) in &scene.supports {
+            let pointer = |field: &str| format!("/supports/{name}/{field}");
+            let held = components(support);
+            let plane = held.len() == 1 && held[0].1.is_none();
+            if support.mid_surface || support.displacement.is_none() || held.len() == 3 || plane {
+                continue;
+            }
+            let mut values = Vec::new();
+            for (component, value) in &held {
+                let value = (value.as_ref().map(|v| v.compile(&POSITION_AND_TIME))).transpose();
+                values.push((*component as usize, value.at(|| pointer("displacement"))?));
+            }
+            let (body, nodes) = self.set_nodes(&support.on, &pointer("on"))?;
+            let body = &self.bodies[body];
+            let columns = ThicknessColumns::new(&body.mesh);
+            let [low, high] = body.mesh.bounds();
+            let mut fibres = 0;
+            let set: BTreeSet<u32> = nodes.iter().copied().collect();
+            for node in &nodes {
+                let Some([bottom, top]) = columns.ends(node - body.first_node) else {
+                    continue;
+                };
+                // Every fibre once.
+                if *node != bottom + body.first_node || !set.contains(&(top + body.first_node)) {
+                    continue;
+                }
+                let ends = [bottom, top].map(|n| body.mesh.nodes[n as usize]);
+                let along = ends[1] - ends[0];
+                if along.norm() > SHELL * (high - low).norm() {
+                    continue;
+                }
+                let along = along.normalize();
+                let beside =
+                    (0..body.mesh.elements()).filter(|&e| body.mesh.element(e).contains(&bottom));
+                let middle = (ends[0] + ends[1]) * 0.5;
+                let inward = beside.fold(Vec3::zeros(), |sum, e| {
+                    let way = body.mesh.element_center(e) - middle;
+                    sum + (way - along * along.dot(&way))
+                        .try_normalize(0.0)
+                        .unwrap_or_default()
+                });
+                // Inside of the shell, or at an end of the border, nothing is said.
+                let Some(inward) = inward.try_normalize(0.1) else {
+                    continue;
+                };
+                let turns = |component: usize| inward[component].abs() > ACROSS;
+                let turned = (values.iter()).any(|(component, value)| {
+                    turns(*component) && !alike(value.as_ref(), ends, scene.solution.end_time)
+                });
+                let kept = values.iter().any(|(component, _)| turns(*component));
+                fibres += usize::from(kept && !turned);
+            }
+            if fibres > 0 {
+                let axes: Vec<&str> = held
+                    .iter()
+                    .map(|(c, _)| ["x", "y", "z"][*c as usize])
+                    .collect();
+                warnings.push(format!(
+                    "support `{name}`: it holds both faces of body `{}` alike along {} at {fibres} place(s), so that fibres through \
+                     the thickness cannot turn: the border is clamped, not hinged, which may change stiffness by a large part. With \
+                     `mid_surface` they turn freely; hold all three components where a clamp is meant",
+                    body.name,
+                    axes.join(" and ")
+                ));
+            }
+        }
+        self.warnings.extend(warnings);
+        Ok(())
+    }
+}
+
+/// Whether a prescribed displacement is the same at both ends of a fibre.
+fn alike(value: Option<&TimeFunction>, ends: [Vec3; 2], end: f64) -> bool {
+    let Some(value) = value else { return true };
+    TIMES.iter().all(|part| {
+        let at = |x: &Vec3| value.eval_at(x, part * end).ok();
+        match (at(&ends[0]), at(&ends[1])) {
+            (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs().max(b.abs()),
+            _ => false,
+        }
+    })
+}

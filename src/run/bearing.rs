@@ -1,0 +1,191 @@
+//! Which slave points carry the force of a contact, and what its penalty stores: sums over the points of a pair that
+//! [`super::fields::Fields::gather`] makes of what it knows of every point.
+use crate::contact::points::SlavePoint;
+use crate::model::sharp::SharpEdges;
+use crate::model::{Model, sharp};
+use covact_geometry::{Hint, Vec3};
+
+/// Points that carry most of a force are few up to one less than this number.
+pub const FEW: usize = 5;
+/// Part of a force that is most of it.
+const MOST: f64 = 0.9;
+/// A component of a unit normal below this does not matter.
+const NO_COMPONENT: f64 = 1e-3;
+
+/// A point in contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deepest {
+    /// Penetration (length, `> 0`).
+    pub depth: f64,
+    /// The point in space.
+    pub x: Vec3,
+    /// Outward unit normal of the master.
+    pub normal: Vec3,
+}
+
+/// Sums over the points of a pair in contact.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Bearing {
+    /// Half of pressure times gap, whatever its sign, without points whose penetration is prescribed (energy).
+    pub energy: f64,
+    /// Pressure times area (force).
+    pub force: f64,
+    /// The part of it near sharp convex edges of the master (force).
+    pub at_edges: f64,
+    /// Points in contact, or nodes where gaps are averaged.
+    pub active: usize,
+    /// The largest forces of single points, in descending order.
+    largest: [f64; FEW - 1],
+    /// The point that is deepest below the master, without those whose penetration is prescribed.
+    pub deepest: Option<Deepest>,
+}
+
+impl Bearing {
+    /// Adds the force of a point.
+    fn add(&mut self, mut force: f64) {
+        self.active += 1;
+        self.force += force;
+        for largest in &mut self.largest {
+            if force > *largest {
+                std::mem::swap(&mut force, largest);
+            }
+        }
+    }
+
+    /// Number of points that carry most of the force where these are few; none where they are not, or nothing is carried.
+    pub fn few(&self) -> Option<usize> {
+        let mut sum = 0.0;
+        for (i, force) in self.largest.iter().enumerate() {
+            sum += force;
+            if self.force > 0.0 && sum >= MOST * self.force {
+                return Some(i + 1);
+            }
+        }
+        None
+    }
+}
+
+/// A slave point or node in contact at an accepted state.
+pub struct Carrier<'a> {
+    pub pressure: f64,
+    pub gap: f64,
+    pub area: f64,
+    /// Share of the pair in the energy of its contact.
+    pub share: f64,
+    /// Where it is, for points.
+    pub place: Option<Place<'a>>,
+}
+
+/// Where a slave point is.
+pub struct Place<'a> {
+    pub point: &'a SlavePoint,
+    pub x: Vec3,
+    /// The same in the coordinates of a rigid master.
+    pub local: Vec3,
+    pub hint: Hint,
+    /// Outward unit normal of the master.
+    pub normal: Vec3,
+}
+
+/// Sums of all pairs, and what they need of the model.
+pub struct Bearings {
+    pub pairs: Vec<Bearing>,
+    /// Per node, which components of its displacement are prescribed, as bits.
+    prescribed: Vec<u8>,
+    /// Per pair: the master moves as prescribed.
+    given: Vec<bool>,
+    /// Per pair, the sharp convex edges of a rigid master and the distance of slave points.
+    edges: Vec<Option<(SharpEdges, f64)>>,
+}
+
+impl Bearings {
+    pub fn new(model: &Model) -> Self {
+        let mut prescribed = vec![0; model.nodes.len()];
+        for p in &model.prescribed {
+            prescribed[p.dof as usize / 3] |= 1 << (p.dof % 3);
+        }
+        let pairs = model.pairs.iter();
+        let surface = |p: &crate::model::PairModel| p.rigid_master().map(|s| &model.surfaces[s]);
+        Bearings {
+            pairs: vec![Bearing::default(); model.pairs.len()],
+            prescribed,
+            given: (pairs.clone())
+                .map(|p| surface(p).is_some_and(|s| s.driven.is_none()))
+                .collect(),
+            edges: pairs
+                .map(|p| {
+                    let edges = SharpEdges::of(surface(p)?)?;
+                    Some((edges, sharp::spacing(model, p)))
+                })
+                .collect(),
+        }
+    }
+
+    /// Forgets the last state.
+    pub fn clear(&mut self) {
+        self.pairs.fill(Bearing::default());
+    }
+
+    /// Adds a point or node of a pair that is in contact.
+    pub fn add(&mut self, pair: usize, carrier: &Carrier) {
+        let Carrier {
+            pressure,
+            gap,
+            area,
+            share,
+            place,
+        } = carrier;
+        let sum = &mut self.pairs[pair];
+        let force = pressure * area;
+        sum.add(force);
+        let energy = 0.5 * share * (force * gap).abs();
+        let Some(place) = place else {
+            sum.energy += energy;
+            return;
+        };
+        if let Some((edges, reach)) = &self.edges[pair]
+            && edges.near(place.hint.patch, &place.local, *reach)
+        {
+            sum.at_edges += force;
+        }
+        if self.given[pair] && is_prescribed(&self.prescribed, place.point, &place.normal) {
+            return;
+        }
+        sum.energy += energy;
+        if -gap > sum.deepest.map_or(0.0, |d| d.depth) {
+            sum.deepest = Some(Deepest {
+                depth: -gap,
+                x: place.x,
+                normal: place.normal,
+            });
+        }
+    }
+}
+
+/// Whether supports prescribe the displacement of a point along a direction.
+fn is_prescribed(prescribed: &[u8], point: &SlavePoint, along: &Vec3) -> bool {
+    let needed = (0..3).filter(|&c| along[c].abs() > NO_COMPONENT);
+    let needed = needed.fold(0, |bits, c| bits | 1 << c);
+    (point.terms()).all(|(node, w)| w == 0.0 || prescribed[node] & needed == needed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_points_are_counted_by_what_they_carry() {
+        let of = |forces: &[f64]| {
+            let mut sum = Bearing::default();
+            forces.iter().for_each(|f| sum.add(*f));
+            sum.few()
+        };
+        assert_eq!(of(&[]), None);
+        assert_eq!(of(&[3.0]), Some(1));
+        assert_eq!(of(&[0.1, 0.05, 3.0, 0.1]), Some(1));
+        assert_eq!(of(&[1.0, 2.0, 0.2, 0.05]), Some(2));
+        assert_eq!(of(&[1.0; 4]), Some(4));
+        assert_eq!(of(&[1.0; 5]), None);
+        assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 0.4]), Some(4));
+    }
+}

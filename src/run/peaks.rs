@@ -1,0 +1,158 @@
+//! Where geometry decides about a contact force: how many slave points carried it, and how much of it acted at sharp convex
+//! edges of the tool, each at the step in which the contact's force was the largest.
+use super::bearing::{Bearing, Bearings, FEW};
+use crate::model::error::number;
+use crate::model::initial::point_spacing;
+use crate::model::{Model, PairModel, sharp};
+use crate::output::ContactAccuracy;
+use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
+
+/// Part of a force at sharp convex edges above which the user is warned.
+const AT_EDGES: f64 = 0.1;
+
+/// A contact at its largest force.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Peak {
+    force: f64,
+    at_edges: f64,
+    active: usize,
+    /// Points that carried most of it, where these were few; else 0.
+    few: usize,
+    step: u32,
+}
+
+/// The largest force of every pair so far.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Peaks(Vec<Peak>);
+
+impl Peaks {
+    pub fn new(model: &Model) -> Self {
+        Peaks(vec![Peak::default(); model.pairs.len()])
+    }
+
+    /// Into a checkpoint.
+    pub(super) fn put(&self, out: &mut Writer) {
+        out.count(self.0.len());
+        for Peak {
+            force,
+            at_edges,
+            active,
+            few,
+            step,
+        } in &self.0
+        {
+            out.f64s(&[*force, *at_edges]);
+            out.u64(*active as u64);
+            out.u64(*few as u64);
+            out.u32(*step);
+        }
+    }
+
+    /// [`Self::put`], read back for the same model.
+    pub(super) fn take(&mut self, from: &mut Reader) -> Result<(), Malformed> {
+        from.exactly(self.0.len(), "largest forces")?;
+        for peak in &mut self.0 {
+            let mut sums = [0.0; 2];
+            from.f64s(&mut sums)?;
+            [peak.force, peak.at_edges] = sums;
+            (peak.active, peak.few) = (from.u64()? as usize, from.u64()? as usize);
+            peak.step = from.u32()?;
+        }
+        Ok(())
+    }
+
+    /// Takes an accepted step.
+    pub fn step(&mut self, step: u32, bearings: &Bearings) {
+        for (peak, sum) in self.0.iter_mut().zip(&bearings.pairs) {
+            let Bearing {
+                force,
+                at_edges,
+                active,
+                ..
+            } = *sum;
+            if force > 0.0 && force >= peak.force {
+                let few = sum.few().unwrap_or(0);
+                *peak = Peak {
+                    force,
+                    at_edges,
+                    active,
+                    few,
+                    step,
+                };
+            }
+        }
+    }
+
+    /// What the user is warned of at the end of a run.
+    pub fn warnings(&self, model: &Model) -> Vec<String> {
+        let pairs = model.pairs.iter().zip(&self.0);
+        let edges = pairs.filter_map(|(pair, peak)| peak.at_edges(model, pair));
+        edges.collect()
+    }
+
+    /// What else is said at the end of a run.
+    pub fn notes(&self, model: &Model) -> Vec<String> {
+        let pairs = model.pairs.iter().zip(&self.0).enumerate();
+        let few = pairs.filter_map(|(index, (pair, peak))| peak.few(model, index, pair));
+        few.collect()
+    }
+
+    /// The same as it stands in the summary.
+    pub fn account(&self, model: &Model) -> Vec<ContactAccuracy> {
+        let pairs = model.pairs.iter().zip(&self.0);
+        let account = |(pair, peak): (&PairModel, &Peak)| ContactAccuracy {
+            name: pair.name.clone(),
+            force: peak.force,
+            step: peak.step,
+            active: peak.active,
+            few: (peak.few > 0).then_some(peak.few),
+            edge_share: match peak.force > 0.0 {
+                true => peak.at_edges / peak.force,
+                false => 0.0,
+            },
+        };
+        pairs.map(account).collect()
+    }
+}
+
+impl Peak {
+    fn at_edges(&self, model: &Model, pair: &PairModel) -> Option<String> {
+        let spacing = sharp::spacing(model, pair);
+        (self.at_edges > AT_EDGES * self.force).then(|| {
+            format!(
+                "contact `{}`: {:.0} % of its force at step {} acts within one spacing of slave points ({}) of sharp convex edges \
+                 of {}: force and pressure there depend on where the points happen to lie, and may move by many per cent with \
+                 the mesh. Round the edges with a radius of at least {}, or refine the slave there and compare",
+                pair.name,
+                100.0 * self.at_edges / self.force,
+                self.step,
+                number(spacing),
+                pair.master_words(model),
+                number(2.0 * spacing)
+            )
+        })
+    }
+
+    fn few(&self, model: &Model, index: usize, pair: &PairModel) -> Option<String> {
+        let slaves = match &pair.averaged {
+            Some(nodes) => nodes.len(),
+            None => pair.points.len(),
+        };
+        // All of the slave's points in contact: faces lie flat on each other, and no finer mesh is asked for.
+        (self.few > 0 && self.active < slaves).then(|| {
+            let what = match &pair.averaged {
+                Some(_) => "nodes",
+                None => "points",
+            };
+            format!(
+                "contact `{}`: {} of {slaves} slave {what} carry 90 % of its force at step {}: fewer than {FEW} do not resolve how \
+                 it is spread, pressures are those of the mesh, and forces may be. Refine the slave faces there (points are {} \
+                 apart), or take more `points` a face",
+                pair.name,
+                self.few,
+                self.step,
+                number(point_spacing(model, index))
+            )
+        })
+    }
+}

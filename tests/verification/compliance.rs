@@ -1,0 +1,146 @@
+//! What the compliance of contact takes away from forces is told, with its size, and nothing is told where it is small.
+use crate::support::{Outcome, solve};
+use serde_json::{Value, json};
+
+/// Young's modulus of the sheets.
+const E: f64 = 1000.0;
+/// Squeeze as a part of the thickness.
+const SQUEEZE: f64 = 1e-3;
+
+/// A square sheet of length 10, squeezed by two rigid planes. nu = 0, so that the squeezed state is one of uniform strain.
+fn squeezed(slenderness: f64) -> Value {
+    let t = 10.0 * slenderness;
+    let plane = |z: f64, normal: f64, sign: f64| {
+        json!({
+            "plane": { "center": [5, 5, z], "normal": [0, 0, normal], "size": [40, 40] },
+            "motion": { "translation": [0, 0, format!("{}*t", sign * 0.5 * SQUEEZE * t)] }
+        })
+    };
+    json!({
+        "covact": 1,
+        "materials": { "m": { "st_venant_kirchhoff": { "E": E, "nu": 0 } } },
+        "bodies": { "sheet": {
+            "mesh": { "plate": { "size": [10, 10], "thickness": t, "elements": [4, 4], "layers": 2 } },
+            "material": "m",
+            "sets": { "middle": {
+                "nodes_near_plane": { "point": [0, 0, 0], "normal": [0, 0, 1], "tolerance": 0.1 * t }
+            } }
+        } },
+        "surfaces": { "below": plane(-0.5 * t, 1.0, 1.0), "above": plane(0.5 * t, -1.0, -1.0) },
+        "contacts": {
+            "a": { "slave": "sheet.bottom", "master": "below" },
+            "b": { "slave": "sheet.top", "master": "above" }
+        },
+        "supports": {
+            "x": { "on": "sheet.x_min", "symmetry": "x" },
+            "y": { "on": "sheet.y_min", "symmetry": "y" },
+            "middle": { "on": "sheet.middle", "displacement": { "z": 0 } }
+        },
+        "solution": { "step": { "initial": 0.5, "max": 0.5 }, "threads": 1 },
+        "output": { "every": 0 }
+    })
+}
+
+/// The part of the force that a run leaves out: exact is `A l E (1 - l^2) / 2` at the stretch `l`.
+fn missing(outcome: &Outcome) -> f64 {
+    let l = 1.0 - SQUEEZE;
+    let exact = 100.0 * l * E * (1.0 - l * l) / 2.0;
+    1.0 - outcome.at("force.above.z", 1.0).abs() / exact
+}
+
+fn told(outcome: &Outcome) -> Vec<&String> {
+    let all = outcome.summary.warnings.iter();
+    all.filter(|w| w.starts_with("contact gives way")).collect()
+}
+
+fn run(scene: &Value) -> Outcome {
+    let outcome = solve(scene);
+    assert!(outcome.summary.reason.is_none(), "{:?}", outcome.summary);
+    outcome
+}
+
+#[test]
+fn thin_sheets_squeezed_through_their_thickness_are_told_how_much_force_is_missing() {
+    for slenderness in [1e-1, 1e-2, 5e-3, 3.3e-3, 2e-3, 1e-3, 1e-4] {
+        let outcome = run(&squeezed(slenderness));
+        let off = missing(&outcome);
+        assert!(off > 0.01, "t/L {slenderness}: off by {off} only");
+        let told = told(&outcome);
+        assert_eq!(told.len(), 1, "t/L {slenderness}, off by {off}: {told:?}");
+        let found = outcome.summary.accuracy.force_error;
+        match off > 0.5 {
+            true => assert!(told[0].contains("by more than half"), "{}", told[0]),
+            false => {
+                assert!(found / off < 1.5 && off / found < 1.5, "{found} {off}");
+                let text = format!("by about {:.1} %", 100.0 * found);
+                assert!(told[0].contains(&text), "{}", told[0]);
+            }
+        }
+    }
+}
+
+/// The remedies that the warning names end it, and the force is right.
+#[test]
+fn a_stiffer_penalty_or_augmentation_ends_the_warning() {
+    for slenderness in [1e-1, 1e-2, 2e-3] {
+        let t = 10.0 * slenderness;
+        let mut stiff = squeezed(slenderness);
+        let mut augmented = squeezed(slenderness);
+        for contact in ["a", "b"] {
+            stiff["contacts"][contact]["penalty"] = json!({ "value": 2000.0 * E / t });
+            augmented["contacts"][contact]["penalty"] = json!({ "value": 200.0 * E / t });
+            augmented["contacts"][contact]["augmentation"] = json!({ "gap": 1e-6 * slenderness });
+        }
+        for scene in [stiff, augmented] {
+            let outcome = run(&scene);
+            let off = missing(&outcome);
+            assert!(off.abs() < 5e-3, "t/L {slenderness}: {off}");
+            assert_eq!(told(&outcome), Vec::<&String>::new());
+            let account = &outcome.summary.accuracy;
+            assert!(
+                account.energy_ratio < 0.01 && account.step > 0,
+                "{account:?}"
+            );
+        }
+    }
+}
+
+/// A plane that ends in nodes whose displacement is prescribed penetrates as prescribed, whatever the penalty: it neither
+/// warns nor hides anything.
+#[test]
+fn prescribed_penetrations_do_not_count() {
+    let mut scene = squeezed(0.1);
+    for contact in ["a", "b"] {
+        scene["contacts"][contact]["penalty"] = json!({ "value": 2000.0 * E });
+    }
+    scene["supports"]["floor"] = json!({ "on": "sheet.bottom", "displacement": { "z": "5e-4*t" } });
+    scene["surfaces"]["below"]["motion"]["translation"] = json!([0, 0, "6e-4*t"]);
+    let outcome = run(&scene);
+    let (stored, internal) = (
+        outcome.at("energy.contact", 1.0),
+        outcome.at("energy.internal", 1.0),
+    );
+    assert!(stored > 0.1 * internal, "{stored} {internal}");
+    assert_eq!(told(&outcome), Vec::<&String>::new());
+    assert!(missing(&outcome).abs() < 5e-3);
+}
+
+/// Where most of the strain energy is that of another load, the penetration tells: a stretched sheet under a penalty that holds
+/// nothing.
+#[test]
+fn tools_that_pass_through_are_told() {
+    let mut scene = squeezed(0.1);
+    for contact in ["a", "b"] {
+        scene["contacts"][contact]["penalty"] = json!({ "scaled": 1e-6 });
+    }
+    scene["supports"]["pull"] = json!({ "on": "sheet.x_max", "displacement": { "x": "0.5*t" } });
+    let outcome = run(&scene);
+    let account = &outcome.summary.accuracy;
+    assert!(account.energy_ratio < 1e-6, "{account:?}");
+    assert!(account.penetration_ratio > 0.99, "{account:?}");
+    let told = told(&outcome);
+    assert!(
+        told.len() == 1 && told[0].contains("by more than half"),
+        "{told:?}"
+    );
+}

@@ -1,0 +1,277 @@
+//! Where the geometry of tool and mesh decides about a force, it is told with numbers: sharp edges between slave points,
+//! facets beside an interference fit, few points under a force, the side that a tube is shrunk onto.
+use crate::support::{Outcome, scene_json, solve};
+use covact::model::{Model, build::build};
+use covact::solve::event::Event;
+use serde_json::{Value, json};
+
+fn run(scene: &Value) -> Outcome {
+    let outcome = solve(scene);
+    assert!(outcome.summary.reason.is_none(), "{:?}", outcome.summary);
+    outcome
+}
+
+fn model(scene: &Value) -> Model {
+    let loaded = covact::scene::parse(&scene.to_string(), "scene.json").expect("a scene");
+    build(&loaded).expect("a model")
+}
+
+fn told<'a>(all: &'a [String], words: &str) -> Vec<&'a String> {
+    all.iter().filter(|w| w.contains(words)).collect()
+}
+
+/// Triangles of a box from `min` to `max`, as an STL file.
+fn stl_box(min: [f64; 3], max: [f64; 3]) -> String {
+    let corner = |k: usize| [0, 1, 2].map(|c| if k >> c & 1 == 1 { max[c] } else { min[c] });
+    let faces = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let mut text = "solid box\n".to_owned();
+    for [a, b, c, d] in faces {
+        for triangle in [[a, b, c], [a, c, d]] {
+            text += "facet normal 0 0 0\nouter loop\n";
+            for [x, y, z] in triangle.map(corner) {
+                text += &format!("vertex {x} {y} {z}\n");
+            }
+            text += "endloop\nendfacet\n";
+        }
+    }
+    text + "endsolid box\n"
+}
+
+/// A strip that is bent down over the edge x = 0 of a box, with `n` elements along it.
+fn over_an_edge(n: u32, down: f64) -> Value {
+    json!({
+        "covact": 1,
+        "materials": { "m": { "st_venant_kirchhoff": { "E": 1000, "nu": 0.3 } } },
+        "bodies": { "strip": {
+            "mesh": { "plate": {
+                "size": [20, 1], "thickness": 0.5, "elements": [n, 1], "origin": [-10, 0, 0.26]
+            } },
+            "material": "m"
+        } },
+        "surfaces": { "box": { "cad": { "file": "box.stl" } } },
+        "contacts": { "c": { "slave": "strip.bottom", "master": "box" } },
+        "supports": {
+            "clamp": { "on": "strip.x_min", "fixed": true },
+            "width": { "on": "strip.y_min", "symmetry": "y" },
+            "width2": { "on": "strip.y_max", "symmetry": "y" },
+            "end": { "on": "strip.x_max", "mid_surface": true, "displacement": { "z": format!("-{down}*t") } }
+        },
+        "solution": { "step": { "initial": 0.1, "max": 0.1 } },
+        "output": { "every": 0 }
+    })
+}
+
+fn run_beside_box(scene: &Value) -> Outcome {
+    let folder = tempfile::tempdir().unwrap();
+    let text = stl_box([-12.0, -2.0, -10.0], [0.3, 3.0, 0.0]);
+    std::fs::write(folder.path().join("box.stl"), text).unwrap();
+    let outcome = crate::support::solve_in(scene, folder.path());
+    assert!(outcome.summary.reason.is_none(), "{:?}", outcome.summary);
+    outcome
+}
+
+#[test]
+fn a_sharp_edge_between_slave_points_is_warned_of() {
+    let outcomes = [21, 42].map(|n| run_beside_box(&over_an_edge(n, 4.0)));
+    let [coarse, fine] = outcomes.each_ref().map(|o| o.at("force.box.z", 1.0));
+    // What the warning says: the force is that of the mesh.
+    assert!((coarse / fine - 1.0).abs() > 0.01, "{coarse} {fine}");
+    for outcome in &outcomes {
+        let told = told(
+            &outcome.summary.warnings,
+            "sharp convex edges of surface `box`",
+        );
+        assert_eq!(told.len(), 1, "{:?}", outcome.summary.warnings);
+        let share = outcome.summary.accuracy.contacts[0].edge_share;
+        assert!(share > 0.5, "{share}");
+        assert!(told[0].contains(&format!("{:.0} % of its force", 100.0 * share)));
+    }
+}
+
+/// A block that lies on the middle of the same box, off its edges.
+#[test]
+fn edges_away_from_the_contact_are_noted_and_not_warned_of() {
+    let mut scene = over_an_edge(20, 0.0);
+    scene["bodies"]["strip"]["mesh"] = json!({ "block": {
+        "min": [-8, 0, 0], "max": [-6, 1, 1], "elements": [4, 2, 2]
+    } });
+    scene["supports"] = json!({
+        "down": { "on": "strip.top", "displacement": { "x": 0, "y": 0, "z": "-0.01*t" } }
+    });
+    let outcome = run_beside_box(&scene);
+    assert!(told(&outcome.summary.warnings, "sharp").is_empty());
+    assert_eq!(outcome.summary.accuracy.contacts[0].edge_share, 0.0);
+    let noted = outcome.events.iter().any(|e| match e {
+        Event::Model { notes, .. } => {
+            told(notes, "sharp convex edge(s), of up to 90 degrees").len() == 1
+        }
+        _ => false,
+    });
+    assert!(noted);
+}
+
+/// A tube of outer radius 10.01 in one of inner radius 10, both a wall of 1 thick, held to plane strain; `n` and `m` elements
+/// over a quarter.
+fn fit([n, m]: [u32; 2], points: Value) -> Value {
+    let tube = |radius: f64, elements: u32| {
+        json!({
+            "mesh": { "cylinder_panel": {
+                "radius": radius, "thickness": 1, "angles": [0, 90], "y": [0, 1], "elements": [elements, 1]
+            } },
+            "material": "m"
+        })
+    };
+    let mut supports = serde_json::Map::new();
+    for body in ["inner", "outer"] {
+        for (set, axis) in [
+            ("phi_min", "x"),
+            ("phi_max", "z"),
+            ("y_min", "y"),
+            ("y_max", "y"),
+        ] {
+            let support = json!({ "on": format!("{body}.{set}"), "symmetry": axis });
+            supports.insert(format!("{body}_{set}"), support);
+        }
+    }
+    json!({
+        "covact": 1,
+        "materials": { "m": { "st_venant_kirchhoff": { "E": 1000, "nu": 0.3 } } },
+        "bodies": { "inner": tube(9.51, n), "outer": tube(10.5, m) },
+        "contacts": { "fit": {
+            "slave": "inner.outer", "master": "outer.inner", "points": points,
+            "initial_overclosure": { "shrink": { "until": 1 } }
+        } },
+        "supports": supports,
+        "solution": { "step": { "initial": 1, "max": 1 } },
+        "output": { "every": 0 }
+    })
+}
+
+/// Mean pressure of the fit: the force of a quarter on the plane x = 0 by its area.
+fn pressure(outcome: &Outcome) -> f64 {
+    outcome.at("slave.force.fit.x", 1.0).abs() / 10.0
+}
+
+#[test]
+fn facets_that_change_an_interference_are_told_by_how_much() {
+    // Faces that match node by node are exact but for the elements.
+    let matching = run(&fit([24, 24], json!("nodes")));
+    assert!(told(&matching.summary.warnings, "flat facets").is_empty());
+    let right = pressure(&matching);
+    for (elements, points) in [
+        ([12, 8], json!("nodes")),
+        ([24, 16], json!("nodes")),
+        ([48, 32], json!("nodes")),
+        ([12, 12], json!({ "gauss": 2 })),
+    ] {
+        let outcome = run(&fit(elements, points));
+        let off = pressure(&outcome) / right - 1.0;
+        let told = told(&outcome.summary.warnings, "flat facets");
+        let expected = off.abs() > 0.01;
+        assert_eq!(
+            told.len(),
+            usize::from(expected),
+            "{elements:?} {off}: {told:?}"
+        );
+        if !expected {
+            continue;
+        }
+        let text = told[0].split("wrong by about ").nth(1);
+        match text {
+            None => assert!(off > 0.3, "{off}: {}", told[0]),
+            Some(text) => {
+                let number = text.split(' ').next().and_then(|n| n.parse::<f64>().ok());
+                let found = number.expect("a number") / 100.0;
+                assert!(
+                    found / off > 1.0 / 3.0 && found / off < 3.0,
+                    "{found} {off}: {}",
+                    told[0]
+                );
+            }
+        }
+    }
+}
+
+/// A tube shrunk onto a rigid pin that is thicker than its bore: with the side left to the program it lies outside of the pin.
+#[test]
+fn a_tube_shrinks_onto_a_pin_and_check_says_how_it_was_taken() {
+    let mut scene = fit([24, 24], json!("nodes"));
+    let bodies = scene["bodies"].as_object_mut().unwrap();
+    bodies.remove("inner");
+    let supports = scene["supports"].as_object_mut().unwrap();
+    supports.retain(|name, _| name.starts_with("outer"));
+    scene["surfaces"] = json!({ "pin": { "cylinder": { "radius": 10.01, "length": 4 } } });
+    scene["contacts"]["fit"]["slave"] = json!("outer.inner");
+    scene["contacts"]["fit"]["master"] = json!("pin");
+    let model = model(&scene);
+    assert_eq!(
+        told(
+            &model.notes,
+            "surface `pin`: the slave points start on one side"
+        )
+        .len(),
+        1
+    );
+    let auto = run(&scene);
+    // Lame, plane strain, inner displacement .01 at a = 10, b = 11: p = u E / ((1 + nu) a (1 - 2 nu + (b/a)^2) / ((b/a)^2 - 1)).
+    let ratio = 1.21;
+    let exact = 0.01 * 1000.0 / (1.3 * 10.0 * (0.4 + ratio) / (ratio - 1.0));
+    let found = auto.at("force.pin.x", 1.0).abs() / 10.0;
+    assert!((found / exact - 1.0).abs() < 0.02, "{found} {exact}");
+    // Said in words it is the same.
+    scene["surfaces"]["pin"]["side"] = json!({ "point": [20, 0, 20] });
+    let given = run(&scene);
+    assert_eq!(given.at("force.pin.x", 1.0), auto.at("force.pin.x", 1.0));
+    assert!(told(&self::model(&scene).notes, "start on one side").is_empty());
+}
+
+#[test]
+fn few_points_under_a_force_are_told() {
+    // The plate under a ball: one node touches on a coarse mesh, many Gauss points on a finer one.
+    let mut scene = scene_json("ball_on_plate.json");
+    scene["output"] = json!({ "every": 0 });
+    scene["bodies"]["plate"]["mesh"]["plate"]["elements"] = json!([6, 6]);
+    scene["contacts"]["press"]["points"] = json!("nodes");
+    let coarse = run(&scene);
+    let noted = |outcome: &Outcome| {
+        let of = |e: &Event| matches!(e, Event::Note { text } if text.contains("carry 90 % of its force"));
+        outcome.events.iter().filter(|e| of(e)).count()
+    };
+    assert_eq!(noted(&coarse), 1);
+    let few = coarse.summary.accuracy.contacts[0].few;
+    assert!(few.is_some_and(|few| few < 5), "{few:?}");
+    scene["bodies"]["plate"]["mesh"]["plate"]["elements"] = json!([16, 16]);
+    scene["contacts"]["press"]["points"] = json!({ "gauss": 4 });
+    let fine = run(&scene);
+    assert_eq!(noted(&fine), 0);
+    assert_eq!(fine.summary.accuracy.contacts[0].few, None);
+}
+
+/// A tube whose end is held by its rim: a diaphragm across the axis lets fibres turn (the pinched cylinder comes out the same
+/// with `mid_surface`), while what holds both faces along the axis clamps them.
+#[test]
+fn a_border_that_cannot_turn_is_warned_of() {
+    let warnings = |displacement: Value, mid_surface: bool| {
+        let mut scene = fit([8, 8], json!("nodes"));
+        for body in ["inner", "outer"] {
+            scene["bodies"][body]["mesh"]["cylinder_panel"]["y"] = json!([0, 40]);
+        }
+        scene["supports"]["outer_y_max"] = json!({
+            "on": "outer.y_max", "displacement": displacement, "mid_surface": mid_surface
+        });
+        let warnings = model(&scene).warnings;
+        told(&warnings, "support `outer_y_max`: it holds both faces").len()
+    };
+    assert_eq!(warnings(json!({ "x": 0, "z": 0 }), false), 0);
+    assert_eq!(warnings(json!({ "y": 0, "z": 0 }), false), 1);
+    assert_eq!(warnings(json!({ "y": 0, "z": 0 }), true), 0);
+    assert_eq!(warnings(json!({ "x": 0, "y": 0, "z": 0 }), false), 0);
+    assert_eq!(warnings(json!({ "y": 0 }), false), 0);
+}
