@@ -472,8 +472,8 @@ fn build_reports_and_refuses() {
 
     let file = |path: &str, scale| {
         MeshSource::File(MeshFile {
-            path: path.into(),
             scale,
+            ..MeshFile::new(path)
         })
     };
     let error = |source| {

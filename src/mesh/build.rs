@@ -1,9 +1,7 @@
 //! From the scene's description to a mesh.
 use super::extrude::Extrusion;
 use super::raw::{ThicknessRule, report};
-use super::{
-    ElementKind, Mesh, MeshError, MeshReport, block, cylinder_panel, plate, sphere_panel,
-};
+use super::{ElementKind, Mesh, MeshError, MeshReport, block, cylinder_panel, plate, sphere_panel};
 use crate::scene::{MeshFile, MeshSource};
 use std::path::Path;
 

@@ -165,10 +165,7 @@ pub enum MeshError {
     },
     /// A surface cannot be given a thickness.
     #[error("{}: {source}", path.display())]
-    Surface {
-        path: PathBuf,
-        source: SurfaceError,
-    },
+    Surface { path: PathBuf, source: SurfaceError },
     /// A node position is not finite.
     #[error("node {node} has the position ({}, {}, {})", position[0], position[1], position[2])]
     NotFinite { node: u32, position: [f64; 3] },

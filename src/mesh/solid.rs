@@ -34,7 +34,8 @@ impl RawMesh {
         let facets = 0..self.facets.len() as u32;
         let triangles = facets.filter(|&f| self.facets.is_triangle(f)).count();
         if triangles > 0 {
-            self.notes.push(format!("{triangles} triangles were left out"));
+            self.notes
+                .push(format!("{triangles} triangles were left out"));
         }
         self.complete_hexahedra();
         self.add_nodes_of_elements();
@@ -268,4 +269,3 @@ fn goes_around(face: [u32; 4], quad: [u32; 4]) -> bool {
     };
     next(&around, quad[0]) == Some(quad[1])
 }
-

@@ -69,7 +69,9 @@ impl Mesh {
     /// Number of parts that share no node with each other (nodes without elements are not counted).
     pub fn components(&self) -> usize {
         let mut used = vec![false; self.nodes.len()];
-        self.connectivity.iter().for_each(|&n| used[n as usize] = true);
+        self.connectivity
+            .iter()
+            .for_each(|&n| used[n as usize] = true);
         let part = self.parts();
         (0..self.nodes.len())
             .filter(|&n| used[n] && part[n] as usize == n)

@@ -26,7 +26,9 @@ fn msh_4(s: &Surface) -> String {
          $Entities\n0 0 1 0\n1 0 0 0 4 2 1 1 1 0\n$EndEntities\n$Nodes\n1 {n} 1 {n}\n2 1 0 {n}\n"
     );
     (1..=n).for_each(|k| writeln!(text, "{k}").unwrap());
-    s.points.iter().for_each(|[x, y, z]| writeln!(text, "{x} {y} {z}").unwrap());
+    s.points
+        .iter()
+        .for_each(|[x, y, z]| writeln!(text, "{x} {y} {z}").unwrap());
     let kind = gmsh_type(&s.facets[0]);
     write!(text, "$EndNodes\n$Elements\n1 {e} 1 {e}\n2 1 {kind} {e}\n").unwrap();
     for (k, f) in s.facets.iter().enumerate() {
@@ -40,18 +42,30 @@ fn msh_4_binary(s: &Surface) -> Vec<u8> {
     let mut out = b"$MeshFormat\n4.1 1 8\n".to_vec();
     out.extend(1i32.to_le_bytes());
     out.extend(b"\n$EndMeshFormat\n$Nodes\n");
-    [1, n, 1, n].iter().for_each(|v: &u64| out.extend(v.to_le_bytes()));
-    [2i32, 1, 0].iter().for_each(|v| out.extend(v.to_le_bytes()));
+    [1, n, 1, n]
+        .iter()
+        .for_each(|v: &u64| out.extend(v.to_le_bytes()));
+    [2i32, 1, 0]
+        .iter()
+        .for_each(|v| out.extend(v.to_le_bytes()));
     out.extend(n.to_le_bytes());
     (1..=n).for_each(|k| out.extend(k.to_le_bytes()));
-    s.points.iter().flatten().for_each(|x| out.extend(x.to_le_bytes()));
+    s.points
+        .iter()
+        .flatten()
+        .for_each(|x| out.extend(x.to_le_bytes()));
     out.extend(b"\n$EndNodes\n$Elements\n");
-    [1, e, 1, e].iter().for_each(|v: &u64| out.extend(v.to_le_bytes()));
-    [2, 1, gmsh_type(&s.facets[0]) as i32].iter().for_each(|v| out.extend(v.to_le_bytes()));
+    [1, e, 1, e]
+        .iter()
+        .for_each(|v: &u64| out.extend(v.to_le_bytes()));
+    [2, 1, gmsh_type(&s.facets[0]) as i32]
+        .iter()
+        .for_each(|v| out.extend(v.to_le_bytes()));
     out.extend(e.to_le_bytes());
     for (k, f) in s.facets.iter().enumerate() {
         out.extend((k as u64 + 1).to_le_bytes());
-        f.iter().for_each(|n| out.extend((*n as u64 + 1).to_le_bytes()));
+        f.iter()
+            .for_each(|n| out.extend((*n as u64 + 1).to_le_bytes()));
     }
     out.extend(b"\n$EndElements\n");
     out
@@ -67,7 +81,14 @@ fn msh_2(s: &Surface) -> String {
     }
     write!(text, "$EndNodes\n$Elements\n{}\n", s.facets.len()).unwrap();
     for (k, f) in s.facets.iter().enumerate() {
-        writeln!(text, "{} {} 2 1 1 {}", k + 1, gmsh_type(f), nodes(f, 1, " ")).unwrap();
+        writeln!(
+            text,
+            "{} {} 2 1 1 {}",
+            k + 1,
+            gmsh_type(f),
+            nodes(f, 1, " ")
+        )
+        .unwrap();
     }
     text + "$EndElements\n"
 }
@@ -83,7 +104,9 @@ fn msh_2_binary(s: &Surface) -> Vec<u8> {
     }
     out.extend(format!("\n$EndNodes\n$Elements\n{}\n", s.facets.len()).bytes());
     // One head for all elements.
-    [gmsh_type(&s.facets[0]), s.facets.len(), 2].iter().for_each(|v| int(&mut out, *v));
+    [gmsh_type(&s.facets[0]), s.facets.len(), 2]
+        .iter()
+        .for_each(|v| int(&mut out, *v));
     for (k, f) in s.facets.iter().enumerate() {
         [k + 1, 1, 1].iter().for_each(|v| int(&mut out, *v));
         f.iter().for_each(|n| int(&mut out, n + 1));
@@ -162,7 +185,9 @@ fn vtk(s: &Surface, five: bool, binary: bool) -> Vec<u8> {
     if five {
         out.extend(format!("\nCELLS {} {size}\nOFFSETS vtktypeint64\n", count + 1).bytes());
         let mut ends = vec![0];
-        s.facets.iter().for_each(|f| ends.push(ends[ends.len() - 1] + f.len()));
+        s.facets
+            .iter()
+            .for_each(|f| ends.push(ends[ends.len() - 1] + f.len()));
         ints(&mut out, &ends, true);
         out.extend(b"CONNECTIVITY vtktypeint64\n");
         ints(&mut out, &s.facets.concat(), true);
@@ -232,7 +257,9 @@ enum Xml {
 fn vtu(s: &Surface, how: Xml) -> Vec<u8> {
     let mut appended = Vec::new();
     let mut array = |name: &str, kind: &str, components: usize, text: String, bytes: Vec<u8>| {
-        let head = format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\"");
+        let head = format!(
+            "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\""
+        );
         let length = (bytes.len() as u32).to_le_bytes();
         match how {
             Xml::Text => format!("{head} format=\"ascii\">\n{text}\n</DataArray>\n"),
@@ -246,8 +273,12 @@ fn vtu(s: &Surface, how: Xml) -> Vec<u8> {
                 let blocks: Vec<Vec<u8>> = bytes.chunks(size).map(stored).collect();
                 let last = bytes.len() % size;
                 let mut head_: Vec<u8> = Vec::new();
-                [blocks.len(), size, last].iter().for_each(|n| head_.extend((*n as u32).to_le_bytes()));
-                blocks.iter().for_each(|b| head_.extend((b.len() as u32).to_le_bytes()));
+                [blocks.len(), size, last]
+                    .iter()
+                    .for_each(|n| head_.extend((*n as u32).to_le_bytes()));
+                blocks
+                    .iter()
+                    .for_each(|b| head_.extend((b.len() as u32).to_le_bytes()));
                 let data = base64(&head_) + &base64(&blocks.concat());
                 format!("{head} format=\"binary\">{data}</DataArray>\n")
             }
@@ -261,7 +292,10 @@ fn vtu(s: &Surface, how: Xml) -> Vec<u8> {
     };
     let numbers = |values: &[usize]| {
         let text: Vec<String> = values.iter().map(usize::to_string).collect();
-        let bytes: Vec<u8> = values.iter().flat_map(|v| (*v as i64).to_le_bytes()).collect();
+        let bytes: Vec<u8> = values
+            .iter()
+            .flat_map(|v| (*v as i64).to_le_bytes())
+            .collect();
         (text.join(" "), bytes)
     };
     let flat: Vec<f64> = s.points.iter().flatten().copied().collect();
@@ -277,13 +311,21 @@ fn vtu(s: &Surface, how: Xml) -> Vec<u8> {
         .collect();
     let types: Vec<usize> = s.facets.iter().map(|f| vtk_type(f)).collect();
     let mut cells = String::new();
-    for (name, values) in [("connectivity", s.facets.concat()), ("offsets", ends), ("types", types)] {
+    for (name, values) in [
+        ("connectivity", s.facets.concat()),
+        ("offsets", ends),
+        ("types", types),
+    ] {
         let (text, bytes) = numbers(&values);
         cells += &array(name, "Int64", 1, text, bytes);
     }
     let (text, bytes) = numbers(&vec![3; s.facets.len()]);
     let part = array("part", "Int64", 1, text, bytes);
-    let compressor = if how == Xml::Zlib { " compressor=\"vtkZLibDataCompressor\"" } else { "" };
+    let compressor = if how == Xml::Zlib {
+        " compressor=\"vtkZLibDataCompressor\""
+    } else {
+        ""
+    };
     let mut out = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"{compressor}>\n\
          <UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n{points}</Points>\n<Cells>\n{cells}\
@@ -313,7 +355,12 @@ fn written(s: &Surface) -> Vec<(&'static str, &'static str, Vec<u8>, Option<&'st
         ("large fields", "bdf", bdf(s, 1).into(), Some("property_1")),
         ("free fields", "nas", bdf(s, 2).into(), Some("property_1")),
         ("legacy 4", "vtk", vtk(s, false, false), Some("part_3")),
-        ("legacy 4 binary", "vtk", vtk(s, false, true), Some("part_3")),
+        (
+            "legacy 4 binary",
+            "vtk",
+            vtk(s, false, true),
+            Some("part_3"),
+        ),
         ("legacy 5", "vtk", vtk(s, true, false), Some("part_3")),
         ("legacy 5 binary", "vtk", vtk(s, true, true), Some("part_3")),
         ("XML text", "vtu", vtu(s, Xml::Text), Some("part_3")),
@@ -326,13 +373,26 @@ fn written(s: &Surface) -> Vec<(&'static str, &'static str, Vec<u8>, Option<&'st
 /// Generated sets and bits of two meshes.
 fn same(name: &str, mesh: &Mesh, expected: &Mesh) {
     let bits = |mesh: &Mesh| -> Vec<[u64; 3]> {
-        mesh.nodes.iter().map(|x| [x.x, x.y, x.z].map(f64::to_bits)).collect()
+        mesh.nodes
+            .iter()
+            .map(|x| [x.x, x.y, x.z].map(f64::to_bits))
+            .collect()
     };
     assert_eq!(mesh.connectivity, expected.connectivity, "{name}");
     assert_eq!(bits(mesh), bits(expected), "{name}");
-    for set in ["top", "bottom", "border", "x_min", "x_max", "y_min", "y_max", "z_max"] {
-        assert_eq!(mesh.face_set(set).unwrap(), expected.face_set(set).unwrap(), "{name} {set}");
-        assert_eq!(mesh.node_set(set).unwrap(), expected.node_set(set).unwrap(), "{name} {set}");
+    for set in [
+        "top", "bottom", "border", "x_min", "x_max", "y_min", "y_max", "z_max",
+    ] {
+        assert_eq!(
+            mesh.face_set(set).unwrap(),
+            expected.face_set(set).unwrap(),
+            "{name} {set}"
+        );
+        assert_eq!(
+            mesh.node_set(set).unwrap(),
+            expected.node_set(set).unwrap(),
+            "{name} {set}"
+        );
     }
 }
 
@@ -350,7 +410,11 @@ fn every_format_gives_the_same_body() {
             same(name, &mesh, &expected);
             if let Some(set) = set {
                 let top = mesh.face_set(&format!("{set}_top"));
-                assert_eq!(top.unwrap_or_else(|e| panic!("{name}: {e}")).len(), elements, "{name}");
+                assert_eq!(
+                    top.unwrap_or_else(|e| panic!("{name}: {e}")).len(),
+                    elements,
+                    "{name}"
+                );
             }
             assert_eq!(report.element_tags.len(), elements);
         }
@@ -369,15 +433,27 @@ fn stl_gives_the_same_body() {
         }
     }
     let place = |n: &usize| order.iter().position(|m| m == n).unwrap();
-    surface.facets = surface.facets.iter().map(|f| f.iter().map(place).collect()).collect();
+    surface.facets = surface
+        .facets
+        .iter()
+        .map(|f| f.iter().map(place).collect())
+        .collect();
     surface.points = order.iter().map(|&n| surface.points[n]).collect();
-    let load = |bytes: &[u8], extension| load(bytes, extension, &file(0.25), ElementKind::H8).unwrap().0;
+    let load = |bytes: &[u8], extension| {
+        load(bytes, extension, &file(0.25), ElementKind::H8)
+            .unwrap()
+            .0
+    };
     let expected = load(surface.inp().as_bytes(), "inp");
     let points: Vec<Vec3> = surface.points.iter().map(|x| Vec3::from(*x)).collect();
     let triangles: Vec<[u32; 3]> = (surface.facets.iter())
         .map(|f| [0, 1, 2].map(|k| f[k] as u32))
         .collect();
-    same("binary", &load(&write_stl(&points, &triangles), "stl"), &expected);
+    same(
+        "binary",
+        &load(&write_stl(&points, &triangles), "stl"),
+        &expected,
+    );
     let mut text = "solid sheet\n".to_string();
     for triangle in &triangles {
         text += "facet normal 0 0 0\nouter loop\n";
@@ -387,7 +463,11 @@ fn stl_gives_the_same_body() {
         }
         text += "endloop\nendfacet\n";
     }
-    same("text", &load((text + "endsolid\n").as_bytes(), "stl"), &expected);
+    same(
+        "text",
+        &load((text + "endsolid\n").as_bytes(), "stl"),
+        &expected,
+    );
 }
 
 /// Files cut short and single wrong bytes: an error or a mesh, never a panic.

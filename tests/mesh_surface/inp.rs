@@ -29,7 +29,11 @@ fn instances_are_placed() {
         nodes.iter().map(|&n| mesh.nodes[n as usize]).sum::<Vec3>() / nodes.len() as f64
     };
     // x goes to -z about an axis along y.
-    assert!((at("two") - Vec3::new(5.0, 0.5, 0.5)).norm() < 1e-13, "{}", at("two"));
+    assert!(
+        (at("two") - Vec3::new(5.0, 0.5, 0.5)).norm() < 1e-13,
+        "{}",
+        at("two")
+    );
     assert!((at("picked") - Vec3::new(5.0, 1.0, 0.5)).norm() < 1e-13);
     assert!((at("one.low") - Vec3::new(0.5, 0.0, 0.0)).norm() < 1e-13);
     assert!((at("two.low") - Vec3::new(5.0, 0.0, 0.5)).norm() < 1e-13);
@@ -48,12 +52,19 @@ fn instances_are_placed() {
         ..file(0.1)
     };
     let text = h8(&assembly(TWO), &wanted).unwrap_err().to_string();
-    assert!(text.contains("no element set `tvo`") && text.contains("did you mean `two`"), "{text}");
+    assert!(
+        text.contains("no element set `tvo`") && text.contains("did you mean `two`"),
+        "{text}"
+    );
 }
 
 #[test]
 fn one_instance_keeps_the_names_of_its_part() {
-    let (mesh, _) = h8(&assembly("*INSTANCE, NAME=I, PART=Sheet\n*END INSTANCE\n"), &file(0.1)).unwrap();
+    let (mesh, _) = h8(
+        &assembly("*INSTANCE, NAME=I, PART=Sheet\n*END INSTANCE\n"),
+        &file(0.1),
+    )
+    .unwrap();
     assert_eq!(mesh.node_set("low").unwrap().len(), 4);
     assert!(mesh.face_set("all_top").is_ok());
     // A part without an assembly stands where it is.
@@ -62,7 +73,10 @@ fn one_instance_keeps_the_names_of_its_part() {
     assert_eq!(mesh.node_set("low").unwrap().len(), 4);
     let text = assembly("*INSTANCE, NAME=I, PART=Shet\n");
     let error = h8(&text, &file(0.1)).unwrap_err().to_string();
-    assert!(error.contains("a part that stands above (Sheet), found Shet"), "{error}");
+    assert!(
+        error.contains("a part that stands above (Sheet), found Shet"),
+        "{error}"
+    );
     // The mesh may belong to the instance.
     let text = format!(
         "*PART, NAME=P\n*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=I, PART=P\n{SQUARE}*ELEMENT, TYPE=CPS4, ELSET=E\n\
@@ -79,10 +93,20 @@ fn sets_before_their_definition() {
     let (mesh, _) = h8(&text, &file(0.1)).unwrap();
     assert_eq!(mesh.face_set("A_top").unwrap().len(), 1);
     assert_eq!(mesh.node_set("N").unwrap().len(), 4);
-    let error = h8(&(text.clone() + "*ELSET, ELSET=C\nA\n"), &file(0.1)).unwrap_err().to_string();
-    assert!(error.contains("sets that do not hold themselves"), "{error}");
-    let error = h8(&(text + "*ELSET, ELSET=D\nBB\n"), &file(0.1)).unwrap_err().to_string();
-    assert!(error.starts_with("a.inp:20:1: ") && error.contains("did you mean `B`?"), "{error}");
+    let error = h8(&(text.clone() + "*ELSET, ELSET=C\nA\n"), &file(0.1))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("sets that do not hold themselves"),
+        "{error}"
+    );
+    let error = h8(&(text + "*ELSET, ELSET=D\nBB\n"), &file(0.1))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.starts_with("a.inp:20:1: ") && error.contains("did you mean `B`?"),
+        "{error}"
+    );
     // A long chain takes no deep recursion.
     let mut text = format!("{SQUARE}*ELEMENT, TYPE=S4\n1, 1, 2, 3, 4\n");
     for k in 0..20_000 {
@@ -101,7 +125,11 @@ fn sets_that_meshio_writes() {
     );
     let (mesh, report) = h8(&text, &file(0.1)).unwrap();
     assert!(mesh.face_set("skin_top").is_ok());
-    assert!(report.notes[0].contains("`gmsh:bounding_entities` holds no elements"), "{:?}", report.notes);
+    assert!(
+        report.notes[0].contains("`gmsh:bounding_entities` holds no elements"),
+        "{:?}",
+        report.notes
+    );
 }
 
 /// A curved quadrilateral of eight nodes: as corners for linear elements, and said so; with all its nodes for quadratic
@@ -112,7 +140,16 @@ fn quadratic_surface_elements() {
         let phi = 0.8 * u;
         format!("{}, {}, {}", 10.0 * phi.sin(), 8.0 * v, 10.0 * phi.cos())
     };
-    let places = [(0., 0.), (1., 0.), (1., 1.), (0., 1.), (0.5, 0.), (1., 0.5), (0.5, 1.), (0., 0.5)];
+    let places = [
+        (0., 0.),
+        (1., 0.),
+        (1., 1.),
+        (0., 1.),
+        (0.5, 0.),
+        (1., 0.5),
+        (0.5, 1.),
+        (0., 0.5),
+    ];
     let mut text = "*NODE\n".to_string();
     for (k, (u, v)) in places.into_iter().enumerate() {
         text += &format!("{}, {}\n", k + 1, at(u, v));
@@ -120,7 +157,11 @@ fn quadratic_surface_elements() {
     text += "*ELEMENT, TYPE=S8R, ELSET=E\n7, 1, 2, 3, 4, 5, 6, 7, 8\n";
     let (mesh, report) = h8(&text, &file(0.5)).unwrap();
     assert_eq!((mesh.elements(), mesh.nodes.len()), (1, 8));
-    assert!(report.notes[0].starts_with("1 quadratic elements: only their corners"), "{:?}", report.notes);
+    assert!(
+        report.notes[0].starts_with("1 quadratic elements: only their corners"),
+        "{:?}",
+        report.notes
+    );
     let (mesh, report) = load(text.as_bytes(), "inp", &file(0.5), ElementKind::Q18).unwrap();
     assert_eq!((mesh.elements(), mesh.nodes.len()), (1, 18));
     assert!(report.notes.is_empty(), "{:?}", report.notes);
@@ -147,7 +188,11 @@ fn coincident_nodes_of_partners_stay_apart() {
     let (mesh, report) = h8(&text, &solid).unwrap();
     assert_eq!((mesh.nodes.len(), report.components), (16, 2));
     let told = "4 pair(s) of nodes of unconnected parts lie at the same place and are kept apart";
-    assert!(report.notes.iter().any(|n| n.contains(told)), "{:?}", report.notes);
+    assert!(
+        report.notes.iter().any(|n| n.contains(told)),
+        "{:?}",
+        report.notes
+    );
     let only = MeshFile {
         only: Some("HIGH".into()),
         ..solid
@@ -165,21 +210,48 @@ fn coincident_nodes_of_partners_stay_apart() {
 /// A brick of 20 nodes whose upper face is at `z`, its middle nodes at `middle`; curved in its plane.
 fn brick(middle: f64) -> String {
     let places = [
-        [0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [0, 0, 2], [2, 0, 2], [2, 2, 2], [0, 2, 2], [1, 0, 0], [2, 1, 0],
-        [1, 2, 0], [0, 1, 0], [1, 0, 2], [2, 1, 2], [1, 2, 2], [0, 1, 2], [0, 0, 1], [2, 0, 1], [2, 2, 1], [0, 2, 1],
+        [0, 0, 0],
+        [2, 0, 0],
+        [2, 2, 0],
+        [0, 2, 0],
+        [0, 0, 2],
+        [2, 0, 2],
+        [2, 2, 2],
+        [0, 2, 2],
+        [1, 0, 0],
+        [2, 1, 0],
+        [1, 2, 0],
+        [0, 1, 0],
+        [1, 0, 2],
+        [2, 1, 2],
+        [1, 2, 2],
+        [0, 1, 2],
+        [0, 0, 1],
+        [2, 0, 1],
+        [2, 2, 1],
+        [0, 2, 1],
     ];
     let mut text = "*NODE\n".to_string();
     for (k, [i, j, l]) in places.into_iter().enumerate() {
-        let r = 10.0 + match l {
-            0 => 0.0,
-            1 => middle,
-            _ => 0.4,
-        };
+        let r = 10.0
+            + match l {
+                0 => 0.0,
+                1 => middle,
+                _ => 0.4,
+            };
         let phi = 0.3 * i as f64;
-        text += &format!("{}, {}, {}, {}\n", k + 1, r * phi.sin(), 2.0 * j as f64, r * phi.cos());
+        text += &format!(
+            "{}, {}, {}, {}\n",
+            k + 1,
+            r * phi.sin(),
+            2.0 * j as f64,
+            r * phi.cos()
+        );
     }
     text + "*ELEMENT, TYPE=C3D20R, ELSET=E\n5"
-        + &(1..=20).map(|n| format!(",{}{n}", if n == 12 { "\n" } else { "" })).collect::<String>()
+        + &(1..=20)
+            .map(|n| format!(",{}{n}", if n == 12 { "\n" } else { "" }))
+            .collect::<String>()
         + "\n*SURFACE, NAME=top\nE, S2\n"
 }
 
@@ -198,8 +270,14 @@ fn bricks_of_20_nodes() {
     }
     assert!(report.notes[0].contains("20-node"), "{:?}", report.notes);
     let error = solid(&brick(0.22), ElementKind::Q18).unwrap_err();
-    assert!(matches!(error, MeshError::Crooked { tag: 5, .. }), "{error}");
-    assert!(error.to_string().contains("5.0 % of the thickness"), "{error}");
+    assert!(
+        matches!(error, MeshError::Crooked { tag: 5, .. }),
+        "{error}"
+    );
+    assert!(
+        error.to_string().contains("5.0 % of the thickness"),
+        "{error}"
+    );
     let error = solid(&brick(0.2), ElementKind::H8).unwrap_err().to_string();
     assert!(error.contains("\"q18\""), "{error}");
 }

@@ -36,7 +36,10 @@ fn borders_are_numbered_by_length() {
         assert!((area(&mesh, "border") - 26.0 * 0.5).abs() < 1e-12);
         assert!((area(&mesh, "top") - 22.0).abs() < 1e-12);
         let level = layers as usize + 1;
-        assert_eq!(all_on(&mesh, "border_2", |x| (1.0..=5.0).contains(&x.x)), 6 * level);
+        assert_eq!(
+            all_on(&mesh, "border_2", |x| (1.0..=5.0).contains(&x.x)),
+            6 * level
+        );
         assert_eq!(all_on(&mesh, "x_max", |x| x.x == 6.0), 5 * level);
         let told = "borders: `border_1` (20.0000 long), `border_2` (6.0000 long)";
         assert_eq!(report.notes, [told]);
@@ -60,7 +63,9 @@ fn sets_of_the_file_keep_their_names() {
     let (mesh, report) = h8(&text, &wanted).unwrap();
     for (side, z) in [("top", 0.25), ("bottom", -0.25)] {
         assert!((area(&mesh, &format!("left half_{side}")) - 8.0).abs() < 1e-12);
-        all_on(&mesh, &format!("left half_{side}"), |x| x.z == z && x.x <= 2.0);
+        all_on(&mesh, &format!("left half_{side}"), |x| {
+            x.z == z && x.x <= 2.0
+        });
         assert!((area(&mesh, &format!("pad_{side}")) - 8.0).abs() < 1e-12);
     }
     assert_eq!(all_on(&mesh, "left half", |x| x.x <= 2.0), 3 * 5 * 3);
@@ -75,7 +80,14 @@ fn sets_of_the_file_keep_their_names() {
     assert!((area(&mesh, "top") - 24.0).abs() < 1e-12);
     assert!((area(&mesh, "top_top") - 1.0).abs() < 1e-12);
     assert_eq!(mesh.node_set("file_top").unwrap().len(), 4 * 3);
-    assert!(report.notes.iter().any(|n| n.contains("`top` have `file_`")), "{:?}", report.notes);
+    assert!(
+        report
+            .notes
+            .iter()
+            .any(|n| n.contains("`top` have `file_`")),
+        "{:?}",
+        report.notes
+    );
 }
 
 /// The nodes that cutting adds belong to the sets around them.
@@ -95,10 +107,16 @@ fn sets_grow_with_triangles() {
     assert!((mesh.volume() - 8.0).abs() < 1e-12);
     assert_eq!(all_on(&mesh, "side", |x| x.x == 0.0), 9 * 2);
     assert_eq!(all_on(&mesh, "x_min", |x| x.x == 0.0), 9 * 2);
-    assert_eq!(all_on(&mesh, "patch", |x| x.x <= 2.0 && x.y <= 1.0), 5 * 3 * 2);
+    assert_eq!(
+        all_on(&mesh, "patch", |x| x.x <= 2.0 && x.y <= 1.0),
+        5 * 3 * 2
+    );
     assert!((area(&mesh, "corner_top") - 1.0).abs() < 1e-12);
     // Three corners of the square, its own middles and those of the diagonal: 4 + 5 + 2 centres.
-    assert_eq!(all_on(&mesh, "corner", |x| x.x >= 3.0 && x.y >= 3.0), 11 * 2);
+    assert_eq!(
+        all_on(&mesh, "corner", |x| x.x >= 3.0 && x.y >= 3.0),
+        11 * 2
+    );
     assert_eq!(report.element_tags.iter().filter(|t| **t == 16).count(), 3);
 }
 
@@ -119,8 +137,21 @@ fn thickness_by_set_holds_every_element_once() {
     let MeshError::Surface { source, .. } = &error else {
         panic!("{error}");
     };
-    assert!(matches!(source, SurfaceError::NoThickness { count: 2, element: 3, .. }), "{error}");
-    assert!(error.to_string().contains("ALL, inner, left, right"), "{error}");
+    assert!(
+        matches!(
+            source,
+            SurfaceError::NoThickness {
+                count: 2,
+                element: 3,
+                ..
+            }
+        ),
+        "{error}"
+    );
+    assert!(
+        error.to_string().contains("ALL, inner, left, right"),
+        "{error}"
+    );
     let error = h8(&text, &by(&[("left", 0.1), ("right", 0.3), ("inner", 0.2)])).unwrap_err();
     assert!(error.to_string().contains("`inner` and `left`"), "{error}");
     let error = h8(&text, &by(&[("lef", 0.1)])).unwrap_err();

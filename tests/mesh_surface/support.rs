@@ -16,7 +16,9 @@ pub fn grid(n: usize, m: usize, at: impl Fn(f64, f64) -> [f64; 3]) -> Surface {
     let mut surface = Surface::default();
     for j in 0..=m {
         for i in 0..=n {
-            surface.points.push(at(i as f64 / n as f64, j as f64 / m as f64));
+            surface
+                .points
+                .push(at(i as f64 / n as f64, j as f64 / m as f64));
         }
     }
     for j in 0..m {
@@ -83,5 +85,8 @@ pub fn h8(text: &str, file: &MeshFile) -> Result<(Mesh, MeshReport), MeshError> 
 }
 
 pub fn close(a: f64, b: f64, tolerance: f64) {
-    assert!((a - b).abs() <= tolerance * b.abs().max(1.0), "{a} is not {b}");
+    assert!(
+        (a - b).abs() <= tolerance * b.abs().max(1.0),
+        "{a} is not {b}"
+    );
 }

@@ -37,7 +37,10 @@ fn a_flat_surface_is_the_plate() {
         }
         for (name, faces) in &expected.face_sets {
             assert_eq!(mesh.face_set(name).unwrap(), faces, "{name}");
-            assert_eq!(mesh.node_set(name).unwrap(), expected.node_set(name).unwrap());
+            assert_eq!(
+                mesh.node_set(name).unwrap(),
+                expected.node_set(name).unwrap()
+            );
         }
         assert_eq!(report.element_tags.len(), mesh.elements());
         assert_eq!(report.node_tags.len(), mesh.nodes.len());
@@ -54,19 +57,30 @@ fn quadratic_elements_fill_the_same_plate() {
     };
     let text = its_surface().inp();
     let (mesh, report) = load(text.as_bytes(), "inp", &wanted, ElementKind::Q18).unwrap();
-    assert!(report.notes.iter().any(|n| n.contains("on straight edges")), "{:?}", report.notes);
+    assert!(
+        report.notes.iter().any(|n| n.contains("on straight edges")),
+        "{:?}",
+        report.notes
+    );
     assert_eq!(mesh.elements(), expected.elements());
     assert_eq!(mesh.nodes.len(), expected.nodes.len());
     for e in 0..mesh.elements() {
         let positions = |mesh: &Mesh| -> Vec<Vec3> {
-            mesh.element(e).iter().map(|&n| mesh.nodes[n as usize]).collect()
+            mesh.element(e)
+                .iter()
+                .map(|&n| mesh.nodes[n as usize])
+                .collect()
         };
         for (a, b) in positions(&mesh).iter().zip(positions(&expected)) {
             assert!((a - b).norm() < 1e-14, "{a} {b}");
         }
     }
     for name in ["top", "bottom", "x_min", "x_max", "y_min", "y_max"] {
-        assert_eq!(mesh.face_set(name).unwrap(), expected.face_set(name).unwrap(), "{name}");
+        assert_eq!(
+            mesh.face_set(name).unwrap(),
+            expected.face_set(name).unwrap(),
+            "{name}"
+        );
         let [a, b] = [&mesh, &expected].map(|m| m.node_set(name).unwrap().len());
         assert_eq!(a, b, "{name}");
     }
@@ -162,7 +176,12 @@ fn the_corner_of_a_cube() {
                     x[(face + 2) % 3] = j;
                     x
                 };
-                let corners = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+                let corners = [
+                    corner(i, j),
+                    corner(i + 1, j),
+                    corner(i + 1, j + 1),
+                    corner(i, j + 1),
+                ];
                 let nodes = corners.map(|x| {
                     *at.entry(x).or_insert_with(|| {
                         surface.points.push(x.map(|c| c as f64));
@@ -175,7 +194,11 @@ fn the_corner_of_a_cube() {
     }
     let t = 0.25;
     let (mesh, report) = h8(&surface.inp(), &file(t)).unwrap();
-    assert!(!report.notes.iter().any(|n| n.contains("planes meet")), "{:?}", report.notes);
+    assert!(
+        !report.notes.iter().any(|n| n.contains("planes meet")),
+        "{:?}",
+        report.notes
+    );
     for &node in mesh.node_set("top").unwrap() {
         let x = mesh.nodes[node as usize];
         let least = x.iter().copied().fold(f64::INFINITY, f64::min);
@@ -194,13 +217,17 @@ fn a_polygonal_ring_has_its_closed_volume() {
     for j in 0..=m {
         for i in 0..n {
             let phi = 2.0 * PI * i as f64 / n as f64;
-            surface.points.push([r * phi.sin(), length * j as f64 / m as f64, r * phi.cos()]);
+            surface
+                .points
+                .push([r * phi.sin(), length * j as f64 / m as f64, r * phi.cos()]);
         }
     }
     for j in 0..m {
         for i in 0..n {
             let a = |i: usize, j: usize| i % n + n * j;
-            surface.facets.push(vec![a(i, j), a(i + 1, j), a(i + 1, j + 1), a(i, j + 1)]);
+            surface
+                .facets
+                .push(vec![a(i, j), a(i + 1, j), a(i + 1, j + 1), a(i, j + 1)]);
         }
     }
     let (mesh, _) = h8(&surface.inp(), &file(t)).unwrap();
@@ -228,8 +255,15 @@ fn a_sphere_panel_converges_to_the_generated_one() {
         };
         let expected = sphere_panel(&panel, ElementKind::H8).unwrap().volume();
         let surface = grid(n as usize, n as usize, |u, v| {
-            let (lon, lat) = ((80.0 * u - 40.0).to_radians(), (60.0 * v - 30.0).to_radians());
-            [10.0 * lat.cos() * lon.sin(), 10.0 * lat.sin(), 10.0 * lat.cos() * lon.cos()]
+            let (lon, lat) = (
+                (80.0 * u - 40.0).to_radians(),
+                (60.0 * v - 30.0).to_radians(),
+            );
+            [
+                10.0 * lat.cos() * lon.sin(),
+                10.0 * lat.sin(),
+                10.0 * lat.cos() * lon.cos(),
+            ]
         });
         let (mesh, _) = h8(&surface.inp(), &file(1.0)).unwrap();
         for &node in mesh.node_set("top").unwrap() {

@@ -51,7 +51,9 @@ fn a_moebius_strip_has_no_thickness() {
         let phi = std::f64::consts::TAU * i as f64 / n as f64;
         for s in [-1.0, 1.0] {
             let r = 5.0 + s * (0.5 * phi).cos();
-            surface.points.push([r * phi.cos(), r * phi.sin(), s * (0.5 * phi).sin()]);
+            surface
+                .points
+                .push([r * phi.cos(), r * phi.sin(), s * (0.5 * phi).sin()]);
         }
     }
     for i in 0..n {
@@ -73,7 +75,9 @@ fn branches_are_named() {
         surface.points.push([2.0, j as f64, 1.0]);
     }
     for j in 0..3 {
-        surface.facets.push(vec![2 + 5 * j, 2 + 5 * (j + 1), wall + j + 1, wall + j]);
+        surface
+            .facets
+            .push(vec![2 + 5 * j, 2 + 5 * (j + 1), wall + j + 1, wall + j]);
     }
     let (error, text) = refused(&surface);
     let SurfaceError::Branching { elements, position } = error else {
@@ -81,7 +85,10 @@ fn branches_are_named() {
     };
     assert_eq!(elements, [2, 3, 13]);
     assert_eq!(position, [2.0, 0.5, 0.0]);
-    assert!(text.contains("elements 2, 3, 13 meet in one edge at (2.000000, 0.500000"), "{text}");
+    assert!(
+        text.contains("elements 2, 3, 13 meet in one edge at (2.000000, 0.500000"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -90,7 +97,10 @@ fn parts_joined_by_a_node_are_refused() {
     // Opposite quarters only.
     surface.facets = vec![surface.facets[0].clone(), surface.facets[3].clone()];
     let (error, text) = refused(&surface);
-    assert!(matches!(error, SurfaceError::Pinched { node: 5, .. }), "{text}");
+    assert!(
+        matches!(error, SurfaceError::Pinched { node: 5, .. }),
+        "{text}"
+    );
 }
 
 #[test]
@@ -105,7 +115,10 @@ fn sharp_folds_flat_and_doubled_elements() {
     let SurfaceError::SharpFold { angle, position } = error else {
         panic!("{text}");
     };
-    assert!((angle - 160.0).abs() < 1e-6 && position[0].abs() < 1e-12, "{text}");
+    assert!(
+        (angle - 160.0).abs() < 1e-6 && position[0].abs() < 1e-12,
+        "{text}"
+    );
 
     let mut surface = flat();
     surface.points[6] = surface.points[5];
@@ -125,7 +138,11 @@ fn sharp_folds_flat_and_doubled_elements() {
     let mut surface = flat();
     surface.facets[0] = vec![0, 1, 6, 6];
     let (mesh, report) = h8(&surface.inp(), &file(0.1)).unwrap();
-    assert!(report.notes[0].contains("taken for triangles"), "{:?}", report.notes);
+    assert!(
+        report.notes[0].contains("taken for triangles"),
+        "{:?}",
+        report.notes
+    );
     assert!((mesh.volume() - 0.1 * 11.5).abs() < 1e-12);
 }
 
@@ -137,7 +154,10 @@ fn too_thick_for_a_bend() {
         [phi.sin(), v, phi.cos()]
     });
     let error = h8(&surface.inp(), &file(3.0)).unwrap_err();
-    assert!(matches!(error, MeshError::Inverted { tag: Some(1), .. }), "{error}");
+    assert!(
+        matches!(error, MeshError::Inverted { tag: Some(1), .. }),
+        "{error}"
+    );
 }
 
 /// Solid elements have no surface, surfaces no volume: each is told what to do.
@@ -146,9 +166,15 @@ fn the_other_kind_of_mesh() {
     let solid = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n\
                  *ELEMENT, TYPE=C3D8\n1,1,2,3,4,5,6,7,8\n";
     let text = h8(solid, &file(0.1)).unwrap_err().to_string();
-    assert!(text.contains("no quadrilaterals or triangles") && text.contains("leave `thickness` out"), "{text}");
+    assert!(
+        text.contains("no quadrilaterals or triangles") && text.contains("leave `thickness` out"),
+        "{text}"
+    );
     let mut wanted = file(0.1);
     wanted.thickness = None;
     let text = h8(&flat().inp(), &wanted).unwrap_err().to_string();
-    assert!(text.contains("no hexahedra") && text.contains("\"thickness\": 1"), "{text}");
+    assert!(
+        text.contains("no hexahedra") && text.contains("\"thickness\": 1"),
+        "{text}"
+    );
 }

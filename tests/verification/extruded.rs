@@ -34,7 +34,15 @@ fn an_extruded_plate_bends_as_the_generated_one() {
     for j in 0..3 {
         for i in 0..8 {
             let a = 1 + i + 9 * j;
-            writeln!(text, "{}, {a}, {}, {}, {}", 1 + i + 8 * j, a + 1, a + 10, a + 9).expect("text");
+            writeln!(
+                text,
+                "{}, {a}, {}, {}, {}",
+                1 + i + 8 * j,
+                a + 1,
+                a + 10,
+                a + 9
+            )
+            .expect("text");
         }
     }
     std::fs::write(folder.path().join("strip.inp"), text).expect("written");
@@ -61,8 +69,14 @@ fn an_extruded_plate_bends_as_the_generated_one() {
 fn the_hat_profile_carries_the_ball_to_the_table() {
     let outcome = solve(&scene_json("hat_pressed.json"));
     assert_eq!(outcome.summary.status.name(), "done");
-    let (ball, table) = (outcome.at("force.ball.z", 1.0), outcome.at("force.table.z", 1.0));
-    println!("{ball} {table}, {} iterations", outcome.summary.newton_iterations);
+    let (ball, table) = (
+        outcome.at("force.ball.z", 1.0),
+        outcome.at("force.table.z", 1.0),
+    );
+    println!(
+        "{ball} {table}, {} iterations",
+        outcome.summary.newton_iterations
+    );
     assert!(ball < -10.0, "{ball}");
     assert!((ball + table).abs() < 1e-4 * table, "{ball} {table}");
     assert!(outcome.at("energy.dissipated", 1.0) > 0.0);

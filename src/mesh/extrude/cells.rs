@@ -1,8 +1,8 @@
 //! Quadrilaterals in tensor order, and the body between their two sides.
 use super::normals::Normals;
 use super::surface::Surface;
-use crate::mesh::{ElementKind, Face, MAX_NODES, Mesh, MeshError};
 use crate::limits;
+use crate::mesh::{ElementKind, Face, MAX_NODES, Mesh, MeshError};
 use crate::scene::Offset;
 use std::collections::BTreeMap;
 

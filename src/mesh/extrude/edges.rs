@@ -84,12 +84,18 @@ impl Edges {
         let starts = &self.starts[..self.count()];
         let from = starts.partition_point(|&start| self.rows[start as usize].ends[0] < node);
         let here = |start: &u32| self.rows[*start as usize].ends[0] == node;
-        from..from + starts[from..].iter().take_while(|start| here(start)).count()
+        from..from
+            + starts[from..]
+                .iter()
+                .take_while(|start| here(start))
+                .count()
     }
 
     /// Edges of one element only.
     pub fn border(&self) -> impl Iterator<Item = &Row> {
-        self.all().filter(|rows| rows.len() == 1).map(|rows| &rows[0])
+        self.all()
+            .filter(|rows| rows.len() == 1)
+            .map(|rows| &rows[0])
     }
 
     /// Every edge belongs to at most two elements, and no two elements have the same corners.
@@ -114,7 +120,10 @@ impl Edges {
             if rows.len() > 2 {
                 let [a, b] = rows[0].ends.map(|n| surface.nodes[n as usize]);
                 return Err(SurfaceError::Branching {
-                    elements: rows.iter().map(|r| surface.tags[r.facet as usize]).collect(),
+                    elements: rows
+                        .iter()
+                        .map(|r| surface.tags[r.facet as usize])
+                        .collect(),
                     position: ((a + b) * 0.5).into(),
                 });
             }

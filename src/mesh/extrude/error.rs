@@ -27,7 +27,8 @@ pub enum SurfaceError {
     #[error(
         "elements {} meet in one edge at {}: the surface branches there. Leave one branch out (`only` takes the elements of \
          one set), or mesh the part with hexahedra",
-        listed(elements), at(position)
+        listed(elements),
+        at(position)
     )]
     Branching { elements: Vec<u64>, position: Place },
     /// Parts of the surface hang together by a node only.
@@ -53,7 +54,8 @@ pub enum SurfaceError {
     /// Elements without a thickness.
     #[error(
         "{count} element(s) are in no set of `thickness`, the first is element {element} at {}; element sets of the file: {}",
-        at(position), sets
+        at(position),
+        sets
     )]
     NoThickness {
         count: usize,

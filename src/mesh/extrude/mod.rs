@@ -40,7 +40,9 @@ impl RawMesh {
         if self.facets.is_empty() {
             let help = match self.hexahedra.is_empty() {
                 true => "`thickness` makes a body of a surface mesh".to_string(),
-                false => "hexahedra have a thickness of their own: leave `thickness` out".to_string(),
+                false => {
+                    "hexahedra have a thickness of their own: leave `thickness` out".to_string()
+                }
             };
             return Err(self.nothing(path, "quadrilaterals or triangles", help));
         }

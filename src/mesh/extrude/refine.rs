@@ -89,9 +89,8 @@ pub(super) fn complete(surface: &mut Surface, edges: &Edges) -> usize {
     }
     for f in 0..count {
         if surface.middles[f][4] == NONE {
-            let sum = |nodes: &[u32]| -> Vec3 {
-                nodes.iter().map(|&n| surface.nodes[n as usize]).sum()
-            };
+            let sum =
+                |nodes: &[u32]| -> Vec3 { nodes.iter().map(|&n| surface.nodes[n as usize]).sum() };
             let middle = sum(&surface.middles[f][..4]) * 0.5 - sum(&surface.facets[f]) * 0.25;
             surface.middles[f][4] = surface.add(middle);
         }
@@ -178,7 +177,9 @@ impl Surface {
             }
         }
         for (name, set) in &self.lines {
-            all.entry(name.clone()).or_default().extend(set.iter().flatten());
+            all.entry(name.clone())
+                .or_default()
+                .extend(set.iter().flatten());
         }
         for nodes in all.values_mut() {
             nodes.sort_unstable();

@@ -70,7 +70,9 @@ pub(super) fn check_fans(surface: &Surface, edges: &Edges) -> Result<(), Surface
     // Corners of elements, joined across edges.
     let mut parent: Vec<u32> = (0..4 * surface.facets.len() as u32).collect();
     let corner = |facet: u32, node: u32| {
-        let place = surface.facets[facet as usize].iter().position(|n| *n == node);
+        let place = surface.facets[facet as usize]
+            .iter()
+            .position(|n| *n == node);
         4 * facet + place.unwrap_or(0) as u32
     };
     for rows in edges.all() {
@@ -84,7 +86,10 @@ pub(super) fn check_fans(surface: &Surface, edges: &Edges) -> Result<(), Surface
     }
     let mut fan = vec![NONE; surface.nodes.len()];
     for f in 0..surface.facets.len() as u32 {
-        for (k, &node) in super::edges::corners(&surface.facets[f as usize]).iter().enumerate() {
+        for (k, &node) in super::edges::corners(&surface.facets[f as usize])
+            .iter()
+            .enumerate()
+        {
             let own = root(&mut parent, 4 * f + k as u32);
             let known = &mut fan[node as usize];
             if *known != NONE && *known != own {

@@ -104,7 +104,12 @@ impl Names<'_> {
         let count = self.surface.nodes.len() as u32;
         for (name, nodes) in &self.surface.node_sets {
             let levels = 0..=self.layers;
-            let column = |n: &u32| levels.clone().map(move |k| n + k * count).collect::<Vec<_>>();
+            let column = |n: &u32| {
+                levels
+                    .clone()
+                    .map(move |k| n + k * count)
+                    .collect::<Vec<_>>()
+            };
             let all = nodes.iter().flat_map(column).collect();
             self.mesh.node_sets.insert(own(name, &mut renamed), all);
         }
@@ -129,8 +134,11 @@ impl Names<'_> {
             };
             rows.iter().map(edge).sum()
         };
-        let mut lengths: Vec<(f64, usize)> =
-            loops.iter().map(|l| length(l)).zip(0..loops.len()).collect();
+        let mut lengths: Vec<(f64, usize)> = loops
+            .iter()
+            .map(|l| length(l))
+            .zip(0..loops.len())
+            .collect();
         lengths.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let free = |names: &Self, name: String| match names.mesh.face_sets.contains_key(&name) {
             // The file's own sets keep their names.

@@ -1,7 +1,7 @@
 //! Physical groups: which geometric entities belong to which named group.
 use super::Block;
-use crate::mesh::cursor::{Cursor, quoted};
 use crate::mesh::MeshError;
+use crate::mesh::cursor::{Cursor, quoted};
 use crate::mesh::error::{MOST_IN_NAME, most_members};
 use crate::mesh::raw::RawMesh;
 use std::collections::BTreeMap;

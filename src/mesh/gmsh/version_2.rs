@@ -1,7 +1,7 @@
 //! Nodes and elements of version 2.2: one list each, the physical group in front of an element's nodes.
 use super::{Block, Reader};
-use crate::mesh::cursor::Encoding;
 use crate::mesh::MeshError;
+use crate::mesh::cursor::Encoding;
 use crate::mesh::error::MAX_NODES;
 use covact_geometry::Vec3;
 

@@ -146,7 +146,9 @@ impl Reader<'_> {
         ];
         let most = most_members(nodes, elements);
         let all = (self.instances.iter())
-            .map(|i| (self.scopes[i.scope].nodes.len() + self.scopes[i.scope].elements.len()) as u64)
+            .map(|i| {
+                (self.scopes[i.scope].nodes.len() + self.scopes[i.scope].elements.len()) as u64
+            })
             .sum::<u64>();
         if all > most {
             return Err(MeshError::LongSets {

@@ -1,10 +1,10 @@
 //! From scopes and their instances to one mesh with all its sets.
+use super::Reader;
 use super::assembly::Instance;
 use super::names::{Elements, Names, Nodes, Placed};
 use super::resolve::{Budget, Members, resolve, unknown};
 use super::scope::{Element, Scope, Side};
 use super::types::Shape;
-use super::Reader;
 use crate::mesh::quadratic::{PLACES, tensor_27};
 use crate::mesh::raw::{NONE, RawMesh};
 use crate::mesh::{Face, MeshError};
@@ -94,9 +94,10 @@ impl<'r> Builder<'r> {
         for element in &scope.elements {
             let nodes: Vec<u32> = scope.nodes_of(element).iter().map(|n| n + first).collect();
             let item = match element.shape {
-                Shape::Solid { nodes: count, given } => {
-                    self.solid(element, &nodes, count, given)?
-                }
+                Shape::Solid {
+                    nodes: count,
+                    given,
+                } => self.solid(element, &nodes, count, given)?,
                 Shape::Facet(_) => Item::Facet(self.raw.facets.push(&nodes, element.tag)),
                 _ => {
                     // The middle node of three stands second.
@@ -139,8 +140,11 @@ impl<'r> Builder<'r> {
             };
             let Some(tensor) = tensor else {
                 let tag = element.tag;
-                let expected = format!("the nodes of element {tag} within its faces and its middle");
-                return Err(element.at().syntax_found(self.reader.path, &expected, "others"));
+                let expected =
+                    format!("the nodes of element {tag} within its faces and its middle");
+                return Err(element
+                    .at()
+                    .syntax_found(self.reader.path, &expected, "others"));
             };
             raw.quadratic.push(tensor);
         }
@@ -193,7 +197,10 @@ impl<'r> Builder<'r> {
                 Item::Line(l) => {
                     let line = self.lines[l as usize];
                     raw.lines.entry(name.to_string()).or_default().push(line);
-                    raw.node_sets.entry(name.to_string()).or_default().extend(line);
+                    raw.node_sets
+                        .entry(name.to_string())
+                        .or_default()
+                        .extend(line);
                 }
                 Item::Nothing => continue,
             }

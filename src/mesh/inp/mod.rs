@@ -178,7 +178,8 @@ impl<'a> Reader<'a> {
                 };
                 let name = name(parameter)?;
                 if name == NOT_A_SET {
-                    self.notes.push(format!("`{name}` holds no elements and was left out"));
+                    self.notes
+                        .push(format!("`{name}` holds no elements and was left out"));
                     Mode::Skip
                 } else {
                     // A set without members is one too.
@@ -308,7 +309,8 @@ impl<'a> Reader<'a> {
         let instance = set.instance(instance);
         if !generate {
             for field in list.filter(|f| !f.text.is_empty()) {
-                set.entries.push(Entry::new(reference(&field), &field, instance));
+                set.entries
+                    .push(Entry::new(reference(&field), &field, instance));
             }
             return Ok(());
         }
@@ -361,7 +363,8 @@ impl<'a> Reader<'a> {
         scope.node_tags.push(tag);
         if let Some(set) = set {
             let set = scope.node_sets.get(set);
-            set.entries.push(Entry::new(Reference::Number(tag), &field, super::raw::NONE));
+            set.entries
+                .push(Entry::new(Reference::Number(tag), &field, super::raw::NONE));
         }
         Ok(())
     }
@@ -404,7 +407,8 @@ impl<'a> Reader<'a> {
         scope.elements.push(element);
         if let Some(set) = set {
             let set = scope.element_sets.get(set);
-            set.entries.push(Entry::new(Reference::Number(tag), &field, super::raw::NONE));
+            set.entries
+                .push(Entry::new(Reference::Number(tag), &field, super::raw::NONE));
         }
         self.pending = None;
         Ok(())
@@ -424,7 +428,13 @@ impl<'a> Reader<'a> {
             "SNEG" => Some(Side::Face(FACES[0])),
             "SPOS" => Some(Side::Face(FACES[1])),
             other => {
-                let number = |letter| other.strip_prefix(letter)?.parse::<usize>().ok()?.checked_sub(1);
+                let number = |letter| {
+                    other
+                        .strip_prefix(letter)?
+                        .parse::<usize>()
+                        .ok()?
+                        .checked_sub(1)
+                };
                 match (number('S'), number('E')) {
                     (Some(k), _) => FACES.get(k).map(|face| Side::Face(*face)),
                     (_, Some(k)) if k < 4 => Some(Side::Edge(k as u8)),

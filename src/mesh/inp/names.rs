@@ -45,7 +45,9 @@ pub(super) struct Elements<'s>(pub Names<'s>);
 
 impl Names<'_> {
     fn instance(&self, name: &str) -> Option<&Placed> {
-        self.others.iter().find(|p| p.name.eq_ignore_ascii_case(name))
+        self.others
+            .iter()
+            .find(|p| p.name.eq_ignore_ascii_case(name))
     }
 
     fn number(&self, instance: Option<&str>, number: u64) -> Option<u32> {

@@ -64,7 +64,9 @@ pub(super) fn resolve<M: Meaning>(
     let names: Vec<&String> = sets.by_name.keys().collect();
     let place = |name: &str| {
         let name = name.to_uppercase();
-        names.binary_search_by(|known| known.as_str().cmp(&name)).ok()
+        names
+            .binary_search_by(|known| known.as_str().cmp(&name))
+            .ok()
     };
     let mut done: Vec<Option<Vec<u32>>> = names.iter().map(|_| None).collect();
     let mut open = vec![false; names.len()];
@@ -139,12 +141,22 @@ fn entry_members<M: Meaning>(
     budget: &mut Budget,
     found: &mut Vec<u32>,
 ) -> Result<usize, MeshError> {
-    let instance = set.instances.get(entry.instance as usize).map(String::as_str);
+    let instance = set
+        .instances
+        .get(entry.instance as usize)
+        .map(String::as_str);
     match &entry.what {
         Reference::Number(number) => match meaning.number(instance, *number) {
             Some(index) => found.push(index),
             None if meaning.lenient() => {}
-            None => return Err(unknown::<M>(path, entry, &format!("{} {number}", M::KIND), None)),
+            None => {
+                return Err(unknown::<M>(
+                    path,
+                    entry,
+                    &format!("{} {number}", M::KIND),
+                    None,
+                ));
+            }
         },
         Reference::Name(name) => match meaning.named(instance, name) {
             Some(other) => found.extend(other),
@@ -164,8 +176,10 @@ fn entry_members<M: Meaning>(
             let most = meaning.count() as u64;
             let long = |count: u64| count > most && !meaning.lenient();
             if step == 0 || last < first || long((last - first) / step) {
-                let expected =
-                    format!("first <= last, a step of at least 1, and numbers of {}s", M::KIND);
+                let expected = format!(
+                    "first <= last, a step of at least 1, and numbers of {}s",
+                    M::KIND
+                );
                 let found = format!("{first}, {last}, {step}");
                 return Err(entry.at().syntax_found(path, &expected, &found));
             }
@@ -195,7 +209,12 @@ fn entry_members<M: Meaning>(
 }
 
 /// An entry names nothing that there is.
-pub(super) fn unknown<M: Meaning>(path: &Path, entry: &Entry, found: &str, near: Option<&str>) -> MeshError {
+pub(super) fn unknown<M: Meaning>(
+    path: &Path,
+    entry: &Entry,
+    found: &str,
+    near: Option<&str>,
+) -> MeshError {
     let mut expected = format!("the number or set of {}s of this file", M::KIND);
     if let Some(near) = near {
         expected += &format!(" (did you mean `{}`?)", shorten(near));

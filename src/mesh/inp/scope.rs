@@ -88,7 +88,9 @@ pub(super) struct Sets {
 impl Sets {
     pub fn get(&mut self, name: &str) -> &mut Set {
         let entry = self.by_name.entry(name.to_uppercase());
-        &mut entry.or_insert_with(|| (name.to_string(), Set::default())).1
+        &mut entry
+            .or_insert_with(|| (name.to_string(), Set::default()))
+            .1
     }
 }
 

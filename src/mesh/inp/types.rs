@@ -16,9 +16,12 @@ pub(super) enum Shape {
 }
 
 /// Families of hexahedra and other solids, of surfaces, of lines; longer names before those that they begin with.
-const SOLIDS: [&str; 9] = ["C3D", "DC3D", "AC3D", "FC3D", "F3D", "Q3D", "CSS", "SC", "CCL"];
+const SOLIDS: [&str; 9] = [
+    "C3D", "DC3D", "AC3D", "FC3D", "F3D", "Q3D", "CSS", "SC", "CCL",
+];
 const FACETS: [&str; 16] = [
-    "SFM3D", "STRI", "DC2D", "AC2D", "DCAX", "ACAX", "CPEG", "R3D", "M3D", "F2D", "CPS", "CPE", "CGAX", "CAX", "DS", "S",
+    "SFM3D", "STRI", "DC2D", "AC2D", "DCAX", "ACAX", "CPEG", "R3D", "M3D", "F2D", "CPS", "CPE",
+    "CGAX", "CAX", "DS", "S",
 ];
 const LINES: [&str; 5] = ["T3D", "T2D", "RB3D", "R2D", "RAX"];
 
@@ -27,7 +30,9 @@ impl Shape {
     pub fn of(name: &str) -> Shape {
         let nodes = |family: &&str| -> Option<usize> {
             let rest = name.strip_prefix(family)?;
-            let end = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+            let end = rest
+                .find(|c: char| !c.is_ascii_digit())
+                .unwrap_or(rest.len());
             rest[..end].parse().ok()
         };
         if let Some(nodes) = SOLIDS.iter().find_map(nodes) {
@@ -72,7 +77,13 @@ mod tests {
             ("C3D20R", solid(20)),
             ("C3D27", solid(27)),
             ("F3D8", solid(8)),
-            ("SC8R", Shape::Solid { nodes: 8, given: true }),
+            (
+                "SC8R",
+                Shape::Solid {
+                    nodes: 8,
+                    given: true,
+                },
+            ),
             ("C3D4", Shape::OtherSolid),
             ("C3D10", Shape::OtherSolid),
             ("S4", Shape::Facet(4)),

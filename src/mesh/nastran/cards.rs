@@ -21,7 +21,8 @@ struct Line<'a> {
 pub(super) fn cards(text: &str) -> Vec<Card<'_>> {
     let begins = |line: &str| {
         let mut words = line.split_whitespace().map(str::to_uppercase);
-        words.next().as_deref() == Some("BEGIN") && words.next().is_some_and(|w| w.starts_with("BULK"))
+        words.next().as_deref() == Some("BEGIN")
+            && words.next().is_some_and(|w| w.starts_with("BULK"))
     };
     let skipped = text.lines().position(begins).map_or(0, |line| line + 1);
     let mut cards: Vec<Card> = Vec::new();
@@ -44,7 +45,10 @@ pub(super) fn cards(text: &str) -> Vec<Card<'_>> {
             Some(card) if continues => {
                 // A line that ends early leaves its last fields empty.
                 while !card.fields.len().is_multiple_of(width) {
-                    card.fields.push(Field { text: "", ..card.at });
+                    card.fields.push(Field {
+                        text: "",
+                        ..card.at
+                    });
                 }
                 card.fields.extend(fields);
             }
@@ -68,7 +72,11 @@ fn cut(line: &str, number: usize) -> Line<'_> {
             field
         });
         let head = fields.next().unwrap_or(field("", number, 0));
-        let width = if head.text.ends_with('*') || head.text.starts_with('*') { 4 } else { 8 };
+        let width = if head.text.ends_with('*') || head.text.starts_with('*') {
+            4
+        } else {
+            8
+        };
         // The field after the last one names the continuation.
         return Line {
             head,
@@ -93,7 +101,12 @@ fn cut(line: &str, number: usize) -> Line<'_> {
         true => (4, 16),
         false => (8, 8),
     };
-    let last = line.chars().count().saturating_sub(8).div_ceil(width).min(count);
+    let last = line
+        .chars()
+        .count()
+        .saturating_sub(8)
+        .div_ceil(width)
+        .min(count);
     Line {
         head,
         fields: (0..last).map(|k| column(8 + k * width, width)).collect(),
@@ -109,7 +122,11 @@ fn tabs(line: &str, number: usize) -> Line<'_> {
         field
     });
     let head = fields.next().unwrap_or(field("", number, 0));
-    let width = if head.text.ends_with('*') || head.text.starts_with('*') { 4 } else { 8 };
+    let width = if head.text.ends_with('*') || head.text.starts_with('*') {
+        4
+    } else {
+        8
+    };
     Line {
         head,
         fields: fields.take(width).collect(),
@@ -179,10 +196,20 @@ mod tests {
             assert_eq!(cards.len(), 1, "{text}");
             let fields: Vec<&str> = cards[0].fields.iter().map(|f| f.text).collect();
             assert_eq!(cards[0].name, "CQUAD8");
-            assert_eq!(fields, ["7", "3", "11", "12", "13", "14", "15", "16", "17", "18"], "{text}");
+            assert_eq!(
+                fields,
+                ["7", "3", "11", "12", "13", "14", "15", "16", "17", "18"],
+                "{text}"
+            );
         }
         let cards = cards(forms[0]);
-        assert_eq!((cards[0].fields[3].line, cards[0].fields[3].column), (1, 33));
-        assert_eq!((cards[0].fields[9].line, cards[0].fields[9].column), (2, 17));
+        assert_eq!(
+            (cards[0].fields[3].line, cards[0].fields[3].column),
+            (1, 33)
+        );
+        assert_eq!(
+            (cards[0].fields[9].line, cards[0].fields[9].column),
+            (2, 17)
+        );
     }
 }

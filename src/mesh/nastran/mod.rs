@@ -2,11 +2,11 @@
 //! CHEXA (MSC Nastran quick reference guide, "Bulk data entries"). The elements of property `n` are the set `property_n`.
 mod cards;
 
+use super::MeshError;
 use super::error::{MAX_NODES, listed, shorten};
 use super::field::Field;
 use super::quadratic::PLACES;
 use super::raw::{NONE, RawMesh};
-use super::MeshError;
 use cards::{Card, cards, real};
 use covact_geometry::Vec3;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -14,7 +14,8 @@ use std::path::Path;
 
 /// Nodes are numbered around the faces; tensor node `a` is file node `TENSOR[a]`.
 const TENSOR: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
-const ELEMENTS: &str = "elements of surfaces are CQUAD4, CTRIA3, CQUAD8 and CTRIA6, solid elements are CHEXA";
+const ELEMENTS: &str =
+    "elements of surfaces are CQUAD4, CTRIA3, CQUAD8 and CTRIA6, solid elements are CHEXA";
 
 /// Everything of use in a file.
 pub(super) fn parse(bytes: &[u8], path: &Path) -> Result<RawMesh, MeshError> {
@@ -44,9 +45,13 @@ pub(super) fn parse(bytes: &[u8], path: &Path) -> Result<RawMesh, MeshError> {
         skipped,
         ..
     } = reader;
-    raw.found = types.iter().map(|(name, n)| format!("{n} {name}")).collect();
+    raw.found = types
+        .iter()
+        .map(|(name, n)| format!("{n} {name}"))
+        .collect();
     if !skipped.is_empty() {
-        raw.notes.push(format!("cards left out: {}", listed(&skipped)));
+        raw.notes
+            .push(format!("cards left out: {}", listed(&skipped)));
     }
     Ok(raw)
 }

@@ -13,7 +13,8 @@ const TENSOR: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 /// An array with more different values gives no sets: it numbers its cells or points.
 const MOST_SETS: usize = 1000;
 
-const CELLS: &str = "elements of surfaces are triangles and quadrilaterals, solid elements are hexahedra";
+const CELLS: &str =
+    "elements of surfaces are triangles and quadrilaterals, solid elements are hexahedra";
 
 /// Cells and points of a file, with the arrays that may be sets.
 #[derive(Debug, Default)]
@@ -101,8 +102,10 @@ impl Grid {
             for &p in points {
                 let node = usize::try_from(p).ok().filter(|&p| p < raw.nodes.len());
                 let Some(node) = node else {
-                    let expected =
-                        format!("points of cell {cell} from 0 to {}", raw.nodes.len().max(1) - 1);
+                    let expected = format!(
+                        "points of cell {cell} from 0 to {}",
+                        raw.nodes.len().max(1) - 1
+                    );
                     return Err(syntax(expected, p.to_string()));
                 };
                 nodes.push(node as u32);
@@ -120,7 +123,10 @@ impl Grid {
             };
             cells.push(cell);
         }
-        raw.found = counts.iter().map(|(name, n)| format!("{n} {name}")).collect();
+        raw.found = counts
+            .iter()
+            .map(|(name, n)| format!("{n} {name}"))
+            .collect();
         raw.sets_of_cells(&self.cell_arrays, &cells);
         for (name, values) in &self.point_arrays {
             for (value, points) in groups(values).into_iter().flatten() {

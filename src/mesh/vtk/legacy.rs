@@ -121,7 +121,10 @@ impl Reader<'_> {
     fn kind(&mut self) -> Result<Type, MeshError> {
         let (word, start) = self.c.word("the type of numbers")?;
         let kind = std::str::from_utf8(word).ok().and_then(Type::of);
-        kind.ok_or_else(|| self.c.syntax(start, "a type such as double or int", quoted(word)))
+        kind.ok_or_else(|| {
+            self.c
+                .syntax(start, "a type such as double or int", quoted(word))
+        })
     }
 
     /// An array that begins in the next line.

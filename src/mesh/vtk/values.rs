@@ -46,12 +46,7 @@ pub(super) enum Values {
 
 impl Values {
     /// `count` numbers from where a file is read; more than it can hold are refused before anything is allocated.
-    pub fn read(
-        c: &mut Cursor,
-        kind: Type,
-        count: usize,
-        what: &str,
-    ) -> Result<Values, MeshError> {
+    pub fn read(c: &mut Cursor, kind: Type, count: usize, what: &str) -> Result<Values, MeshError> {
         let each = match c.encoding {
             Encoding::Text => 2,
             Encoding::Binary { .. } => kind.bytes(),
@@ -59,7 +54,10 @@ impl Values {
         // The last number of a text needs no blank after it.
         let rest = c.bytes.len() - c.pos + 1;
         if count > rest / each {
-            let expected = format!("{what} that the rest of the file can hold (at most {})", rest / each);
+            let expected = format!(
+                "{what} that the rest of the file can hold (at most {})",
+                rest / each
+            );
             return Err(c.syntax(c.pos, &expected, count.to_string()));
         }
         match kind {
@@ -86,7 +84,9 @@ impl Values {
             }
             return Ok(());
         }
-        let end = count.checked_mul(kind.bytes()).and_then(|n| c.pos.checked_add(n));
+        let end = count
+            .checked_mul(kind.bytes())
+            .and_then(|n| c.pos.checked_add(n));
         match end.filter(|&end| end <= c.bytes.len()) {
             Some(end) => c.pos = end,
             None => return Err(c.syntax(c.bytes.len(), what, "the end of the file")),

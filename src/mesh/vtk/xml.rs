@@ -154,7 +154,11 @@ impl<'a> File<'a> {
             true => Ok(()),
             false => {
                 let found = "no such element";
-                Err(self.syntax(0, "a <VTKFile> with a <Piece> of an UnstructuredGrid", found))
+                Err(self.syntax(
+                    0,
+                    "a <VTKFile> with a <Piece> of an UnstructuredGrid",
+                    found,
+                ))
             }
         }
     }
@@ -200,9 +204,11 @@ impl<'a> File<'a> {
         let Some(kind) = Type::of(&text("type")).filter(|_| name.len() <= MOST_IN_NAME) else {
             // Texts and bits are of no use here.
             return match section {
-                Section::Points | Section::Cells => {
-                    Err(self.syntax(at, "a type such as Float64 or Int64", shorten(&text("type"))))
-                }
+                Section::Points | Section::Cells => Err(self.syntax(
+                    at,
+                    "a type such as Float64 or Int64",
+                    shorten(&text("type")),
+                )),
                 _ => Ok(()),
             };
         };
@@ -216,7 +222,9 @@ impl<'a> File<'a> {
             "ascii" => Data::Text(inside),
             "binary" => Data::Base64(inside),
             "appended" => Data::Appended(self.number(tag, "offset", at)?),
-            other => return Err(self.syntax(at, "format ascii, binary or appended", shorten(other))),
+            other => {
+                return Err(self.syntax(at, "format ascii, binary or appended", shorten(other)));
+            }
         };
         self.arrays.push(Array {
             section,
@@ -244,7 +252,9 @@ impl<'a> File<'a> {
         };
         let first = grid.points.len() as i64;
         let before = grid.connectivity.len() as i64;
-        let coordinates = self.values(of(Section::Points, "")?, Some(3 * points))?.real();
+        let coordinates = self
+            .values(of(Section::Points, "")?, Some(3 * points))?
+            .real();
         let all = coordinates.chunks_exact(3);
         grid.points.extend(all.map(|x| Vec3::new(x[0], x[1], x[2])));
         if let Some(k) = coordinates.iter().position(|x| !x.is_finite()) {
@@ -261,9 +271,14 @@ impl<'a> File<'a> {
         let count = usize::try_from(last).unwrap_or(0);
         let connectivity = whole("connectivity", Some(count))?;
         grid.types.extend(whole("types", Some(cells))?);
-        grid.ends.extend(ends.into_iter().map(|e| e.saturating_add(before)));
+        grid.ends
+            .extend(ends.into_iter().map(|e| e.saturating_add(before)));
         (grid.connectivity).extend(connectivity.into_iter().map(|p| p.saturating_add(first)));
-        for array in self.arrays.iter().filter(|a| a.piece == piece && a.components == 1) {
+        for array in self
+            .arrays
+            .iter()
+            .filter(|a| a.piece == piece && a.components == 1)
+        {
             let (count, all, arrays) = match array.section {
                 Section::PointData => (points, grid.points.len(), &mut grid.point_arrays),
                 Section::CellData => (cells, grid.ends.len(), &mut grid.cell_arrays),
@@ -307,7 +322,8 @@ impl<'a> File<'a> {
         if bytes.len() < needed {
             return Err(fail(format!("{} bytes", bytes.len())));
         }
-        Values::read(&mut c, array.kind, count, &what).map_err(|_| fail("a number out of range".into()))
+        Values::read(&mut c, array.kind, count, &what)
+            .map_err(|_| fail("a number out of range".into()))
     }
 
     /// The bytes of a binary array, at most `needed`.
@@ -324,7 +340,9 @@ impl<'a> File<'a> {
                 let Some((data, raw)) = self.appended else {
                     return Err(self.syntax(array.at, "appended data", "none in this file"));
                 };
-                let data = data.get(offset..).ok_or_else(|| fail("the end of the file"))?;
+                let data = data
+                    .get(offset..)
+                    .ok_or_else(|| fail("the end of the file"))?;
                 (data, raw)
             }
             Data::Text(_) => return Ok(Vec::new()),
@@ -336,7 +354,9 @@ impl<'a> File<'a> {
                 return Ok((bytes.to_vec(), n));
             }
             let length = n.div_ceil(3) * 4;
-            let text = data.get(..length).ok_or_else(|| fail("the end of the data"))?;
+            let text = data
+                .get(..length)
+                .ok_or_else(|| fail("the end of the data"))?;
             let mut bytes = STANDARD.decode(text).map_err(|e| fail(&e.to_string()))?;
             bytes.truncate(n);
             Ok((bytes, length))
@@ -350,7 +370,9 @@ impl<'a> File<'a> {
         let head = take(data, h)?.0;
         if !self.zlib {
             let length = number(&head, 0);
-            let all = h.checked_add(length.min(needed)).ok_or_else(|| fail("a length too large"))?;
+            let all = h
+                .checked_add(length.min(needed))
+                .ok_or_else(|| fail("a length too large"))?;
             let mut bytes = take(data, all)?.0;
             bytes.drain(..h);
             return Ok(bytes);
