@@ -89,7 +89,7 @@ impl Reader<'_> {
             b"POINTS" => {
                 let count = self.c.text_number("a number of points")?;
                 let kind = self.kind()?;
-                let count = 3usize.checked_mul(count).unwrap_or(usize::MAX);
+                let count = 3usize.saturating_mul(count);
                 let values = self.values(kind, count, "a coordinate")?.real();
                 let points = values.chunks_exact(3).map(|x| Vec3::new(x[0], x[1], x[2]));
                 self.grid.points = points.collect();
@@ -205,7 +205,7 @@ impl Reader<'_> {
         components: usize,
     ) -> Result<(), MeshError> {
         const WHAT: &str = "a value of an array";
-        let count = count.checked_mul(components).unwrap_or(usize::MAX);
+        let count = count.saturating_mul(components);
         if components == 1 && matches!(kind, Type::Whole { .. }) {
             let values = self.values(kind, count, WHAT)?.whole().unwrap_or_default();
             match self.on {
