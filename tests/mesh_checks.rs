@@ -486,6 +486,6 @@ fn build_reports_and_refuses() {
         missing.starts_with("cannot read mesh file some/where/nothing.msh: "),
         "{missing}"
     );
-    assert!(error(file("mesh.vtk", 1.0)).contains(".msh"));
+    assert!(error(file("mesh.obj", 1.0)).contains("mesh.obj: mesh files end in .msh"));
     assert!(error(file("mesh.msh", 0.0)).contains("scale is 0"));
 }

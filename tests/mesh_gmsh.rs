@@ -181,6 +181,8 @@ fn foreign_meshes_are_refused_with_advice() {
         &["tetrahedra (gmsh type 4)", "hexahedra of 8 nodes"],
     );
     assert!(error("$NOD\n").to_string().contains("format 1"));
+    let text = error("(1 \"meshio 5.3.5\")\n").to_string();
+    assert!(text.contains("a.msh:1:1: a mesh of ANSYS Fluent is not supported"));
     let text = error("$MeshFormat\n4.1 0 4\n").to_string();
     assert!(text.contains("a.msh:2:7: data size `4`"), "{text}");
 }

@@ -180,10 +180,16 @@ fn errors_point_at_line_and_column() {
         ("*NODE\n31, 0, x, 0\n", after, 8, "a coordinate | x"),
         ("*NODE\n31, 0, inf, 0\n", after, 8, "a coordinate | inf"),
         (
-            "*NSET, NSET=a, GENERATE\n1, 18446744073709551615, 1\n",
+            "*NSET, NSET=a, GENERATE\n4, 1, 1\n",
             after,
             1,
-            "first <= last, a step of at least 1, and numbers of nodes | 1, 18446744073709551615, 1",
+            "first <= last and a step of at least 1 | 4, 1, 1",
+        ),
+        (
+            "*NSET, NSET=a, GENERATE\n1000, 18446744073709551615, 1\n",
+            after,
+            1,
+            "the number or set of nodes of this file | node 1000 to 18446744073709551615",
         ),
     ] {
         assert_eq!(more(text), (line, column, message.to_string()), "{text}");

@@ -5,21 +5,21 @@ it in this folder.
        |              |
     ___|              |___        z = 0, two feet, 8 wide
 
-All of it is 60 long (y from -30 to 30). Quadrilaterals of about 5 mm, in the groups `crown`, `webs` and `feet`; the border of
+All of it is 60 long (y from -30 to 30). Quadrilaterals of about 3 mm, in the groups `crown`, `webs` and `feet`; the border of
 the hole is the group `hole`.
 """
 
 import gmsh
 
-HALF, LENGTH, HEIGHT, FOOT, SIZE = 15.0, 30.0, 12.0, 8.0, 5.0
+HALF, LENGTH, HEIGHT, FOOT, SIZE = 15.0, 30.0, 12.0, 8.0, 3.0
 
 gmsh.initialize()
 gmsh.option.setNumber("General.Terminal", 0)
 occ, mesh = gmsh.model.occ, gmsh.model.mesh
 
-# The section from foot to foot, drawn along y.
+# The section from foot to foot, drawn along y, against x so that normals look up and outward.
 section = [
-    (-HALF - FOOT, 0.0), (-HALF, 0.0), (-HALF, HEIGHT), (HALF, HEIGHT), (HALF, 0.0), (HALF + FOOT, 0.0)
+    (HALF + FOOT, 0.0), (HALF, 0.0), (HALF, HEIGHT), (-HALF, HEIGHT), (-HALF, 0.0), (-HALF - FOOT, 0.0)
 ]
 points = [occ.addPoint(x, -LENGTH, z) for x, z in section]
 lines = [occ.addLine(a, b) for a, b in zip(points, points[1:])]

@@ -71,6 +71,8 @@ pub(super) struct RawMesh {
     pub help: &'static str,
     /// The first solid elements that cannot be read: the reason why the file has no mesh of solids.
     pub refused: Option<MeshError>,
+    /// The first elements of a surface that cannot be read.
+    pub refused_facets: Option<MeshError>,
 }
 
 /// Quadrilaterals and triangles of a file: faces of its hexahedra, or a surface of its own.
@@ -177,6 +179,7 @@ impl RawMesh {
         retain(&number, &mut self.facets.tags);
         renumber_sets(&number, &mut self.facets.sets);
         self.refused = None;
+        self.refused_facets = None;
         Ok(())
     }
 }

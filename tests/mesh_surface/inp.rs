@@ -1,5 +1,5 @@
 //! Input files of Abaqus and CalculiX: parts and instances, sets before their definition, quadratic elements.
-use crate::support::{close, file, h8, load};
+use crate::support::{close, file, grid, h8, load};
 use covact::mesh::{ElementKind, Mesh, MeshError, MeshReport};
 use covact::scene::MeshFile;
 use covact_geometry::Vec3;
@@ -280,4 +280,32 @@ fn bricks_of_20_nodes() {
     );
     let error = solid(&brick(0.2), ElementKind::H8).unwrap_err().to_string();
     assert!(error.contains("\"q18\""), "{error}");
+}
+
+/// What CalculiX reads is read, and what has no effect on the mesh is told.
+#[test]
+fn lines_that_only_calculix_takes() {
+    let text = grid(2, 2, |u, v| [u, v, 0.0]).inp()
+        + "*ELEMENT, TYPE=CAX4, ELSET=AXIS\n10, 1, 2, 5, 4, 6, 7\n*NSET, NSET=MANY, GENERATE\n2, 5000\n\
+           *SUBMODEL, TYPE=NODE, INPUT=other.frd\nMANY\n";
+    // The four elements of the grid stay.
+    let text = text.replacen("1, 1, 2, 5, 4\n", "", 1);
+    let (mesh, report) = h8(&text, &file(0.1)).unwrap();
+    assert_eq!(
+        (mesh.elements(), report.element_tags),
+        (4, vec![2, 3, 4, 10])
+    );
+    assert_eq!(mesh.node_set("MANY").unwrap().len(), 2 * 8);
+    for told in [
+        "1 element(s) have more numbers in their lines than their type has nodes",
+        "set `MANY`: 4991 number(s) within its ranges are no nodes",
+        "axisymmetric elements (CAX4) are taken for a plane surface",
+        "*SUBMODEL",
+    ] {
+        let found = report.notes.iter().any(|n| n.contains(told));
+        assert!(found, "{told}: {:?}", report.notes);
+    }
+    // Ranges that name no node at all are a mistake.
+    let error = h8(&text.replace("2, 5000", "200, 5000"), &file(0.1)).unwrap_err();
+    assert!(error.to_string().contains("node 200 to 5000"), "{error}");
 }

@@ -99,7 +99,7 @@ fn vtk_names_line_and_column() {
         ),
         (
             format!("{head}POINTS 100000000000 double\n0 0 0\n"),
-            "5:27: expected a coordinate that the rest of the file can hold",
+            "5:27: expected a coordinate, found the end after at most",
         ),
         (
             format!(
@@ -128,6 +128,13 @@ fn vtk_names_line_and_column() {
         "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n";
     let text = refused(&format!("{head}{tetrahedron}"), "vtk");
     assert!(text.contains("(its elements: 1 tetrahedra)"), "{text}");
+    // A hole in place of a polygon would be no mesh of the part.
+    let polygons = "POINTS 6 double\n0 0 0 1 0 0 0 1 0 1 1 0 .5 2 0 1 2 0\nCELLS 2 10\n3 0 1 2\n5 1 3 5 4 2\nCELL_TYPES 2\n5 7\n";
+    let text = refused(&format!("{head}{polygons}"), "vtk");
+    assert!(
+        text.contains("a polygon of 5 points is not supported"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -160,8 +167,12 @@ fn vtu_names_line_and_column() {
             "1:1: VTK data of the type `PolyData` is not supported",
         ),
         (
-            file(grid, "format=\"ascii\">0 0 0\n1 0 x", cells),
+            file(grid, "format=\"ascii\">0 0 0\n1 0 x\n0 1 0", cells),
             "6:5: expected 9 numbers of the array ``, found `x`",
+        ),
+        (
+            file(grid, "format=\"ascii\">0 0 0\n1 0 0", cells),
+            "5:65: expected 9 numbers of the array ``, found the end after at most 6 of 9 numbers",
         ),
         (
             file(grid, points, &cells.replace("types", "kinds")),
@@ -186,7 +197,7 @@ fn vtu_names_line_and_column() {
         ("<a><b></a>".into(), "1:7: expected XML"),
         (
             whole.replace("NumberOfPoints=\"3\"", "NumberOfPoints=\"300000000\""),
-            "5:65: expected 900000000 numbers of the array `` that the rest of the file can hold",
+            "5:65: expected 900000000 numbers of the array ``, found the end after at most 9 of 900000000",
         ),
     ] {
         told(&text, "vtu", message);

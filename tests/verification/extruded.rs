@@ -78,6 +78,8 @@ fn the_hat_profile_carries_the_ball_to_the_table() {
         outcome.summary.newton_iterations
     );
     assert!(ball < -10.0, "{ball}");
+    // It begins to press at once: the crown's top is its outer side.
+    assert!(outcome.at("force.ball.z", 0.1) < 0.0);
     assert!((ball + table).abs() < 1e-4 * table, "{ball} {table}");
     assert!(outcome.at("energy.dissipated", 1.0) > 0.0);
 }

@@ -37,6 +37,9 @@ impl RawMesh {
         path: &Path,
         how: &Extrusion,
     ) -> Result<(Mesh, MeshReport), MeshError> {
+        if let Some(refused) = self.refused_facets.take() {
+            return Err(refused);
+        }
         if self.facets.is_empty() {
             let help = match self.hexahedra.is_empty() {
                 true => "`thickness` makes a body of a surface mesh".to_string(),

@@ -158,6 +158,12 @@ impl Reader<'_> {
                     let what = "gmsh format 1".to_string();
                     return Err(self.cursor.unsupported(start, what, EXPORT));
                 }
+                // meshio writes it where nobody asks for gmsh.
+                _ if word.starts_with(b"(") => {
+                    let what = "a mesh of ANSYS Fluent".to_string();
+                    let help = "write a mesh of gmsh (meshio: `file_format=\"gmsh\"`)";
+                    return Err(self.cursor.unsupported(start, what, help));
+                }
                 _ => return Err(self.cursor.syntax(start, "$MeshFormat", quoted(word))),
             }
         }

@@ -164,6 +164,21 @@ impl Reader<'_> {
             ..RawMesh::default()
         };
         let mut raw = Builder::new(&self, raw, nodes, elements).all()?;
+        if self.longer > 0 {
+            raw.notes.push(format!(
+                "{} element(s) have more numbers in their lines than their type has nodes; those behind were left out",
+                self.longer
+            ));
+        }
+        let axes = ["CAX", "CGAX", "DCAX", "ACAX"];
+        let turned = |kind: &&String| axes.iter().any(|a| kind.starts_with(a));
+        let turned: Vec<&String> = self.found.iter().filter(turned).collect();
+        if !turned.is_empty() {
+            raw.notes.push(format!(
+                "axisymmetric elements ({}) are taken for a plane surface",
+                listed(turned)
+            ));
+        }
         if !self.types.is_empty() {
             let types = listed(&self.types);
             raw.notes.push(format!("elements left out: {types}"));

@@ -120,7 +120,8 @@ impl<'r> Builder<'r> {
         let raw = &mut self.raw;
         let quadratic = count > 8;
         if raw.quadratic.len() != raw.hexahedra.len() * usize::from(quadratic) {
-            let expected = "elements of 8 nodes or of 20 and 27, not both";
+            let expected =
+                "elements of 8 nodes or of 20 and 27, not both (`only` takes those of one set)";
             let refused = element.at().syntax_found(
                 self.reader.path,
                 expected,

@@ -30,6 +30,9 @@ const FACES: [u8; 6] = [4, 5, 2, 1, 3, 0];
 const ELEMENTS: &str = "solid elements are C3D8 and its relatives and SC8R, of 8 nodes, C3D20 of 20 and C3D27 of 27; \
                         elements of surfaces are S3, S4, S6, S8, CPS3, CPS4, M3D3, M3D4 and the like";
 
+/// Keywords whose data lines are read.
+const OF_MESH: [&str; 5] = ["*NODE", "*ELEMENT", "*NSET", "*ELSET", "*SURFACE"];
+
 /// Set that meshio writes of what it read of a gmsh file: its numbers are of geometry, not of elements.
 const NOT_A_SET: &str = "gmsh:bounding_entities";
 
@@ -113,6 +116,8 @@ struct Reader<'a> {
     notes: Vec<String>,
     refused: Option<MeshError>,
     found: BTreeSet<String>,
+    /// Elements whose line goes on after their last node.
+    longer: usize,
 }
 
 impl<'a> Reader<'a> {
@@ -130,6 +135,7 @@ impl<'a> Reader<'a> {
             notes: Vec::new(),
             refused: None,
             found: BTreeSet::new(),
+            longer: 0,
         }
     }
 
@@ -151,8 +157,8 @@ impl<'a> Reader<'a> {
             let field = keyword.get(parameter).filter(|f| !f.text.is_empty());
             field.map(|f| spell(path, f)).transpose()
         };
-        if let (Some(file), true) = (keyword.get("INPUT"), keyword.name != "*INCLUDE") {
-            let keyword = shorten(&keyword.name);
+        if let (Some(file), true) = (keyword.get("INPUT"), OF_MESH.contains(&&*keyword.name)) {
+            let keyword = &keyword.name;
             let what = format!("{keyword} with its data in another file (INPUT)");
             let help = "put the data into this file";
             return Err(file.unsupported(path, what, help));
@@ -278,8 +284,14 @@ impl<'a> Reader<'a> {
             Mode::Skip => {}
             Mode::Node(set) => self.node(list, set.as_deref())?,
             Mode::Element { shape, set } => {
-                for field in list {
-                    self.element_number(field, *shape, set.as_deref())?;
+                let mut list = list;
+                while let Some(field) = list.next() {
+                    let whole = self.element_number(field, *shape, set.as_deref())?;
+                    if whole {
+                        // Programs read as many nodes as the type has; the line may have more.
+                        self.longer += usize::from(list.any(|f| !f.text.is_empty()));
+                        break;
+                    }
                 }
             }
             Mode::Set {
@@ -369,12 +381,13 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
+    /// The next number of an element: its own, or that of a node. Whether the element has all its nodes then.
     fn element_number(
         &mut self,
         field: Field,
         shape: Shape,
         set: Option<&str>,
-    ) -> Result<(), MeshError> {
+    ) -> Result<bool, MeshError> {
         self.last = (field.line, field.column);
         let path = self.path;
         let scope = &mut self.scopes[self.current];
@@ -384,7 +397,7 @@ impl<'a> Reader<'a> {
                 return Err(field.syntax(path, "an element number used once"));
             }
             self.pending = Some((tag, Vec::with_capacity(shape.nodes())));
-            return Ok(());
+            return Ok(false);
         };
         let node = field.integer(path, "a node number")?;
         let Some(&index) = scope.node_index.get(&node) else {
@@ -393,7 +406,7 @@ impl<'a> Reader<'a> {
         };
         nodes.push(index);
         if nodes.len() < shape.nodes() {
-            return Ok(());
+            return Ok(false);
         }
         let element = Element {
             tag: *tag,
@@ -411,7 +424,7 @@ impl<'a> Reader<'a> {
                 .push(Entry::new(Reference::Number(tag), &field, super::raw::NONE));
         }
         self.pending = None;
-        Ok(())
+        Ok(true)
     }
 
     /// `element or element set, S1 to S6`.

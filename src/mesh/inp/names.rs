@@ -90,8 +90,13 @@ impl Names<'_> {
         }
     }
 
-    fn within(&self, first: u64, last: u64) -> Vec<u64> {
-        let mut all: Vec<u64> = (self.index.keys().copied())
+    fn within(&self, instance: Option<&str>, first: u64, last: u64) -> Vec<u64> {
+        let index = match instance.map(|name| self.instance(name)) {
+            None => self.index,
+            Some(Some(placed)) => &placed.numbers[usize::from(!self.nodes)],
+            Some(None) => return Vec::new(),
+        };
+        let mut all: Vec<u64> = (index.keys().copied())
             .filter(|n| (first..=last).contains(n))
             .collect();
         all.sort_unstable();
@@ -120,8 +125,8 @@ macro_rules! meaning {
             fn count(&self) -> usize {
                 self.0.count()
             }
-            fn within(&self, first: u64, last: u64) -> Vec<u64> {
-                self.0.within(first, last)
+            fn within(&self, instance: Option<&str>, first: u64, last: u64) -> Vec<u64> {
+                self.0.within(instance, first, last)
             }
         }
     };

@@ -50,7 +50,7 @@ pub(super) trait Meaning {
     /// Number of things, and an upper bound of how many there may be in a range.
     fn count(&self) -> usize;
     /// All numbers from `first` to `last`, sorted, where counting through them takes too long.
-    fn within(&self, first: u64, last: u64) -> Vec<u64>;
+    fn within(&self, instance: Option<&str>, first: u64, last: u64) -> Vec<u64>;
 }
 
 /// Members of all sets; `notes` gets what is missing in ranges.
@@ -96,7 +96,7 @@ pub(super) fn resolve<M: Meaning>(
             if stack.len() > before {
                 continue;
             }
-            let mut missing = 0;
+            let mut missing = 0usize;
             let mut found = Vec::new();
             for entry in &set.entries {
                 let known = (entry.instance == NONE)
@@ -106,7 +106,8 @@ pub(super) fn resolve<M: Meaning>(
                     Some(other) => found.extend(other),
                     None => {
                         let found = &mut found;
-                        missing += entry_members(path, set, entry, meaning, &names, budget, found)?;
+                        let more = entry_members(path, set, entry, meaning, &names, budget, found)?;
+                        missing = missing.saturating_add(more);
                     }
                 }
                 budget.spend(1)?;
@@ -174,34 +175,30 @@ fn entry_members<M: Meaning>(
         Reference::Range(range) => {
             let [first, last, step] = **range;
             let most = meaning.count() as u64;
-            let long = |count: u64| count > most && !meaning.lenient();
-            if step == 0 || last < first || long((last - first) / step) {
-                let expected = format!(
-                    "first <= last, a step of at least 1, and numbers of {}s",
-                    M::KIND
-                );
+            if step == 0 || last < first {
+                let expected = "first <= last and a step of at least 1";
                 let found = format!("{first}, {last}, {step}");
-                return Err(entry.at().syntax_found(path, &expected, &found));
+                return Err(entry.at().syntax_found(path, expected, &found));
             }
             let count = (last - first) / step;
             // Looking a number up costs less than keeping it.
             budget.spend((count.min(most) / 8) as usize)?;
             let before = found.len();
             if count > most {
-                let all = meaning.within(first, last).into_iter();
+                let all = meaning.within(instance, first, last).into_iter();
                 let within = all.filter(|number| (number - first) % step == 0);
                 found.extend(within.filter_map(|number| meaning.number(instance, number)));
-                return Ok(0);
+            } else {
+                let all = (0..=count).map(|k| first + k * step);
+                found.extend(all.filter_map(|number| meaning.number(instance, number)));
             }
-            let all = (0..=count).map(|k| first + k * step);
-            found.extend(all.filter_map(|number| meaning.number(instance, number)));
             let new = found.len() - before;
             if new == 0 && !meaning.lenient() {
                 let numbers = format!("{} {first} to {last}", M::KIND);
                 return Err(unknown::<M>(path, entry, &numbers, None));
             }
             if !meaning.lenient() {
-                return Ok(count as usize + 1 - new);
+                return Ok((count as usize).saturating_add(1) - new);
             }
         }
     }

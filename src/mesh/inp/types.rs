@@ -42,6 +42,10 @@ impl Shape {
                 _ => Shape::OtherSolid,
             };
         }
+        // Solids without a number of nodes too.
+        if SOLIDS[..6].iter().any(|family| name.starts_with(family)) {
+            return Shape::OtherSolid;
+        }
         if name.starts_with("STRI65") {
             return Shape::Facet(6);
         }
@@ -86,6 +90,7 @@ mod tests {
             ),
             ("C3D4", Shape::OtherSolid),
             ("C3D10", Shape::OtherSolid),
+            ("C3DX", Shape::OtherSolid),
             ("S4", Shape::Facet(4)),
             ("S4R5", Shape::Facet(4)),
             ("S3R", Shape::Facet(3)),

@@ -111,8 +111,9 @@ impl Grid {
                 nodes.push(node as u32);
             }
             let Some(name) = type_name(kind) else {
-                let unsupported = unsupported(path, at, format!("cell type {kind}"));
-                raw.refused.get_or_insert(unsupported);
+                let unsupported = || unsupported(path, at, format!("cell type {kind}"));
+                raw.refused.get_or_insert_with(unsupported);
+                raw.refused_facets.get_or_insert_with(unsupported);
                 cells.push(Cell::Nothing);
                 continue;
             };
@@ -191,6 +192,14 @@ impl RawMesh {
                 self.hexahedron(nodes, Some(tensor), tag, path, at)
             }
             0 | 1 | 2 | 4 => Cell::Nothing,
+            6 | 7 => {
+                let what = match kind {
+                    6 => "a mesh of triangle strips".to_string(),
+                    _ => format!("a polygon of {} points", nodes.len()),
+                };
+                (self.refused_facets).get_or_insert_with(|| unsupported(path, at, what));
+                Cell::Nothing
+            }
             _ => {
                 let name = type_name(kind).unwrap_or_default();
                 let refused = unsupported(path, at, format!("a mesh of {name}"));

@@ -54,11 +54,8 @@ impl Values {
         // The last number of a text needs no blank after it.
         let rest = c.bytes.len() - c.pos + 1;
         if count > rest / each {
-            let expected = format!(
-                "{what} that the rest of the file can hold (at most {})",
-                rest / each
-            );
-            return Err(c.syntax(c.pos, &expected, count.to_string()));
+            let found = format!("the end after at most {} of {count} numbers", rest / each);
+            return Err(c.syntax(c.pos, what, found));
         }
         match kind {
             Type::Real(4) => {
