@@ -229,7 +229,9 @@ fn mesh_error(body: &str, source: &MeshSource, error: mesh::MeshError) -> ModelE
                 | mesh::MeshError::Surface {
                     source:
                         mesh::SurfaceError::NoThickness { .. }
-                        | mesh::SurfaceError::TwoThicknesses { .. },
+                        | mesh::SurfaceError::TwoThicknesses { .. }
+                        | mesh::SurfaceError::Field(_)
+                        | mesh::SurfaceError::NotPositive { .. },
                     ..
                 } => "thickness",
                 _ => "path",

@@ -296,3 +296,50 @@ fn noise_does_not_tilt_the_thickness() {
         assert!(through.y.abs() < 5e-4, "{through}");
     }
 }
+
+/// A thickness that changes with the place is the true one at every node, in a plane and on a cylinder.
+#[test]
+fn a_field_of_thickness() {
+    let field = |text: &str| MeshFile {
+        thickness: Some(Thickness::Field(text.to_string())),
+        ..MeshFile::new("a")
+    };
+    for kind in [ElementKind::H8, ElementKind::Q18] {
+        let wedge = field("0.1*(x + y/2)");
+        let (mesh, _) = load(its_surface().inp().as_bytes(), "inp", &wedge, kind).unwrap();
+        // The integral of x/10 + y/20 over [1, 4] x [-1, 1].
+        close(mesh.volume(), 1.5, 1e-13);
+        for &node in mesh.node_set("top").unwrap() {
+            let x = mesh.nodes[node as usize];
+            close(x.z - 0.5, 0.05 * (x.x + 0.5 * x.y), 1e-14);
+        }
+    }
+    let r = 10.0;
+    let panel = grid(40, 2, |u, v| {
+        let phi = 2.0 * (u - 0.5);
+        [r * phi.sin(), 8.0 * v, r * phi.cos()]
+    });
+    let (mesh, _) = h8(&panel.inp(), &field("1 + y/8")).unwrap();
+    let count = panel.points.len();
+    // The two ends see one element only, whose normal is off by half its angle.
+    let inner = (0..count).filter(|k| k % 41 != 0 && k % 41 != 40);
+    for k in inner {
+        let through = mesh.nodes[k + count] - mesh.nodes[k];
+        let expected = 1.0 + panel.points[k][1] / 8.0;
+        // Between two facets, each at the true distance.
+        close(through.norm() * 0.025f64.cos(), expected, 1e-10);
+    }
+
+    let refused = |text: &str| {
+        h8(&its_surface().inp(), &field(text))
+            .unwrap_err()
+            .to_string()
+    };
+    let text = refused("x - 1");
+    assert!(
+        text.contains("the thickness is 0 at (1.000000, -1.000000, 0.500000) (node 1)"),
+        "{text}"
+    );
+    assert!(refused("sqrt(y)").contains("`sqrt(y)`"));
+    assert!(refused("t").contains('t'));
+}

@@ -11,6 +11,8 @@ pub(super) struct Cells {
     pub kind: ElementKind,
     pub nodes: Vec<u32>,
     pub thickness: Vec<f64>,
+    /// Thickness at the nodes, in place of that of the elements; may be empty.
+    pub at_nodes: Vec<f64>,
     /// Numbers in the file.
     pub tags: Vec<u64>,
 }
@@ -35,6 +37,7 @@ impl Cells {
             kind,
             nodes,
             thickness: surface.thickness.clone(),
+            at_nodes: Vec::new(),
             tags: surface.tags.clone(),
         }
     }

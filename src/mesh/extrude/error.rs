@@ -1,5 +1,6 @@
 //! Why a surface cannot be given a thickness.
 use crate::mesh::error::listed;
+use crate::scene::ValueError;
 
 /// Position in a message.
 type Place = [f64; 3];
@@ -63,6 +64,21 @@ pub enum SurfaceError {
         position: Place,
         /// The sets of the file, in words.
         sets: String,
+    },
+    /// The expression of the thickness is wrong, or gives no number somewhere.
+    #[error("thickness: {0}")]
+    Field(ValueError),
+    /// A field of thickness is zero or less.
+    #[error(
+        "the thickness is {value} at {}{}, where it must be positive",
+        at(position),
+        if *node > 0 { format!(" (node {node})") } else { String::new() }
+    )]
+    NotPositive {
+        value: f64,
+        /// 0 for nodes that the file does not have.
+        node: u64,
+        position: Place,
     },
     /// An element with two thicknesses.
     #[error(

@@ -100,7 +100,8 @@ impl RawMesh {
             }
         }
         surface.add_nodes_of_sets();
-        let cells = Cells::new(&surface, how.kind);
+        let mut cells = Cells::new(&surface, how.kind);
+        cells.at_nodes = surface::at_nodes(&surface, how.thickness).map_err(fail)?;
         let normals = Normals::new(&surface.nodes, &cells).map_err(fail)?;
         if let (count @ 1.., off) = normals.uneven {
             notes.push(format!(

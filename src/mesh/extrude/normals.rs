@@ -131,8 +131,8 @@ fn fold(nodes: &[Vec3], cells: &Cells, at: u32) -> Result<f64, SurfaceError> {
 }
 
 impl Cells {
-    /// Hands over every node of every element with the element's unit normal there, the angle that it spans, its thickness
-    /// and its number.
+    /// Hands over every node of every element with the element's unit normal there, the angle that it spans, the thickness
+    /// there and the element's number.
     fn corners(
         &self,
         nodes: &[Vec3],
@@ -167,7 +167,9 @@ impl Cells {
                         position: quad.point(0.0, 0.0).into(),
                     });
                 }
-                take(node, normal, angle, self.thickness[e], e);
+                let thickness = self.at_nodes.get(node as usize);
+                let thickness = thickness.copied().unwrap_or(self.thickness[e]);
+                take(node, normal, angle, thickness, e);
             }
         }
         Ok(())

@@ -5,7 +5,7 @@ use crate::mesh::error::listed;
 use crate::mesh::raw::{Facets, Kept, NONE, RawMesh};
 use crate::mesh::sets::unknown;
 use crate::mesh::{MeshError, SetKind};
-use crate::scene::Thickness;
+use crate::scene::{Thickness, Value};
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -20,7 +20,7 @@ pub(super) struct Surface {
     pub middles: Vec<[u32; 5]>,
     /// Numbers of the elements in the file.
     pub tags: Vec<u64>,
-    /// Thickness of every element.
+    /// Thickness of every element; not that of a field.
     pub thickness: Vec<f64>,
     /// Element sets.
     pub sets: BTreeMap<String, Vec<u32>>,
@@ -109,6 +109,10 @@ impl Surface {
                 self.thickness = vec![*t; self.facets.len()];
                 return Ok(());
             }
+            Thickness::Field(_) => {
+                self.thickness = vec![f64::NAN; self.facets.len()];
+                return Ok(());
+            }
             Thickness::BySet(by_set) => by_set,
         };
         let fail = |source| MeshError::Surface {
@@ -144,6 +148,28 @@ impl Surface {
         self.thickness = found.into_iter().flatten().map(|(_, t)| t).collect();
         Ok(())
     }
+}
+
+/// The thickness at every node of a finished surface where it is a field, or nothing.
+pub(super) fn at_nodes(surface: &Surface, thickness: &Thickness) -> Result<Vec<f64>, SurfaceError> {
+    let Thickness::Field(text) = thickness else {
+        return Ok(Vec::new());
+    };
+    let field = Value::Expression(text.clone()).compile(&Thickness::VARIABLES);
+    let field = field.map_err(SurfaceError::Field)?;
+    let places = surface.nodes.iter().zip(&surface.node_tags);
+    let at = |(x, &node): (&Vec3, &u64)| {
+        let value = field.eval_at(x, 0.0).map_err(SurfaceError::Field)?;
+        match value > 0.0 {
+            true => Ok(value),
+            false => Err(SurfaceError::NotPositive {
+                value,
+                node,
+                position: (*x).into(),
+            }),
+        }
+    };
+    places.map(at).collect()
 }
 
 /// Quadrilaterals with the same node at two neighbouring corners are triangles.

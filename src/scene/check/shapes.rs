@@ -91,6 +91,10 @@ fn check_mesh_file(c: &mut Checker, at: &str, file: &MeshFile) {
                 c.positive(&at, "the thickness", *t);
             }
         }
+        Some(Thickness::Field(text)) => {
+            let value = Value::Expression(text.clone());
+            c.value(&format!("{at}/thickness"), &value, &Thickness::VARIABLES);
+        }
         None => {
             for (field, given) in [
                 ("offset", file.offset.is_some()),

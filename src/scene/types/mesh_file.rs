@@ -24,7 +24,8 @@ pub struct MeshFile {
     /// Multiplies every coordinate of the file. `thickness` is not multiplied.
     #[serde(default = "one")]
     pub scale: f64,
-    /// Thickness of a surface, in the scene's unit of length: a number, or one for each of some element sets of the file.
+    /// Thickness of a surface, in the scene's unit of length: a number, one for each of some element sets of the file, or
+    /// an expression of the place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thickness: Option<Thickness>,
     /// Where the file's surface lies in the thickness: `mid` (default), `top` or `bottom`.
@@ -52,8 +53,9 @@ impl MeshFile {
     }
 }
 
-/// Thickness of a surface mesh: a number, or `{"set": number, ...}` with element sets of the file that hold every element
-/// between them.
+/// Thickness of a surface mesh: a number; `{"set": number, ...}` with element sets of the file that hold every element
+/// between them; or an expression such as `"1.5 - 0.01*x"` in x, y and z, the node's coordinates in the file times
+/// `scale`, before `placement`.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Thickness {
@@ -61,6 +63,13 @@ pub enum Thickness {
     Uniform(f64),
     /// By the element sets of the file.
     BySet(BTreeMap<String, f64>),
+    /// An expression of the place.
+    Field(String),
+}
+
+impl Thickness {
+    /// Variables of the expression.
+    pub const VARIABLES: [&str; 3] = ["x", "y", "z"];
 }
 
 /// Where the surface of a file lies in the thickness that it gets.
@@ -89,7 +98,7 @@ impl<'de> Visitor<'de> for ThicknessVisitor {
     type Value = Thickness;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a number or `{\"set\": number, ...}`")
+        f.write_str("a number, `{\"set\": number, ...}` or an expression between double quotes")
     }
     fn visit_f64<E: de::Error>(self, number: f64) -> Result<Thickness, E> {
         Ok(Thickness::Uniform(number))
@@ -99,6 +108,9 @@ impl<'de> Visitor<'de> for ThicknessVisitor {
     }
     fn visit_u64<E: de::Error>(self, number: u64) -> Result<Thickness, E> {
         Ok(Thickness::Uniform(number as f64))
+    }
+    fn visit_str<E: de::Error>(self, text: &str) -> Result<Thickness, E> {
+        Ok(Thickness::Field(text.to_string()))
     }
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Thickness, A::Error> {
         let mut sets = BTreeMap::new();
