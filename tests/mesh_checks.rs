@@ -96,13 +96,14 @@ fn stray_and_coincident_nodes_are_named() {
     let MeshError::DuplicateNodes {
         first,
         second,
+        tags,
         count,
         ..
     } = error
     else {
         panic!("{error}");
     };
-    assert_eq!((first, second, count), (0, 60, 60));
+    assert_eq!((first, second, tags, count), (0, 60, None, 60));
     // And so are two nodes at one place within a part: a slit.
     let mut mesh = sheet();
     let shared = mesh.connectivity[1];

@@ -246,6 +246,18 @@ fn inverted_elements_carry_the_files_number() {
     );
 }
 
+/// Nodes at the same place too: a slit between the two cubes.
+#[test]
+fn coincident_nodes_carry_the_files_numbers() {
+    let slit = two(C3D8, "").replace("20, 2, 12", "20, 32, 12");
+    let slit = slit.replace("17, 2., 1., 1.\n", "17, 2., 1., 1.\n32, 1., 0, 0\n");
+    let error = read(&slit).unwrap_err().to_string();
+    assert!(
+        error.contains("(numbers 2 and 32 in the file) lie at the same place (1.000000, 0.000000, 0.000000); 1 such"),
+        "{error}"
+    );
+}
+
 #[test]
 fn truncated_and_damaged_files_do_not_panic() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/mesh/plate.inp");

@@ -126,6 +126,7 @@ impl Mesh {
         match wrong.first() {
             None => Ok(()),
             Some(&[first, second]) => Err(MeshError::DuplicateNodes {
+                tags: None,
                 first,
                 second,
                 position: self.nodes[first as usize].into(),
@@ -220,7 +221,7 @@ pub(super) fn is_opposite(a: [u32; 4], b: [u32; 4]) -> bool {
 }
 
 /// Pairs of nodes closer than [`SAME_PLACE`] times `size`, sorted.
-fn close_pairs(nodes: &[Vec3], size: f64) -> Vec<[u32; 2]> {
+pub(super) fn close_pairs(nodes: &[Vec3], size: f64) -> Vec<[u32; 2]> {
     let tolerance = SAME_PLACE * size;
     // Cells of half the shortest edge hold a node or two; a node next to a cell's border is also put into the cell
     // beyond, so that both nodes of a pair always share a cell.

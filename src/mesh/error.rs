@@ -197,12 +197,15 @@ pub enum MeshError {
     },
     /// Two nodes lie at the same place: parts that touch but are not joined.
     #[error(
-        "nodes {first} and {second} lie at the same place ({:.6}, {:.6}, {:.6}); {count} such pair(s) in all: join them in the mesher",
+        "nodes {first} and {second}{} lie at the same place ({:.6}, {:.6}, {:.6}); {count} such pair(s) in all: join them in the mesher",
+        tags.map(|[a, b]| format!(" (numbers {a} and {b} in the file)")).unwrap_or_default(),
         position[0], position[1], position[2]
     )]
     DuplicateNodes {
         first: u32,
         second: u32,
+        /// Their numbers in the mesh file.
+        tags: Option<[u64; 2]>,
         position: [f64; 3],
         count: usize,
     },

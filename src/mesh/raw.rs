@@ -8,6 +8,10 @@ use std::path::Path;
 /// Stands for a node that there is not.
 pub(super) const NONE: u32 = u32::MAX;
 
+/// What is told of pairs of nodes at the same place, after their number.
+pub(super) const KEPT_APART: &str = "pair(s) of nodes of unconnected parts lie at the same place and are kept apart; join \
+                                     them in the mesher where the parts are to hold together";
+
 /// How the thickness direction t of the elements was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ThicknessRule {
@@ -278,12 +282,13 @@ pub(super) fn report(
         notes.push(format!(
             "the mesh consists of {components} unconnected parts"
         ));
-        let pairs = mesh.touching_pairs();
+        // The sides of extruded surfaces go apart; their surfaces were asked.
+        let pairs = match thickness {
+            ThicknessRule::Extruded => 0,
+            _ => mesh.touching_pairs(),
+        };
         if pairs > 0 {
-            notes.push(format!(
-                "{pairs} pair(s) of nodes of unconnected parts lie at the same place and are kept apart; join them in the \
-                 mesher where the parts are to hold together"
-            ));
+            notes.push(format!("{pairs} {KEPT_APART}"));
         }
     }
     let size = mesh.element_size().ok_or(MeshError::OutOfRange {
@@ -302,10 +307,20 @@ pub(super) fn report(
     })
 }
 
-/// Adds the element's number in the file to an error.
-pub(super) fn with_tag(mut error: MeshError, tags: &[u64]) -> MeshError {
-    if let MeshError::Inverted { element, tag, .. } = &mut error {
-        *tag = tags.get(*element as usize).copied();
+/// Adds the numbers in the file to an error: of elements, or of nodes that the file has.
+pub(super) fn with_tags(mut error: MeshError, elements: &[u64], nodes: &[u64]) -> MeshError {
+    match &mut error {
+        MeshError::Inverted { element, tag, .. } => *tag = elements.get(*element as usize).copied(),
+        MeshError::DuplicateNodes {
+            first,
+            second,
+            tags,
+            ..
+        } => {
+            let of = |n: u32| nodes.get(n as usize).copied().filter(|tag| *tag > 0);
+            *tags = of(*first).zip(of(*second)).map(|(a, b)| [a, b]);
+        }
+        _ => {}
     }
     error
 }

@@ -1,6 +1,6 @@
 //! Hexahedra of a file as a mesh: surfaces become faces, the thickness direction is found, what is of no use goes.
 use super::orient::{orient, rotated};
-use super::raw::{Facets, Kept, NONE, RawMesh, report, with_tag};
+use super::raw::{Facets, Kept, NONE, RawMesh, report, with_tags};
 use super::topology::FaceTable;
 use super::{ElementKind, Mesh, MeshError, MeshReport};
 use std::path::Path;
@@ -54,14 +54,14 @@ impl RawMesh {
         let mut notes = self.notes;
         match_surfaces(&mut mesh, &self.facets, &mut notes);
         // A reversed element would mislead the search for its thickness, so it is refused first.
-        let tagged = |error| with_tag(error, &self.element_tags);
+        let tagged = |error, nodes: &[u64]| with_tags(error, &self.element_tags, nodes);
         let linear = self.quadratic.is_empty();
         let checked = if linear {
             mesh.check()
         } else {
             mesh.check_elements()
         };
-        checked.map_err(tagged)?;
+        checked.map_err(|e| tagged(e, &self.node_tags))?;
         let (thickness, top) = orient(&mut mesh, &self.thickness_is_given, &mut notes);
         if !linear {
             let crooked = straighten(&mesh, &self.quadratic, &top);
@@ -81,7 +81,7 @@ impl RawMesh {
                 &mut self.node_tags,
                 &mut notes,
             );
-            mesh.check().map_err(tagged)?;
+            mesh.check().map_err(|e| tagged(e, &self.node_tags))?;
         }
         for faces in mesh.face_sets.values_mut() {
             faces.sort_unstable();

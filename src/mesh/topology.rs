@@ -108,7 +108,7 @@ impl Mesh {
 }
 
 /// Root of a node in a union-find forest, halving the path on the way.
-fn root(parent: &mut [u32], mut node: u32) -> u32 {
+pub(super) fn root(parent: &mut [u32], mut node: u32) -> u32 {
     while parent[node as usize] != node {
         let next = parent[parent[node as usize] as usize];
         parent[node as usize] = next;

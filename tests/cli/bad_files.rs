@@ -406,7 +406,7 @@ fn surfaces_of_a_mesh_file() {
         changes
     };
     for (thickness, layers) in [
-        (json!(0.5), "layers 0.5 to 0.5 thick"),
+        (json!(0.5), "layers 0.5 thick"),
         (
             json!({ "left": 0.5, "right": 0.7 }),
             "layers 0.5 to 0.7 thick",

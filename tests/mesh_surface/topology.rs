@@ -146,6 +146,39 @@ fn sharp_folds_flat_and_doubled_elements() {
     assert!((mesh.volume() - 0.1 * 11.5).abs() < 1e-12);
 }
 
+/// A ring whose ends touch, but have nodes of their own, would gape. Two plates that touch are two parts.
+#[test]
+fn borders_that_touch() {
+    let ring = grid(12, 1, |u, v| {
+        let phi = std::f64::consts::TAU * u;
+        [phi.sin(), v, phi.cos()]
+    });
+    let (error, text) = refused(&ring);
+    let SurfaceError::Unjoined { nodes, count, .. } = error else {
+        panic!("{text}");
+    };
+    assert_eq!((nodes, count), ([1, 13], 2));
+    assert!(
+        text.contains("nodes 1 and 13 lie at the same place"),
+        "{text}"
+    );
+
+    let mut angle = flat();
+    let first = angle.points.len();
+    let wall = grid(2, 3, |u, v| [4.0, 3.0 * v, u]);
+    angle.points.extend(&wall.points);
+    let moved = |f: &Vec<usize>| f.iter().map(|n| n + first).collect();
+    angle.facets.extend(wall.facets.iter().map(moved));
+    let (_, report) = h8(&angle.inp(), &file(0.1)).unwrap();
+    assert_eq!(report.components, 2);
+    let told = |text: &str| report.notes.iter().any(|n| n.starts_with(text));
+    assert!(
+        told("4 pair(s) of nodes of unconnected parts lie at the same place"),
+        "{:?}",
+        report.notes
+    );
+}
+
 /// A thickness far above the radius of a bend turns elements inside out; the element is named by its number in the file.
 #[test]
 fn too_thick_for_a_bend() {

@@ -62,6 +62,10 @@ fn nastran_names_the_field() {
             "GRID,4,7,0.,1.,0.",
             "4:8: a node in the coordinate system 7 is not supported",
         ),
+        (
+            "GRDSET,,7",
+            "4:9: a node in the coordinate system 7 is not supported",
+        ),
         ("INCLUDE 'other.bdf'", "4:1: INCLUDE is not supported"),
     ] {
         told(&more(line), "bdf", message);

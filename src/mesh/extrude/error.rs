@@ -39,6 +39,18 @@ pub enum SurfaceError {
         at(position)
     )]
     Pinched { node: u64, position: Place },
+    /// Borders of one part touch, but are not joined.
+    #[error(
+        "nodes {} and {} lie at the same place {}; {count} such pair(s) in all: the surface has a slit there, join them in \
+         the mesher",
+        nodes[0], nodes[1], at(position)
+    )]
+    Unjoined {
+        /// The first pair.
+        nodes: [u64; 2],
+        position: Place,
+        count: usize,
+    },
     /// The surface has one side only.
     #[error(
         "elements {} and {} at {} cannot both look the same way as their neighbours: the surface has only one side (like a \

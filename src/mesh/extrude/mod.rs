@@ -5,13 +5,14 @@ mod edges;
 mod error;
 mod normals;
 mod refine;
+mod seams;
 mod sense;
 mod sets;
 mod surface;
 
 pub use error::SurfaceError;
 
-use super::raw::{NONE, RawMesh, report, with_tag};
+use super::raw::{NONE, RawMesh, report, with_tags};
 use super::{ElementKind, Mesh, MeshError, MeshReport, ThicknessRule};
 use crate::scene::{Offset, Thickness};
 use cells::Cells;
@@ -67,6 +68,7 @@ impl RawMesh {
         let mut edges = Edges::new(&surface.facets);
         surface.check().map_err(fail)?;
         edges.check(&surface).map_err(fail)?;
+        seams::check(&surface, &edges, &mut notes).map_err(fail)?;
         surface.set_thickness(how.thickness, path)?;
         let turned = sense::unify(&mut surface, &edges).map_err(fail)?;
         if turned > 0 {
@@ -114,10 +116,12 @@ impl RawMesh {
         sets::name(&mut mesh, &surface, &cells, &edges, how.layers, &mut notes);
         let layers = how.layers as usize;
         let element_tags = cells.tags.repeat(layers);
-        mesh.check().map_err(|e| with_tag(e, &element_tags))?;
+        let node_tags = surface.node_tags.repeat(layers + 1);
+        mesh.check()
+            .map_err(|e| with_tags(e, &element_tags, &node_tags))?;
         let mut report = report(&mesh, notes, ThicknessRule::Extruded)?;
         report.element_tags = element_tags;
-        report.node_tags = surface.node_tags.repeat(layers + 1);
+        report.node_tags = node_tags;
         Ok((mesh, report))
     }
 }

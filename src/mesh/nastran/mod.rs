@@ -80,12 +80,7 @@ impl Reader<'_> {
     fn grid(&mut self, card: &Card) -> Result<(), MeshError> {
         let field = |k| Reader::field(card, k);
         let tag = field(0).integer(self.path, "the number of a node")?;
-        let system = field(1);
-        if !matches!(system.text, "" | "0") {
-            let what = format!("a node in the coordinate system {}", shorten(system.text));
-            let help = "write all nodes in the basic system";
-            return Err(system.unsupported(self.path, what, help));
-        }
+        self.system(card)?;
         let mut x = Vec3::zeros();
         for (k, value) in x.iter_mut().enumerate() {
             let field = field(2 + k);
@@ -110,9 +105,21 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// Nodes lie in the basic coordinate system.
+    fn system(&self, card: &Card) -> Result<(), MeshError> {
+        let system = Reader::field(card, 1);
+        if matches!(system.text, "" | "0") {
+            return Ok(());
+        }
+        let what = format!("a node in the coordinate system {}", shorten(system.text));
+        let help = "write all nodes in the basic system";
+        Err(system.unsupported(self.path, what, help))
+    }
+
     fn card(&mut self, card: &Card) -> Result<(), MeshError> {
         let (corners, most) = match card.name.as_str() {
             "GRID" => return Ok(()),
+            "GRDSET" => return self.system(card),
             "CQUAD4" | "CQUADR" => (4, 4),
             "CTRIA3" | "CTRIAR" => (3, 3),
             "CQUAD8" => (4, 8),
