@@ -2,8 +2,8 @@
 //!
 //! The stiffness is that of random springs between all nodes of each cell, which has the pattern of 8-node
 //! hexahedra and is positive definite. Before the timed runs the analysis of each case is printed.
-use covact::assembly::{Pattern, SystemMatrix};
-use covact::solve::linear::{DirectSolver, LinearSolver, Mode, OrderingChoice, SolverOptions};
+use covact::system::linear::{DirectSolver, LinearSolver, Mode, OrderingChoice, SolverOptions};
+use covact::system::{Pattern, SystemMatrix};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::sync::Arc;

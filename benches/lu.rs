@@ -5,11 +5,11 @@
 //! `cargo bench --bench lu -- [--write FOLDER] [SIZE ...]`: the matrices of plates (nodes along an edge, two through the
 //! thickness) with 8-node cells and of bricks (`brick:NODES`). With `--write` the unsymmetric matrices are also left in
 //! FOLDER as three files of little-endian numbers for other solvers: row starts and columns (i32), values (f64).
-use covact::assembly::{Pattern, SystemMatrix};
-use covact::output::peak_memory_mb;
-use covact::solve::linear::{
+use covact::machine::memory::peak_memory_mb;
+use covact::system::linear::{
     Analysis, DirectSolver, LinearSolver, LuSolver, Mode, OrderingChoice, SolverOptions,
 };
+use covact::system::{Pattern, SystemMatrix};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;

@@ -1,9 +1,9 @@
 //! Patterns, scatter, products and constraints against dense matrices.
-use covact::assembly::{
+use covact::system::linear::{DirectSolver, LinearSolver, LuSolver, Method};
+use covact::system::{
     ConstrainedScatter, ConstraintError, Dof, DofMap, DofMapBuilder, Link, Pattern, PatternError,
     SystemMatrix,
 };
-use covact::solve::linear::{DirectSolver, LinearSolver, LuSolver, Method};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 

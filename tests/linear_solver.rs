@@ -1,9 +1,9 @@
 //! The direct solver against dense solutions, and its errors.
-use covact::assembly::{Pattern, SystemMatrix};
-use covact::solve::linear::{
+use covact::system::linear::{
     DirectSolver, DofName, LinearError, LinearSolver, Method, Mode, Ordering, OrderingChoice,
     SolverOptions,
 };
+use covact::system::{Pattern, SystemMatrix};
 use nalgebra::{DMatrix, DVector};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

@@ -38,10 +38,10 @@ fn a_sphere(n: u32) -> SpherePanel {
 /// Volume enclosed by the outer faces, `1/3 int x . n dA` with five Gauss points a direction: exact for biquadratic
 /// faces, and another way to it than the elements' Jacobians.
 fn enclosed(mesh: &Mesh) -> f64 {
-    let rule = covact::shell::gauss(5).unwrap();
+    let rule = covact::fem::gauss(5).unwrap();
     let mut volume = 0.0;
     for face in mesh.outer_faces() {
-        let quad = covact::shell::Quad::of(mesh, face).unwrap();
+        let quad = mesh.quad(face).unwrap();
         for (v, wv) in rule.iter() {
             for (u, wu) in rule.iter() {
                 volume += wu * wv * quad.point(u, v).dot(&quad.area_vector(u, v)) / 3.0;

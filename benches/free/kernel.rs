@@ -16,10 +16,10 @@
 //!
 //! It delivers all that the solver reads from an evaluation: the residual, the contact forces alone, the tangent,
 //! resultant force and moment, energy, deepest penetration, numbers of points, and the rounding estimate.
-use covact::assembly::{Pattern, SystemMatrix};
 use covact::contact::points::SlavePoint;
 use covact::model::state::PointState;
 use covact::model::{Model, PairModel};
+use covact::system::{Pattern, SystemMatrix};
 use covact_geometry::{EdgeKind, Foot, Location, PatchSet, Status, Surface, Vec3};
 use nalgebra::{Isometry3, Rotation3};
 use std::sync::Arc;

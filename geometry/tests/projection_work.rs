@@ -155,10 +155,11 @@ fn on_wild_patches(patches: u64, count: usize, orders: f64) -> Outcome {
 fn feet_on_random_patches() {
     // Few of the patches by default; COVACT_QUERIES=1000 takes as many as the counts below were taken from.
     let patches = queries(50) as u64;
-    // Over six orders one query in a thousand still misses the nearest point; see the README of the crate.
-    for orders in [4.0, 0.0] {
+    for orders in [4.0, 0.0, 6.0] {
         let out = on_wild_patches(patches, 25, orders);
         eprintln!("weights over {orders} orders: {out:?}");
         assert_eq!(out.wrong, 0);
+        // One in a thousand may be given up, and says so.
+        assert!(out.not_converged as u64 <= 1 + patches * 25 / 1000);
     }
 }

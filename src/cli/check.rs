@@ -1,8 +1,8 @@
 //! `covact check`.
 use super::{CheckArgs, print, print_json, report};
-use crate::limits::Size;
+use crate::machine::memory::Size;
+use crate::model::EffectKind;
 use crate::model::error::number;
-use crate::model::plan::EffectKind;
 use crate::run::{self, BodyReport, CheckReport, PairReport, SurfaceReport};
 use crate::scene::{self, LoadedScene, SceneError};
 

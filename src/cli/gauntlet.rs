@@ -41,13 +41,13 @@ pub(super) fn gauntlet(args: &GauntletArgs) -> u8 {
     }
     let quiet = args.json || args.markdown;
     let run = |(group, case): &(&'static str, &'static Case)| {
-        let verdict = case.run();
+        let verdict = case.run_on(args.threads);
         if !quiet {
             print(&plain(group, case, &verdict));
         }
         verdict
     };
-    // A case runs on one thread, so that as many run at once as there are cores.
+    // As a rule a case runs on one thread, so that as many run at once as there are cores.
     let verdicts: Vec<Verdict> = cases.par_iter().with_max_len(1).map(run).collect();
     let failed = verdicts.iter().filter(|v| !v.passed()).count();
     if args.json {

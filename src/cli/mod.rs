@@ -175,6 +175,9 @@ struct GauntletArgs {
     /// Print a Markdown table
     #[arg(long)]
     markdown: bool,
+    /// Threads of each run; cases run side by side as well
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    threads: u32,
 }
 
 #[derive(Debug, Args)]

@@ -1,7 +1,7 @@
 //! `covact plan`.
 use super::{CheckArgs, check, print, print_json, report};
-use crate::limits::Size;
-use crate::model::plan::{Effect, PairPlan, Per};
+use crate::machine::memory::Size;
+use crate::plan::{Effect, PairPlan, Per};
 use crate::run::{self, PlanReport};
 use crate::shell::STATES;
 

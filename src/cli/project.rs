@@ -4,9 +4,9 @@ mod rows;
 
 use super::cad::{self, Stop};
 use super::{ProjectArgs, exit, report};
-use crate::limits;
+use crate::machine;
+use crate::machine::memory::peak_memory_mb;
 use crate::output::atomic::AtomicFile;
-use crate::output::peak_memory_mb;
 use crate::scene::nearest_file;
 use covact_geometry::project::Joining;
 use covact_geometry::{Foot, PatchSet};
@@ -80,7 +80,7 @@ fn run(args: &ProjectArgs) -> Result<Account, Stop> {
     if args.reach.is_some_and(|r| r.is_nan() || r < 0.0) {
         return Err(Stop("--reach: expected a length >= 0".into(), exit::USAGE));
     }
-    let (threads, capped) = limits::threads(args.threads);
+    let (threads, capped) = machine::threads(args.threads);
     if let Some(text) = capped {
         report::warning(&text);
     }

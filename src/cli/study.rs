@@ -1,6 +1,6 @@
 //! `covact study`.
 use super::{StudyArgs, exit, report};
-use crate::limits;
+use crate::machine;
 use crate::study::record::{Ending, Record};
 use crate::study::{
     Event, Folder, LoadedStudy, Settings, StudyError, conclude, expand, load, play, running,
@@ -38,7 +38,7 @@ fn run(args: &StudyArgs) -> Result<u8, StudyError> {
     if !args.collect {
         watch(&interrupt);
         // Results tell how many threads they took, and are compared with what the study asks for.
-        let (threads, capped) = limits::threads(folder.threads as usize);
+        let (threads, capped) = machine::threads(folder.threads as usize);
         if let Some(text) = capped {
             report::warning(&format!("`/timing/threads`: {text}"));
             folder.threads = threads as u32;

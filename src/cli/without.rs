@@ -1,8 +1,9 @@
 //! `covact run --without`: what an effect changes, beside the full run.
 use super::{RunArgs, exit, print, report};
 use crate::model::build;
-use crate::model::without::{REMOVABLE, Removable, WithoutError};
 use crate::output::{Compared, Comparison, Cost, RunStatus, Summary, compare};
+use crate::plan::Plan;
+use crate::plan::without::{REMOVABLE, Removable, WithoutError};
 use crate::run;
 use crate::scene::{self, LoadedScene};
 use serde::Serialize;
@@ -22,7 +23,8 @@ pub(super) fn scene_without(
             let problem = loaded.problem(&e.pointer, text, e.help.clone());
             report::scene_error(&loaded.error(vec![problem]), json)
         })?;
-        removable.remove(&loaded.scene, &model).map_err(refused)
+        let plan = Plan::new(loaded, &model);
+        removable.remove(&loaded.scene, &plan).map_err(refused)
     };
     let removable = Removable::named(name).map_err(refused)?;
     let mut changed = loaded.clone();

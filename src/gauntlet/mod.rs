@@ -60,10 +60,15 @@ pub fn find(group: &str, name: &str) -> Option<&'static Case> {
 }
 
 impl Case {
-    /// Runs the case. A panic in it is a verdict, not the end of the program.
+    /// Runs the case, its scenes on one thread. A panic in it is a verdict, not the end of the program.
     pub fn run(&self) -> Verdict {
+        self.run_on(1)
+    }
+
+    /// As [`Case::run`], with this many threads for every scene that does not set its own number.
+    pub fn run_on(&self, threads: u32) -> Verdict {
         let start = Instant::now();
-        let mut trial = match Trial::new() {
+        let mut trial = match Trial::new(threads) {
             Ok(trial) => trial,
             Err(broken) => return Verdict::broken(broken),
         };

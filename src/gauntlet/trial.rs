@@ -22,8 +22,10 @@ impl Broken {
     }
 }
 
-/// A case under way. Scenes run on one thread unless they ask for more.
+/// A case under way.
 pub struct Trial {
+    /// Threads of the scenes that do not set their own number.
+    threads: u32,
     checks: Vec<Check>,
     iterations: u64,
     allowed: u64,
@@ -54,8 +56,9 @@ fn temporary() -> Result<TempDir, Broken> {
 }
 
 impl Trial {
-    pub(super) fn new() -> Result<Self, Broken> {
+    pub(super) fn new(threads: u32) -> Result<Self, Broken> {
         Ok(Trial {
+            threads,
             checks: Vec::new(),
             iterations: 0,
             allowed: u64::MAX,
@@ -137,7 +140,7 @@ impl Trial {
     fn run(&mut self, scene: &Value) -> Result<Result<Outcome, RunError>, Broken> {
         let mut scene = scene.clone();
         if scene["solution"]["threads"].is_null() {
-            scene["solution"]["threads"] = 1.into();
+            scene["solution"]["threads"] = self.threads.into();
         }
         let text = scene.to_string();
         let mut loaded =

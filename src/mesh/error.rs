@@ -1,6 +1,6 @@
 //! Errors of mesh generators, readers, checks and sets.
 use super::extrude::SurfaceError;
-use crate::limits::Shortage;
+use crate::machine::memory::Shortage;
 use std::fmt;
 use std::path::PathBuf;
 

@@ -1,48 +1,6 @@
 //! Faces as tensor products of nodes.
 use super::{ElementKind, Face, H8_FACES, Mesh};
-
-/// Nodes of a face: `count[0]` along u times `count[1]` along v, each 2 or 3, u fastest, `u x v` outward. Faces of H8 are
-/// 2 x 2; the bottom and top of Q18 are 3 x 3, its sides 3 x 2 or 2 x 3.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct FaceNodes {
-    /// The nodes; only the first `count[0] * count[1]` are used, the others are 0.
-    pub nodes: [u32; 9],
-    /// Nodes along u and along v.
-    pub count: [u8; 2],
-}
-
-impl FaceNodes {
-    /// A bilinear face.
-    pub fn bilinear(nodes: [u32; 4]) -> FaceNodes {
-        let [a, b, c, d] = nodes;
-        FaceNodes {
-            nodes: [a, b, c, d, 0, 0, 0, 0, 0],
-            count: [2, 2],
-        }
-    }
-
-    /// The nodes, u fastest.
-    #[inline]
-    pub fn nodes(&self) -> &[u32] {
-        let [nu, nv] = self.count;
-        &self.nodes[..nu as usize * nv as usize]
-    }
-
-    /// The four corners, u fastest.
-    #[inline]
-    pub fn corners(&self) -> [u32; 4] {
-        let [nu, nv] = self.count.map(usize::from);
-        [0, nu - 1, nu * (nv - 1), nu * nv - 1].map(|k| self.nodes[k])
-    }
-
-    /// The same face with every node number raised by `offset`.
-    #[inline]
-    pub fn shifted(mut self, offset: u32) -> FaceNodes {
-        let n = self.nodes().len();
-        self.nodes[..n].iter_mut().for_each(|n| *n += offset);
-        self
-    }
-}
+use crate::fem::{FaceNodes, Quad};
 
 /// Local nodes of the faces of an element shape.
 struct LocalFaces {
@@ -112,15 +70,40 @@ impl Mesh {
         H8_FACES[face.face as usize].map(|a| nodes[corners[a as usize]])
     }
 
+    /// A face with the positions of its nodes; `None` if the mesh has no such face.
+    pub fn quad(&self, face: Face) -> Option<Quad> {
+        if !self.has_face(face) {
+            return None;
+        }
+        let nodes = self.face_nodes(face);
+        let known = |n: &u32| (*n as usize) < self.nodes.len();
+        (nodes.nodes().iter().all(known)).then(|| Quad::new(&nodes, |n| self.nodes[n as usize]))
+    }
+
     /// Whether the mesh has this face.
     pub fn has_face(&self, face: Face) -> bool {
         (face.element as usize) < self.elements() && (face.face as usize) < H8_FACES.len()
     }
 }
 
+/// Tributary areas `sum over faces of int N dA` of the nodes of a face set, as pairs (node, area) in ascending node
+/// order. Faces that the mesh does not have are left out.
+pub fn tributary_areas(mesh: &Mesh, faces: &[Face]) -> Vec<(u32, f64)> {
+    let mut areas = std::collections::BTreeMap::new();
+    for face in faces {
+        if let Some(quad) = mesh.quad(*face) {
+            for (node, area) in mesh.face_nodes(*face).nodes().iter().zip(quad.weights()) {
+                *areas.entry(*node).or_insert(0.0) += area;
+            }
+        }
+    }
+    areas.into_iter().collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use covact_geometry::Vec3;
 
     /// H8's faces are the table; those of Q18 have its corners and between them the nodes of its own grid.
     #[test]
@@ -145,5 +128,113 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Unit cube: outward normals, unit areas, and a quarter of the area at every corner of a face.
+    #[test]
+    fn faces_of_a_cube() {
+        let nodes =
+            (0..8).map(|a| Vec3::new((a & 1) as f64, ((a >> 1) & 1) as f64, (a >> 2) as f64));
+        let mesh = Mesh {
+            kind: ElementKind::H8,
+            nodes: nodes.collect(),
+            connectivity: (0..8).collect(),
+            node_sets: Default::default(),
+            face_sets: Default::default(),
+        };
+        for face in 0..6 {
+            let quad = mesh.quad(Face { element: 0, face }).unwrap();
+            let mut outward = Vec3::zeros();
+            outward[face as usize / 2] = if face % 2 == 1 { 4.0 } else { -4.0 };
+            // The area of the parameter square is 4.
+            assert!(
+                (quad.area_vector(0.3, -0.2) * 16.0 - outward).norm() < 1e-14,
+                "face {face}"
+            );
+            assert!(quad.weights()[..4].iter().all(|w| (w - 0.25).abs() < 1e-15));
+            assert_eq!(quad.weights()[4..], [0.0; 5]);
+            let centre = quad.point(0.0, 0.0) - Vec3::repeat(0.5);
+            assert!((centre - outward / 8.0).norm() < 1e-15);
+        }
+        assert!(
+            mesh.quad(Face {
+                element: 1,
+                face: 0
+            })
+            .is_none()
+        );
+        assert!(
+            mesh.quad(Face {
+                element: 0,
+                face: 6
+            })
+            .is_none()
+        );
+        let both = [
+            Face {
+                element: 0,
+                face: 4,
+            },
+            Face {
+                element: 0,
+                face: 1,
+            },
+        ];
+        let areas = tributary_areas(&mesh, &both);
+        assert_eq!(
+            areas.iter().map(|a| a.0).collect::<Vec<_>>(),
+            [0, 1, 2, 3, 5, 7]
+        );
+        assert!((areas[1].1 - 0.5).abs() < 1e-15 && (areas[0].1 - 0.25).abs() < 1e-15);
+    }
+
+    /// Simpson's weights on a plane face, and the outward normals of a Q18 box.
+    #[test]
+    fn faces_of_a_quadratic_box() {
+        let nodes = (0..18).map(|a| {
+            let (i, j, k) = (a % 3, a / 3 % 3, a / 9);
+            Vec3::new(1.5 * i as f64, 0.5 * j as f64, 2.0 * k as f64)
+        });
+        let mesh = Mesh {
+            kind: ElementKind::Q18,
+            nodes: nodes.collect(),
+            connectivity: (0..18).collect(),
+            node_sets: Default::default(),
+            face_sets: Default::default(),
+        };
+        let size = Vec3::new(3.0, 1.0, 2.0);
+        for face in 0..6 {
+            let quad = mesh.quad(Face { element: 0, face }).unwrap();
+            let axis = face as usize / 2;
+            let area = size.product() / size[axis];
+            let mut outward = Vec3::zeros();
+            outward[axis] = if face % 2 == 1 { area } else { -area };
+            assert!((quad.area_vector(0.3, -0.2) * 4.0 - outward).norm() < 1e-14);
+            let line = |n: u8| {
+                if n == 2 {
+                    [0.5, 0.5, 0.0]
+                } else {
+                    [1.0, 4.0, 1.0].map(|w| w / 6.0)
+                }
+            };
+            let [nu, nv] = quad.count.map(usize::from);
+            let (along_u, along_v) = (line(quad.count[0]), line(quad.count[1]));
+            for (k, w) in quad.weights()[..nu * nv].iter().enumerate() {
+                let expected = along_u[k % nu] * along_v[k / nu];
+                assert!((w - expected * area).abs() < 1e-14, "face {face}");
+            }
+            let mut centre = 0.5 * size;
+            centre[axis] += 0.5 * size[axis] * outward[axis].signum();
+            assert!((quad.point(0.0, 0.0) - centre).norm() < 1e-14);
+        }
+        let areas = tributary_areas(
+            &mesh,
+            &[Face {
+                element: 0,
+                face: 5,
+            }],
+        );
+        assert_eq!(areas.len(), 9);
+        assert!((areas[4].1 - 3.0 * 16.0 / 36.0).abs() < 1e-14);
     }
 }

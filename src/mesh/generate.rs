@@ -3,8 +3,8 @@
 //! the exact cylinder or sphere.
 use super::error::MAX_NODES;
 use super::spacing::positions;
-use super::{ElementKind, Face, Mesh, MeshError};
-use crate::limits;
+use super::{ElementKind, Face, Mesh, MeshError, size};
+use crate::machine::memory;
 use crate::scene::{Block, CylinderPanel, Plate, Spacing, SpherePanel};
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
@@ -203,7 +203,7 @@ impl Grid {
             return Err(MeshError::TooManyNodes { what, nodes });
         }
         let elements: u64 = counts.into_iter().map(u64::from).product();
-        limits::ask(limits::mesh(nodes as u64, elements, kind)).map_err(|shortage| {
+        memory::ask(size::bytes(nodes as u64, elements, kind)).map_err(|shortage| {
             MeshError::Memory {
                 what,
                 nodes: nodes as u64,

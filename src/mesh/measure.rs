@@ -1,7 +1,7 @@
 //! Lengths, areas, volumes and shape quality of elements.
 use super::{ElementKind, Face, Mesh};
-use crate::shell::Quad;
-use crate::shell::quadrature::{GAUSS_2, GAUSS_3};
+use crate::fem::Quad;
+use crate::fem::quadrature::{GAUSS_2, GAUSS_3};
 use covact_geometry::Vec3;
 
 /// Smallest, mean and largest value.

@@ -12,11 +12,10 @@ use super::driven::Driven;
 use super::error::{At, number, text};
 use super::loads::{DeadLoad, FollowerPressure, load_points};
 use super::motion::pose;
-use super::plan::Plan;
 use super::slave::slave_points;
 use super::symmetry::Unsymmetric;
-use super::{BodyModel, Model, ModelError, SurfaceModel};
-use crate::limits;
+use super::{BodyModel, Model, ModelError, SurfaceModel, grid};
+use crate::machine::memory;
 use crate::mesh::{self, Face, Mesh};
 use crate::scene::{
     self, InitialOverclosure, LoadedScene, MeshSource, POSITION_AND_TIME, Scene, Stabilization,
@@ -74,21 +73,18 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         stabilization: None,
         small: None,
         symmetric: true,
-        effects: Vec::new(),
-        plan: Plan::default(),
+        unsymmetric: Vec::new(),
         notes: builder.notes,
         warnings: builder.warnings,
         kinks: Vec::new(),
     };
     model.small = super::small::linearise(scene, &mut model)?;
-    let unsymmetric = symmetry(scene, &mut model)?;
+    model.unsymmetric = symmetry(scene, &mut model)?;
     model.kinks = kinks(scene, &model);
     values::check(scene, &model)?;
     stabilize(scene, &mut model)?;
     super::initial::check(&mut model, scene)?;
     super::driven::start::approach(&mut model, scene)?;
-    model.plan = Plan::new(loaded, &model, &unsymmetric);
-    model.effects = model.plan.names();
     Ok(model)
 }
 
@@ -263,9 +259,9 @@ fn room(name: &str, body: &scene::Body) -> Result<(), ModelError> {
         MeshSource::File(_) => return Ok(()),
     };
     let element = body.element;
-    let grid = limits::Grid { element, counts };
+    let grid = grid::Grid { element, counts };
     // Half of the estimate, which may be wrong by so much: the rest is checked when the system is known.
-    limits::ask(grid.bytes(true) / 2).map_err(|mut shortage| {
+    memory::ask(grid.bytes(true) / 2).map_err(|mut shortage| {
         shortage.needed = grid.bytes(true);
         let [r, s, t] = counts;
         let message = format!("body `{name}` with {r} x {s} x {t} elements: {shortage}");
@@ -330,7 +326,7 @@ impl<'s> Builder<'s> {
             let law = Law::new(&material).at(|| format!("/bodies/{name}/material"))?;
             let elements = mesh.elements() as u64;
             let each: usize = bytes_per_element(body.element).iter().sum();
-            limits::ask(limits::times(elements, each as u64)).map_err(|shortage| {
+            memory::ask(memory::times(elements, each as u64)).map_err(|shortage| {
                 let message = format!("body `{name}` with its {elements} elements: {shortage}");
                 text(elements_key(name, &body.mesh), message).help(FEWER)
             })?;

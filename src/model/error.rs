@@ -1,9 +1,9 @@
 //! What is wrong with a scene once its meshes and CAD files are read.
-use crate::assembly::{ConstraintError, PatternError};
+use crate::fem::quadrature::QuadratureError;
 use crate::mesh::MeshError;
 use crate::scene::ValueError;
 use crate::shell::ShellError;
-use crate::shell::quadrature::QuadratureError;
+use crate::system::{ConstraintError, PatternError};
 use covact_geometry::MovingError;
 use covact_geometry::io::{CadError, StlError};
 use covact_geometry::project::{PatchSetError, SideError};

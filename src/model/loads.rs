@@ -1,8 +1,8 @@
 //! Loads: nodal forces, dead tractions, dead and follower pressure.
+use crate::fem::face::{FaceNodes, Quad, shape, shape_derivatives};
+use crate::fem::quadrature::{GAUSS_2, GAUSS_3, Rule};
 use crate::mesh::{Face, Mesh};
 use crate::scene::{TimeFunction, ValueError};
-use crate::shell::face::{FaceNodes, Quad, shape, shape_derivatives};
-use crate::shell::quadrature::{GAUSS_2, GAUSS_3, Rule};
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, Vector3};
 use num_dual::DualNum;
@@ -281,7 +281,7 @@ mod tests {
             let quad = Quad { nodes: x, count };
             let mut f = [0.0; 27];
             follower_force(&x, count, 1.0, &mut f);
-            let rule = crate::shell::gauss(6).unwrap();
+            let rule = crate::fem::gauss(6).unwrap();
             let mut area = Vec3::zeros();
             for (v, wv) in rule.iter() {
                 for (u, wu) in rule.iter() {

@@ -4,17 +4,19 @@ pub mod averaged;
 pub mod build;
 pub mod constraints;
 pub mod driven;
+mod effect;
 pub mod error;
 pub mod free_motion;
 pub mod friction;
+pub mod grid;
 pub mod initial;
+pub mod kernel;
 pub mod loads;
 pub mod master;
 pub mod motion;
 pub mod overclosure;
 pub mod pace;
 pub mod penalty;
-pub mod plan;
 mod sagitta;
 pub mod segments;
 pub mod self_contact;
@@ -25,13 +27,12 @@ pub mod stabilization;
 pub mod state;
 pub mod surface;
 pub mod symmetry;
-pub mod without;
 
-use crate::assembly::DofMap;
 use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
 use crate::scene::{Tangent, TimeFunction, ValueError};
 use crate::shell::{Block, ElementBlock};
+use crate::system::DofMap;
 use augmentation::AugmentationModel;
 use averaged::SlaveNodes;
 use constraints::{MeanPrescribed, Prescribed};
@@ -43,9 +44,9 @@ use master::Master;
 use overclosure::Overclosure;
 use small::SmallModel;
 use stabilization::StabilizationModel;
+use symmetry::Unsymmetric;
 
-use plan::Plan;
-
+pub use effect::EffectKind;
 pub use error::ModelError;
 pub use surface::SurfaceModel;
 
@@ -73,10 +74,8 @@ pub struct Model {
     pub small: Option<SmallModel>,
     /// Whether the tangent is symmetric ([`symmetry::unsymmetric_effects`]).
     pub symmetric: bool,
-    /// Effects that are on, by name.
-    pub effects: Vec<String>,
-    /// Every effect that the program has, on or off, and the kernel of every pair.
-    pub plan: Plan,
+    /// What makes it unsymmetric.
+    pub unsymmetric: Vec<Unsymmetric>,
     /// Choices the program made, in words.
     pub notes: Vec<String>,
     /// Things the user should look at.

@@ -1,10 +1,23 @@
 //! Slave points of a contact pair from the faces of a body.
+use super::state::PointState;
 use crate::contact::points::SlavePoint;
+use crate::fem::Quad;
+use crate::fem::face::shape;
+use crate::fem::quadrature::{self, QuadratureError, Rule};
+use crate::machine::memory::times;
+use crate::mesh::tributary_areas;
 use crate::mesh::{Face, Mesh};
 use crate::scene::Points;
-use crate::shell::face::shape;
-use crate::shell::quadrature::{self, QuadratureError, Rule};
-use crate::shell::{Quad, tributary_areas};
+use crate::shell::STATES;
+
+/// Bytes of a slave point beside its own and those of its states: its place in the system, its last touch, what is written.
+pub const POINT: u64 = 600;
+
+/// Bytes of so many slave points, with what a run remembers of each.
+pub fn bytes(count: u64) -> u64 {
+    let states = STATES * size_of::<PointState>();
+    times(count, (size_of::<SlavePoint>() + states) as u64 + POINT)
+}
 
 /// Samples the faces as the scene asks; node numbers are the mesh's shifted by `offset`.
 ///

@@ -38,6 +38,16 @@ pub struct FacetModel {
     pub origin: Vec<u32>,
 }
 
+/// Bytes of a facet with its place in the search; of a patch of a CAD file where there are no facets.
+pub fn facet_bytes(kind: Option<FacetKind>) -> u64 {
+    match kind {
+        Some(FacetKind::Bilinear) => 1_000,
+        Some(FacetKind::Biquadratic) => 2_000,
+        Some(FacetKind::Smooth) => 6_000,
+        None => 20_000,
+    }
+}
+
 /// Patches of one kind: what runs over points is compiled for each, and the choice is made outside (see
 /// [`with_patches`](crate::with_patches)).
 #[derive(Debug)]

@@ -1,9 +1,9 @@
 //! Which effects make the tangent unsymmetric. Decided once, before anything is solved.
+use super::EffectKind;
 use super::Model;
 use super::friction::LawModel;
-use super::plan::EffectKind;
-use crate::assembly::Dof;
-use crate::mesh::FaceNodes;
+use crate::fem::FaceNodes;
+use crate::system::Dof;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// An effect that makes the tangent unsymmetric.

@@ -1,5 +1,4 @@
 //! The plan of a run, as its summary states it.
-use crate::model::plan::{Effect, Kernel, Plan};
 use serde::{Deserialize, Serialize};
 
 /// What a run did, in its summary.
@@ -38,33 +37,4 @@ pub struct PairSummary {
     pub ran: Option<String>,
     /// Effects that were on.
     pub effects: Vec<EffectSummary>,
-}
-
-impl PlanSummary {
-    /// Of a run whose pairs were evaluated by these kernels.
-    pub fn new(plan: &Plan, ran: &[Option<Kernel>]) -> PlanSummary {
-        let on = |effects: &[Effect]| -> Vec<EffectSummary> {
-            let on = effects.iter().filter(|e| e.on);
-            on.map(|e| EffectSummary {
-                name: e.name.to_owned(),
-                why: e.why.clone(),
-                at: e.place.to_string(),
-            })
-            .collect()
-        };
-        PlanSummary {
-            symmetric: plan.symmetric,
-            unsymmetric: plan.unsymmetric.clone(),
-            effects: plan.groups.iter().flat_map(|g| on(&g.effects)).collect(),
-            pairs: (plan.pairs.iter().zip(ran))
-                .map(|(pair, ran)| PairSummary {
-                    name: pair.name.clone(),
-                    back: pair.back,
-                    kernel: pair.kernel.to_string(),
-                    ran: ran.map(|k| k.to_string()),
-                    effects: on(&pair.effects),
-                })
-                .collect(),
-        }
-    }
 }

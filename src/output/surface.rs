@@ -2,8 +2,19 @@
 use super::OutputError;
 use super::bezier::{MAX_DEGREE, SurfacePiece, vtk_order};
 use super::vtu::{Array, DEGREES, Grid, WEIGHTS};
+use crate::machine::memory::times;
 use nalgebra::{Isometry3, Point3, Vector3};
 use vtkio::model::CellType;
+
+/// Bytes of a quadrilateral of the flat copy of a surface: four indices, patch, entity, and a corner with its normal.
+const FLAT: u64 = 4 * 8 + 2 * 4 + 2 * 24;
+/// The flat copy is held once, and moved and as the bytes of a file while it is written.
+const COPIES: u64 = 3;
+
+/// Bytes of the flat copies of a surface, `each` quadrilaterals for every one of so many polynomial pieces.
+pub fn flat_bytes(pieces: u64, each: u64) -> u64 {
+    times(times(pieces, each), COPIES * FLAT)
+}
 
 /// A rigid surface ready to be written at any position: control points in VTK's order and the tessellation are worked
 /// out once.

@@ -1,10 +1,11 @@
 //! `covact check`: everything up to the first solve, and nothing of it.
+use super::Estimate;
 use super::RunError;
-use crate::limits::Estimate;
 use crate::mesh::Range;
 use crate::model::error::number;
 use crate::model::initial::{initial_gap, point_spacing};
 use crate::model::{self, BodyModel, Model, SurfaceModel};
+use crate::plan::Plan;
 use crate::scene::{Element, LoadedScene, Material, Penalty, Points, Scene, Support};
 use crate::shell::distortion::most_distorted;
 use serde::Serialize;
@@ -175,6 +176,7 @@ pub struct LoadReport {
 pub fn check(scene: &LoadedScene) -> Result<CheckReport, RunError> {
     let model = model::build::build(scene).map_err(|e| RunError::model(scene, e))?;
     let memory = super::memory::estimate(scene, &model)?;
+    let plan = Plan::new(scene, &model);
     let mut pairs = Vec::new();
     for index in 0..model.pairs.len() {
         pairs
@@ -199,8 +201,8 @@ pub fn check(scene: &LoadedScene) -> Result<CheckReport, RunError> {
         pairs,
         supports: supports(scene, &model),
         loads: loads(scene),
-        effects: model.effects.clone(),
-        details: model.plan.details(),
+        effects: plan.names(),
+        details: plan.details(),
         notes: model.notes.clone(),
         warnings,
     })

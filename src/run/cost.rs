@@ -1,6 +1,7 @@
 //! What a run costs, over all the parts that it was done in.
 use super::checkpoint::bytes::{Malformed, Reader, Writer};
-use crate::output::{Phases, cpu_seconds, peak_memory_mb};
+use crate::machine::clock::{Phases, cpu_seconds};
+use crate::machine::memory::peak_memory_mb;
 use std::collections::BTreeMap;
 use std::time::Instant;
 

@@ -1,11 +1,13 @@
 //! What is refused before a run for want of memory, and what a run is expected to take.
 use super::RunError;
-use crate::assembly::{Assembler, PatternError};
-use crate::limits::{self, Estimate};
+use super::estimate::{Estimate, tessellation};
+use crate::assembly::Assembler;
+use crate::machine::{self, memory};
 use crate::model::Model;
 use crate::model::build::{FEWER, elements_key};
 use crate::scene::{self, LoadedScene};
-use crate::solve::linear::{DirectSolver, LinearError, LuSolver, SolverOptions};
+use crate::system::PatternError;
+use crate::system::linear::{DirectSolver, LinearError, LuSolver, SolverOptions};
 
 /// Bytes that a run takes beside what has been asked for when factorizations begin: rows, fields and files.
 const WORK: u64 = 16 << 20;
@@ -19,7 +21,7 @@ pub(super) fn flat_copies(loaded: &LoadedScene, model: &Model) -> Result<(), Run
     if loaded.scene.output.every == 0 {
         return Ok(());
     }
-    let Err(shortage) = limits::ask(limits::tessellation(model, n)) else {
+    let Err(shortage) = memory::ask(tessellation(model, n)) else {
         return Ok(());
     };
     let pieces: usize = model.surfaces.iter().map(|s| s.pieces()).sum();
@@ -59,8 +61,8 @@ pub(super) fn analysis(loaded: &LoadedScene, error: &LinearError) -> RunError {
 /// # Errors
 /// [`RunError::Scene`] with what is needed.
 pub(super) fn packing(loaded: &LoadedScene, threads: usize) -> Result<(), RunError> {
-    let needed = limits::packing(threads).saturating_add(WORK);
-    let Err(shortage) = limits::ask_address_space(needed) else {
+    let needed = machine::packing(threads).saturating_add(WORK);
+    let Err(shortage) = memory::ask_address_space(needed) else {
         return Ok(());
     };
     let threads_ = match threads {
@@ -93,20 +95,20 @@ pub(super) fn estimate(loaded: &LoadedScene, model: &Model) -> Result<Estimate, 
         .filter_map(|b| Some(loaded.scene.bodies.get(&b.name)?.element))
         .collect();
     let output = &loaded.scene.output;
-    let tessellation = if output.every == 0 {
+    let divisions = if output.every == 0 {
         0
     } else {
         output.tessellation
     };
-    let estimate = Estimate::new(model, &elements, &pattern_, &found, tessellation);
+    let estimate = Estimate::new(model, &elements, &pattern_, &found, divisions);
     let rest = estimate.matrix.saturating_add(estimate.factor);
-    match limits::ask(rest) {
+    match memory::ask(rest) {
         Ok(()) => Ok(estimate),
         Err(shortage) => analysis_short(loaded, shortage),
     }
 }
 
-fn analysis_short(loaded: &LoadedScene, shortage: limits::Shortage) -> Result<Estimate, RunError> {
+fn analysis_short(loaded: &LoadedScene, shortage: memory::Shortage) -> Result<Estimate, RunError> {
     Err(analysis(loaded, &LinearError::Memory(shortage)))
 }
 

@@ -10,6 +10,7 @@ mod compliance;
 mod cost;
 mod doubt;
 mod error;
+mod estimate;
 mod fields;
 mod friction_fields;
 mod history;
@@ -34,15 +35,18 @@ pub use check::{
 pub use checkpoint::CheckpointError;
 pub use claim::{ClaimError, FolderError, vacant};
 pub use error::RunError;
+pub use estimate::Estimate;
 pub use plan::{PlanReport, plan};
 
 use crate::assembly::Assembler;
-use crate::limits;
+use crate::machine;
+use crate::machine::clock::Phases;
 use crate::model;
-use crate::output::{Accuracy, Phases, PlanSummary, RunStatus, Summary, Versions};
+use crate::output::{Accuracy, RunStatus, Summary, Versions};
+use crate::plan::Plan;
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
-use crate::solve::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
+use crate::system::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
 use checkpoint::{Fingerprint, Found, Keeper};
 use claim::{Claim, Manner};
 use cost::{Cost, Spent};
@@ -91,7 +95,7 @@ pub fn run(
         0 => scene.scene.solution.threads as usize,
         n => n,
     };
-    let (used, capped) = limits::threads(asked);
+    let (used, capped) = machine::threads(asked);
     if let Some(text) = capped {
         observer.event(&Event::Note { text });
     }
@@ -139,11 +143,12 @@ fn solve(
     let mut phases = Phases::new();
     phases.start("model");
     let model = model::build::build(loaded).map_err(|e| RunError::model(loaded, e))?;
+    let plan = Plan::new(loaded, &model);
     phases.stop("model");
     observer.event(&Event::Model {
         dofs: model.unknowns(),
         contact_points: model.contact_points(),
-        effects: model.effects.clone(),
+        effects: plan.names(),
         notes: model.notes.clone(),
     });
     for text in &model.warnings {
@@ -218,7 +223,6 @@ fn solve(
         measured: _,
     } = march.progress;
     let pattern_rebuilds = march.assembler.rebuilds();
-    let plan = Some(PlanSummary::new(&model.plan, march.assembler.ran()));
     let factorizations = march.workspace.factorizations.iter();
     let summary = Summary {
         status,
@@ -240,8 +244,8 @@ fn solve(
         cuts,
         ping_pongs,
         pattern_rebuilds,
-        effects: model.effects.clone(),
-        plan,
+        effects: plan.names(),
+        plan: Some(plan.summary(march.assembler.ran())),
         accuracy: Accuracy {
             contacts: march.peaks.account(&model),
             ..march.compliance.account(&model)
@@ -282,7 +286,7 @@ fn solve(
 /// The solver that the scene asks for; an unsymmetric system has only one, which the model has checked.
 fn solver(scene: &Scene, symmetric: bool, threads: usize) -> Box<dyn LinearSolver> {
     use crate::scene::LinearSolver as Choice;
-    use crate::solve::linear::Mode;
+    use crate::system::linear::Mode;
     let options = |mode| SolverOptions {
         mode,
         threads,

@@ -1,8 +1,8 @@
 //! `covact plan`: what a run of a scene would do, and nothing of it.
+use super::Estimate;
 use super::RunError;
-use crate::limits::Estimate;
 use crate::model;
-use crate::model::plan::Plan;
+use crate::plan::Plan;
 use crate::scene::LoadedScene;
 use serde::Serialize;
 
@@ -39,6 +39,6 @@ pub fn plan(scene: &LoadedScene) -> Result<PlanReport, RunError> {
         dofs: model.unknowns(),
         contact_points: model.contact_points(),
         memory,
-        plan: model.plan,
+        plan: Plan::new(scene, &model),
     })
 }

@@ -17,15 +17,15 @@ use super::sound;
 use super::watch::Span;
 use crate::assembly::{Assembler, Fault};
 use crate::contact::law::Penalty;
+use crate::machine::clock::Phases;
 use crate::model::driven::press::{Placed, Presser};
 use crate::model::state::State;
 use crate::model::{Model, penalty};
-use crate::output::Phases;
 use crate::scene;
 use crate::solve::event::{Event, Observer};
-use crate::solve::linear::LinearSolver;
 use crate::solve::newton::{Converged, First, Newton, Patience, StepFailure, Workspace};
 use crate::solve::place;
+use crate::system::linear::LinearSolver;
 use nalgebra::Vector6;
 use std::sync::atomic::AtomicBool;
 

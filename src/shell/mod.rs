@@ -1,4 +1,4 @@
-//! Solid-shell elements, their materials, and quadrature.
+//! Solid-shell elements and their materials.
 //!
 //! Elements have displacement unknowns only, three per node, on the top and the bottom face of the shell, so that
 //! contact sees a genuine surface. Everything is total Lagrange: Green-Lagrange strains `E_ij = (g_i.g_j - G_i.G_j)/2`
@@ -10,7 +10,6 @@
 //!   forces and tangent); [`Block`] is either.
 //! - [`material`]: St. Venant-Kirchhoff and neo-Hooke.
 //! - [`distortion`]: how far an element is from the shape it computes best in.
-//! - [`quadrature`], [`face`]: Gauss and Lobatto rules and the faces that loads and contact integrate over.
 
 // Index loops show the sums the way they are written on paper, over several arrays at once.
 #![allow(clippy::needless_range_loop)]
@@ -19,12 +18,10 @@ mod block;
 mod brick;
 pub mod distortion;
 mod error;
-pub mod face;
 mod h8;
 mod kinematics;
 pub mod material;
 mod q18;
-pub mod quadrature;
 mod reference;
 mod stress;
 mod tangent;
@@ -34,11 +31,9 @@ mod tests;
 pub(crate) use block::with_block;
 pub use block::{Block, ElementBlock, ElementSystem, STATES, bytes_per_element};
 pub use error::{ElementFault, FaultCause, ShellError};
-pub use face::{Quad, tributary_areas};
 pub use h8::{Formulation, H8Block, H8System};
 pub use material::{Law, MaterialLaw, Metric, NeoHooke, Response, StVenantKirchhoff};
 pub use q18::{Q18Block, Q18System};
-pub use quadrature::{Rule, gauss, lobatto};
 pub use stress::{extrapolate, extrapolate_quadratic};
 
 /// Voigt order of strains and stresses: 11, 22, 33, 12, 23, 13; strains with engineering shears `2 E_ij`.

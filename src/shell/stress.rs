@@ -2,8 +2,8 @@
 use super::VOIGT;
 use super::kinematics::V;
 use super::material::{Collapsed, MaterialLaw, Metric};
-use super::quadrature::GAUSS_3;
 use super::reference::{GP, contravariant, det, sign};
+use crate::fem::quadrature::GAUSS_3;
 use covact_geometry::Vec3;
 use nalgebra::Matrix3;
 use num_dual::Dual64;

@@ -1,7 +1,7 @@
 //! Why a step has no solution, in words that name the place and the remedy.
-use super::linear::LinearError;
 use crate::assembly::Fault;
 use crate::scene::ValueError;
+use crate::system::linear::LinearError;
 
 /// Why a step failed. All but [`StepFailure::Interrupted`] call for a smaller step.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -3,7 +3,6 @@ pub mod convergence;
 mod cycle;
 pub mod event;
 pub mod failure;
-pub mod linear;
 pub mod newton;
 pub mod place;
 pub mod stepping;

@@ -1,9 +1,9 @@
 //! Where in the model something went wrong, in words.
-use super::linear::LinearError;
 use crate::assembly::Assembler;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::scene::ValueError;
+use crate::system::linear::LinearError;
 use covact_geometry::Vec3;
 
 fn near(x: &Vec3) -> String {

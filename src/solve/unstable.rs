@@ -1,8 +1,8 @@
 //! What to say of a step that has no equilibrium near it: where the structure gives way, and what helps.
-use super::linear::{Factorization, LinearError, Method};
 use crate::model::Model;
 use crate::model::error::number;
 use crate::model::free_motion::free_motions;
+use crate::system::linear::{Factorization, LinearError, Method};
 use covact_geometry::Vec3;
 
 /// A tangent with negative pivots, and where the structure gives way most.

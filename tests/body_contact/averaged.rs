@@ -4,10 +4,11 @@ use crate::convergence::judge_scene;
 use crate::self_contact::{R, T, pinched};
 use crate::shells::{arch_on_plate, balance};
 use crate::support::{scene_json, set};
-use covact::assembly::{Assembler, DofMap, Totals};
+use covact::assembly::{Assembler, Totals};
 use covact::model::state::State;
 use covact::model::{Model, build::build};
 use covact::scene;
+use covact::system::DofMap;
 use serde_json::{Value, json};
 
 fn averaged(mut scene: Value) -> Value {

@@ -9,7 +9,7 @@ fn any_number_of_threads_gives_the_same_bits() {
         let mut scene = arch_on_plate(2.0, 3, json!({"gauss": 5}));
         scene["solution"]["threads"] = json!(threads);
         let outcome = done(&scene);
-        let used = (threads as usize).min(covact::limits::processors());
+        let used = (threads as usize).min(covact::machine::processors());
         assert_eq!(outcome.summary.threads, used);
         std::fs::read(outcome.folder.path().join("history.csv")).expect("history")
     };

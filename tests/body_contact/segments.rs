@@ -1,7 +1,7 @@
 //! Slave faces cut by the facets of the master.
 use crate::blocks::{done, exact, patch, pressures};
 use crate::shells::arch_on_plate;
-use covact::mesh::FaceNodes;
+use covact::fem::FaceNodes;
 use covact::model::segments::segments;
 use covact_geometry::{MovingFacets, Vec3};
 use serde_json::{Value, json};
@@ -86,7 +86,7 @@ fn segments_of_coaxial_arches_sum_to_the_slave_area() {
         let at = |n: u32| x[n as usize];
         let area: f64 = slave
             .iter()
-            .map(|f| covact::shell::Quad::new(f, at).area())
+            .map(|f| covact::fem::Quad::new(f, at).area())
             .sum();
         // An arch far inside cuts nothing.
         let (inner, z) = arch(0.1, 1, 1, 2, true);

@@ -1,6 +1,6 @@
 //! `covact check` tells every effect that is on, and what it means.
 use crate::support::*;
-use covact::model::plan::EffectKind;
+use covact::model::EffectKind;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -135,7 +135,7 @@ fn limits_of_the_process_count() {
 fn room_for_the_kernels_is_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     write_plate(folder.path(), &[("/output", json!({ "every": 0 }))]);
-    let buffers = covact::limits::packing(1) / 1_000_000;
+    let buffers = covact::machine::packing(1) / 1_000_000;
     let run = "run scene.json -o out --quiet --threads 1";
     let mut refused = 0;
     for megabytes in [60, 100, 150, 300, 600, buffers + 20, buffers + 60] {
@@ -173,7 +173,7 @@ fn room_for_the_kernels_is_asked_for() {
 /// No more threads are started than can run.
 #[test]
 fn threads_beyond_the_machine() {
-    let there = covact::limits::processors() as u64;
+    let there = covact::machine::processors() as u64;
     let told = format!("threads are asked for, and {there} can run at once here: {there} are used");
     let folder = tempfile::tempdir().unwrap();
     let (no_fields, many) = (("/output", json!({ "every": 0 })), 100_000);

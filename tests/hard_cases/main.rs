@@ -10,6 +10,7 @@ mod friction_energy;
 mod friction_history;
 mod friction_output;
 mod gauntlet;
+mod histories;
 mod lost;
 mod parametrisation;
 mod resume;

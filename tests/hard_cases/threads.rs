@@ -10,7 +10,7 @@ fn any_number_of_threads_gives_the_same_bits() {
         scene["solution"]["threads"] = json!(threads);
         let outcome = done(&scene);
         // No more than can run at once.
-        let used = (threads as usize).min(covact::limits::processors());
+        let used = (threads as usize).min(covact::machine::processors());
         assert_eq!(outcome.summary.threads, used);
         std::fs::read(outcome.folder.path().join("history.csv")).expect("history")
     };

@@ -1,5 +1,5 @@
 //! Matrices that are solved, and the solution of another solver.
-use covact::assembly::{Pattern, SystemMatrix};
+use covact::system::{Pattern, SystemMatrix};
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use nalgebra::DMatrix;

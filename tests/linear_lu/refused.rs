@@ -1,7 +1,7 @@
 //! Matrices and calls that are errors.
 use crate::matrices::*;
-use covact::assembly::SystemMatrix;
-use covact::solve::linear::{DofName, LinearError, LinearSolver, LuSolver};
+use covact::system::SystemMatrix;
+use covact::system::linear::{DofName, LinearError, LinearSolver, LuSolver};
 use std::sync::Arc;
 
 /// Sets the row, the column or both of a dof to zero.

@@ -1,11 +1,11 @@
 //! Solutions, counts and costs.
 use crate::ALLOCATIONS;
 use crate::matrices::*;
-use covact::assembly::{Pattern, SystemMatrix};
-use covact::solve::linear::{
+use covact::system::linear::{
     DirectSolver, Factorization, LinearError, LinearSolver, LuSolver, Method, OrderingChoice,
     SolverOptions,
 };
+use covact::system::{Pattern, SystemMatrix};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 

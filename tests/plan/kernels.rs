@@ -163,10 +163,10 @@ fn of_a_body_with_itself() {
     let (mut state, mut r) = (State::new(&model), vec![0.0; 3 * model.nodes.len()]);
     assembler.contact(&mut state, 0.0, &mut r).unwrap();
     for (pair, ran) in assembler.ran().iter().enumerate() {
-        assert_eq!(*ran, Some(model.plan.kernel(pair)));
+        assert_eq!(*ran, Some(model.kernel(pair)));
     }
     assert_eq!(
-        model.plan.kernel(own).to_string(),
+        model.kernel(own).to_string(),
         "own_faces.penalty.frictionless.exact"
     );
 }

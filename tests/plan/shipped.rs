@@ -1,6 +1,6 @@
 //! Plans of the shipped scenes: what is on, what is off, and where that is decided.
 use crate::scenes::{loaded, plate, with};
-use covact::model::plan::{Effect, Plan};
+use covact::plan::{Effect, Plan};
 use covact::run::{PlanReport, plan};
 use covact::scene;
 use serde_json::{Value, json};
@@ -112,7 +112,7 @@ fn ball_on_plate() {
     // Nothing but a hint and a flag is remembered of a point.
     let remembered: Vec<&str> = (s.plan().pairs[0].effects.iter())
         .flat_map(|e| &e.held)
-        .filter(|h| h.holder == covact::model::plan::Holder::State)
+        .filter(|h| h.holder == covact::plan::Holder::State)
         .map(|h| h.part)
         .collect();
     assert_eq!(remembered, ["points"]);

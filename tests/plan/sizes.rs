@@ -1,10 +1,10 @@
 //! What states and assemblers hold: nothing of an effect that is off, and of one that is on what the plan announced.
-use crate::scenes::{blocks, coulomb, model, plate, with};
+use crate::scenes::{blocks, coulomb, loaded, model, plate, with};
 use covact::assembly::{Assembler, Fault};
 use covact::contact::friction::history::PointHistory;
 use covact::model::Model;
-use covact::model::plan::Holder;
 use covact::model::state::State;
+use covact::plan::{Holder, Plan};
 use covact::solve::newton::Workspace;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -25,6 +25,7 @@ type Parts = BTreeMap<&'static str, usize>;
 /// evaluation at `time`.
 fn held(scene: &Value, time: f64) -> (Model, Parts) {
     let model = model(scene);
+    let plan = Plan::new(&loaded(scene), &model);
     let mut parts = Parts::new();
     {
         let mut state = State::new(&model);
@@ -37,7 +38,7 @@ fn held(scene: &Value, time: f64) -> (Model, Parts) {
                 if COMMON.contains(&part) {
                     continue;
                 }
-                let (announced, grows) = model.plan.announced(holder, part);
+                let (announced, grows) = plan.announced(holder, part);
                 match grows {
                     true => assert!(bytes >= announced, "{part}: {bytes}, planned {announced}"),
                     false if exactly || announced == 0 => {
@@ -51,7 +52,7 @@ fn held(scene: &Value, time: f64) -> (Model, Parts) {
         };
         parts.extend(compare(true, &state, &assembler));
         // Everything that is announced is a part of something.
-        for held in model.plan.effects().flat_map(|e| &e.held) {
+        for held in plan.effects().flat_map(|e| &e.held) {
             if matches!(held.holder, Holder::State | Holder::Assembler) {
                 assert!(parts.contains_key(held.part), "nothing holds {}", held.part);
             }

@@ -4,9 +4,10 @@
 //! its mesh moved within the surface. Error: of displacements, over the largest displacement; on the roof, of the
 //! deflection against the regular mesh, which itself is right within 0.5 %.
 use super::support::{Grid, Model, grid_of, st_venant, zeros};
+use covact::fem::gauss;
 use covact::mesh::ElementKind;
+use covact::shell::Formulation;
 use covact::shell::distortion::most_distorted;
-use covact::shell::{Formulation, gauss};
 use covact_geometry::Vec3;
 use nalgebra::Matrix3;
 use std::f64::consts::FRAC_PI_2;

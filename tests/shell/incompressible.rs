@@ -1,7 +1,8 @@
 //! Thick cylinder of MacNeal and Harder (1985), plane strain, internal pressure, nearly incompressible.
 use super::support::{Model, plain, st_venant};
-use covact::shell::face::shape;
-use covact::shell::{Formulation, Quad, gauss};
+use covact::fem::face::shape;
+use covact::fem::{Quad, gauss};
+use covact::shell::Formulation;
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
 

@@ -2,7 +2,8 @@
 //! strains, seven enhanced strains, 2 x 2 x 2 points) in an independent implementation, given with four or five digits,
 //! so that half a unit of the last one and 0.1 % are the tolerance; the reference solution of each problem stands beside.
 use super::support::{Grid, Model, close, grid, st_venant, zeros};
-use covact::shell::{Formulation, gauss};
+use covact::fem::gauss;
+use covact::shell::Formulation;
 use std::f64::consts::FRAC_PI_2;
 
 /// Consistent nodal loads of a force per volume along `axis`.

@@ -1,8 +1,8 @@
 //! The quadratic solid-shell Q18 on the problems of the linear one. Expected values with "script" are those of an
 //! independent implementation of the same recipe in another language.
 use super::support::{Grid, Model, close, grid_of, plain, st_venant, zeros};
+use covact::fem::gauss;
 use covact::mesh::{ElementKind, Mesh};
-use covact::shell::gauss;
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;

@@ -7,7 +7,7 @@ use covact::contact::law::NormalLaw;
 use covact::contact::moving::{MovingMaster, master_row};
 use covact::contact::point::{PointGeometry, respond};
 use covact::contact::rigid::Exact;
-use covact::shell::quadrature::{self, Rule};
+use covact::fem::quadrature::{self, Rule};
 use covact_geometry::{Bilinear, Biquadratic, Frame, MovingFacets, ShapeRows};
 use nalgebra::{DMatrix, DVector};
 use num_dual::{Dual64, DualNum};

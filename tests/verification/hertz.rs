@@ -9,7 +9,7 @@
 //!         |     block     |
 //! ```
 use crate::support::{Outcome, scene_json, set, solve};
-use covact::shell::gauss;
+use covact::fem::gauss;
 
 const FORCE: f64 = 2.93040;
 const P0: f64 = 1.39916;
@@ -26,7 +26,7 @@ fn pressure_error(outcome: &Outcome) -> f64 {
         let (dx, dy) = (x[1][0] - x[0][0], x[2][1] - x[0][1]);
         for (v, wv) in rule.iter() {
             for (u, wu) in rule.iter() {
-                let n = covact::shell::face::shape([2, 2], u, v);
+                let n = covact::fem::face::shape([2, 2], u, v);
                 let at = |c: usize| (0..4).map(|k| n[k] * x[k][c]).sum::<f64>();
                 let p: f64 = (0..4).map(|k| n[k] * pressure[face[k]]).sum();
                 let w = wu * wv * 0.25 * dx * dy;

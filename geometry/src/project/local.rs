@@ -320,7 +320,8 @@ impl<S: Surface> PatchSet<S> {
     }
 
     /// On a pole every value of the turning parameter is the same point, but the way out differs: takes the value
-    /// (of nine in the region) from which the distance falls most, if it falls from any.
+    /// (of nine in the region) from which the distance falls most, if it falls from any. An edge that is merely slow here,
+    /// as weights over many orders of magnitude make it, is no pole: other values are other points.
     #[cold]
     #[inline(never)]
     fn escape_pole(&self, q: &Vec3, s: &Local, tolerance: f64) -> Option<Local> {
@@ -330,6 +331,7 @@ impl<S: Surface> PatchSet<S> {
             return None;
         }
         let [a, b] = s.region.domain[turn];
+        let same = (ROUGH * self.size) * (ROUGH * self.size);
         let mut best: Option<(f64, Local)> = None;
         for k in 0..9 {
             let mut xi = s.xi;
@@ -337,6 +339,7 @@ impl<S: Surface> PatchSet<S> {
             let t = self.state(q, &s.region, xi, s.span);
             let slope = t.gradient[out].abs() / t.metric[2 * out].sqrt();
             if !t.active[out]
+                && (t.jet.rho - s.jet.rho).norm_squared() <= same
                 && slope > tolerance * t.d2.sqrt().max(self.size)
                 && best.as_ref().is_none_or(|b| slope > b.0)
             {
@@ -392,7 +395,10 @@ impl<S: Surface> PatchSet<S> {
             self.evaluate(q, moved(&trial, step, 1.0), trial.span, &mut trial);
             // Undamped does not mean blind: close to a pole rounding alone can lead away again. But there a first step in
             // the turning parameter may also cost what the second one gains.
-            let better = self.residual2(&trial, 2e-3) <= self.residual2(s, 2e-3);
+            // And a Hessian that is nearly singular leads to stationary points elsewhere, which may be farther away.
+            let more = ROUGH * self.size;
+            let near = trial.d2 <= s.d2 + 2.0 * more * (s.d2.sqrt() + more);
+            let better = near && self.residual2(&trial, 2e-3) <= self.residual2(s, 2e-3);
             if better || !s.converged && trial.d2 < s.d2 * (1.0 - 1e-14) {
                 let converged = s.converged;
                 *s = trial;

@@ -19,8 +19,8 @@ use crate::contact::rigid::{Exact, RigidMaster};
 use crate::contact::scatter::assemble_point;
 use crate::model::averaged::{Share, SlaveNodes};
 use crate::model::driven::press;
+use crate::model::kernel::Kernel;
 use crate::model::master::Master;
-use crate::model::plan::Kernel;
 use crate::model::state::{PointState, State, heap};
 use crate::model::{Model, PairModel};
 use crate::with_patches;
@@ -285,7 +285,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         self.ran[index] = Some(Kernel {
             master: model.surfaces[*number].kind(),
             law,
-            ..model.plan.kernel(index)
+            ..model.kernel(index)
         });
         Ok(())
     }
@@ -332,7 +332,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             increments,
             center,
         };
-        match self.model.plan.kernel(index).tangent {
+        match self.model.kernel(index).tangent {
             TangentKind::Exact => {
                 self.points::<TANGENT, _>(&at, &mut own, nodes, &Exact, residual, rhs, totals)
             }

@@ -22,8 +22,8 @@ pub(crate) mod sizes {
     use super::super::small::Linear;
     use crate::contact::points::SlavePoint;
     use crate::contact::rigid::{PointFault, Touch};
+    use crate::model::kernel::Kernel;
     use crate::model::master::BodySurface;
-    use crate::model::plan::Kernel;
     use crate::model::{Model, PairModel};
     use std::collections::BTreeSet;
     use std::sync::Arc;
@@ -90,7 +90,7 @@ pub(crate) mod sizes {
 
     /// Where the tangents of follower loads go.
     pub fn followers(model: &Model) -> usize {
-        let of = |faces: &[crate::mesh::FaceNodes]| -> usize {
+        let of = |faces: &[crate::fem::FaceNodes]| -> usize {
             let entries: usize = faces.iter().map(|f| pairs(f.nodes().len())).sum();
             size_of::<Vec<u32>>() + size_of::<u32>() * entries
         };

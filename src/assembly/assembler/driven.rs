@@ -4,13 +4,13 @@
 //! last. The blocks are summed over the points first and scattered once for each slave node. Friction takes the symmetry
 //! from the border and from the surface's own block.
 use super::{Assembler, Fault, Totals, put};
-use crate::assembly::{Pattern, PatternError};
 use crate::contact::carried::{carried, carried_with_friction};
 use crate::contact::law::PairLaw;
 use crate::model::driven::{Driven, press, turn};
 use crate::model::state::{State, heap};
 use crate::model::{Model, SurfaceModel};
 use crate::scene::ValueError;
+use crate::system::{Pattern, PatternError};
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 
 /// A direction of a driven surface's motion that the contact does not resist as it stands.

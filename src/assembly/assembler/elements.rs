@@ -1,13 +1,13 @@
 //! Elements: evaluated in parallel a chunk at a time, summed in order. The loops are generic over the shape of the
 //! elements, which is chosen once for each body.
 use super::{Assembler, Fault, Kind, Totals, element_fault};
-use crate::assembly::{ConstrainedScatter, DofMap, SystemMatrix};
 use crate::contact::law::PairLaw;
 use crate::model::state::{State, heap};
 use crate::model::{BodyModel, Model};
 use crate::shell::{
     Block, ElementBlock, ElementFault, ElementSystem, H8System, Q18System, with_block,
 };
+use crate::system::{ConstrainedScatter, DofMap, SystemMatrix};
 use covact_geometry::Vec3;
 use rayon::prelude::*;
 

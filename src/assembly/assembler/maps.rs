@@ -21,7 +21,7 @@ pub(super) struct Maps {
 /// Where the blocks of the points of a pair with a rigid master go.
 #[derive(Debug, Clone, Default)]
 pub(super) struct PointMaps {
-    /// First values of the blocks of plain points, for [`SystemMatrix::scatter_point`](crate::assembly::SystemMatrix).
+    /// First values of the blocks of plain points, for [`SystemMatrix::scatter_point`](crate::system::SystemMatrix).
     places: Vec<u32>,
     /// Per point, where its own places begin; `u32::MAX` where it is not plain.
     starts: Vec<u32>,

@@ -21,13 +21,13 @@ mod small;
 mod touched;
 mod viscous;
 
-use super::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
+use crate::system::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
 use crate::contact::law::{PairLaw, Penalty};
 use crate::contact::rigid::{PointFault, Touch};
 use crate::model::driven::press::PressFault;
+use crate::model::kernel::Kernel;
 use crate::model::master::Masters;
-use crate::model::plan::Kernel;
 use crate::model::state::State;
 use crate::model::{Model, PairModel};
 use crate::scene::ValueError;

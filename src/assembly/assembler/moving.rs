@@ -17,8 +17,8 @@ use crate::contact::point::FaceTangent;
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::{Exact, PointFault};
 use crate::contact::scatter::{assemble_point, keep_slave_rows};
+use crate::model::kernel::{GapKind, Kernel, SideKind};
 use crate::model::master::{MasterNow, Masters};
-use crate::model::plan::{GapKind, Kernel, SideKind};
 use crate::model::self_contact::{Accept, All, Opposing};
 use crate::model::state::{PointState, State, heap, slaves};
 use crate::model::{Model, PairModel};
@@ -189,7 +189,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             ) else {
                 continue;
             };
-            let kernel = self.model.plan.kernel(index);
+            let kernel = self.model.kernel(index);
             if let (GapKind::Averaged, Some(averaged)) = (kernel.gap, self.averaged.get_mut(index))
             {
                 let facets = MovingMaster {
@@ -365,7 +365,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         rhs: &mut [f64],
         totals: &mut Totals,
     ) {
-        let kernel = self.model.plan.kernel(index);
+        let kernel = self.model.kernel(index);
         match (kernel.friction, kernel.sides) {
             (FrictionKind::None, SideKind::Both) => self.press::<TANGENT, false>(
                 index, state, range, time, increments, residual, rhs, totals,

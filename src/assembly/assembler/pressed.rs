@@ -1,10 +1,10 @@
 //! Slave points in contact with a rigid surface, summed one after the other.
 use super::maps::PointMaps;
 use super::{Assembler, SurfaceForce, Totals};
-use crate::assembly::{ConstrainedScatter, DofMap, SystemMatrix};
 use crate::contact::law::{NormalLaw, PairLaw};
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::Touch;
+use crate::system::{ConstrainedScatter, DofMap, SystemMatrix};
 use nalgebra::Matrix3;
 
 /// Where the points of a pair go.

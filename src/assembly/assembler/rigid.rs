@@ -13,8 +13,8 @@ use crate::contact::law::{
 };
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
+use crate::model::kernel::{GapKind, Kernel, SideKind};
 use crate::model::master::Master;
-use crate::model::plan::{GapKind, Kernel, SideKind};
 use crate::model::state::{PointState, State};
 use crate::model::{Model, PairModel};
 use crate::{with_law, with_patches};
@@ -46,7 +46,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         self.clear_borders();
         let mut first = 0;
         for (index, pair) in self.model.pairs.iter().enumerate() {
-            let kernel = self.model.plan.kernel(index);
+            let kernel = self.model.kernel(index);
             if kernel.gap == GapKind::Averaged {
                 let n = pair.points.len();
                 self.meet_rigid(index, &state.u, time, &mut state.points[first..first + n])?;

@@ -16,8 +16,8 @@ use crate::contact::law::{Offsets, PairLaw};
 use crate::contact::moving::MovingMaster;
 use crate::contact::rigid::PointFault;
 use crate::model::friction::FrictionModel;
+use crate::model::kernel::{GapKind, Kernel, SideKind};
 use crate::model::master::{BodyMaster, BodySurface};
-use crate::model::plan::{GapKind, Kernel, SideKind};
 use crate::model::self_contact::{Accept, All, Opposing};
 use crate::model::state::{PointState, State, heap};
 use crate::model::{Model, PairModel};
@@ -183,7 +183,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         totals: &mut Totals,
     ) {
         // A half pass acts on its slave alone, so that the master's rows are not asked for.
-        match self.model.plan.kernel(index).sides {
+        match self.model.kernel(index).sides {
             SideKind::Both => self.slide_as::<TANGENT, _>(
                 index, state, range, increments, residual, rhs, totals, &Full,
             ),

@@ -2,15 +2,15 @@
 //! evaluated once, undeformed, where the tangent of the large-rotation element is the stiffness of the linear one.
 use super::elements::{Quadratic, Systems, quadratic, undeformed};
 use super::{Assembler, Fault, Kind, PairForce, PatternError, SurfaceForce, Totals};
-use crate::assembly::{DofMap, Pattern, SystemMatrix};
 use crate::contact::law::{NormalLaw, PairLaw, Penalty};
 use crate::model::Model;
+use crate::model::kernel::{GapKind, Kernel};
 use crate::model::loads::follower_force;
 use crate::model::motion::SmallMotion;
-use crate::model::plan::{GapKind, Kernel};
 use crate::model::small::SmallModel;
 use crate::model::state::{PointState, State, heap};
 use crate::scene::ValueError;
+use crate::system::{DofMap, Pattern, SystemMatrix};
 use covact_geometry::Vec3;
 use std::sync::Arc;
 
@@ -288,7 +288,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             totals.touching.push(totals.active > before);
             self.ran[index] = Some(Kernel {
                 gap: GapKind::Linearised,
-                ..model.plan.kernel(index)
+                ..model.kernel(index)
             });
         }
         totals.contact_rounding = f64::sqrt(rounding);

@@ -1,8 +1,8 @@
 //! Quadrilaterals in tensor order, and the body between their two sides.
 use super::normals::Normals;
 use super::surface::Surface;
-use crate::limits;
-use crate::mesh::{ElementKind, Face, MAX_NODES, Mesh, MeshError};
+use crate::machine::memory;
+use crate::mesh::{ElementKind, Face, MAX_NODES, Mesh, MeshError, size};
 use crate::scene::Offset;
 use std::collections::BTreeMap;
 
@@ -73,7 +73,7 @@ impl Cells {
             });
         }
         let elements = self.count() as u64 * u64::from(layers);
-        limits::ask(limits::mesh(all, elements, self.kind)).map_err(|shortage| {
+        memory::ask(size::bytes(all, elements, self.kind)).map_err(|shortage| {
             MeshError::Memory {
                 what: WHAT,
                 nodes: all,

@@ -1,8 +1,8 @@
 //! How far and where to the surface goes at each node, so that every element around it gets its thickness.
 use super::SurfaceError;
 use super::cells::Cells;
+use crate::fem::Quad;
 use crate::mesh::raw::NONE;
-use crate::shell::Quad;
 use covact_geometry::Vec3;
 use nalgebra::Matrix3;
 

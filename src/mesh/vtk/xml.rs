@@ -1,7 +1,7 @@
 //! XML files with an unstructured grid: arrays as text, in base64, or appended behind the tree.
 use super::grid::Grid;
 use super::values::{Type, Values};
-use crate::limits;
+use crate::machine::memory;
 use crate::mesh::cursor::{Cursor, Encoding};
 use crate::mesh::error::{MAX_NODES, MOST_IN_NAME, shorten};
 use crate::mesh::raw::RawMesh;
@@ -329,7 +329,7 @@ impl<'a> File<'a> {
     /// The bytes of a binary array, at most `needed`.
     fn binary(&self, array: &Array, needed: usize) -> Result<Vec<u8>, MeshError> {
         let fail = |found: &str| self.syntax(array.at, "base64 data with their length", found);
-        limits::ask(needed as u64).map_err(|shortage| MeshError::Memory {
+        memory::ask(needed as u64).map_err(|shortage| MeshError::Memory {
             what: "an array of a file",
             nodes: needed as u64,
             shortage,

@@ -6,10 +6,10 @@ use super::super::friction::{self, FrictionModel, LawModel};
 use super::super::master::{BodyMaster, Master};
 use super::super::self_contact::OwnFacets;
 use super::super::slave::slave_points;
-use super::super::{HalfPass, ModelError, PairModel, SurfaceModel, penalty, segments};
+use super::super::{HalfPass, ModelError, PairModel, SurfaceModel, penalty, segments, slave};
 use super::{Builder, master_faces};
 use crate::contact::points::SlavePoint;
-use crate::limits;
+use crate::machine::memory;
 use crate::mesh::Face;
 use crate::scene::{Contact, Gap, MasterSurface, Passes, Penalty, Points};
 use covact_geometry::MovingFacets;
@@ -78,8 +78,8 @@ impl Builder<'_> {
             Points::Gauss(n) | Points::Lobatto(n) => u64::from(n) * u64::from(n),
             Points::Segments(n) => u64::from(n / 2 + 1).pow(2),
         };
-        let bytes = limits::slave_points(limits::times(faces.len() as u64, per_face));
-        limits::ask(bytes).map_err(|shortage| {
+        let bytes = slave::bytes(memory::times(faces.len() as u64, per_face));
+        memory::ask(bytes).map_err(|shortage| {
             let message = format!(
                 "contact `{name}`: {per_face} slave points on each of {} faces: {shortage}",
                 faces.len()

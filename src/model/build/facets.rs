@@ -1,10 +1,10 @@
 //! Facets in place of exact surfaces, and the triangles of STL files.
 use super::super::ModelError;
 use super::super::error::{At, cause, number, text};
-use super::super::surface::{FacetModel, SurfaceSet};
+use super::super::surface::{FacetModel, SurfaceSet, facet_bytes};
 use super::Builder;
 use super::surfaces::joined;
-use crate::limits;
+use crate::machine::memory;
 use crate::scene::{self, FacetKind};
 use covact_geometry::PatchSet;
 use covact_geometry::facet::{
@@ -43,8 +43,8 @@ impl Builder<'_> {
         let range = exact.curvature_range();
         let told = |e| facet_error(name, wanted, labels, e);
         let room = |count: usize| {
-            let bytes = limits::facet_bytes(Some(wanted.kind));
-            limits::ask(limits::times(count as u64, bytes)).map_err(|shortage| {
+            let bytes = facet_bytes(Some(wanted.kind));
+            memory::ask(memory::times(count as u64, bytes)).map_err(|shortage| {
                 let message = format!("surface `{name}` as {count} facets: {shortage}");
                 let at = format!("/surfaces/{name}/facets/{}", fineness(wanted));
                 text(at, message).help("ask for coarser facets")
@@ -165,8 +165,8 @@ impl Builder<'_> {
             return Err(text(field("cad/entities"), message).help("leave out `entities`"));
         }
         self.stl_account(name, stl, &shown.to_string());
-        let bytes = limits::facet_bytes(Some(FacetKind::Bilinear));
-        limits::ask(limits::times(3 * stl.triangles.len() as u64, bytes)).map_err(|shortage| {
+        let bytes = facet_bytes(Some(FacetKind::Bilinear));
+        memory::ask(memory::times(3 * stl.triangles.len() as u64, bytes)).map_err(|shortage| {
             let count = stl.triangles.len();
             let message = format!("{shown} with {count} triangles: {shortage}");
             text(field("cad/file"), message).help("export a coarser STL file")

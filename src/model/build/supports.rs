@@ -2,9 +2,9 @@
 use super::super::constraints::{MeanPrescribed, Prescribed};
 use super::super::error::{At, number, text};
 use super::{BodyModel, Builder, ModelError};
-use crate::assembly::{DofMap, DofMapBuilder};
 use crate::mesh::ThicknessColumns;
 use crate::scene::{Axis, POSITION_AND_TIME, Support, TimeFunction, Value};
+use crate::system::{DofMap, DofMapBuilder};
 use covact_geometry::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 

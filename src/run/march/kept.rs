@@ -14,7 +14,7 @@ use crate::run::cost::Spent;
 use crate::run::peaks::Peaks;
 use crate::run::progress::Progress;
 use crate::run::watch::Watch;
-use crate::solve::linear::Method;
+use crate::system::linear::Method;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom};

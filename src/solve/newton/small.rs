@@ -11,8 +11,8 @@ use super::{Converged, Newton, StepFailure, Verdict, dot, oscillation};
 use crate::assembly::{Fault, Needed};
 use crate::model::state::State;
 use crate::solve::event::{Event, Observer};
-use crate::solve::linear::{Factorization, LinearSolver};
 use crate::solve::place;
+use crate::system::linear::{Factorization, LinearSolver};
 
 /// Part of the fall of the energy that its slope promises, of which a full step has to bring as much.
 const ARMIJO: f64 = 1e-4;

@@ -1,6 +1,7 @@
 //! Cells as tensor products: bricks that are linear through the thickness, and faces.
-use crate::mesh::{ElementKind, FaceNodes};
-use crate::shell::face::{shape, shape_derivatives};
+use crate::fem::FaceNodes;
+use crate::fem::face::{shape, shape_derivatives};
+use crate::mesh::ElementKind;
 use covact_geometry::Vec3;
 
 /// Most nodes of a cell.

@@ -3,7 +3,7 @@ use super::super::sample::{Difference, Note};
 use super::cell::{Kind, Shape};
 use super::tree::Tree;
 use super::{Field, MOST};
-use crate::shell::gauss;
+use crate::fem::gauss;
 
 /// Times this close, relative to their size, are the same.
 const SAME_TIME: f64 = 1e-9;

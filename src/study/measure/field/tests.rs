@@ -1,7 +1,8 @@
 //! Places found in cells and among them, against what they were made of and against looking everywhere.
 use super::cell::{Cell, Kind};
 use super::tree::Tree;
-use crate::mesh::{ElementKind, FaceNodes, Mesh, block};
+use crate::fem::FaceNodes;
+use crate::mesh::{ElementKind, Mesh, block};
 use crate::scene::Block;
 use covact_geometry::Vec3;
 

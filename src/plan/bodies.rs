@@ -1,0 +1,180 @@
+//! The effects of bodies: their elements and materials.
+use super::{Effect, Held, Per, Teller, why};
+use crate::assembly::sizes;
+use crate::model::BodyModel;
+use crate::model::EffectKind;
+use crate::scene::{Body, Element, Material, pointer};
+
+/// Names of bodies as a message lists them.
+fn listed<'n>(names: impl Iterator<Item = &'n str>) -> String {
+    let names: Vec<String> = names.map(|n| format!("`{n}`")).collect();
+    names.join(", ")
+}
+
+impl Teller<'_> {
+    fn described(&self) -> impl Iterator<Item = (&BodyModel, &Body)> {
+        let scene = &self.loaded.scene;
+        (self.model.bodies.iter()).filter_map(|b| Some((b, scene.bodies.get(&b.name)?)))
+    }
+
+    pub(super) fn bodies(&self) -> Vec<Effect> {
+        let small = self.model.small.is_some();
+        let key = "/solution/kinematics";
+        let large = match self.loaded.has(key) {
+            true => "`kinematics` is `large`: displacements and rotations of any size",
+            false => "no `kinematics`: displacements and rotations of any size",
+        };
+        let declared = "`kinematics` is `small`";
+        let nodes = self.model.nodes.len();
+        let mut out = vec![
+            self.effect(EffectKind::LargeRotation, key, why(!small, large, declared)),
+            self.effect(
+                EffectKind::SmallDisplacements,
+                key,
+                why(small, declared, large),
+            )
+            .costs("one factorization for every change of the points in contact")
+            .holds(vec![
+                Held::assembler("linear", Per::Point, 8, self.model.contact_points()),
+                Held::assembler("linear", Per::Node, 24, nodes),
+                Held::assembler("linear", Per::Whole, sizes::LINEAR, 1).growing(),
+            ]),
+        ];
+        out.extend(self.elements());
+        out.extend(self.strains());
+        out.extend(self.materials());
+        out
+    }
+
+    fn elements(&self) -> Vec<Effect> {
+        let kinds = [
+            (Element::H8, EffectKind::H8SolidShell, "h8"),
+            (
+                Element::H8Displacement,
+                EffectKind::H8Displacement,
+                "h8_displacement",
+            ),
+            (Element::Q18, EffectKind::Q18SolidShell, "q18"),
+        ];
+        let effect = |(element, effect, word)| {
+            let own: Vec<_> = (self.described())
+                .filter(|(_, b)| b.element == element)
+                .map(|(b, _)| b)
+                .collect();
+            let given = |b: &&BodyModel| {
+                let at = pointer(&["bodies", &b.name, "element"]);
+                (self.loaded.has(&at)).then_some(at)
+            };
+            let at = own.iter().find_map(given);
+            let how = match at {
+                Some(_) => format!("`element` is `{word}`"),
+                None => "no `element`: the default".to_owned(),
+            };
+            let at = at.unwrap_or_else(|| match own.first() {
+                Some(body) => pointer(&["bodies", &body.name]),
+                None => "/bodies".to_owned(),
+            });
+            let names = listed(own.iter().map(|b| b.name.as_str()));
+            let count: usize = own.iter().map(|b| b.block.elements()).sum();
+            let (nodes, points) = match element {
+                Element::Q18 => (18, 18),
+                _ => (8, 8),
+            };
+            let reason = why(
+                !own.is_empty(),
+                format!("{how} (body {names}, {count} elements)"),
+                format!("no body has `element` `{word}`"),
+            );
+            let size = 3 * nodes;
+            self.effect(effect, at, reason).costs(format!(
+                "a {size} x {size} tangent an element, from {points} Gauss points"
+            ))
+        };
+        kinds.into_iter().map(effect).collect()
+    }
+
+    /// Strains that elements do not take from their displacements alone.
+    fn strains(&self) -> Vec<Effect> {
+        let assumed = |b: &Body| b.element != Element::H8Displacement;
+        let with: Vec<_> = self.described().filter(|(_, b)| assumed(b)).collect();
+        let names =
+            |list: &[(&BodyModel, &Body)]| listed(list.iter().map(|(b, _)| b.name.as_str()));
+        let at = |list: &[(&BodyModel, &Body)]| match list
+            .first()
+            .or(self.described().next().as_ref())
+        {
+            Some((body, _)) => pointer(&["bodies", &body.name, "element"]),
+            None => "/bodies".to_owned(),
+        };
+        let none = "no element has any: `h8_displacement` takes strains as they are";
+        let assumed = self.effect(
+            EffectKind::AssumedStrains,
+            at(&with),
+            why(
+                !with.is_empty(),
+                format!("against locking of thin elements (body {})", names(&with)),
+                none,
+            ),
+        );
+        let (mut held, mut numbers) = (Vec::new(), Vec::new());
+        for (body, _) in &with {
+            let len = self.model.state_len(body);
+            let n = body.block.elements();
+            held.push(Held::state("element states", Per::Element, 8 * len, n));
+            numbers.push(body.block.alpha_len());
+        }
+        numbers.dedup();
+        let numbers: Vec<String> = numbers.iter().map(usize::to_string).collect();
+        let enhanced = self
+            .effect(
+                EffectKind::EnhancedStrains,
+                at(&with),
+                why(
+                    !with.is_empty(),
+                    format!(
+                        "{} an element, condensed (body {})",
+                        numbers.join(" or "),
+                        names(&with)
+                    ),
+                    none,
+                ),
+            )
+            .holds(held);
+        vec![assumed, enhanced]
+    }
+
+    fn materials(&self) -> Vec<Effect> {
+        type Kind = (EffectKind, &'static str, fn(&Material) -> bool);
+        let kinds: [Kind; 2] = [
+            (EffectKind::StVenantKirchhoff, "st_venant_kirchhoff", |m| {
+                matches!(m, Material::StVenantKirchhoff(_))
+            }),
+            (EffectKind::NeoHooke, "neo_hooke", |m| {
+                matches!(m, Material::NeoHooke(_))
+            }),
+        ];
+        let materials = &self.loaded.scene.materials;
+        let effect = |(effect, word, is): Kind| {
+            let own = |b: &&(&BodyModel, &Body)| materials.get(&b.1.material).is_some_and(is);
+            let all: Vec<_> = self.described().collect();
+            let first = all.iter().find(own);
+            let at = match first {
+                Some((_, body)) => pointer(&["materials", &body.material, word]),
+                None => "/materials".to_owned(),
+            };
+            let names = listed(all.iter().filter(own).map(|(b, _)| b.name.as_str()));
+            let reason = why(
+                first.is_some(),
+                match (word, self.model.small.is_some()) {
+                    ("neo_hooke", true) => format!(
+                        "the material of body {names}; at small displacements it acts as Hooke's law"
+                    ),
+                    _ => format!("the material of body {names}"),
+                },
+                format!("no body has a `{word}` material"),
+            );
+            self.effect(effect, at, reason)
+        };
+        kinds.into_iter().map(effect).collect()
+    }
+}

@@ -1,0 +1,81 @@
+//! What is changed in the shipped scenes so that all of them together run in a minute of processor time with the dev
+//! profile: coarser meshes, or a part of their time. Contact, sliding and what else a scene is there for remain.
+use crate::support::set;
+use serde_json::{Value, json};
+
+/// What is changed in a scene.
+pub type Change = fn(&mut Value);
+
+fn elements(scene: &mut Value, body: &str, kind: &str, count: Value) {
+    set(
+        scene,
+        &format!("/bodies/{body}/mesh/{kind}/elements"),
+        count,
+    );
+}
+
+fn end(scene: &mut Value, time: f64) {
+    set(scene, "/solution/end_time", time);
+}
+
+pub fn ball_by_weight(_: &mut Value) {}
+
+/// Pressed and dragged a little.
+pub fn ball_drag(scene: &mut Value) {
+    end(scene, 1.3);
+}
+
+pub fn ball_on_plate(_: &mut Value) {}
+
+pub fn crossed_tubes(scene: &mut Value) {
+    for body in ["lower", "upper"] {
+        elements(scene, body, "cylinder_panel", json!([12, 8]));
+    }
+}
+
+/// The bead closes, and the sheet begins to slide.
+pub fn draw_bead(scene: &mut Value) {
+    end(scene, 1.2);
+}
+
+pub fn hat_pressed(_: &mut Value) {}
+
+pub fn hertz_block(scene: &mut Value) {
+    elements(scene, "block", "block", json!([10, 10, 10]));
+    for axis in 0..3 {
+        let fine = format!("/bodies/block/mesh/block/spacing/{axis}/fine/fine");
+        set(scene, &fine, 6);
+    }
+}
+
+pub fn ironing(_: &mut Value) {}
+
+pub fn pinched_tube(scene: &mut Value) {
+    elements(scene, "tube", "cylinder_panel", json!([16, 12]));
+}
+
+pub fn punch_sheet(scene: &mut Value) {
+    elements(scene, "sheet", "plate", json!([20, 16]));
+}
+
+pub fn q18_on_h8(scene: &mut Value) {
+    elements(scene, "cap", "sphere_panel", json!([3, 3]));
+    elements(scene, "block", "block", json!([9, 9, 3]));
+}
+
+pub fn sandwiched_shell(scene: &mut Value) {
+    elements(scene, "below", "block", json!([8, 8, 3]));
+    elements(scene, "sheet", "plate", json!([10, 10]));
+    elements(scene, "above", "block", json!([5, 5, 3]));
+}
+
+pub fn sheet_in_die(scene: &mut Value) {
+    elements(scene, "sheet", "plate", json!([19, 19]));
+}
+
+/// Wrapped, and drawn a little.
+pub fn strip_drawn(scene: &mut Value) {
+    end(scene, 1.25);
+}
+
+pub fn strip_over_cylinder(_: &mut Value) {}
