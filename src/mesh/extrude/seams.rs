@@ -18,8 +18,13 @@ pub(super) fn check(
         let [a, b] = ends.map(|n| surface.nodes[n as usize]);
         (b - a).norm()
     };
-    let shortest = edges.all().map(|rows| length(rows[0].ends));
-    let pairs = close_pairs(&surface.nodes, shortest.fold(f64::INFINITY, f64::min));
+    let lengths = edges.all().map(|rows| length(rows[0].ends));
+    let shortest = lengths.fold(f64::INFINITY, f64::min);
+    // Edges without a length are told with their elements.
+    if shortest == 0.0 || !shortest.is_finite() {
+        return Ok(());
+    }
+    let pairs = close_pairs(&surface.nodes, shortest);
     if pairs.is_empty() {
         return Ok(());
     }
