@@ -77,33 +77,41 @@ fn stray_and_coincident_nodes_are_named() {
         })
     ));
 
-    // Two parts that touch in a face but have nodes of their own.
-    let mut mesh = sheet();
-    let other = sheet();
-    let n = mesh.nodes.len() as u32;
-    mesh.connectivity
-        .extend(other.connectivity.iter().map(|i| i + n));
-    mesh.nodes.extend(
-        other
-            .nodes
-            .iter()
-            .map(|x| x + Vec3::new(4.0 + 1e-9, 0.0, 0.0)),
-    );
-    assert_eq!(mesh.components(), 2);
-    let error = mesh.check().unwrap_err();
+    // Two parts that touch in a face with nodes of their own are kept apart: they may be partners in contact.
+    let joined = |shift: f64| {
+        let mut mesh = sheet();
+        let other = sheet();
+        let n = mesh.nodes.len() as u32;
+        mesh.connectivity
+            .extend(other.connectivity.iter().map(|i| i + n));
+        let moved = other.nodes.iter().map(|x| x + Vec3::new(shift, 0.0, 0.0));
+        mesh.nodes.extend(moved);
+        assert_eq!(mesh.components(), 2);
+        mesh
+    };
+    joined(4.0 + 1e-9).check().unwrap();
+    joined(4.01).check().unwrap();
+    // One part twice in the same place is a mistake.
+    let error = joined(1e-9).check().unwrap_err();
     let MeshError::DuplicateNodes {
         first,
         second,
+        tags,
         count,
         ..
     } = error
     else {
         panic!("{error}");
     };
-    assert_eq!((first, second, count), (4, 60, 4 * 3));
-    // Apart, they are fine.
-    mesh.nodes[60..].iter_mut().for_each(|x| x.x += 0.01);
-    mesh.check().unwrap();
+    assert_eq!((first, second, tags, count), (0, 60, None, 60));
+    // And so are two nodes at one place within a part: a slit.
+    let mut mesh = sheet();
+    let shared = mesh.connectivity[1];
+    assert!(mesh.element(1).contains(&shared));
+    mesh.nodes.push(mesh.nodes[shared as usize]);
+    mesh.connectivity[1] = mesh.nodes.len() as u32 - 1;
+    let error = mesh.check().unwrap_err();
+    assert!(matches!(error, MeshError::DuplicateNodes { .. }), "{error}");
 
     let mut mesh = sheet();
     mesh.nodes[3].y = f64::NAN;
@@ -465,8 +473,8 @@ fn build_reports_and_refuses() {
 
     let file = |path: &str, scale| {
         MeshSource::File(MeshFile {
-            path: path.into(),
             scale,
+            ..MeshFile::new(path)
         })
     };
     let error = |source| {
@@ -479,6 +487,6 @@ fn build_reports_and_refuses() {
         missing.starts_with("cannot read mesh file some/where/nothing.msh: "),
         "{missing}"
     );
-    assert!(error(file("mesh.vtk", 1.0)).contains(".msh"));
+    assert!(error(file("mesh.obj", 1.0)).contains("mesh.obj: mesh files end in .msh"));
     assert!(error(file("mesh.msh", 0.0)).contains("scale is 0"));
 }

@@ -180,9 +180,9 @@ fn counts_are_not_trusted() {
 fn long_words_are_cut_off() {
     let long = "n".repeat(100_000);
     for more in [
-        format!("*{long}, INPUT=a\n"),
+        format!("*NODE, INPUT={long}\n"),
         format!("*NODE, SYSTEM={long}\n"),
-        format!("*ELEMENT, TYPE=C3D20{long}\n"),
+        format!("*ELEMENT, TYPE=C3D10{long}\n"),
         format!("*ELEMENT, TYPE=C3D{long}\n"),
         format!("*NSET, NSET={long}\n1\n"),
         format!("*NODE, NSET={long}\n9, 0, 0, 9\n"),

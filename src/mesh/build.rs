@@ -1,9 +1,7 @@
 //! From the scene's description to a mesh.
+use super::extrude::Extrusion;
 use super::raw::{ThicknessRule, report};
-use super::{
-    ElementKind, Mesh, MeshError, MeshReport, block, cylinder_panel, plate, read_gmsh, read_inp,
-    sphere_panel,
-};
+use super::{ElementKind, Mesh, MeshError, MeshReport, block, cylinder_panel, plate, sphere_panel};
 use crate::scene::{MeshFile, MeshSource};
 use std::path::Path;
 
@@ -28,7 +26,7 @@ pub fn build(
     Ok((mesh, report))
 }
 
-/// Reads a mesh file by its extension.
+/// Reads a mesh file.
 fn read_file(
     file: &MeshFile,
     kind: ElementKind,
@@ -43,35 +41,96 @@ fn read_file(
         });
     }
     let path = scene_dir.join(&file.path);
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    let read = match extension.as_deref() {
-        Some("msh") => read_gmsh,
-        Some("inp") => read_inp,
-        _ => return Err(MeshError::UnknownFormat { path }),
+    let Some(format) = Format::of(&path) else {
+        return Err(MeshError::UnknownFormat { path });
     };
     let bytes = match covact_geometry::io::read_whole(&path) {
         Ok(bytes) => bytes,
         Err(source) => return Err(MeshError::Io { path, source }),
     };
-    let (mesh, report) = read(&bytes, &path, file.scale)?;
+    read(&bytes, &path, format, file, kind)
+}
+
+/// Format of a mesh file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// gmsh, versions 2.2 and 4.1.
+    Gmsh,
+    /// Abaqus and CalculiX.
+    Inp,
+    /// Nastran bulk data.
+    Nastran,
+    /// Legacy files of VTK.
+    Vtk,
+    /// XML files of VTK with an unstructured grid.
+    Vtu,
+    Stl,
+}
+
+impl Format {
+    /// The format that the name of a file tells.
+    pub fn of(path: &Path) -> Option<Format> {
+        let extension = path.extension()?.to_string_lossy().to_lowercase();
+        Some(match extension.as_str() {
+            "msh" => Format::Gmsh,
+            "inp" => Format::Inp,
+            "bdf" | "nas" => Format::Nastran,
+            "vtk" => Format::Vtk,
+            "vtu" => Format::Vtu,
+            "stl" => Format::Stl,
+            _ => return None,
+        })
+    }
+}
+
+/// Makes the mesh that `file` asks for from the bytes of a file; `path` is for messages.
+pub fn read(
+    bytes: &[u8],
+    path: &Path,
+    format: Format,
+    file: &MeshFile,
+    kind: ElementKind,
+) -> Result<(Mesh, MeshReport), MeshError> {
+    let mut raw = match format {
+        Format::Gmsh => super::gmsh::parse(bytes, path)?,
+        Format::Inp => super::inp::parse(bytes, path)?,
+        Format::Nastran => super::nastran::parse(bytes, path)?,
+        Format::Vtk => super::vtk::parse_legacy(bytes, path)?,
+        Format::Vtu => super::vtk::parse_xml(bytes, path)?,
+        Format::Stl => super::stl::parse(bytes, path)?,
+    };
+    if let Some(set) = &file.only {
+        raw.select(set)?;
+    }
+    if let Some(thickness) = &file.thickness {
+        let how = Extrusion {
+            thickness,
+            offset: file.offset.unwrap_or_default(),
+            layers: file.layers.unwrap_or(1).max(1),
+            kind,
+            scale: file.scale,
+        };
+        return raw.into_shell(path, &how);
+    }
+    let (mesh, report) = raw.into_mesh(path, file.scale)?;
     if mesh.kind == kind {
         return Ok((mesh, report));
     }
     let (found, wanted, help) = match kind {
         ElementKind::H8 => (
-            "hexahedra of 27 nodes",
+            "hexahedra of 27 nodes (or of 20)",
             "8-node elements are asked for",
             "say `\"element\": \"q18\"`, or mesh with elements of first order (gmsh: `Mesh.ElementOrder = 1`)",
         ),
         ElementKind::Q18 => (
             "hexahedra of 8 nodes",
-            "`q18` needs 27 nodes an element",
+            "`q18` needs 27 nodes an element (or 20)",
             "mesh with full second-order elements (gmsh: `Mesh.ElementOrder = 2`, `Mesh.SecondOrderIncomplete = 0`), or \
              say `\"element\": \"h8\"`",
         ),
     };
     Err(MeshError::OtherElements {
-        path,
+        path: path.to_path_buf(),
         found,
         wanted,
         help,

@@ -119,15 +119,62 @@ impl Mesh {
             }
         }
         let pairs = close_pairs(&self.nodes, shortest);
-        match pairs.first() {
+        let wrong = match pairs.is_empty() {
+            true => Vec::new(),
+            false => self.wrong_pairs(&pairs),
+        };
+        match wrong.first() {
             None => Ok(()),
             Some(&[first, second]) => Err(MeshError::DuplicateNodes {
+                tags: None,
                 first,
                 second,
                 position: self.nodes[first as usize].into(),
-                count: pairs.len(),
+                count: wrong.len(),
             }),
         }
+    }
+
+    /// Pairs of nodes at the same place that cannot be meant: within one part, or of two elements that fill the same place.
+    /// Parts that only touch are kept apart: they may be partners in contact.
+    fn wrong_pairs(&self, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+        let part = self.parts();
+        let mut twin: Vec<u32> = (0..self.nodes.len() as u32).collect();
+        for &[a, b] in pairs {
+            // The first of all nodes at a place stands for them.
+            twin[b as usize] = twin[a as usize].min(twin[b as usize]);
+        }
+        let mut places: Vec<([u32; 8], u32)> = (0..self.elements())
+            .map(|e| {
+                let nodes = self.element(e);
+                let mut key = self.kind.corners().map(|a| twin[nodes[a] as usize]);
+                key.sort_unstable();
+                (key, e as u32)
+            })
+            .collect();
+        places.sort_unstable();
+        let mut doubled = vec![false; self.nodes.len()];
+        for group in places.chunk_by(|a, b| a.0 == b.0).filter(|g| g.len() > 1) {
+            for node in group.iter().flat_map(|(_, e)| self.element(*e as usize)) {
+                doubled[*node as usize] = true;
+            }
+        }
+        let wrong = |[a, b]: &&[u32; 2]| {
+            part[*a as usize] == part[*b as usize] || (doubled[*a as usize] && doubled[*b as usize])
+        };
+        pairs.iter().filter(wrong).copied().collect()
+    }
+
+    /// Number of pairs of nodes at the same place, in parts that are not connected.
+    pub(super) fn touching_pairs(&self) -> usize {
+        let mut shortest = f64::INFINITY;
+        for e in 0..self.elements() {
+            let x = self.element_positions(e);
+            for [a, b] in H8_EDGES {
+                shortest = shortest.min((x[b as usize] - x[a as usize]).norm());
+            }
+        }
+        close_pairs(&self.nodes, shortest).len()
     }
 
     fn check_faces(&self) -> Result<(), MeshError> {
@@ -174,7 +221,7 @@ pub(super) fn is_opposite(a: [u32; 4], b: [u32; 4]) -> bool {
 }
 
 /// Pairs of nodes closer than [`SAME_PLACE`] times `size`, sorted.
-fn close_pairs(nodes: &[Vec3], size: f64) -> Vec<[u32; 2]> {
+pub(super) fn close_pairs(nodes: &[Vec3], size: f64) -> Vec<[u32; 2]> {
     let tolerance = SAME_PLACE * size;
     // Cells of half the shortest edge hold a node or two; a node next to a cell's border is also put into the cell
     // beyond, so that both nodes of a pair always share a cell.

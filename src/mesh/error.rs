@@ -1,4 +1,5 @@
 //! Errors of mesh generators, readers, checks and sets.
+use super::extrude::SurfaceError;
 use crate::machine::memory::Shortage;
 use std::fmt;
 use std::path::PathBuf;
@@ -61,11 +62,13 @@ impl fmt::Display for Position {
     }
 }
 
-/// Node or face set.
+/// What a set holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SetKind {
     Node,
     Face,
+    /// Set of elements in a file.
+    Element,
 }
 
 impl fmt::Display for SetKind {
@@ -73,6 +76,7 @@ impl fmt::Display for SetKind {
         f.write_str(match self {
             SetKind::Node => "node",
             SetKind::Face => "face",
+            SetKind::Element => "element",
         })
     }
 }
@@ -113,7 +117,10 @@ pub enum MeshError {
         source: std::io::Error,
     },
     /// The name of a file does not tell its format.
-    #[error("{}: mesh files end in .msh (gmsh 4.1) or .inp (Abaqus, CalculiX)", path.display())]
+    #[error(
+        "{}: mesh files end in .msh (gmsh), .inp (Abaqus, CalculiX), .bdf or .nas (Nastran), .vtk, .vtu or .stl",
+        path.display()
+    )]
     UnknownFormat { path: PathBuf },
     /// A file does not follow its format.
     #[error("{}:{at}: expected {expected}, found {found}", path.display())]
@@ -131,13 +138,34 @@ pub enum MeshError {
         what: String,
         help: String,
     },
-    /// A file holds no hexahedra.
-    #[error("{}: no hexahedra in this file (its elements: {found}): {help}", path.display())]
+    /// A file holds no elements of the kind that is wanted.
+    #[error("{}: no {wanted} in this file (its elements: {found}): {help}", path.display())]
     NoElements {
         path: PathBuf,
+        /// `hexahedra`, or `quadrilaterals or triangles` for a surface.
+        wanted: &'static str,
         found: String,
         help: String,
     },
+    /// The nodes midway through the thickness of a 20-node hexahedron do not lie midway.
+    #[error(
+        "{}: element {tag} at ({:.6}, {:.6}, {:.6}): its nodes midway through the thickness lie {off:.1} % of the thickness \
+         off the straight lines between bottom and top, where the 18-node element is straight: mesh with linear elements, \
+         or with more of them",
+        path.display(), position[0], position[1], position[2]
+    )]
+    Crooked {
+        path: PathBuf,
+        /// Number of the worst element in the file.
+        tag: u64,
+        /// Its centre.
+        position: [f64; 3],
+        /// Percent of the thickness.
+        off: f64,
+    },
+    /// A surface cannot be given a thickness.
+    #[error("{}: {source}", path.display())]
+    Surface { path: PathBuf, source: SurfaceError },
     /// A node position is not finite.
     #[error("node {node} has the position ({}, {}, {})", position[0], position[1], position[2])]
     NotFinite { node: u32, position: [f64; 3] },
@@ -169,12 +197,15 @@ pub enum MeshError {
     },
     /// Two nodes lie at the same place: parts that touch but are not joined.
     #[error(
-        "nodes {first} and {second} lie at the same place ({:.6}, {:.6}, {:.6}); {count} such pair(s) in all: join them in the mesher",
+        "nodes {first} and {second}{} lie at the same place ({:.6}, {:.6}, {:.6}); {count} such pair(s) in all: join them in the mesher",
+        tags.map(|[a, b]| format!(" (numbers {a} and {b} in the file)")).unwrap_or_default(),
         position[0], position[1], position[2]
     )]
     DuplicateNodes {
         first: u32,
         second: u32,
+        /// Their numbers in the mesh file.
+        tags: Option<[u64; 2]>,
         position: [f64; 3],
         count: usize,
     },
@@ -222,7 +253,7 @@ pub enum MeshError {
     #[error(
         "no {kind} set `{name}`{}; {}",
         suggestion.as_ref().map(|s| format!(" (did you mean `{s}`?)")).unwrap_or_default(),
-        if available.is_empty() { format!("the mesh has no {kind} sets") } else { format!("{kind} sets: {}", available.join(", ")) }
+        if available.is_empty() { format!("the mesh has no {kind} sets") } else { format!("{kind} sets: {}", listed(available)) }
     )]
     UnknownSet {
         kind: SetKind,

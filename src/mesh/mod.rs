@@ -4,22 +4,31 @@
 //! H8 node `i + 2 j + 4 k`; Q18 node `i + 3 j + 9 k`.
 mod build;
 mod check;
+mod cursor;
 mod error;
+mod extrude;
 mod face;
 mod facets;
+mod field;
 mod generate;
 mod gmsh;
 mod inp;
 mod measure;
+mod nastran;
 mod orient;
+mod quadratic;
 mod raw;
 mod sets;
 pub(crate) mod size;
+mod solid;
 mod spacing;
+mod stl;
 mod topology;
+mod vtk;
 
-pub use build::build;
+pub use build::{Format, build, read};
 pub use error::{MAX_NODES, MeshError, Position, SetKind};
+pub use extrude::SurfaceError;
 pub use face::tributary_areas;
 pub use facets::MeshFacets;
 pub use generate::{block, cylinder_panel, plate, sphere_panel};

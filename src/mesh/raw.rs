@@ -1,15 +1,24 @@
-//! What mesh files have in common: hexahedra, faces and sets by name, turned into a checked [`Mesh`].
-use super::orient::{orient, rotated};
-use super::topology::FaceTable;
-use super::{ElementKind, ElementSize, Face, Mesh, MeshError};
+//! What mesh files have in common: elements and sets by name, before they become a checked [`Mesh`].
+use super::error::SetKind;
+use super::{ElementSize, Face, Mesh, MeshError};
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Stands for a node that there is not.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// What is told of pairs of nodes at the same place, after their number.
+pub(super) const KEPT_APART: &str = "pair(s) of nodes of unconnected parts lie at the same place and are kept apart; join \
+                                     them in the mesher where the parts are to hold together";
 
 /// How the thickness direction t of the elements was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ThicknessRule {
     /// By a mesh generator.
     Generated,
+    /// Along the normals of a surface mesh.
+    Extruded,
     /// From the file's surface `top` (or `bottom`) through the layers below (above) it.
     Surface,
     /// Along the shortest edges.
@@ -29,7 +38,7 @@ pub struct MeshReport {
     pub size: ElementSize,
     /// Number of unconnected parts.
     pub components: usize,
-    /// Numbers of the nodes in the file; empty for generated meshes.
+    /// Numbers of the nodes in the file, 0 for nodes that the file does not have; empty for generated meshes.
     pub node_tags: Vec<u64>,
     /// Numbers of the elements in the file; empty for generated meshes.
     pub element_tags: Vec<u64>,
@@ -44,108 +53,179 @@ pub(super) struct RawMesh {
     pub hexahedra: Vec<[u32; 8]>,
     /// All nodes of quadratic hexahedra, `i + 3 j + 9 k`, beside their corners; empty where the hexahedra are linear.
     pub quadratic: Vec<[u32; 27]>,
+    /// The nodes in the middle of faces and elements were made from 20-node hexahedra.
+    pub completed: bool,
     pub element_tags: Vec<u64>,
     /// Thickness is local direction 3 by the meaning of the element type; `false`: to be found.
     pub thickness_is_given: Vec<bool>,
-    /// Node sets as indices into `nodes`.
+    /// Element sets of hexahedra.
+    pub solid_sets: BTreeMap<String, Vec<u32>>,
+    /// Node sets as indices into `nodes`, without the nodes of element sets.
     pub node_sets: BTreeMap<String, Vec<u32>>,
-    /// Surfaces as quadrilaterals around their border.
-    pub surfaces: BTreeMap<String, Vec<[u32; 4]>>,
     /// Surfaces as faces of the hexahedra (tensor order).
     pub face_sets: BTreeMap<String, Vec<Face>>,
+    /// Quadrilaterals and triangles.
+    pub facets: Facets,
+    /// Sets of lines, by their ends.
+    pub lines: BTreeMap<String, Vec<[u32; 2]>>,
     pub notes: Vec<String>,
+    /// The element types of the file in words, for the message that none is of use.
+    pub found: Vec<String>,
+    /// What to do in the program that wrote the file where hexahedra are missing.
+    pub help: &'static str,
+    /// The first solid elements that cannot be read: the reason why the file has no mesh of solids.
+    pub refused: Option<MeshError>,
+    /// The first elements of a surface that cannot be read.
+    pub refused_facets: Option<MeshError>,
 }
 
-/// Local faces whose tensor order is (0, 1, 3, 2) around the border.
-const AROUND: [usize; 4] = [0, 1, 3, 2];
+/// Quadrilaterals and triangles of a file: faces of its hexahedra, or a surface of its own.
+#[derive(Debug, Default)]
+pub(super) struct Facets {
+    /// Around the border; the last corner of a triangle is [`NONE`].
+    pub corners: Vec<[u32; 4]>,
+    /// Nodes in the middle of the edges (after each corner) and of the facet, [`NONE`] where there is none. Empty where no
+    /// facet has any.
+    pub middles: Vec<[u32; 5]>,
+    /// Numbers in the file.
+    pub tags: Vec<u64>,
+    pub sets: BTreeMap<String, Vec<u32>>,
+}
+
+impl Facets {
+    /// Adds a facet of 3, 4, 6, 8 or 9 nodes, corners first, then the middles of the edges and of the facet.
+    pub fn push(&mut self, nodes: &[u32], tag: u64) -> u32 {
+        let edges = if matches!(nodes.len(), 3 | 6) { 3 } else { 4 };
+        let node = |k: usize| nodes.get(k).copied().unwrap_or(NONE);
+        let mut corners = [NONE; 4];
+        for (k, corner) in corners.iter_mut().enumerate().take(edges) {
+            *corner = node(k);
+        }
+        if nodes.len() > edges {
+            let mut middles = [NONE; 5];
+            for (k, middle) in middles.iter_mut().enumerate().take(edges) {
+                *middle = node(edges + k);
+            }
+            middles[4] = node(2 * edges);
+            self.middles.resize(self.corners.len(), [NONE; 5]);
+            self.middles.push(middles);
+        } else if !self.middles.is_empty() {
+            self.middles.push([NONE; 5]);
+        }
+        self.corners.push(corners);
+        self.tags.push(tag);
+        self.corners.len() as u32 - 1
+    }
+
+    pub fn len(&self) -> usize {
+        self.corners.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.corners.is_empty()
+    }
+
+    /// Whether a facet was added with three corners.
+    pub fn is_triangle(&self, facet: u32) -> bool {
+        self.corners[facet as usize][3] == NONE
+    }
+
+    /// All nodes of a facet.
+    pub fn nodes(&self, facet: u32) -> impl Iterator<Item = u32> + '_ {
+        let corners = self.corners[facet as usize];
+        let middles = self.middles.get(facet as usize).copied();
+        let all = corners.into_iter().chain(middles.into_iter().flatten());
+        all.filter(|n| *n != NONE)
+    }
+}
 
 impl RawMesh {
-    /// Drops unused nodes, matches surfaces to faces, chooses the thickness direction and checks the result.
-    pub(super) fn into_mesh(mut self, scale: f64) -> Result<(Mesh, MeshReport), MeshError> {
-        self.drop_unused_nodes();
-        let mut mesh = Mesh {
-            kind: ElementKind::H8,
-            nodes: self.nodes.iter().map(|x| x * scale).collect(),
-            connectivity: self.hexahedra.iter().flatten().copied().collect(),
-            node_sets: self.node_sets,
-            face_sets: self.face_sets,
-        };
-        for set in mesh.node_sets.values_mut() {
-            set.sort_unstable();
-            set.dedup();
+    /// The file has no elements of the wanted kind.
+    pub(super) fn nothing(&self, path: &Path, wanted: &'static str, help: String) -> MeshError {
+        MeshError::NoElements {
+            path: path.to_path_buf(),
+            wanted,
+            found: match self.found.is_empty() {
+                true => "none".to_string(),
+                false => super::error::listed(&self.found),
+            },
+            help,
         }
-        let mut notes = self.notes;
-        match_surfaces(&mut mesh, &self.surfaces, &mut notes);
-        // A reversed element would mislead the search for its thickness, so it is refused first.
-        let tagged = |error| with_tag(error, &self.element_tags);
-        let linear = self.quadratic.is_empty();
-        let checked = if linear {
-            mesh.check()
-        } else {
-            mesh.check_elements()
-        };
-        checked.map_err(tagged)?;
-        let (thickness, top) = orient(&mut mesh, &self.thickness_is_given, &mut notes);
-        if !linear {
-            make_quadratic(
-                &mut mesh,
-                &self.quadratic,
-                &top,
-                &mut self.node_tags,
-                &mut notes,
-            );
-            mesh.check().map_err(tagged)?;
-        }
-        for faces in mesh.face_sets.values_mut() {
-            faces.sort_unstable();
-            faces.dedup();
-        }
-        let from_faces: Vec<(String, Vec<u32>)> = mesh
-            .face_sets
-            .iter()
-            .map(|(name, faces)| (name.clone(), mesh.nodes_of(faces)))
-            .collect();
-        for (name, nodes) in from_faces {
-            mesh.node_sets.entry(name).or_insert(nodes);
-        }
-        let mut report = report(&mesh, notes, thickness)?;
-        report.node_tags = self.node_tags;
-        report.element_tags = self.element_tags;
-        Ok((mesh, report))
     }
 
-    /// Files hold nodes of geometry that no hexahedron uses (centres of arcs, edges of other parts): they go.
-    fn drop_unused_nodes(&mut self) {
-        let used = (self.hexahedra.iter().flatten()).chain(self.quadratic.iter().flatten());
-        let kept = Kept::new(self.nodes.len(), used);
-        if kept.dropped == 0 {
-            return;
+    /// Leaves only the elements of one set.
+    ///
+    /// # Errors
+    /// [`MeshError::UnknownSet`] where no element set has this name.
+    pub(super) fn select(&mut self, name: &str) -> Result<(), MeshError> {
+        let solids = self.solid_sets.get(name).cloned();
+        let facets = self.facets.sets.get(name).cloned();
+        if solids.is_none() && facets.is_none() {
+            let known = self.solid_sets.keys().chain(self.facets.sets.keys());
+            return Err(super::sets::unknown(SetKind::Element, name, known));
         }
-        self.notes.push(format!(
-            "{} node(s) of the file belong to no hexahedron and were left out",
-            kept.dropped
-        ));
-        kept.retain(&mut self.nodes);
-        kept.retain(&mut self.node_tags);
-        kept.renumber(self.hexahedra.iter_mut().flatten());
-        kept.renumber(self.quadratic.iter_mut().flatten());
-        kept.retain_sets(&mut self.node_sets, "hexahedron", &mut self.notes);
-        // Quadrilaterals off the hexahedra keep a number that no face has.
-        kept.renumber(self.surfaces.values_mut().flatten().flatten());
+        let number = numbers(self.hexahedra.len(), &solids.unwrap_or_default());
+        retain(&number, &mut self.hexahedra);
+        retain(&number, &mut self.quadratic);
+        retain(&number, &mut self.element_tags);
+        retain(&number, &mut self.thickness_is_given);
+        renumber_sets(&number, &mut self.solid_sets);
+        for set in self.face_sets.values_mut() {
+            set.retain_mut(|face| {
+                face.element = number[face.element as usize];
+                face.element != NONE
+            });
+        }
+        self.face_sets.retain(|_, set| !set.is_empty());
+        let number = numbers(self.facets.len(), &facets.unwrap_or_default());
+        retain(&number, &mut self.facets.corners);
+        retain(&number, &mut self.facets.middles);
+        retain(&number, &mut self.facets.tags);
+        renumber_sets(&number, &mut self.facets.sets);
+        self.refused = None;
+        self.refused_facets = None;
+        Ok(())
     }
+}
+
+/// New numbers of `count` things of which only `kept` stay, [`NONE`] for the others.
+fn numbers(count: usize, kept: &[u32]) -> Vec<u32> {
+    let mut number = vec![NONE; count];
+    for &k in kept {
+        number[k as usize] = 0;
+    }
+    for (k, slot) in number.iter_mut().filter(|slot| **slot == 0).enumerate() {
+        *slot = k as u32;
+    }
+    number
+}
+
+fn retain<T>(number: &[u32], list: &mut Vec<T>) {
+    let mut number = number.iter();
+    list.retain(|_| number.next().is_some_and(|n| *n != NONE));
+}
+
+fn renumber_sets(number: &[u32], sets: &mut BTreeMap<String, Vec<u32>>) {
+    sets.retain(|_, set| {
+        set.retain_mut(|k| {
+            *k = number[*k as usize];
+            *k != NONE
+        });
+        !set.is_empty()
+    });
 }
 
 /// Which nodes stay, and their new numbers.
-struct Kept {
-    /// `u32::MAX` for nodes that go.
+pub(super) struct Kept {
+    /// [`NONE`] for nodes that go.
     number: Vec<u32>,
-    dropped: usize,
+    pub dropped: usize,
 }
 
 impl Kept {
-    fn new<'n>(nodes: usize, used: impl Iterator<Item = &'n u32>) -> Kept {
-        let mut number = vec![u32::MAX; nodes];
-        for &n in used {
+    pub fn new(nodes: usize, used: impl Iterator<Item = u32>) -> Kept {
+        let mut number = vec![NONE; nodes];
+        for n in used {
             number[n as usize] = 0;
         }
         let mut kept = 0;
@@ -160,128 +240,35 @@ impl Kept {
     }
 
     /// Drops what belongs to nodes that go.
-    fn retain<T>(&self, list: &mut Vec<T>) {
-        let mut number = self.number.iter();
-        list.retain(|_| number.next().is_some_and(|n| *n != u32::MAX));
+    pub fn retain<T>(&self, list: &mut Vec<T>) {
+        retain(&self.number, list);
     }
 
-    fn renumber<'n>(&self, nodes: impl Iterator<Item = &'n mut u32>) {
-        nodes.for_each(|n| *n = self.number[*n as usize]);
+    /// New number of a node; [`NONE`] where it goes.
+    pub fn number(&self, node: u32) -> u32 {
+        self.number.get(node as usize).copied().unwrap_or(NONE)
+    }
+
+    pub fn renumber<'n>(&self, nodes: impl Iterator<Item = &'n mut u32>) {
+        nodes.for_each(|n| *n = self.number(*n));
     }
 
     /// Sets without the nodes that go; those left empty go too, and a note tells of what they hold no node.
-    fn retain_sets(
+    pub fn retain_sets(
         &self,
         sets: &mut BTreeMap<String, Vec<u32>>,
         of: &str,
         notes: &mut Vec<String>,
     ) {
         sets.retain(|name, set| {
-            set.retain(|&n| self.number[n as usize] != u32::MAX);
             self.renumber(set.iter_mut());
+            set.retain(|&n| n != NONE);
             if set.is_empty() {
                 notes.push(format!("`{name}` holds no node of a {of} and was left out"));
             }
             !set.is_empty()
         });
     }
-}
-
-/// Turns a mesh of corners, its elements rotated, into one of 18-node elements. The nodes midway through the thickness
-/// go: the element is linear there.
-fn make_quadratic(
-    mesh: &mut Mesh,
-    full: &[[u32; 27]],
-    top: &[u8],
-    tags: &mut Vec<u64>,
-    notes: &mut Vec<String>,
-) {
-    let mut connectivity = Vec::with_capacity(18 * full.len());
-    let mut off = 0.0f64;
-    for (full, &top) in full.iter().zip(top) {
-        let mut nodes = [0; 27];
-        for (slot, node) in nodes.iter_mut().zip(rotated(full, 3, top)) {
-            *slot = node;
-        }
-        for a in 0..9 {
-            let [low, middle, high] = [a, a + 9, a + 18].map(|a| mesh.nodes[nodes[a] as usize]);
-            let thickness = (high - low).norm();
-            off = off.max((middle - (low + high) * 0.5).norm() / thickness);
-        }
-        connectivity.extend_from_slice(&nodes[..9]);
-        connectivity.extend_from_slice(&nodes[18..]);
-    }
-    mesh.kind = ElementKind::Q18;
-    mesh.connectivity = connectivity;
-    let kept = Kept::new(mesh.nodes.len(), mesh.connectivity.iter());
-    notes.push(format!(
-        "elements of 27 nodes became 18-node solid-shells: {} node(s) midway through the thickness were left out (they \
-         lie up to {:.2} % of the thickness off the straight lines between bottom and top)",
-        kept.dropped,
-        100.0 * off
-    ));
-    kept.retain(&mut mesh.nodes);
-    kept.retain(tags);
-    kept.renumber(mesh.connectivity.iter_mut());
-    let of = "bottom or top of an element";
-    kept.retain_sets(&mut mesh.node_sets, of, notes);
-}
-
-/// Turns quadrilaterals into faces of the elements.
-fn match_surfaces(
-    mesh: &mut Mesh,
-    surfaces: &BTreeMap<String, Vec<[u32; 4]>>,
-    notes: &mut Vec<String>,
-) {
-    if surfaces.is_empty() {
-        return;
-    }
-    let table = FaceTable::new(mesh);
-    for (name, quads) in surfaces {
-        let mut faces = Vec::with_capacity(quads.len());
-        let (mut lost, mut inner) = (0usize, 0usize);
-        for &quad in quads {
-            match table.find(quad) {
-                [] => lost += 1,
-                [row] => faces.push(row.1),
-                rows => {
-                    inner += 1;
-                    // More than two are an error, which the checks of the mesh tell.
-                    let same = (rows.iter().take(2))
-                        .find(|row| goes_around(mesh.face_corners(row.1), quad));
-                    faces.push(same.unwrap_or(&rows[0]).1);
-                }
-            }
-        }
-        if lost > 0 {
-            notes.push(format!(
-                "surface `{name}`: {lost} of {} quadrilaterals are not faces of hexahedra and were left out",
-                quads.len()
-            ));
-        }
-        if inner > 0 {
-            notes.push(format!(
-                "surface `{name}`: {inner} quadrilaterals lie between two hexahedra; each stands for the face whose \
-                 outward normal is its own"
-            ));
-        }
-        if !faces.is_empty() {
-            mesh.face_sets
-                .entry(name.clone())
-                .or_default()
-                .extend(faces);
-        }
-    }
-}
-
-/// Whether the face (u fastest) has the nodes of `quad` in the same sense of rotation.
-fn goes_around(face: [u32; 4], quad: [u32; 4]) -> bool {
-    let around = AROUND.map(|a| face[a]);
-    let next = |q: &[u32; 4], n| {
-        let at = q.iter().position(|&m| m == n)?;
-        Some(q[(at + 1) % 4])
-    };
-    next(&around, quad[0]) == Some(quad[1])
 }
 
 /// Report of a finished mesh.
@@ -295,6 +282,14 @@ pub(super) fn report(
         notes.push(format!(
             "the mesh consists of {components} unconnected parts"
         ));
+        // The sides of extruded surfaces go apart; their surfaces were asked.
+        let pairs = match thickness {
+            ThicknessRule::Extruded => 0,
+            _ => mesh.touching_pairs(),
+        };
+        if pairs > 0 {
+            notes.push(format!("{pairs} {KEPT_APART}"));
+        }
     }
     let size = mesh.element_size().ok_or(MeshError::OutOfRange {
         what: "the mesh".to_string(),
@@ -312,10 +307,20 @@ pub(super) fn report(
     })
 }
 
-/// Adds the element's number in the file to an error.
-fn with_tag(mut error: MeshError, tags: &[u64]) -> MeshError {
-    if let MeshError::Inverted { element, tag, .. } = &mut error {
-        *tag = tags.get(*element as usize).copied();
+/// Adds the numbers in the file to an error: of elements, or of nodes that the file has.
+pub(super) fn with_tags(mut error: MeshError, elements: &[u64], nodes: &[u64]) -> MeshError {
+    match &mut error {
+        MeshError::Inverted { element, tag, .. } => *tag = elements.get(*element as usize).copied(),
+        MeshError::DuplicateNodes {
+            first,
+            second,
+            tags,
+            ..
+        } => {
+            let of = |n: u32| nodes.get(n as usize).copied().filter(|tag| *tag > 0);
+            *tags = of(*first).zip(of(*second)).map(|(a, b)| [a, b]);
+        }
+        _ => {}
     }
     error
 }

@@ -177,7 +177,7 @@ impl Mesh {
     }
 }
 
-fn unknown<'a>(
+pub(super) fn unknown<'a>(
     kind: SetKind,
     name: &str,
     available: impl Iterator<Item = &'a String>,

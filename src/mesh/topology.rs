@@ -68,20 +68,30 @@ impl Mesh {
 
     /// Number of parts that share no node with each other (nodes without elements are not counted).
     pub fn components(&self) -> usize {
-        let mut parent: Vec<u32> = (0..self.nodes.len() as u32).collect();
         let mut used = vec![false; self.nodes.len()];
+        self.connectivity
+            .iter()
+            .for_each(|&n| used[n as usize] = true);
+        let part = self.parts();
+        (0..self.nodes.len())
+            .filter(|&n| used[n] && part[n] as usize == n)
+            .count()
+    }
+
+    /// For every node one that stands for the part it belongs to.
+    pub(super) fn parts(&self) -> Vec<u32> {
+        let mut parent: Vec<u32> = (0..self.nodes.len() as u32).collect();
         for e in 0..self.elements() {
             let nodes = self.element(e);
             let first = root(&mut parent, nodes[0]);
             for &node in nodes {
-                used[node as usize] = true;
                 let other = root(&mut parent, node);
                 parent[other as usize] = first;
             }
         }
-        (0..self.nodes.len())
-            .filter(|&n| used[n] && parent[n] as usize == n)
-            .count()
+        (0..self.nodes.len() as u32)
+            .map(|n| root(&mut parent, n))
+            .collect()
     }
 
     /// For every node on a bottom or top outer face the node at the other end of its column through all layers, `None`
@@ -98,7 +108,7 @@ impl Mesh {
 }
 
 /// Root of a node in a union-find forest, halving the path on the way.
-fn root(parent: &mut [u32], mut node: u32) -> u32 {
+pub(super) fn root(parent: &mut [u32], mut node: u32) -> u32 {
     while parent[node as usize] != node {
         let next = parent[parent[node as usize] as usize];
         parent[node as usize] = next;

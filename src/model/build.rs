@@ -203,17 +203,40 @@ fn kinks(scene: &Scene, model: &Model) -> Vec<f64> {
 /// An error of a body's mesh, told with the name of its file where it has one.
 fn mesh_error(body: &str, source: &MeshSource, error: mesh::MeshError) -> ModelError {
     let pointer = format!("/bodies/{body}/mesh");
-    let help = matches!(error, mesh::MeshError::Inverted { .. }).then_some(
-        "look at these elements in the mesher: a node may have moved through a face, or the surface is too curved for \
-         the elements",
-    );
+    let extruded = matches!(source, MeshSource::File(file) if file.thickness.is_some());
+    let help = matches!(error, mesh::MeshError::Inverted { .. }).then_some(match extruded {
+        true => {
+            "the thickness is too large for the elements beside a fold or a tight bend there: mesh them coarser, or give a \
+             smaller thickness"
+        }
+        false => {
+            "look at these elements in the mesher: a node may have moved through a face, or the surface is too curved for \
+             the elements"
+        }
+    });
     let message = error.to_string();
     let mut error = match source {
         MeshSource::File(file) => {
             let path = file.path.display().to_string();
+            let field = match &error {
+                mesh::MeshError::UnknownSet { name, .. } if file.only.as_ref() == Some(name) => {
+                    "only"
+                }
+                mesh::MeshError::UnknownSet { .. }
+                | mesh::MeshError::Surface {
+                    source:
+                        mesh::SurfaceError::NoThickness { .. }
+                        | mesh::SurfaceError::TwoThicknesses { .. }
+                        | mesh::SurfaceError::Field(_)
+                        | mesh::SurfaceError::NotPositive { .. },
+                    ..
+                } => "thickness",
+                _ => "path",
+            };
+            let pointer = format!("{pointer}/file/{field}");
             match message.contains(&path) {
-                true => text(format!("{pointer}/file/path"), message),
-                false => text(format!("{pointer}/file/path"), format!("{path}: {message}")),
+                true => text(pointer, message),
+                false => text(pointer, format!("{path}: {message}")),
             }
         }
         _ => match error {

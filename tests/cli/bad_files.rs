@@ -325,12 +325,13 @@ fn a_damaged_mesh_file() {
     let at = message.find("two.msh:").unwrap() + "two.msh:".len();
     let line: usize = message[at..].split(':').next().unwrap().parse().unwrap();
     assert!((16..=cut.lines().count() + 1).contains(&line), "{message}");
-    let folder = folder_with("two.msh", &text_of("mesh/plate_version_2.msh"));
+    let old = text_of("mesh/plate_version_2.msh").replacen("2.2 0 8", "4 0 8", 1);
+    let folder = folder_with("two.msh", &old);
     plate_refused_in(
         folder.path(),
         &from_file(),
         PATH,
-        &["two.msh:2:1: gmsh format version 2.2 is not supported: write the mesh with"],
+        &["two.msh:2:1: gmsh format version 4 is not supported: write the mesh with"],
     );
     let folder = folder_with("two.msh", &text_of("mesh/tetrahedra.msh"));
     plate_refused_in(
@@ -413,4 +414,82 @@ fn facets_that_cannot_be() {
         let ball = json!({ "cad": { "file": file }, "facets": facets });
         plate_refused_in(folder.path(), &[("/surfaces/ball", ball)], pointer, &parts);
     }
+}
+
+const SHEET: &str = "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 2, 0, 0\n4, 0, 1, 0\n5, 1, 1, 0\n6, 2, 1, 0\n\
+                     *ELEMENT, TYPE=S4, ELSET=left\n1, 1, 2, 5, 4\n*ELEMENT, TYPE=S4, ELSET=right\n2, 2, 3, 6, 5\n";
+
+/// A surface that is right with its thickness, and every field of it wrong in turn, told at its place.
+#[test]
+fn surfaces_of_a_mesh_file() {
+    let folder = folder_with("two.inp", SHEET);
+    let with = |fields: Value| {
+        let mut file = json!({ "path": "two.inp" });
+        let object = file.as_object_mut().unwrap();
+        object.extend(fields.as_object().unwrap().clone());
+        let mut changes = from_file();
+        changes[0].1 = json!({ "file": file });
+        changes
+    };
+    for (thickness, layers) in [
+        (json!(0.5), "layers 0.5 thick"),
+        (
+            json!({ "left": 0.5, "right": 0.7 }),
+            "layers 0.5 to 0.7 thick",
+        ),
+        (json!("0.4 + x/5"), "layers 0.4 to 0.8 thick"),
+    ] {
+        write_plate(folder.path(), &with(json!({ "thickness": thickness })));
+        let output = covact(folder.path(), &["check", "scene.json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert_parts(&stdout(&output), &["2 elements, 12 nodes", layers]);
+    }
+    for (fields, field, message) in [
+        (json!({}), "path", "give it a thickness"),
+        (json!({ "thickness": 0 }), "thickness", "the thickness is 0"),
+        (
+            json!({ "thickness": {} }),
+            "thickness",
+            "the thickness names no set",
+        ),
+        (
+            json!({ "thickness": { "left": 1, "right": -1 } }),
+            "thickness/right",
+            "the thickness is -1",
+        ),
+        (
+            json!({ "thickness": { "left": 1 } }),
+            "thickness",
+            "1 element(s) are in no set of `thickness`, the first is element 2",
+        ),
+        (
+            json!({ "thickness": { "left": 1, "rigth": 1 } }),
+            "thickness",
+            "no element set `rigth` (did you mean `right`?)",
+        ),
+        (
+            json!({ "thickness": "x - 1" }),
+            "thickness",
+            "the thickness is -1 at (0.000000, 0.000000, 0.000000) (node 1), where it must be positive",
+        ),
+        (
+            json!({ "layers": 2 }),
+            "layers",
+            "`layers` is for surfaces with a `thickness`",
+        ),
+        (json!({ "thickness": 1, "layers": 0 }), "layers", "is 0"),
+        (
+            json!({ "thickness": 1, "only": "middle" }),
+            "only",
+            "no element set `middle`",
+        ),
+    ] {
+        let pointer = format!("/bodies/plate/mesh/file/{field}");
+        plate_refused_in(folder.path(), &with(fields), &pointer, &[message]);
+    }
+    // An expression that is wrong is told within itself.
+    write_plate(folder.path(), &with(json!({ "thickness": "1 + t" })));
+    let output = covact(folder.path(), &["check", "scene.json"]);
+    assert_eq!(output.status.code(), Some(3));
+    assert_parts(&stderr(&output), &["`t`", "x"]);
 }

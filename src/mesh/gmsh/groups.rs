@@ -1,7 +1,7 @@
 //! Physical groups: which geometric entities belong to which named group.
 use super::Block;
-use super::cursor::{Cursor, quoted};
 use crate::mesh::MeshError;
+use crate::mesh::cursor::{Cursor, quoted};
 use crate::mesh::error::{MOST_IN_NAME, most_members};
 use crate::mesh::raw::RawMesh;
 use std::collections::BTreeMap;
@@ -47,6 +47,12 @@ impl Groups {
             }
         }
         Ok(())
+    }
+
+    /// A group of its own entity, as version 2 has them.
+    pub fn add(&mut self, dim: i32, group: i32) {
+        let groups = self.members.entry((dim, group));
+        groups.or_insert_with(|| Rc::from([group]));
     }
 
     /// `$Entities`.
@@ -100,7 +106,6 @@ impl Groups {
     /// [`MeshError::LongSets`] where entities are in so many groups that the sets would be far longer than the file.
     pub fn sets(&self, blocks: &[Block], raw: &mut RawMesh, path: &Path) -> Result<(), MeshError> {
         let mut filled = std::collections::BTreeSet::new();
-        let mut left_out: BTreeMap<(&str, String, &str), usize> = BTreeMap::new();
         let elements = blocks.iter().map(|b| b.count).sum();
         let most = most_members(raw.nodes.len(), elements);
         let mut members = 0;
@@ -120,31 +125,30 @@ impl Groups {
                         key.1
                     ));
                 }
-                members += block.nodes.len() as u64 + 1;
+                members += (block.kind.nodes * block.tags.len()) as u64 + 1;
                 if members > most {
                     let path = path.to_path_buf();
                     return Err(MeshError::LongSets { path, most });
                 }
-                if block.nodes.is_empty() {
-                    *left_out.entry((kind, name, block.kind.name)).or_default() += block.count;
-                    continue;
-                }
-                let nodes = raw.node_sets.entry(name.clone()).or_default();
-                nodes.extend(&block.nodes);
-                if block.dim == 2 {
-                    // Corners come first.
-                    let quads = block
-                        .nodes
-                        .chunks_exact(block.kind.nodes)
-                        .map(|q| [q[0], q[1], q[2], q[3]]);
-                    raw.surfaces.entry(name).or_default().extend(quads);
+                let elements = block.first..block.first + block.tags.len() as u32;
+                match block.dim {
+                    2 => raw.facets.sets.entry(name).or_default().extend(elements),
+                    3 if raw.refused.is_none() => {
+                        raw.solid_sets.entry(name).or_default().extend(elements);
+                    }
+                    3 => {}
+                    dim => {
+                        let nodes = raw.node_sets.entry(name.clone()).or_default();
+                        nodes.extend(&block.nodes);
+                        if dim == 1 {
+                            // Ends come first.
+                            let lines = block.nodes.chunks_exact(block.kind.nodes);
+                            let lines = lines.map(|line| [line[0], line[1]]);
+                            raw.lines.entry(name).or_default().extend(lines);
+                        }
+                    }
                 }
             }
-        }
-        for ((kind, name, elements), count) in left_out {
-            (raw.notes).push(format!(
-                "physical {kind} `{name}`: {count} {elements} were left out"
-            ));
         }
         for (key, name) in &self.names {
             if !filled.contains(key) {

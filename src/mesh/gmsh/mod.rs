@@ -1,40 +1,38 @@
-//! Reader of gmsh's mesh format 4.1, text and binary (format: gmsh reference manual, "MSH file format").
+//! Reader of gmsh's mesh formats 4.1 and 2.2, text and binary (format: gmsh reference manual, "MSH file format").
 //!
-//! Hexahedra of 8 or of 27 nodes become elements; quadrilaterals of physical surfaces become face sets; the nodes of every
-//! physical group become a node set of its name.
-mod cursor;
+//! Hexahedra of 8, 20 or 27 nodes are the elements of a solid; quadrilaterals of physical surfaces are its face sets.
+//! Quadrilaterals and triangles are the elements of a surface. Every physical group is a set of its name.
 mod groups;
+mod numbers;
+mod types;
+mod version_2;
+mod version_4;
 
-use super::error::{MAX_NODES, shorten};
-use super::raw::RawMesh;
-use super::{MeshError, MeshReport};
-use crate::mesh::Mesh;
-use covact_geometry::Vec3;
-use cursor::{Cursor, Encoding, quoted};
+use super::cursor::{Cursor, Encoding, quoted};
+use super::error::shorten;
+use super::raw::{NONE, RawMesh};
+use super::{Mesh, MeshError, MeshReport};
 use groups::Groups;
-use std::collections::{BTreeMap, HashMap};
+use numbers::Numbers;
+use std::collections::BTreeMap;
 use std::path::Path;
+use types::{ElementType, TENSOR, TENSOR_27, TYPES};
 
-/// gmsh numbers the nodes of a face around it; tensor node `a` is gmsh node `TENSOR[a]`.
-const TENSOR: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
-
-/// Node of gmsh's 27-node hexahedron at tensor place `i + 3 j + 9 k`.
-const TENSOR_27: [usize; 27] = [
-    0, 8, 1, 9, 20, 11, 3, 13, 2, // bottom
-    10, 21, 12, 22, 26, 23, 15, 24, 14, // middle
-    4, 16, 5, 17, 25, 18, 7, 19, 6, // top
-];
-
-const EXPORT: &str = "write the mesh with `gmsh model.geo -3 -format msh41`";
+const EXPORT: &str = "write the mesh with `gmsh model.geo -3 -format msh41` (or msh22)";
 const HEXAHEDRA: &str = "elements are hexahedra of 8 nodes (`Mesh.ElementOrder = 1`) or 27 (`Mesh.ElementOrder = 2`); use \
                          transfinite or extruded layers with `Recombine`, and `Mesh.SubdivisionAlgorithm = 2` where \
                          needed";
-const SERENDIPITY: &str = "they have no nodes in the middle of their faces; write full second-order elements of 27 nodes \
-                           (`Mesh.SecondOrderIncomplete = 0`, element `q18`) or linear ones (`Mesh.ElementOrder = 1`, \
-                           element `h8`)";
+const EXTRUDE: &str = "give the shell its thickness by extruding its surface in layers; elements are hexahedra of 8 nodes \
+                       (`Mesh.ElementOrder = 1`) or 27 (`Mesh.ElementOrder = 2`); if physical groups are defined, one must \
+                       hold the volume";
 
-/// Reads the mesh from the bytes of a file; `path` is for messages, `scale` multiplies every coordinate.
+/// Reads the mesh of hexahedra from the bytes of a file; `path` is for messages, `scale` multiplies every coordinate.
 pub fn read_gmsh(bytes: &[u8], path: &Path, scale: f64) -> Result<(Mesh, MeshReport), MeshError> {
+    parse(bytes, path)?.into_mesh(path, scale)
+}
+
+/// Everything of use in a file.
+pub(super) fn parse(bytes: &[u8], path: &Path) -> Result<RawMesh, MeshError> {
     let mut reader = Reader {
         cursor: Cursor {
             path,
@@ -42,96 +40,56 @@ pub fn read_gmsh(bytes: &[u8], path: &Path, scale: f64) -> Result<(Mesh, MeshRep
             pos: 0,
             encoding: Encoding::Text,
         },
+        version: Version::Four,
         groups: Groups::default(),
         numbers: None,
         raw: RawMesh::default(),
         blocks: Vec::new(),
         counts: BTreeMap::new(),
+        solids: None,
         skipped: Vec::new(),
     };
     reader.sections()?;
-    reader.finish()?.into_mesh(scale)
+    reader.finish()
 }
 
-/// Elements of one type on one geometric entity.
-pub(super) struct Block {
-    pub dim: i32,
-    pub entity: i32,
-    pub kind: &'static ElementType,
-    /// Node indices of the elements, one after the other (empty for types that are left out).
-    pub nodes: Vec<u32>,
-    pub count: usize,
+/// The layout of nodes and elements.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Version {
+    Two,
+    Four,
 }
 
-/// An element type of gmsh.
-#[derive(Debug)]
-pub(super) struct ElementType {
-    number: i32,
-    pub name: &'static str,
-    pub nodes: usize,
+/// Elements of one type on one geometric entity (version 2: of one physical group).
+struct Block {
     dim: i32,
-    /// Of use here: points, lines, quadrilaterals and hexahedra with all nodes of their order.
-    used: bool,
+    entity: i32,
+    kind: &'static ElementType,
+    /// Numbers of the elements, and node indices one element after the other (none for types that are left out).
+    tags: Vec<u64>,
+    nodes: Vec<u32>,
+    count: usize,
+    /// Place of the first element among the hexahedra or facets.
+    first: u32,
 }
 
-const fn element_type(
-    number: i32,
-    name: &'static str,
-    nodes: usize,
-    dim: i32,
-    used: bool,
-) -> ElementType {
-    ElementType {
-        number,
-        name,
-        nodes,
-        dim,
-        used,
-    }
-}
-
-const TYPES: [ElementType; 19] = [
-    element_type(15, "points", 1, 0, true),
-    element_type(1, "lines", 2, 1, true),
-    element_type(8, "quadratic lines", 3, 1, true),
-    element_type(2, "triangles", 3, 2, false),
-    element_type(3, "quadrilaterals", 4, 2, true),
-    element_type(9, "quadratic triangles", 6, 2, false),
-    element_type(10, "quadratic quadrilaterals (9 nodes)", 9, 2, true),
-    element_type(16, "quadratic quadrilaterals (8 nodes)", 8, 2, false),
-    element_type(4, "tetrahedra", 4, 3, false),
-    element_type(5, "hexahedra", 8, 3, true),
-    element_type(6, "prisms", 6, 3, false),
-    element_type(7, "pyramids", 5, 3, false),
-    element_type(11, "quadratic tetrahedra", 10, 3, false),
-    element_type(12, "quadratic hexahedra (27 nodes)", 27, 3, true),
-    element_type(13, "quadratic prisms (18 nodes)", 18, 3, false),
-    element_type(14, "quadratic pyramids (14 nodes)", 14, 3, false),
-    element_type(17, "quadratic hexahedra (20 nodes)", 20, 3, false),
-    element_type(18, "quadratic prisms (15 nodes)", 15, 3, false),
-    element_type(19, "quadratic pyramids (13 nodes)", 13, 3, false),
-];
-
-/// Index of a node by its number in the file.
-enum Numbers {
-    Dense(Vec<u32>),
-    Sparse(HashMap<u64, u32>),
-}
-
-impl Numbers {
-    fn get(&self, tag: u64) -> Option<u32> {
-        match self {
-            Numbers::Dense(list) => {
-                let index = *list.get(usize::try_from(tag).ok()?)?;
-                (index != u32::MAX).then_some(index)
-            }
-            Numbers::Sparse(map) => map.get(&tag).copied(),
+impl Block {
+    fn new(kind: &'static ElementType, entity: i32) -> Block {
+        Block {
+            dim: kind.dim,
+            entity,
+            kind,
+            tags: Vec::new(),
+            nodes: Vec::new(),
+            count: 0,
+            first: 0,
         }
     }
 }
 
 struct Reader<'a> {
     cursor: Cursor<'a>,
+    version: Version,
     groups: Groups,
     /// Filled by the section of nodes.
     numbers: Option<Numbers>,
@@ -139,6 +97,8 @@ struct Reader<'a> {
     blocks: Vec<Block>,
     /// Elements of the file by type name.
     counts: BTreeMap<&'static str, usize>,
+    /// The first type of solid elements.
+    solids: Option<&'static ElementType>,
     /// Sections that were passed over.
     skipped: Vec<String>,
 }
@@ -159,10 +119,16 @@ impl Reader<'_> {
                 b"PhysicalNames" => self.groups.names(&mut self.cursor)?,
                 b"Entities" => self.groups.entities(&mut self.cursor)?,
                 b"PartitionedEntities" => self.groups.partitioned(&mut self.cursor)?,
-                b"Nodes" => self.nodes(start)?,
+                b"Nodes" => match self.version {
+                    Version::Two => self.nodes_2(start)?,
+                    Version::Four => self.nodes_4(start)?,
+                },
                 b"Elements" => {
                     elements = true;
-                    self.elements(start)?;
+                    match self.version {
+                        Version::Two => self.elements_2(start)?,
+                        Version::Four => self.elements_4(start)?,
+                    }
                 }
                 other => {
                     self.skip(other, start)?;
@@ -192,24 +158,30 @@ impl Reader<'_> {
                     let what = "gmsh format 1".to_string();
                     return Err(self.cursor.unsupported(start, what, EXPORT));
                 }
+                // meshio writes it where nobody asks for gmsh.
+                _ if word.starts_with(b"(") => {
+                    let what = "a mesh of ANSYS Fluent".to_string();
+                    let help = "write a mesh of gmsh (meshio: `file_format=\"gmsh\"`)";
+                    return Err(self.cursor.unsupported(start, what, help));
+                }
                 _ => return Err(self.cursor.syntax(start, "$MeshFormat", quoted(word))),
             }
         }
         let c = &mut self.cursor;
-        let (version, start) = c.word("the format's version, 4.1")?;
-        if version != b"4.1" {
-            let number = std::str::from_utf8(version)
-                .ok()
-                .and_then(|v| v.parse::<f64>().ok());
-            if number.is_none() {
-                return Err(c.syntax(start, "the format's version, 4.1", quoted(version)));
+        let (version, start) = c.word("the format's version, 4.1 or 2.2")?;
+        self.version = match version {
+            b"4.1" => Version::Four,
+            b"2" | b"2.0" | b"2.1" | b"2.2" => Version::Two,
+            _ => {
+                let number = std::str::from_utf8(version).ok();
+                if number.and_then(|v| v.parse::<f64>().ok()).is_none() {
+                    let expected = "the format's version, 4.1 or 2.2";
+                    return Err(c.syntax(start, expected, quoted(version)));
+                }
+                let version = shorten(&String::from_utf8_lossy(version));
+                return Err(c.unsupported(start, format!("gmsh format version {version}"), EXPORT));
             }
-            let what = format!(
-                "gmsh format version {}",
-                shorten(&String::from_utf8_lossy(version))
-            );
-            return Err(c.unsupported(start, what, EXPORT));
-        }
+        };
         let (kind, start) = c.word("0 (text) or 1 (binary)")?;
         let binary = match kind {
             b"0" => false,
@@ -264,203 +236,66 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn nodes(&mut self, section: usize) -> Result<(), MeshError> {
-        let c = &mut self.cursor;
-        if self.numbers.is_some() {
-            return Err(c.syntax(section, "one section $Nodes", "a second one"));
-        }
-        let blocks = c.count("a number of node blocks", 4, 20)?;
-        let total = c.count("a number of nodes", 4, 32)?;
-        if total as u64 > MAX_NODES {
-            return Err(MeshError::TooManyNodes {
-                what: "gmsh file",
-                nodes: total as u128,
-            });
-        }
-        c.size("the smallest node number")?;
-        c.size("the largest node number")?;
-        let mut positions = Vec::with_capacity(total);
-        for _ in 0..blocks {
-            let start = c.mark();
-            let dim = c.int("the dimension of a node block's entity")?;
-            if !(0..=3).contains(&dim) {
-                return Err(c.syntax(start, "a dimension from 0 to 3", dim.to_string()));
-            }
-            c.int("the number of a node block's entity")?;
-            let start = c.mark();
-            let parameters = match c.int("0 or 1 (parametric nodes)")? {
-                0 => 0,
-                1 => dim,
-                other => {
-                    return Err(c.syntax(start, "0 or 1 (parametric nodes)", other.to_string()));
-                }
-            };
-            let each = 4 + parameters as u64;
-            let start = c.mark();
-            let count = c.count("a number of nodes in the block", each, 8 * each)?;
-            if self.raw.node_tags.len() + count > total {
-                let expected = format!("{total} nodes in all, as the section announces");
-                return Err(c.syntax(start, &expected, "more"));
-            }
-            for _ in 0..count {
-                positions.push(c.mark());
-                self.raw.node_tags.push(c.size("a node number")?);
-            }
-            for _ in 0..count {
-                let x = c.real("a node's x")?;
-                let y = c.real("a node's y")?;
-                let z = c.real("a node's z")?;
-                for _ in 0..parameters {
-                    c.real("a node's parameter")?;
-                }
-                self.raw.nodes.push(Vec3::new(x, y, z));
-            }
-        }
-        if self.raw.nodes.len() != total {
-            let expected = format!("{total} nodes in all, as the section announces");
-            return Err(c.syntax(section, &expected, self.raw.nodes.len().to_string()));
-        }
-        let twice = |at: usize, tag: u64| {
-            self.cursor.syntax(
-                positions[at],
-                "a node number used once",
-                format!("{tag} again"),
-            )
-        };
-        let tags = &self.raw.node_tags;
-        let largest = tags.iter().copied().max().unwrap_or(0);
-        self.numbers = Some(if largest < 4 * total as u64 + 1024 {
-            let mut list = vec![u32::MAX; largest as usize + 1];
-            for (i, &tag) in tags.iter().enumerate() {
-                if list[tag as usize] != u32::MAX {
-                    return Err(twice(i, tag));
-                }
-                list[tag as usize] = i as u32;
-            }
-            Numbers::Dense(list)
-        } else {
-            let mut map = HashMap::with_capacity(total);
-            for (i, &tag) in tags.iter().enumerate() {
-                if map.insert(tag, i as u32).is_some() {
-                    return Err(twice(i, tag));
-                }
-            }
-            Numbers::Sparse(map)
-        });
-        Ok(())
+    /// The type with a number.
+    fn kind(&self, at: usize, number: i32) -> Result<&'static ElementType, MeshError> {
+        let kind = TYPES.iter().find(|t| t.number == number);
+        kind.ok_or_else(|| {
+            let what = format!("gmsh element type {number}");
+            self.cursor.unsupported(at, what, HEXAHEDRA)
+        })
     }
 
-    fn elements(&mut self, section: usize) -> Result<(), MeshError> {
-        let c = &mut self.cursor;
-        let Some(numbers) = &self.numbers else {
-            return Err(c.syntax(section, "a section $Nodes before $Elements", "$Elements"));
+    /// Whether a solid can be made of these elements beside those before; if not, that is kept for whoever wants a solid.
+    fn solid(&mut self, at: usize, kind: &'static ElementType) {
+        let c = &self.cursor;
+        let order = |kind: &ElementType| kind.nodes > 8;
+        let first = *self.solids.get_or_insert(kind);
+        let refused = if !kind.used {
+            let what = format!("a mesh of {} (gmsh type {})", kind.name, kind.number);
+            c.unsupported(at, what, HEXAHEDRA)
+        } else if order(first) != order(kind) {
+            let what = format!("a mesh of both {} and {}", first.name, kind.name);
+            let help = "give all volumes the same `Mesh.ElementOrder`";
+            c.unsupported(at, what, help)
+        } else {
+            return;
         };
-        let blocks = c.count("a number of element blocks", 4, 20)?;
-        let total = c.count("a number of elements", 2, 16)?;
-        c.size("the smallest element number")?;
-        c.size("the largest element number")?;
-        let mut seen = 0;
-        for _ in 0..blocks {
-            let start = c.mark();
-            let dim = c.int("the dimension of an element block's entity")?;
-            let entity = c.int("the number of an element block's entity")?;
-            let at = c.mark();
-            let number = c.int("an element type")?;
-            let Some(kind) = TYPES.iter().find(|t| t.number == number) else {
-                return Err(c.unsupported(at, format!("gmsh element type {number}"), HEXAHEDRA));
-            };
-            if kind.dim != dim {
-                let expected = format!("dimension {} of {}", kind.dim, kind.name);
-                return Err(c.syntax(start, &expected, dim.to_string()));
-            }
-            if kind.dim == 3 && !kind.used {
-                let what = format!("a mesh of {} (gmsh type {number})", kind.name);
-                let help = if number == 17 { SERENDIPITY } else { HEXAHEDRA };
-                return Err(c.unsupported(at, what, help));
-            }
-            let other = (self.blocks.iter()).find(|b| b.dim == 3 && b.kind.number != number);
-            if let Some(other) = other.filter(|_| dim == 3) {
-                let what = format!("a mesh of both {} and {}", other.kind.name, kind.name);
-                let help = "give all volumes the same `Mesh.ElementOrder`";
-                return Err(c.unsupported(at, what, help));
-            }
-            let each = 1 + kind.nodes as u64;
-            let count = c.count("a number of elements in the block", each, 8 * each)?;
-            seen += count;
-            *self.counts.entry(kind.name).or_default() += count;
-            let mut nodes = Vec::with_capacity(if kind.used { count * kind.nodes } else { 0 });
-            for _ in 0..count {
-                let tag = c.size("an element number")?;
-                for _ in 0..kind.nodes {
-                    let at = c.mark();
-                    let node = c.size("a node number")?;
-                    match numbers.get(node) {
-                        Some(index) if kind.used => nodes.push(index),
-                        Some(_) => {}
-                        None => {
-                            let found = format!("{node} in element {tag}");
-                            return Err(c.syntax(at, "the number of a node in $Nodes", found));
-                        }
-                    }
-                }
-                if dim == 3 {
-                    self.raw.element_tags.push(tag);
-                }
-            }
-            self.blocks.push(Block {
-                dim,
-                entity,
-                kind,
-                nodes,
-                count,
-            });
-        }
-        if seen != total {
-            let expected = format!("{total} elements in all, as the section announces");
-            return Err(c.syntax(section, &expected, seen.to_string()));
-        }
-        Ok(())
+        self.raw.refused.get_or_insert(refused);
     }
 
     /// Elements and sets from what was read.
     fn finish(mut self) -> Result<RawMesh, MeshError> {
-        if self.raw.element_tags.is_empty() {
-            let found: Vec<String> = self
-                .counts
-                .iter()
-                .map(|(name, n)| format!("{n} {name}"))
-                .collect();
-            return Err(MeshError::NoElements {
-                path: self.cursor.path.to_path_buf(),
-                found: if found.is_empty() {
-                    "none".to_string()
-                } else {
-                    found.join(", ")
-                },
-                help: format!(
-                    "give the shell its thickness by extruding its surface in layers; {HEXAHEDRA}; if physical \
-                     groups are defined, one must hold the volume"
-                ),
-            });
-        }
-        for block in self.blocks.iter().filter(|b| b.dim == 3) {
-            for e in block.nodes.chunks_exact(block.kind.nodes) {
-                self.raw.hexahedra.push(TENSOR.map(|a| e[a]));
-                if e.len() == 27 {
-                    self.raw.quadratic.push(TENSOR_27.map(|a| e[a]));
+        self.raw.found = (self.counts.iter())
+            .map(|(name, n)| format!("{n} {name}"))
+            .collect();
+        self.raw.help = EXTRUDE;
+        let raw = &mut self.raw;
+        for block in &mut self.blocks {
+            let elements = block.nodes.chunks_exact(block.kind.nodes).zip(&block.tags);
+            match block.dim {
+                2 => {
+                    block.first = raw.facets.len() as u32;
+                    for (e, &tag) in elements {
+                        raw.facets.push(e, tag);
+                    }
                 }
+                3 if raw.refused.is_none() => {
+                    block.first = raw.hexahedra.len() as u32;
+                    for (e, &tag) in elements {
+                        raw.hexahedra.push(TENSOR.map(|a| e[a]));
+                        if e.len() > 8 {
+                            let node = |a: usize| e.get(a).copied().unwrap_or(NONE);
+                            raw.quadratic.push(TENSOR_27.map(node));
+                        }
+                        raw.element_tags.push(tag);
+                    }
+                }
+                _ => {}
             }
         }
         if !self.skipped.is_empty() {
             let list = self.skipped.join(", ");
             self.raw.notes.push(format!("sections left out: {list}"));
-        }
-        for kind in TYPES.iter().filter(|t| !t.used) {
-            if let Some(n) = self.counts.get(kind.name).filter(|n| **n > 0) {
-                self.raw
-                    .notes
-                    .push(format!("{n} {} were left out", kind.name));
-            }
         }
         self.groups
             .sets(&self.blocks, &mut self.raw, self.cursor.path)?;

@@ -1,39 +1,48 @@
-//! Reader of Abaqus' and CalculiX' input files, of the part that describes a mesh: `*NODE`, `*ELEMENT` (C3D8 and its
-//! relatives, SC8R, C3D27), `*NSET`, `*ELSET`, `*SURFACE, TYPE=ELEMENT` (Abaqus keywords reference; CalculiX manual, ch. 7).
+//! Reader of Abaqus' and CalculiX' input files, of the part that describes a mesh: `*NODE`, `*ELEMENT`, `*NSET`, `*ELSET`,
+//! `*SURFACE, TYPE=ELEMENT`, in flat files and in parts, instances and assemblies (Abaqus keywords reference; CalculiX
+//! manual, ch. 7).
 //!
-//! Quadrilaterals (S4, CPS4, M3D4, ...) stand for faces: an element set of them becomes a face set, which is how gmsh
-//! writes physical surfaces. As in CalculiX, what a line refers to stands above it.
+//! Hexahedra are the elements of a solid, quadrilaterals (S4, CPS4, M3D4, ...) are its faces: an element set of them
+//! becomes a face set, which is how gmsh writes physical surfaces. Quadrilaterals and triangles are the elements of a
+//! surface. Nodes stand above the elements that use them; sets may be used before they are defined.
+mod assembly;
+mod build;
 mod lines;
-mod quadratic;
+mod names;
+mod resolve;
+mod scope;
+mod types;
 
-use super::error::{MAX_NODES, MOST_IN_NAME, listed, most_members, shorten};
+use super::error::{MAX_NODES, MOST_IN_NAME, shorten};
+use super::field::Field;
 use super::raw::RawMesh;
-use super::{Face, Mesh, MeshError, MeshReport};
+use super::{Mesh, MeshError, MeshReport};
+use assembly::Instance;
 use covact_geometry::Vec3;
-use lines::{Field, Keyword, fields};
-use quadratic::tensor_27;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use lines::{Keyword, fields};
+use scope::{Element, Entry, Reference, Scope, Side};
+use std::collections::BTreeSet;
 use std::path::Path;
+use types::Shape;
 
-/// Nodes are numbered around the faces; tensor node `a` is file node `TENSOR[a]`.
-const TENSOR: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 /// Local faces of the file's faces S1 to S6.
 const FACES: [u8; 6] = [4, 5, 2, 1, 3, 0];
-const SOLIDS: [&str; 6] = ["C3D8", "C3D8I", "C3D8R", "C3D8H", "C3D8RH", "SC8R"];
-const QUADRATIC_SOLIDS: [&str; 4] = ["C3D27", "C3D27H", "C3D27R", "C3D27RH"];
-const QUADRILATERALS: [&str; 9] = [
-    "S4", "S4R", "CPS4", "CPS4R", "CPE4", "CPE4R", "M3D4", "M3D4R", "SFM3D4",
-];
-const QUADRATIC_QUADRILATERALS: [&str; 3] = ["S9R5", "M3D9", "M3D9R"];
-const ELEMENTS: &str =
-    "solid elements are C3D8, C3D8I, C3D8R and SC8R, of 8 nodes, and C3D27 of 27";
-const SERENDIPITY: &str = "it has no nodes in the middle of its faces; use C3D27 with all 27 nodes (element `q18`) or C3D8 \
-                           (element `h8`)";
-const FLAT: &str = "write a flat file: in Abaqus/CAE, Model > Edit Attributes > `Do not use parts and assemblies in \
-                    input files`";
+const ELEMENTS: &str = "solid elements are C3D8 and its relatives and SC8R, of 8 nodes, C3D20 of 20 and C3D27 of 27; \
+                        elements of surfaces are S3, S4, S6, S8, CPS3, CPS4, M3D3, M3D4 and the like";
 
-/// Reads the mesh from the bytes of a file; `path` is for messages, `scale` multiplies every coordinate.
+/// Keywords whose data lines are read.
+const OF_MESH: [&str; 5] = ["*NODE", "*ELEMENT", "*NSET", "*ELSET", "*SURFACE"];
+
+/// Set that meshio writes of what it read of a gmsh file: its numbers are of geometry, not of elements.
+const NOT_A_SET: &str = "gmsh:bounding_entities";
+
+/// Reads the mesh of hexahedra from the bytes of a file; `path` is for messages, `scale` multiplies every coordinate.
 pub fn read_inp(bytes: &[u8], path: &Path, scale: f64) -> Result<(Mesh, MeshReport), MeshError> {
+    parse(bytes, path)?.into_mesh(path, scale)
+}
+
+/// Everything of use in a file.
+pub(super) fn parse(bytes: &[u8], path: &Path) -> Result<RawMesh, MeshError> {
     let text = String::from_utf8_lossy(bytes);
     let mut reader = Reader::new(path);
     let mut lines = text.lines().enumerate().map(|(i, line)| (i + 1, line));
@@ -61,16 +70,7 @@ pub fn read_inp(bytes: &[u8], path: &Path, scale: f64) -> Result<(Mesh, MeshRepo
         reader.keyword(&keyword)?;
     }
     reader.complete()?;
-    reader.finish()?.into_mesh(scale)
-}
-
-/// An element of the file.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Item {
-    /// Index into the hexahedra.
-    Solid(u32),
-    /// Index into the quadrilaterals.
-    Quad(u32),
+    reader.finish()
 }
 
 /// What the data lines below a keyword mean.
@@ -79,86 +79,86 @@ enum Mode {
     /// Of a node set.
     Node(Option<String>),
     Element {
-        nodes: usize,
-        given: bool,
+        shape: Shape,
         set: Option<String>,
     },
-    NodeSet {
-        set: String,
+    Set {
+        kind: SetOf,
+        name: String,
         generate: bool,
-    },
-    ElementSet {
-        set: String,
-        generate: bool,
+        instance: Option<String>,
     },
     Surface(String),
+    /// Translation, then rotation of an instance.
+    Instance(usize),
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum SetOf {
+    Nodes,
+    Elements,
 }
 
 struct Reader<'a> {
     path: &'a Path,
-    raw: RawMesh,
-    nodes: HashMap<u64, u32>,
-    items: HashMap<u64, Item>,
-    quads: Vec<[u32; 4]>,
-    element_sets: BTreeMap<String, BTreeSet<Item>>,
-    /// Spelling of every set by its name in capitals: names do not depend on case.
-    spelling: BTreeMap<String, String>,
+    /// The flat file or the assembly first, then the parts in the order of the file.
+    scopes: Vec<Scope>,
+    /// Where nodes, elements and sets go.
+    current: usize,
+    instances: Vec<Instance>,
     mode: Mode,
-    /// Numbers of an element that goes on in the next line; the place of the first.
-    pending: Vec<u64>,
+    /// Nodes of an element that goes on in the next line, after its number; the place of the last.
+    pending: Option<(u64, Vec<u32>)>,
     last: (usize, usize),
     /// Element types and keywords that were passed over.
     types: BTreeSet<String>,
     skipped: BTreeSet<String>,
-    /// Members of sets so far, and numbers looked at to find them.
-    members: u64,
+    notes: Vec<String>,
+    refused: Option<MeshError>,
+    found: BTreeSet<String>,
+    /// Elements whose line goes on after their last node.
+    longer: usize,
 }
 
 impl<'a> Reader<'a> {
-    /// Counts members of sets.
-    fn grow(&mut self, members: usize) -> Result<(), MeshError> {
-        self.members += members as u64;
-        let most = most_members(self.nodes.len(), self.items.len());
-        match self.members > most {
-            true => Err(MeshError::LongSets {
-                path: self.path.to_path_buf(),
-                most,
-            }),
-            false => Ok(()),
-        }
-    }
-
     fn new(path: &'a Path) -> Reader<'a> {
         Reader {
             path,
-            raw: RawMesh::default(),
-            nodes: HashMap::new(),
-            items: HashMap::new(),
-            quads: Vec::new(),
-            element_sets: BTreeMap::new(),
-            spelling: BTreeMap::new(),
+            scopes: vec![Scope::default()],
+            current: 0,
+            instances: Vec::new(),
             mode: Mode::Skip,
-            pending: Vec::new(),
+            pending: None,
             last: (1, 1),
             types: BTreeSet::new(),
             skipped: BTreeSet::new(),
-            members: 0,
+            notes: Vec::new(),
+            refused: None,
+            found: BTreeSet::new(),
+            longer: 0,
         }
+    }
+
+    fn scope(&mut self) -> &mut Scope {
+        &mut self.scopes[self.current]
     }
 
     fn keyword(&mut self, keyword: &Keyword) -> Result<(), MeshError> {
         self.complete()?;
         let path = self.path;
         let name = |parameter: &str| match keyword.get(parameter) {
-            Some(field) if !field.text.is_empty() => Ok(field),
+            Some(field) if !field.text.is_empty() => spell(path, field),
             _ => {
                 let expected = format!("{} with {parameter}=name", keyword.name);
                 Err(keyword.at.syntax(path, &expected))
             }
         };
-        let generate = keyword.get("GENERATE").is_some();
-        if let (Some(file), true) = (keyword.get("INPUT"), keyword.name != "*INCLUDE") {
-            let keyword = shorten(&keyword.name);
+        let optional = |parameter: &str| {
+            let field = keyword.get(parameter).filter(|f| !f.text.is_empty());
+            field.map(|f| spell(path, f)).transpose()
+        };
+        if let (Some(file), true) = (keyword.get("INPUT"), OF_MESH.contains(&&*keyword.name)) {
+            let keyword = &keyword.name;
             let what = format!("{keyword} with its data in another file (INPUT)");
             let help = "put the data into this file";
             return Err(file.unsupported(path, what, help));
@@ -169,26 +169,40 @@ impl<'a> Reader<'a> {
                     let what = format!("the coordinate system {}", shorten(system.text));
                     return Err(system.unsupported(path, what, "give rectangular coordinates"));
                 }
-                Mode::Node(keyword.get("NSET").map(|f| self.spell(f)).transpose()?)
+                Mode::Node(optional("NSET")?)
             }
             "*ELEMENT" => {
-                let field = name("TYPE")?;
-                let set = keyword.get("ELSET").map(|f| self.spell(f)).transpose()?;
-                self.elements(field, set)?
+                let Some(kind) = keyword.get("TYPE").filter(|f| !f.text.is_empty()) else {
+                    return Err(keyword.at.syntax(path, "*ELEMENT with TYPE=name"));
+                };
+                self.elements(kind, optional("ELSET")?)
             }
-            "*NSET" => Mode::NodeSet {
-                set: self.spell(name("NSET")?)?,
-                generate,
-            },
-            "*ELSET" => Mode::ElementSet {
-                set: self.spell(name("ELSET")?)?,
-                generate,
-            },
+            "*NSET" | "*ELSET" => {
+                let (kind, parameter) = match keyword.name.as_str() {
+                    "*NSET" => (SetOf::Nodes, "NSET"),
+                    _ => (SetOf::Elements, "ELSET"),
+                };
+                let name = name(parameter)?;
+                if name == NOT_A_SET {
+                    self.notes
+                        .push(format!("`{name}` holds no elements and was left out"));
+                    Mode::Skip
+                } else {
+                    // A set without members is one too.
+                    self.set(kind, &name);
+                    Mode::Set {
+                        kind,
+                        name,
+                        generate: keyword.get("GENERATE").is_some(),
+                        instance: optional("INSTANCE")?,
+                    }
+                }
+            }
             "*SURFACE" => {
-                let set = self.spell(name("NAME")?)?;
+                let set = name("NAME")?;
                 match keyword.get("TYPE") {
                     Some(t) if !t.text.eq_ignore_ascii_case("ELEMENT") => {
-                        self.raw.notes.push(format!(
+                        self.notes.push(format!(
                             "surface `{set}` of type {} was left out",
                             shorten(t.text)
                         ));
@@ -201,8 +215,8 @@ impl<'a> Reader<'a> {
                 let help = "put the included text into this file";
                 return Err(keyword.at.unsupported(path, keyword.name.clone(), help));
             }
-            "*PART" | "*INSTANCE" | "*ASSEMBLY" => {
-                return Err(keyword.at.unsupported(path, keyword.name.clone(), FLAT));
+            "*PART" | "*ENDPART" | "*ASSEMBLY" | "*ENDASSEMBLY" | "*INSTANCE" | "*ENDINSTANCE" => {
+                self.assembly(keyword)?
             }
             "*SYSTEM" | "*NGEN" | "*NFILL" | "*NCOPY" | "*ELGEN" | "*ELCOPY" => {
                 let help = "write all nodes and elements out, in rectangular coordinates";
@@ -217,76 +231,50 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn elements(&mut self, field: Field, set: Option<String>) -> Result<Mode, MeshError> {
+    fn elements(&mut self, field: Field, set: Option<String>) -> Mode {
         let kind = field.text.to_uppercase();
-        if SOLIDS.contains(&kind.as_str()) {
-            return Ok(Mode::Element {
-                nodes: 8,
-                given: kind == "SC8R",
-                set,
-            });
+        let shape = Shape::of(&kind);
+        self.found.insert(kind.clone());
+        if let Some(set) = &set {
+            self.set(SetOf::Elements, set);
         }
-        let nodes = if QUADRATIC_SOLIDS.contains(&kind.as_str()) {
-            27
-        } else if QUADRILATERALS.contains(&kind.as_str()) {
-            4
-        } else if QUADRATIC_QUADRILATERALS.contains(&kind.as_str()) {
-            9
-        } else {
-            0
-        };
-        if nodes > 0 {
-            return Ok(Mode::Element {
-                nodes,
-                given: false,
-                set,
-            });
+        match shape {
+            Shape::OtherSolid => {
+                let what = format!("element type {}", shorten(&kind));
+                let refused = field.unsupported(self.path, what, ELEMENTS);
+                self.refused.get_or_insert(refused);
+                self.types.insert(kind);
+                Mode::Skip
+            }
+            Shape::Other => {
+                self.types.insert(kind);
+                Mode::Skip
+            }
+            _ => Mode::Element { shape, set },
         }
-        if kind.starts_with("C3D20") {
-            let what = format!("element type {}", shorten(&kind));
-            return Err(field.unsupported(self.path, what, SERENDIPITY));
-        }
-        if kind.starts_with("C3D") || kind.starts_with("SC") {
-            let what = format!("element type {}", shorten(&kind));
-            return Err(field.unsupported(self.path, what, ELEMENTS));
-        }
-        self.types.insert(kind);
-        Ok(Mode::Skip)
     }
 
-    /// First spelling of a set's name.
-    fn spell(&mut self, field: Field) -> Result<String, MeshError> {
-        let name = field.text;
-        // Every line of the set looks it up.
-        if name.len() > MOST_IN_NAME {
-            let expected = format!("a name of at most {MOST_IN_NAME} bytes");
-            return Err(field.syntax(self.path, &expected));
+    fn set(&mut self, kind: SetOf, name: &str) -> &mut scope::Set {
+        let scope = self.scope();
+        match kind {
+            SetOf::Nodes => scope.node_sets.get(name),
+            SetOf::Elements => scope.element_sets.get(name),
         }
-        let spelling = self.spelling.entry(name.to_uppercase());
-        Ok(spelling.or_insert_with(|| name.to_string()).clone())
-    }
-
-    /// Known set that a data line names.
-    fn named(&self, text: &str) -> Option<&String> {
-        self.spelling.get(&text.trim_matches('"').to_uppercase())
     }
 
     /// An element whose line ended too early.
     fn complete(&mut self) -> Result<(), MeshError> {
-        let Mode::Element { nodes, .. } = self.mode else {
+        let (Mode::Element { shape, .. }, Some((tag, found))) = (&self.mode, self.pending.take())
+        else {
             return Ok(());
         };
-        if self.pending.is_empty() {
-            return Ok(());
-        }
         let field = Field {
             text: "",
             line: self.last.0,
             column: self.last.1,
         };
-        let expected = format!("{nodes} nodes of element {}", self.pending[0]);
-        let found = format!("{}", self.pending.len() - 1);
-        Err(field.syntax_found(self.path, &expected, &found))
+        let expected = format!("{} nodes of element {tag}", shape.nodes());
+        Err(field.syntax_found(self.path, &expected, &found.len().to_string()))
     }
 
     fn data(&mut self, line: &str, number: usize) -> Result<(), MeshError> {
@@ -295,105 +283,64 @@ impl<'a> Reader<'a> {
         match &mode {
             Mode::Skip => {}
             Mode::Node(set) => self.node(list, set.as_deref())?,
-            Mode::Element { nodes, given, set } => {
-                for field in list {
-                    self.element_number(field, *nodes, *given, set.as_deref())?;
-                }
-            }
-            Mode::NodeSet { set, generate } => {
-                let mut found = self.raw.node_sets.remove(set).unwrap_or_default();
-                for (tag, field) in self.numbers(list, *generate)? {
-                    let before = found.len();
-                    match tag.and_then(|tag| self.nodes.get(&tag)) {
-                        Some(&node) => found.push(node),
-                        None => match self.named(field.text).map(|s| self.raw.node_sets.get(s)) {
-                            Some(Some(other)) => found.extend(other),
-                            _ => return Err(self.not_above(field, tag, "node")),
-                        },
+            Mode::Element { shape, set } => {
+                let mut list = list;
+                while let Some(field) = list.next() {
+                    let whole = self.element_number(field, *shape, set.as_deref())?;
+                    if whole {
+                        // Programs read as many nodes as the type has; the line may have more.
+                        self.longer += usize::from(list.any(|f| !f.text.is_empty()));
+                        break;
                     }
-                    self.grow(found.len() - before)?;
                 }
-                self.raw.node_sets.insert(set.clone(), found);
             }
-            Mode::ElementSet { set, generate } => {
-                let mut found = self.element_sets.remove(set).unwrap_or_default();
-                for (tag, field) in self.numbers(list, *generate)? {
-                    let mut others = 1;
-                    match tag.map(|tag| self.items.get(&tag)) {
-                        Some(Some(&item)) => {
-                            found.insert(item);
-                        }
-                        // A number of an element that was passed over.
-                        Some(None) if !self.types.is_empty() => {}
-                        _ => match self.named(field.text).map(|s| self.element_sets.get(s)) {
-                            Some(Some(other)) => {
-                                others = other.len();
-                                found.extend(other);
-                            }
-                            _ => return Err(self.not_above(field, tag, "element")),
-                        },
-                    }
-                    self.grow(others)?;
-                }
-                self.element_sets.insert(set.clone(), found);
-            }
+            Mode::Set {
+                kind,
+                name,
+                generate,
+                instance,
+            } => self.members(list, *kind, name, *generate, instance.as_deref())?,
             Mode::Surface(set) => self.surface(list, set)?,
+            Mode::Instance(k) => self.place(*k, list)?,
         }
         self.mode = mode;
         Ok(())
     }
 
-    fn not_above(&self, field: Field, tag: Option<u64>, kind: &str) -> MeshError {
-        let expected = format!("the number or set of {kind}s that stand above");
-        let found = tag.map_or(field.text.to_string(), |tag| format!("{kind} {tag}"));
-        field.syntax_found(self.path, &expected, &found)
-    }
-
-    /// Numbers of a line of a set: as they are, or `first, last, step`. A name has no number.
-    fn numbers<'l>(
+    /// Members of a set: as they are, or `first, last, step`.
+    fn members<'l>(
         &mut self,
         mut list: impl Iterator<Item = Field<'l>>,
+        kind: SetOf,
+        name: &str,
         generate: bool,
-    ) -> Result<Vec<(Option<u64>, Field<'l>)>, MeshError> {
+        instance: Option<&str>,
+    ) -> Result<(), MeshError> {
+        let path = self.path;
+        let set = self.set(kind, name);
+        let instance = set.instance(instance);
         if !generate {
-            let kept = list.filter(|f| !f.text.is_empty());
-            return Ok(kept.map(|f| (f.text.parse().ok(), f)).collect());
+            for field in list.filter(|f| !f.text.is_empty()) {
+                set.entries
+                    .push(Entry::new(reference(&field), &field, instance));
+            }
+            return Ok(());
         }
         let Some(field) = list.next() else {
-            return Ok(Vec::new());
+            return Ok(());
         };
-        let first = field.integer(self.path, "the first number")?;
+        let first = field.integer(path, "the first number")?;
         let last = match list.next() {
-            Some(f) => f.integer(self.path, "the last number")?,
+            Some(f) => f.integer(path, "the last number")?,
             None => first,
         };
         let step = match list.next() {
-            Some(f) => f.integer(self.path, "the step between numbers")?,
-            None => 1,
+            Some(f) if !f.text.is_empty() => f.integer(path, "the step between numbers")?,
+            _ => 1,
         };
-        let most = (self.nodes.len() + self.items.len()) as u64;
-        if step == 0 || last < first || ((last - first) / step > most && self.types.is_empty()) {
-            let expected = "first <= last, a step of at least 1, and numbers that stand above";
-            let found = format!("{first}, {last}, {step}");
-            return Err(field.syntax_found(self.path, expected, &found));
-        }
-        // Looking a number up costs less than keeping it.
-        self.grow((((last - first) / step).min(most) / 8) as usize)?;
-        // Numbers of passed-over elements are not known, so only those that exist are taken.
-        let known = |tag: &u64| {
-            self.types.is_empty() || self.items.contains_key(tag) || self.nodes.contains_key(tag)
-        };
-        if (last - first) / step > most {
-            let all = self.nodes.keys().chain(self.items.keys()).copied();
-            let mut tags: Vec<u64> = all
-                .filter(|t| (first..=last).contains(t) && (t - first) % step == 0)
-                .collect();
-            tags.sort_unstable();
-            tags.dedup();
-            return Ok(tags.into_iter().map(|tag| (Some(tag), field)).collect());
-        }
-        let tags = (0..=(last - first) / step).map(|i| first + i * step);
-        Ok(tags.filter(known).map(|tag| (Some(tag), field)).collect())
+        let range = Reference::Range(Box::new([first, last, step]));
+        set.entries.push(Entry::new(range, &field, instance));
+        Ok(())
     }
 
     fn node<'l>(
@@ -401,201 +348,142 @@ impl<'a> Reader<'a> {
         mut list: impl Iterator<Item = Field<'l>>,
         set: Option<&str>,
     ) -> Result<(), MeshError> {
+        let path = self.path;
         let Some(field) = list.next() else {
             return Ok(());
         };
-        let tag = field.integer(self.path, "a node number")?;
+        let tag = field.integer(path, "a node number")?;
         let mut x = [0.0; 3];
         for (value, field) in x.iter_mut().zip(list) {
             // An empty entry is zero.
             if !field.text.is_empty() {
-                *value = field.real(self.path, "a coordinate")?;
+                *value = field.real(path, "a coordinate")?;
             }
         }
-        let index = self.raw.nodes.len() as u32;
+        let scope = self.scope();
+        let index = scope.nodes.len() as u32;
         if u64::from(index) >= MAX_NODES {
             return Err(MeshError::TooManyNodes {
                 what: "input file",
                 nodes: u128::from(index) + 1,
             });
         }
-        if self.nodes.insert(tag, index).is_some() {
-            return Err(field.syntax(self.path, "a node number used once"));
+        if scope.node_index.insert(tag, index).is_some() {
+            return Err(field.syntax(path, "a node number used once"));
         }
-        self.raw.nodes.push(Vec3::from(x));
-        self.raw.node_tags.push(tag);
+        scope.nodes.push(Vec3::from(x));
+        scope.node_tags.push(tag);
         if let Some(set) = set {
-            self.raw
-                .node_sets
-                .entry(set.to_string())
-                .or_default()
-                .push(index);
+            let set = scope.node_sets.get(set);
+            set.entries
+                .push(Entry::new(Reference::Number(tag), &field, super::raw::NONE));
         }
         Ok(())
     }
 
+    /// The next number of an element: its own, or that of a node. Whether the element has all its nodes then.
     fn element_number(
         &mut self,
         field: Field,
-        nodes: usize,
-        given: bool,
+        shape: Shape,
         set: Option<&str>,
-    ) -> Result<(), MeshError> {
+    ) -> Result<bool, MeshError> {
         self.last = (field.line, field.column);
-        if self.pending.is_empty() {
-            let tag = field.integer(self.path, "an element number")?;
-            if self.items.contains_key(&tag) {
-                return Err(field.syntax(self.path, "an element number used once"));
+        let path = self.path;
+        let scope = &mut self.scopes[self.current];
+        let Some((tag, nodes)) = &mut self.pending else {
+            let tag = field.integer(path, "an element number")?;
+            if scope.element_index.contains_key(&tag) {
+                return Err(field.syntax(path, "an element number used once"));
             }
-            self.pending.push(tag);
-            return Ok(());
-        }
-        let tag = field.integer(self.path, "a node number")?;
-        let Some(&node) = self.nodes.get(&tag) else {
-            return Err(self.not_above(field, Some(tag), "node"));
+            self.pending = Some((tag, Vec::with_capacity(shape.nodes())));
+            return Ok(false);
         };
-        self.pending.push(u64::from(node));
-        if self.pending.len() < nodes + 1 {
-            return Ok(());
-        }
-        let tag = self.pending[0];
-        let node = |a: usize| self.pending[a + 1] as u32;
-        let item = if nodes == 8 || nodes == 27 {
-            let all = self.raw.hexahedra.len() * usize::from(nodes == 27);
-            if self.raw.quadratic.len() != all {
-                let expected = "elements of 8 or of 27 nodes, not both";
-                return Err(field.syntax(self.path, expected));
-            }
-            if nodes == 27 {
-                let all = std::array::from_fn(node);
-                let Some(tensor) = tensor_27(&all, &self.raw.nodes) else {
-                    let expected =
-                        format!("the nodes of element {tag} within its faces and its middle");
-                    return Err(field.syntax(self.path, &expected));
-                };
-                self.raw.quadratic.push(tensor);
-            }
-            self.raw.hexahedra.push(TENSOR.map(node));
-            self.raw.element_tags.push(tag);
-            self.raw.thickness_is_given.push(given);
-            Item::Solid(self.raw.hexahedra.len() as u32 - 1)
-        } else {
-            self.quads.push([0, 1, 2, 3].map(node));
-            Item::Quad(self.quads.len() as u32 - 1)
+        let node = field.integer(path, "a node number")?;
+        let Some(&index) = scope.node_index.get(&node) else {
+            let expected = "the number of a node that stands above";
+            return Err(field.syntax_found(path, expected, &format!("node {node}")));
         };
-        self.pending.clear();
-        self.items.insert(tag, item);
+        nodes.push(index);
+        if nodes.len() < shape.nodes() {
+            return Ok(false);
+        }
+        let element = Element {
+            tag: *tag,
+            shape,
+            first: scope.connectivity.len(),
+            at: (field.line as u32, field.column as u32),
+        };
+        scope.connectivity.append(nodes);
+        let tag = *tag;
+        scope.element_index.insert(tag, scope.elements.len() as u32);
+        scope.elements.push(element);
         if let Some(set) = set {
-            self.element_sets
-                .entry(set.to_string())
-                .or_default()
-                .insert(item);
+            let set = scope.element_sets.get(set);
+            set.entries
+                .push(Entry::new(Reference::Number(tag), &field, super::raw::NONE));
         }
-        Ok(())
+        self.pending = None;
+        Ok(true)
     }
 
     /// `element or element set, S1 to S6`.
     fn surface<'l>(
         &mut self,
         mut list: impl Iterator<Item = Field<'l>>,
-        set: &str,
+        name: &str,
     ) -> Result<(), MeshError> {
         let Some(field) = list.next() else {
             return Ok(());
         };
-        let tag = field.text.parse::<u64>().ok();
-        let items: Vec<Item> = match tag.and_then(|tag| self.items.get(&tag)) {
-            Some(&item) => vec![item],
-            None => match self.named(field.text).map(|s| self.element_sets.get(s)) {
-                Some(Some(items)) => items.iter().copied().collect(),
-                _ => return Err(self.not_above(field, tag, "element")),
-            },
-        };
         let side = list.next();
-        let face = side.and_then(|s| match s.text.to_uppercase().as_str() {
-            "SNEG" => Some(FACES[0]),
-            "SPOS" => Some(FACES[1]),
+        let parsed = side.and_then(|s| match s.text.to_uppercase().as_str() {
+            "SNEG" => Some(Side::Face(FACES[0])),
+            "SPOS" => Some(Side::Face(FACES[1])),
             other => {
-                let number = other.strip_prefix('S')?.parse::<usize>().ok()?;
-                FACES.get(number.checked_sub(1)?).copied()
+                let number = |letter| {
+                    other
+                        .strip_prefix(letter)?
+                        .parse::<usize>()
+                        .ok()?
+                        .checked_sub(1)
+                };
+                match (number('S'), number('E')) {
+                    (Some(k), _) => FACES.get(k).map(|face| Side::Face(*face)),
+                    (_, Some(k)) if k < 4 => Some(Side::Edge(k as u8)),
+                    _ => None,
+                }
             }
         });
-        self.grow(items.len())?;
-        for item in items {
-            match (item, face) {
-                (Item::Solid(element), Some(face)) => {
-                    let faces = self.raw.face_sets.entry(set.to_string()).or_default();
-                    faces.push(Face { element, face });
-                }
-                (Item::Solid(_), None) => {
-                    let expected = "a face from S1 to S6";
-                    return Err(side.unwrap_or(field).syntax(self.path, expected));
-                }
-                (Item::Quad(quad), _) => {
-                    let quads = self.raw.surfaces.entry(set.to_string()).or_default();
-                    quads.push(self.quads[quad as usize]);
-                }
+        let mut entry = Entry::new(reference(&field), &field, super::raw::NONE);
+        // Surfaces of shells may leave it out; solids are told where they miss it.
+        entry.side = parsed.unwrap_or(Side::None);
+        if let (Some(side), Side::None) = (side, entry.side) {
+            entry.line = side.line as u32;
+            entry.column = side.column as u32;
+            if !side.text.is_empty() {
+                return Err(side.syntax(self.path, "a face from S1 to S6"));
             }
         }
+        self.scope().surfaces.get(name).entries.push(entry);
         Ok(())
     }
+}
 
-    fn finish(mut self) -> Result<RawMesh, MeshError> {
-        if self.raw.hexahedra.is_empty() {
-            let mut found = self.types.clone();
-            if !self.quads.is_empty() {
-                found.insert("quadrilaterals".to_string());
-            }
-            return Err(MeshError::NoElements {
-                path: self.path.to_path_buf(),
-                found: if found.is_empty() {
-                    "none".to_string()
-                } else {
-                    listed(&found)
-                },
-                help: ELEMENTS.to_string(),
-            });
-        }
-        for (name, items) in &self.element_sets {
-            if items.is_empty() {
-                self.raw.notes.push(format!(
-                    "set `{name}` holds no solid or quadrilateral elements"
-                ));
-                continue;
-            }
-            let nodes = self.raw.node_sets.entry(name.clone()).or_default();
-            for item in items {
-                match *item {
-                    Item::Solid(e) => match self.raw.quadratic.get(e as usize) {
-                        Some(all) => nodes.extend(all),
-                        None => nodes.extend(self.raw.hexahedra[e as usize]),
-                    },
-                    Item::Quad(q) => {
-                        let quad = self.quads[q as usize];
-                        nodes.extend(quad);
-                        self.raw
-                            .surfaces
-                            .entry(name.clone())
-                            .or_default()
-                            .push(quad);
-                    }
-                }
-            }
-            // Neighbours share nodes; there may be many sets.
-            nodes.sort_unstable();
-            nodes.dedup();
-            nodes.shrink_to_fit();
-        }
-        if !self.types.is_empty() {
-            self.raw
-                .notes
-                .push(format!("elements left out: {}", listed(&self.types)));
-        }
-        if !self.skipped.is_empty() {
-            self.raw
-                .notes
-                .push(format!("keywords left out: {}", listed(&self.skipped)));
-        }
-        Ok(self.raw)
+/// A number, or a name.
+fn reference(field: &Field) -> Reference {
+    match field.text.parse() {
+        Ok(number) => Reference::Number(number),
+        Err(_) => Reference::Name(field.text.trim_matches('"').into()),
     }
+}
+
+/// The name of a set.
+fn spell(path: &Path, field: Field) -> Result<String, MeshError> {
+    // Every line of the set looks it up.
+    if field.text.len() > MOST_IN_NAME {
+        let expected = format!("a name of at most {MOST_IN_NAME} bytes");
+        return Err(field.syntax(path, &expected));
+    }
+    Ok(field.text.to_string())
 }

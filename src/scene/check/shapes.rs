@@ -1,7 +1,10 @@
 //! Meshes, selections and rigid surfaces.
-use super::checker::Checker;
+use super::checker::{Checker, path};
 use crate::scene::types::*;
 use crate::scene::value::{TIME, Value};
+
+/// Extensions of mesh files.
+const MESH_FILES: &[&str] = &["msh", "inp", "bdf", "nas", "vtk", "vtu", "stl"];
 
 /// More elements than this are taken for a mistake.
 const MAX_ELEMENTS: f64 = 5e7;
@@ -67,9 +70,46 @@ pub(super) fn check_mesh(c: &mut Checker, at: &str, mesh: &MeshSource) {
             check_counts(c, &at, &b.elements, 1);
         }
         MeshSource::File(f) => {
-            c.file(&format!("{at}/file/path"), &f.path, &["msh", "inp"]);
-            c.positive(&format!("{at}/file/scale"), "the scale", f.scale);
+            check_mesh_file(c, &format!("{at}/file"), f);
         }
+    }
+}
+
+fn check_mesh_file(c: &mut Checker, at: &str, file: &MeshFile) {
+    c.file(&format!("{at}/path"), &file.path, MESH_FILES);
+    c.positive(&format!("{at}/scale"), "the scale", file.scale);
+    match &file.thickness {
+        Some(Thickness::Uniform(t)) => c.positive(&format!("{at}/thickness"), "the thickness", *t),
+        Some(Thickness::BySet(sets)) => {
+            if sets.is_empty() {
+                let help = "a number, or `{\"set\": number, ...}` with element sets of the file";
+                let message = "the thickness names no set";
+                c.add(&format!("{at}/thickness"), message, Some(help.into()));
+            }
+            for (set, t) in sets {
+                let at = format!("{at}{}", path(&["thickness", set]));
+                c.positive(&at, "the thickness", *t);
+            }
+        }
+        Some(Thickness::Field(text)) => {
+            let value = Value::Expression(text.clone());
+            c.value(&format!("{at}/thickness"), &value, &Thickness::VARIABLES);
+        }
+        None => {
+            for (field, given) in [
+                ("offset", file.offset.is_some()),
+                ("layers", file.layers.is_some()),
+            ] {
+                if given {
+                    let message = format!("`{field}` is for surfaces with a `thickness`");
+                    let help = "give the surface its `thickness` too; hexahedra have their own";
+                    c.add(&format!("{at}/{field}"), message, Some(help.into()));
+                }
+            }
+        }
+    }
+    if let Some(layers) = file.layers {
+        c.whole(&format!("{at}/layers"), layers, 1, 1000);
     }
 }
 

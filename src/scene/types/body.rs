@@ -1,10 +1,10 @@
 //! Deformable bodies: materials, elements, where meshes come from, sets.
 use super::mesh::*;
+use super::mesh_file::MeshFile;
 use super::surface::Placement;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 /// Constitutive law, written `{"st_venant_kirchhoff": {"E": 210000, "nu": 0.3}}`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -68,19 +68,9 @@ pub enum MeshSource {
     SpherePanel(SpherePanel),
     /// Box of elements with grading along each axis; layers along z.
     Block(Block),
-    /// Mesh file: gmsh `.msh` 4.1 with physical names, or a subset of Abaqus `.inp`.
+    /// Mesh file of hexahedra, or of a surface that `thickness` makes a body of: gmsh, Abaqus and CalculiX, Nastran, VTK,
+    /// STL.
     File(MeshFile),
-}
-
-/// A mesh file beside the scene.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MeshFile {
-    /// Path relative to the scene file.
-    pub path: PathBuf,
-    /// Multiplies every coordinate.
-    #[serde(default = "one_f64")]
-    pub scale: f64,
 }
 
 /// Set selected by geometry, on the undeformed mesh.
@@ -101,8 +91,4 @@ pub enum Selection {
     FacesInBox { min: [f64; 3], max: [f64; 3] },
     /// Outer faces whose outward normal is within `angle` degrees of `normal`.
     FacesFacing { normal: [f64; 3], angle: f64 },
-}
-
-fn one_f64() -> f64 {
-    1.0
 }

@@ -78,6 +78,7 @@ histories!(
     ball_on_plate,
     crossed_tubes,
     draw_bead,
+    hat_pressed,
     hertz_block,
     ironing,
     pinched_tube,

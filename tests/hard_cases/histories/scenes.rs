@@ -38,6 +38,8 @@ pub fn draw_bead(scene: &mut Value) {
     end(scene, 1.2);
 }
 
+pub fn hat_pressed(_: &mut Value) {}
+
 pub fn hertz_block(scene: &mut Value) {
     elements(scene, "block", "block", json!([10, 10, 10]));
     for axis in 0..3 {

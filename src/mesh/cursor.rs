@@ -179,3 +179,36 @@ pub(super) fn quoted(word: &[u8]) -> String {
         .collect();
     format!("`{text}`")
 }
+
+impl Cursor<'_> {
+    /// A real of 4 bytes where the file is binary.
+    pub fn single(&mut self, expected: &str) -> Result<f64, MeshError> {
+        if self.encoding == Encoding::Text {
+            return self.real(expected);
+        }
+        let start = self.pos;
+        let value = f64::from(f32::from_le_bytes(self.raw(expected)?));
+        match value.is_finite() {
+            true => Ok(value),
+            false => Err(self.syntax(start, expected, value.to_string())),
+        }
+    }
+
+    /// A whole number of 1, 2, 4 or 8 bytes where the file is binary.
+    pub fn whole(&mut self, bytes: u8, signed: bool, expected: &str) -> Result<i64, MeshError> {
+        if self.encoding == Encoding::Text {
+            return self.text_number(expected);
+        }
+        Ok(match (bytes, signed) {
+            (1, true) => i8::from_le_bytes(self.raw(expected)?).into(),
+            (1, false) => u8::from_le_bytes(self.raw(expected)?).into(),
+            (2, true) => i16::from_le_bytes(self.raw(expected)?).into(),
+            (2, false) => u16::from_le_bytes(self.raw(expected)?).into(),
+            (4, true) => i32::from_le_bytes(self.raw(expected)?).into(),
+            (4, false) => u32::from_le_bytes(self.raw(expected)?).into(),
+            (_, true) => i64::from_le_bytes(self.raw(expected)?),
+            // Beyond what any count or number of a file can be.
+            (_, false) => i64::try_from(u64::from_le_bytes(self.raw(expected)?)).unwrap_or(-1),
+        })
+    }
+}

@@ -1,0 +1,8 @@
+//! Surface meshes that become bodies: formats, thickness, sense, sets, and what is refused.
+mod formats;
+mod inp;
+mod sets;
+mod support;
+mod thickness;
+mod topology;
+mod wrong;
