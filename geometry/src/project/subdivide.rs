@@ -16,7 +16,7 @@ thread_local! {
 
 /// Parts that have been cut this often are proved by their convexity. Before, the bound on third derivatives about a
 /// stationary point costs less.
-const DEEP: u32 = 8;
+const DEEP: u32 = 12;
 /// Parts of a piece on a sphere that are looked at where the sphere proves that none is nearer.
 const MOST_ON_SPHERE: usize = 1000;
 
