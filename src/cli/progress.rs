@@ -192,6 +192,19 @@ impl Table {
                 "",
                 100.0 * left
             )],
+            Event::PenaltyRuled {
+                step,
+                contact,
+                penalty,
+                error,
+            } if self.iterations => vec![format!(
+                "{step:>5} {:>10} {:>10} contact `{contact}`: penalty raised to {penalty:.3e}, the one before left an error of \
+                 {:.1} % in forces",
+                "",
+                "",
+                100.0 * error
+            )],
+            Event::PenaltyRuled { .. } => Vec::new(),
             Event::PingPong {
                 step,
                 contact,

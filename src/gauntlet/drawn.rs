@@ -39,6 +39,8 @@ pub fn block(tool: Value, top: Value, mu: Option<Value>, count: u32) -> Value {
     });
     if let Some(mu) = mu {
         scene["contacts"]["slide"]["friction"] = json!({ "coulomb": { "mu": mu } });
+        // What is compared is to have one tangential penalty throughout.
+        scene["contacts"]["slide"]["tangential_penalty"] = json!({ "scaled": 1 });
     }
     scene
 }

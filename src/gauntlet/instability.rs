@@ -241,7 +241,9 @@ fn soft_support(trial: &mut Trial) -> Result<(), CaseError> {
             "material": "m"
         } },
         "surfaces": { "floor": { "plane": { "size": [10, 10], "center": [0, 0, -0.02] } } },
-        "contacts": { "on_floor": { "slave": "strip.bottom", "master": "floor" } },
+        "contacts": { "on_floor": {
+            "slave": "strip.bottom", "master": "floor", "penalty": { "scaled": 1 }
+        } },
         "supports": { "clamp": { "on": "strip.x_min", "fixed": true } },
         "loads": { "weight": { "on": "strip.top", "traction": [0, 0, grown(-0.02)] } },
         "solution": { "newton": { "tolerance": 1e-10 } },
@@ -347,7 +349,9 @@ fn snap_under_tool(trial: &mut Trial) -> Result<(), CaseError> {
         "cylinder": { "radius": 100, "length": 800, "center": [0, 0, 100] },
         "motion": { "translation": [0, 0, { "table": [[0, 0], [0.9, -35], [1, -35]] }] }
     } });
-    scene["contacts"] = json!({ "press": { "slave": "roof.outer", "master": "tool" } });
+    scene["contacts"] = json!({ "press": {
+        "slave": "roof.outer", "master": "tool", "penalty": { "scaled": 1 }
+    } });
     scene["solution"]["step"] = json!({ "initial": 0.05, "max": 0.05 });
     let snapped = trial.done(&scene)?;
     trial.holds(

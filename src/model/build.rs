@@ -129,13 +129,19 @@ impl<'s> Builder<'s> {
 /// Bodies have to be held by supports, or by contact with the help of a stabilisation.
 fn stabilize(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
     let free = super::free_motion::free_motions(model);
-    if let (Stabilization::None, Some(free)) = (scene.solution.stabilization, free.first()) {
+    // At small displacements nothing comes into contact that is not held.
+    let refused = match scene.solution.stabilization {
+        Stabilization::None => true,
+        Stabilization::Auto => scene.solution.kinematics == scene::Kinematics::Small,
+        Stabilization::Viscous { .. } => false,
+    };
+    if let (true, Some(free)) = (refused, free.first()) {
         let message = format!(
             "body `{}` can move freely {}: no support hinders it",
             free.body, free.motion
         );
         let help = "add or extend a support until the body is held, or ask for `solution.stabilization` where contact is to \
-                    hold it: contact and loads alone do not hold it before it touches";
+                    hold it (`auto`, the default, or `viscous`): contact and loads alone do not hold it before it touches";
         return Err(text(format!("/bodies/{}", free.body), message).help(help));
     }
     if let Some((stabilization, note)) = super::stabilization::stabilization(scene, model, free)? {
@@ -191,7 +197,7 @@ fn kinks(scene: &Scene, model: &Model) -> Vec<f64> {
         .chain(shrunk)
         .chain(match scene.solution.stabilization {
             Stabilization::Viscous { until, .. } => until,
-            Stabilization::None => None,
+            Stabilization::Auto | Stabilization::None => None,
         })
         .filter(|t| *t > 0.0 && *t < end)
         .collect();

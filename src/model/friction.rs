@@ -9,8 +9,12 @@ use nalgebra::{Unit, Vector3};
 #[derive(Debug, Clone)]
 pub struct FrictionModel {
     pub law: LawModel,
-    /// Tangential penalty as a multiple of the normal one, whatever that is at the time.
+    /// Tangential penalty as a multiple of the normal one, whatever that is at the time; what it starts with where it is ruled.
     pub ratio: f64,
+    /// The run may lower it to what leaves a tolerable elastic slip.
+    pub ruled: bool,
+    /// The tangential penalty where its value is given (force / length^3), whatever the normal one is.
+    pub given: Option<f64>,
 }
 
 /// A law of friction whose coefficients may vary in time.
@@ -106,7 +110,32 @@ impl LawModel {
     }
 }
 
+/// Elastic slip that a ruled tangential penalty leaves at the mean pressure of its contact, as a part of an element.
+const SLIP: f64 = 1e-3;
+
 impl FrictionModel {
+    /// The tangential penalty over the normal one that suits a mean pressure (force / length^2) under the normal penalty `eps_n`,
+    /// on elements of a size: as stiff as elastic bodies would be, but no stiffer than what keeps the elastic slip of a point
+    /// about to slide to a part of an element. A stiffer one would only make points that slide one way in an iteration slide
+    /// back in the next. Nothing where friction or pressure is none.
+    ///
+    /// # Errors
+    /// A coefficient without a value at this time.
+    pub fn suitable(
+        &self,
+        pressure: f64,
+        eps_n: f64,
+        element_size: f64,
+        time: f64,
+    ) -> Result<Option<f64>, ValueError> {
+        let mu = match self.law.at(time)? {
+            LawNow::Coulomb(law) => law.mu,
+            LawNow::Orthotropic(law) => law.mu[0].max(law.mu[1]),
+        };
+        let eps_t = mu * pressure / (SLIP * element_size);
+        Ok((eps_t > 0.0).then(|| (eps_t / eps_n).min(self.ratio)))
+    }
+
     /// What varies in time.
     pub fn functions(&self) -> impl Iterator<Item = &TimeFunction> {
         self.law.functions().into_iter()

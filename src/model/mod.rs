@@ -112,8 +112,8 @@ pub struct PairModel {
     pub half: Option<HalfPass>,
     /// Penalty (force / length^3).
     pub eps_n: f64,
-    /// The penalty may be raised to keep the penetration small.
-    pub automatic: bool,
+    /// What the run may choose the penalty by; nothing where it is given, or tractions are augmented.
+    pub ruled: Option<penalty::Ruled>,
     pub tangent: Tangent,
     /// Mean edge length of the slave faces.
     pub element_size: f64,

@@ -12,7 +12,16 @@ pub const FACTOR: f64 = 20.0;
 /// the rounding of a position L. A stiffer penalty would make of it a penetration that double precision cannot hold.
 pub const SLENDER: f64 = 2e12;
 
-/// Penetration that an automatic penalty tolerates, as a fraction of the slave's element size.
+/// Where the penalty of a pair starts that the run rules by its error, as a multiple of what suits the elements: of bodies that
+/// bend, where they are just slender enough to do so, and of compact ones. More slender ones bend under less, and start softer
+/// with the square of their thickness. A start that is too soft is solved in a few iterations and is measured before it is
+/// accepted; one that is too stiff makes points chatter.
+pub const START: [f64; 2] = [1e-3, 0.1];
+
+/// Thickness over length below which a body bends.
+const BENDS: f64 = 0.1;
+
+/// Penetration under a given penalty above which the user is told, as a fraction of the slave's element size.
 pub const TOLERATED: f64 = 0.01;
 
 /// Multiple of the elements' stiffness above which a given penalty is warned of: rounding then takes more digits of a
@@ -98,6 +107,65 @@ impl FaceSize {
     pub fn bounded(&self) -> f64 {
         let [solid, slender] = self.penalties();
         (solid / slender).max(1.0)
+    }
+}
+
+/// Relative error of forces that a ruled penalty aims at where the scene asks for none.
+pub const ACCURACY: f64 = 4e-3;
+
+/// What a run may choose the penalty of a pair by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ruled {
+    /// Relative error of forces that it aims at.
+    pub accuracy: f64,
+    /// The stiffest that it may take (force / length^3).
+    pub stiffest: f64,
+    /// Penetration above which it is raised whatever the error of forces (length).
+    pub deepest: f64,
+}
+
+/// Part of the depth of an element layer, or of its edges where they are shorter, that a point may sink in under a ruled
+/// penalty: the layers of a stack are to stay apart.
+const DEEPEST: f64 = 0.1;
+
+/// Penalties that suit a side of a contact, or both (force / length^3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Suitable {
+    /// What multiples of the automatic one refer to.
+    pub automatic: f64,
+    /// Where a penalty starts that is ruled by its error.
+    pub start: f64,
+    /// What it stays below.
+    pub stiffest: f64,
+    /// Penetration that is too deep (length).
+    pub deepest: f64,
+}
+
+impl Suitable {
+    /// Of faces of a body.
+    pub fn new(material: &Material, size: &FaceSize) -> Self {
+        let solid = modulus(material) * size.penalties()[0];
+        let [bending, compact] = START;
+        let slender = size.thickness / (BENDS * size.length);
+        Suitable {
+            automatic: automatic(material, size),
+            start: match slender < 1.0 {
+                true => solid * bending * slender.powi(2),
+                false => solid * compact,
+            },
+            stiffest: solid * WARNED / FACTOR,
+            deepest: DEEPEST * size.edge.min(size.depth),
+        }
+    }
+
+    /// Of a contact between two sides: the softer one counts.
+    pub fn both(&self, other: &Self) -> Self {
+        Suitable {
+            automatic: self.automatic.min(other.automatic),
+            start: self.start.min(other.start),
+            stiffest: self.stiffest.min(other.stiffest),
+            deepest: self.deepest.min(other.deepest),
+        }
     }
 }
 

@@ -18,7 +18,7 @@ use super::error::{number, text};
 use super::free_motion::FreeMotion;
 use super::{BodyModel, Model, ModelError, penalty};
 use crate::mesh::ElementKind;
-use crate::scene::{Scene, Stabilization};
+use crate::scene::{Scene, Stabilization, VISCOUS_FACTOR};
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, SymmetricEigen};
 
@@ -81,12 +81,18 @@ pub fn stabilization(
     model: &Model,
     free: Vec<FreeMotion>,
 ) -> Result<Option<(StabilizationModel, String)>, ModelError> {
-    let Stabilization::Viscous { factor, until } = scene.solution.stabilization else {
-        return Ok(None);
+    let (factor, until, only_free) = match scene.solution.stabilization {
+        Stabilization::None => return Ok(None),
+        Stabilization::Auto if free.is_empty() => return Ok(None),
+        Stabilization::Auto => (VISCOUS_FACTOR, None, true),
+        Stabilization::Viscous { factor, until } => (factor, until, false),
     };
     let mut weights = vec![0.0; 3 * model.nodes.len()];
     let mut softest: Option<(f64, &BodyModel, f64, Bending)> = None;
     for body in &model.bodies {
+        if only_free && !free.iter().any(|f| f.body == body.name) {
+            continue;
+        }
         let volumes = volumes(body);
         let first = 3 * body.first_node as usize;
         for (n, v) in volumes.iter().enumerate() {
@@ -115,8 +121,12 @@ pub fn stabilization(
         .map(|motion| piece(model, motion))
         .collect::<Result<_, _>>()?;
     let note = format!(
-        "stabilization: every unknown of a body feels a viscous force of {} (force time / length^4) times its volume and \
+        "stabilization: every unknown of {} feels a viscous force of {} (force time / length^4) times its volume and \
          velocity, {} of what bends body `{}` as far in the time of the run (E {}, {} long, {} thick){}",
+        match only_free {
+            true => "a body that contact has to hold",
+            false => "a body",
+        },
         number(coefficient),
         number(factor),
         body.name,

@@ -36,4 +36,9 @@ pub struct ContactAccuracy {
     pub few: Option<usize>,
     /// Part of it that points near sharp convex edges of the tool carried.
     pub edge_share: f64,
+    /// Penalty at the end of the run, and the tangential one (0 without friction; force / length^3).
+    #[serde(default)]
+    pub penalty: f64,
+    #[serde(default)]
+    pub tangential_penalty: f64,
 }

@@ -172,7 +172,7 @@ pub const COLUMNS: &[ColumnDoc] = &[
     doc(
         "energy.adjusted",
         "energy",
-        "energy put in since the start by what changes in contact itself: raised penalties, multipliers",
+        "energy put in since the start by what changes in contact itself: multipliers, and penalties, which take up all that a step over which they change leaves out of balance",
     ),
     doc(
         "energy.imbalance",

@@ -185,7 +185,10 @@ impl Reporter<'_> {
                     Stabilization::None if self.loaded.has("/solution/stabilization") => {
                         Err("`stabilization` is `none`".to_owned())
                     }
-                    Stabilization::None => {
+                    Stabilization::Auto if self.model.stabilization.is_some() => {
+                        Ok("supports do not hold every body: contact has to".to_owned())
+                    }
+                    Stabilization::Auto | Stabilization::None => {
                         Err("no `stabilization`: supports hold every body".to_owned())
                     }
                 },

@@ -191,7 +191,10 @@ pub const REMOVABLE: &[Removable] = &[
         name: "stabilization",
         instead: "nothing helps where the structure does not hold",
         effects: &["stabilization.viscous"],
-        remove: |scene| std::mem::take(&mut scene.solution.stabilization) != Stabilization::None,
+        remove: |scene| {
+            let was = std::mem::replace(&mut scene.solution.stabilization, Stabilization::None);
+            was != Stabilization::None
+        },
     },
     Removable {
         name: "fields",

@@ -30,6 +30,8 @@ pub struct Bearing {
     pub energy: f64,
     /// Pressure times area (force).
     pub force: f64,
+    /// Area of the points in contact.
+    pub area: f64,
     /// The part of it near sharp convex edges of the master (force).
     pub at_edges: f64,
     /// Points in contact, or nodes where gaps are averaged.
@@ -138,6 +140,7 @@ impl Bearings {
         let sum = &mut self.pairs[pair];
         let force = pressure * area;
         sum.add(force);
+        sum.area += area;
         let energy = 0.5 * share * (force * gap).abs();
         let Some(place) = place else {
             sum.energy += energy;

@@ -127,7 +127,7 @@ pub fn commit<L: PairLaw>(
     }
     assembler.masters.update(model, &state.u);
     let (masters, answers) = (&assembler.masters, assembler.answers());
-    let penalties = &assembler.penalties;
+    let (penalties, ratios) = (&assembler.penalties, &assembler.ratios);
     let mut total = FrictionTotals::default();
     let mut first = 0;
     for (index, pair) in model.pairs.iter().enumerate() {
@@ -143,7 +143,7 @@ pub fn commit<L: PairLaw>(
         let (was, now) = (friction.law.at(start)?, friction.law.at(time)?);
         let limited = |trial: &Vec3, normal: &Vec3, pressure: f64| with_law!(was, law => law.slip(trial, normal, pressure).t);
         let law_n = L::of(penalties[index]);
-        let eps_t = friction.ratio * penalties[index];
+        let eps_t = ratios[index] * penalties[index];
         // What the tangential penalties carry beside the multipliers.
         let elastic = pair.augmentation.map(|_| &answers[range.clone()]);
         let (hints, histories) = (&state.points[points], &mut state.histories[range]);

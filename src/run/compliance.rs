@@ -30,6 +30,8 @@ const WANTED: f64 = 0.003;
 const MEAN: f64 = 0.3;
 /// Steps whose strain energy is below this part of the largest are not judged: first touches rest on single points.
 const JUDGED: f64 = 0.1;
+/// Penetration over approach that tells of a tool on its way through the body even where next to nothing is strained.
+const THROUGH: f64 = 0.3;
 /// Growth of the work in a step below which its exponent is not judged.
 const GROWN: f64 = 1e-3;
 /// Factor by which the energy of contact grows in a step above which the step is a first touch rather than growth.
@@ -47,6 +49,13 @@ struct Measures {
 }
 
 impl Measures {
+    /// The largest of them, which is the error as long as it is small.
+    fn largest(&self) -> f64 {
+        (self.energy.min(f64::MAX))
+            .max(MEAN * self.penetration.min(1.0))
+            .max(self.growth)
+    }
+
     /// Relative error of forces.
     fn error(&self) -> f64 {
         let series = match self.energy.is_finite() {
@@ -85,6 +94,35 @@ pub struct Compliance {
     penalties: Vec<f64>,
     /// Poses of the surfaces at the start.
     poses: Vec<Isometry3<f64>>,
+}
+
+/// What the penalties of a step that is not accepted yet leave, per pair.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Errors {
+    /// Relative error of forces.
+    pub forces: Vec<f64>,
+    /// Deepest penetration over what is too deep; 0 where the penalty is not ruled.
+    pub sunk: Vec<f64>,
+}
+
+impl Errors {
+    /// Nothing is left, or known.
+    pub fn none(model: &Model) -> Self {
+        Errors {
+            forces: vec![0.0; model.pairs.len()],
+            sunk: vec![0.0; model.pairs.len()],
+        }
+    }
+
+    /// Relative error of forces of all pairs.
+    pub fn sum(&self) -> f64 {
+        self.forces.iter().sum()
+    }
+
+    /// The deepest of all.
+    pub fn deepest(&self) -> f64 {
+        self.sunk.iter().fold(0.0, |a, b| a.max(*b))
+    }
 }
 
 /// An accepted step.
@@ -175,11 +213,61 @@ impl Compliance {
         from.f64s(&mut self.penalties)
     }
 
-    /// Measures an accepted step.
+    /// Whether a step has enough strain energy to be judged.
+    fn judges(&self, end: &StepEnd) -> bool {
+        end.internal >= JUDGED * self.largest
+    }
+
+    /// The error that every pair makes in forces at the end of a step that is not accepted yet, as far as it shows there; above
+    /// one where contact gives way more than the bodies do.
     ///
     /// # Errors
     /// A motion without a value at its time.
-    pub fn step(&mut self, model: &Model, end: &StepEnd) -> Result<(), ValueError> {
+    pub fn errors(&self, model: &Model, end: &StepEnd) -> Result<Errors, ValueError> {
+        let mut found = Errors::none(model);
+        for ((sunk, sum), pair) in
+            (found.sunk.iter_mut().zip(&end.bearings.pairs)).zip(&model.pairs)
+        {
+            if let (Some(ruled), Some(deepest)) = (&pair.ruled, &sum.deepest) {
+                *sunk = deepest.depth / ruled.deepest;
+            }
+        }
+        let errors = &mut found.forces;
+        let judges = self.judges(end);
+        for (index, (error, sum)) in errors.iter_mut().zip(&end.bearings.pairs).enumerate() {
+            if sum.energy <= 0.0 {
+                continue;
+            }
+            let mut measures = Measures {
+                energy: sum.energy / end.internal,
+                penetration: self.sunk(model, index, end)?,
+                growth: 0.0,
+            };
+            if !judges && measures.penetration < THROUGH {
+                continue;
+            }
+            if !judges {
+                measures.energy = 0.0;
+            }
+            *error = measures.largest();
+        }
+        Ok(found)
+    }
+
+    /// The deepest penetration of a pair over the approach of its bodies.
+    fn sunk(&self, model: &Model, index: usize, end: &StepEnd) -> Result<f64, ValueError> {
+        let pair = (index, &model.pairs[index]);
+        match &end.bearings.pairs[index].deepest {
+            Some(deepest) => Ok(deepest.depth / self.approach(model, pair, end, deepest)?),
+            None => Ok(0.0),
+        }
+    }
+
+    /// Measures an accepted step; the error that shows in its growth over the last steps.
+    ///
+    /// # Errors
+    /// A motion without a value at its time.
+    pub fn step(&mut self, model: &Model, end: &StepEnd) -> Result<f64, ValueError> {
         let pairs = &end.bearings.pairs;
         let stored: f64 = pairs.iter().map(|p| p.energy).sum();
         self.largest = self.largest.max(end.internal);
@@ -191,15 +279,12 @@ impl Compliance {
         self.path = [[stored, end.work], before];
         self.penalties.clear();
         self.penalties.extend_from_slice(end.penalties);
-        if stored <= 0.0 || end.internal < JUDGED * self.largest {
-            return Ok(());
+        if stored <= 0.0 || !self.judges(end) {
+            return Ok(0.0);
         }
         let mut penetration = 0.0f64;
-        for (index, (pair, sum)) in model.pairs.iter().zip(pairs).enumerate() {
-            if let Some(deepest) = &sum.deepest {
-                let approach = self.approach(model, (index, pair), end, deepest)?;
-                penetration = penetration.max(deepest.depth / approach);
-            }
+        for index in 0..pairs.len() {
+            penetration = penetration.max(self.sunk(model, index, end)?);
         }
         let slides = model.pairs.iter().any(|p| p.friction.is_some());
         let measures = Measures {
@@ -223,7 +308,7 @@ impl Compliance {
                 pair: most.map_or(0, |(index, _)| index as u32),
             };
         }
-        Ok(())
+        Ok(measures.growth)
     }
 
     /// How far the bodies of a pair have moved towards each other along the normal at its deepest point: the spread of the

@@ -293,6 +293,17 @@ impl Fields {
         Ok(())
     }
 
+    /// What a gathering goes by that came before it, for one that is to be taken back.
+    pub fn before(&self) -> (Vec<bool>, Vec<f64>) {
+        (self.front.clone(), self.start.clone())
+    }
+
+    /// Takes gatherings back to [`Self::before`].
+    pub fn back(&mut self, (front, start): &(Vec<bool>, Vec<f64>)) {
+        self.front.clone_from(front);
+        self.start.clone_from(start);
+    }
+
     /// The start of the run has been gathered, by the process that it was continued from.
     pub fn went_on(&mut self) {
         self.gathered = true;

@@ -1,20 +1,22 @@
 //! The march through time: steps, roll-back, output.
 mod restart;
+mod settle;
 
 pub(super) use restart::Kept;
 use restart::lines_behind;
+use settle::Settled;
 
 use super::RunError;
 use super::checkpoint::{CheckpointError, Keeper};
 use super::commit::{self, FrictionTotals};
-use super::compliance::{Compliance, StepEnd};
+use super::compliance::{Compliance, Errors, StepEnd};
 use super::cost::Cost;
 use super::fields::Fields;
 use super::history;
 use super::linearity_check;
 use super::peaks::Peaks;
+use super::penalty_rule::PenaltyRule;
 use super::progress::Progress;
-use super::step::Attempts;
 use super::watch::{Span, Watch, Work};
 use crate::assembly::{Assembler, Drag, Fault};
 use crate::contact::law::Penalty;
@@ -29,6 +31,7 @@ use crate::solve::event::{Event, Observer};
 use crate::solve::newton::{Converged, StepFailure, Workspace};
 use crate::solve::stepping::Stepping;
 use crate::system::linear::{LinearSolver, Method};
+use covact_geometry::Vec3;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -37,21 +40,51 @@ use std::sync::atomic::AtomicBool;
 const RELIABLE: f64 = 1e-4;
 
 /// What helps where an element with enhanced strains cannot follow; empty for other failures.
-fn squeezed(model: &Model, failure: &StepFailure) -> &'static str {
-    let named = match failure {
-        StepFailure::Fault(Fault::Element { body, .. }) | StepFailure::InsideOut { body, .. } => {
-            body
-        }
-        _ => return "",
-    };
-    let enhanced = |b: &&BodyModel| b.name == *named && b.block.alpha_len() > 0;
-    match model.bodies.iter().find(enhanced) {
+fn squeezed(squeezed: Option<&BodyModel>) -> &'static str {
+    match squeezed {
         Some(_) => {
             "; where it is squeezed rather than bent, element `h8_displacement` follows farther"
         }
         None => "",
     }
 }
+
+/// The body whose elements with enhanced strains turned inside out.
+fn turned<'m>(model: &'m Model, failure: &StepFailure) -> Option<&'m BodyModel> {
+    let named = match failure {
+        StepFailure::Fault(Fault::Element { body, .. }) | StepFailure::InsideOut { body, .. } => {
+            body
+        }
+        _ => return None,
+    };
+    (model.bodies.iter()).find(|b| b.name == *named && b.block.alpha_len() > 0)
+}
+
+/// Part of its length that an edge of an element has to have lost for the element to count as squeezed.
+const SQUEEZED: f64 = 0.1;
+
+/// Whether elements of a body are squeezed, and not merely bent.
+fn compressed(body: &BodyModel, u: &[f64]) -> bool {
+    let mesh = &body.mesh;
+    let at = |n: u32| {
+        let first = 3 * (body.first_node + n) as usize;
+        Vec3::new(u[first], u[first + 1], u[first + 2])
+    };
+    (0..mesh.elements()).any(|e| {
+        let nodes = mesh.element(e);
+        // Edges join nodes whose numbers differ in one bit.
+        let edges = (0..8).flat_map(|a| [1, 2, 4].map(|bit| (a, a ^ bit)));
+        let mut edges = edges.filter(|(a, b)| a < b && *b < nodes.len());
+        edges.any(|(a, b)| {
+            let (a, b) = (nodes[a], nodes[b]);
+            let before = mesh.nodes[a as usize] - mesh.nodes[b as usize];
+            (before + at(a) - at(b)).norm() < (1.0 - SQUEEZED) * before.norm()
+        })
+    })
+}
+
+/// Cuts of a step after which elements that turn inside out are given up where others may replace them.
+const HOPELESS: u32 = 3;
 
 /// Whether a pair is the second of two half passes, which is told with the first.
 fn is_back(pair: &PairModel) -> bool {
@@ -62,6 +95,8 @@ fn is_back(pair: &PairModel) -> bool {
 pub(super) struct Ending {
     pub status: RunStatus,
     pub reason: Option<String>,
+    /// Number of the body whose enhanced strains are what the run could not go on with.
+    pub squeezed: Option<usize>,
 }
 
 /// A run under way.
@@ -83,6 +118,9 @@ pub(super) struct March<'a, 'm> {
     touching: Vec<bool>,
     pub watch: Watch,
     pub compliance: Compliance,
+    rule: PenaltyRule,
+    /// Bodies whose elements another variant may replace.
+    pub replaceable: Vec<String>,
     pub peaks: Peaks,
     pub cost: Cost,
     pub keeper: Keeper,
@@ -149,6 +187,8 @@ impl<'a, 'm> March<'a, 'm> {
             touching: vec![false; model.pairs.len()],
             watch: Watch::new(model),
             compliance,
+            rule: PenaltyRule::new(model),
+            replaceable: Vec::new(),
             peaks: Peaks::new(model),
             cost,
             keeper,
@@ -251,6 +291,7 @@ impl<'a, 'm> March<'a, 'm> {
             touching,
             watch,
             compliance,
+            rule,
             peaks,
             table: mark,
             written,
@@ -263,6 +304,7 @@ impl<'a, 'm> March<'a, 'm> {
         self.workspace.factorizations = factorizations;
         (self.progress, self.touched, self.touching) = (progress, touched, touching);
         (self.watch, self.compliance, self.peaks) = (watch, compliance, peaks);
+        self.rule = rule;
         self.cost.earlier = spent;
         self.cost.earlier.resumed += 1;
         stepping.set_size(dt);
@@ -314,7 +356,6 @@ impl<'a, 'm> March<'a, 'm> {
         walk: &mut StepControl,
         outputs: &mut Outputs,
     ) -> Result<Ending, RunError> {
-        let settings = &self.scene.solution;
         let mut trial = committed.clone();
         let mut cuts = 0;
         let segmented = self.model.pairs.iter().any(|p| p.segments.is_some());
@@ -336,30 +377,40 @@ impl<'a, 'm> March<'a, 'm> {
             });
             (self.assembler).begin_step(&committed.u, self.progress.time, end);
             self.workspace.unstable = None;
-            let result = Attempts {
-                model: self.model,
-                committed,
-                assembler: self.assembler,
-                solver: self.solver,
-                workspace: &mut self.workspace,
-                settings: &settings.newton,
-                phases: &mut self.phases,
-                interrupt: self.interrupt,
-                observer: self.observer,
-                progress: &mut self.progress,
-                first: None,
-                hold: &mut walk.hold,
-                opened: false,
+            let penalties = self.assembler.penalties.clone();
+            let mut result = (self.attempts(committed, &mut walk.hold)).solve(
+                step,
+                end,
+                dt,
+                walk.before.as_ref(),
+                &mut trial,
+            );
+            let mut settled = None;
+            if let Ok(converged) = &mut result {
+                let at = (step, end, cuts);
+                match self.settle(at, (&*committed, walk), &mut trial, converged, outputs)? {
+                    Ok(found) => settled = Some(found),
+                    Err(failure) => {
+                        self.assembler.penalties.copy_from_slice(&penalties);
+                        result = Err(failure);
+                    }
+                }
             }
-            .solve(step, end, dt, walk.before.as_ref(), &mut trial);
             let failure = match result {
                 Ok(converged) => {
                     let start = self.progress.time;
+                    let Settled {
+                        sliding,
+                        mut histories,
+                        errors,
+                    } = settled.unwrap_or_default();
+                    let residual = self.workspace.residual();
+                    // As they were while the step was solved.
+                    std::mem::swap(&mut trial.histories, &mut histories);
                     let span = Span {
                         from: (committed, start),
                         to: (&trial, end),
                     };
-                    let residual = self.workspace.residual();
                     let drag = self.assembler.drag(&trial.u, residual);
                     let work = (self.watch)
                         .work(
@@ -370,6 +421,7 @@ impl<'a, 'm> March<'a, 'm> {
                             &span,
                         )
                         .map_err(|e| RunError::internal(&e))?;
+                    std::mem::swap(&mut trial.histories, &mut histories);
                     match &mut walk.before {
                         Some((state, size)) => {
                             std::mem::swap(state, committed);
@@ -382,10 +434,6 @@ impl<'a, 'm> March<'a, 'm> {
                     // Augmentations say nothing of how far a step may go.
                     walk.stepping
                         .accepted(converged.iterations - converged.augmenting);
-                    let was = walk.before.as_ref().map_or(&[][..], |before| &before.0.u);
-                    let sliding =
-                        commit::commit(self.model, self.assembler, committed, (was, start), end)
-                            .map_err(|e| RunError::internal(&e))?;
                     if walk.stepping.at_kink(end) {
                         walk.before = None;
                     }
@@ -398,6 +446,7 @@ impl<'a, 'm> March<'a, 'm> {
                         &converged,
                         &sliding,
                         (work, drag),
+                        errors,
                     )?;
                     cuts = 0;
                     let internal = converged.totals.internal_energy;
@@ -422,21 +471,39 @@ impl<'a, 'm> March<'a, 'm> {
                 return Ok(Ending {
                     status: RunStatus::Interrupted,
                     reason: Some("stopped by the user".to_owned()),
+                    squeezed: None,
                 });
             }
             cuts += 1;
             self.progress.cuts += 1;
             let reason = failure.to_string();
-            let Some(next_dt) = walk.stepping.failed(dt) else {
+            // Elements that another variant would replace are not followed down to the smallest step.
+            let hopeless = cuts >= HOPELESS
+                && turned(self.model, &failure).is_some_and(|b| self.replaceable.contains(&b.name));
+            let next = walk.stepping.failed(dt).filter(|_| !hopeless);
+            let Some(next_dt) = next else {
                 let unstable = self.workspace.unstable.map_or_else(String::new, |u| {
                     format!("; {}", u.words(self.model, self.assembler.stabilizes()))
                 });
-                let squeezed = squeezed(self.model, &failure);
+                let turned = turned(self.model, &failure);
+                // Where the structure gives way the elements may be what does.
+                let suspect = turned.map(|b| b.name.as_str()).or_else(|| {
+                    let body = self.workspace.unstable?.body(self.model)?;
+                    let squeezed = body.block.alpha_len() > 0 && compressed(body, &committed.u);
+                    squeezed.then_some(body.name.as_str())
+                });
+                let squeezed = squeezed(turned);
                 return Ok(Ending {
+                    squeezed: (self.model.bodies.iter())
+                        .position(|b| Some(b.name.as_str()) == suspect),
                     status: RunStatus::NotConverged,
                     reason: Some(format!(
-                        "step {step} from time {} failed at the smallest step size: {reason}{squeezed}{unstable}",
-                        self.progress.time
+                        "step {step} from time {} failed {}: {reason}{squeezed}{unstable}",
+                        self.progress.time,
+                        match hopeless {
+                            true => "at ever smaller step sizes",
+                            false => "at the smallest step size",
+                        }
                     )),
                 });
             };
@@ -461,6 +528,7 @@ impl<'a, 'm> March<'a, 'm> {
             return Ending {
                 status: RunStatus::Done,
                 reason: None,
+                squeezed: None,
             };
         }
         Ending {
@@ -470,6 +538,7 @@ impl<'a, 'm> March<'a, 'm> {
                  surface",
                 never.join("`, `")
             )),
+            squeezed: None,
         }
     }
 
@@ -495,7 +564,7 @@ impl<'a, 'm> March<'a, 'm> {
                 ));
             }
             let allowed = penalty::TOLERATED * pair.element_size;
-            if !pair.automatic && pair.augmentation.is_none() && deepest > allowed {
+            if pair.ruled.is_none() && pair.augmentation.is_none() && deepest > allowed {
                 self.warn(format!(
                     "contact `{}`: penetration above 1 % of an element ({allowed:.3e}) under the given penalty",
                     pair.name
@@ -578,10 +647,10 @@ impl<'a, 'm> March<'a, 'm> {
         converged: &Converged,
         sliding: &FrictionTotals,
         (work, drag): (Work, Drag),
+        errors: Errors,
     ) -> Result<(), RunError> {
         let (step, time) = (self.progress.steps, self.progress.time);
         self.phases.start("output");
-        self.gather(outputs, state, time)?;
         for (pair, sunk) in self.model.pairs.iter().zip(&outputs.fields.sunk) {
             if *sunk > 0 {
                 self.warn(format!(
@@ -611,7 +680,10 @@ impl<'a, 'm> March<'a, 'm> {
             work: self.watch.external,
             penalties: &self.assembler.penalties,
         };
-        (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?;
+        let growth =
+            (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?;
+        self.adapt(errors, growth, converged);
+        (self.adapt_slip(outputs, time, converged)).map_err(|e| RunError::internal(&e))?;
         self.peaks.step(step, &outputs.fields.bearings);
         let doubts = linearity_check::doubts(self.model, &mut self.assembler.masters, state, time);
         for doubt in doubts.map_err(|e| RunError::internal(&e))? {

@@ -19,6 +19,7 @@ mod memory;
 #[cfg(test)]
 mod other_law;
 mod peaks;
+mod penalty_rule;
 mod plan;
 mod progress;
 mod remedy;
@@ -42,9 +43,10 @@ use crate::assembly::Assembler;
 use crate::machine;
 use crate::machine::clock::Phases;
 use crate::model;
+use crate::model::error::number;
 use crate::output::{Accuracy, RunStatus, Summary, Versions};
 use crate::plan::Plan;
-use crate::scene::{LoadedScene, Scene};
+use crate::scene::{Element, LoadedScene, Scene, pointer};
 use crate::solve::event::{Event, Observer};
 use crate::system::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
 use checkpoint::{Fingerprint, Found, Keeper};
@@ -104,7 +106,91 @@ pub fn run(
         .build()
         .map_err(|e| RunError::scene(scene, "/solution/threads", e.to_string()))?;
     let threads = pool.current_num_threads();
-    pool.install(|| solve(scene, out, threads, options, observer, interrupt))
+    pool.install(|| {
+        let mut options = *options;
+        let mut safe = match options.resume {
+            true => variant_in(out, scene),
+            false => None,
+        };
+        loop {
+            let (loaded, changed) = match &safe {
+                None => (scene, &[][..]),
+                Some(Safe { loaded, changed }) => (loaded, &changed[..]),
+            };
+            let told = solve(
+                loaded,
+                out,
+                threads,
+                (&options, changed),
+                observer,
+                interrupt,
+            )?;
+            match safe_variant(scene, safe.as_ref(), &told) {
+                Some(variant) => safe = Some(variant),
+                None => return Ok(told.summary),
+            }
+            (options.resume, options.force) = (false, true);
+        }
+    })
+}
+
+/// A scene with other elements than the default ones, and what is told of the change.
+struct Safe {
+    loaded: LoadedScene,
+    changed: Vec<String>,
+}
+
+/// What a run tells of itself.
+struct Told {
+    summary: Summary,
+    /// Name of the body whose enhanced strains are what the run could not go on with.
+    squeezed: Option<String>,
+}
+
+/// The scene with displacement elements for the body whose default elements a run could not go on with: enhanced strains lose
+/// their hold in strong compression, and steps accepted before may have suffered. Nothing where the scene names the
+/// element.
+fn safe_variant(scene: &LoadedScene, before: Option<&Safe>, told: &Told) -> Option<Safe> {
+    let body = told.squeezed.as_ref()?;
+    let when = format!("gave way at time {}", number(told.summary.time));
+    replaced(scene, before, body, &when)
+}
+
+/// The scene with displacement elements for a body, where it leaves the element to its default.
+fn replaced(scene: &LoadedScene, before: Option<&Safe>, body: &str, when: &str) -> Option<Safe> {
+    if names_element(scene, body) {
+        return None;
+    }
+    let (mut loaded, mut changed) = match before {
+        Some(Safe { loaded, changed }) => (loaded.clone(), changed.clone()),
+        None => (scene.clone(), Vec::new()),
+    };
+    let element = &mut loaded.scene.bodies.get_mut(body)?.element;
+    if *element != Element::H8 {
+        return None;
+    }
+    *element = Element::H8Displacement;
+    changed.push(format!(
+        "body `{body}`: its default elements (`h8`) {when}, as they do in strong compression; the run was repeated with \
+         `h8_displacement` for it, which is stiffer in bending: refine it where it bends, and name the `element` to have one of \
+         them from the start"
+    ));
+    Some(Safe { loaded, changed })
+}
+
+/// The variant of the scene that a folder holds an unfinished run of, where it is one with other elements for one body.
+fn variant_in(out: &Path, scene: &LoadedScene) -> Option<Safe> {
+    let holds = |loaded: &LoadedScene| checkpoint::find(out, &Fingerprint::new(loaded)).is_ok();
+    if holds(scene) {
+        return None;
+    }
+    let variants = (scene.scene.bodies.keys()).filter_map(|b| replaced(scene, None, b, "gave way"));
+    variants.into_iter().find(|safe| holds(&safe.loaded))
+}
+
+/// Whether a scene names the element of a body, rather than leaving it to its default.
+fn names_element(scene: &LoadedScene, body: &str) -> bool {
+    scene.has(&pointer(&["bodies", body, "element"]))
 }
 
 /// Checksum of a scene and of the files that it names, as [`Summary::scene`] tells it.
@@ -116,10 +202,10 @@ fn solve(
     loaded: &LoadedScene,
     out: &Path,
     threads: usize,
-    options: &RunOptions,
+    (options, changed): (&RunOptions, &[String]),
     observer: &mut (dyn Observer + Send),
     interrupt: &AtomicBool,
-) -> Result<Summary, RunError> {
+) -> Result<Told, RunError> {
     let cost = Cost::start();
     let mut claim = Claim::new(out, options.entry())?;
     let fingerprint = Fingerprint::new(loaded);
@@ -135,14 +221,18 @@ fn solve(
                 status: summary.status.name().to_owned(),
                 wall_s: summary.wall_s,
             });
-            return Ok(*summary);
+            return Ok(Told {
+                summary: *summary,
+                squeezed: None,
+            });
         }
         Some(Found::Unfinished(sections)) => Some(sections),
         None => None,
     };
     let mut phases = Phases::new();
     phases.start("model");
-    let model = model::build::build(loaded).map_err(|e| RunError::model(loaded, e))?;
+    let mut model = model::build::build(loaded).map_err(|e| RunError::model(loaded, e))?;
+    model.warnings.extend_from_slice(changed);
     let plan = Plan::new(loaded, &model);
     phases.stop("model");
     observer.event(&Event::Model {
@@ -200,9 +290,13 @@ fn solve(
         cost,
         Keeper::new(out, fingerprint),
     )?;
-    let (status, reason, failure) = match march.run(out, fields, kept) {
-        Ok(ending) => (ending.status, ending.reason, None),
-        Err(e) => (RunStatus::Failed, Some(e.to_string()), Some(e)),
+    march.replaceable = (loaded.scene.bodies.iter())
+        .filter(|(name, body)| body.element == Element::H8 && !names_element(loaded, name))
+        .map(|(name, _)| name.clone())
+        .collect();
+    let (status, reason, squeezed, failure) = match march.run(out, fields, kept) {
+        Ok(ending) => (ending.status, ending.reason, ending.squeezed, None),
+        Err(e) => (RunStatus::Failed, Some(e.to_string()), None, Some(e)),
     };
     let ResourceUse {
         wall_s,
@@ -247,7 +341,10 @@ fn solve(
         effects: plan.names(),
         plan: Some(plan.summary(march.assembler.ran())),
         accuracy: Accuracy {
-            contacts: march.peaks.account(&model),
+            contacts: march.peaks.account(
+                &model,
+                [&march.assembler.penalties, &march.assembler.ratios],
+            ),
             ..march.compliance.account(&model)
         },
         warnings,
@@ -280,7 +377,10 @@ fn solve(
         status: status.name().to_owned(),
         wall_s: summary.wall_s,
     });
-    Ok(summary)
+    Ok(Told {
+        summary,
+        squeezed: squeezed.map(|body| model.bodies[body].name.clone()),
+    })
 }
 
 /// The solver that the scene asks for; an unsymmetric system has only one, which the model has checked.

@@ -41,6 +41,7 @@ impl March<'_, '_> {
             return Some(Ending {
                 status: RunStatus::NotConverged,
                 reason: Some(failure.to_string()),
+                squeezed: None,
             });
         }
         if !last {

@@ -9,8 +9,10 @@
 //!    hundreds of points of which a handful stay: under a stiff penalty the points chatter, under a soft one the few
 //!    come out, and each stage starts from nearly the right ones.
 //!
-//! What fails all three is cut.
+//! Where the last stages fail and the run may choose the penalties, the last stage that was solved is what the step gets:
+//! whether its penalties serve is measured by [`super::penalty_rule`]. What fails all three is cut.
 use super::augment::{self, Left};
+use super::penalty_rule::{self, PenaltyRule};
 use super::progress::Progress;
 use super::tunneling;
 use super::validity;
@@ -18,9 +20,9 @@ use super::watch::Span;
 use crate::assembly::{Assembler, Fault};
 use crate::contact::law::Penalty;
 use crate::machine::clock::Phases;
+use crate::model::Model;
 use crate::model::driven::press::{Placed, Presser};
 use crate::model::state::State;
-use crate::model::{Model, penalty};
 use crate::scene;
 use crate::solve::event::{Event, Observer};
 use crate::solve::newton::{Converged, First, Newton, Patience, StepFailure, Workspace};
@@ -37,8 +39,8 @@ const SECANTS: Option<First> = Some(First {
     hold: false,
     secants: true,
 });
-/// Times an automatic penalty may be raised within a step.
-const RAISES: usize = 4;
+/// Times a penalty that lets points fall through their master may be raised within a step, and the factor.
+const DEEPER: (usize, f64) = (4, 10.0);
 
 /// The attempts at one step.
 pub(super) struct Attempts<'a, 'm> {
@@ -53,6 +55,7 @@ pub(super) struct Attempts<'a, 'm> {
     pub interrupt: &'a AtomicBool,
     pub observer: &'a mut (dyn Observer + Send),
     pub progress: &'a mut Progress,
+    pub rule: &'a mut PenaltyRule,
     /// For the first Newton iterations of a start.
     pub first: Option<First>,
     /// Whether the last step needed its points kept.
@@ -74,7 +77,7 @@ impl Attempts<'_, '_> {
     ) -> Result<Converged, StepFailure> {
         let penalties = self.assembler.penalties.clone();
         let result = match validity::turns(self.model, end - dt, end) {
-            Ok(None) => self.attempt(step, end, dt, before, trial, &penalties),
+            Ok(None) => self.deeper(step, end, dt, before, trial),
             Ok(Some(failure)) => Err(failure),
             Err(error) => Err(Fault::from(error).into()),
         };
@@ -88,6 +91,39 @@ impl Attempts<'_, '_> {
                 None => StepFailure::Fault(Fault::Value(error)),
             }
         })
+    }
+
+    /// The attempts, and again under stiffer penalties where those that the run may choose let points fall through.
+    fn deeper(
+        &mut self,
+        step: u32,
+        end: f64,
+        dt: f64,
+        before: Option<&(State, f64)>,
+        trial: &mut State,
+    ) -> Result<Converged, StepFailure> {
+        let (raises, factor) = DEEPER;
+        for _ in 0..raises {
+            let penalties = self.assembler.penalties.clone();
+            let failure = match self.attempt(step, end, dt, before, trial, &penalties) {
+                Err(failure) => failure,
+                done => return done,
+            };
+            let mut stiffer = penalties.clone();
+            for (pair, eps) in self.model.pairs.iter().zip(&mut stiffer) {
+                if let Some(ruled) = pair.ruled
+                    && failure.fell_through(&pair.name)
+                {
+                    *eps = (factor * *eps).min(ruled.stiffest).max(*eps);
+                }
+            }
+            if stiffer == penalties {
+                return Err(failure);
+            }
+            self.again(step, "a stiffer penalty", &failure, &stiffer);
+        }
+        let penalties = self.assembler.penalties.clone();
+        self.attempt(step, end, dt, before, trial, &penalties)
     }
 
     fn attempt(
@@ -164,6 +200,9 @@ impl Attempts<'_, '_> {
         penalties: &[f64],
     ) -> Result<Converged, StepFailure> {
         let mut iterations = 0;
+        // The last stage that was solved, where the run may keep its penalties.
+        let chooses = penalty_rule::rules_all(self.model);
+        let mut kept: Option<(State, Vec<f64>)> = None;
         for (i, stage) in STAGES.into_iter().enumerate() {
             for (eps, full) in self.assembler.penalties.iter_mut().zip(penalties) {
                 *eps = stage * full;
@@ -172,13 +211,55 @@ impl Attempts<'_, '_> {
                 self.restart(end, trial)?;
                 augment::forget(self.model, &mut trial.histories);
             }
-            iterations += self.newton(step, end, trial, Patience::Long)?.iterations;
+            match self.newton(step, end, trial, Patience::Long) {
+                Ok(converged) => iterations += converged.iterations,
+                Err(failure) => return self.eased(step, end, trial, kept, failure, penalties),
+            }
+            if chooses {
+                kept = Some((trial.clone(), self.assembler.penalties.clone()));
+            }
         }
         self.assembler.penalties.copy_from_slice(penalties);
+        match self.converge(step, end, trial, Patience::Long) {
+            Ok(mut converged) => {
+                converged.iterations += iterations;
+                converged.softened = true;
+                Ok(converged)
+            }
+            Err(failure) => self.eased(step, end, trial, kept, failure, penalties),
+        }
+    }
+
+    /// Goes back to the last stage of a softened start that was solved, after the next one failed.
+    fn eased(
+        &mut self,
+        step: u32,
+        end: f64,
+        trial: &mut State,
+        kept: Option<(State, Vec<f64>)>,
+        failure: StepFailure,
+        full: &[f64],
+    ) -> Result<Converged, StepFailure> {
+        let Some((state, penalties)) = kept.filter(|_| failure != StepFailure::Interrupted) else {
+            return Err(failure);
+        };
+        self.again(step, "the penalty of the last stage", &failure, &penalties);
+        trial.copy_from(&state);
         let mut converged = self.converge(step, end, trial, Patience::Long)?;
-        converged.iterations += iterations;
         converged.softened = true;
+        converged.eased = true;
+        self.rule.reject(&penalties, full);
         Ok(converged)
+    }
+
+    /// Solves a step that is in equilibrium again, under stiffer penalties.
+    pub fn stiffened(
+        &mut self,
+        step: u32,
+        end: f64,
+        trial: &mut State,
+    ) -> Result<Converged, StepFailure> {
+        self.converge(step, end, trial, Patience::Short)
     }
 
     /// Takes the last accepted state. A surface driven by force that touches nothing in it, or would not at `end`, is
@@ -330,8 +411,8 @@ impl Attempts<'_, '_> {
         raised
     }
 
-    /// Newton's method, and where an automatic penalty lets a point sink in too far, a stiffer one. A state in which a
-    /// point fell through the surface is none, however well in equilibrium: contact was lost on the way.
+    /// Newton's method. A state in which a point fell through the surface is none, however well in equilibrium: contact was
+    /// lost on the way.
     fn penalized(
         &mut self,
         step: u32,
@@ -339,26 +420,11 @@ impl Attempts<'_, '_> {
         trial: &mut State,
         patience: Patience,
     ) -> Result<Converged, StepFailure> {
-        let mut iterations = 0;
-        let mut raised = Vec::new();
-        for _ in 0..RAISES {
-            let mut converged = self.newton(step, end, trial, patience)?;
-            if self.model.small.is_none() {
-                self.none_sunk(end, trial)?;
-            }
-            iterations += converged.iterations;
-            converged.iterations = iterations;
-            if !self.stiffen(step, &converged, &mut raised) {
-                // Told only now: a failed attempt takes its penalties back.
-                for text in raised {
-                    self.observer.event(&Event::Warning { text: text.clone() });
-                    self.progress.warnings.push(text);
-                }
-                return Ok(converged);
-            }
+        let converged = self.newton(step, end, trial, patience)?;
+        if self.model.small.is_none() {
+            self.none_sunk(end, trial)?;
         }
-        let raised = raised.pop().unwrap_or_default();
-        Err(StepFailure::PenetrationStays { raised })
+        Ok(converged)
     }
 
     /// Fails where a point that was in contact in the last accepted state lies below the surface, deeper than its
@@ -433,33 +499,5 @@ impl Attempts<'_, '_> {
             result = validity::inside_out(self.model, trial).and(result);
         }
         result
-    }
-
-    /// Raises the automatic penalties of pairs that penetrate too deep, and says so in `told`; whether there were any.
-    fn stiffen(&mut self, step: u32, converged: &Converged, told: &mut Vec<String>) -> bool {
-        let mut raised = false;
-        let before = self.assembler.penalties.clone();
-        for (i, pair) in self.model.pairs.iter().enumerate() {
-            let allowed = penalty::TOLERATED * pair.element_size;
-            let deepest = converged.totals.penetration[i];
-            // Augmentation resolves what a penalty leaves.
-            if !pair.automatic || pair.augmentation.is_some() || deepest <= allowed {
-                continue;
-            }
-            let eps = before[i] * 2.0 * deepest / allowed;
-            // Two half passes have one penalty.
-            let other = pair.half.map_or(i, |half| half.other);
-            for index in [i, other] {
-                let penalty = &mut self.assembler.penalties[index];
-                *penalty = penalty.max(eps);
-            }
-            raised = true;
-            told.push(format!(
-                "contact `{}`: penetration {deepest:.3e} above {allowed:.3e} (1 % of an element) at step {step}: \
-                 automatic penalty raised to {eps:.6e}",
-                pair.name
-            ));
-        }
-        raised
     }
 }

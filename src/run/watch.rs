@@ -6,8 +6,8 @@
 //! a step are those in equilibrium there, so that what is suddenly there with a step counts as growing evenly over it.
 //!
 //! An overclosure at the start that the first step resolves counts as one that shrinks in it. Penalties put in energy of
-//! their own where they change under points that are pressed. One that is raised is treated as raised before anything
-//! moves: what that stores at once counts, and the forces at the start of the step are those under the new penalty. A point with a multiplier does the work of its tractions; what of that the penalty does not hold counts, with its sign.
+//! their own where they change under points that are pressed, by any factor: what a step leaves out of balance over which they
+//! change counts as that. A point with a multiplier does the work of its tractions; what of that the penalty does not hold counts, with its sign.
 //!
 //! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
 use super::remedy::smoother;
@@ -54,8 +54,9 @@ pub struct Watch {
     loads: Vec<f64>,
     /// What the rigid surfaces exert.
     surfaces: Vec<SurfaceForce>,
-    /// Penalty per pair.
+    /// Penalty per pair, and the tangential one over it.
     penalties: Vec<f64>,
+    ratios: Vec<f64>,
     /// Per pair whose overclosure shrinks: sum of normal traction, overclosure at the start and area (energy).
     pressed: Vec<f64>,
     /// Normal traction and gap per point with multipliers.
@@ -70,6 +71,8 @@ pub struct Work {
     /// Largest error of the trapezoidal rule where every force changes in one direction over the step.
     pub coarse: f64,
     turnover: f64,
+    /// Penalties changed in the step, or before it.
+    changed: bool,
 }
 
 impl Work {
@@ -130,6 +133,9 @@ impl Watch {
             loads: vec![0.0; if model.loaded() { n } else { 0 }],
             surfaces: vec![SurfaceForce::default(); model.surfaces.len()],
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
+            ratios: (model.pairs.iter())
+                .map(|p| p.friction.as_ref().map_or(0.0, |f| f.ratio))
+                .collect(),
             pressed: vec![0.0; model.pairs.len()],
             tractions: vec![
                 [0.0; 2];
@@ -158,6 +164,7 @@ impl Watch {
             loads,
             surfaces,
             penalties,
+            ratios,
             pressed,
             tractions,
         } = self;
@@ -165,7 +172,7 @@ impl Watch {
         out.u32(*worst_step);
         out.f64s(speed);
         out.f64s(span);
-        for numbers in [reactions, loads, penalties, pressed] {
+        for numbers in [reactions, loads, penalties, ratios, pressed] {
             out.count(numbers.len());
             out.f64s(numbers);
         }
@@ -197,6 +204,7 @@ impl Watch {
             &mut watch.reactions,
             &mut watch.loads,
             &mut watch.penalties,
+            &mut watch.ratios,
             &mut watch.pressed,
         ] {
             from.exactly(numbers.len(), "watched numbers")?;
@@ -254,9 +262,10 @@ impl Watch {
         }
         self.surfaces.copy_from_slice(&totals.surfaces);
         work.adjusted += self.multipliers(model, assembler);
-        if self.penalties != assembler.penalties {
-            work.adjusted += self.raised(model, assembler, span, &twists)?;
+        if self.penalties != assembler.penalties || self.ratios != assembler.ratios {
+            work.changed = true;
             self.penalties.copy_from_slice(&assembler.penalties);
+            self.ratios.copy_from_slice(&assembler.ratios);
         }
         Ok(work)
     }
@@ -284,6 +293,10 @@ impl Watch {
             }
         }
         self.external += work.external;
+        if work.changed {
+            let put_in = self.external + self.adjusted + work.adjusted;
+            work.adjusted += energy + self.imbalance - put_in;
+        }
         self.adjusted += work.adjusted;
         self.turnover += work.turnover;
         let before = self.imbalance;
@@ -363,52 +376,6 @@ impl Watch {
         for (kept, answer) in self.tractions.iter_mut().zip(answers) {
             *kept = traction(answer);
         }
-    }
-
-    /// Energy that penalties put in which were raised in the step, as if they had been at its start.
-    fn raised<L: PairLaw>(
-        &self,
-        model: &Model,
-        assembler: &mut Assembler<L>,
-        span: &Span,
-        twists: &[Option<Twist>],
-    ) -> Result<f64, Fault> {
-        let raised = assembler.penalties.clone();
-        let ((from, start), (to, end)) = (span.from, span.to);
-        // Points with multipliers are accounted for already.
-        let mut mixed = raised.clone();
-        let mut adjusted = 0.0;
-        for (index, pair) in model.pairs.iter().enumerate() {
-            let was = self.penalties[index];
-            if pair.augmentation.is_some() {
-                mixed[index] = was;
-            } else if let (Some(friction), Some(range)) = (&pair.friction, pair.history()) {
-                let compliance = (1.0 / raised[index] - 1.0 / was) / friction.ratio;
-                let points = pair.points.iter().zip(&from.histories[range]);
-                let sum: f64 = points.map(|(p, h)| h.t.norm_squared() * p.area).sum();
-                adjusted += 0.5 * pair.share() * compliance * sum;
-            }
-        }
-        let mut forces = vec![0.0; from.u.len()];
-        let mut sign = -1.0;
-        for penalties in [&self.penalties, &mixed] {
-            assembler.penalties.copy_from_slice(penalties);
-            let totals = assembler.contact(&mut from.clone(), start, &mut forces);
-            assembler.penalties.copy_from_slice(&raised);
-            let totals = totals?;
-            let mut work = 0.0;
-            for ((f, b), a) in (forces.iter().zip(&to.u).zip(&from.u)).take(self.reactions.len()) {
-                work += f * (b - a);
-            }
-            for (twist, on) in twists.iter().zip(&totals.surfaces) {
-                work += twist.as_ref().map_or(0.0, |t| t.power(on));
-            }
-            adjusted += sign * (totals.contact_energy + 0.5 * work);
-            sign = 1.0;
-        }
-        // What is known of the points is that of the end again.
-        assembler.contact(&mut to.clone(), end, &mut forces)?;
-        Ok(adjusted)
     }
 }
 

@@ -52,6 +52,15 @@ pub enum Event {
         /// Part of the gaps that the last augmentation left.
         left: f64,
     },
+    /// An automatic penalty made too large an error, and the step is solved again under a stiffer one.
+    PenaltyRuled {
+        step: u32,
+        contact: String,
+        /// The new penalty (force / length^3).
+        penalty: f64,
+        /// Relative error of forces under the one before.
+        error: f64,
+    },
     StepAccepted {
         step: u32,
         time: f64,

@@ -49,11 +49,16 @@ pub enum StepFailure {
         /// Whether the scene has loads that may drive it.
         loaded: bool,
     },
-    /// The last raise, in words that name the contact.
+    /// Points that touched in iterates before are all open.
+    #[error("all contact was lost on the way, to an equilibrium that is unstable")]
+    LostContact,
     #[error(
-        "{raised}, and it stays too deep: give the contact a `penalty`, more `points` a face, or a finer slave"
+        "the step was solved only under a penalty so soft that forces would be off by {:.0} %", 100.0 * error
     )]
-    PenetrationStays { raised: String },
+    TooSoft {
+        /// Relative error of forces.
+        error: f64,
+    },
     #[error(
         "contact `{pair}`: {points} point(s) that were in contact sank deeper than the `depth` {depth:.6e} of \
          {master}: the penalty is too soft for it, or the step too large"
@@ -122,6 +127,13 @@ pub enum StepFailure {
     },
     #[error("interrupted")]
     Interrupted,
+}
+
+impl StepFailure {
+    /// Whether points of this contact fell through their master.
+    pub fn fell_through(&self, contact: &str) -> bool {
+        matches!(self, StepFailure::Sunk { pair, .. } | StepFailure::FarSide { pair, .. } if pair == contact)
+    }
 }
 
 /// Why a body runs away, and what helps; of loads only where there are any.

@@ -38,6 +38,8 @@ pub struct Converged {
     pub factorization: Option<Factorization>,
     /// The step was solved from a softened penalty only.
     pub softened: bool,
+    /// It was solved under penalties softer than those that it began with.
+    pub eased: bool,
 }
 
 impl Converged {
@@ -50,6 +52,14 @@ impl Converged {
         self.history.extend(next.history);
         self.floor = self.floor.max(next.floor);
         self.factorization = next.factorization.or(self.factorization.take());
+    }
+}
+
+impl Converged {
+    /// Goes on to the same step under a stiffer penalty, whose iterations say nothing of how far a step may go.
+    pub fn stiffened(&mut self, next: Converged) {
+        self.augmented(next);
+        self.augmentations -= 1;
     }
 }
 
@@ -173,6 +183,16 @@ const UNTIL_SEARCH: u32 = 6;
 const UNTIL_GIVEN_UP: u32 = 9;
 /// Part of an increment, by its square, that has to be a rigid motion for a body to run away.
 const MOSTLY: f64 = 0.5;
+/// Multiple of the allowed iterations up to which an attempt goes on that is nearly done.
+const EXTENDED: u32 = 2;
+/// Points left to switch where it is, and the iterations over which their number has to fall where more are left.
+const LEFT: usize = 2;
+const OVER: usize = 4;
+/// Iterations without headway after which a residual this multiple of the tolerance is accepted.
+const STALLS: u32 = 6;
+const STALLED: f64 = 100.0;
+/// Tolerance from which on that is done: who asks for a smaller one wants it met.
+const LOOSE: f64 = 1e-8;
 /// Smallest factor of the line search.
 const SMALLEST: f64 = 1.0 / 64.0;
 
@@ -199,6 +219,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let mut factor = 1.0;
         let mut energy = 0.0;
         let (mut totals, secants) = self.begin(trial, time, pending)?;
+        let mut touched = false;
         let (mut cycle, mut round, mut damped) = (Cycle::default(), None::<PingPong>, 0u32);
         for iteration in 0.. {
             if self.interrupt.load(Ordering::Relaxed) {
@@ -223,8 +244,25 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 changed: totals.changed,
                 line_search: factor,
             });
-            match norms.judge(self.settings.tolerance, settled) {
+            // A point that goes to and fro between two facets leaves a residual that iterations do not lower.
+            let stalled = since_best >= STALLS && norms.residual >= best;
+            let tolerance = match stalled && self.settings.tolerance >= LOOSE {
+                true => STALLED * self.settings.tolerance,
+                false => self.settings.tolerance,
+            };
+            touched |= totals.active > 0;
+            match norms.judge(tolerance, settled) {
                 Verdict::Converged => {
+                    // An iterate that overshoots may lose all contact, and find what is beyond a snap.
+                    let unstable =
+                        |f: &Factorization| f.method != Method::Lu && f.negative_pivots > 0;
+                    if touched
+                        && totals.active == 0
+                        && self.patience == Patience::Short
+                        && factorization.as_ref().is_some_and(unstable)
+                    {
+                        return Err(StepFailure::LostContact);
+                    }
                     return Ok(Converged {
                         iterations: iteration,
                         augmentations: 0,
@@ -234,6 +272,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                         floor,
                         factorization,
                         softened: false,
+                        eased: false,
                     });
                 }
                 Verdict::Diverged => {
@@ -244,7 +283,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 Verdict::Continue => {}
             }
             let stuck = self.patience == Patience::Short && since_best >= UNTIL_GIVEN_UP;
-            if iteration >= self.settings.max_iterations || stuck {
+            let most = self.settings.max_iterations;
+            let late = iteration >= most && (iteration >= EXTENDED * most || !nearly(&history));
+            if late || stuck {
                 if let Some(failure) = self.runs_away(&trial.u) {
                     return Err(failure);
                 }
@@ -579,6 +620,17 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             floor,
         }
     }
+}
+
+/// Whether an attempt is nearly done: few points are left to switch, or ever fewer. One that switches none has no more reason
+/// to go on than its iterations give.
+fn nearly(history: &[(f64, usize)]) -> bool {
+    let most = |from: usize, to: usize| {
+        let range = history.len().saturating_sub(from)..history.len().saturating_sub(to);
+        history[range].iter().map(|h| h.1).max().unwrap_or(0)
+    };
+    let now = most(OVER, 0);
+    now > 0 && (now <= LEFT || now < most(2 * OVER, OVER))
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

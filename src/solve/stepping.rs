@@ -13,9 +13,13 @@ pub struct Stepping {
     dt: f64,
 }
 
-/// Iterations above which the next step is not enlarged, and below which it is.
-const MANY: u32 = 10;
-const FEW: u32 = 6;
+/// Iterations above which the next step is smaller, and below which it is larger. A thin shell takes six or seven at any
+/// size, so that fewer would freeze its steps.
+const MANY: u32 = 16;
+const FEW: u32 = 10;
+/// By how much.
+const LARGER: f64 = 1.6;
+const SMALLER: f64 = 0.7;
 
 impl Stepping {
     /// Steps from 0 to `end` that end on every kink and on every time of `stops`.
@@ -82,9 +86,9 @@ impl Stepping {
         if !self.settings.adaptive {
             self.dt = self.settings.initial.min(self.settings.max);
         } else if iterations < FEW {
-            self.dt = (1.5 * self.dt).min(self.settings.max);
+            self.dt = (LARGER * self.dt).min(self.settings.max);
         } else if iterations > MANY {
-            self.dt = (0.75 * self.dt).max(self.settings.min);
+            self.dt = (SMALLER * self.dt).max(self.settings.min);
         }
     }
 

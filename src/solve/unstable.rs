@@ -1,7 +1,7 @@
 //! What to say of a step that has no equilibrium near it: where the structure gives way, and what helps.
-use crate::model::Model;
 use crate::model::error::number;
 use crate::model::free_motion::free_motions;
+use crate::model::{BodyModel, Model};
 use crate::system::linear::{Factorization, LinearError, Method};
 use covact_geometry::Vec3;
 
@@ -30,6 +30,11 @@ impl Unstable {
             node,
             increment: at(node),
         })
+    }
+
+    /// The body that gives way most.
+    pub fn body<'m>(&self, model: &'m Model) -> Option<&'m BodyModel> {
+        (model.bodies.iter()).rfind(|b| b.first_node as usize <= self.node)
     }
 
     /// What it means and what helps; `stabilized` says whether the step is stabilised already.

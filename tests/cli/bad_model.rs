@@ -19,9 +19,10 @@ fn a_set_that_selects_nothing() {
 
 #[test]
 fn a_body_that_can_move() {
+    let none = ("/solution/stabilization", json!("none"));
     let held = json!({ "held": { "on": "plate.x_min", "symmetry": "x" } });
     plate_refused(
-        &[("/supports", held)],
+        &[("/supports", held), none.clone()],
         "/bodies/plate",
         &[
             "body `plate` can move freely along y, along z and about x: no support hinders it",
@@ -29,7 +30,7 @@ fn a_body_that_can_move() {
         ],
     );
     plate_refused(
-        &[("/supports", json!({}))],
+        &[("/supports", json!({})), none.clone()],
         "/bodies/plate",
         &["along x, along y, along z, about x, about y and about z"],
     );
@@ -38,7 +39,7 @@ fn a_body_that_can_move() {
         "on": "plate.x_min", "displacement": { "x": 0, "y": 0, "z": 0 }, "mid_surface": true
     } });
     plate_refused(
-        &[("/supports", hinge)],
+        &[("/supports", hinge), none],
         "/bodies/plate",
         &["in 1 way(s) that combine motions along z, about y"],
     );

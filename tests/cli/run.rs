@@ -116,7 +116,7 @@ fn lines_without_a_terminal() {
             &[
                 "80 dofs, 25 contact points\n",
                 "effects: contact.master.rigid",
-                "note: contact `press`: penalty 120000",
+                "note: contact `press`: penalty 14.9813",
                 " step       time         dt  iter   active  penetration\n",
                 "    1        0.5        0.5",
                 "    2          1        0.5",

@@ -24,7 +24,8 @@ pub fn block(tool: Value, top: Value, mu: Value, steps: u32) -> Value {
         "surfaces": { "tool": tool },
         "contacts": { "slide": {
             "slave": "block.bottom", "master": "tool", "points": { "gauss": 2 },
-            "penalty": { "value": 2e4 }, "friction": { "coulomb": { "mu": mu } }
+            "penalty": { "value": 2e4 }, "tangential_penalty": { "scaled": 1 },
+            "friction": { "coulomb": { "mu": mu } }
         } },
         "supports": { "top": { "on": "block.top", "displacement": top } },
         "solution": {

@@ -315,16 +315,17 @@ fn a_raised_penalty_leaves_the_friction_of_before() {
     // Pressed, sheared without sliding, then pressed on until the automatic penalty is raised.
     let top = json!({
         "x": { "table": [[0, 0], [0.2, 0], [0.4, 0.02], [1, 0.02]] }, "y": 0,
-        "z": { "table": [[0, 0], [0.2, -0.04], [0.4, -0.04], [1, -0.1]] }
+        "z": { "table": [[0, 0], [0.2, -0.04], [0.4, -0.04], [1, -0.2]] }
     });
     let mut scene = block(plane(), top, json!(5.0), 40);
     scene["contacts"]["slide"]["penalty"] = json!("auto");
+    // Stiffens as it is pressed, so that the error passes the bound on the way.
+    scene["materials"]["rubber"] = json!({ "neo_hooke": { "E": 100, "nu": 0.3 } });
+    scene["bodies"]["block"]["mesh"]["block"]["elements"] = json!([5, 2, 4]);
+    scene["contacts"]["slide"]["accuracy"] = json!(0.06);
     let outcome = done(&scene);
-    let raised = outcome
-        .summary
-        .warnings
-        .iter()
-        .filter(|w| w.contains("penalty raised"))
+    let raised = (outcome.events.iter())
+        .filter(|e| matches!(e, Event::PenaltyRuled { step, .. } if *step > 1))
         .count();
     let (times, force) = (outcome.column("time"), outcome.column("force.tool.x"));
     println!("{raised} raises, {:?}", outcome.summary.warnings);
@@ -337,7 +338,8 @@ fn a_raised_penalty_leaves_the_friction_of_before() {
         }
     }
     println!("largest kink {smooth:.1e}");
-    assert!(smooth < 5e-3, "{smooth}");
+    // By the error of a tenth that the raise takes away, not by the factor of more than two that the penalty is raised by.
+    assert!(smooth < 0.1, "{smooth}");
 }
 
 #[test]

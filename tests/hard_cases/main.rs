@@ -2,6 +2,7 @@
 mod common;
 mod convergence;
 mod cost;
+mod defaults;
 mod far;
 mod first_iterates;
 mod friction;

@@ -101,8 +101,10 @@ fn sandwich(factor: f64, steps: u32) -> Value {
                 "depth": 1
             }},
             "contacts": {
-                "top": {"slave": "plate.above", "master": "tool"},
-                "bottom": {"slave": "plate.below", "master": "base.z_max", "points": {"gauss": 3}}
+                "top": {"slave": "plate.above", "master": "tool", "penalty": {"scaled": 1}},
+                "bottom": {
+                    "slave": "plate.below", "master": "base.z_max", "points": {"gauss": 3}, "penalty": {"scaled": 1}
+                }
             },
             "supports": {
                 "clamp": {"on": "plate.x_min", "fixed": true}, "floor": {"on": "base.z_min", "fixed": true}

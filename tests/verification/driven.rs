@@ -137,7 +137,7 @@ fn tilting(motion: Value) -> Value {
     scene["bodies"]["block"]["mesh"]["block"]["elements"] = json!([5, 4, 4]);
     scene["supports"]["held"]["on"] = json!("block.bottom");
     scene["surfaces"]["plane"]["motion"] = motion;
-    scene["contacts"]["press"]["penalty"] = json!("auto");
+    scene["contacts"]["press"]["penalty"] = json!({ "scaled": 1 });
     scene["solution"]["step"] = json!({ "initial": 0.25, "max": 0.25 });
     scene
 }

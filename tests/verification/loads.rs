@@ -11,7 +11,7 @@ fn scene(mesh: Value, material: Value, supports: Value, loads: Value) -> Value {
         "bodies": {"b": {"mesh": mesh, "material": "m"}},
         "supports": supports,
         "loads": loads,
-        "solution": {"step": {"initial": 0.25, "max": 0.25}, "newton": {"tolerance": 1e-13}},
+        "solution": {"step": {"initial": 0.125, "max": 0.125}, "newton": {"tolerance": 1e-13}},
         "output": {"every": 1000}
     })
 }

@@ -28,8 +28,8 @@ pub(crate) mod sizes {
     use std::collections::BTreeSet;
     use std::sync::Arc;
 
-    /// A pair: its penalty, and the kernel that was run.
-    pub const PAIR: usize = size_of::<f64>() + size_of::<Option<Kernel>>();
+    /// A pair: its penalties, and the kernel that was run.
+    pub const PAIR: usize = 2 * size_of::<f64>() + size_of::<Option<Kernel>>();
     /// The list of where the points of a pair with a rigid master go.
     pub const RIGID_MAP: usize = PerPair::<PointMaps>::HEAD;
 
@@ -133,6 +133,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             borders,
             viscous,
             penalties,
+            ratios,
             linearization: _,
             linear,
             law: _,
@@ -169,7 +170,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             ("driven friction", driven[1]),
             ("stabilization", viscous.as_ref().map_or(0, Viscous::bytes)),
             ("linear", linear.as_ref().map_or(0, |l| l.bytes())),
-            ("pairs", heap(penalties) + heap(ran)),
+            ("pairs", heap(penalties) + heap(ratios) + heap(ran)),
         ]
     }
 }

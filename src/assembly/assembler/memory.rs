@@ -8,6 +8,7 @@ use crate::contact::law::PairLaw;
 pub struct AssemblerMemory {
     /// Penalty per pair.
     pub penalties: Vec<f64>,
+    pub ratios: Vec<f64>,
     /// Per pair whose master is a body, what the pattern couples. It decides about the order of elimination, and with it
     /// about the last bits.
     pub couplings: Vec<Option<CouplingMemory>>,
@@ -70,6 +71,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             contact: _,
             borders: _,
             penalties,
+            ratios,
             linearization: _,
             // Written by the first evaluation of a step.
             viscous: _,
@@ -80,6 +82,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         } = self;
         AssemblerMemory {
             penalties: penalties.clone(),
+            ratios: ratios.clone(),
             couplings: (0..self.model.pairs.len())
                 .map(|pair| couplings.get(pair).map(Couplings::memory))
                 .collect(),
@@ -97,6 +100,7 @@ impl<L: PairLaw> Assembler<'_, L> {
     pub fn restore(&mut self, memory: &AssemblerMemory) -> Result<(), MemoryError> {
         let AssemblerMemory {
             penalties,
+            ratios,
             couplings,
             rebuilds,
             factored,
@@ -123,6 +127,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             self.build_pattern()?;
         }
         self.penalties.copy_from_slice(penalties);
+        self.ratios.copy_from_slice(ratios);
         self.rebuilds = *rebuilds;
         if let Some(linear) = &mut self.linear {
             linear.restore(factored.clone(), *farthest);

@@ -226,6 +226,8 @@ pub struct Assembler<'m, L = Penalty> {
     linear: Option<Box<Linear>>,
     /// Penalty per pair; an automatic one may be raised in the course of a run.
     pub penalties: Vec<f64>,
+    /// Tangential penalty over the normal one per pair, zero without friction.
+    pub ratios: Vec<f64>,
     /// How contact is linearised.
     pub linearization: Linearization,
     law: PhantomData<fn() -> L>,
@@ -301,6 +303,9 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
             viscous: Viscous::new(model),
             linear,
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
+            ratios: (model.pairs.iter())
+                .map(|p| p.friction.as_ref().map_or(0.0, |f| f.ratio))
+                .collect(),
             linearization: Linearization::default(),
             law: PhantomData,
         })

@@ -234,7 +234,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                     (master, surface),
                     (
                         friction,
-                        self.penalties[index],
+                        [self.penalties[index], self.ratios[index]],
                         self.linearization.secant_slip,
                     ),
                     &state.u,
@@ -244,7 +244,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 )?;
                 self.ran[index] = Some(ran);
                 if kernel.law == LawKind::Multipliers {
-                    let eps_t = friction.ratio * self.penalties[index];
+                    let eps_t = self.ratios[index] * self.penalties[index];
                     let known = &state.histories[histories.clone()];
                     sliding.answer(surface, known, eps_t, &mut self.answers[histories]);
                 }

@@ -85,7 +85,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             let friction = match (&pair.friction, pair.history()) {
                 (Some(friction), Some(range)) => Some((
                     friction.law.at(time)?,
-                    friction.ratio * self.penalties[index],
+                    self.ratios[index] * self.penalties[index],
                     &state.histories[range],
                 )),
                 _ => None,

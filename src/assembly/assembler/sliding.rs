@@ -124,7 +124,7 @@ impl Sliding {
         model: &Model,
         (pair, kernel): (&PairModel, &Kernel),
         (master, surface): (&BodyMaster, &BodySurface),
-        (friction, penalty, secant): (&FrictionModel, f64, bool),
+        (friction, [penalty, ratio], secant): (&FrictionModel, [f64; 2], bool),
         u: &[f64],
         time: f64,
         states: &mut [PointState],
@@ -143,7 +143,7 @@ impl Sliding {
             histories,
             offsets: pair.offsets(time),
         };
-        let eps_t = friction.ratio * penalty;
+        let eps_t = ratio * penalty;
         let touches = &mut self.touched.all;
         let now = friction.law.at(time)?;
         let ran = with_law!(now, law => {

@@ -62,7 +62,7 @@ pub fn poisson(trial: &mut Trial) -> Result<(), CaseError> {
             );
         }
     }
-    trial.iterations(45);
+    trial.iterations(60);
     Ok(())
 }
 

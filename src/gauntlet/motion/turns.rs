@@ -140,6 +140,7 @@ pub fn together(trial: &mut Trial) -> Result<(), CaseError> {
             }),
         };
         let mut scene = block(tool, top, Some(json!(0.8)), 1);
+        scene["contacts"]["slide"]["tangential_penalty"] = json!({ "scaled": 1 });
         scene["solution"] = turning(360.0, 60.0);
         let outcome = trial.done(&scene)?;
         let force = |t: f64| {

@@ -13,7 +13,7 @@ use crate::machine::memory;
 use crate::mesh::Face;
 use crate::scene::{Contact, Gap, MasterSurface, Passes, Penalty, Points};
 use covact_geometry::MovingFacets;
-use penalty::FaceSize;
+use penalty::{FaceSize, Suitable};
 use std::collections::BTreeMap;
 
 impl Builder<'_> {
@@ -88,12 +88,12 @@ impl Builder<'_> {
         })?;
         let mut points = slave_points(&model.mesh, &faces, contact.points, first_node)
             .at(|| pointer("points"))?;
-        let (size, mut automatic) = self.stiffness(body, &faces);
+        let (size, mut suits) = self.stiffness(body, &faces);
         let mut softer = "the slave's";
         let master = match rigid {
             Some(surface) => Master::Rigid(surface),
             None => {
-                let (mut master, stiffness) = self.body_master(name, contact)?;
+                let (mut master, of_master) = self.body_master(name, contact)?;
                 if master.body == body {
                     self.own_body(name, contact, &faces, &mut points, &mut master)?;
                 }
@@ -107,20 +107,34 @@ impl Builder<'_> {
                     let facets = &master.facets;
                     points = segments::segments(&nodes, facets, position, position, degree, reach);
                 }
-                if stiffness < automatic {
-                    automatic = stiffness;
+                if of_master.automatic < suits.automatic {
                     softer = "the master's, which are softer than the slave's,";
                 }
+                suits = suits.both(&of_master);
                 Master::Body(Box::new(master))
             }
         };
-        let (eps_n, is_automatic) = match contact.penalty {
-            Penalty::Auto => (automatic, true),
-            Penalty::Value(v) => (v, false),
-            Penalty::Scaled(f) => (f * automatic, false),
+        let automatic = suits.automatic;
+        let (eps_n, ruled) = match (contact.penalty, &contact.augmentation) {
+            (Penalty::Auto, None) => {
+                let ruled = penalty::Ruled {
+                    accuracy: contact.accuracy.unwrap_or(penalty::ACCURACY),
+                    stiffest: suits.stiffest,
+                    deepest: suits.deepest,
+                };
+                (suits.start, Some(ruled))
+            }
+            (Penalty::Auto, Some(_)) => (automatic, None),
+            (Penalty::Value(v), _) => (v, None),
+            (Penalty::Scaled(f), _) => (f * automatic, None),
         };
         let (value, auto) = (number(eps_n), number(automatic));
         let how = match contact.penalty {
+            Penalty::Auto if ruled.is_some() => {
+                format!(
+                    "a start from the stiffness of {softer} elements, ruled by its error from then on"
+                )
+            }
             Penalty::Auto => format!("chosen from the stiffness of {softer} elements"),
             Penalty::Value(_) => format!(
                 "as given ({} of the automatic {auto})",
@@ -128,7 +142,7 @@ impl Builder<'_> {
             ),
             Penalty::Scaled(f) => format!("{} of the automatic {auto}", number(f)),
         };
-        if !is_automatic {
+        if contact.penalty != Penalty::Auto {
             self.limit(name, contact, "penalty", eps_n, (automatic, size.bounded()))?;
         }
         // The back pass of two has the penalty of the first.
@@ -180,7 +194,7 @@ impl Builder<'_> {
             },
             half: None,
             eps_n,
-            automatic: is_automatic,
+            ruled,
             tangent: contact.tangent,
             element_size: size.edge,
             overclosure: None,
@@ -253,7 +267,16 @@ impl Builder<'_> {
             Penalty::Scaled(f) => f * automatic,
         };
         if contact.tangential_penalty != Penalty::Auto {
-            let (given, suitable) = (ratio * eps_n, automatic * suitable);
+            // Of a ruled normal penalty nothing is known yet but where it starts.
+            let normal = match contact.penalty {
+                Penalty::Auto => suitable,
+                _ => eps_n,
+            };
+            let given = match contact.tangential_penalty {
+                Penalty::Value(v) => v,
+                _ => ratio * normal,
+            };
+            let suitable = automatic * suitable;
             let bounded = size.bounded();
             self.limit(
                 name,
@@ -271,7 +294,17 @@ impl Builder<'_> {
                 number(ratio)
             ));
         }
-        Ok(Some(FrictionModel { law, ratio }))
+        let ruled = contact.tangential_penalty == Penalty::Auto && contact.augmentation.is_none();
+        let given = match contact.tangential_penalty {
+            Penalty::Value(v) => Some(v),
+            Penalty::Auto | Penalty::Scaled(_) => None,
+        };
+        Ok(Some(FrictionModel {
+            law,
+            ratio,
+            ruled,
+            given,
+        }))
     }
 
     /// Warns of a given penalty that costs too many digits, and refuses one that leaves none. Compared with are the automatic
@@ -317,24 +350,23 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Size of the elements under some faces of a body, and the penalty that suits them.
-    fn stiffness(&self, body: usize, faces: &[Face]) -> (FaceSize, f64) {
+    /// Size of the elements under some faces of a body, and the penalties that suit them.
+    fn stiffness(&self, body: usize, faces: &[Face]) -> (FaceSize, Suitable) {
         let model = &self.bodies[body];
         let size = penalty::face_size(&model.mesh, faces);
-        let material = &self.scene.bodies[&model.name].material;
-        let automatic = penalty::automatic(&self.scene.materials[material], &size);
-        (size, automatic)
+        let material = &self.scene.materials[&self.scene.bodies[&model.name].material];
+        (size, Suitable::new(material, &size))
     }
 
-    /// Faces of a body as a master, and the penalty that suits them.
+    /// Faces of a body as a master, and the penalties that suit them.
     fn body_master(
         &mut self,
         name: &str,
         contact: &Contact,
-    ) -> Result<(BodyMaster, f64), ModelError> {
+    ) -> Result<(BodyMaster, Suitable), ModelError> {
         let pointer = || format!("/contacts/{name}/master");
         let (body, faces) = self.faces(&contact.master, &pointer())?;
-        let (size, automatic) = self.stiffness(body, &faces);
+        let (size, suits) = self.stiffness(body, &faces);
         let model = &self.bodies[body];
         master_faces::check(&model.mesh, &faces, &contact.master)
             .map_err(|(message, help)| text(pointer(), message).help(help))?;
@@ -366,7 +398,7 @@ impl Builder<'_> {
             element_size: size.edge,
             own: None,
         };
-        Ok((master, automatic))
+        Ok((master, suits))
     }
 
     /// Slave and master on one body: what is connected is no contact.

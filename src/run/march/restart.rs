@@ -12,6 +12,7 @@ use crate::run::checkpoint::{CheckpointError, Sections, Slot, state};
 use crate::run::compliance::Compliance;
 use crate::run::cost::ResourceUse;
 use crate::run::peaks::Peaks;
+use crate::run::penalty_rule::PenaltyRule;
 use crate::run::progress::Progress;
 use crate::run::watch::Watch;
 use crate::system::linear::Method;
@@ -34,6 +35,7 @@ pub struct Kept {
     pub(super) touching: Vec<bool>,
     pub(super) watch: Watch,
     pub(super) compliance: Compliance,
+    pub(super) rule: PenaltyRule,
     pub(super) peaks: Peaks,
     pub(super) table: HistoryMark,
     /// Steps whose fields were written, with their times.
@@ -63,13 +65,14 @@ impl Kept {
             Ok((dt, hold, take_flags(pairs, r)?, take_flags(pairs, r)?))
         })?;
         let watch = from.section("watch", |r| Watch::take(model, r))?;
-        let (compliance, peaks) = from.section("accuracy", |r| {
+        let (compliance, rule, peaks) = from.section("accuracy", |r| {
             let malformed = |_| r.malformed("a motion without a value at the start");
             let mut compliance = Compliance::new(model).map_err(malformed)?;
             let mut peaks = Peaks::new(model);
             compliance.take(model, r)?;
+            let rule = PenaltyRule::take(model, r)?;
             peaks.take(r)?;
-            Ok((compliance, peaks))
+            Ok((compliance, rule, peaks))
         })?;
         let committed = from.section("state", |r| state::take(model, r))?;
         let before = from.section("before", |r| {
@@ -99,6 +102,7 @@ impl Kept {
             touching,
             watch,
             compliance,
+            rule,
             peaks,
             table,
             written,
@@ -134,6 +138,9 @@ impl March<'_, '_> {
             touching,
             watch,
             compliance,
+            rule,
+            // Given by the scene.
+            replaceable: _,
             peaks,
             cost,
             keeper,
@@ -168,6 +175,7 @@ impl March<'_, '_> {
             out.section("watch", |out| watch.put(out));
             out.section("accuracy", |out| {
                 compliance.put(out);
+                rule.put(out);
                 peaks.put(out);
             });
             out.section("state", |out| state::put(model, committed, out));
@@ -268,6 +276,7 @@ fn take_flags(count: usize, from: &mut Reader) -> Result<Vec<bool>, Malformed> {
 fn put_assembler(memory: &AssemblerMemory, out: &mut Writer) {
     let AssemblerMemory {
         penalties,
+        ratios,
         couplings,
         rebuilds,
         factored,
@@ -277,6 +286,7 @@ fn put_assembler(memory: &AssemblerMemory, out: &mut Writer) {
     } = memory;
     out.count(penalties.len());
     out.f64s(penalties);
+    out.f64s(ratios);
     for coupling in couplings {
         out.option(coupling.as_ref(), |out, coupling| {
             let CouplingMemory {
@@ -301,6 +311,8 @@ fn take_assembler(model: &Model, from: &mut Reader) -> Result<AssemblerMemory, M
     from.exactly(model.pairs.len(), "penalties")?;
     let mut penalties = vec![0.0; model.pairs.len()];
     from.f64s(&mut penalties)?;
+    let mut ratios = penalties.clone();
+    from.f64s(&mut ratios)?;
     let mut couplings = Vec::with_capacity(model.pairs.len());
     for _ in &model.pairs {
         couplings.push(from.option(|from| {
@@ -321,6 +333,7 @@ fn take_assembler(model: &Model, from: &mut Reader) -> Result<AssemblerMemory, M
     let farthest = from.f64()?;
     Ok(AssemblerMemory {
         penalties,
+        ratios,
         couplings,
         rebuilds,
         factored,

@@ -141,6 +141,19 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
         }
     }
     check_penalty(c, &format!("{at}/penalty"), contact.penalty);
+    if let Some(accuracy) = contact.accuracy {
+        let at = format!("{at}/accuracy");
+        if !(1e-6..=0.1).contains(&accuracy) {
+            let message = format!("the accuracy is {accuracy}");
+            let help = "a relative error of forces from 1e-6 to 0.1, usually 1e-3";
+            c.add(&at, message, Some(help.into()));
+        }
+        if contact.penalty != Penalty::Auto || contact.augmentation.is_some() {
+            let message = "an accuracy rules an automatic penalty, and there is none here";
+            let help = "leave out `penalty` and `augmentation`, or the accuracy";
+            c.add(&at, message, Some(help.into()));
+        }
+    }
     friction::check(c, at, contact);
     augmentation::check(c, at, contact);
 }

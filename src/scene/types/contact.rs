@@ -27,6 +27,9 @@ pub struct Contact {
     pub passes: Passes,
     #[serde(default)]
     pub penalty: Penalty,
+    /// Relative error of forces that the automatic penalty aims at; default: 4e-3. Only where no penalty is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<f64>,
     #[serde(default)]
     pub tangent: Tangent,
     #[serde(default)]
@@ -157,12 +160,13 @@ pub enum Gap {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Penalty {
-    /// From the stiffness of the elements; its value is printed.
+    /// The normal one starts soft and is ruled by the error of forces that it makes (`accuracy`); the tangential one keeps the
+    /// elastic slip small. Where tractions are augmented: from the stiffness of the elements.
     #[default]
     Auto,
     /// Given value.
     Value(f64),
-    /// This multiple of the automatic value.
+    /// This multiple of what the stiffness of the elements suggests.
     Scaled(f64),
 }
 

@@ -72,12 +72,14 @@ pub enum LinearSolver {
     Lu,
 }
 
-/// Stabilisation, written `"none"` or `{"viscous": {"factor": 1e-3, "until": 0.5}}`.
+/// Stabilisation, written `"auto"`, `"none"` or `{"viscous": {"factor": 1e-3, "until": 0.5}}`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Stabilization {
-    /// Equilibrium without help: a body must be held by its supports, and a structure that snaps fails.
+    /// `viscous` with its default factor on bodies that only contact holds; nothing where supports hold all.
     #[default]
+    Auto,
+    /// Equilibrium without help: a body must be held by its supports, and a structure that snaps fails.
     None,
     /// Every unknown of a body feels a force `c m (u - u_start) / dt` in every step, `m` being the volume of its node and
     /// `c = factor * end_time * E (h / L)^2 / L^2` (force time / length^4) of the body that bends most easily: E Young's
@@ -93,8 +95,11 @@ pub enum Stabilization {
     },
 }
 
+/// Factor of the viscous stabilisation where none is given.
+pub const VISCOUS_FACTOR: f64 = 1e-3;
+
 fn default_factor() -> f64 {
-    1e-3
+    VISCOUS_FACTOR
 }
 
 /// What is written.
@@ -118,7 +123,7 @@ impl Default for Solution {
             step: Step::default(),
             newton: Newton::default(),
             linear_solver: LinearSolver::Auto,
-            stabilization: Stabilization::None,
+            stabilization: Stabilization::Auto,
             threads: 0,
         }
     }

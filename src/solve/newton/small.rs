@@ -77,6 +77,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                         floor,
                         factorization,
                         softened: false,
+                        eased: false,
                     });
                 }
                 Verdict::Diverged => {

@@ -44,6 +44,7 @@ fn particle(mut surface: Value, mu: f64, phi: f64) -> Outcome {
             "master": "rest",
             "points": {"gauss": 1},
             "penalty": {"value": PENALTY},
+            "tangential_penalty": {"scaled": 1},
             "friction": {"coulomb": {"mu": mu}}
         }},
         "supports": {"held": {"on": "particle.top", "fixed": true}},

@@ -1,0 +1,280 @@
+//! A step that is solved, before it is accepted: its histories, its fields, and whether its penalties serve.
+use super::{March, Outputs, RELIABLE, StepControl};
+use crate::contact::friction::history::PointHistory;
+use crate::model::Model;
+use crate::model::state::State;
+use crate::run::RunError;
+use crate::run::commit::{self, FrictionTotals};
+use crate::run::compliance::{Errors, StepEnd};
+use crate::run::penalty_rule::{self, PenaltyRule};
+use crate::run::step::Attempts;
+use crate::scene::ValueError;
+use crate::solve::event::Event;
+use crate::solve::newton::{Converged, StepFailure};
+
+/// Iterations of a step, those of failed attempts included, above which tangential penalties are softened.
+const STRUGGLES: u32 = 16;
+/// Times that penalties may be raised within a step.
+const RAISES: usize = 6;
+
+/// What is known of a step that is solved.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Settled {
+    pub sliding: FrictionTotals,
+    /// What the points remembered while it was solved.
+    pub histories: Vec<PointHistory>,
+    /// What every pair leaves; empty where the run chooses no penalty.
+    pub errors: Errors,
+}
+
+/// What a raise of penalties went out from.
+struct Tried {
+    state: State,
+    penalties: Vec<f64>,
+    errors: Errors,
+}
+
+impl<'m> March<'_, 'm> {
+    /// The attempts at a step.
+    pub(super) fn attempts<'b>(
+        &'b mut self,
+        committed: &'b State,
+        hold: &'b mut bool,
+    ) -> Attempts<'b, 'm> {
+        Attempts {
+            model: self.model,
+            committed,
+            assembler: self.assembler,
+            solver: self.solver,
+            workspace: &mut self.workspace,
+            settings: &self.scene.solution.newton,
+            phases: &mut self.phases,
+            interrupt: self.interrupt,
+            observer: self.observer,
+            progress: &mut self.progress,
+            rule: &mut self.rule,
+            first: None,
+            hold,
+            opened: false,
+        }
+    }
+
+    /// Takes the step into the histories of `trial` and gathers its fields; where the penalties that the run may choose make too
+    /// large an error, it is solved again under stiffer ones.
+    ///
+    /// # Errors
+    /// Inside, why the step is not to be accepted.
+    pub(super) fn settle(
+        &mut self,
+        (step, end, cuts): (u32, f64, u32),
+        (committed, walk): (&State, &mut StepControl),
+        trial: &mut State,
+        converged: &mut Converged,
+        outputs: &mut Outputs,
+    ) -> Result<Result<Settled, StepFailure>, RunError> {
+        let start = self.progress.time;
+        let rules = self.model.pairs.iter().any(|p| p.ruled.is_some());
+        let fields = rules.then(|| outputs.fields.before());
+        let mut raises = if rules { RAISES } else { 0 };
+        let mut rejected = false;
+        // What a raise went out from.
+        let mut tried: Option<Tried> = None;
+        loop {
+            let mut histories = trial.histories.clone();
+            let was = (&committed.u[..], start);
+            let sliding = commit::commit(self.model, self.assembler, trial, was, end)
+                .map_err(|e| RunError::internal(&e))?;
+            self.gather(outputs, trial, end)?;
+            let mut settled = Settled {
+                sliding,
+                histories: Vec::new(),
+                errors: Errors::default(),
+            };
+            let Some(fields) = &fields else {
+                settled.histories = histories;
+                return Ok(Ok(settled));
+            };
+            let errors = self.errors(outputs, trial, (step, end), converged)?;
+            if let Some(tried) = tried.take()
+                && !PenaltyRule::helped(&tried.errors, &errors)
+            {
+                let why = "a stiffer one does not lower the error";
+                outputs.fields.back(fields);
+                match self.back((step, end), (committed, walk), trial, tried, why) {
+                    Ok(next) => converged.stiffened(next),
+                    Err(failure) => return Ok(Err(failure)),
+                }
+                // Where it does not help, half as far would not.
+                raises = 0;
+                continue;
+            }
+            let mut stiffer = self.assembler.penalties.clone();
+            let raise = raises > 0 && self.rule.raise(self.model, &errors, rejected, &mut stiffer);
+            let error = errors.sum();
+            if (converged.eased || rejected && !raise)
+                && let Some(error) = penalty_rule::untenable(self.model, &errors, cuts)
+            {
+                return Ok(Err(StepFailure::TooSoft {
+                    error: error.min(1.0),
+                }));
+            }
+            if !raise {
+                (settled.histories, settled.errors) = (histories, errors);
+                return Ok(Ok(settled));
+            }
+            raises -= 1;
+            // Solved again from where it is.
+            std::mem::swap(&mut trial.histories, &mut histories);
+            outputs.fields.back(fields);
+            let softer = std::mem::replace(&mut self.assembler.penalties, stiffer);
+            self.hold_given();
+            self.tell_raise(step, &softer, error);
+            let from = Tried {
+                state: trial.clone(),
+                penalties: softer,
+                errors,
+            };
+            match (self.attempts(committed, &mut walk.hold)).stiffened(step, end, trial) {
+                Ok(next) => {
+                    converged.stiffened(next);
+                    tried = Some(from);
+                }
+                Err(StepFailure::Interrupted) => return Ok(Err(StepFailure::Interrupted)),
+                Err(failure) => {
+                    let why = failure.to_string();
+                    match self.back((step, end), (committed, walk), trial, from, &why) {
+                        Ok(next) => converged.stiffened(next),
+                        Err(failure) => return Ok(Err(failure)),
+                    }
+                    rejected = true;
+                }
+            }
+        }
+    }
+
+    /// Takes a raise back: what is known of the step is again that of the softer penalties.
+    fn back(
+        &mut self,
+        (step, end): (u32, f64),
+        (committed, walk): (&State, &mut StepControl),
+        trial: &mut State,
+        from: Tried,
+        why: &str,
+    ) -> Result<Converged, StepFailure> {
+        self.rule.reject(&from.penalties, &self.assembler.penalties);
+        self.assembler.penalties.copy_from_slice(&from.penalties);
+        self.hold_given();
+        trial.copy_from(&from.state);
+        self.observer.event(&Event::StepRetried {
+            step,
+            start: "the penalty before it was raised".to_owned(),
+            reason: why.to_owned(),
+        });
+        (self.attempts(committed, &mut walk.hold)).stiffened(step, end, trial)
+    }
+
+    fn errors(
+        &self,
+        outputs: &Outputs,
+        state: &State,
+        (step, time): (u32, f64),
+        converged: &Converged,
+    ) -> Result<Errors, RunError> {
+        // Where rounding is all there is, nothing is known.
+        if converged
+            .history
+            .last()
+            .is_some_and(|last| last.0 > RELIABLE)
+        {
+            return Ok(Errors::none(self.model));
+        }
+        let end = StepEnd {
+            step,
+            time,
+            state,
+            bearings: &outputs.fields.bearings,
+            internal: converged.totals.internal_energy,
+            work: 0.0,
+            penalties: &self.assembler.penalties,
+        };
+        (self.compliance.errors(self.model, &end)).map_err(|e| RunError::internal(&e))
+    }
+
+    fn tell_raise(&mut self, step: u32, softer: &[f64], error: f64) {
+        let penalties = self.assembler.penalties.clone();
+        for ((pair, before), penalty) in self.model.pairs.iter().zip(softer).zip(penalties) {
+            if penalty > *before {
+                self.observer.event(&Event::PenaltyRuled {
+                    step,
+                    contact: pair.name.clone(),
+                    penalty,
+                    error: error.min(1.0),
+                });
+            }
+        }
+    }
+
+    /// Softens the tangential penalties of the next step, where the run may, after a step with friction that took many
+    /// iterations.
+    pub(super) fn adapt_slip(
+        &mut self,
+        outputs: &Outputs,
+        time: f64,
+        converged: &Converged,
+    ) -> Result<(), ValueError> {
+        if converged.iterations + self.failed <= STRUGGLES {
+            return Ok(());
+        }
+        let ratios = self
+            .assembler
+            .ratios
+            .iter_mut()
+            .zip(&self.assembler.penalties);
+        for ((pair, sum), (ratio, eps_n)) in
+            (self.model.pairs.iter().zip(&outputs.fields.bearings.pairs)).zip(ratios)
+        {
+            let Some(friction) = pair.friction.as_ref().filter(|f| f.ruled && sum.area > 0.0)
+            else {
+                continue;
+            };
+            let pressure = sum.force / sum.area;
+            if let Some(suits) = friction.suitable(pressure, *eps_n, pair.element_size, time)? {
+                *ratio = suits;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adapts the penalties that the run may choose to an accepted step, for the next one. `errors` are those at its end, `growth`
+    /// the one that shows over the last steps.
+    pub(super) fn adapt(&mut self, mut errors: Errors, growth: f64, converged: &Converged) {
+        if errors.forces.is_empty() {
+            return;
+        }
+        let model: &Model = self.model;
+        let iterations = converged.iterations + self.failed;
+        let mut penalties = self.assembler.penalties.clone();
+        self.rule.lower(model, &errors, iterations, &mut penalties);
+        let sum = errors.sum();
+        if growth > sum && sum > 0.0 {
+            errors.forces.iter_mut().for_each(|e| *e *= growth / sum);
+            self.rule.raise(model, &errors, false, &mut penalties);
+        }
+        self.assembler.penalties.copy_from_slice(&penalties);
+        self.hold_given();
+    }
+
+    /// Tangential penalties that are given stay what they are, whatever the normal ones are now.
+    fn hold_given(&mut self) {
+        let ratios = self
+            .assembler
+            .ratios
+            .iter_mut()
+            .zip(&self.assembler.penalties);
+        for (pair, (ratio, eps_n)) in self.model.pairs.iter().zip(ratios) {
+            if let Some(eps_t) = pair.friction.as_ref().and_then(|f| f.given) {
+                *ratio = eps_t / eps_n;
+            }
+        }
+    }
+}

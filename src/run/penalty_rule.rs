@@ -1,0 +1,367 @@
+//! Automatic penalties, ruled by the error that they make.
+//!
+//! A contact's penalty starts soft. The error that every pair makes in the forces ([`super::compliance`]) is measured at the end
+//! of every step, before the step is accepted, and kept in a band: above [`HIGH`] the step is solved again, from where it is,
+//! under a stiffer penalty; below [`LOW`], where steps take many iterations, the next ones have a softer one. The work of
+//! contact is what a penalty costs in accuracy, so the size of an element does not decide, nor a deep point, as long as the
+//! layers of a stack stay apart ([`Ruled::deepest`]).
+//!
+//! A raise that Newton's method cannot follow is tried half as far, by its logarithm; one that does not lower the error is taken
+//! back, and not tried again for a while. Where none serves and the error is large, the step is cut a few times; then it is
+//! taken as it is. What error is left is told at the end of the run.
+use crate::model::penalty::Ruled;
+use crate::model::{Model, PairModel};
+use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
+use crate::run::compliance::Errors;
+
+/// Bounds of the band, as multiples of the accuracy asked for: an error above the larger one raises a penalty, one below the
+/// smaller one may lower it.
+const HIGH: f64 = 2.5;
+const LOW: f64 = 0.075;
+/// The same, above which a penalty that was softened to get through a step is too soft to be accepted.
+const UNTENABLE: f64 = 7.5;
+/// Penetration, relative to what is too deep, above which no raise waits.
+const SUNK: f64 = 3.0;
+/// Cuts of a step after each of which twice as much is accepted; after twice as many all of it is.
+const RELENTS: u32 = 2;
+/// Steps in a row with so low an error, and their mean number of iterations, after which a penalty is lowered.
+const IDLE: u32 = 3;
+const MANY: u32 = 8;
+/// Part of the largest error of a pair that another has to make to be raised with it.
+const SHARE: f64 = 0.1;
+/// Smallest and largest factor of a raise, and the largest where contact gives way more than the bodies do.
+const RAISE: [f64; 3] = [2.0, 100.0, 1e4];
+/// Smallest factor of a lowering.
+const LOWER: f64 = 0.01;
+/// Factor of a raise by depth, times how much too deep points are.
+const DEEPER: f64 = 10.0;
+/// Part of the error, or of the deepest penetration, that a raise may leave at most. Under a penalty that is far too soft the
+/// energy of contact grows with it at first; a penetration that is prescribed does not change at all.
+const HELPS: f64 = 0.9;
+const HELPS_DEPTH: f64 = 0.98;
+/// Steps after which a penalty that did not serve is forgotten.
+const FORGOTTEN: u32 = 20;
+/// Steps until another raise is tried after one that did not serve, twice as many after the next one.
+const WAIT: u32 = 2;
+
+/// What is remembered of a pair.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct PairRule {
+    /// Penalty that did not serve (force / length^3); infinite where none is known.
+    bad: f64,
+    /// Steps for which that is remembered, and those until another raise is tried.
+    remembered: u32,
+    wait: u32,
+    /// Raises in a row that did not serve.
+    failed: u32,
+    /// Steps in a row in which the error was low, and their iterations.
+    low: [u32; 2],
+}
+
+impl PairRule {
+    const NEW: PairRule = PairRule {
+        bad: f64::INFINITY,
+        remembered: 0,
+        wait: 0,
+        failed: 0,
+        low: [0; 2],
+    };
+}
+
+/// The rule of all pairs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PenaltyRule {
+    pairs: Vec<PairRule>,
+}
+
+impl PenaltyRule {
+    /// Nothing is known yet.
+    pub fn new(model: &Model) -> Self {
+        PenaltyRule {
+            pairs: vec![PairRule::NEW; model.pairs.len()],
+        }
+    }
+
+    /// Into a checkpoint.
+    pub(super) fn put(&self, out: &mut Writer) {
+        for PairRule {
+            bad,
+            remembered,
+            wait,
+            failed,
+            low,
+        } in &self.pairs
+        {
+            out.f64(*bad);
+            [remembered, wait, failed]
+                .into_iter()
+                .for_each(|n| out.u32(*n));
+            low.iter().for_each(|n| out.u32(*n));
+        }
+    }
+
+    /// [`Self::put`], read back for the same model.
+    pub(super) fn take(model: &Model, from: &mut Reader) -> Result<Self, Malformed> {
+        let mut rule = PenaltyRule::new(model);
+        for pair in &mut rule.pairs {
+            *pair = PairRule {
+                bad: from.f64()?,
+                remembered: from.u32()?,
+                wait: from.u32()?,
+                failed: from.u32()?,
+                low: [from.u32()?, from.u32()?],
+            };
+        }
+        Ok(rule)
+    }
+
+    /// Raises the penalties of pairs whose errors are too large, or whose points sink in too deep; whether there were any.
+    /// `again` says that a raise of the same step did not serve: half as far, by its logarithm, is tried at once.
+    pub fn raise(
+        &self,
+        model: &Model,
+        errors: &Errors,
+        again: bool,
+        penalties: &mut [f64],
+    ) -> bool {
+        let total = errors.sum();
+        let largest = errors.forces.iter().fold(0.0f64, |a, b| a.max(*b));
+        let mut raised = false;
+        let [least, many, most] = RAISE;
+        let most = if total > 1.0 { most } else { many };
+        for (index, pair) in model.pairs.iter().enumerate() {
+            let Some(ruled) = pair.ruled else { continue };
+            // The second of two half passes goes with the first.
+            let other = pair.half.map_or(index, |half| half.other);
+            if pair.half.is_some_and(|half| half.back) {
+                continue;
+            }
+            let of = |values: &[f64]| values[index].max(values[other]);
+            let (error, sunk) = (of(&errors.forces), of(&errors.sunk));
+            let rule = &self.pairs[index];
+            let counts = total > HIGH * ruled.accuracy && error >= SHARE * largest;
+            let waits =
+                rule.wait > 0 && !again && total <= UNTENABLE * ruled.accuracy && sunk <= SUNK;
+            if !counts && sunk <= 1.0 || waits {
+                continue;
+            }
+            let by_error = match counts {
+                true => (total / ruled.accuracy).clamp(least, most),
+                false => 1.0,
+            };
+            // What is far too soft gives way by as much under a little more.
+            let by_depth = if sunk > 1.0 { DEEPER * sunk } else { 1.0 };
+            // Between what serves and what does not.
+            let between = (penalties[index] * rule.bad).sqrt();
+            let bound = ruled.stiffest.min(between);
+            let eps = (penalties[index] * by_error.max(by_depth.min(most))).min(bound);
+            // A little more would not be worth another solution.
+            if eps >= 1.2 * penalties[index] {
+                set(model, index, eps, penalties);
+                raised = true;
+            }
+        }
+        raised
+    }
+
+    /// The penalties that a raise led to did not serve.
+    pub fn reject(&mut self, before: &[f64], tried: &[f64]) {
+        for ((rule, before), tried) in self.pairs.iter_mut().zip(before).zip(tried) {
+            if tried > before {
+                rule.bad = *tried;
+                rule.remembered = FORGOTTEN;
+                rule.wait = WAIT << rule.failed.min(8);
+                rule.failed += 1;
+            }
+        }
+    }
+
+    /// Whether a raise lowered the errors by enough to be kept.
+    pub fn helped(before: &Errors, after: &Errors) -> bool {
+        after.sum() < HELPS * before.sum() || after.deepest() < HELPS_DEPTH * before.deepest()
+    }
+
+    /// Lowers the penalties of pairs that make next to no error and may be what the iterations of the last steps were for.
+    pub fn lower(
+        &mut self,
+        model: &Model,
+        errors: &Errors,
+        iterations: u32,
+        penalties: &mut [f64],
+    ) -> bool {
+        let mut lowered = false;
+        for (index, pair) in model.pairs.iter().enumerate() {
+            let rule = &mut self.pairs[index];
+            rule.wait = rule.wait.saturating_sub(1);
+            rule.remembered = rule.remembered.saturating_sub(1);
+            if rule.remembered == 0 {
+                (rule.bad, rule.failed) = (f64::INFINITY, 0);
+            }
+            // Where nothing touches nothing is known.
+            let low = |r: &Ruled| (0.0..LOW * r.accuracy).contains(&errors.forces[index]);
+            let Some(ruled) = pair.ruled.filter(|r| low(r) && errors.forces[index] > 0.0) else {
+                rule.low = [0; 2];
+                continue;
+            };
+            let [steps, sum] = &mut rule.low;
+            *steps += 1;
+            *sum = sum.saturating_add(iterations);
+            if *steps >= IDLE && *sum > MANY * *steps {
+                rule.low = [0; 2];
+                let factor = (errors.forces[index] / ruled.accuracy).max(errors.sunk[index]);
+                let eps = penalties[index] * factor.clamp(LOWER, 1.0);
+                set(model, index, eps, penalties);
+                lowered = true;
+            } else if *steps >= IDLE {
+                rule.low = [0; 2];
+            }
+        }
+        lowered
+    }
+}
+
+/// Whether a penalty that was softened to get through a step is too soft to be accepted, and the error that it makes. Where
+/// smaller steps have not helped, more is accepted: what is left is told at the end.
+pub fn untenable(model: &Model, errors: &Errors, cuts: u32) -> Option<f64> {
+    let total = errors.sum();
+    let rules = model.pairs.iter().filter_map(|p| p.ruled);
+    if cuts > 2 * RELENTS {
+        return None;
+    }
+    let bound = UNTENABLE * f64::from(1 << cuts.min(RELENTS));
+    let allowed = rules.fold(f64::INFINITY, |a, r| a.min(bound * r.accuracy));
+    (total > allowed).then_some(total)
+}
+
+/// Sets the penalty of a pair; two half passes have one.
+fn set(model: &Model, index: usize, eps: f64, penalties: &mut [f64]) {
+    let other = model.pairs[index].half.map_or(index, |half| half.other);
+    penalties[index] = eps;
+    penalties[other] = eps;
+}
+
+/// Whether the run may choose the penalty of every pair.
+pub fn rules_all(model: &Model) -> bool {
+    model.pairs.iter().all(|p: &PairModel| p.ruled.is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::build::build;
+    use crate::scene;
+    use serde_json::json;
+
+    /// A block under two tools, both with automatic penalties.
+    fn model() -> Model {
+        let tool = |z: f64| json!({ "plane": { "center": [0.5, 0.5, z], "size": [4, 4] }, "side": { "point": [0.5, 0.5, 0.5] } });
+        let scene = json!({
+            "covact": 1,
+            "materials": { "m": { "st_venant_kirchhoff": { "E": 1e4, "nu": 0.3 } } },
+            "bodies": { "block": {
+                "mesh": { "block": { "min": [0, 0, 0], "max": [1, 1, 1], "elements": [1, 1, 1] } }, "material": "m"
+            } },
+            "surfaces": { "above": tool(1.0), "below": tool(0.0) },
+            "contacts": {
+                "above": { "slave": "block.top", "master": "above" },
+                "below": { "slave": "block.bottom", "master": "below", "accuracy": 1e-3 }
+            },
+            "supports": { "side": { "on": "block.x_min", "fixed": true } }
+        });
+        let loaded =
+            scene::parse(&scene.to_string(), "scene.json").unwrap_or_else(|e| panic!("{e}"));
+        build(&loaded).unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    fn errors(forces: [f64; 2], sunk: [f64; 2]) -> Errors {
+        Errors {
+            forces: forces.to_vec(),
+            sunk: sunk.to_vec(),
+        }
+    }
+
+    #[test]
+    fn only_pairs_that_make_the_error_are_raised() {
+        let (model, rule) = (model(), PenaltyRule::new(&model()));
+        let raised = |forces, sunk| {
+            let mut penalties = vec![1.0, 1.0];
+            let any = rule.raise(&model, &errors(forces, sunk), false, &mut penalties);
+            assert_eq!(any, penalties != [1.0, 1.0]);
+            penalties
+                .iter()
+                .map(|p| (p * 1e6).round() / 1e6)
+                .collect::<Vec<_>>()
+        };
+        // Within the band of both; above that of the more accurate one, which makes next to nothing of it, and all of it.
+        assert_eq!(raised([1e-3, 1e-3], [0.0; 2]), [1.0, 1.0]);
+        assert_eq!(raised([9e-3, 1e-4], [0.0; 2]), [1.0, 1.0]);
+        assert_eq!(raised([0.0, 5e-3], [0.0; 2]), [1.0, 5.0]);
+        // Towards the accuracy asked for; farther at once where contact gives way more than the block.
+        assert_eq!(raised([0.04, 0.0], [0.0; 2]), [10.0, 1.0]);
+        assert_eq!(raised([0.8, 0.0], [0.0; 2]), [100.0, 1.0]);
+        assert_eq!(raised([8.0, 0.0], [0.0; 2]), [2000.0, 1.0]);
+        // Too deep, however small the error.
+        assert_eq!(raised([1e-6, 1e-6], [0.0, 2.0]), [1.0, 20.0]);
+    }
+
+    #[test]
+    fn a_penalty_that_did_not_serve_is_approached_by_halves_and_forgotten() {
+        let (model, mut rule) = (model(), PenaltyRule::new(&model()));
+        rule.reject(&[1.0, 1.0], &[100.0, 1.0]);
+        let of = |rule: &PenaltyRule, again, error| {
+            let mut penalties = vec![1.0, 1.0];
+            rule.raise(
+                &model,
+                &errors([error, 0.0], [0.0; 2]),
+                again,
+                &mut penalties,
+            );
+            (penalties[0] * 1e6).round() / 1e6
+        };
+        // Half as far, by the logarithm; not at once in a later step, unless the error is large.
+        assert_eq!(of(&rule, true, 0.02), 5.0);
+        assert_eq!(of(&rule, true, 0.2), 10.0);
+        assert_eq!(of(&rule, false, 0.02), 1.0);
+        assert_eq!(of(&rule, false, 0.2), 10.0);
+        let mut penalties = vec![1.0, 1.0];
+        for _ in 0..FORGOTTEN {
+            rule.lower(&model, &errors([0.0; 2], [0.0; 2]), 0, &mut penalties);
+        }
+        assert_eq!(of(&rule, false, 0.2), 50.0);
+        assert_eq!(penalties, [1.0, 1.0]);
+    }
+
+    #[test]
+    fn what_costs_iterations_for_no_error_is_lowered() {
+        let model = model();
+        let lowered = |error: f64, iterations: u32| {
+            let (mut rule, mut penalties) = (PenaltyRule::new(&model), vec![1.0, 1.0]);
+            for step in 1..=IDLE {
+                let any = rule.lower(
+                    &model,
+                    &errors([error, 0.0], [0.0; 2]),
+                    iterations,
+                    &mut penalties,
+                );
+                assert_eq!(any, step == IDLE && penalties[0] != 1.0);
+            }
+            (penalties[0] * 1e6).round() / 1e6
+        };
+        assert_eq!(lowered(4e-5, MANY + 1), 0.01);
+        assert_eq!(lowered(2e-4, MANY + 1), 0.05);
+        assert_eq!(lowered(4e-5, MANY), 1.0);
+        assert_eq!(lowered(1e-3, MANY + 1), 1.0);
+        assert_eq!(lowered(0.0, MANY + 1), 1.0);
+    }
+
+    #[test]
+    fn what_smaller_steps_do_not_help_is_accepted_at_last() {
+        let model = model();
+        let told = |error, cuts| untenable(&model, &errors([error, 0.0], [0.0; 2]), cuts);
+        assert_eq!(told(7e-3, 0), None);
+        assert_eq!(told(0.02, 0), Some(0.02));
+        assert_eq!(told(0.02, 2), None);
+        assert_eq!(told(0.5, 2), Some(0.5));
+        assert_eq!(told(0.5, 2 * RELENTS + 1), None);
+    }
+}

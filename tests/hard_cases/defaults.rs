@@ -1,0 +1,202 @@
+//! Scenes written as one writes them first, without a penalty, a step or a stabilisation: they end, and are right.
+use crate::support::{Outcome, solve};
+use covact::output::RunStatus;
+use covact::solve::event::Event;
+use serde_json::{Value, json};
+
+fn done(scene: &Value) -> Outcome {
+    let outcome = solve(scene);
+    assert_eq!(
+        outcome.summary.status,
+        RunStatus::Done,
+        "{:?}",
+        outcome.summary.reason
+    );
+    let s = &outcome.summary;
+    println!(
+        "{} iterations in {} steps, {} cuts, error {:.1e}",
+        s.newton_iterations, s.steps, s.cuts, s.accuracy.force_error
+    );
+    outcome
+}
+
+/// A steel ball pressed into a steel plate that two borders hold: the first scene that one tries. The force is that of a run
+/// with a fortieth of the error and half the step.
+#[test]
+fn a_ball_presses_a_plate() {
+    let mut scene = json!({
+        "covact": 1,
+        "materials": { "steel": { "st_venant_kirchhoff": { "E": 210000, "nu": 0.3 } } },
+        "bodies": { "plate": {
+            "mesh": { "plate": { "size": [30, 30], "thickness": 1, "elements": [12, 12] } }, "material": "steel"
+        } },
+        "surfaces": { "ball": {
+            "sphere": { "radius": 5, "center": [15, 15, 6.5] },
+            "motion": { "translation": [0, 0, "-2*t"] }
+        } },
+        "contacts": { "press": { "slave": "plate.top", "master": "ball" } },
+        "supports": {
+            "left": { "on": "plate.x_min", "fixed": true }, "right": { "on": "plate.x_max", "fixed": true }
+        },
+        "output": { "every": 0 }
+    });
+    let outcome = done(&scene);
+    assert!(outcome.summary.newton_iterations <= 150 && outcome.summary.cuts == 0);
+    assert!(outcome.summary.accuracy.force_error < 0.01);
+    let force = outcome.at("force.ball.z", 1.0);
+    scene["contacts"]["press"]["accuracy"] = json!(1e-4);
+    scene["solution"] = json!({ "step": { "initial": 0.05, "max": 0.05 } });
+    let exact = done(&scene).at("force.ball.z", 1.0);
+    println!("{force} {exact}");
+    assert!(exact < 0.0 && (force / exact - 1.0).abs() < 0.01);
+}
+
+/// A strip laid on two rollers and bent by a third: contact alone holds it, and no key is asked for. Its force is that of the
+/// half that a plane of symmetry holds.
+#[test]
+fn contact_alone_holds_a_strip_on_rollers() {
+    let roller = |x: f64, z: f64, motion: Value| {
+        json!({
+            "cylinder": { "radius": 3, "length": 20, "center": [x, 5, z], "axis": [0, 1, 0] },
+            "motion": motion
+        })
+    };
+    let scene = |half: bool| {
+        let size = if half { 20 } else { 40 };
+        let mut scene = json!({
+            "covact": 1,
+            "materials": { "m": { "st_venant_kirchhoff": { "E": 70000, "nu": 0.3 } } },
+            "bodies": { "strip": {
+                "mesh": { "plate": {
+                    "size": [size, 10], "thickness": 0.8, "elements": [size, 2], "origin": [-20, 0, 0]
+                } },
+                "material": "m"
+            } },
+            "surfaces": {
+                "left": roller(-15.0, -3.0, json!({})),
+                "right": roller(15.0, -3.0, json!({})),
+                "punch": roller(0.0, 3.8, json!({ "translation": [0, 0, "-2*t"] }))
+            },
+            "contacts": {
+                "left": { "slave": "strip.bottom", "master": "left" },
+                "right": { "slave": "strip.bottom", "master": "right" },
+                "punch": { "slave": "strip.top", "master": "punch" }
+            },
+            "supports": { "front": { "on": "strip.y_min", "symmetry": "y" } },
+            "output": { "every": 0 }
+        });
+        if half {
+            scene["supports"]["middle"] = json!({ "on": "strip.x_max", "symmetry": "x" });
+            scene["surfaces"]
+                .as_object_mut()
+                .expect("surfaces")
+                .remove("right");
+            scene["contacts"]
+                .as_object_mut()
+                .expect("contacts")
+                .remove("right");
+        }
+        scene
+    };
+    let [whole, half] = [false, true].map(|h| done(&scene(h)));
+    assert!(
+        whole
+            .summary
+            .effects
+            .iter()
+            .any(|e| e == "stabilization.viscous")
+    );
+    let rests = |w: &&String| w.contains("rests on the stabilization");
+    assert_eq!(whole.summary.warnings.iter().find(rests), None);
+    let [f, g] = [&whole, &half].map(|o| o.at("force.punch.z", 1.0));
+    println!("{f}, {g}");
+    assert!(g < 0.0 && (f / (2.0 * g) - 1.0).abs() < 5e-3, "{f} {g}");
+    // Told, and refused where nothing is to help.
+    let told = whole.events.iter().any(
+        |e| matches!(e, Event::Model { notes, .. } if notes.iter().any(|n| n.contains("contact has to"))),
+    );
+    assert!(told);
+}
+
+/// A quarter of a thin ring under a plate: the number of iterations hardly grows with the number of elements, as it does
+/// under a penalty that follows their size. The force at a small squeeze is that of S. P. Timoshenko, "Strength of
+/// Materials", part I, 1955, section 80: the diameter shortens by `.149 F R^3 / (E I)`.
+#[test]
+fn finer_rings_take_hardly_more_iterations() {
+    let (radius, t, e) = (10.0, 0.1_f64, 1e4);
+    let ring = |n: u32| {
+        json!({
+            "covact": 1,
+            "materials": { "m": { "st_venant_kirchhoff": { "E": e, "nu": 0 } } },
+            "bodies": { "ring": {
+                "mesh": { "cylinder_panel": {
+                    "radius": radius, "thickness": t, "angles": [0, 90], "y": [0, 1], "elements": [n, 1]
+                } },
+                "material": "m"
+            } },
+            "surfaces": { "plate": {
+                "plane": { "center": [0, 0, radius + t / 2.0], "normal": [0, 0, -1], "size": [60, 10] },
+                "motion": { "translation": [0, 0, { "table": [[0, 0], [0.1, -0.02], [1, -4]] }] }
+            } },
+            "contacts": { "plate": { "slave": "ring.outer", "master": "plate" } },
+            "supports": {
+                "top": { "on": "ring.phi_min", "symmetry": "x" },
+                "side": { "on": "ring.phi_max", "symmetry": "z" },
+                "front": { "on": "ring.y_min", "symmetry": "y" },
+                "back": { "on": "ring.y_max", "symmetry": "y" }
+            },
+            "output": { "every": 0 }
+        })
+    };
+    let [coarse, fine] = [32, 128].map(|n| done(&ring(n)));
+    let [i, j] = [&coarse, &fine].map(|o| o.summary.newton_iterations);
+    assert!(j <= 300 && j <= 2 * i, "{i} and {j} iterations");
+    // Half of the force, and half of the way.
+    let stiffness = e * t.powi(3) / 12.0 / (0.149 * f64::powi(radius, 3));
+    let linear = 0.5 * stiffness * 2.0 * 0.02;
+    let force = fine.at("force.plate.z", 0.1).abs();
+    println!("{force} of {linear}");
+    assert!((force / linear - 1.0).abs() < 0.02, "{force} of {linear}");
+    let [f, g] = [&coarse, &fine].map(|o| o.at("force.plate.z", 1.0));
+    assert!(g != 0.0 && (f / g - 1.0).abs() < 0.02, "{f} {g}");
+}
+
+/// A block of rubber squeezed by two fifths between bonded faces: the default element gives way there, and the run is
+/// repeated with displacement elements and says so. Where the scene names the element, it ends where it does.
+#[test]
+fn squeezed_elements_are_replaced_and_told() {
+    let mut scene = json!({
+        "covact": 1,
+        "materials": { "rubber": { "neo_hooke": { "E": 5, "nu": 0.45 } } },
+        "bodies": { "block": {
+            "mesh": { "block": { "min": [-2, -2, 0], "max": [2, 2, 2], "elements": [6, 6, 3] } },
+            "material": "rubber"
+        } },
+        "supports": {
+            "below": { "on": "block.z_min", "fixed": true },
+            "above": { "on": "block.z_max", "displacement": { "x": 0, "y": 0, "z": "-1.2*t" } }
+        },
+        "output": { "every": 0 }
+    });
+    let outcome = done(&scene);
+    let told = |o: &Outcome| {
+        o.summary
+            .warnings
+            .iter()
+            .any(|w| w.contains("`h8_displacement`"))
+    };
+    assert!(told(&outcome), "{:?}", outcome.summary.warnings);
+    let force = outcome.at("force.above.z", 1.0);
+    scene["bodies"]["block"]["element"] = json!("h8_displacement");
+    let named = done(&scene);
+    assert_eq!(named.at("force.above.z", 1.0), force);
+    scene["bodies"]["block"]["element"] = json!("h8");
+    let kept = solve(&scene);
+    assert_eq!(kept.summary.status, RunStatus::NotConverged);
+    assert!(
+        kept.summary
+            .reason
+            .as_ref()
+            .is_some_and(|r| r.contains("h8_displacement"))
+    );
+}
