@@ -34,6 +34,8 @@ pub struct Bearing {
     pub area: f64,
     /// The part of it near sharp convex edges of the master (force).
     pub at_edges: f64,
+    /// The part of it at points whose penetration is prescribed (force).
+    pub prescribed: f64,
     /// Points in contact, or nodes where gaps are averaged.
     pub active: usize,
     /// The largest forces of single points, in descending order.
@@ -152,6 +154,7 @@ impl Bearings {
             sum.at_edges += force;
         }
         if self.given[pair] && is_prescribed(&self.prescribed, place.point, &place.normal) {
+            sum.prescribed += force;
             return;
         }
         sum.energy += energy;

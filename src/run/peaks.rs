@@ -10,11 +10,16 @@ use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 /// Part of a force at sharp convex edges above which the user is warned.
 const AT_EDGES: f64 = 0.1;
 
+/// Part of a force at points whose penetration is prescribed above which the user is warned.
+const PRESCRIBED: f64 = 0.01;
+
 /// A contact at its largest force.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Peak {
     force: f64,
     at_edges: f64,
+    /// The part of it at points whose penetration is prescribed.
+    prescribed: f64,
     active: usize,
     /// Points that carried most of it, where these were few; else 0.
     few: usize,
@@ -36,12 +41,13 @@ impl Peaks {
         for Peak {
             force,
             at_edges,
+            prescribed,
             active,
             few,
             step,
         } in &self.0
         {
-            out.f64s(&[*force, *at_edges]);
+            out.f64s(&[*force, *at_edges, *prescribed]);
             out.u64(*active as u64);
             out.u64(*few as u64);
             out.u32(*step);
@@ -52,9 +58,9 @@ impl Peaks {
     pub(super) fn take(&mut self, from: &mut Reader) -> Result<(), Malformed> {
         from.exactly(self.0.len(), "largest forces")?;
         for peak in &mut self.0 {
-            let mut sums = [0.0; 2];
+            let mut sums = [0.0; 3];
             from.f64s(&mut sums)?;
-            [peak.force, peak.at_edges] = sums;
+            [peak.force, peak.at_edges, peak.prescribed] = sums;
             (peak.active, peak.few) = (from.u64()? as usize, from.u64()? as usize);
             peak.step = from.u32()?;
         }
@@ -67,6 +73,7 @@ impl Peaks {
             let Bearing {
                 force,
                 at_edges,
+                prescribed,
                 active,
                 ..
             } = *sum;
@@ -75,6 +82,7 @@ impl Peaks {
                 *peak = Peak {
                     force,
                     at_edges,
+                    prescribed,
                     active,
                     few,
                     step,
@@ -86,8 +94,10 @@ impl Peaks {
     /// What the user is warned of at the end of a run.
     pub fn warnings(&self, model: &Model) -> Vec<String> {
         let pairs = model.pairs.iter().zip(&self.0);
-        let edges = pairs.filter_map(|(pair, peak)| peak.at_edges(model, pair));
-        edges.collect()
+        let of = |(pair, peak): (&PairModel, &Peak)| {
+            [peak.at_edges(model, pair), peak.prescribed(model, pair)]
+        };
+        pairs.flat_map(of).flatten().collect()
     }
 
     /// What else is said at the end of a run.
@@ -134,6 +144,20 @@ impl Peak {
                 number(spacing),
                 pair.master_words(model),
                 number(2.0 * spacing)
+            )
+        })
+    }
+
+    fn prescribed(&self, model: &Model, pair: &PairModel) -> Option<String> {
+        (self.prescribed > PRESCRIBED * self.force).then(|| {
+            format!(
+                "contact `{}`: {:.0} % of its force at step {} acts at points that supports hold where {} is moved into them: \
+                 that is the penalty times a penetration that nothing can give way to, and no force of the bodies. Move the \
+                 surface elsewhere, or take these faces out of the slave",
+                pair.name,
+                100.0 * self.prescribed / self.force,
+                self.step,
+                pair.master_words(model)
             )
         })
     }

@@ -126,8 +126,8 @@ fn a_stiffer_penalty_or_augmentation_ends_the_warning() {
     }
 }
 
-/// A plane that ends in nodes whose displacement is prescribed penetrates as prescribed, whatever the penalty: it neither
-/// warns nor hides anything.
+/// A plane that ends in nodes whose displacement is prescribed penetrates as prescribed, whatever the penalty: that is no
+/// error of the penalty and hides none, but what it adds to the force is told.
 #[test]
 fn prescribed_penetrations_do_not_count() {
     let mut scene = squeezed(0.1);
@@ -144,6 +144,13 @@ fn prescribed_penetrations_do_not_count() {
     assert!(stored > 0.1 * internal, "{stored} {internal}");
     assert_eq!(told(&outcome), Vec::<&String>::new());
     assert!(missing(&outcome).abs() < 5e-3);
+    let held: Vec<&String> = (outcome.summary.warnings.iter())
+        .filter(|w| w.contains("acts at points that supports hold"))
+        .collect();
+    assert!(
+        held.len() == 1 && held[0].contains("contact `a`: 100 %"),
+        "{held:?}"
+    );
 }
 
 /// Where most of the strain energy is that of another load, the penetration tells: a stretched sheet under a penalty that holds
