@@ -85,6 +85,7 @@ fn workloads([set, six]: &[PatchSet; 2]) -> Vec<Workload<'_>> {
         surface,
         pose: Isometry3::identity(),
         depth: 0.1 * RADIUS,
+        keep: false,
     });
     let six_closed = queries(six, -0.01);
     let (closed, near, far) = (

@@ -11,6 +11,9 @@ pub trait ClosestPoint: Sync {
     /// `above`; see [`PatchSet::project_above`].
     fn project_above(&self, q: &Vec3, hint: Option<Hint>, reach: f64, above: f64) -> Option<Foot>;
 
+    /// Closest point on one patch, continued past its border; see [`PatchSet::project_on`].
+    fn project_on(&self, q: &Vec3, on: Hint, beyond: f64) -> Option<Foot>;
+
     /// First and second derivative along an edge; see [`PatchSet::edge_derivatives`].
     fn edge_derivatives(&self, patch: u32, edge: u32, xi: [f64; 2]) -> Option<[Vec3; 2]>;
 
@@ -33,6 +36,10 @@ impl<S: Surface> ClosestPoint for PatchSet<S> {
     #[inline]
     fn project_above(&self, q: &Vec3, hint: Option<Hint>, reach: f64, above: f64) -> Option<Foot> {
         self.project_above(q, hint, reach, above)
+    }
+
+    fn project_on(&self, q: &Vec3, on: Hint, beyond: f64) -> Option<Foot> {
+        self.project_on(q, on, beyond)
     }
 
     #[inline]

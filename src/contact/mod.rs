@@ -36,6 +36,7 @@ pub mod closest;
 pub mod corner;
 pub mod fault;
 pub mod friction;
+mod keep;
 pub mod kernel;
 pub mod kind;
 pub mod law;

@@ -1,5 +1,6 @@
 //! Contact of slave points with a surface whose nodes move: the faces of a body.
 use super::fault::{Piece, PointFault};
+use super::keep;
 use super::kernel::{NodeRow, SlotMatrix, Slots};
 use super::law::NormalLaw;
 use super::meeting::Meeting;
@@ -14,6 +15,9 @@ pub struct MovingMaster<'a> {
     pub facets: &'a MovingFacets,
     /// Points deeper than this below the surface are not in contact (length).
     pub depth: f64,
+    /// Points stay on the facet that their hint names, continued a little past its border, where it meets the next one at a small
+    /// angle.
+    pub keep: bool,
 }
 
 /// A foot on an edge or a corner counts as held by it where the distance vector leans by more than this (relative to the
@@ -82,15 +86,65 @@ impl MovingMaster<'_> {
         accept: impl Fn(u32) -> bool,
     ) -> Result<Option<(MovingFoot, Meeting)>, PointFault> {
         let reach = self.depth.max(law.reach());
-        let Some(foot) = self.search(x, hint, reach, accept)? else {
+        let before = *hint;
+        let Some(foot) = self.search(x, hint, reach, &accept)? else {
             return Ok(None);
         };
         let xi3 = foot.signed_distance;
-        if xi3 < -self.depth || !law.closes(xi3) || free(&foot, x) {
+        if xi3 < -self.depth || !law.closes(xi3) {
             return Ok(None);
         }
+        let kept = match before.filter(|on| self.keep && leaves(&foot, on)) {
+            Some(on) => self.kept(x, &foot, on, law, accept),
+            None => None,
+        };
+        let foot = match kept {
+            Some(foot) => {
+                *hint = Some(foot.hint());
+                foot
+            }
+            None if free(&foot, x) => return Ok(None),
+            None => {
+                *hint = hint.map(|hint| if self.keep { keep::held(hint) } else { hint });
+                foot
+            }
+        };
         let meeting = self.at(x, &foot)?;
         Ok(Some((foot, meeting)))
+    }
+
+    /// The foot of a point on the facet `on`, where it may stand for its closest point: across a fold, and at a free border that
+    /// the point has not left yet.
+    #[cold]
+    #[inline(never)]
+    fn kept<L: NormalLaw>(
+        &self,
+        x: &Vec3,
+        foot: &MovingFoot,
+        on: Hint,
+        law: &L,
+        accept: impl Fn(u32) -> bool,
+    ) -> Option<MovingFoot> {
+        let border = on_border(foot);
+        let [outside, hangs] =
+            [f64::eq, f64::gt].map(|is| on.xi.iter().any(|xi| is(&xi.abs(), &1.0)));
+        // Beyond a border one stays outside that was outside; what the border holds need not hang over it.
+        if border && if free(foot, x) { outside } else { !hangs } {
+            return None;
+        }
+        if !accept(on.patch) {
+            return None;
+        }
+        let xi3 = foot.signed_distance;
+        let kept = self.facets.project_on(x, on, keep::BEYOND)?;
+        if border {
+            return law.closes(kept.signed_distance).then_some(kept);
+        }
+        // Below the surface the force acts along the distance.
+        let towards = (foot.jet.rho - x) * -xi3.signum();
+        let towards = towards.try_normalize(0.0).unwrap_or(foot.normal);
+        let [now, then] = [(xi3, &towards), (kept.signed_distance, &kept.normal)];
+        keep::may_stand(law, then, now).then_some(kept)
     }
 
     /// The closest point within `reach` on either side, for what needs more than [`Self::touch`], such as an averaged
@@ -186,6 +240,12 @@ impl MovingMaster<'_> {
     }
 }
 
+/// Whether a foot is no longer within the facet that it was on.
+#[inline]
+fn leaves(foot: &MovingFoot, on: &Hint) -> bool {
+    foot.facet != on.patch || foot.xi.iter().any(|xi| xi.abs() >= 1.0)
+}
+
 /// The slots row of node `k` of a facet, from the facet's shape functions at the foot.
 #[inline]
 pub fn master_row(shape: &ShapeRows, k: usize) -> NodeRow {
@@ -209,7 +269,12 @@ const OVERHANG: f64 = 0.970_142_5;
 
 /// Whether a foot lies on a free border that does not hold the point `x`.
 pub fn free(foot: &MovingFoot, x: &Vec3) -> bool {
-    let border = matches!(
+    on_border(foot) && (foot.jet.rho - x).dot(&foot.normal).abs() < OVERHANG * foot.distance
+}
+
+/// Whether a foot lies on a free border.
+fn on_border(foot: &MovingFoot) -> bool {
+    matches!(
         foot.place,
         MovingPlace::Edge {
             kind: EdgeKind::Free,
@@ -217,6 +282,5 @@ pub fn free(foot: &MovingFoot, x: &Vec3) -> bool {
         } | MovingPlace::Corner {
             kind: EdgeKind::Free
         }
-    );
-    border && (foot.jet.rho - x).dot(&foot.normal).abs() < OVERHANG * foot.distance
+    )
 }

@@ -1,5 +1,6 @@
 //! Evaluation of many slave points on a rigid surface at one place.
 use super::closest::ClosestPoint;
+use super::keep;
 use super::kernel::Normal;
 use super::law::NormalLaw;
 use super::point::PointGeometry;
@@ -86,8 +87,9 @@ impl<P: ClosestPoint> Placed<'_, P> {
             return;
         }
         let local = self.local(x);
-        let found = self.search(&local, *hint, law);
-        let Some(foot) = &found else {
+        let before = *hint;
+        let mut found = self.search(&local, before, law);
+        let Some(foot) = &mut found else {
             *hint = None;
             *out = Ok(None);
             return;
@@ -103,6 +105,13 @@ impl<P: ClosestPoint> Placed<'_, P> {
                 *out = Err(fault);
                 return;
             }
+        }
+        if let Some(on) = before.filter(|on| self.master.keep && leaves(foot, on)) {
+            self.keep(&local, on, law, foot, hint);
+        }
+        if free(foot) {
+            *out = Ok(None);
+            return;
         }
         let xi3 = foot.signed_distance;
         let frame = match face(foot) {
@@ -140,7 +149,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
         (self.master.surface).project_above(local, hint, reach, above)
     }
 
-    /// Whether a foot means contact.
+    /// Whether a foot means contact, unless it lies on a free border.
     #[inline(always)]
     fn closes<L: NormalLaw>(&self, foot: &Foot, law: &L) -> Result<bool, PointFault> {
         // On either side: an uncertain foot must not pass for an open point. Beyond the reach of the law the search says
@@ -152,7 +161,46 @@ impl<P: ClosestPoint> Placed<'_, P> {
             });
         }
         let xi3 = foot.signed_distance;
-        Ok(law.closes(xi3) && xi3 >= -self.master.depth && !free(foot))
+        Ok(law.closes(xi3) && xi3 >= -self.master.depth)
+    }
+
+    /// Puts the foot on the patch `on` in the place of the closest point, where it may stand for it: across a fold, and at a free
+    /// border that the point has not left yet.
+    #[cold]
+    #[inline(never)]
+    fn keep<L: NormalLaw>(
+        &self,
+        local: &Vec3,
+        on: Hint,
+        law: &L,
+        foot: &mut Foot,
+        hint: &mut Option<Hint>,
+    ) {
+        let border = free(foot);
+        // One that was outside stays there.
+        if border && (on.patch != foot.patch || (0..2).any(|k| on.xi[k] == foot.xi[k])) {
+            return;
+        }
+        let Some(kept) = self.master.surface.project_on(local, on, keep::BEYOND) else {
+            return;
+        };
+        let xi3 = foot.signed_distance;
+        let stands = if border {
+            keep::may_hang(
+                law,
+                kept.signed_distance,
+                (kept.jet.rho - foot.jet.rho).norm(),
+            )
+        } else {
+            // Below the surface the force acts along the distance.
+            let towards = (foot.jet.rho - local) * -xi3.signum();
+            let towards = towards.try_normalize(0.0).unwrap_or(foot.normal);
+            keep::may_stand(law, (kept.signed_distance, &kept.normal), (xi3, &towards))
+        };
+        if stands {
+            *foot = kept;
+            *hint = Some(kept.hint());
+        }
     }
 
     /// [`Self::touch`] of a foot that is not, or not safely, one of a face.
@@ -189,13 +237,20 @@ impl<P: ClosestPoint> Placed<'_, P> {
             return Err(PointFault::NotFinite);
         }
         let local = self.local(x);
-        let found = self.search(&local, *hint, law);
-        let Some(foot) = &found else {
+        let before = *hint;
+        let mut found = self.search(&local, before, law);
+        let Some(foot) = &mut found else {
             *hint = None;
             return Ok(None);
         };
         *hint = Some(foot.hint());
         if !self.closes(foot, law)? {
+            return Ok(None);
+        }
+        if let Some(on) = before.filter(|on| self.master.keep && leaves(foot, on)) {
+            self.keep(&local, on, law, foot, hint);
+        }
+        if free(foot) {
             return Ok(None);
         }
         then(&local, foot).map(Some)
@@ -229,6 +284,12 @@ impl<P: ClosestPoint> Placed<'_, P> {
             n: normal.n,
         }
     }
+}
+
+/// Whether a foot has left the patch that it was on, or lies on its border or a crease.
+#[inline(always)]
+fn leaves(foot: &Foot, on: &Hint) -> bool {
+    foot.patch != on.patch || !matches!(foot.location, Location::Face)
 }
 
 /// The frame of a foot on a face that no pole is next to.
@@ -280,6 +341,7 @@ mod tests {
             surface: &set,
             pose: Isometry3::translation(0.3, -0.2, -0.5),
             depth: 40.0,
+            keep: false,
         };
         let law = Penalty { eps_n: 5.0 };
         for z in [-8.0, -0.5, 0.0, 0.7, 4.0, 11.0] {

@@ -44,6 +44,9 @@ pub struct RigidMaster<'a, P = PatchSet> {
     pub pose: Isometry3<f64>,
     /// Points deeper than this below the surface are not in contact (length).
     pub depth: f64,
+    /// Points stay on the patch that their hint names, continued a little past its border, where it meets the next one at a small
+    /// angle.
+    pub keep: bool,
 }
 
 /// A foot on an edge or a crease whose distance vector leans along the line by more than this (relative to the size of
@@ -346,6 +349,7 @@ mod tests {
             surface: &set,
             pose: Isometry3::identity(),
             depth: 0.1,
+            keep: false,
         };
         let law = Penalty { eps_n: 5.0 };
         for away in [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 3e-6, 1e-5, 1e-3] {
@@ -373,6 +377,7 @@ mod tests {
             surface: &set,
             pose: Isometry3::translation(0.3, 0.0, 0.0),
             depth: 0.01,
+            keep: false,
         };
         let law = Shifted {
             law: Penalty { eps_n: 5.0 },
@@ -414,6 +419,7 @@ mod tests {
             surface: &set,
             pose: Isometry3::identity(),
             depth: 1e-3,
+            keep: false,
         };
         let law = Augmented {
             law: Penalty { eps_n: 5.0 },
@@ -438,6 +444,7 @@ mod tests {
             surface: &set,
             pose: Isometry3::translation(0.3, 0.0, 0.0),
             depth: 1.0,
+            keep: false,
         };
         let law = Penalty { eps_n: 5.0 };
         let touch = |x: Vec3| {

@@ -79,6 +79,10 @@ impl ClosestPoint for SurfaceSet {
         with_patches!(self, s => s.project_above(q, hint, reach, above))
     }
 
+    fn project_on(&self, q: &Vec3, on: Hint, beyond: f64) -> Option<Foot> {
+        with_patches!(self, s => s.project_on(q, on, beyond))
+    }
+
     fn edge_derivatives(&self, patch: u32, edge: u32, xi: [f64; 2]) -> Option<[Vec3; 2]> {
         with_patches!(self, s => s.edge_derivatives(patch, edge, xi))
     }
@@ -159,6 +163,7 @@ impl SurfaceModel {
             surface: &self.set,
             pose: self.pose(t, u)?,
             depth: self.depth,
+            keep: true,
         })
     }
 

@@ -193,6 +193,10 @@ const STALLS: u32 = 6;
 const STALLED: f64 = 100.0;
 /// Tolerance from which on that is done: who asks for a smaller one wants it met.
 const LOOSE: f64 = 1e-8;
+/// Iteration from which on a residual that is more than this part of the one before it makes points keep their facets: those
+/// that hop to and fro across a fold leave it where it is, and what is far from equilibrium may well hop.
+const KEEP: usize = 3;
+const HOPS: f64 = 0.3;
 /// Smallest factor of the line search.
 const SMALLEST: f64 = 1.0 / 64.0;
 
@@ -219,7 +223,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let mut factor = 1.0;
         let mut energy = 0.0;
         let (mut totals, secants) = self.begin(trial, time, pending)?;
-        let mut touched = false;
+        let (mut touched, mut keep) = (false, false);
         let (mut cycle, mut round, mut damped) = (Cycle::default(), None::<PingPong>, 0u32);
         for iteration in 0.. {
             if self.interrupt.load(Ordering::Relaxed) {
@@ -228,6 +232,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             let norms = self.norms(trial, &totals);
             floor = floor.max(norms.floor / norms.force.max(f64::MIN_POSITIVE));
             history.push((norms.relative(), totals.changed));
+            keep |= iteration >= 2 || hops(&history);
             let held = self.assembler.linearization.keep_active;
             // The state before the first solve may be converged as it stands only if nothing was prescribed to move.
             let settled = !pending && !held && (iteration == 0 || totals.changed == 0);
@@ -326,6 +331,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             self.assembler.linearization = Linearization {
                 keep_active: false,
                 secant_slip: iteration + 1 < secants,
+                keep_facets: keep,
             };
             let search = self.settings.line_search && !pending && since_best >= UNTIL_SEARCH;
             let largest = if damped > 0 { 0.5 } else { 1.0 };
@@ -350,6 +356,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         self.assembler.linearization = Linearization {
             keep_active: false,
             secant_slip: secants > 0,
+            keep_facets: false,
         };
         self.workspace.base.points.clone_from(&trial.points);
         let totals = self.linearize(trial, time, pending)?;
@@ -361,6 +368,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         self.assembler.linearization = Linearization {
             keep_active: true,
             secant_slip: true,
+            keep_facets: false,
         };
         Ok((self.linearize(trial, time, pending)?, SECANTS))
     }
@@ -379,6 +387,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         self.assembler.linearization = Linearization {
             keep_active: true,
             secant_slip: true,
+            keep_facets: false,
         };
         match self.linearize(trial, time, false) {
             Ok(_) => Ok(true),
@@ -631,6 +640,14 @@ fn nearly(history: &[(f64, usize)]) -> bool {
     };
     let now = most(OVER, 0);
     now > 0 && (now <= LEFT || now < most(2 * OVER, OVER))
+}
+
+/// Whether points may be hopping from facet to facet: the residual does not fall as it would near a solution.
+fn hops(history: &[(f64, usize)]) -> bool {
+    match history {
+        [.., (before, _), (now, _)] => history.len() > KEEP && *now > HOPS * before,
+        _ => false,
+    }
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

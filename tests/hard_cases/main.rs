@@ -5,6 +5,7 @@ mod cost;
 mod defaults;
 mod far;
 mod first_iterates;
+mod folds;
 mod friction;
 mod friction_driven;
 mod friction_energy;

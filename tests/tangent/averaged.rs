@@ -106,7 +106,11 @@ fn averaged_gap_of_two_faces() {
         let name = format!("slave order {slave_order}, master order {master_order}");
         let pair = pair(slave_order, master_order);
         let facets = pair.facets();
-        let master = MovingMaster { facets, depth: 1.0 };
+        let master = MovingMaster {
+            facets,
+            depth: 1.0,
+            keep: false,
+        };
         let x: Vec<V<f64>> = pair.slave.iter().chain(&pair.master).copied().collect();
         let first = pair.slave.len();
 

@@ -238,7 +238,11 @@ pub fn combine(x: &[V<f64>], shape: &[f64]) -> V<f64> {
 }
 
 fn on_facets(facets: &MovingFacets, q: &V<f64>) -> Option<Evaluated> {
-    let master = MovingMaster { facets, depth: 1.0 };
+    let master = MovingMaster {
+        facets,
+        depth: 1.0,
+        keep: false,
+    };
     let touch = (master.touch(q, &mut None, &Hardening, &Exact, |_| true)).unwrap()?;
     let meeting = (master.meet(q, &mut None, 1.0, |_| true)).unwrap().unwrap();
     let held = match meeting.geometry {

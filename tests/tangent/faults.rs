@@ -12,7 +12,11 @@ fn touch(
     hint: &mut Option<Hint>,
     accept: impl Fn(u32) -> bool,
 ) -> Result<Option<MovingTouch>, PointFault> {
-    let master = MovingMaster { facets, depth: 0.3 };
+    let master = MovingMaster {
+        facets,
+        depth: 0.3,
+        keep: false,
+    };
     master.touch(&V::from(q), hint, &Hardening, &Exact, accept)
 }
 

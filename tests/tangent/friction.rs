@@ -49,7 +49,11 @@ impl Sliding {
     /// Attraction points off the slave points by some hundredths, with a traction of their own.
     fn new(case: Case, place: Where, mu: f64, approach: f64, full: bool) -> Self {
         let facets = facets(&case);
-        let master = MovingMaster { facets, depth: 1.0 };
+        let master = MovingMaster {
+            facets,
+            depth: 1.0,
+            keep: false,
+        };
         let mut held = Vec::new();
         let mut histories = Vec::new();
         for (k, (point, at)) in case.points.iter().zip(case.evaluate()).enumerate() {
@@ -103,7 +107,11 @@ impl Sliding {
 
     fn touches<M: Form>(&self, form: &M) -> Vec<MovingFrictionTouch> {
         let facets = facets(&self.case);
-        let master = MovingMaster { facets, depth: 1.0 };
+        let master = MovingMaster {
+            facets,
+            depth: 1.0,
+            keep: false,
+        };
         (self.case.points.iter().zip(&self.histories))
             .map(|(p, history)| {
                 let x = combine(&self.case.slave, &p.shape);

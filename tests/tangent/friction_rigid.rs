@@ -183,6 +183,7 @@ fn rigid_motions_of_the_pair_turn_residual_and_tangent() {
                     surface: &set,
                     pose,
                     depth: 3.0,
+                    keep: false,
                 };
                 (master.touch_with_friction(x, &mut None, &case.law(), &friction, &history))
                     .unwrap()

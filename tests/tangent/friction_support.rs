@@ -165,6 +165,7 @@ pub fn touch<F: FrictionLaw>(
         surface: set,
         pose: pose(),
         depth: 3.0,
+        keep: false,
     };
     let friction = Friction { law, eps_t: EPS_T };
     let at = (master.pose * Point3::from(*x)).coords;

@@ -170,6 +170,7 @@ fn rigid_patches_give_the_first_block() {
         surface: &set,
         pose,
         depth: 1.0,
+        keep: false,
     };
     let turn = pose.rotation.to_rotation_matrix().into_inner();
     for order in [1, 2] {

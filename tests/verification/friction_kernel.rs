@@ -32,6 +32,7 @@ impl<'a, F: FrictionLaw> Driver<'a, F> {
                 surface: set,
                 pose: Isometry3::identity(),
                 depth: 0.5,
+                keep: false,
             },
             law,
             friction,

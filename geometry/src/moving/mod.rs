@@ -15,6 +15,7 @@
 
 mod build;
 mod extraction;
+mod keep;
 mod local;
 mod net;
 mod place;

@@ -163,7 +163,7 @@ fn turns(n: &Vec3, m: &Vec3) -> bool {
 
 /// The normal alone of [`Frame::new`](crate::Frame::new), where that gives a frame.
 #[inline]
-fn unit_normal(jet: &Jet) -> Option<Vec3> {
+pub(super) fn unit_normal(jet: &Jet) -> Option<Vec3> {
     let [r1, r2] = &jet.rho_i;
     let cross = r1.cross(r2);
     let area = cross.norm_squared().sqrt();

@@ -117,7 +117,7 @@ impl MovingFacets {
         })
     }
 
-    fn is_finite(&self, facet: u32) -> bool {
+    pub(super) fn is_finite(&self, facet: u32) -> bool {
         let [low, high] = &self.boxes[facet as usize];
         low.x <= high.x
     }

@@ -14,6 +14,7 @@ mod convex;
 pub(crate) mod downhill;
 mod finish;
 mod integrate;
+mod keep;
 mod local;
 mod location;
 mod neighbour;

@@ -277,6 +277,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 surface: patches,
                 pose: master.pose,
                 depth: master.depth,
+                keep: false,
             };
             averaged.meet(model, pair, &of_pair, u, time, states, |_, x, hint| {
                 master.meet(x, hint, reach)

@@ -179,6 +179,10 @@ pub struct Linearization {
     pub keep_active: bool,
     /// Sliding points have the tangent of their secant. The residual is that of the state.
     pub secant_slip: bool,
+    /// Points keep the facet that they were on across folds of nearly flat facets ([`MovingMaster::keep`]).
+    ///
+    /// [`MovingMaster::keep`]: crate::contact::moving::MovingMaster::keep
+    pub keep_facets: bool,
 }
 
 /// Evaluates the model into a sparse system. The law of normal contact is a type, chosen where the assembler is made: every

@@ -195,6 +195,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 let facets = MovingMaster {
                     facets: &surface.facets,
                     depth: master.depth,
+                    keep: false,
                 };
                 let (model, u, law) = (self.model, &state.u, L::of(self.penalties[index]));
                 let (states, reach) = (&mut state.points[range], pair.reach(model));
@@ -235,7 +236,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                     (
                         friction,
                         [self.penalties[index], self.ratios[index]],
-                        self.linearization.secant_slip,
+                        self.linearization,
                     ),
                     &state.u,
                     time,
@@ -267,6 +268,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 master: MovingMaster {
                     facets: &surface.facets,
                     depth: master.depth,
+                    keep: self.linearization.keep_facets,
                 },
                 law: &law,
                 kernel: &kernel,

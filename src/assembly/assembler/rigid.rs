@@ -72,6 +72,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             let Linearization {
                 keep_active: hold,
                 secant_slip: secant,
+                keep_facets: keep,
             } = self.linearization;
             // A surface driven by force follows the points as they are.
             let hold = hold && surface.driven.is_none();
@@ -98,6 +99,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                         surface: patches,
                         pose: master.pose,
                         depth: master.depth,
+                        keep,
                     },
                     law: &law,
                     kernel: &kernel,

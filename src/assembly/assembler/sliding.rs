@@ -4,7 +4,7 @@ use super::answer::PointAnswer;
 use super::per_pair::PerPair;
 use super::rigid::rounding;
 use super::touched::{self, Touched};
-use super::{Assembler, Fault, PairForce, SurfaceForce, Totals, put};
+use super::{Assembler, Fault, Linearization, PairForce, SurfaceForce, Totals, put};
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::{FrictionLaw, Secant};
 use crate::contact::friction::moving::{Form, Full, Reduced};
@@ -124,7 +124,7 @@ impl Sliding {
         model: &Model,
         (pair, kernel): (&PairModel, &Kernel),
         (master, surface): (&BodyMaster, &BodySurface),
-        (friction, [penalty, ratio], secant): (&FrictionModel, [f64; 2], bool),
+        (friction, [penalty, ratio], linearization): (&FrictionModel, [f64; 2], Linearization),
         u: &[f64],
         time: f64,
         states: &mut [PointState],
@@ -137,6 +137,7 @@ impl Sliding {
             master: MovingMaster {
                 facets: &surface.facets,
                 depth: master.depth,
+                keep: linearization.keep_facets,
             },
             law: L::of(penalty),
             u,
@@ -147,7 +148,7 @@ impl Sliding {
         let touches = &mut self.touched.all;
         let now = friction.law.at(time)?;
         let ran = with_law!(now, law => {
-            let law = Secant { law, on: secant };
+            let law = Secant { law, on: linearization.secant_slip };
             let friction = Friction { law, eps_t };
             match &master.own {
                 None => batch.choose(states, touches, &friction, &All),

@@ -151,6 +151,7 @@ impl<'m, L: PairLaw> Presser<'m, L> {
             surface: &self.surface.set,
             pose: self.driven.pose(prescribed, moved, theta),
             depth: self.surface.depth,
+            keep: true,
         }
     }
 

@@ -111,6 +111,7 @@ impl<'a, L: PairLaw> Batch<'a, L> {
         MovingMaster {
             facets: &self.surface.facets,
             depth: self.body.depth,
+            keep: true,
         }
     }
 
