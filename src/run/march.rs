@@ -13,17 +13,18 @@ use super::compliance::{Compliance, Errors, StepEnd};
 use super::cost::Cost;
 use super::fields::Fields;
 use super::history;
+use super::hold;
 use super::linearity_check;
 use super::peaks::Peaks;
 use super::penalty_rule::PenaltyRule;
 use super::progress::Progress;
 use super::watch::{Span, Watch, Work};
-use crate::assembly::{Assembler, Drag, Fault};
+use crate::assembly::{Assembler, Drag};
 use crate::contact::law::Penalty;
 use crate::machine::clock::Phases;
 use crate::model::error::number;
 use crate::model::state::State;
-use crate::model::{BodyModel, Model, PairModel, penalty, segments};
+use crate::model::{Model, PairModel, penalty, segments};
 use crate::output::atomic::sweep;
 use crate::output::{History, OutputError, Results, RunStatus};
 use crate::scene::Scene;
@@ -39,53 +40,6 @@ use std::sync::atomic::AtomicBool;
 /// word.
 const RELIABLE: f64 = 1e-4;
 
-/// What helps where an element with enhanced strains cannot follow; empty for other failures.
-fn squeezed(squeezed: Option<&BodyModel>) -> &'static str {
-    match squeezed {
-        Some(_) => {
-            "; where it is squeezed rather than bent, element `h8_displacement` follows farther"
-        }
-        None => "",
-    }
-}
-
-/// The body whose elements with enhanced strains turned inside out.
-fn turned<'m>(model: &'m Model, failure: &StepFailure) -> Option<&'m BodyModel> {
-    let named = match failure {
-        StepFailure::Fault(Fault::Element { body, .. }) | StepFailure::InsideOut { body, .. } => {
-            body
-        }
-        _ => return None,
-    };
-    (model.bodies.iter()).find(|b| b.name == *named && b.block.alpha_len() > 0)
-}
-
-/// Part of its length that an edge of an element has to have lost for the element to count as squeezed.
-const SQUEEZED: f64 = 0.1;
-
-/// Whether elements of a body are squeezed, and not merely bent.
-fn compressed(body: &BodyModel, u: &[f64]) -> bool {
-    let mesh = &body.mesh;
-    let at = |n: u32| {
-        let first = 3 * (body.first_node + n) as usize;
-        Vec3::new(u[first], u[first + 1], u[first + 2])
-    };
-    (0..mesh.elements()).any(|e| {
-        let nodes = mesh.element(e);
-        // Edges join nodes whose numbers differ in one bit.
-        let edges = (0..8).flat_map(|a| [1, 2, 4].map(|bit| (a, a ^ bit)));
-        let mut edges = edges.filter(|(a, b)| a < b && *b < nodes.len());
-        edges.any(|(a, b)| {
-            let (a, b) = (nodes[a], nodes[b]);
-            let before = mesh.nodes[a as usize] - mesh.nodes[b as usize];
-            (before + at(a) - at(b)).norm() < (1.0 - SQUEEZED) * before.norm()
-        })
-    })
-}
-
-/// Cuts of a step after which elements that turn inside out are given up where others may replace them.
-const HOPELESS: u32 = 3;
-
 /// Whether a pair is the second of two half passes, which is told with the first.
 fn is_back(pair: &PairModel) -> bool {
     pair.half.is_some_and(|h| h.back)
@@ -95,8 +49,8 @@ fn is_back(pair: &PairModel) -> bool {
 pub(super) struct Ending {
     pub status: RunStatus,
     pub reason: Option<String>,
-    /// Number of the body whose enhanced strains are what the run could not go on with.
-    pub squeezed: Option<usize>,
+    /// Numbers of the bodies whose enhanced strains are what the run could not go on with.
+    pub squeezed: Vec<usize>,
 }
 
 /// A run under way.
@@ -462,6 +416,9 @@ impl<'a, 'm> March<'a, 'm> {
                     {
                         return Ok(ending);
                     }
+                    if let Some(ending) = self.lost_hold(committed, &converged) {
+                        return Ok(ending);
+                    }
                     self.keep(committed, walk, outputs)?;
                     continue;
                 }
@@ -471,31 +428,41 @@ impl<'a, 'm> March<'a, 'm> {
                 return Ok(Ending {
                     status: RunStatus::Interrupted,
                     reason: Some("stopped by the user".to_owned()),
-                    squeezed: None,
+                    squeezed: Vec::new(),
                 });
             }
             cuts += 1;
             self.progress.cuts += 1;
             let reason = failure.to_string();
             // Elements that another variant would replace are not followed down to the smallest step.
-            let hopeless = cuts >= HOPELESS
-                && turned(self.model, &failure).is_some_and(|b| self.replaceable.contains(&b.name));
+            let turned = hold::turned(self.model, &failure);
+            let lost = match cuts >= hold::SUSPECT {
+                true => self.may_be_replaced(&hold::lost(self.model, committed)),
+                false => Vec::new(),
+            };
+            let hopeless = !lost.is_empty()
+                || cuts >= hold::HOPELESS
+                    && turned.is_some_and(|b| self.replaceable.contains(&b.name));
             let next = walk.stepping.failed(dt).filter(|_| !hopeless);
             let Some(next_dt) = next else {
                 let unstable = self.workspace.unstable.map_or_else(String::new, |u| {
                     format!("; {}", u.words(self.model, self.assembler.stabilizes()))
                 });
-                let turned = turned(self.model, &failure);
                 // Where the structure gives way the elements may be what does.
-                let suspect = turned.map(|b| b.name.as_str()).or_else(|| {
+                let suspect = turned.or_else(|| {
                     let body = self.workspace.unstable?.body(self.model)?;
-                    let squeezed = body.block.alpha_len() > 0 && compressed(body, &committed.u);
-                    squeezed.then_some(body.name.as_str())
+                    let squeezed =
+                        body.block.alpha_len() > 0 && hold::compressed(body, &committed.u);
+                    squeezed.then_some(body)
                 });
-                let squeezed = squeezed(turned);
+                let suspect = (self.model.bodies.iter())
+                    .position(|b| suspect.is_some_and(|s| s.name == b.name));
+                let squeezed = hold::remedy(turned);
                 return Ok(Ending {
-                    squeezed: (self.model.bodies.iter())
-                        .position(|b| Some(b.name.as_str()) == suspect),
+                    squeezed: match lost.is_empty() {
+                        true => suspect.into_iter().collect(),
+                        false => lost,
+                    },
                     status: RunStatus::NotConverged,
                     reason: Some(format!(
                         "step {step} from time {} failed {}: {reason}{squeezed}{unstable}",
@@ -517,6 +484,45 @@ impl<'a, 'm> March<'a, 'm> {
         Ok(self.ending())
     }
 
+    /// Looks into squeezed elements after a step whose tangent has negative pivots. Where other elements may replace them the run
+    /// ends, else the body is told. The sign of a determinant, which is all that is known of an unsymmetric tangent, says too
+    /// little: friction may turn it.
+    fn lost_hold(&mut self, committed: &State, converged: &Converged) -> Option<Ending> {
+        let last = converged.factorization?;
+        if last.method == Method::Lu || last.negative_pivots == 0 {
+            return None;
+        }
+        let lost = hold::lost(self.model, committed);
+        let (body, at) = *lost.first()?;
+        let name = &self.model.bodies[body].name;
+        let text = format!(
+            "body `{name}`: elements with enhanced strains near ({}, {}, {}) lose their hold where they are squeezed",
+            number(at.x),
+            number(at.y),
+            number(at.z)
+        );
+        let squeezed = self.may_be_replaced(&lost);
+        if !squeezed.is_empty() {
+            return Some(Ending {
+                status: RunStatus::NotConverged,
+                reason: Some(text),
+                squeezed,
+            });
+        }
+        // Once for a body, wherever its elements do so later.
+        let head = format!("body `{name}`: elements with enhanced strains near");
+        if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
+            self.warn(format!("{text}, from time {} on: what the body answers may be far off; `h8_displacement` holds", number(self.progress.time)));
+        }
+        None
+    }
+
+    /// Those of the bodies that other elements may replace.
+    fn may_be_replaced(&self, lost: &[(usize, Vec3)]) -> Vec<usize> {
+        let may = |body: &usize| self.replaceable.contains(&self.model.bodies[*body].name);
+        lost.iter().map(|(body, _)| *body).filter(may).collect()
+    }
+
     /// How a run that reached its end time ended.
     fn ending(&self) -> Ending {
         let pairs = self.model.pairs.iter().enumerate();
@@ -528,7 +534,7 @@ impl<'a, 'm> March<'a, 'm> {
             return Ending {
                 status: RunStatus::Done,
                 reason: None,
-                squeezed: None,
+                squeezed: Vec::new(),
             };
         }
         Ending {
@@ -538,7 +544,7 @@ impl<'a, 'm> March<'a, 'm> {
                  surface",
                 never.join("`, `")
             )),
-            squeezed: None,
+            squeezed: Vec::new(),
         }
     }
 

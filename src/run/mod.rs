@@ -13,6 +13,7 @@ mod estimate;
 mod fields;
 mod friction_fields;
 mod history;
+mod hold;
 mod linearity_check;
 mod march;
 mod memory;
@@ -143,17 +144,21 @@ struct Safe {
 /// What a run tells of itself.
 struct Told {
     summary: Summary,
-    /// Name of the body whose enhanced strains are what the run could not go on with.
-    squeezed: Option<String>,
+    /// Names of the bodies whose enhanced strains are what the run could not go on with.
+    squeezed: Vec<String>,
 }
 
-/// The scene with displacement elements for the body whose default elements a run could not go on with: enhanced strains lose
+/// The scene with displacement elements for the bodies whose default elements a run could not go on with: enhanced strains lose
 /// their hold in strong compression, and steps accepted before may have suffered. Nothing where the scene names the
-/// element.
+/// elements.
 fn safe_variant(scene: &LoadedScene, before: Option<&Safe>, told: &Told) -> Option<Safe> {
-    let body = told.squeezed.as_ref()?;
     let when = format!("gave way at time {}", number(told.summary.time));
-    replaced(scene, before, body, &when)
+    let mut safe = None;
+    for body in &told.squeezed {
+        let before = safe.as_ref().or(before);
+        safe = replaced(scene, before, body, &when).or(safe);
+    }
+    safe
 }
 
 /// The scene with displacement elements for a body, where it leaves the element to its default.
@@ -178,13 +183,31 @@ fn replaced(scene: &LoadedScene, before: Option<&Safe>, body: &str, when: &str) 
     Some(Safe { loaded, changed })
 }
 
-/// The variant of the scene that a folder holds an unfinished run of, where it is one with other elements for one body.
+/// Bodies of a scene up to which all choices of them are looked through.
+const MANY: usize = 6;
+
+/// The variant of the scene that a folder holds an unfinished run of, where it is one with other elements for some bodies.
 fn variant_in(out: &Path, scene: &LoadedScene) -> Option<Safe> {
     let holds = |loaded: &LoadedScene| checkpoint::find(out, &Fingerprint::new(loaded)).is_ok();
     if holds(scene) {
         return None;
     }
-    let variants = (scene.scene.bodies.keys()).filter_map(|b| replaced(scene, None, b, "gave way"));
+    let bodies: Vec<&String> = scene.scene.bodies.keys().collect();
+    // Of many bodies one of them, or all.
+    let choices: Vec<Vec<bool>> = match bodies.len() {
+        n @ ..=MANY => (1..1u32 << n)
+            .map(|bits| (0..n).map(|k| bits >> k & 1 == 1).collect())
+            .collect(),
+        n => (0..=n)
+            .map(|one| (0..n).map(|k| one == n || k == one).collect())
+            .collect(),
+    };
+    let variants = choices.iter().filter_map(|chosen| {
+        let chosen = bodies.iter().zip(chosen).filter(|(_, chosen)| **chosen);
+        chosen.fold(None, |safe: Option<Safe>, (body, _)| {
+            replaced(scene, safe.as_ref(), body, "gave way").or(safe)
+        })
+    });
     variants.into_iter().find(|safe| holds(&safe.loaded))
 }
 
@@ -223,7 +246,7 @@ fn solve(
             });
             return Ok(Told {
                 summary: *summary,
-                squeezed: None,
+                squeezed: Vec::new(),
             });
         }
         Some(Found::Unfinished(sections)) => Some(sections),
@@ -296,7 +319,7 @@ fn solve(
         .collect();
     let (status, reason, squeezed, failure) = match march.run(out, fields, kept) {
         Ok(ending) => (ending.status, ending.reason, ending.squeezed, None),
-        Err(e) => (RunStatus::Failed, Some(e.to_string()), None, Some(e)),
+        Err(e) => (RunStatus::Failed, Some(e.to_string()), Vec::new(), Some(e)),
     };
     let ResourceUse {
         wall_s,
@@ -379,7 +402,9 @@ fn solve(
     });
     Ok(Told {
         summary,
-        squeezed: squeezed.map(|body| model.bodies[body].name.clone()),
+        squeezed: (squeezed.iter())
+            .map(|&body| model.bodies[body].name.clone())
+            .collect(),
     })
 }
 

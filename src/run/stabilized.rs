@@ -41,7 +41,7 @@ impl March<'_, '_> {
             return Some(Ending {
                 status: RunStatus::NotConverged,
                 reason: Some(failure.to_string()),
-                squeezed: None,
+                squeezed: Vec::new(),
             });
         }
         if !last {

@@ -244,6 +244,29 @@ impl H8Block {
         })
     }
 
+    /// Forces and tangent of the plain brick in the place of element `e`.
+    ///
+    /// # Errors
+    /// [`ElementFault`] where the strain is impossible.
+    pub(super) fn evaluate_plain(
+        &self,
+        e: usize,
+        u: &[Vec3; 8],
+        out: &mut H8System,
+    ) -> Result<(), ElementFault> {
+        let (u, re) = (arrays(u), &self.reference[e]);
+        with_law!(self, law => brick::evaluate(law, re, &u, out)).map_err(|cause| ElementFault {
+            element: e as u32,
+            cause,
+        })
+    }
+
+    /// Corners of element `e` at nodal displacements `u`.
+    pub(super) fn corners(&self, e: usize, u: &[Vec3; 8]) -> [Vec3; 8] {
+        let nodes = &self.reference[e].nodes;
+        std::array::from_fn(|a| Vec3::from(nodes[a]) + u[a])
+    }
+
     /// Forces without tangent, for line searches: `f - L^T D^-1 h` with f and h at `u` and the alpha in `state`, but L
     /// and D of the last [`H8Block::evaluate`]. At those displacements it repeats that call's forces; elsewhere it is
     /// the residual that the same Newton matrix would act on. Returns the strain energy at (u, alpha).

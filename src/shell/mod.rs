@@ -19,6 +19,7 @@ mod brick;
 pub mod distortion;
 mod error;
 mod h8;
+mod hold;
 mod kinematics;
 pub mod material;
 mod q18;

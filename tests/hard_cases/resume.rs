@@ -360,6 +360,8 @@ fn raised_penalties() {
     scene["surfaces"]["die"]["motion"]["translation"][2] =
         json!({"table": [[0, 0], [0.2, -0.7], [0.8, -0.7], [1, 0.1]]});
     scene["output"] = json!({});
+    // The default gives way where the die squeezes it, and the run would begin again with this one.
+    scene["bodies"]["slab"]["element"] = json!("h8_displacement");
     let found = in_pieces(&scene);
     assert_eq!(found.status, RunStatus::Done);
     let start = assembled(&scene);

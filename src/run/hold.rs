@@ -1,0 +1,97 @@
+//! Bodies whose elements with assumed and enhanced strains give way where they are squeezed: the elements do, not the structure,
+//! and what they give may be far off.
+use crate::assembly::Fault;
+use crate::model::state::State;
+use crate::model::{BodyModel, Model};
+use crate::shell::{Block, ElementBlock};
+use crate::solve::newton::StepFailure;
+use covact_geometry::Vec3;
+
+/// Cuts of a step after which elements that turn inside out are given up where others may replace them.
+pub(super) const HOPELESS: u32 = 3;
+/// Cuts of a step after which squeezed elements are looked into.
+pub(super) const SUSPECT: u32 = 2;
+/// Part of its length that an edge of an element has to have lost for the element to count as squeezed, and for it to be looked
+/// into: thin shells, whose elements rightly give way where they buckle, are not shortened as much.
+const SQUEEZED: f64 = 0.1;
+const SHORTENED: f64 = 0.05;
+/// Most elements of a body that are looked into: those that are squeezed most.
+const LOOKED_INTO: usize = 48;
+
+/// What helps where an element with enhanced strains cannot follow; empty for other failures.
+pub(super) fn remedy(turned: Option<&BodyModel>) -> &'static str {
+    match turned {
+        Some(_) => {
+            "; where it is squeezed rather than bent, element `h8_displacement` follows farther"
+        }
+        None => "",
+    }
+}
+
+/// The body whose elements with enhanced strains turned inside out.
+pub(super) fn turned<'m>(model: &'m Model, failure: &StepFailure) -> Option<&'m BodyModel> {
+    let named = match failure {
+        StepFailure::Fault(Fault::Element { body, .. }) | StepFailure::InsideOut { body, .. } => {
+            body
+        }
+        _ => return None,
+    };
+    (model.bodies.iter()).find(|b| b.name == *named && b.block.alpha_len() > 0)
+}
+
+/// Whether elements of a body are squeezed, and not merely bent.
+pub(super) fn compressed(body: &BodyModel, u: &[f64]) -> bool {
+    (0..body.mesh.elements()).any(|e| shortened(body, u, e) > SQUEEZED)
+}
+
+/// Largest part of its length that an edge of an element has lost.
+fn shortened(body: &BodyModel, u: &[f64], e: usize) -> f64 {
+    let mesh = &body.mesh;
+    let at = |n: u32| {
+        let first = 3 * (body.first_node + n) as usize;
+        Vec3::new(u[first], u[first + 1], u[first + 2])
+    };
+    let nodes = mesh.element(e);
+    // Edges join nodes whose numbers differ in one bit.
+    let edges = (0..8).flat_map(|a| [1, 2, 4].map(|bit| (a, a ^ bit)));
+    let edges = edges.filter(|(a, b)| a < b && *b < nodes.len());
+    edges.fold(0.0, |most: f64, (a, b)| {
+        let (a, b) = (nodes[a], nodes[b]);
+        let before = mesh.nodes[a as usize] - mesh.nodes[b as usize];
+        most.max(1.0 - (before + at(a) - at(b)).norm() / before.norm())
+    })
+}
+
+/// The bodies that have squeezed elements which give way in a shape that the plain brick resists, and where one of them is.
+pub(super) fn lost(model: &Model, state: &State) -> Vec<(usize, Vec3)> {
+    let mut first = 0;
+    let bodies = model.bodies.iter().enumerate();
+    let found = bodies.filter_map(|(number, body)| {
+        let len = body.block.state_len();
+        let states = first..first + len * body.block.elements();
+        first = states.end;
+        let Block::H8(block) = &body.block else {
+            return None;
+        };
+        let states = &state.elements[states];
+        let mut squeezed: Vec<(f64, usize)> = (0..block.elements())
+            .map(|e| (shortened(body, &state.u, e), e))
+            .filter(|(part, _)| len > 0 && *part > SHORTENED)
+            .collect();
+        squeezed.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+        squeezed.truncate(LOOKED_INTO);
+        let gives = |e: usize| {
+            let u = body.displacements(block, e, &state.u);
+            // One that cannot be evaluated holds nothing either.
+            (block.loses_hold(e, &u, &states[e * len..][..len])).unwrap_or(true)
+        };
+        let (_, e) = squeezed.into_iter().find(|(_, e)| gives(*e))?;
+        let nodes = ElementBlock::nodes_of(block, e);
+        let middle = nodes
+            .iter()
+            .map(|n| body.mesh.nodes[*n as usize])
+            .sum::<Vec3>();
+        Some((number, middle / nodes.len() as f64))
+    });
+    found.collect()
+}
