@@ -234,6 +234,9 @@ struct SchemaArgs {
 struct NewArgs {
     /// Name of the scene; `NAME.json` is written
     name: String,
+    /// What the scene is about
+    #[arg(short, long, value_name = "TEMPLATE", default_value = "press")]
+    template: new::Template,
 }
 
 /// Runs the program with the arguments of the process.

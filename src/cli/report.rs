@@ -167,9 +167,17 @@ pub(super) fn other_error(message: &str, code: u8, json: bool) -> u8 {
 
 /// Tells why a run or check failed and returns the exit code.
 pub(super) fn run_error(error_: &RunError, scene: &LoadedScene, json: bool) -> u8 {
-    if let RunError::Scene { pointer, help, .. } = error_ {
-        let problem = scene.problem(pointer, error_.to_string(), help.clone());
-        return scene_error(&scene.error(vec![problem]), json);
+    if let RunError::Scene { others, .. } = error_ {
+        let mut problems: Vec<Problem> = (std::iter::once(error_).chain(others))
+            .filter_map(|e| match e {
+                RunError::Scene { pointer, help, .. } => {
+                    Some(scene.problem(pointer, e.to_string(), help.clone()))
+                }
+                _ => None,
+            })
+            .collect();
+        problems.sort_by_key(|p| p.span.start);
+        return scene_error(&scene.error(problems), json);
     }
     error(&error_.to_string());
     let code = error_.exit_code();

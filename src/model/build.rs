@@ -11,21 +11,21 @@ mod values;
 
 use super::driven::Driven;
 use super::error::{At, number, text};
-use super::loads::{DeadLoad, FollowerPressure, load_points};
+use super::loads::{DeadLoad, FollowerPressure, LoadPoint, load_points};
 use super::motion::pose;
 use super::slave::slave_points;
 use super::symmetry::Unsymmetric;
-use super::{BodyModel, Model, ModelError, SurfaceModel, grid};
+use super::{BodyModel, Metal, Model, ModelError, SurfaceModel, grid};
 use crate::machine::memory;
 use crate::mesh::{self, Face, Mesh};
 use crate::scene::{
-    self, InitialOverclosure, LoadedScene, MeshSource, POSITION_AND_TIME, Scene, Stabilization,
-    TIME, Value,
+    self, InitialOverclosure, LoadedScene, Material, MeshSource, POSITION_AND_TIME, Scene,
+    SetNames, Stabilization, TIME, Value,
 };
 use crate::shell::{Block, Law, bytes_per_element};
 use covact_geometry::{PatchSet, Vec3};
 use nalgebra::Point3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
 /// What to do where memory is short.
@@ -53,8 +53,14 @@ struct Builder<'s> {
 pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     let scene = &loaded.scene;
     let mut builder = Builder::new(loaded);
-    builder.bodies()?;
-    let (pairs, mut surfaces) = builder.contacts()?;
+    let bodies = builder.bodies();
+    let sets = match bodies {
+        Ok(()) => builder.references(),
+        Err(_) => Vec::new(),
+    };
+    let (surfaces, wrong) = builder.surfaces();
+    ModelError::all(bodies.err().into_iter().chain(sets).chain(wrong))?;
+    let (pairs, mut surfaces) = builder.contacts(surfaces)?;
     let held = builder.drive(&mut surfaces)?;
     let supports = builder.supports(&held)?;
     builder.held_fibres()?;
@@ -316,49 +322,89 @@ fn split(reference: &str) -> (&str, &str) {
 
 impl<'s> Builder<'s> {
     fn bodies(&mut self) -> Result<(), ModelError> {
-        for (name, body) in &self.scene.bodies {
-            let at = || format!("/bodies/{name}/mesh");
-            room(name, body)?;
-            let (mut mesh, report) = mesh::build(&body.mesh, body.element.into(), self.dir)
-                .map_err(|e| mesh_error(name, &body.mesh, e))?;
-            place(&mut mesh, &body.placement);
-            for (set, selection) in &body.sets {
-                mesh.add_set(set, selection)
-                    .at(|| format!("/bodies/{name}/sets/{set}"))
-                    .map_err(|e| e.help(extent(name, &mesh)))?;
-            }
-            mesh.check().at(at)?;
-            (self.notes).extend(report.notes.iter().map(|n| format!("body `{name}`: {n}")));
-            let material = self.material(name, &body.material)?;
-            let law = Law::new(&material).at(|| format!("/bodies/{name}/material"))?;
-            let elements = mesh.elements() as u64;
-            let each: usize = bytes_per_element(body.element).iter().sum();
-            memory::ask(memory::times(elements, each as u64)).map_err(|shortage| {
-                let message = format!("body `{name}` with its {elements} elements: {shortage}");
-                text(elements_key(name, &body.mesh), message).help(FEWER)
-            })?;
-            let block = Block::new(&mesh, body.element, law).at(at)?;
-            let first_node = u32::try_from(self.nodes.len())
-                .map_err(|_| text(at(), "too many nodes: more than 2^32"))?;
-            self.nodes.extend_from_slice(&mesh.nodes);
-            self.body_index.insert(name, self.bodies.len());
-            self.bodies.push(BodyModel {
-                name: name.clone(),
-                mesh,
-                block,
-                first_node,
-            });
+        let scene = self.scene;
+        let bodies = scene.bodies.iter();
+        ModelError::all(bodies.filter_map(|(name, body)| self.add_body(name, body).err()))
+    }
+
+    /// Reads or makes the mesh of a body and adds the body.
+    fn add_body(&mut self, name: &'s str, body: &'s scene::Body) -> Result<(), ModelError> {
+        let at = || format!("/bodies/{name}/mesh");
+        room(name, body)?;
+        let (mut mesh, report) = mesh::build(&body.mesh, body.element.into(), self.dir)
+            .map_err(|e| mesh_error(name, &body.mesh, e))?;
+        place(&mut mesh, &body.placement);
+        for (set, selection) in &body.sets {
+            mesh.add_set(set, selection)
+                .at(|| format!("/bodies/{name}/sets/{set}"))
+                .map_err(|e| e.help(extent(name, &mesh)))?;
         }
+        mesh.check().at(at)?;
+        (self.notes).extend(report.notes.iter().map(|n| format!("body `{name}`: {n}")));
+        let (material, metal) = self.material(name, &body.material)?;
+        let law = Law::new(&material).at(|| format!("/bodies/{name}/material"))?;
+        let elements = mesh.elements() as u64;
+        let each: usize = bytes_per_element(body.element).iter().sum();
+        memory::ask(memory::times(elements, each as u64)).map_err(|shortage| {
+            let message = format!("body `{name}` with its {elements} elements: {shortage}");
+            text(elements_key(name, &body.mesh), message).help(FEWER)
+        })?;
+        let block = Block::new(&mesh, body.element, law).at(at)?;
+        let first_node = u32::try_from(self.nodes.len())
+            .map_err(|_| text(at(), "too many nodes: more than 2^32"))?;
+        self.nodes.extend_from_slice(&mesh.nodes);
+        self.body_index.insert(name, self.bodies.len());
+        self.bodies.push(BodyModel {
+            name: name.to_owned(),
+            mesh,
+            block,
+            material,
+            metal,
+            first_node,
+        });
         Ok(())
     }
 
-    fn material(&self, body: &str, name: &str) -> Result<scene::Material, ModelError> {
-        self.scene.materials.get(name).copied().ok_or_else(|| {
+    /// What is wrong with references to sets: every one by itself, before any is used.
+    fn references(&self) -> Vec<ModelError> {
+        let mut errors = Vec::new();
+        for (name, contact) in &self.scene.contacts {
+            let at = |side: &str| format!("/contacts/{name}/{side}");
+            errors.extend(self.faces(&contact.slave, &at("slave")).err());
+            if !self.scene.surfaces.contains_key(&contact.master) {
+                errors.extend(self.faces(&contact.master, &at("master")).err());
+            }
+        }
+        for (name, load) in &self.scene.loads {
+            for (at, reference) in load.on.places(&format!("/loads/{name}/on")) {
+                match load.force {
+                    Some(_) => errors.extend(self.set_nodes(reference, &at).err()),
+                    None => errors.extend(self.faces(reference, &at).err()),
+                }
+            }
+        }
+        for (name, support) in &self.scene.supports {
+            for (at, reference) in support.on.places(&format!("/supports/{name}/on")) {
+                errors.extend(self.set_nodes(reference, &at).err());
+            }
+        }
+        errors
+    }
+
+    /// The law of a material; of a metal that is taken by name, that and its yield strength.
+    fn material(&self, body: &str, name: &str) -> Result<(Material, Option<Metal>), ModelError> {
+        let choice = self.scene.materials.get(name).ok_or_else(|| {
             text(
                 format!("/bodies/{body}/material"),
                 format!("there is no material `{name}`"),
             )
-        })
+        })?;
+        let units = &self.scene.units;
+        let law = choice.law(units).ok_or_else(|| {
+            let message = format!("the material `{name}` needs the units of the scene");
+            text(format!("/materials/{name}"), message)
+        })?;
+        Ok((law, choice.name().zip(choice.yield_strength(units))))
     }
 
     fn body(&self, reference: &str, pointer: &str) -> Result<(usize, &Mesh, u32), ModelError> {
@@ -444,23 +490,36 @@ impl<'s> Builder<'s> {
                 dead.push((name.clone(), DeadLoad::Force { shares, value }));
                 continue;
             }
-            let (body, faces) = self.faces(&load.on, &pointer("on"))?;
-            let (mesh, first) = (&self.bodies[body].mesh, self.bodies[body].first_node);
-            let points = load_points(mesh, &faces, first);
+            let parts = self.faces_of(&load.on, &pointer("on"))?;
+            let parts: Vec<(&Mesh, u32, Vec<Face>)> = (parts.into_iter())
+                .map(|(body, faces)| {
+                    let body = &self.bodies[body];
+                    (&body.mesh, body.first_node, faces)
+                })
+                .collect();
+            let points = || -> Vec<LoadPoint> {
+                (parts.iter())
+                    .flat_map(|(mesh, first, faces)| load_points(mesh, faces, *first))
+                    .collect()
+            };
             if let Some(traction) = &load.traction {
                 let value = vector(traction, "traction", &POSITION_AND_TIME)?;
+                let points = points();
                 dead.push((name.clone(), DeadLoad::Traction { points, value }));
             } else if let Some(pressure) = &load.pressure {
                 if load.follower {
                     let value = pressure.compile(&TIME).at(|| pointer("pressure"))?;
-                    let faces = (faces.iter())
-                        .map(|&f| mesh.face_nodes(f).shifted(first))
+                    let faces = (parts.iter())
+                        .flat_map(|(mesh, first, faces)| {
+                            faces.iter().map(|&f| mesh.face_nodes(f).shifted(*first))
+                        })
                         .collect();
                     follower.push((name.clone(), FollowerPressure { faces, value }));
                 } else {
                     let value = pressure
                         .compile(&POSITION_AND_TIME)
                         .at(|| pointer("pressure"))?;
+                    let points = points();
                     dead.push((name.clone(), DeadLoad::Pressure { points, value }));
                 }
             }
@@ -468,20 +527,56 @@ impl<'s> Builder<'s> {
         Ok((dead, follower))
     }
 
-    /// Share of each node in a total force: by tributary area on a face set, equal on a node set.
-    fn shares(&self, reference: &str, pointer: &str) -> Result<Vec<(u32, f64)>, ModelError> {
-        let (_, mesh, first) = self.body(reference, pointer)?;
-        let set = split(reference).1;
-        if let Some(faces) = mesh.face_sets.get(set) {
-            let points =
-                slave_points(mesh, faces, scene::Points::Nodes, first).at(|| pointer.to_owned())?;
+    /// Faces of the sets by body, each once, in the order in which bodies are first named.
+    fn faces_of(&self, on: &SetNames, at: &str) -> Result<Vec<(usize, Vec<Face>)>, ModelError> {
+        let mut parts: Vec<(usize, Vec<Face>)> = Vec::new();
+        for (pointer, reference) in on.places(at) {
+            let (body, faces) = self.faces(reference, &pointer)?;
+            match parts.iter_mut().find(|(b, _)| *b == body) {
+                None => parts.push((body, faces)),
+                Some((_, all)) => {
+                    let before: HashSet<Face> = all.iter().copied().collect();
+                    all.extend(faces.into_iter().filter(|f| !before.contains(f)));
+                }
+            }
+        }
+        Ok(parts)
+    }
+
+    /// Whether `body.set` names a set of faces.
+    fn is_face_set(&self, reference: &str, pointer: &str) -> Result<bool, ModelError> {
+        let (_, mesh, _) = self.body(reference, pointer)?;
+        Ok(mesh.face_sets.contains_key(split(reference).1))
+    }
+
+    /// Share of each node in a total force: by tributary area on face sets, equal on node sets.
+    fn shares(&self, on: &SetNames, at: &str) -> Result<Vec<(u32, f64)>, ModelError> {
+        let mut all_faces = true;
+        for (pointer, reference) in on.places(at) {
+            all_faces &= self.is_face_set(reference, &pointer)?;
+        }
+        if all_faces {
+            let mut points = Vec::new();
+            for (body, faces) in self.faces_of(on, at)? {
+                let body = &self.bodies[body];
+                let own = slave_points(&body.mesh, &faces, scene::Points::Nodes, body.first_node);
+                points.extend(own.at(|| at.to_owned())?);
+            }
             let total: f64 = points.iter().map(|p| p.area).sum();
             return Ok(points
                 .iter()
                 .map(|p| (p.nodes[0], p.area / total))
                 .collect());
         }
-        let (_, nodes) = self.set_nodes(reference, pointer)?;
+        let mut nodes = Vec::new();
+        for (pointer, reference) in on.places(at) {
+            nodes.extend(self.set_nodes(reference, &pointer)?.1);
+        }
+        // Sets may share nodes.
+        if matches!(on, SetNames::List(_)) {
+            nodes.sort_unstable();
+            nodes.dedup();
+        }
         let share = 1.0 / nodes.len().max(1) as f64;
         Ok(nodes.into_iter().map(|n| (n, share)).collect())
     }

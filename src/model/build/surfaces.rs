@@ -275,6 +275,22 @@ impl Builder<'_> {
                 model.set.set_side_as_given(true);
                 "the reverse of what its source gives"
             }
+            Side::Outward | Side::Inward => {
+                let inward = surface.side == Side::Inward;
+                model.set.set_sides_outward(inward).map_err(|component| {
+                    let first = model.set.components()[component][0];
+                    let message = format!(
+                        "surface `{name}` encloses nothing and curves around nothing at {}, so that it has no outward side there",
+                        labels.get(first).map_or("patch 1", String::as_str)
+                    );
+                    text(pointer(), message)
+                        .help("take `as_given`, `reversed` or `{\"point\": [x, y, z]}`")
+                })?;
+                match inward {
+                    true => "towards what it curves around",
+                    false => "away from what it curves around",
+                }
+            }
             Side::Point(p) => {
                 let pose = model.motion.pose(0.0).at(pointer)?;
                 let local = pose.inverse_transform_point(&Vec3::from(p).into()).coords;
@@ -490,7 +506,7 @@ fn both_sides(name: &str, labels: &[String], error: &SideError) -> ModelError {
         label(patch)
     );
     text(format!("/surfaces/{name}/side"), message).help(
-        "move the surface clear of the body with `placement`, or say `side`: `as_given`, `reversed` or \
-         `{\"point\": [x, y, z]}`",
+        "move the surface clear of the body with `placement`, or say `side`: `outward`, `inward`, `as_given`, `reversed` \
+         or `{\"point\": [x, y, z]}`",
     )
 }

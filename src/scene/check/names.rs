@@ -147,7 +147,7 @@ impl<'a> Sets<'a> {
             for (set, selection) in &body.sets {
                 let faces = matches!(
                     selection,
-                    Selection::FacesInBox { .. } | Selection::FacesFacing { .. }
+                    Selection::FacesInBox(_) | Selection::FacesFacing { .. }
                 );
                 // A name that is taken is reported elsewhere.
                 sets.entry(set).or_insert(faces);

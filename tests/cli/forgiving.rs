@@ -1,0 +1,537 @@
+//! Scenes as people write them: short forms, comments, and all that is wrong in one round.
+use crate::support::{assert_parts, covact, stderr};
+use covact::contact::closest::ClosestPoint;
+use covact::model::build::build;
+use covact::scene::{self, LoadedScene, SceneError};
+use covact_geometry::Vec3;
+use std::path::Path;
+
+fn loaded(text: &str) -> LoadedScene {
+    let loaded = scene::parse(text, "scene.json").unwrap_or_else(|e| panic!("{e}"));
+    let problems = scene::check(&loaded);
+    assert!(problems.is_empty(), "{}", loaded.error(problems));
+    loaded
+}
+
+/// A sheet under a ball, with further keys in the places that tests are about.
+fn sheet(mesh: &str, surface: &str, contact: &str, support: &str) -> String {
+    format!(
+        r#"{{
+  "covact": 1,
+  "materials": {{"rubber": {{"neo_hooke": {{"E": 10, "nu": 0.3}}}}}},
+  "bodies": {{"sheet": {{"mesh": {mesh}, "material": "rubber"}}}},
+  "surfaces": {{"ball": {{{surface}}}}},
+  "contacts": {{"press": {{"slave": "sheet.top", "master": "ball"{contact}}}}},
+  "supports": {{"held": {{"on": {support}, "fixed": true}}}}
+}}"#
+    )
+}
+
+const PLATE: &str = r#"{"plate": {"size": [4, 2], "thickness": 1, "elements": [4, 2]}}"#;
+const BALL: &str = r#""sphere": {"radius": 5, "center": [0, 0, 5.6]}"#;
+const EDGE: &str = r#""sheet.x_min""#;
+
+#[test]
+fn short_forms_mean_the_long_ones() {
+    let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/assets");
+    let long_friction = r#", "friction": {"coulomb": {"mu": 0.2}}"#;
+    let table = r#"{"table": [[0, 0], [1, 0.2]]}"#;
+    let pairs = [
+        (
+            sheet(PLATE, BALL, r#", "friction": 0.2"#, EDGE),
+            sheet(PLATE, BALL, long_friction, EDGE),
+        ),
+        (
+            sheet(PLATE, BALL, r#", "friction": {"coulomb": 0.2}"#, EDGE),
+            sheet(PLATE, BALL, long_friction, EDGE),
+        ),
+        (
+            sheet(PLATE, BALL, r#", "friction": "0.1*t""#, EDGE),
+            sheet(
+                PLATE,
+                BALL,
+                r#", "friction": {"coulomb": {"mu": "0.1*t"}}"#,
+                EDGE,
+            ),
+        ),
+        (
+            sheet(
+                PLATE,
+                BALL,
+                r#", "initial_overclosure": {"shrink": 1}"#,
+                EDGE,
+            ),
+            sheet(
+                PLATE,
+                BALL,
+                r#", "initial_overclosure": {"shrink": {"until": 1}}"#,
+                EDGE,
+            ),
+        ),
+        (
+            sheet(PLATE, &format!(r#""cad": "{assets}/sphere.igs""#), "", EDGE),
+            sheet(
+                PLATE,
+                &format!(r#""cad": {{"file": "{assets}/sphere.igs"}}"#),
+                "",
+                EDGE,
+            ),
+        ),
+        (
+            sheet(&format!(r#""{assets}/mesh/plate.msh""#), BALL, "", EDGE),
+            sheet(
+                &format!(r#"{{"file": {{"path": "{assets}/mesh/plate.msh"}}}}"#),
+                BALL,
+                "",
+                EDGE,
+            ),
+        ),
+        (
+            sheet(
+                &format!(r#"{{"file": "{assets}/mesh/plate.msh"}}"#),
+                BALL,
+                "",
+                EDGE,
+            ),
+            sheet(
+                &format!(r#"{{"file": {{"path": "{assets}/mesh/plate.msh"}}}}"#),
+                BALL,
+                "",
+                EDGE,
+            ),
+        ),
+        (
+            sheet(
+                r#"{"plate": {"size": [4, 2], "thickness": 1, "elements": [4, 2], "center": [2, 1, 0]}}"#,
+                BALL,
+                "",
+                EDGE,
+            ),
+            sheet(
+                r#"{"plate": {"size": [4, 2], "thickness": 1, "elements": [4, 2], "origin": [0, 0, 0]}}"#,
+                BALL,
+                "",
+                EDGE,
+            ),
+        ),
+        (
+            sheet(
+                r#"{"block": {"size": [4, 2, 1], "center": [2, 0, -1], "elements": [4, 2, 1]}}"#,
+                BALL,
+                "",
+                EDGE,
+            ),
+            sheet(
+                r#"{"block": {"min": [0, -1, -1.5], "max": [4, 1, -0.5], "elements": [4, 2, 1]}}"#,
+                BALL,
+                "",
+                EDGE,
+            ),
+        ),
+        (
+            sheet(
+                r#"{"block": {"size": [4, 2, 1], "origin": [1, 0, -1], "elements": [4, 2, 1]}}"#,
+                BALL,
+                "",
+                EDGE,
+            ),
+            sheet(
+                r#"{"block": {"min": [1, 0, -1], "max": [5, 2, 0], "elements": [4, 2, 1]}}"#,
+                BALL,
+                "",
+                EDGE,
+            ),
+        ),
+        (
+            sheet(
+                PLATE,
+                r#""sphere": {"radius": 5, "origin": [0, 0, 5.6]}"#,
+                "",
+                EDGE,
+            ),
+            sheet(PLATE, BALL, "", EDGE),
+        ),
+    ];
+    for (short, long) in pairs {
+        assert_eq!(loaded(&short).scene, loaded(&long).scene, "{short}");
+    }
+    // What is no short form stays what it is.
+    let scene = loaded(&sheet(
+        PLATE,
+        BALL,
+        &format!(r#", "friction": {{"coulomb": {{"mu": {table}}}}}"#),
+        EDGE,
+    ));
+    assert!(scene.scene.contacts["press"].friction.is_some());
+}
+
+#[test]
+fn a_short_form_that_is_wrong_is_told_in_its_place() {
+    for (mesh, contact, part) in [
+        (
+            PLATE,
+            r#", "friction": "colomb""#,
+            "did you mean `coulomb`?",
+        ),
+        (PLATE, r#", "friction": "0.2*x""#, "unknown variable `x`"),
+        (
+            PLATE,
+            r#", "friction": -0.2"#,
+            "the coefficient of friction is -0.2",
+        ),
+        (PLATE, r#", "friction": true"#, "expected one of"),
+        (r#""no.msh""#, "", "there is no file `./no.msh`"),
+        (
+            r#"{"block": {"size": [1, 1, 1], "max": [1, 1, 1], "elements": [1, 1, 1]}}"#,
+            "",
+            "a box is given by `min` and `max`, or by `size` with one of `origin`",
+        ),
+        (
+            r#"{"plate": {"size": [4, 2], "thickness": 1, "elements": [4, 2], "center": [0, 0, 0], "origin": [0, 0, 0]}}"#,
+            "",
+            "`origin` and `center` are both given",
+        ),
+    ] {
+        let text = sheet(mesh, BALL, contact, EDGE);
+        let problems = problems(&text);
+        assert_eq!(problems.len(), 1, "{problems:?}");
+        assert!(problems[0].contains(part), "{problems:?}");
+        assert!(!problems[0].starts_with("1:1"), "{problems:?}");
+    }
+}
+
+/// What is wrong with a text, as `covact check` tells it before any file is read.
+fn problems(text: &str) -> Vec<String> {
+    let problems = match scene::parse(text, "scene.json") {
+        Ok(loaded) => scene::check(&loaded),
+        Err(SceneError::Wrong { problems, .. }) => problems,
+        Err(other) => panic!("{other}"),
+    };
+    problems.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn comments_and_trailing_commas_are_read() {
+    let text = sheet(PLATE, BALL, "", EDGE);
+    let commented = text
+        .replace(
+            "{\n  \"covact\"",
+            "// head\n{ /* before\n the first */\n  \"covact\"",
+        )
+        .replace("[4, 2]}}", "[4, 2,],},}")
+        .replace("true}}", "true},},// no more\n");
+    assert_ne!(text, commented);
+    assert_eq!(loaded(&text).scene, loaded(&commented).scene);
+    // Places count comments.
+    let wrong = commented.replace("\"radius\": 5", "\"radius\": -5");
+    assert_eq!(problems(&wrong).len(), 1);
+    assert!(
+        problems(&wrong)[0].starts_with("8:42: the radius is -5"),
+        "{:?}",
+        problems(&wrong)
+    );
+    assert!(problems("{ /* open")[0].contains("1:3: a comment that does not end"));
+}
+
+#[test]
+fn sets_in_a_list_count_as_one() {
+    let both = loaded(&sheet(PLATE, BALL, "", r#"["sheet.x_min", "sheet.x_max"]"#));
+    let model = build(&both).unwrap();
+    let one = build(&loaded(&sheet(PLATE, BALL, "", EDGE))).unwrap();
+    assert_eq!(model.prescribed.len(), 2 * one.prescribed.len());
+    // A corner belongs to two of them, and is held once.
+    let corner = build(&loaded(&sheet(
+        PLATE,
+        BALL,
+        "",
+        r#"["sheet.x_min", "sheet.y_min"]"#,
+    )))
+    .unwrap();
+    assert_eq!(corner.prescribed.len(), 3 * (6 + 10 - 2));
+    assert!(problems(&sheet(PLATE, BALL, "", "[]"))[0].contains("the list of sets is empty"));
+    let wrong = problems(&sheet(PLATE, BALL, "", r#"["sheet.x_min", "sheet.x_mx"]"#));
+    assert!(
+        wrong[0].contains("no set `x_mx` (did you mean `x_max`?"),
+        "{wrong:?}"
+    );
+}
+
+/// A total force on a list of faces is spread over the area of all of them, each counted once.
+#[test]
+fn a_force_on_a_list_is_spread_over_all_of_it() {
+    use covact::model::loads::DeadLoad;
+    let with = |on: &str| {
+        let load = format!(r#", "loads": {{"f": {{"on": {on}, "force": [0, 0, -6]}}}}"#);
+        let text = sheet(PLATE, BALL, "", EDGE);
+        let end = text.rfind('}').unwrap();
+        let model = build(&loaded(&format!("{}{load}}}", &text[..end]))).unwrap();
+        let [(_, DeadLoad::Force { shares, .. })] = model.dead_loads.as_slice() else {
+            panic!("one force");
+        };
+        let mut shares = shares.clone();
+        shares.sort_by_key(|s| s.0);
+        shares
+    };
+    let sum = |shares: &[(u32, f64)]| shares.iter().map(|s| s.1).sum::<f64>();
+    let list = with(r#"["sheet.top", "sheet.bottom", "sheet.top"]"#);
+    assert!((sum(&list) - 1.0).abs() < 1e-12);
+    assert_eq!(list.len(), 2 * with(r#""sheet.top""#).len());
+}
+
+/// The signed distance of a point from the surface once its side is decided.
+fn distance(surface: &str, x: [f64; 3]) -> f64 {
+    let model = build(&loaded(&sheet(PLATE, surface, "", EDGE))).unwrap();
+    let foot = model.surfaces[0]
+        .set
+        .project(&Vec3::from(x), None, f64::INFINITY);
+    foot.unwrap().signed_distance
+}
+
+#[test]
+fn outward_is_away_from_what_is_enclosed() {
+    let cylinder = r#""cylinder": {"radius": 3, "length": 20, "center": [0, 0, 4]}"#;
+    let cad = concat!(
+        r#""cad": ""#,
+        env!("CARGO_MANIFEST_DIR"),
+        r#"/assets/sphere.igs""#
+    );
+    for surface in [BALL, cylinder, cad] {
+        let far = distance(
+            &format!(r#"{surface}, "side": "outward""#),
+            [0.0, 0.0, 100.0],
+        );
+        assert!(far > 0.0, "{surface}: {far}");
+        let far = distance(
+            &format!(r#"{surface}, "side": "inward""#),
+            [0.0, 0.0, 100.0],
+        );
+        assert!(far < 0.0, "{surface}: {far}");
+    }
+    // Nothing is enclosed by a plane.
+    let plane = r#""plane": {"size": [10, 10], "center": [0, 0, 1]}, "side": "outward""#;
+    let error = build(&loaded(&sheet(PLATE, plane, "", EDGE))).unwrap_err();
+    assert_eq!(error.pointer, "/surfaces/ball/side");
+    assert!(error.to_string().contains("no outward side"), "{error}");
+}
+
+#[test]
+fn materials_by_name_are_taken_in_the_units_of_the_scene() {
+    use covact::scene::{Elastic, Material};
+    let with = |material: &str, units: &str| {
+        sheet(PLATE, BALL, "", EDGE)
+            .replace(r#"{"neo_hooke": {"E": 10, "nu": 0.3}}"#, material)
+            .replace("\"covact\": 1,", &format!("\"covact\": 1, {units}"))
+    };
+    let law = |material: &str, units: &str| {
+        build(&loaded(&with(material, units))).unwrap().bodies[0].material
+    };
+    let close = |law: Material, e: f64| match law {
+        Material::StVenantKirchhoff(Elastic { e: found, .. })
+        | Material::NeoHooke(Elastic { e: found, .. }) => {
+            assert!((found / e - 1.0).abs() < 1e-3, "{found} for {e}");
+        }
+    };
+    let newton = r#""units": {"length": "mm", "force": "N"},"#;
+    close(law(r#""steel""#, newton), 210e3);
+    close(
+        law(r#""steel""#, r#""units": {"length": "m", "force": "kN"},"#),
+        210e6,
+    );
+    close(law(r#""rubber_50""#, newton), 2.4553);
+    assert!(matches!(
+        law(r#""rubber_50""#, newton),
+        Material::NeoHooke(_)
+    ));
+    for units in [
+        "",
+        r#""units": {"length": "mm"},"#,
+        r#""units": {"force": "N"},"#,
+    ] {
+        let said = problems(&with(r#""steel""#, units));
+        assert_eq!(said.len(), 1, "{said:?}");
+        assert!(
+            said[0]
+                .contains("the constants of `steel` are not known in the scene's units (say them"),
+            "{said:?}"
+        );
+    }
+    let said = problems(&with(r#""stel""#, newton));
+    assert!(
+        said[0].contains("unknown name `stel` (did you mean `steel`?"),
+        "{said:?}"
+    );
+}
+
+/// Independent mistakes of the text, the form and the meaning come in one round, each once, and none that follows from
+/// another.
+#[test]
+fn one_round_tells_of_everything() {
+    let said = problems(
+        r#"{
+  "covact": 1,
+  "units": {"length": "mm", "force": "N"},
+  "material": {"st": "stel", "al": "aluminium"},
+  "bodies": {
+    "sheet": {"mesh": {"plate": {"size": [10, "10"], "thicknes": 1, "elements": [4, 4]}}, "material": "st"},
+    "block": {"mesh": {"block": {"size": [1,1,1], "min": [0,0,0], "elements": [1,1,1]}}, "material": "all"},
+    "panel": {"mesh": {"plate": {"size": [1, -1], "elements": [1, 1]}}, "material": "al"}
+  },
+  "surfaces": {"ball": {"sphere": {"radius": -5}, "side": "outwards"}, "floor": {"plane": {"size": [1, 1]}}},
+  "contacts": {
+    "one": {"slave": "panel.topp", "master": "boll", "friction": "mu"},
+    "two": {"slave": "panel.top", "master": "floor", "friction": 0.1, "penalty": {"value": 0}}
+  },
+  "supports": {"s": {"on": ["panel.x_min" "panel.x_mx"], "fixed": true}, "r": {"on": "block.what", "fixed": yes}}
+}"#,
+    );
+    let expected = [
+        "4:3: unknown key `material`",
+        "4:22: unknown name `stel`",
+        "6:47: expected a number",
+        "6:54: unknown key `thicknes`",
+        "7:32: a box is given by",
+        "7:103: there is no material `all`",
+        "8:32: the key `thickness` is missing",
+        "8:45: a length of the plate is -1",
+        "10:45: the radius is -5",
+        "10:59: unknown name `outwards`",
+        "12:22: the body `panel` has no set `topp`",
+        "12:67: unknown variable `mu`",
+        "13:86: the penalty is 0",
+        "15:42: expected `,` or `]`",
+        "15:42: the body `panel` has no set `x_mx`",
+        "15:107: expected a value, found `yes`",
+    ];
+    for part in expected {
+        assert_eq!(
+            said.iter().filter(|s| s.starts_with(part)).count(),
+            1,
+            "{part} in {said:#?}"
+        );
+    }
+    // `boll` may be `ball`, which is wrong itself; the name is told as long as it is like none that is whole.
+    let others: Vec<_> = said
+        .iter()
+        .filter(|s| !expected.iter().any(|e| s.starts_with(e)))
+        .collect();
+    assert!(
+        others
+            .iter()
+            .all(|s| s.contains("there is no surface `boll`")),
+        "{others:?}"
+    );
+}
+
+/// What stands against meshes, CAD files and sets of files is told together, too.
+#[test]
+fn one_round_tells_of_all_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
+    std::fs::write(folder.path().join("broken.msh"), "$MeshFormat\n").unwrap();
+    std::fs::write(folder.path().join("broken.igs"), "nothing").unwrap();
+    let scene = |mesh: &str| {
+        format!(
+            r#"{{
+  "covact": 1,
+  "materials": {{"m": {{"neo_hooke": {{"E": 1, "nu": 0}}}}}},
+  "bodies": {{
+    "plate": {{"mesh": "{}", "material": "m"}},
+    "other": {{"mesh": {mesh}, "material": "m"}}
+  }},
+  "surfaces": {{"tool": {{"cad": "broken.igs"}}, "second": {{"cad": "broken.msh"}}}},
+  "contacts": {{"c": {{"slave": "plate.no_such_set", "master": "tool"}}}},
+  "supports": {{"s": {{"on": ["plate.nobody", "plate.nothing"], "fixed": true}}}}
+}}"#,
+            assets.join("mesh/plate.msh").display()
+        )
+    };
+    let said = |text: &str| {
+        std::fs::write(folder.path().join("scene.json"), text).unwrap();
+        let check = covact(folder.path(), &["check", "scene.json"]);
+        assert_eq!(check.status.code(), Some(3));
+        stderr(&check)
+    };
+    let first = said(&scene(r#""broken.msh""#));
+    assert_parts(
+        &first,
+        &[
+            "scene.json:6:23:",
+            "scene.json:8:32:",
+            "scene.json:8:66:",
+            "3 problems",
+        ],
+    );
+    let sets = said(&scene(PLATE));
+    assert_parts(
+        &sets,
+        &[
+            "scene.json:8:",
+            "scene.json:8:",
+            "no_such_set",
+            "nobody",
+            "nothing",
+            "5 problems",
+        ],
+    );
+}
+
+/// A first scene of one's own, as somebody new wrote it, with the mistakes that took five rounds: one round of messages, and
+/// the scene with what they say is right.
+#[test]
+fn a_first_scene_takes_two_rounds() {
+    let folder = tempfile::tempdir().unwrap();
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
+    for (from, to) in [("mesh/hat.msh", "hat.msh"), ("sphere.igs", "ball.igs")] {
+        std::fs::copy(assets.join(from), folder.path().join(to)).unwrap();
+    }
+    let first = r#"{
+  // a hat profile under a ball
+  "covact": 1,
+  "units": { "length": "mm", "force": "N" },
+  "materials": { "sheet": "aluminum" },
+  "bodies": {
+    "hat": { "mesh": { "file": { "path": "hat.msh", "thicknes": 2 } }, "material": "sheets" },
+  },
+  "surfaces": {
+    "ball": {
+      "cad": "ball.iges",
+      "placement": { "scale": 4, "translate": [0, -8, 33.25] },
+      "side": "outside",
+      "motion": { "translation": [0, 0, "-0.2*time"] }
+    }
+  },
+  "contacts": { "press": { "slave": "hat.crown_top", "master": "ball", "friction": 0.1 } },
+  "supports": { "table": { "on": ["hat.feet_bottom"], "fix": true } },
+  "solution": { "step": { "initial": 0.5, "maximum": 0.5 } }
+}"#;
+    let check = |text: &str| {
+        std::fs::write(folder.path().join("own.json"), text).unwrap();
+        let check = covact(folder.path(), &["check", "own.json"]);
+        (check.status.code(), stderr(&check))
+    };
+    let (code, said) = check(first);
+    assert_eq!(code, Some(3));
+    // Every mistake is told at once.
+    let mistakes = [
+        ("aluminum", "aluminium"),
+        ("thicknes\"", "thickness\""),
+        ("\"sheets\"", "\"sheet\""),
+        ("ball.iges", "ball.igs"),
+        ("translate\"", "translation\""),
+        ("outside", "outward"),
+        ("*time", "*t"),
+        ("\"fix\"", "\"fixed\""),
+        ("maximum", "max"),
+    ];
+    let mut second = first.to_owned();
+    for (wrong, right) in mistakes {
+        assert!(
+            said.contains(wrong.trim_matches(['"', '*'])),
+            "{wrong} in {said}"
+        );
+        second = second.replacen(wrong, right, 1);
+    }
+    assert!(said.contains("9 problems"), "{said}");
+    let (code, said) = check(&second);
+    assert_eq!(code, Some(0), "{said}");
+}
