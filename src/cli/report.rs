@@ -11,6 +11,9 @@ use std::panic::PanicHookInfo;
 /// Problems beyond this many are counted, not shown.
 const SHOWN: usize = 20;
 
+/// Lines of more bytes than this are not shown: a caret under their end would be nowhere on the screen.
+const LONGEST_LINE: usize = 4000;
+
 /// Writes to standard error. Nothing can be done when that fails.
 pub(super) fn stderr(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
@@ -70,6 +73,10 @@ impl miette::Diagnostic for Shown<'_> {
 
 /// The lines around a problem, with a caret.
 fn snippet(problem: &Problem, text: &str) -> String {
+    let line = text.lines().nth(problem.place.line.saturating_sub(1));
+    if line.is_some_and(|line| line.len() > LONGEST_LINE) {
+        return String::new();
+    }
     let theme = match colours() {
         true => GraphicalTheme::unicode(),
         false => GraphicalTheme::unicode_nocolor(),

@@ -4,6 +4,7 @@ mod contacts;
 mod facets;
 mod fibres;
 mod master_faces;
+mod probes;
 mod seams;
 mod supports;
 mod surfaces;
@@ -65,6 +66,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     let supports = builder.supports(&held)?;
     builder.held_fibres()?;
     let (dead_loads, follower_loads) = builder.loads()?;
+    let probes = builder.probes()?;
     let mut model = Model {
         title: scene.title.clone(),
         nodes: builder.nodes,
@@ -77,6 +79,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         dead_loads,
         follower_loads,
         dofs: supports.dofs,
+        probes,
         stabilization: None,
         small: None,
         symmetric: true,

@@ -17,6 +17,7 @@ pub mod motion;
 pub mod overclosure;
 pub mod pace;
 pub mod penalty;
+pub mod probe;
 mod sagitta;
 pub mod segments;
 pub mod self_contact;
@@ -82,6 +83,8 @@ pub struct Model {
     pub warnings: Vec<String>,
     /// Times at which something prescribed has a kink, ascending.
     pub kinks: Vec<f64>,
+    /// Curves that the scene asks for.
+    pub probes: Vec<probe::ProbeModel>,
 }
 
 /// A deformable body.

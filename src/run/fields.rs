@@ -7,13 +7,14 @@ use super::surface_cells::pieces;
 use crate::contact::friction::history::PointStatus;
 use crate::contact::law::PairLaw;
 use crate::model::master::{MasterNow, Masters};
+use crate::model::probe::ProbeModel;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::output::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, PartNames, Results,
-    SurfaceOutput, SurfaceState,
+    SurfaceOutput, SurfaceState, von_mises,
 };
-use crate::scene::Output;
+use crate::scene::{Output, ProbeQuantity};
 use crate::shell::{ElementBlock, ElementFault, with_block};
 use covact_geometry::Vec3;
 
@@ -48,6 +49,8 @@ pub struct Fields {
     pub pressed: Vec<f64>,
     /// What the points in contact carry.
     pub bearings: Bearings,
+    /// Von Mises stress at the nodes of bodies whose stress is followed, else 0; empty where that is none.
+    pub von_mises: Vec<f64>,
     /// Gaps at the start where they are negative, between the first two times of gathering; empty where none are.
     start: Vec<f64>,
     gathered: bool,
@@ -92,6 +95,10 @@ impl Fields {
             area: 0.0,
             pressed: vec![0.0; model.pairs.len()],
             bearings: Bearings::new(model),
+            von_mises: match (0..model.bodies.len()).any(|b| follows_stress(model, b)) {
+                true => vec![0.0; n],
+                false => Vec::new(),
+            },
             start: Vec::new(),
             gathered: false,
         })
@@ -286,11 +293,30 @@ impl Fields {
             }
             first += points.len();
         }
+        if !self.von_mises.is_empty() {
+            self.follow_stress(model, state);
+        }
         self.gathered = true;
         if self.smallest_gap == f64::INFINITY {
             self.smallest_gap = f64::NAN;
         }
         Ok(())
+    }
+
+    /// Von Mises stresses of the bodies that probes and yield strengths are about.
+    fn follow_stress(&mut self, model: &Model, state: &State) {
+        let stresses = nodal_stresses(model, state, |body| follows_stress(model, body));
+        for (body, stress) in model.bodies.iter().zip(stresses) {
+            let of = self.von_mises[body.first_node as usize..].iter_mut();
+            (of.zip(&stress)).for_each(|(mises, stress)| *mises = von_mises(stress));
+        }
+        let highest = |body: &BodyModel| {
+            let first = body.first_node as usize;
+            let own = &self.von_mises[first..first + body.mesh.nodes.len()];
+            body.metal
+                .map_or(0.0, |_| own.iter().copied().fold(0.0, f64::max))
+        };
+        self.bearings.stress = model.bodies.iter().map(highest).collect();
     }
 
     /// What a gathering goes by that came before it, for one that is to be taken back.
@@ -366,7 +392,7 @@ impl Fields {
                     .collect()
             })
             .collect();
-        let stresses = nodal_stresses(model, state);
+        let stresses = nodal_stresses(model, state, |_| true);
         let bodies: Vec<BodyFields> = (model.bodies.iter().enumerate())
             .map(|(i, body)| {
                 let first = body.first_node as usize;
@@ -387,10 +413,10 @@ impl Fields {
             })
             .collect();
         let poses: Vec<_> = (model.surfaces.iter())
-            .map(|s| s.pose(time, &state.u).unwrap_or_default())
+            .map(|s| [s.motion.pose(0.0), s.pose(time, &state.u)].map(Result::unwrap_or_default))
             .collect();
         let surfaces: Vec<SurfaceState> = (self.surfaces.iter().zip(&poses))
-            .map(|(surface, at)| SurfaceState { surface, at })
+            .map(|(surface, [start, at])| SurfaceState { surface, start, at })
             .collect();
         let clouds = match self.gaps.is_empty() {
             true => Vec::new(),
@@ -400,14 +426,33 @@ impl Fields {
     }
 }
 
-/// Cauchy stress at the nodes of each body: extrapolated within the elements, averaged between them by volume.
-fn nodal_stresses(model: &Model, state: &State) -> Vec<Vec<[f64; 6]>> {
+/// Whether the stress of a body is asked for in every step: by a probe, or because it is a metal of known strength.
+fn follows_stress(model: &Model, body: usize) -> bool {
+    let body = &model.bodies[body];
+    let own = body.first_node..body.first_node + body.mesh.nodes.len() as u32;
+    let probed = |p: &ProbeModel| {
+        p.quantity == ProbeQuantity::VonMises && p.nodes.iter().any(|n| own.contains(n))
+    };
+    body.metal.is_some() || model.probes.iter().any(probed)
+}
+
+/// Cauchy stress at the nodes of each body that is `wanted`, else nothing: extrapolated within the elements, averaged
+/// between them by volume.
+fn nodal_stresses(
+    model: &Model,
+    state: &State,
+    wanted: impl Fn(usize) -> bool,
+) -> Vec<Vec<[f64; 6]>> {
     let mut first = 0;
     let mut out = Vec::new();
-    for body in &model.bodies {
+    for (index, body) in model.bodies.iter().enumerate() {
         let len = model.state_len(body) * body.block.elements();
         let states = &state.elements[first..first + len];
         first += len;
+        if !wanted(index) {
+            out.push(Vec::new());
+            continue;
+        }
         out.push(with_block!(&body.block, block => match model.small {
             None => body_stresses(body, block, states, &state.u),
             Some(_) => linear_stresses(body, block, &state.u),

@@ -1,5 +1,5 @@
 //! Text files in JSON that people write, read into types, with the place of everything in them.
-use super::decode::decode;
+use super::decode::{Decoded, decode};
 use super::json::{self, Fault, Kind, Node};
 use super::problem::{Lines, Place, Problem, SceneError, nearest};
 use covact_geometry::io::read_within;
@@ -114,14 +114,13 @@ fn parse_in<T: Form>(text: &str, name: &str, dir: PathBuf) -> Result<(T, Documen
         // Another version's keys would only add confusing faults.
         return Err(document.wrong(vec![fault], Vec::new()));
     }
-    let decoded = decode::<T>(&document.root);
-    faults.extend(decoded.faults);
-    match decoded.value {
+    let mut decoded = decode::<T>(&document.root);
+    faults.append(&mut decoded.faults);
+    match decoded.value.take() {
         Some(content) if faults.is_empty() => Ok((content, document)),
         Some(content) => {
             let further = content.problems(&document);
-            let further =
-                document.independent(further, &decoded.replaced, &decoded.incomplete, &faults);
+            let further = document.independent(further, &decoded, &faults);
             Err(document.wrong(faults, further))
         }
         None => Err(document.wrong(faults, Vec::new())),
@@ -198,28 +197,26 @@ impl Document {
 
     /// The problems that do not follow from the faults of the form: those at values that could be read, about things that
     /// are whole.
-    fn independent(
+    fn independent<T>(
         &self,
         problems: Vec<Problem>,
-        replaced: &HashSet<usize>,
-        incomplete: &HashSet<usize>,
+        decoded: &Decoded<T>,
         faults: &[Fault],
     ) -> Vec<Problem> {
+        let (incomplete, misspelt) = (&decoded.incomplete, &decoded.misspelt);
         // Where a whole section may be missing, names lead nowhere.
         if incomplete.contains(&self.root.span.start) {
             return Vec::new();
         }
+        let unread =
+            |n: &Node| matches!(n.kind, Kind::Broken) || decoded.replaced.contains(&n.span.start);
         // Section and name of what has a fault; no name: the whole section has.
         let faulty: HashSet<(String, Option<String>)> = (faults.iter())
             .filter_map(|f| {
                 let pointer = self.root.pointer_at(f.span.start);
                 let mut tokens = pointer.split('/').skip(1).map(str::to_owned);
                 let (section, name) = (tokens.next()?, tokens.next());
-                let lost = || {
-                    self.root
-                        .child(&section)
-                        .filter(|(n, _)| replaced.contains(&n.span.start))
-                };
+                let lost = || self.root.child(&section).filter(|(n, _)| unread(n));
                 (name.is_some() || lost().is_some()).then_some((section, name))
             })
             .collect();
@@ -229,11 +226,16 @@ impl Document {
                 .any(|(section, of)| section != own && of.as_ref().is_none_or(|of| *of == name))
         };
         let holds = |p: &Problem| {
-            let way = self.way(&p.pointer);
-            let unread =
-                |n: &&Node| matches!(n.kind, Kind::Broken) || replaced.contains(&n.span.start);
-            let Some(last) = way.last() else { return false };
-            if way.iter().any(unread) || incomplete.contains(&last.span.start) {
+            let (way, whole) = self.way(&p.pointer);
+            let last = way[way.len() - 1];
+            // What is said of a thing as a whole may come from any of its parts.
+            let parts = match &last.kind {
+                Kind::Object(members) => members.iter().any(|m| unread(&m.value)),
+                _ => false,
+            };
+            let start = &last.span.start;
+            let doubtful = incomplete.contains(start) || !whole && misspelt.contains(start);
+            if parts || doubtful || way.iter().any(|n| unread(n)) {
                 return false;
             }
             let section = p.pointer.split('/').nth(1).unwrap_or_default();
@@ -248,19 +250,19 @@ impl Document {
         problems.into_iter().filter(holds).collect()
     }
 
-    /// The values on the way to that of a JSON pointer, as far as the file has them.
-    fn way(&self, pointer: &str) -> Vec<&Node> {
+    /// The root and the values on the way to that of a JSON pointer, and whether the file has all of them.
+    fn way(&self, pointer: &str) -> (Vec<&Node>, bool) {
         let mut way = vec![&self.root];
         let mut node = &self.root;
         for token in pointer.split('/').skip(1) {
             let token = token.replace("~1", "/").replace("~0", "~");
             let Some((child, _)) = node.child(&token) else {
-                break;
+                return (way, false);
             };
             node = child;
             way.push(node);
         }
-        way
+        (way, true)
     }
 
     /// The content as plain JSON: without comments, places and order.

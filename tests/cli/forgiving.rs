@@ -226,7 +226,7 @@ fn comments_and_trailing_commas_are_read() {
     let wrong = commented.replace("\"radius\": 5", "\"radius\": -5");
     assert_eq!(problems(&wrong).len(), 1);
     assert!(
-        problems(&wrong)[0].starts_with("8:42: the radius is -5"),
+        problems(&wrong)[0].starts_with("7:46: the radius is -5"),
         "{:?}",
         problems(&wrong)
     );
@@ -278,34 +278,37 @@ fn a_force_on_a_list_is_spread_over_all_of_it() {
     assert_eq!(list.len(), 2 * with(r#""sheet.top""#).len());
 }
 
-/// The signed distance of a point from the surface once its side is decided.
-fn distance(surface: &str, x: [f64; 3]) -> f64 {
+/// The signed distance of a far point from the surface once its side is decided.
+fn distance(surface: &str) -> f64 {
     let model = build(&loaded(&sheet(PLATE, surface, "", EDGE))).unwrap();
-    let foot = model.surfaces[0]
-        .set
-        .project(&Vec3::from(x), None, f64::INFINITY);
+    let far = Vec3::new(0.0, 0.0, 1e4);
+    let foot = model.surfaces[0].set.project(&far, None, f64::INFINITY);
     foot.unwrap().signed_distance
 }
 
+/// A tool of either shape above the sheet, and one that is large enough to have the sheet in it.
 #[test]
 fn outward_is_away_from_what_is_enclosed() {
-    let cylinder = r#""cylinder": {"radius": 3, "length": 20, "center": [0, 0, 4]}"#;
     let cad = concat!(
         r#""cad": ""#,
         env!("CARGO_MANIFEST_DIR"),
         r#"/assets/sphere.igs""#
     );
-    for surface in [BALL, cylinder, cad] {
-        let far = distance(
-            &format!(r#"{surface}, "side": "outward""#),
-            [0.0, 0.0, 100.0],
-        );
-        assert!(far > 0.0, "{surface}: {far}");
-        let far = distance(
-            &format!(r#"{surface}, "side": "inward""#),
-            [0.0, 0.0, 100.0],
-        );
-        assert!(far < 0.0, "{surface}: {far}");
+    for (pin, bore) in [
+        (BALL, r#""sphere": {"radius": 50}"#),
+        (
+            r#""cylinder": {"radius": 3, "length": 20, "center": [0, 0, 4]}"#,
+            r#""cylinder": {"radius": 50, "length": 200}"#,
+        ),
+        (
+            &format!(r#"{cad}, "placement": {{"translation": [0, 0, 100]}}"#),
+            &format!(r#"{cad}, "placement": {{"scale": 100}}"#),
+        ),
+    ] {
+        let outside = distance(&format!(r#"{pin}, "side": "outward""#));
+        assert!(outside > 0.0, "{pin}: {outside}");
+        let outside = distance(&format!(r#"{bore}, "side": "inward""#));
+        assert!(outside < 0.0, "{bore}: {outside}");
     }
     // Nothing is enclosed by a plane.
     let plane = r#""plane": {"size": [10, 10], "center": [0, 0, 1]}, "side": "outward""#;
@@ -389,11 +392,11 @@ fn one_round_tells_of_everything() {
         "4:22: unknown name `stel`",
         "6:47: expected a number",
         "6:54: unknown key `thicknes`",
-        "7:32: a box is given by",
-        "7:103: there is no material `all`",
-        "8:32: the key `thickness` is missing",
-        "8:45: a length of the plate is -1",
-        "10:45: the radius is -5",
+        "7:33: a box is given by",
+        "7:102: there is no material `all`",
+        "8:33: the key `thickness` is missing",
+        "8:46: a length of the plate is -1",
+        "10:46: the radius is -5",
         "10:59: unknown name `outwards`",
         "12:22: the body `panel` has no set `topp`",
         "12:67: unknown variable `mu`",
@@ -534,4 +537,44 @@ fn a_first_scene_takes_two_rounds() {
     assert!(said.contains("9 problems"), "{said}");
     let (code, said) = check(&second);
     assert_eq!(code, Some(0), "{said}");
+}
+
+/// The note where an elastic metal is stressed beyond its strength, and none where the law is written out.
+#[test]
+fn a_metal_beyond_its_yield_strength_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |material: &str| {
+        let text = format!(
+            r#"{{
+  "covact": 1,
+  "units": {{"length": "mm", "force": "N"}},
+  "materials": {{"m": {material}}},
+  "bodies": {{"bar": {{"mesh": {{"block": {{"size": [2, 1, 1], "elements": [2, 1, 1]}}}}, "material": "m"}}}},
+  "supports": {{
+    "left": {{"on": "bar.x_min", "fixed": true}},
+    "right": {{"on": "bar.x_max", "displacement": {{"x": "0.01*t"}}}}
+  }},
+  "solution": {{"step": {{"initial": 0.5, "max": 0.5}}}},
+  "output": {{"every": 0}}
+}}"#
+        );
+        std::fs::write(folder.path().join("scene.json"), text).unwrap();
+        let run = covact(
+            folder.path(),
+            &["run", "scene.json", "-o", "out", "--force"],
+        );
+        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+        stderr(&run)
+    };
+    // 0.5 % of strain, 1000 MPa.
+    let said = run(r#""steel""#);
+    assert_parts(
+        &said,
+        &[
+            "note: body `bar`: its von Mises stress of ",
+            " at step 2 passes the yield strength 235 of `steel`",
+        ],
+    );
+    assert!(!run(r#""rubber_40""#).contains("yield"));
+    assert!(!run(r#"{"st_venant_kirchhoff": {"E": 210000, "nu": 0.3}}"#).contains("yield"));
 }

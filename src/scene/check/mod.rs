@@ -62,6 +62,9 @@ pub(super) fn problems(scene: &Scene, document: &Document) -> Vec<Problem> {
     for (name, load) in &scene.loads {
         check_load(&mut c, &path(&["loads", name]), load, &sets);
     }
+    for (name, probe) in &scene.probes {
+        check_probe(&mut c, &path(&["probes", name]), probe, scene, &sets);
+    }
     check_solution(&mut c, &scene.solution);
     small::check(&mut c, scene);
     c.whole("/output/tessellation", scene.output.tessellation, 1, 200);
@@ -335,6 +338,29 @@ fn check_load(c: &mut Checker, at: &str, load: &Load, sets: &Sets) {
             "only a pressure can follow the faces",
             Some(help.into()),
         );
+    }
+}
+
+fn check_probe(c: &mut Checker, at: &str, probe: &Probe, scene: &Scene, sets: &Sets) {
+    let whole = probe.body.is_some() && probe.near.is_none();
+    c.exactly_one(
+        at,
+        "probe",
+        &[
+            ("on", probe.on.is_some()),
+            ("near", probe.near.is_some()),
+            ("body", whole),
+        ],
+    );
+    if let Some(on) = &probe.on {
+        check_sets(c, at, on, sets, (false, "a probe"));
+    }
+    if let Some(near) = &probe.near {
+        c.finite(&format!("{at}/near"), near);
+    }
+    if let Some(body) = &probe.body {
+        let bodies = scene.bodies.keys();
+        c.refers(&format!("{at}/body"), "body", "bodies", body, bodies);
     }
 }
 

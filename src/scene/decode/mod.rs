@@ -30,6 +30,8 @@ pub(super) struct Decoded<T> {
     pub replaced: HashSet<usize>,
     /// Where objects start that lack a key, or have one that nobody knows.
     pub incomplete: HashSet<usize>,
+    /// Where objects start of which a misspelt key was read as the one that it is like.
+    pub misspelt: HashSet<usize>,
 }
 
 /// Decodes a tree, and reports all that stands against it.
@@ -40,6 +42,7 @@ pub(super) fn decode<'de, T: de::Deserialize<'de>>(root: &'de Node) -> Decoded<T
     for round in 1.. {
         state.faults.get_mut().clear();
         state.odd.get_mut().clear();
+        state.misspelt.get_mut().clear();
         let decoder = Decoder {
             node: root,
             state: &state,
@@ -73,6 +76,8 @@ struct State {
     faults: RefCell<Vec<Fault>>,
     /// Starts of the objects that have some which are like no known key.
     odd: RefCell<HashSet<usize>>,
+    /// Starts of the objects that have some which were read as the known key that they are like.
+    misspelt: RefCell<HashSet<usize>>,
     /// Starts of the values that a placeholder stands for.
     replaced: HashSet<usize>,
     /// Keys that objects lack, by their starts: placeholders are read there.
@@ -133,6 +138,7 @@ impl State {
             faults,
             replaced: self.replaced,
             incomplete,
+            misspelt: self.misspelt.into_inner(),
         }
     }
 }
@@ -195,6 +201,10 @@ impl<'de, 'f> Decoder<'de, 'f> {
                 }
                 match nearest(&m.key, unused.iter().copied()) {
                     Some(near) => {
+                        self.state
+                            .misspelt
+                            .borrow_mut()
+                            .insert(self.node.span.start);
                         unused.retain(|k| *k != near);
                         meant.extend(known.iter().filter(|k| **k == near).map(|k| (*k, &m.value)));
                     }
@@ -286,6 +296,12 @@ impl<'de, 'f> Decoder<'de, 'f> {
                 .help(format!("known keys: {}", list(known)))),
         }
     }
+}
+
+/// Whether a word is like one of the names; paths and expressions are no words.
+fn is_nearly(text: &str, names: &[&str]) -> bool {
+    let word = text.chars().all(|c| c.is_alphanumeric() || c == '_');
+    word && nearest(text, names.iter().copied()).is_some()
 }
 
 fn list(names: &[&str]) -> String {
@@ -457,9 +473,8 @@ impl<'de> Deserializer<'de> for Decoder<'de, '_> {
         let short = self.stands_for(type_name);
         let (name, span, content) = match &self.node.kind {
             Kind::Text(t) if variants.contains(&t.as_str()) => (t.as_str(), &self.node.span, None),
-            // A text that is nearly the name of a variant is meant to be that.
-            Kind::Text(t) => match short.filter(|_| nearest(t, variants.iter().copied()).is_none())
-            {
+            // A word that is nearly the name of a variant is meant to be that.
+            Kind::Text(t) => match short.filter(|_| !is_nearly(t, variants)) {
                 Some(key) => (key, &self.node.span, Some(self.node)),
                 None => (t.as_str(), &self.node.span, None),
             },

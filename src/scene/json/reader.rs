@@ -91,9 +91,10 @@ impl Reader<'_> {
             let rest = &self.text[self.at..];
             self.at += rest.len() - rest.trim_start_matches([' ', '\t', '\n', '\r']).len();
             let rest = &self.text[self.at..];
-            let line = rest.find('\n').unwrap_or(rest.len());
+            // Only where a comment is: lines may be as long as the file.
+            let line = || rest.find('\n').unwrap_or(rest.len());
             if rest.starts_with("//") {
-                self.at += line;
+                self.at += line();
             } else if rest.starts_with("/*") {
                 let Some(end) = rest.find("*/") else {
                     let help = Some("close it with `*/`");
@@ -103,9 +104,10 @@ impl Reader<'_> {
                 self.at += end + 2;
             } else if rest.starts_with('#') {
                 let help = "write `// ...` or `/* ... */`";
-                let span = self.at..self.at + line;
+                let end = self.at + line();
+                let span = self.at..end;
                 self.tell(self.fault(span, "a comment does not start with `#`", Some(help)))?;
-                self.at += line;
+                self.at = end;
             } else {
                 return Ok(());
             }

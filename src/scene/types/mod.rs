@@ -7,6 +7,7 @@ mod material;
 mod mesh;
 mod mesh_file;
 mod motion;
+mod probe;
 mod set_names;
 mod solution;
 mod surface;
@@ -20,6 +21,7 @@ pub use material::*;
 pub use mesh::*;
 pub use mesh_file::*;
 pub use motion::*;
+pub use probe::*;
 pub use set_names::*;
 pub use solution::*;
 pub use surface::*;
@@ -95,6 +97,9 @@ pub struct Scene {
     /// Loads by name.
     #[serde(default)]
     pub loads: BTreeMap<String, Load>,
+    /// Curves of the history, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub probes: BTreeMap<String, Probe>,
     #[serde(default)]
     pub solution: Solution,
     #[serde(default)]
