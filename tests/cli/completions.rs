@@ -47,7 +47,8 @@ fn the_log_tells_of_every_iteration() {
             .filter(|l| l.contains("e-") && !l.contains("accepted"))
             .count()
     };
-    assert!(iterations(&log) > 10 && log.contains("accepted"), "{log}");
+    let steps = log.matches("accepted").count();
+    assert!(steps > 0 && iterations(&log) > steps, "{log}");
     // The log belongs to the run, and goes with it.
     let verbose = run(&["--force", "-v"]);
     let again = std::fs::read_to_string(folder.path().join("out/run.log")).unwrap();

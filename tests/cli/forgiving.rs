@@ -377,14 +377,15 @@ fn one_round_tells_of_everything() {
   "bodies": {
     "sheet": {"mesh": {"plate": {"size": [10, "10"], "thicknes": 1, "elements": [4, 4]}}, "material": "st"},
     "block": {"mesh": {"block": {"size": [1,1,1], "min": [0,0,0], "elements": [1,1,1]}}, "material": "all"},
-    "panel": {"mesh": {"plate": {"size": [1, -1], "elements": [1, 1]}}, "material": "al"}
+    "panel": {"mesh": {"plate": {"size": [1, -1], "elements": [1, 1]}}, "material": "al"},
+    "whole": {"mesh": {"plate": {"size": [1, 1], "thickness": 1, "elements": [1, 1]}}, "material": "al"}
   },
   "surfaces": {"ball": {"sphere": {"radius": -5}, "side": "outwards"}, "floor": {"plane": {"size": [1, 1]}}},
   "contacts": {
-    "one": {"slave": "panel.topp", "master": "boll", "friction": "mu"},
-    "two": {"slave": "panel.top", "master": "floor", "friction": 0.1, "penalty": {"value": 0}}
+    "one": {"slave": "whole.topp", "master": "boll", "friction": "mu"},
+    "two": {"slave": "whole.top", "master": "floor", "friction": 0.1, "penalty": {"value": 0}}
   },
-  "supports": {"s": {"on": ["panel.x_min" "panel.x_mx"], "fixed": true}, "r": {"on": "block.what", "fixed": yes}}
+  "supports": {"s": {"on": ["whole.x_min" "whole.x_mx"], "fixed": true}, "r": {"on": "block.what", "fixed": yes}}
 }"#,
     );
     let expected = [
@@ -396,14 +397,14 @@ fn one_round_tells_of_everything() {
         "7:102: there is no material `all`",
         "8:33: the key `thickness` is missing",
         "8:46: a length of the plate is -1",
-        "10:46: the radius is -5",
-        "10:59: unknown name `outwards`",
-        "12:22: the body `panel` has no set `topp`",
-        "12:67: unknown variable `mu`",
-        "13:86: the penalty is 0",
-        "15:42: expected `,` or `]`",
-        "15:42: the body `panel` has no set `x_mx`",
-        "15:107: expected a value, found `yes`",
+        "11:46: the radius is -5",
+        "11:59: unknown name `outwards`",
+        "13:22: the body `whole` has no set `topp`",
+        "13:67: unknown variable `mu`",
+        "14:92: the penalty is 0",
+        "16:43: expected `,` or `]`",
+        "16:43: the body `whole` has no set `x_mx`",
+        "16:109: expected a value, found `yes`",
     ];
     for part in expected {
         assert_eq!(
@@ -460,7 +461,7 @@ fn one_round_tells_of_all_files() {
         &[
             "scene.json:6:23:",
             "scene.json:8:32:",
-            "scene.json:8:66:",
+            "scene.json:8:65:",
             "3 problems",
         ],
     );

@@ -58,6 +58,14 @@ impl<'de> Deserializer<'de> for Placeholder {
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
         visitor.visit_none()
     }
+    /// For types of several forms of which a text is one.
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, Stop> {
+        visitor.visit_str("")
+    }
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
         self.deserialize_tuple(0, visitor)
     }
@@ -85,7 +93,7 @@ impl<'de> Deserializer<'de> for Placeholder {
     }
 
     serde::forward_to_deserialize_any! {
-        f32 f64 char bytes byte_buf unit unit_struct newtype_struct tuple_struct identifier ignored_any
+        f32 f64 char bytes byte_buf unit unit_struct tuple_struct identifier ignored_any
     }
 }
 

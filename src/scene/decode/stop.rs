@@ -69,6 +69,7 @@ impl de::Error for Stop {
         let found = match found {
             Unexpected::Bool(b) => b.to_string(),
             Unexpected::Str(s) => format!("the text \"{}\"", shorten(s)),
+            Unexpected::Float(n) => format!("the number {n}"),
             Unexpected::Seq => "a list".into(),
             Unexpected::Map => "an object".into(),
             Unexpected::Unit | Unexpected::Option => "null".into(),

@@ -56,7 +56,7 @@ impl Serialize for SetNames {
 // serde's own reading of untagged enums forgets where a fault was.
 impl<'de> Deserialize<'de> for SetNames {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<SetNames, D::Error> {
-        deserializer.deserialize_any(SetNamesVisitor)
+        deserializer.deserialize_newtype_struct("SetNames", SetNamesVisitor)
     }
 }
 
@@ -67,6 +67,9 @@ impl<'de> Visitor<'de> for SetNamesVisitor {
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("a set, `\"body.set\"`, or a list of sets")
+    }
+    fn visit_newtype_struct<D: Deserializer<'de>>(self, inner: D) -> Result<SetNames, D::Error> {
+        inner.deserialize_any(self)
     }
     fn visit_str<E: de::Error>(self, name: &str) -> Result<SetNames, E> {
         Ok(SetNames::One(name.to_owned()))
