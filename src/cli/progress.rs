@@ -169,8 +169,7 @@ impl Table {
                 gap,
                 slip,
             } if self.iterations => vec![format!(
-                "{step:>5} {:>10} {:>10} after {augmentation} augmentation(s): contact `{contact}`, gap {gap:.3e}, elastic \
-                 slip {slip:.3e}",
+                "{step:>5} {:>10} {:>10} `{contact}` augmented {augmentation}: gap {gap:.3e}, slip {slip:.3e}",
                 "", ""
             )],
             Event::Iteration { .. } | Event::Augmented { .. } => Vec::new(),
@@ -187,8 +186,7 @@ impl Table {
                 penalty,
                 left,
             } => vec![format!(
-                "{step:>5} {:>10} {:>10} contact `{contact}`: penalty raised to {penalty:.3e}, an augmentation left {:.0} % of \
-                 the gaps",
+                "{step:>5} {:>10} {:>10} `{contact}`: penalty now {penalty:.3e}, {:.0} % of gaps left",
                 "",
                 "",
                 100.0 * left
@@ -199,8 +197,7 @@ impl Table {
                 penalty,
                 error,
             } if self.iterations => vec![format!(
-                "{step:>5} {:>10} {:>10} contact `{contact}`: penalty raised to {penalty:.3e}, the one before left an error of \
-                 {:.1} % in forces",
+                "{step:>5} {:>10} {:>10} `{contact}`: penalty now {penalty:.3e}, error before {:.1} %",
                 "",
                 "",
                 100.0 * error
