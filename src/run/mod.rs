@@ -26,6 +26,7 @@ mod progress;
 mod remedy;
 mod stabilized;
 mod step;
+mod stresses;
 mod surface_cells;
 mod tunneling;
 mod validity;

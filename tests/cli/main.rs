@@ -16,6 +16,7 @@ mod output;
 mod probes;
 mod project;
 mod resume;
+mod rounds;
 mod run;
 mod schema;
 mod support;
