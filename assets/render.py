@@ -169,6 +169,15 @@ def add_body(plotter, grid, args, style):
     return bounds
 
 
+def moved(grid):
+    """A surface where its displacement leads."""
+    if "displacement" not in grid.point_data:
+        return grid
+    grid = grid.copy()
+    grid.points = grid.points + grid.point_data["displacement"]
+    return grid
+
+
 def add_surface(plotter, grid, args):
     images = [clipped(image, args.clip) for image in mirrored(grid, args.mirror_surfaces, [1, 1, 1])]
     return [draw_surface(plotter, image, args) for image in images if image.n_cells > 0]
@@ -236,8 +245,8 @@ def main():
         if name not in names:
             sys.exit(f"no part {name}; there are: {', '.join(names)}")
     parts = [(name, grid) for name, grid in parts if not args.parts or name in args.parts]
-    bodies = [grid for _, grid in parts if "displacement" in grid.point_data]
-    surfaces = [grid for _, grid in parts if "displacement" not in grid.point_data]
+    bodies = [grid for _, grid in parts if "element" in grid.cell_data]
+    surfaces = [moved(grid) for _, grid in parts if "element" not in grid.cell_data]
 
     style = {}
     if args.field:

@@ -3,7 +3,7 @@ use covact::mesh::{
     ElementKind, Face, Mesh, MeshError, Selected, SetKind, ThicknessColumns, build, cylinder_panel,
     plate,
 };
-use covact::scene::{CylinderPanel, MeshFile, MeshSource, Plate, Selection};
+use covact::scene::{Corners, CylinderPanel, MeshFile, MeshSource, Plate, Selection};
 use covact_geometry::Vec3;
 use std::path::Path;
 
@@ -236,15 +236,15 @@ fn selections_find_what_they_describe() {
         Selected::Nodes(_) => panic!("nodes"),
     };
     // Borders count, although 0.1 + (-0.2 / 2) is not exact.
-    let box_ = Selection::NodesInBox {
+    let box_ = Selection::NodesInBox(Corners {
         min: [1.0, 1.0, -0.1],
         max: [2.0, 2.0, 0.1],
-    };
+    });
     assert_eq!(nodes(&mesh, box_).len(), 2 * 2 * 3);
-    let half = Selection::NodesInBox {
+    let half = Selection::NodesInBox(Corners {
         min: [f64::NEG_INFINITY; 3],
         max: [f64::INFINITY, f64::INFINITY, 0.05],
-    };
+    });
     assert_eq!(nodes(&mesh, half).len(), 40);
     let plane = Selection::NodesNearPlane {
         point: [0.0; 3],
@@ -267,10 +267,10 @@ fn selections_find_what_they_describe() {
         angle: 45.0,
     };
     assert_eq!(faces(&mesh, both).len(), 4 * 2 + 3 * 2);
-    let in_box = Selection::FacesInBox {
+    let in_box = Selection::FacesInBox(Corners {
         min: [-1.0, -1.0, 0.1],
         max: [2.0, 9.0, 0.1],
-    };
+    });
     assert_eq!(faces(&mesh, in_box).len(), 2 * 3);
 
     mesh.add_set("upper", &facing).unwrap();
@@ -300,10 +300,10 @@ fn empty_selections_tell_how_far_off_they_are() {
     };
     let length = "length units";
     close(
-        miss(Selection::NodesInBox {
+        miss(Selection::NodesInBox(Corners {
             min: [7.0, 7.0, 0.0],
             max: [8.0; 3],
-        }),
+        })),
         5.0,
         length,
     );
@@ -326,10 +326,10 @@ fn empty_selections_tell_how_far_off_they_are() {
     );
     // An upper face of the last column, x from 3 to 4, sticks out by 0.2 on both sides.
     close(
-        miss(Selection::FacesInBox {
+        miss(Selection::FacesInBox(Corners {
             min: [3.2, 0.0, 0.1],
             max: [3.8, 9.0, 0.1],
-        }),
+        })),
         0.2,
         length,
     );
@@ -358,17 +358,17 @@ fn selections_without_meaning_are_refused() {
     let mesh = sheet();
     for (selection, part) in [
         (
-            Selection::NodesInBox {
+            Selection::NodesInBox(Corners {
                 min: [0.0, 1.0, 0.0],
                 max: [1.0, 0.0, 1.0],
-            },
+            }),
             "min[1], max[1] is 1 > 0",
         ),
         (
-            Selection::FacesInBox {
+            Selection::FacesInBox(Corners {
                 min: [f64::NAN; 3],
                 max: [1.0; 3],
-            },
+            }),
             "NaN",
         ),
         (

@@ -86,6 +86,7 @@ fn collections_list_every_part_at_every_time() {
         let at = Isometry3::translation(0.0, 0.0, time);
         let state = SurfaceState {
             surface: &surface,
+            start: &at,
             at: &at,
         };
         results.write(step, time, &bodies, &[state], &[]).unwrap();
@@ -275,6 +276,7 @@ fn a_summary_reads_back() {
         ping_pongs: 0,
         pattern_rebuilds: 0,
         effects: vec!["normal contact".into()],
+        probes: BTreeMap::new(),
         plan: Default::default(),
         warnings: vec!["slave points are coarse".into()],
         accuracy: Accuracy {

@@ -161,7 +161,7 @@ fn a_body_reads_back_as_it_was() {
     let text = std::str::from_utf8(&bytes).unwrap();
     let file = tag(text, "<VTKFile");
     assert!(
-        file.contains("version=\"2.2\"") && file.contains("LittleEndian"),
+        file.contains("version=\"1.0\"") && file.contains("LittleEndian"),
         "{file}"
     );
     assert!(tag(text, "<PointData").contains("Vectors=\"displacement\""));
@@ -245,7 +245,7 @@ fn a_cylinder_is_exact_bezier_with_weights() {
     let surface = SurfaceOutput::new("tool", vec![quarter_cylinder(false)], 4).unwrap();
     let turn = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.5);
     let at = Isometry3::from_parts(Translation3::new(0.0, 0.0, 7.0), turn);
-    let bytes = surface.to_vtu(&at).unwrap();
+    let bytes = surface.to_vtu([&at, &at]).unwrap();
     let text = std::str::from_utf8(&bytes).unwrap();
     let point = tag(text, "<PointData");
     assert!(
@@ -284,13 +284,54 @@ fn a_cylinder_is_exact_bezier_with_weights() {
     assert_eq!(x[17], middle[2]);
 }
 
+/// Warped by its displacement a surface is where it is, as bodies are.
+#[test]
+fn a_surface_starts_at_its_first_place_and_has_its_displacement() {
+    let surface = SurfaceOutput::new("tool", vec![quarter_cylinder(false)], 4).unwrap();
+    let start = Isometry3::translation(0.0, 0.0, 7.0);
+    let turn = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.5);
+    let at = Isometry3::from_parts(Translation3::new(1.0, 0.0, 3.0), turn);
+    let points = |grid: &UnstructuredGridPiece| grid.points.clone().cast_into::<f64>().unwrap();
+    for flat in [false, true] {
+        let write = |poses: [&Isometry3<f64>; 2]| {
+            read(&match flat {
+                false => surface.to_vtu(poses).unwrap(),
+                true => surface.to_tessellated_vtu(poses).unwrap(),
+            })
+        };
+        let moving = write([&start, &at]);
+        let (there, here) = (write([&at, &at]), write([&start, &start]));
+        assert_eq!(points(&moving), points(&here));
+        let (components, way) = array(&moving.data.point, "displacement");
+        assert_eq!(components, 3);
+        for ((from, way), to) in points(&here).iter().zip(&way).zip(points(&there)) {
+            assert!((from + way - to).abs() < 1e-14);
+        }
+        assert!(way.iter().any(|w| w.abs() > 0.1));
+    }
+}
+
+/// Programs that know version 1.0 only read all grids without curved cells.
+#[test]
+fn only_curved_cells_need_a_later_version() {
+    let surface = SurfaceOutput::new("tool", vec![quarter_cylinder(false)], 4).unwrap();
+    let identity = Isometry3::identity();
+    let version = |bytes: Vec<u8>, version: &str| {
+        let text = String::from_utf8(bytes).unwrap();
+        let file = tag(&text, "<VTKFile").to_owned();
+        assert!(file.contains(&format!(" version=\"{version}\"")), "{file}");
+    };
+    version(surface.to_vtu([&identity; 2]).unwrap(), "2.2");
+    version(surface.to_tessellated_vtu([&identity; 2]).unwrap(), "1.0");
+}
+
 #[test]
 fn the_tessellation_lies_on_the_surface_with_outward_normals() {
     for reversed in [false, true] {
         let piece = quarter_cylinder(reversed);
         let surface = SurfaceOutput::new("tool", vec![piece], 5).unwrap();
         let at = Isometry3::rotation(nalgebra::Vector3::z() * 0.3);
-        let bytes = surface.to_tessellated_vtu(&at).unwrap();
+        let bytes = surface.to_tessellated_vtu([&at, &at]).unwrap();
         let grid = read(&bytes);
         assert_eq!(grid.cells.types, [CellType::Quad; 25]);
         assert_eq!(array(&grid.data.cell, "patch").1, [3.0; 25]);
@@ -338,7 +379,11 @@ fn the_normal_at_a_pole_is_that_of_the_sphere() {
         divisions: None,
     };
     let surface = SurfaceOutput::new("ball", vec![piece], 6).unwrap();
-    let grid = read(&surface.to_tessellated_vtu(&Isometry3::identity()).unwrap());
+    let grid = read(
+        &surface
+            .to_tessellated_vtu([&Isometry3::identity(); 2])
+            .unwrap(),
+    );
     let x = grid.points.cast_into::<f64>().unwrap();
     let n = array(&grid.data.point, "normal").1;
     let mut poles = 0;
@@ -379,10 +424,10 @@ fn a_patch_of_several_spans_becomes_pieces_of_the_same_sphere() {
     assert_eq!(pieces.len(), 8);
     let surface = SurfaceOutput::new("ball", pieces, 6).unwrap();
     let identity = Isometry3::identity();
-    let exact = read(&surface.to_vtu(&identity).unwrap());
+    let exact = read(&surface.to_vtu([&identity; 2]).unwrap());
     assert_eq!(exact.cells.types, [CellType::BezierQuadrilateral; 8]);
     assert_eq!(array(&exact.data.cell, "entity").1, [31.0; 8]);
-    let flat = read(&surface.to_tessellated_vtu(&identity).unwrap());
+    let flat = read(&surface.to_tessellated_vtu([&identity; 2]).unwrap());
     assert_eq!(flat.cells.num_cells(), 8 * 36);
     let x = flat.points.cast_into::<f64>().unwrap();
     let n = array(&flat.data.point, "normal").1;
@@ -414,10 +459,12 @@ fn pieces_that_vtk_cannot_hold_are_named() {
     assert_eq!(surface.left_out(), [1]);
     let identity = Isometry3::identity();
     assert_eq!(
-        read(&surface.to_vtu(&identity).unwrap()).cells.num_cells(),
+        read(&surface.to_vtu([&identity; 2]).unwrap())
+            .cells
+            .num_cells(),
         2
     );
-    let copy = read(&surface.to_tessellated_vtu(&identity).unwrap());
+    let copy = read(&surface.to_tessellated_vtu([&identity; 2]).unwrap());
     assert_eq!(copy.cells.num_cells(), 3);
 
     let mut bad = flat([2, 2]);

@@ -81,7 +81,7 @@ fn misspelt_keys() {
         "\"thickness\"",
         "\"thicknes\"",
         "7:44: unknown key `thicknes` (did you mean `thickness`? known keys: `size`, `thickness`, `elements`, \
-         `layers`, `origin`, `spacing`)",
+         `layers`, `origin`, `center`, `spacing`)",
     )]);
     // Several misspelt keys are reported together, in the order of the file.
     let found = problems(&changed("\"size\"", "\"sizes\"").replace("\"elements\"", "\"element\""));
@@ -102,7 +102,7 @@ fn misspelt_keys() {
 
 #[test]
 fn missing_keys_and_unknown_names() {
-    let names = "known names: `st_venant_kirchhoff`, `neo_hooke`)";
+    let names = "known names: `st_venant_kirchhoff`, `neo_hooke`, `steel`, ";
     let kirchoff = format!(
         "4:27: unknown name `st_venant_kirchoff` (did you mean `st_venant_kirchhoff`? {names}"
     );
@@ -228,19 +228,8 @@ fn wrong_types() {
 }
 
 #[test]
-fn the_text_is_strict_json() {
+fn the_text_is_json() {
     check_all(&[
-        (
-            "\"title\"",
-            "// a remark\n  \"title\"",
-            "3:3: comments are not allowed in JSON (remove it; the key `title` may hold a remark)",
-        ),
-        ("\"title\"", "/* a */ \"title\"", "3:3: comments"),
-        (
-            "0.3}",
-            "0.3,}",
-            "4:73: a comma before `}` is not allowed in JSON (remove the comma)",
-        ),
         (
             "\"title\"",
             "title",

@@ -5,6 +5,7 @@ mod convert;
 mod gauntlet;
 mod inspect;
 mod interrupt;
+mod log;
 mod new;
 mod plan;
 mod progress;
@@ -15,7 +16,7 @@ mod soak;
 mod study;
 mod without;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -72,6 +73,8 @@ enum Command {
     Schema(SchemaArgs),
     /// Write a scene to start from
     New(NewArgs),
+    /// Print the completions of a shell, to be read by it
+    Completions(CompletionsArgs),
 }
 
 #[derive(Debug, Args)]
@@ -98,6 +101,9 @@ struct RunArgs {
     /// Print errors only
     #[arg(short, long)]
     quiet: bool,
+    /// Print every iteration, where the output is no terminal too
+    #[arg(short, long, conflicts_with_all = ["quiet", "json"])]
+    verbose: bool,
     /// Threads; 0: as the scene says, or what the machine has
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
@@ -234,6 +240,22 @@ struct SchemaArgs {
 struct NewArgs {
     /// Name of the scene; `NAME.json` is written
     name: String,
+    /// What the scene is about
+    #[arg(short, long, value_name = "TEMPLATE", default_value = "press")]
+    template: new::Template,
+}
+
+#[derive(Debug, Args)]
+struct CompletionsArgs {
+    /// Shell that is to complete commands
+    shell: clap_complete::Shell,
+}
+
+/// Prints the completions of a shell.
+fn completions(args: &CompletionsArgs) -> u8 {
+    let mut text = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "covact", &mut text);
+    print(&String::from_utf8_lossy(&text))
 }
 
 /// Runs the program with the arguments of the process.
@@ -266,6 +288,7 @@ pub fn main() -> ExitCode {
             false => crate::scene::schema(),
         }),
         Command::New(args) => new::new(&args),
+        Command::Completions(args) => completions(&args),
     });
     // The hook has told about the panic.
     let code = result.unwrap_or(exit::BUG);

@@ -24,9 +24,10 @@ pub(super) struct Plain {
 }
 
 impl Plain {
-    pub fn new(end_time: f64) -> Self {
+    /// With a line for every iteration where they are wanted.
+    pub fn new(end_time: f64, iterations: bool) -> Self {
         Plain {
-            table: Table::new(end_time, false),
+            table: Table::new(end_time, iterations),
         }
     }
 }
@@ -90,7 +91,7 @@ impl Observer for Terminal {
 }
 
 /// Turns events into lines of text.
-struct Table {
+pub(super) struct Table {
     end_time: f64,
     iterations: bool,
     dt: f64,
@@ -99,7 +100,7 @@ struct Table {
 }
 
 impl Table {
-    fn new(end_time: f64, iterations: bool) -> Self {
+    pub fn new(end_time: f64, iterations: bool) -> Self {
         Table {
             end_time,
             iterations,
@@ -108,7 +109,7 @@ impl Table {
         }
     }
 
-    fn lines(&mut self, event: &Event) -> Vec<String> {
+    pub fn lines(&mut self, event: &Event) -> Vec<String> {
         match event {
             Event::Model {
                 dofs,
@@ -123,7 +124,7 @@ impl Table {
                 lines.extend(notes.iter().map(|n| format!("note: {n}")));
                 lines.push(match self.iterations {
                     true => format!(
-                        "{:>5} {:>10} {:>10} {:>5} {:>10} {:>10} {:>8} {:>8} {:>7}",
+                        "{:>5} {:>10} {:>10} {:>5} {:>10} {:>10} {:>7} {:>8} {:>7}",
                         "step",
                         "time",
                         "dt",
@@ -156,7 +157,7 @@ impl Table {
                 line_search,
             } if self.iterations => {
                 vec![format!(
-                    "{step:>5} {:>10} {:>10} {iteration:>5} {residual:>10.3e} {energy:>10.3e} {active:>8} {changed:>8} \
+                    "{step:>5} {:>10} {:>10} {iteration:>5} {residual:>10.3e} {energy:>10.3e} {active:>7} {changed:>8} \
                      {line_search:>7.3}",
                     "", ""
                 )]
@@ -168,8 +169,7 @@ impl Table {
                 gap,
                 slip,
             } if self.iterations => vec![format!(
-                "{step:>5} {:>10} {:>10} after {augmentation} augmentation(s): contact `{contact}`, gap {gap:.3e}, elastic \
-                 slip {slip:.3e}",
+                "{step:>5} {:>10} {:>10} `{contact}` augmented {augmentation}: gap {gap:.3e}, slip {slip:.3e}",
                 "", ""
             )],
             Event::Iteration { .. } | Event::Augmented { .. } => Vec::new(),
@@ -186,8 +186,7 @@ impl Table {
                 penalty,
                 left,
             } => vec![format!(
-                "{step:>5} {:>10} {:>10} contact `{contact}`: penalty raised to {penalty:.3e}, an augmentation left {:.0} % of \
-                 the gaps",
+                "{step:>5} {:>10} {:>10} `{contact}`: penalty now {penalty:.3e}, {:.0} % of gaps left",
                 "",
                 "",
                 100.0 * left
@@ -198,8 +197,7 @@ impl Table {
                 penalty,
                 error,
             } if self.iterations => vec![format!(
-                "{step:>5} {:>10} {:>10} contact `{contact}`: penalty raised to {penalty:.3e}, the one before left an error of \
-                 {:.1} % in forces",
+                "{step:>5} {:>10} {:>10} `{contact}`: penalty now {penalty:.3e}, error before {:.1} %",
                 "",
                 "",
                 100.0 * error
@@ -231,11 +229,11 @@ impl Table {
                 let (time, dt) = (short(*time), short(self.dt));
                 let failed = match failed_iterations {
                     0 => String::new(),
-                    n => format!("  ({n} iterations more in other attempts)"),
+                    n => format!("  (+{n} that failed)"),
                 };
                 vec![match self.iterations {
                     true => format!(
-                        "{step:>5} {time:>10} {dt:>10} {iterations:>5} accepted, {active} points active, penetration \
+                        "{step:>5} {time:>10} {dt:>10} {iterations:>5} accepted, {active} active, penetration \
                          {penetration:.3e}{failed}"
                     ),
                     false => format!(
@@ -325,6 +323,7 @@ mod tests {
         };
         let line = table.lines(&iteration);
         assert_eq!(line[0].len(), head[2].len());
+        assert!(line[0].len() <= 80, "{}", line[0]);
         assert!(line[0].contains("1.250e-7"));
         assert!(Table::new(1.0, false).lines(&iteration).is_empty());
     }
@@ -368,7 +367,7 @@ mod tests {
             };
             let calm = lines(&[&start, &retried, &accepted, &finished("done")]);
             assert!(!calm.contains("inside out"), "{calm}");
-            assert!(calm.contains("12 iterations more"), "{calm}");
+            assert!(calm.contains("(+12 that failed)"), "{calm}");
             // Where iterations are shown, so is where they start anew.
             assert_eq!(
                 calm.contains("again from a softened penalty"),

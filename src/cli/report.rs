@@ -11,6 +11,9 @@ use std::panic::PanicHookInfo;
 /// Problems beyond this many are counted, not shown.
 const SHOWN: usize = 20;
 
+/// Lines of more bytes than this are not shown: a caret under their end would be nowhere on the screen.
+const LONGEST_LINE: usize = 4000;
+
 /// Writes to standard error. Nothing can be done when that fails.
 pub(super) fn stderr(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
@@ -70,6 +73,10 @@ impl miette::Diagnostic for Shown<'_> {
 
 /// The lines around a problem, with a caret.
 fn snippet(problem: &Problem, text: &str) -> String {
+    let line = text.lines().nth(problem.place.line.saturating_sub(1));
+    if line.is_some_and(|line| line.len() > LONGEST_LINE) {
+        return String::new();
+    }
     let theme = match colours() {
         true => GraphicalTheme::unicode(),
         false => GraphicalTheme::unicode_nocolor(),
@@ -167,9 +174,17 @@ pub(super) fn other_error(message: &str, code: u8, json: bool) -> u8 {
 
 /// Tells why a run or check failed and returns the exit code.
 pub(super) fn run_error(error_: &RunError, scene: &LoadedScene, json: bool) -> u8 {
-    if let RunError::Scene { pointer, help, .. } = error_ {
-        let problem = scene.problem(pointer, error_.to_string(), help.clone());
-        return scene_error(&scene.error(vec![problem]), json);
+    if let RunError::Scene { others, .. } = error_ {
+        let mut problems: Vec<Problem> = (std::iter::once(error_).chain(others))
+            .filter_map(|e| match e {
+                RunError::Scene { pointer, help, .. } => {
+                    Some(scene.problem(pointer, e.to_string(), help.clone()))
+                }
+                _ => None,
+            })
+            .collect();
+        problems.sort_by_key(|p| p.span.start);
+        return scene_error(&scene.error(problems), json);
     }
     error(&error_.to_string());
     let code = error_.exit_code();

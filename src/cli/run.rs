@@ -1,4 +1,5 @@
 //! `covact run`.
+use super::log::Log;
 use super::progress::{JsonLines, Plain, Terminal};
 use super::{RunArgs, check, exit, report, without};
 use crate::output::RunStatus;
@@ -42,21 +43,22 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     }
 
     let end_time = scene.scene.solution.end_time;
-    let mut observer: Box<dyn Observer + Send> = if args.json {
+    let shown: Box<dyn Observer + Send> = if args.json {
         Box::new(JsonLines)
     } else if args.quiet {
         Box::new(Silent)
     } else if std::io::stderr().is_terminal() {
         Box::new(Terminal::new(end_time))
     } else {
-        Box::new(Plain::new(end_time))
+        Box::new(Plain::new(end_time, args.verbose))
     };
+    let mut observer = Log::new(&args.out, end_time, shown);
     let options = RunOptions {
         threads: args.threads,
         resume: args.resume,
         force: args.force,
     };
-    let result = run::run(&scene, &args.out, &options, observer.as_mut(), &interrupt);
+    let result = run::run(&scene, &args.out, &options, &mut observer, &interrupt);
     // Clears the progress bar before anything else is printed.
     drop(observer);
     let summary = match result {

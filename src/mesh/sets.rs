@@ -1,6 +1,6 @@
 //! Named sets and selections by geometry.
 use super::{Face, Mesh, MeshError, SetKind};
-use crate::scene::Selection;
+use crate::scene::{Corners, Selection};
 use covact_geometry::Vec3;
 
 /// Borders of selections are widened by this part of the mesh's diagonal, so that round-off excludes nothing.
@@ -60,7 +60,7 @@ impl Mesh {
         let [low, high] = self.bounds();
         let slack = SLACK * (high - low).norm();
         match selection {
-            Selection::NodesInBox { min, max } => {
+            Selection::NodesInBox(Corners { min, max }) => {
                 let [min, max] = corners("nodes_in_box", *min, *max)?;
                 self.nodes_where(
                     slack,
@@ -93,7 +93,7 @@ impl Mesh {
                 let words = || format!("{WHAT} (point {}, tolerance {tolerance})", words(point));
                 self.nodes_where(slack, tolerance, words, |x| (x - point).norm())
             }
-            Selection::FacesInBox { min, max } => {
+            Selection::FacesInBox(Corners { min, max }) => {
                 let [min, max] = corners("faces_in_box", *min, *max)?;
                 self.faces_where(
                     slack,

@@ -4,23 +4,25 @@ mod contacts;
 mod facets;
 mod fibres;
 mod master_faces;
+mod probes;
 mod seams;
+mod sets;
+mod sides;
 mod supports;
 mod surfaces;
 mod values;
 
 use super::driven::Driven;
 use super::error::{At, number, text};
-use super::loads::{DeadLoad, FollowerPressure, load_points};
+use super::loads::{DeadLoad, FollowerPressure, LoadPoint, load_points};
 use super::motion::pose;
-use super::slave::slave_points;
 use super::symmetry::Unsymmetric;
-use super::{BodyModel, Model, ModelError, SurfaceModel, grid};
+use super::{BodyModel, Metal, Model, ModelError, SurfaceModel, grid};
 use crate::machine::memory;
 use crate::mesh::{self, Face, Mesh};
 use crate::scene::{
-    self, InitialOverclosure, LoadedScene, MeshSource, POSITION_AND_TIME, Scene, Stabilization,
-    TIME, Value,
+    self, InitialOverclosure, LoadedScene, Material, MeshSource, POSITION_AND_TIME, Scene,
+    Stabilization, TIME, Value,
 };
 use crate::shell::{Block, Law, bytes_per_element};
 use covact_geometry::{PatchSet, Vec3};
@@ -53,12 +55,19 @@ struct Builder<'s> {
 pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     let scene = &loaded.scene;
     let mut builder = Builder::new(loaded);
-    builder.bodies()?;
-    let (pairs, mut surfaces) = builder.contacts()?;
+    let bodies = builder.bodies();
+    let sets = match bodies {
+        Ok(()) => builder.references(),
+        Err(_) => Vec::new(),
+    };
+    let (surfaces, wrong) = builder.surfaces();
+    ModelError::all(bodies.err().into_iter().chain(sets).chain(wrong))?;
+    let (pairs, mut surfaces) = builder.contacts(surfaces)?;
     let held = builder.drive(&mut surfaces)?;
     let supports = builder.supports(&held)?;
     builder.held_fibres()?;
     let (dead_loads, follower_loads) = builder.loads()?;
+    let probes = builder.probes()?;
     let mut model = Model {
         title: scene.title.clone(),
         nodes: builder.nodes,
@@ -71,6 +80,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         dead_loads,
         follower_loads,
         dofs: supports.dofs,
+        probes,
         stabilization: None,
         small: None,
         symmetric: true,
@@ -309,83 +319,65 @@ fn extent(body: &str, mesh: &Mesh) -> String {
     format!("body `{body}` lies in {}", [0, 1, 2].map(axis).join(", "))
 }
 
-/// Body and set of `body.set`.
-fn split(reference: &str) -> (&str, &str) {
-    reference.split_once('.').unwrap_or((reference, ""))
-}
-
 impl<'s> Builder<'s> {
     fn bodies(&mut self) -> Result<(), ModelError> {
-        for (name, body) in &self.scene.bodies {
-            let at = || format!("/bodies/{name}/mesh");
-            room(name, body)?;
-            let (mut mesh, report) = mesh::build(&body.mesh, body.element.into(), self.dir)
-                .map_err(|e| mesh_error(name, &body.mesh, e))?;
-            place(&mut mesh, &body.placement);
-            for (set, selection) in &body.sets {
-                mesh.add_set(set, selection)
-                    .at(|| format!("/bodies/{name}/sets/{set}"))
-                    .map_err(|e| e.help(extent(name, &mesh)))?;
-            }
-            mesh.check().at(at)?;
-            (self.notes).extend(report.notes.iter().map(|n| format!("body `{name}`: {n}")));
-            let material = self.material(name, &body.material)?;
-            let law = Law::new(&material).at(|| format!("/bodies/{name}/material"))?;
-            let elements = mesh.elements() as u64;
-            let each: usize = bytes_per_element(body.element).iter().sum();
-            memory::ask(memory::times(elements, each as u64)).map_err(|shortage| {
-                let message = format!("body `{name}` with its {elements} elements: {shortage}");
-                text(elements_key(name, &body.mesh), message).help(FEWER)
-            })?;
-            let block = Block::new(&mesh, body.element, law).at(at)?;
-            let first_node = u32::try_from(self.nodes.len())
-                .map_err(|_| text(at(), "too many nodes: more than 2^32"))?;
-            self.nodes.extend_from_slice(&mesh.nodes);
-            self.body_index.insert(name, self.bodies.len());
-            self.bodies.push(BodyModel {
-                name: name.clone(),
-                mesh,
-                block,
-                first_node,
-            });
+        let scene = self.scene;
+        let bodies = scene.bodies.iter();
+        ModelError::all(bodies.filter_map(|(name, body)| self.add_body(name, body).err()))
+    }
+
+    /// Reads or makes the mesh of a body and adds the body.
+    fn add_body(&mut self, name: &'s str, body: &'s scene::Body) -> Result<(), ModelError> {
+        let at = || format!("/bodies/{name}/mesh");
+        room(name, body)?;
+        let (mut mesh, report) = mesh::build(&body.mesh, body.element.into(), self.dir)
+            .map_err(|e| mesh_error(name, &body.mesh, e))?;
+        place(&mut mesh, &body.placement);
+        for (set, selection) in &body.sets {
+            mesh.add_set(set, selection)
+                .at(|| format!("/bodies/{name}/sets/{set}"))
+                .map_err(|e| e.help(extent(name, &mesh)))?;
         }
+        mesh.check().at(at)?;
+        (self.notes).extend(report.notes.iter().map(|n| format!("body `{name}`: {n}")));
+        let (material, metal) = self.material(name, &body.material)?;
+        let law = Law::new(&material).at(|| format!("/bodies/{name}/material"))?;
+        let elements = mesh.elements() as u64;
+        let each: usize = bytes_per_element(body.element).iter().sum();
+        memory::ask(memory::times(elements, each as u64)).map_err(|shortage| {
+            let message = format!("body `{name}` with its {elements} elements: {shortage}");
+            text(elements_key(name, &body.mesh), message).help(FEWER)
+        })?;
+        let block = Block::new(&mesh, body.element, law).at(at)?;
+        let first_node = u32::try_from(self.nodes.len())
+            .map_err(|_| text(at(), "too many nodes: more than 2^32"))?;
+        self.nodes.extend_from_slice(&mesh.nodes);
+        self.body_index.insert(name, self.bodies.len());
+        self.bodies.push(BodyModel {
+            name: name.to_owned(),
+            mesh,
+            block,
+            material,
+            metal,
+            first_node,
+        });
         Ok(())
     }
 
-    fn material(&self, body: &str, name: &str) -> Result<scene::Material, ModelError> {
-        self.scene.materials.get(name).copied().ok_or_else(|| {
+    /// The law of a material; of a metal that is taken by name, that and its yield strength.
+    fn material(&self, body: &str, name: &str) -> Result<(Material, Option<Metal>), ModelError> {
+        let choice = self.scene.materials.get(name).ok_or_else(|| {
             text(
                 format!("/bodies/{body}/material"),
                 format!("there is no material `{name}`"),
             )
-        })
-    }
-
-    fn body(&self, reference: &str, pointer: &str) -> Result<(usize, &Mesh, u32), ModelError> {
-        let (name, _) = split(reference);
-        let index = *(self.body_index.get(name))
-            .ok_or_else(|| text(pointer, format!("there is no body `{name}`")))?;
-        let body = &self.bodies[index];
-        Ok((index, &body.mesh, body.first_node))
-    }
-
-    fn faces(&self, reference: &str, pointer: &str) -> Result<(usize, Vec<Face>), ModelError> {
-        let (index, mesh, _) = self.body(reference, pointer)?;
-        let faces = mesh
-            .face_set(split(reference).1)
-            .at(|| pointer.to_owned())?;
-        Ok((index, faces.to_vec()))
-    }
-
-    /// Nodes of a node set, or of a face set where there is no node set of that name.
-    fn set_nodes(&self, reference: &str, pointer: &str) -> Result<(usize, Vec<u32>), ModelError> {
-        let (index, mesh, first) = self.body(reference, pointer)?;
-        let set = split(reference).1;
-        let local = match mesh.face_sets.get(set) {
-            Some(faces) if !mesh.node_sets.contains_key(set) => mesh.nodes_of(faces),
-            _ => mesh.node_set(set).at(|| pointer.to_owned())?.to_vec(),
-        };
-        Ok((index, local.into_iter().map(|n| n + first).collect()))
+        })?;
+        let units = &self.scene.units;
+        let law = choice.law(units).ok_or_else(|| {
+            let message = format!("the material `{name}` needs the units of the scene");
+            text(format!("/materials/{name}"), message)
+        })?;
+        Ok((law, choice.name().zip(choice.yield_strength(units))))
     }
 
     /// Appends the nodes of surfaces driven by force; returns their degrees of freedom that are not free.
@@ -444,45 +436,40 @@ impl<'s> Builder<'s> {
                 dead.push((name.clone(), DeadLoad::Force { shares, value }));
                 continue;
             }
-            let (body, faces) = self.faces(&load.on, &pointer("on"))?;
-            let (mesh, first) = (&self.bodies[body].mesh, self.bodies[body].first_node);
-            let points = load_points(mesh, &faces, first);
+            let parts = self.faces_of(&load.on, &pointer("on"))?;
+            let parts: Vec<(&Mesh, u32, Vec<Face>)> = (parts.into_iter())
+                .map(|(body, faces)| {
+                    let body = &self.bodies[body];
+                    (&body.mesh, body.first_node, faces)
+                })
+                .collect();
+            let points = || -> Vec<LoadPoint> {
+                (parts.iter())
+                    .flat_map(|(mesh, first, faces)| load_points(mesh, faces, *first))
+                    .collect()
+            };
             if let Some(traction) = &load.traction {
                 let value = vector(traction, "traction", &POSITION_AND_TIME)?;
+                let points = points();
                 dead.push((name.clone(), DeadLoad::Traction { points, value }));
             } else if let Some(pressure) = &load.pressure {
                 if load.follower {
                     let value = pressure.compile(&TIME).at(|| pointer("pressure"))?;
-                    let faces = (faces.iter())
-                        .map(|&f| mesh.face_nodes(f).shifted(first))
+                    let faces = (parts.iter())
+                        .flat_map(|(mesh, first, faces)| {
+                            faces.iter().map(|&f| mesh.face_nodes(f).shifted(*first))
+                        })
                         .collect();
                     follower.push((name.clone(), FollowerPressure { faces, value }));
                 } else {
                     let value = pressure
                         .compile(&POSITION_AND_TIME)
                         .at(|| pointer("pressure"))?;
+                    let points = points();
                     dead.push((name.clone(), DeadLoad::Pressure { points, value }));
                 }
             }
         }
         Ok((dead, follower))
-    }
-
-    /// Share of each node in a total force: by tributary area on a face set, equal on a node set.
-    fn shares(&self, reference: &str, pointer: &str) -> Result<Vec<(u32, f64)>, ModelError> {
-        let (_, mesh, first) = self.body(reference, pointer)?;
-        let set = split(reference).1;
-        if let Some(faces) = mesh.face_sets.get(set) {
-            let points =
-                slave_points(mesh, faces, scene::Points::Nodes, first).at(|| pointer.to_owned())?;
-            let total: f64 = points.iter().map(|p| p.area).sum();
-            return Ok(points
-                .iter()
-                .map(|p| (p.nodes[0], p.area / total))
-                .collect());
-        }
-        let (_, nodes) = self.set_nodes(reference, pointer)?;
-        let share = 1.0 / nodes.len().max(1) as f64;
-        Ok(nodes.into_iter().map(|n| (n, share)).collect())
     }
 }

@@ -18,6 +18,8 @@ pub struct ModelError {
     pub cause: Box<Cause>,
     /// What to do about it, where the cause does not say.
     pub help: Option<String>,
+    /// What else is wrong.
+    pub others: Vec<ModelError>,
 }
 
 impl ModelError {
@@ -25,6 +27,23 @@ impl ModelError {
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
+    }
+
+    /// The errors as one: the first with the others behind it.
+    ///
+    /// # Errors
+    /// Where there is one.
+    pub fn all(errors: impl IntoIterator<Item = ModelError>) -> Result<(), ModelError> {
+        let mut errors = errors.into_iter();
+        let Some(mut first) = errors.next() else {
+            return Ok(());
+        };
+        for mut error in errors {
+            let more = std::mem::take(&mut error.others);
+            first.others.push(error);
+            first.others.extend(more);
+        }
+        Err(first)
     }
 }
 
@@ -67,6 +86,7 @@ impl<T, E: Into<Cause>> At<T> for Result<T, E> {
             pointer: pointer(),
             cause: Box::new(e.into()),
             help: None,
+            others: Vec::new(),
         })
     }
 }
@@ -77,6 +97,7 @@ pub fn cause(pointer: impl Into<String>, cause: impl Into<Cause>) -> ModelError 
         pointer: pointer.into(),
         cause: Box::new(cause.into()),
         help: None,
+        others: Vec::new(),
     }
 }
 
@@ -86,6 +107,7 @@ pub fn text(pointer: impl Into<String>, message: impl Into<String>) -> ModelErro
         pointer: pointer.into(),
         cause: Box::new(Cause::Text(message.into())),
         help: None,
+        others: Vec::new(),
     }
 }
 

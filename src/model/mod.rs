@@ -17,6 +17,7 @@ pub mod motion;
 pub mod overclosure;
 pub mod pace;
 pub mod penalty;
+pub mod probe;
 mod sagitta;
 pub mod segments;
 pub mod self_contact;
@@ -30,7 +31,7 @@ pub mod symmetry;
 
 use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
-use crate::scene::{Tangent, TimeFunction, ValueError};
+use crate::scene::{Material, Tangent, TimeFunction, ValueError};
 use crate::shell::{Block, ElementBlock};
 use crate::system::DofMap;
 use augmentation::AugmentationModel;
@@ -82,6 +83,8 @@ pub struct Model {
     pub warnings: Vec<String>,
     /// Times at which something prescribed has a kink, ascending.
     pub kinks: Vec<f64>,
+    /// Curves that the scene asks for.
+    pub probes: Vec<probe::ProbeModel>,
 }
 
 /// A deformable body.
@@ -90,9 +93,16 @@ pub struct BodyModel {
     pub name: String,
     pub mesh: Mesh,
     pub block: Block,
+    /// The law of its elements, in the units of the scene.
+    pub material: Material,
+    /// Name and yield strength of a metal that the scene takes by name.
+    pub metal: Option<Metal>,
     /// Number of the body's first node in the model.
     pub first_node: u32,
 }
+
+/// Name and yield strength of a metal.
+pub type Metal = (&'static str, f64);
 
 /// A contact pair.
 #[derive(Debug)]

@@ -121,6 +121,26 @@ impl Motion {
         Ok(turn.angle.eval(end)? - turn.angle.eval(start)?)
     }
 
+    /// Whether it ever leaves the placement.
+    pub fn moves(&self) -> bool {
+        self.functions().any(|f| f.as_constant() != Some(0.0))
+    }
+
+    /// Prescribed translation at a time, and the angle of the prescribed rotation (degrees) where there is one.
+    pub fn way(&self, t: f64) -> Result<(Vec3, Option<f64>), ValueError> {
+        let [x, y, z] = &self.translation;
+        let angle = self.rotation.as_ref().map(|turn| turn.angle.eval(t));
+        Ok((
+            Vec3::new(x.eval(t)?, y.eval(t)?, z.eval(t)?),
+            angle.transpose()?,
+        ))
+    }
+
+    /// Whether a rotation is prescribed.
+    pub fn turns(&self) -> bool {
+        self.rotation.is_some()
+    }
+
     /// Its functions of time.
     pub fn functions(&self) -> impl Iterator<Item = &TimeFunction> {
         let angle = self.rotation.as_ref().map(|r| &r.angle);

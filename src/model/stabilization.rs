@@ -98,12 +98,7 @@ pub fn stabilization(
         for (n, v) in volumes.iter().enumerate() {
             weights[first + 3 * n..first + 3 * n + 3].fill(*v);
         }
-        let Some(material) = (scene.bodies.get(&body.name))
-            .and_then(|described| scene.materials.get(&described.material))
-        else {
-            continue;
-        };
-        let (e, bending) = (penalty::modulus(material), bending(body, &volumes));
+        let (e, bending) = (penalty::modulus(&body.material), bending(body, &volumes));
         let stiffness = e * bending.softness();
         if softest.as_ref().is_none_or(|s| stiffness < s.0) {
             softest = Some((stiffness, body, e, bending));

@@ -136,6 +136,14 @@ impl SurfaceSet {
         with_patches!(self, s => s.set_component_side(component, side))
     }
 
+    /// See [`PatchSet::set_sides_outward`].
+    ///
+    /// # Errors
+    /// A component that has no outward side.
+    pub fn set_sides_outward(&mut self, inward: bool) -> Result<(), usize> {
+        with_patches!(self, s => s.set_sides_outward(inward))
+    }
+
     /// See [`PatchSet::orient_towards`].
     ///
     /// # Errors

@@ -180,6 +180,26 @@ pub const COLUMNS: &[ColumnDoc] = &[
         "external and adjusted less stored (internal, contact, friction) and dissipated energy: the error of the rule, of \
          second order in the step, or a jump of the path",
     ),
+    doc(
+        "way.<name>.<axis>",
+        "length",
+        "translation of a surface that moves: the prescribed one, and what forces drive",
+    ),
+    doc(
+        "way.<name>.angle",
+        "degree",
+        "angle of its prescribed rotation",
+    ),
+    doc(
+        "probe.<name>.<axis>",
+        "length or force",
+        "displacement or reaction that a probe records: mean or sum over its nodes",
+    ),
+    doc(
+        "probe.<name>",
+        "length, force or force/length^2",
+        "largest displacement or reaction at the nodes of a probe, or their von Mises stress",
+    ),
 ];
 
 /// True when `column` is one of [`COLUMNS`].

@@ -45,7 +45,10 @@ pub use lock::{FolderLock, Holder, LOCK_FILE, Locking};
 pub use planned::{EffectSummary, PairSummary, PlanSummary};
 pub(crate) use results::{COLLECTIONS, listed};
 pub use results::{PartNames, Results, SurfaceState, file_stem};
-pub use summary::{RunStatus, SUMMARY_FORMAT, Summary, Versions};
+/// Name of the file in the folder of the results that tells of every iteration.
+pub const RUN_LOG: &str = "run.log";
+
+pub use summary::{ProbeSummary, RunStatus, SUMMARY_FORMAT, Summary, Versions};
 pub use surface::{SurfaceOutput, flat_bytes};
 pub(crate) use vtu::escape;
 pub use vtu::{Field, Place};

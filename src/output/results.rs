@@ -12,7 +12,9 @@ use std::path::{Path, PathBuf};
 pub struct SurfaceState<'a> {
     /// The surface.
     pub surface: &'a SurfaceOutput,
-    /// From the reference position to the current one.
+    /// From its own coordinates to where it starts.
+    pub start: &'a Isometry3<f64>,
+    /// From its own coordinates to where it is.
     pub at: &'a Isometry3<f64>,
 }
 
@@ -154,8 +156,9 @@ impl Results {
             put(body.to_vtu(entry.part as u32)?, None)?;
         }
         for state in surfaces {
-            let exact = state.surface.to_vtu(state.at)?;
-            put(exact, Some(state.surface.to_tessellated_vtu(state.at)?))?;
+            let poses = [state.start, state.at];
+            let exact = state.surface.to_vtu(poses)?;
+            put(exact, Some(state.surface.to_tessellated_vtu(poses)?))?;
         }
         for cloud in clouds {
             put(cloud.to_vtu()?, None)?;

@@ -85,6 +85,9 @@ pub struct Summary {
     /// What was done and why, contact by contact; none where the device was too full to write it.
     #[serde(default)]
     pub plan: Option<PlanSummary>,
+    /// Columns of probes: the last value and the extremes.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub probes: BTreeMap<String, ProbeSummary>,
     /// What the user should know, in words.
     pub warnings: Vec<String>,
     /// What was found about the accuracy of contact forces.
@@ -99,6 +102,17 @@ pub struct Summary {
     pub scene: String,
     /// Versions that made this file.
     pub versions: Versions,
+}
+
+/// A column of a probe.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ProbeSummary {
+    /// At the end of the run.
+    pub last: f64,
+    /// Smallest of all steps.
+    pub min: f64,
+    /// Largest of all steps.
+    pub max: f64,
 }
 
 /// Versions that a result depends on.

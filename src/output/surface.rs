@@ -96,52 +96,64 @@ impl SurfaceOutput {
         &self.left_out
     }
 
-    /// The exact surface moved by `at`, as the bytes of a `.vtu` file. Cell data: `patch`, `entity` and the degrees;
-    /// point data: the weights.
-    pub fn to_vtu(&self, at: &Isometry3<f64>) -> Result<Vec<u8>, OutputError> {
+    /// The exact surface as the bytes of a `.vtu` file, where it starts (the first pose), with its displacement to where it
+    /// is (the second). Cell data: `patch`, `entity` and the degrees; point data: the weights and `displacement`, as bodies
+    /// have it.
+    pub fn to_vtu(&self, [start, at]: [&Isometry3<f64>; 2]) -> Result<Vec<u8>, OutputError> {
         let e = &self.exact;
+        let points = moved(&e.points, start);
         Grid {
             part: self.name.clone(),
-            points: moved(&e.points, at),
             connectivity: (0..e.points.len() as u64).collect(),
             offsets: e.offsets.clone(),
             types: e.types.clone(),
-            point_data: vec![Array::new(WEIGHTS, 1, e.weights.clone())],
+            point_data: vec![
+                displacement(&points, moved(&e.points, at)),
+                Array::new(WEIGHTS, 1, e.weights.clone()),
+            ],
+            points,
             cell_data: vec![
                 Array::new(DEGREES, 3, e.degrees.clone()),
                 Array::new("patch", 1, e.patch.clone()),
                 Array::new("entity", 1, e.entity.clone()),
             ],
-            vectors: None,
+            vectors: Some(DISPLACEMENT),
             normals: None,
             rational: true,
         }
         .into_bytes()
     }
 
-    /// The surface as flat quadrilaterals moved by `at`, as the bytes of a `.vtu` file. Point data: outward `normal`;
-    /// cell data: `patch`, `entity`.
-    pub fn to_tessellated_vtu(&self, at: &Isometry3<f64>) -> Result<Vec<u8>, OutputError> {
+    /// The surface as flat quadrilaterals, as the bytes of a `.vtu` file; as [`SurfaceOutput::to_vtu`]. Point data: outward
+    /// `normal` (before the displacement) and `displacement`; cell data: `patch`, `entity`.
+    pub fn to_tessellated_vtu(
+        &self,
+        [start, at]: [&Isometry3<f64>; 2],
+    ) -> Result<Vec<u8>, OutputError> {
         let f = &self.flat;
+        let points = moved(&f.points, start);
         let normals: Vec<f64> = f
             .normals
             .iter()
-            .map(|n| at.rotation * n)
+            .map(|n| start.rotation * n)
             .flat_map(|n| [n.x, n.y, n.z])
             .collect();
         let cells = f.patch.len();
         Grid {
             part: self.name.clone(),
-            points: moved(&f.points, at),
             connectivity: f.connectivity.clone(),
             offsets: (1..=cells as u64).map(|c| 4 * c).collect(),
             types: vec![CellType::Quad; cells],
-            point_data: vec![Array::new("normal", 3, normals)],
+            point_data: vec![
+                displacement(&points, moved(&f.points, at)),
+                Array::new("normal", 3, normals),
+            ],
+            points,
             cell_data: vec![
                 Array::new("patch", 1, f.patch.clone()),
                 Array::new("entity", 1, f.entity.clone()),
             ],
-            vectors: None,
+            vectors: Some(DISPLACEMENT),
             normals: Some("normal"),
             rational: false,
         }
@@ -190,6 +202,15 @@ impl Flat {
             }
         }
     }
+}
+
+/// Name of the point data that bodies and surfaces are warped by.
+const DISPLACEMENT: &str = "displacement";
+
+/// What leads from the points to where they are now.
+fn displacement(points: &[f64], now: Vec<f64>) -> Array {
+    let way: Vec<f64> = now.iter().zip(points).map(|(b, a)| b - a).collect();
+    Array::new(DISPLACEMENT, 3, way)
 }
 
 fn moved(points: &[Point3<f64>], at: &Isometry3<f64>) -> Vec<f64> {

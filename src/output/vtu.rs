@@ -93,10 +93,20 @@ pub(crate) const WEIGHTS: &str = "RationalWeights";
 pub(crate) const DEGREES: &str = "HigherOrderDegrees";
 
 impl Grid {
-    /// The grid as the bytes of a `.vtu` file, version 2.2 of the format (up to 2.0 VTK permutes edge nodes of
-    /// higher-order cells), little endian, base64.
+    /// The grid as the bytes of a `.vtu` file, little endian, base64. Version 1.0 of the format, which every reader knows,
+    /// where all cells are linear; else 2.2 (up to 2.0 VTK permutes edge nodes of higher-order cells).
     pub fn into_bytes(self) -> Result<Vec<u8>, OutputError> {
         let patch = TagPatch::of(&self);
+        let linear = |cell: &CellType| {
+            matches!(
+                cell,
+                CellType::Hexahedron | CellType::Quad | CellType::Vertex
+            )
+        };
+        let (major, minor) = match self.types.iter().all(linear) {
+            true => (1, 0),
+            false => (2, 2),
+        };
         let part = self.part;
         let attribute = |array: Array| {
             let elem = if self.vectors == Some(array.name.as_str()) {
@@ -117,7 +127,7 @@ impl Grid {
             cell: self.cell_data.into_iter().map(attribute).collect(),
         };
         let vtk = Vtk {
-            version: Version::XML { major: 2, minor: 2 },
+            version: Version::XML { major, minor },
             title: String::new(),
             byte_order: ByteOrder::LittleEndian,
             file_path: None,

@@ -153,9 +153,8 @@ impl Reporter<'_> {
                 matches!(m, Material::NeoHooke(_))
             }),
         ];
-        let materials = &self.loaded.scene.materials;
         let effect = |(effect, word, is): Kind| {
-            let own = |b: &&(&BodyModel, &Body)| materials.get(&b.1.material).is_some_and(is);
+            let own = |b: &&(&BodyModel, &Body)| is(&b.0.material);
             let all: Vec<_> = self.described().collect();
             let first = all.iter().find(own);
             let at = match first {

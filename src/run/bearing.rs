@@ -94,6 +94,8 @@ pub struct Place<'a> {
 /// Sums of all pairs, and what they need of the model.
 pub struct Bearings {
     pub pairs: Vec<Bearing>,
+    /// Largest von Mises stress of every body of a metal of known strength, 0 for others; empty where there are none.
+    pub stress: Vec<f64>,
     /// Per node, which components of its displacement are prescribed, as bits.
     prescribed: Vec<u8>,
     /// Per pair: the master moves as prescribed.
@@ -111,6 +113,7 @@ impl Bearings {
         let pairs = model.pairs.iter();
         let surface = |p: &crate::model::PairModel| p.rigid_master().map(|s| &model.surfaces[s]);
         Bearings {
+            stress: Vec::new(),
             pairs: vec![Bearing::default(); model.pairs.len()],
             prescribed,
             given: (pairs.clone())

@@ -232,10 +232,16 @@ fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
         Element::H8Displacement => "8-node brick without enhancement",
         Element::Q18 => "18-node quadratic solid-shell",
     };
-    let material = match &scene.materials[&described.material] {
-        Material::StVenantKirchhoff(e) => format!("St. Venant-Kirchhoff, E {}, nu {}", e.e, e.nu),
-        Material::NeoHooke(e) => format!("neo-Hooke, E {}, nu {}", e.e, e.nu),
+    let (law, e) = match &body.material {
+        Material::StVenantKirchhoff(e) => ("St. Venant-Kirchhoff", e),
+        Material::NeoHooke(e) => ("neo-Hooke", e),
     };
+    let known = scene
+        .materials
+        .get(&described.material)
+        .and_then(|m| m.name());
+    let known = known.map_or(String::new(), |name| format!("{name}: "));
+    let material = format!("{known}{law}, E {}, nu {}", number(e.e), e.nu);
     BodyReport {
         name: body.name.clone(),
         nodes: body.mesh.nodes.len(),
@@ -342,7 +348,7 @@ fn supports(scene: &Scene, model: &Model) -> Vec<SupportReport> {
             let own = |support: u32| support as usize == i;
             SupportReport {
                 name: name.clone(),
-                on: scene.supports[name].on.clone(),
+                on: scene.supports[name].on.to_string(),
                 kind: kind(&scene.supports[name]),
                 components: model.prescribed.iter().filter(|p| own(p.support)).count()
                     + model.means.iter().filter(|m| own(m.support)).count(),
@@ -355,7 +361,7 @@ fn loads(scene: &Scene) -> Vec<LoadReport> {
     (scene.loads.iter())
         .map(|(name, load)| LoadReport {
             name: name.clone(),
-            on: load.on.clone(),
+            on: load.on.to_string(),
             kind: match (&load.force, &load.traction, load.follower) {
                 (Some(_), ..) => "force",
                 (_, Some(_), _) => "traction",

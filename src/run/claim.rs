@@ -1,7 +1,9 @@
 //! The folder of a run before anything is written: what it holds, and whether another run is at work there.
 use super::checkpoint;
 use crate::output::atomic::{Replaceable, make_folder, remove_file, replaceable};
-use crate::output::{COLLECTIONS, FolderLock, Holder, Locking, OutputError, PartNames, listed};
+use crate::output::{
+    COLLECTIONS, FolderLock, Holder, Locking, OutputError, PartNames, RUN_LOG, listed,
+};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -140,7 +142,7 @@ impl<'a> Claim<'a> {
             .collect();
         names.sort();
         for path in names.iter().map(|name| self.folder.join(name)) {
-            if replaceable(&path)? == Replaceable::File && !begins(&path, GRID)? {
+            if replaceable(&path)? == Replaceable::File && !begins(&path, &GRIDS)? {
                 return Err(FolderError::Foreign { path }.into());
             }
         }
@@ -196,8 +198,11 @@ pub fn vacant(folder: &Path) -> Result<(), ClaimError> {
     claim.admit().map(|_| ())
 }
 
-/// How a field file begins.
-const GRID: &str = "<VTKFile type=\"UnstructuredGrid\" version=\"2.2\" byte_order=\"LittleEndian\"";
+/// How field files begin, in either version of the format.
+const GRIDS: [&str; 2] = [
+    "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"",
+    "<VTKFile type=\"UnstructuredGrid\" version=\"2.2\" byte_order=\"LittleEndian\"",
+];
 
 /// Looks at the files that a run writes under fixed names, and at the fields that are listed.
 fn look(folder: &Path) -> Result<Holdings, OutputError> {
@@ -222,6 +227,9 @@ fn look(folder: &Path) -> Result<Holdings, OutputError> {
         out.unfinished |= out.own.len() > before;
     }
     out.sort(folder.join("summary.json"), is_summary)?;
+    out.sort(folder.join(RUN_LOG), |path| {
+        Ok(fs::read(path)?.starts_with(b"covact "))
+    })?;
     Ok(out)
 }
 
@@ -262,8 +270,8 @@ fn is_summary(path: &Path) -> io::Result<bool> {
     Ok(account.pointer("/versions/covact").is_some() && account.get("status").is_some())
 }
 
-/// Whether the text of a file begins with `start`, behind a declaration of XML.
-fn begins(path: &Path, start: &str) -> Result<bool, OutputError> {
+/// Whether the text of a file begins with one of `starts`, behind a declaration of XML.
+fn begins(path: &Path, starts: &[&str]) -> Result<bool, OutputError> {
     let mut head = Vec::new();
     let read = File::open(path).and_then(|file| file.take(400).read_to_end(&mut head));
     read.map_err(|e| OutputError::io("read", path, e))?;
@@ -272,7 +280,8 @@ fn begins(path: &Path, start: &str) -> Result<bool, OutputError> {
         Some(rest) => rest.split_once("?>").map_or("", |(_, body)| body),
         None => &head,
     };
-    Ok(body.trim_start().starts_with(start))
+    let body = body.trim_start();
+    Ok(starts.iter().any(|start| body.starts_with(start)))
 }
 
 /// The part that a file's name is of, where it is that of a field file.

@@ -20,6 +20,8 @@ pub enum RunError {
         place: Option<Place>,
         /// What to do about it.
         help: Option<String>,
+        /// What else is wrong with it.
+        others: Vec<RunError>,
     },
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -41,12 +43,15 @@ impl RunError {
             pointer: pointer.to_owned(),
             place: Some(loaded.place_of(pointer)),
             help: None,
+            others: Vec::new(),
         }
     }
 
     pub(super) fn model(loaded: &LoadedScene, error: ModelError) -> Self {
+        let others = error.others.into_iter().map(|e| RunError::model(loaded, e));
         RunError::Scene {
-            message: error.to_string(),
+            others: others.collect(),
+            message: error.cause.to_string(),
             place: Some(loaded.place_of(&error.pointer)),
             pointer: error.pointer,
             help: error.help,
@@ -94,6 +99,7 @@ impl From<ValueError> for RunError {
             pointer: String::new(),
             place: None,
             help: None,
+            others: Vec::new(),
         }
     }
 }

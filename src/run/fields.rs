@@ -3,6 +3,7 @@ use super::RunError;
 use super::averaged::{NodeNow, nodes_now};
 use super::bearing::{Bearings, Carrier, Place};
 use super::friction_fields::{self, FrictionFields};
+use super::stresses::{follows_stress, nodal_stresses};
 use super::surface_cells::pieces;
 use crate::contact::friction::history::PointStatus;
 use crate::contact::law::PairLaw;
@@ -11,10 +12,9 @@ use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::output::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, PartNames, Results,
-    SurfaceOutput, SurfaceState,
+    SurfaceOutput, SurfaceState, von_mises,
 };
 use crate::scene::Output;
-use crate::shell::{ElementBlock, ElementFault, with_block};
 use covact_geometry::Vec3;
 
 /// Contact fields on all nodes, and totals over all slave points. [`Fields::gather`] makes all of them from an accepted
@@ -48,6 +48,8 @@ pub struct Fields {
     pub pressed: Vec<f64>,
     /// What the points in contact carry.
     pub bearings: Bearings,
+    /// Von Mises stress at the nodes of bodies whose stress is followed, else 0; empty where that is none.
+    pub von_mises: Vec<f64>,
     /// Gaps at the start where they are negative, between the first two times of gathering; empty where none are.
     start: Vec<f64>,
     gathered: bool,
@@ -92,6 +94,10 @@ impl Fields {
             area: 0.0,
             pressed: vec![0.0; model.pairs.len()],
             bearings: Bearings::new(model),
+            von_mises: match (0..model.bodies.len()).any(|b| follows_stress(model, b)) {
+                true => vec![0.0; n],
+                false => Vec::new(),
+            },
             start: Vec::new(),
             gathered: false,
         })
@@ -286,11 +292,30 @@ impl Fields {
             }
             first += points.len();
         }
+        if !self.von_mises.is_empty() {
+            self.follow_stress(model, state);
+        }
         self.gathered = true;
         if self.smallest_gap == f64::INFINITY {
             self.smallest_gap = f64::NAN;
         }
         Ok(())
+    }
+
+    /// Von Mises stresses of the bodies that probes and yield strengths are about.
+    fn follow_stress(&mut self, model: &Model, state: &State) {
+        let stresses = nodal_stresses(model, state, |body| follows_stress(model, body));
+        for (body, stress) in model.bodies.iter().zip(stresses) {
+            let of = self.von_mises[body.first_node as usize..].iter_mut();
+            (of.zip(&stress)).for_each(|(mises, stress)| *mises = von_mises(stress));
+        }
+        let highest = |body: &BodyModel| {
+            let first = body.first_node as usize;
+            let own = &self.von_mises[first..first + body.mesh.nodes.len()];
+            body.metal
+                .map_or(0.0, |_| own.iter().copied().fold(0.0, f64::max))
+        };
+        self.bearings.stress = model.bodies.iter().map(highest).collect();
     }
 
     /// What a gathering goes by that came before it, for one that is to be taken back.
@@ -366,7 +391,7 @@ impl Fields {
                     .collect()
             })
             .collect();
-        let stresses = nodal_stresses(model, state);
+        let stresses = nodal_stresses(model, state, |_| true);
         let bodies: Vec<BodyFields> = (model.bodies.iter().enumerate())
             .map(|(i, body)| {
                 let first = body.first_node as usize;
@@ -387,10 +412,10 @@ impl Fields {
             })
             .collect();
         let poses: Vec<_> = (model.surfaces.iter())
-            .map(|s| s.pose(time, &state.u).unwrap_or_default())
+            .map(|s| [s.motion.pose(0.0), s.pose(time, &state.u)].map(Result::unwrap_or_default))
             .collect();
         let surfaces: Vec<SurfaceState> = (self.surfaces.iter().zip(&poses))
-            .map(|(surface, at)| SurfaceState { surface, at })
+            .map(|(surface, [start, at])| SurfaceState { surface, start, at })
             .collect();
         let clouds = match self.gaps.is_empty() {
             true => Vec::new(),
@@ -398,82 +423,4 @@ impl Fields {
         };
         results.write(step, time, &bodies, &surfaces, &clouds)
     }
-}
-
-/// Cauchy stress at the nodes of each body: extrapolated within the elements, averaged between them by volume.
-fn nodal_stresses(model: &Model, state: &State) -> Vec<Vec<[f64; 6]>> {
-    let mut first = 0;
-    let mut out = Vec::new();
-    for body in &model.bodies {
-        let len = model.state_len(body) * body.block.elements();
-        let states = &state.elements[first..first + len];
-        first += len;
-        out.push(with_block!(&body.block, block => match model.small {
-            None => body_stresses(body, block, states, &state.u),
-            Some(_) => linear_stresses(body, block, &state.u),
-        }));
-    }
-    out
-}
-
-/// Stress of the linear elements of a body, whose enhanced strains are worked out anew.
-fn linear_stresses<const N: usize, B: ElementBlock<N>>(
-    body: &BodyModel,
-    block: &B,
-    u: &[f64],
-) -> Vec<[f64; 6]> {
-    let (len, alphas) = (block.state_len(), block.alpha_len());
-    let none = vec![0.0; alphas];
-    let (mut state, mut system) = (vec![0.0; len], B::System::default());
-    averaged_stresses(block, body.mesh.nodes.len(), |e, nodal| {
-        state.fill(0.0);
-        if len > 0 {
-            block.evaluate(e, &[Vec3::zeros(); N], &mut state, &mut system)?;
-        }
-        let u = body.displacements(block, e, u);
-        block.update_alpha(&mut state, &u, 1.0, &none);
-        block.linear_nodal_stresses(e, &u, &state, nodal)
-    })
-}
-
-fn body_stresses<const N: usize>(
-    body: &BodyModel,
-    block: &impl ElementBlock<N>,
-    states: &[f64],
-    u: &[f64],
-) -> Vec<[f64; 6]> {
-    let len = block.state_len();
-    averaged_stresses(block, body.mesh.nodes.len(), |e, nodal| {
-        let u = body.displacements(block, e, u);
-        block.nodal_stresses(e, &u, &states[e * len..(e + 1) * len], nodal)
-    })
-}
-
-/// Averages what `of` says of the nodes of every element between the elements, by volume; what fails is left out.
-fn averaged_stresses<const N: usize>(
-    block: &impl ElementBlock<N>,
-    nodes: usize,
-    mut of: impl FnMut(usize, &mut [[f64; 6]; N]) -> Result<(), ElementFault>,
-) -> Vec<[f64; 6]> {
-    let mut sum = vec![[0.0; 6]; nodes];
-    let mut weight = vec![0.0; nodes];
-    for e in 0..block.elements() {
-        let mut nodal = [[0.0; 6]; N];
-        if of(e, &mut nodal).is_err() {
-            continue;
-        }
-        let volume = block.volume(e);
-        for (n, nodal) in block.nodes_of(e).into_iter().zip(&nodal) {
-            weight[n as usize] += volume;
-            for (s, v) in sum[n as usize].iter_mut().zip(nodal) {
-                *s += volume * v;
-            }
-        }
-    }
-    for (s, w) in sum.iter_mut().zip(&weight) {
-        if *w > 0.0 {
-            s.iter_mut().for_each(|v| *v /= w);
-        }
-    }
-    sum
 }

@@ -1,6 +1,7 @@
 //! Rows of `history.csv`.
 use super::commit::FrictionTotals;
 use super::fields::Fields;
+use super::probes;
 use super::watch::Watch;
 use crate::assembly::PairForce;
 use crate::model::{Model, PairModel};
@@ -99,6 +100,7 @@ pub fn columns(model: &Model) -> Vec<String> {
         names.extend(["energy.stabilization", "stabilization.share"].map(String::from));
     }
     names.extend(["energy.external", "energy.adjusted", "energy.imbalance"].map(String::from));
+    names.extend(probes::columns(model));
     names
 }
 
@@ -168,6 +170,7 @@ pub fn row(r: &Record) -> Vec<f64> {
         out.extend([r.stabilized.0, r.stabilized.1]);
     }
     out.extend([r.watch.external, r.watch.adjusted, r.watch.imbalance]);
+    out.extend(probes::values(r.model, r.time, r.u, r.residual, r.fields));
     out
 }
 

@@ -132,6 +132,7 @@ fn largest(loaded: &LoadedScene) -> String {
 
 fn at(loaded: &LoadedScene, pointer: &str, message: String, help: &str) -> RunError {
     RunError::Scene {
+        others: Vec::new(),
         message,
         place: Some(loaded.place_of(pointer)),
         pointer: pointer.to_owned(),

@@ -22,10 +22,12 @@ mod other_law;
 mod peaks;
 mod penalty_rule;
 mod plan;
+mod probes;
 mod progress;
 mod remedy;
 mod stabilized;
 mod step;
+mod stresses;
 mod surface_cells;
 mod tunneling;
 mod validity;
@@ -45,7 +47,7 @@ use crate::machine;
 use crate::machine::clock::Phases;
 use crate::model;
 use crate::model::error::number;
-use crate::output::{Accuracy, RunStatus, Summary, Versions};
+use crate::output::{Accuracy, RunStatus, Summary, Versions, read_csv};
 use crate::plan::Plan;
 use crate::scene::{Element, LoadedScene, Scene, pointer};
 use crate::solve::event::{Event, Observer};
@@ -56,6 +58,7 @@ use cost::{Cost, ResourceUse};
 use fields::Fields;
 use march::{Kept, March};
 use progress::Progress;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -339,6 +342,13 @@ fn solve(
         time,
         measured: _,
     } = march.progress;
+    // Nobody waits for a table that cannot be read back: the summary is then without it.
+    let probed = match model.probes.is_empty() {
+        true => BTreeMap::new(),
+        false => read_csv(&out.join("history.csv"))
+            .map(|table| probes::summary(&model, &table))
+            .unwrap_or_default(),
+    };
     let pattern_rebuilds = march.assembler.rebuilds();
     let factorizations = march.workspace.factorizations.iter();
     let summary = Summary {
@@ -370,6 +380,7 @@ fn solve(
             ),
             ..march.compliance.account(&model)
         },
+        probes: probed,
         warnings,
         resumed,
         scene,

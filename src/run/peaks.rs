@@ -26,13 +26,25 @@ struct Peak {
     step: u32,
 }
 
-/// The largest force of every pair so far.
+/// The largest force of every pair so far, and the largest stress of every body of a metal of known strength.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Peaks(Vec<Peak>);
+pub struct Peaks(Vec<Peak>, Vec<Stress>);
+
+/// The largest von Mises stress of a body, and its step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Stress {
+    stress: f64,
+    step: u32,
+}
 
 impl Peaks {
     pub fn new(model: &Model) -> Self {
-        Peaks(vec![Peak::default(); model.pairs.len()])
+        let metals = model.bodies.iter().any(|b| b.metal.is_some());
+        let bodies = if metals { model.bodies.len() } else { 0 };
+        Peaks(
+            vec![Peak::default(); model.pairs.len()],
+            vec![Stress::default(); bodies],
+        )
     }
 
     /// Into a checkpoint.
@@ -52,6 +64,10 @@ impl Peaks {
             out.u64(*few as u64);
             out.u32(*step);
         }
+        for Stress { stress, step } in &self.1 {
+            out.f64s(&[*stress]);
+            out.u32(*step);
+        }
     }
 
     /// [`Self::put`], read back for the same model.
@@ -64,11 +80,27 @@ impl Peaks {
             (peak.active, peak.few) = (from.u64()? as usize, from.u64()? as usize);
             peak.step = from.u32()?;
         }
+        for highest in &mut self.1 {
+            let mut stress = [0.0];
+            from.f64s(&mut stress)?;
+            *highest = Stress {
+                stress: stress[0],
+                step: from.u32()?,
+            };
+        }
         Ok(())
     }
 
     /// Takes an accepted step.
     pub fn step(&mut self, step: u32, bearings: &Bearings) {
+        for (highest, stress) in self.1.iter_mut().zip(&bearings.stress) {
+            if *stress > highest.stress {
+                *highest = Stress {
+                    stress: *stress,
+                    step,
+                };
+            }
+        }
         for (peak, sum) in self.0.iter_mut().zip(&bearings.pairs) {
             let Bearing {
                 force,
@@ -104,7 +136,23 @@ impl Peaks {
     pub fn notes(&self, model: &Model) -> Vec<String> {
         let pairs = model.pairs.iter().zip(&self.0).enumerate();
         let few = pairs.filter_map(|(index, (pair, peak))| peak.few(model, index, pair));
-        few.collect()
+        few.chain(self.yielded(model)).collect()
+    }
+
+    /// Bodies of a metal of known strength whose stress passed it.
+    fn yielded(&self, model: &Model) -> impl Iterator<Item = String> {
+        let bodies = model.bodies.iter().zip(&self.1);
+        bodies.filter_map(|(body, highest)| {
+            let (metal, strength) = body.metal.filter(|(_, s)| highest.stress > *s)?;
+            Some(format!(
+                "body `{}`: its von Mises stress of {} at step {} passes the yield strength {} of `{metal}`: metal yields there, \
+                 which an elastic law does not know",
+                body.name,
+                number(highest.stress),
+                highest.step,
+                number(strength)
+            ))
+        })
     }
 
     /// The same as it stands in the summary.

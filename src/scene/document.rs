@@ -1,9 +1,10 @@
 //! Text files in JSON that people write, read into types, with the place of everything in them.
-use super::decode::decode;
+use super::decode::{Decoded, decode};
 use super::json::{self, Fault, Kind, Node};
 use super::problem::{Lines, Place, Problem, SceneError, nearest};
 use covact_geometry::io::read_within;
 use serde::de::DeserializeOwned;
+use std::collections::HashSet;
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -21,6 +22,12 @@ pub(crate) trait Form: DeserializeOwned {
     const VERSION: u32;
     /// What to do about an empty file.
     const START: &'static str;
+
+    /// What is wrong beyond the form; asked where the form is wrong too, with placeholders in place of what could not be
+    /// read, so that one round tells of both.
+    fn problems(&self, _document: &Document) -> Vec<Problem> {
+        Vec::new()
+    }
 }
 
 /// The text of a file that was read, so that everything found later can point into it.
@@ -66,71 +73,57 @@ pub(crate) fn load<T: Form>(path: &Path) -> Result<(T, Document), SceneError> {
     let bytes = read_within(path, MAX_BYTES).map_err(failed)?;
     let name = path.display().to_string();
     let text = String::from_utf8(bytes).map_err(|e| not_utf8(&name, &e))?;
-    let (content, mut document) = parse::<T>(&text, &name)?;
-    document.dir = match path.parent() {
+    let dir = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
         _ => PathBuf::from("."),
     };
-    Ok((content, document))
+    parse_in(&text, &name, dir)
 }
 
 /// Reads a text; `name` stands for the file in messages. Paths in it are relative to the current folder.
 ///
 /// # Errors
-/// [`SceneError::Wrong`] with all unknown keys and keys given twice, and the first fault of another kind.
+/// [`SceneError::Wrong`] with everything that is wrong, as far as faults do not follow from each other.
 pub(crate) fn parse<T: Form>(text: &str, name: &str) -> Result<(T, Document), SceneError> {
+    parse_in(text, name, PathBuf::from("."))
+}
+
+fn parse_in<T: Form>(text: &str, name: &str, dir: PathBuf) -> Result<(T, Document), SceneError> {
     let lines = Lines::new(text);
     let mut faults = Vec::new();
-    let root = match json::read(text, T::NAME, T::START, &mut faults) {
-        Ok(root) => Some(root),
+    let root = json::read(text, T::NAME, T::START, &mut faults);
+    let mut document = Document {
+        what: T::NAME,
+        name: name.to_string(),
+        dir,
+        text: text.to_string(),
+        root: Node {
+            kind: Kind::Broken,
+            span: 0..0,
+        },
+        lines,
+    };
+    match root {
+        Ok(root) => document.root = root,
         Err(fault) => {
             faults.push(fault);
-            None
+            return Err(document.wrong(faults, Vec::new()));
         }
-    };
-    let content = root.as_ref().and_then(|root| {
-        if let Some(fault) = other_version::<T>(root) {
-            // Another version's keys would only add confusing faults.
-            faults = vec![fault];
-            return None;
+    }
+    if let Some(fault) = other_version::<T>(&document.root) {
+        // Another version's keys would only add confusing faults.
+        return Err(document.wrong(vec![fault], Vec::new()));
+    }
+    let mut decoded = decode::<T>(&document.root);
+    faults.append(&mut decoded.faults);
+    match decoded.value.take() {
+        Some(content) if faults.is_empty() => Ok((content, document)),
+        Some(content) => {
+            let further = content.problems(&document);
+            let further = document.independent(further, &decoded, &faults);
+            Err(document.wrong(faults, further))
         }
-        match decode::<T>(root) {
-            Ok(content) => Some(content),
-            Err(more) => {
-                faults.extend(more);
-                None
-            }
-        }
-    });
-    match (root, content) {
-        (Some(root), Some(content)) if faults.is_empty() => {
-            let document = Document {
-                what: T::NAME,
-                name: name.to_string(),
-                dir: PathBuf::from("."),
-                text: text.to_string(),
-                root,
-                lines,
-            };
-            Ok((content, document))
-        }
-        (root, _) => {
-            faults.sort_by_key(|f| f.span.start);
-            let problem = |f: Fault| Problem {
-                pointer: root
-                    .as_ref()
-                    .map_or(String::new(), |r| r.pointer_at(f.span.start)),
-                place: lines.place(text, f.span.start),
-                message: f.message,
-                help: f.help,
-                span: f.span,
-            };
-            Err(SceneError::Wrong {
-                name: name.to_string(),
-                text: text.to_string(),
-                problems: faults.into_iter().map(problem).collect(),
-            })
-        }
+        None => Err(document.wrong(faults, Vec::new())),
     }
 }
 
@@ -187,6 +180,96 @@ pub(crate) fn nearest_file(path: &Path) -> Option<String> {
 }
 
 impl Document {
+    /// The error that lists faults of the form, and what else was found, in the order of the file.
+    fn wrong(&self, faults: Vec<Fault>, further: Vec<Problem>) -> SceneError {
+        let problem = |f: Fault| Problem {
+            pointer: self.root.pointer_at(f.span.start),
+            place: self.lines.place(&self.text, f.span.start),
+            message: f.message,
+            help: f.help,
+            span: f.span,
+        };
+        let mut problems: Vec<Problem> = faults.into_iter().map(problem).collect();
+        problems.extend(further);
+        problems.sort_by_key(|p| p.span.start);
+        self.error(problems)
+    }
+
+    /// The problems that do not follow from the faults of the form: those at values that could be read, about things that
+    /// are whole.
+    fn independent<T>(
+        &self,
+        problems: Vec<Problem>,
+        decoded: &Decoded<T>,
+        faults: &[Fault],
+    ) -> Vec<Problem> {
+        let (incomplete, misspelt) = (&decoded.incomplete, &decoded.misspelt);
+        // Where a whole section may be missing, names lead nowhere.
+        if incomplete.contains(&self.root.span.start) {
+            return Vec::new();
+        }
+        let unread =
+            |n: &Node| matches!(n.kind, Kind::Broken) || decoded.replaced.contains(&n.span.start);
+        // Section and name of what has a fault; no name: the whole section has.
+        let faulty: HashSet<(String, Option<String>)> = (faults.iter())
+            .filter_map(|f| {
+                let pointer = self.root.pointer_at(f.span.start);
+                let mut tokens = pointer.split('/').skip(1).map(str::to_owned);
+                let (section, name) = (tokens.next()?, tokens.next());
+                let lost = || self.root.child(&section).filter(|(n, _)| unread(n));
+                (name.is_some() || lost().is_some()).then_some((section, name))
+            })
+            .collect();
+        let named = |own: &str, name: &str| {
+            let name = json::escape(name);
+            (faulty.iter())
+                .any(|(section, of)| section != own && of.as_ref().is_none_or(|of| *of == name))
+        };
+        let holds = |p: &Problem| {
+            let (way, whole) = self.way(&p.pointer);
+            let last = way[way.len() - 1];
+            // What is said of a thing as a whole may come from any of its parts.
+            let parts = match &last.kind {
+                Kind::Object(members) => members.iter().any(|m| unread(&m.value)),
+                _ => false,
+            };
+            let start = &last.span.start;
+            let doubtful = incomplete.contains(start) || !whole && misspelt.contains(start);
+            if parts || doubtful || way.iter().any(|n| unread(n)) {
+                return false;
+            }
+            let section = p.pointer.split('/').nth(1).unwrap_or_default();
+            match &last.kind {
+                Kind::Text(text) => {
+                    let body = text.split_once('.').map_or(text.as_str(), |(body, _)| body);
+                    !named(section, text) && !named(section, body)
+                }
+                _ => true,
+            }
+        };
+        problems.into_iter().filter(holds).collect()
+    }
+
+    /// The root and the values on the way to that of a JSON pointer, and whether the file has all of them.
+    fn way(&self, pointer: &str) -> (Vec<&Node>, bool) {
+        let mut way = vec![&self.root];
+        let mut node = &self.root;
+        for token in pointer.split('/').skip(1) {
+            let token = token.replace("~1", "/").replace("~0", "~");
+            let Some((child, _)) = node.child(&token) else {
+                return (way, false);
+            };
+            node = child;
+            way.push(node);
+        }
+        (way, true)
+    }
+
+    /// The content as plain JSON: without comments, places and order.
+    pub(crate) fn to_json(&self) -> serde_json::Value {
+        self.root.to_json()
+    }
+
     /// Whether the file has a value at a JSON pointer, rather than a default in its place.
     pub fn has(&self, pointer: &str) -> bool {
         let mut node = &self.root;

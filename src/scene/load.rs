@@ -1,6 +1,7 @@
 //! Reading a scene file.
+use super::check;
 use super::document::{self, Document, Form};
-use super::problem::SceneError;
+use super::problem::{Problem, SceneError};
 use super::types::Scene;
 use std::ops::{Deref, DerefMut};
 use std::path::Path;
@@ -13,6 +14,10 @@ impl Form for Scene {
     const KEY: &'static str = "covact";
     const VERSION: u32 = FORMAT;
     const START: &'static str = "`covact new` writes a scene to start from";
+
+    fn problems(&self, document: &Document) -> Vec<Problem> {
+        check::problems(self, document)
+    }
 }
 
 /// A scene with its text, so that everything found later can point into the file.
@@ -25,6 +30,13 @@ pub struct LoadedScene {
 impl Deref for LoadedScene {
     type Target = Document;
     fn deref(&self) -> &Document {
+        &self.document
+    }
+}
+
+impl LoadedScene {
+    /// The text with the places of everything in it.
+    pub(super) fn document(&self) -> &Document {
         &self.document
     }
 }
@@ -48,7 +60,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<LoadedScene, SceneError> {
 /// folder.
 ///
 /// # Errors
-/// [`SceneError::Wrong`] with all unknown keys and keys given twice, and the first fault of another kind.
+/// [`SceneError::Wrong`] with all that is wrong with the form, and all that [`super::check`] finds beside it.
 pub fn parse(text: &str, name: &str) -> Result<LoadedScene, SceneError> {
     let (scene, document) = document::parse::<Scene>(text, name)?;
     Ok(LoadedScene { scene, document })

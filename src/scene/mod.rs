@@ -21,6 +21,7 @@ pub use expression::{Expression, ExpressionError};
 pub use load::{FORMAT, LoadedScene, load, parse};
 pub use problem::{Place, Problem, SceneError, nearest};
 pub(crate) use problem::{shorten, suggestion};
+pub(crate) use schema::printed as printed_schema;
 pub use schema::schema;
 pub use types::*;
 pub use value::{EvalError, POSITION_AND_TIME, TIME, TimeFunction, Value, ValueError};

@@ -1,11 +1,89 @@
 //! The JSON schema of scenes, made from the types and their documentation.
-use super::types::Scene;
+use super::types::{STANDS_FOR, Scene};
+use schemars::Schema;
+use serde_json::{Map, Value as Json, json};
 
 /// The schema as pretty-printed JSON with a line break at its end.
 pub fn schema() -> String {
-    let schema = schemars::schema_for!(Scene);
+    printed(schemars::schema_for!(Scene))
+}
+
+/// A schema with what types do not say of themselves: short forms, and descriptions that stand at the type.
+pub(crate) fn printed(schema: Schema) -> String {
+    let mut schema = schema.to_value();
+    short_forms(&mut schema);
+    let definitions = schema["$defs"].as_object().cloned().unwrap_or_default();
+    describe(&mut schema, &definitions);
     // Serialising a tree of JSON values into memory cannot fail.
     let mut text = serde_json::to_string_pretty(&schema).unwrap_or_default();
     text.push('\n');
     text
+}
+
+/// Lets numbers and texts stand for objects of one key, as they are read.
+fn short_forms(schema: &mut Json) {
+    let Some(definitions) = schema.get_mut("$defs").and_then(Json::as_object_mut) else {
+        return;
+    };
+    for (name, definition) in definitions {
+        // The only key of a choice need not be written.
+        let variants = definition.get_mut("oneOf").and_then(Json::as_array_mut);
+        for variant in variants.into_iter().flatten() {
+            for content in members(variant) {
+                if let Some(only) = content["properties"].as_object().and_then(single) {
+                    *content = json!({ "anyOf": [only, content.clone()] });
+                }
+            }
+        }
+        if let Some(form) = STANDS_FOR.iter().find(|f| f.name == name) {
+            let short = match form.numbers {
+                true => json!({ "type": ["number", "string"] }),
+                false => json!({ "type": "string" }),
+            };
+            let mut short = short;
+            short["description"] = json!(format!("Stands for `{{\"{}\": ...}}`.", form.key));
+            let mut long = definition.take();
+            let description = long.as_object_mut().and_then(|l| l.remove("description"));
+            *definition = json!({ "description": description, "anyOf": [long, short] });
+        }
+    }
+}
+
+/// The only member of an object.
+fn single(members: &Map<String, Json>) -> Option<Json> {
+    (members.len() == 1).then(|| members.values().next().cloned())?
+}
+
+/// The values of an object schema's properties.
+fn members(schema: &mut Json) -> impl Iterator<Item = &mut Json> {
+    (schema.get_mut("properties").and_then(Json::as_object_mut))
+        .into_iter()
+        .flat_map(Map::values_mut)
+}
+
+/// Gives every property a description: that of its variant, or that of its type, where it has none of its own.
+fn describe(schema: &mut Json, definitions: &Map<String, Json>) {
+    let own = schema["description"].clone();
+    if schema["properties"]
+        .as_object()
+        .is_some_and(|p| p.len() == 1)
+    {
+        for member in members(schema) {
+            if member["description"].is_null() && own.is_string() {
+                member["description"] = own.clone();
+            }
+        }
+    }
+    for member in members(schema) {
+        let named = member["$ref"].as_str().map(str::to_owned);
+        let definition = named.and_then(|n| definitions.get(n.rsplit('/').next()?).cloned());
+        if let (true, Some(of)) = (member["description"].is_null(), definition) {
+            member["description"] = of["description"].clone();
+        }
+    }
+    match schema {
+        Json::Object(members) => members.values_mut().for_each(|m| describe(m, definitions)),
+        Json::Array(items) => items.iter_mut().for_each(|m| describe(m, definitions)),
+        _ => {}
+    }
 }

@@ -16,7 +16,10 @@ use std::fmt;
 #[schemars(deny_unknown_fields)]
 pub enum Value {
     Number(f64),
-    Table { table: Vec<[f64; 2]> },
+    Table {
+        /// Rows of a time and a value; times increase.
+        table: Vec<[f64; 2]>,
+    },
     Expression(String),
 }
 

@@ -3,13 +3,14 @@ use crate::scene::{pointer, shorten, suggestion};
 use serde_json::{Map, Value as Json};
 
 /// Sections of a scene whose keys are names that the user gives.
-const NAMED: [&str; 6] = [
+const NAMED: [&str; 7] = [
     "materials",
     "bodies",
     "surfaces",
     "contacts",
     "supports",
     "loads",
+    "probes",
 ];
 
 /// Something wrong with a study, at a JSON pointer into its file.

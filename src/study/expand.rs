@@ -65,9 +65,7 @@ pub fn expand(loaded: &LoadedStudy) -> Result<Expansion, SceneError> {
     if !problems.is_empty() {
         return Err(loaded.error(problems));
     }
-    let text = base.text.trim_start_matches('\u{feff}');
-    // What was read before can be read again.
-    let mut root: Json = serde_json::from_str(text).unwrap_or_default();
+    let mut root: Json = base.to_json();
     if let Json::Object(members) = &mut root {
         // Its path, if it is one, would lead elsewhere.
         members.remove("$schema");

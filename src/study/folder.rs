@@ -175,7 +175,7 @@ fn written(run: &Planned, fields: bool, files: &mut Files) -> Result<String, Stu
 }
 
 /// Sections of a scene in the order in which people write them.
-const ORDER: [&str; 11] = [
+const ORDER: [&str; 12] = [
     "covact",
     "title",
     "units",
@@ -185,6 +185,7 @@ const ORDER: [&str; 11] = [
     "contacts",
     "supports",
     "loads",
+    "probes",
     "solution",
     "output",
 ];

@@ -1,6 +1,6 @@
 //! Reading a study file.
 use super::file::Study;
-use crate::scene::{Document, Form, SceneError, load_document, parse_document};
+use crate::scene::{Document, Form, SceneError, load_document, parse_document, printed_schema};
 use std::ops::{Deref, DerefMut};
 use std::path::Path;
 
@@ -54,9 +54,5 @@ pub fn parse(text: &str, name: &str) -> Result<LoadedStudy, SceneError> {
 
 /// The JSON schema of studies, pretty-printed with a line break at its end.
 pub fn schema() -> String {
-    let schema = schemars::schema_for!(Study);
-    // Serialising a tree of JSON values into memory cannot fail.
-    let mut text = serde_json::to_string_pretty(&schema).unwrap_or_default();
-    text.push('\n');
-    text
+    printed_schema(schemars::schema_for!(Study))
 }

@@ -1,13 +1,42 @@
 //! What users see when the input is wrong: message, place, exit code.
 use crate::support::{assert_parts, covact, refused_in, stderr, stdout};
 
-/// The scene that `covact new` writes.
+/// A plate under a ball.
 fn starter() -> String {
-    let folder = tempfile::tempdir().unwrap();
-    let made = covact(folder.path(), &["new", "starter"]);
-    assert_eq!(made.status.code(), Some(0), "{}", stderr(&made));
-    std::fs::read_to_string(folder.path().join("starter.json")).unwrap()
+    SCENE.to_owned()
 }
+
+const SCENE: &str = r#"{
+  "covact": 1,
+  "title": "A ball presses on a quarter of a clamped plate. Units: N, mm, MPa. `covact schema` describes every key.",
+  "units": { "length": "mm" },
+  "materials": {
+    "steel": { "st_venant_kirchhoff": { "E": 210000, "nu": 0.3 } }
+  },
+  "bodies": {
+    "plate": {
+      "mesh": { "plate": { "size": [50, 50], "thickness": 1, "elements": [12, 12] } },
+      "material": "steel"
+    }
+  },
+  "surfaces": {
+    "ball": {
+      "sphere": { "radius": 25, "center": [0, 0, 25.5] },
+      "motion": { "translation": [0, 0, "-2*t"] }
+    }
+  },
+  "contacts": {
+    "press": { "slave": "plate.top", "master": "ball" }
+  },
+  "supports": {
+    "clamped_x": { "on": "plate.x_max", "fixed": true },
+    "clamped_y": { "on": "plate.y_max", "fixed": true },
+    "symmetry_x": { "on": "plate.x_min", "symmetry": "x" },
+    "symmetry_y": { "on": "plate.y_min", "symmetry": "y" }
+  },
+  "solution": { "end_time": 1, "step": { "initial": 0.1, "max": 0.1 } }
+}
+"#;
 
 /// `covact check` and `covact run` of a scene of this text both fail with exit code 3 and the same message.
 fn refused(text: &[u8]) -> String {
@@ -32,7 +61,7 @@ fn misspelt_key() {
             // The line, with a mark under the key.
             "10 │       \"mesh\": { \"plate\": { \"size\": [50, 50], \"thicknes\": 1,",
             "·                                              ──────────\n",
-            "help: did you mean `thickness`? known keys: `size`, `thickness`, `elements`, `layers`, `origin`, `spacing`\n",
+            "help: did you mean `thickness`? known keys: `size`, `thickness`, `elements`, `layers`, `origin`, `center`, `spacing`\n",
         ],
     );
     assert!(!message.contains('\x1b'), "colours without a terminal");
@@ -158,7 +187,7 @@ fn several_problems_at_once() {
 fn not_json_and_not_text() {
     assert_parts(
         &refused(b"{\n  # remark\n}"),
-        &["scene.json:2:3: comments are not allowed in JSON"],
+        &["scene.json:2:3: a comment does not start with `#`"],
     );
     assert_parts(&refused(b""), &["scene.json:1:1: the file is empty"]);
     assert_parts(

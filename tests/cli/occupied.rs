@@ -74,6 +74,7 @@ fn a_run_is_replaced_on_demand_only() {
         "plate_0001.vtu",
         "results.pvd",
         "results_tessellated.pvd",
+        "run.log",
         "saved_0001.vtu",
         "summary.json",
     ];

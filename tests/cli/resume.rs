@@ -25,7 +25,11 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let name = |p: &Path| p.file_name().unwrap().to_str().unwrap().to_owned();
     (std::fs::read_dir(folder.join("out")).unwrap())
         .map(|e| e.unwrap().path())
-        .filter(|p| !p.ends_with("summary.json") && !p.ends_with(".covact.lock"))
+        .filter(|p| {
+            !["summary.json", "run.log", ".covact.lock"]
+                .iter()
+                .any(|f| p.ends_with(f))
+        })
         .map(|p| (name(&p), std::fs::read(&p).unwrap()))
         .collect()
 }

@@ -44,8 +44,33 @@ fn the_committed_schema_of_studies_is_up_to_date() {
 fn the_schemas_describe_what_is_read() {
     described(&covact::study::schema());
     let schema = described(&scene::schema());
+    assert_eq!(without_description(&schema, ""), Vec::<String>::new());
     let surface = &schema["$defs"]["Surface"];
     assert_eq!(surface["oneOf"].as_array().unwrap().len(), 4, "{surface}");
+}
+
+/// Properties that say nothing of themselves.
+fn without_description(schema: &serde_json::Value, at: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    if let Some(properties) = schema["properties"].as_object() {
+        let bare = properties
+            .iter()
+            .filter(|(_, p)| !p["description"].is_string());
+        found.extend(bare.map(|(name, _)| format!("{at}/{name}")));
+    }
+    let children: Vec<(String, &serde_json::Value)> = match schema {
+        serde_json::Value::Object(o) => o.iter().map(|(k, v)| (k.clone(), v)).collect(),
+        serde_json::Value::Array(a) => a
+            .iter()
+            .enumerate()
+            .map(|(i, v)| (i.to_string(), v))
+            .collect(),
+        _ => Vec::new(),
+    };
+    for (key, child) in children {
+        found.extend(without_description(child, &format!("{at}/{key}")));
+    }
+    found
 }
 
 fn described(schema: &str) -> serde_json::Value {

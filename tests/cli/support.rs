@@ -154,3 +154,13 @@ pub fn moebius_band() -> String {
     let patches: Vec<Value> = (0..8).map(patch).collect();
     json!({"covact_geometry": 1, "unit": "mm", "resolution": null, "patches": patches}).to_string()
 }
+
+/// What is wrong with a text, as `covact check` tells it before any file is read.
+pub fn problems(text: &str) -> Vec<String> {
+    let problems = match covact::scene::parse(text, "scene.json") {
+        Ok(loaded) => covact::scene::check(&loaded),
+        Err(covact::scene::SceneError::Wrong { problems, .. }) => problems,
+        Err(other) => panic!("{other}"),
+    };
+    problems.iter().map(ToString::to_string).collect()
+}

@@ -1,5 +1,6 @@
 //! Which side of every component is the outside.
 
+use super::integrate;
 use super::set::{PatchSet, PatchSetError};
 use super::{EdgeKind, Foot, Location};
 use crate::surface::{Surface, Vec3};
@@ -55,6 +56,8 @@ pub enum SideError {
     },
 }
 
+/// Components whose bulge is less than this are flat.
+const FLAT: f64 = 1e-6;
 /// Points nearer than this fraction of the size lie on the surface and have no side.
 const ON_SURFACE: f64 = 1e-9;
 /// Points vote if they are no farther away than this multiple of the nearest one's distance ...
@@ -114,6 +117,64 @@ impl<S: Surface> PatchSet<S> {
         for &patch in members {
             self.sides[patch] *= factor;
         }
+    }
+
+    /// Points every component away from what it encloses or, where it has free edges, curves around (`inward`: towards it).
+    /// A component with one side only keeps side 0.
+    ///
+    /// What a component curves around is told by the flux of the position, from the centre of its area, through it.
+    ///
+    /// # Errors
+    /// The first component that curves around nothing, as a plane does. No side is changed then.
+    pub fn set_sides_outward(&mut self, inward: bool) -> Result<(), usize> {
+        let count = self.topology.components.len();
+        let mut sides = Vec::with_capacity(count);
+        for component in 0..count {
+            if self.topology.one_sided[component].is_some() {
+                sides.push(0.0);
+                continue;
+            }
+            let bulge = self.bulge(component);
+            if bulge.abs() < FLAT {
+                return Err(component);
+            }
+            sides.push(if (bulge < 0.0) != inward { -1.0 } else { 1.0 });
+        }
+        for (component, side) in sides.into_iter().enumerate() {
+            if side != 0.0 {
+                self.set_component_side(component, side);
+            }
+        }
+        Ok(())
+    }
+
+    /// Flux of the position through a component, from the centre of its area and along `rho_1 x rho_2` of its first patch,
+    /// over the same with distances: from -1 to 1, 1 for a sphere with its normals outward.
+    fn bulge(&self, component: usize) -> f64 {
+        let members = &self.topology.components[component];
+        let edges = |patch: usize| self.topology.of(patch as u32);
+        let mut moments = [0.0; 4];
+        for &patch in members {
+            let of = integrate::over(self, patch as u32, edges(patch), |jet| {
+                let area = jet.rho_i[0].cross(&jet.rho_i[1]).norm();
+                let x = jet.rho;
+                [area, x.x * area, x.y * area, x.z * area]
+            });
+            (0..4).for_each(|i| moments[i] += of[i]);
+        }
+        let center = Vec3::new(moments[1], moments[2], moments[3]) / moments[0];
+        let mut sums = [0.0; 2];
+        for &patch in members {
+            let [flux, distance] = integrate::over(self, patch as u32, edges(patch), |jet| {
+                let area = jet.rho_i[0].cross(&jet.rho_i[1]);
+                let way = jet.rho - center;
+                [way.dot(&area), way.norm() * area.norm()]
+            });
+            // The side of a patch relative to that of the first.
+            sums[0] += flux * self.sides[patch] * self.sides[members[0]];
+            sums[1] += distance;
+        }
+        sums[0] / sums[1]
     }
 
     /// Chooses the side of every component so that the points (where the slave starts) lie outside.

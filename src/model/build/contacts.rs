@@ -17,17 +17,27 @@ use penalty::{FaceSize, Suitable};
 use std::collections::BTreeMap;
 
 impl Builder<'_> {
-    /// All contact pairs and all rigid surfaces.
-    pub(super) fn contacts(&mut self) -> Result<(Vec<PairModel>, Vec<SurfaceModel>), ModelError> {
-        let mut surfaces = Vec::new();
-        let mut labels = Vec::new();
-        let mut surface_index = BTreeMap::new();
-        for (name, surface) in &self.scene.surfaces {
-            surface_index.insert(name.as_str(), surfaces.len());
-            let (model, named) = self.surface(name, surface)?;
-            surfaces.push(model);
-            labels.push(named);
+    /// All rigid surfaces with the names of their patches, as far as they can be read, and what is wrong with the others.
+    pub(super) fn surfaces(&mut self) -> (Vec<(SurfaceModel, Vec<String>)>, Vec<ModelError>) {
+        let scene = self.scene;
+        let (mut surfaces, mut errors) = (Vec::new(), Vec::new());
+        for (name, surface) in &scene.surfaces {
+            match self.surface(name, surface) {
+                Ok(model) => surfaces.push(model),
+                Err(error) => errors.push(error),
+            }
         }
+        (surfaces, errors)
+    }
+
+    /// All contact pairs, and all rigid surfaces with their sides.
+    pub(super) fn contacts(
+        &mut self,
+        surfaces: Vec<(SurfaceModel, Vec<String>)>,
+    ) -> Result<(Vec<PairModel>, Vec<SurfaceModel>), ModelError> {
+        let (mut surfaces, labels): (Vec<_>, Vec<_>) = surfaces.into_iter().unzip();
+        let names = self.scene.surfaces.keys().enumerate();
+        let surface_index: BTreeMap<&str, usize> = names.map(|(i, n)| (n.as_str(), i)).collect();
         let mut pairs = Vec::new();
         for (name, contact) in &self.scene.contacts {
             let rigid = surface_index.get(contact.master.as_str()).copied();
@@ -259,8 +269,7 @@ impl Builder<'_> {
             ));
             return Ok(None);
         }
-        let material = &self.scene.bodies[&self.bodies[body].name].material;
-        let automatic = friction::automatic_ratio(&self.scene.materials[material]);
+        let automatic = friction::automatic_ratio(&self.bodies[body].material);
         let ratio = match contact.tangential_penalty {
             Penalty::Auto => automatic,
             Penalty::Value(v) => v / eps_n,
@@ -354,8 +363,7 @@ impl Builder<'_> {
     fn stiffness(&self, body: usize, faces: &[Face]) -> (FaceSize, Suitable) {
         let model = &self.bodies[body];
         let size = penalty::face_size(&model.mesh, faces);
-        let material = &self.scene.materials[&self.scene.bodies[&model.name].material];
-        (size, Suitable::new(material, &size))
+        (size, Suitable::new(&model.material, &size))
     }
 
     /// Faces of a body as a master, and the penalties that suit them.

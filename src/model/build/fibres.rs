@@ -6,7 +6,7 @@ use crate::mesh::ThicknessColumns;
 use crate::model::error::At;
 use crate::scene::{POSITION_AND_TIME, TimeFunction};
 use covact_geometry::Vec3;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Thickness over the size of the body up to which it is a shell.
 const SHELL: f64 = 0.1;
@@ -37,58 +37,64 @@ impl Builder<'_> {
                 let value = (value.as_ref().map(|v| v.compile(&POSITION_AND_TIME))).transpose();
                 values.push((*component as usize, value.at(|| pointer("displacement"))?));
             }
-            let (body, nodes) = self.set_nodes(&support.on, &pointer("on"))?;
-            let body = &self.bodies[body];
-            let columns = ThicknessColumns::new(&body.mesh);
-            let [low, high] = body.mesh.bounds();
-            let mut fibres = 0;
-            let set: BTreeSet<u32> = nodes.iter().copied().collect();
-            for node in &nodes {
-                let Some([bottom, top]) = columns.ends(node - body.first_node) else {
-                    continue;
-                };
-                // Every fibre once.
-                if *node != bottom + body.first_node || !set.contains(&(top + body.first_node)) {
-                    continue;
-                }
-                let ends = [bottom, top].map(|n| body.mesh.nodes[n as usize]);
-                let along = ends[1] - ends[0];
-                if along.norm() > SHELL * (high - low).norm() {
-                    continue;
-                }
-                let along = along.normalize();
-                let beside =
-                    (0..body.mesh.elements()).filter(|&e| body.mesh.element(e).contains(&bottom));
-                let middle = (ends[0] + ends[1]) * 0.5;
-                let inward = beside.fold(Vec3::zeros(), |sum, e| {
-                    let way = body.mesh.element_center(e) - middle;
-                    sum + (way - along * along.dot(&way))
-                        .try_normalize(0.0)
-                        .unwrap_or_default()
-                });
-                // Inside of the shell, or at an end of the border, nothing is said.
-                let Some(inward) = inward.try_normalize(0.1) else {
-                    continue;
-                };
-                let turns = |component: usize| inward[component].abs() > ACROSS;
-                let turned = (values.iter()).any(|(component, value)| {
-                    turns(*component) && !alike(value.as_ref(), ends, scene.solution.end_time)
-                });
-                let kept = values.iter().any(|(component, _)| turns(*component));
-                fibres += usize::from(kept && !turned);
+            let mut sets: BTreeMap<usize, BTreeSet<u32>> = BTreeMap::new();
+            for (at, reference) in support.on.places(&pointer("on")) {
+                let (body, nodes) = self.set_nodes(reference, &at)?;
+                sets.entry(body).or_default().extend(nodes);
             }
-            if fibres > 0 {
-                let axes: Vec<&str> = held
-                    .iter()
-                    .map(|(c, _)| ["x", "y", "z"][*c as usize])
-                    .collect();
-                warnings.push(format!(
+            for (body, set) in sets {
+                let body = &self.bodies[body];
+                let columns = ThicknessColumns::new(&body.mesh);
+                let [low, high] = body.mesh.bounds();
+                let mut fibres = 0;
+                for node in &set {
+                    let Some([bottom, top]) = columns.ends(node - body.first_node) else {
+                        continue;
+                    };
+                    // Every fibre once.
+                    if *node != bottom + body.first_node || !set.contains(&(top + body.first_node))
+                    {
+                        continue;
+                    }
+                    let ends = [bottom, top].map(|n| body.mesh.nodes[n as usize]);
+                    let along = ends[1] - ends[0];
+                    if along.norm() > SHELL * (high - low).norm() {
+                        continue;
+                    }
+                    let along = along.normalize();
+                    let beside = (0..body.mesh.elements())
+                        .filter(|&e| body.mesh.element(e).contains(&bottom));
+                    let middle = (ends[0] + ends[1]) * 0.5;
+                    let inward = beside.fold(Vec3::zeros(), |sum, e| {
+                        let way = body.mesh.element_center(e) - middle;
+                        sum + (way - along * along.dot(&way))
+                            .try_normalize(0.0)
+                            .unwrap_or_default()
+                    });
+                    // Inside of the shell, or at an end of the border, nothing is said.
+                    let Some(inward) = inward.try_normalize(0.1) else {
+                        continue;
+                    };
+                    let turns = |component: usize| inward[component].abs() > ACROSS;
+                    let turned = (values.iter()).any(|(component, value)| {
+                        turns(*component) && !alike(value.as_ref(), ends, scene.solution.end_time)
+                    });
+                    let kept = values.iter().any(|(component, _)| turns(*component));
+                    fibres += usize::from(kept && !turned);
+                }
+                if fibres > 0 {
+                    let axes: Vec<&str> = held
+                        .iter()
+                        .map(|(c, _)| ["x", "y", "z"][*c as usize])
+                        .collect();
+                    warnings.push(format!(
                     "support `{name}`: it holds both faces of body `{}` alike along {} at {fibres} place(s), so that fibres through \
                      the thickness cannot turn: the border is clamped, not hinged, which may change stiffness by a large part. With \
                      `mid_surface` they turn freely; hold all three components where a clamp is meant",
                     body.name,
                     axes.join(" and ")
                 ));
+                }
             }
         }
         self.warnings.extend(warnings);

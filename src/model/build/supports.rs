@@ -58,19 +58,22 @@ impl Builder<'_> {
                     continue;
                 }
                 let pointer = |field: &str| format!("/supports/{name}/{field}");
-                let (body, nodes) = self.set_nodes(&support.on, &pointer("on"))?;
-                let pairs = if mid_surface {
-                    let body = &self.bodies[body];
-                    let columns = (columns.entry(body.first_node as usize))
-                        .or_insert_with(|| ThicknessColumns::new(&body.mesh));
-                    ends(body, columns, &nodes).map_err(|node| {
-                        let message = format!("node {node} has no partner through the thickness");
-                        text(pointer("mid_surface"), message)
-                            .help("a mid-surface support needs nodes on both faces of a shell")
-                    })?
-                } else {
-                    BTreeSet::new()
-                };
+                let (mut nodes, mut pairs) = (Vec::new(), BTreeSet::new());
+                for (at, reference) in support.on.places(&pointer("on")) {
+                    let (body, own) = self.set_nodes(reference, &at)?;
+                    if mid_surface {
+                        let body = &self.bodies[body];
+                        let columns = (columns.entry(body.first_node as usize))
+                            .or_insert_with(|| ThicknessColumns::new(&body.mesh));
+                        pairs.extend(ends(body, columns, &own).map_err(|node| {
+                            let message =
+                                format!("node {node} has no partner through the thickness");
+                            text(pointer("mid_surface"), message)
+                                .help("a mid-surface support needs nodes on both faces of a shell")
+                        })?);
+                    }
+                    nodes.extend(own);
+                }
                 for (component, value) in components(support) {
                     let value = (value.map(|v| v.compile(&POSITION_AND_TIME)).transpose())
                         .at(|| pointer("displacement"))?;

@@ -6,9 +6,10 @@ use super::super::{ModelError, PairModel, SurfaceModel};
 use super::Builder;
 use super::cad_bodies::Bodies;
 use super::facets::Source;
+use super::sides::both_sides;
 use crate::contact::closest::ClosestPoint;
 use crate::scene::{self, InitialOverclosure, Side};
-use covact_geometry::project::{ComponentSide, Joining, PatchSetError, SideError, SideOutcome};
+use covact_geometry::project::{ComponentSide, Joining, PatchSetError, SideOutcome};
 use covact_geometry::{NurbsPatch, PatchSet, Surface, Vec3, io, primitives};
 
 /// Patches of a surface as its source gives them.
@@ -21,7 +22,7 @@ struct Patches {
 }
 
 /// Surfaces that are listed one by one in a message; the rest is counted.
-const LISTED: usize = 8;
+pub(super) const LISTED: usize = 8;
 
 impl Builder<'_> {
     /// The surface, and what its patches are called in messages.
@@ -275,6 +276,22 @@ impl Builder<'_> {
                 model.set.set_side_as_given(true);
                 "the reverse of what its source gives"
             }
+            Side::Outward | Side::Inward => {
+                let inward = surface.side == Side::Inward;
+                model.set.set_sides_outward(inward).map_err(|component| {
+                    let first = model.set.components()[component][0];
+                    let message = format!(
+                        "surface `{name}` encloses nothing and curves around nothing at {}, so that it has no outward side there",
+                        labels.get(first).map_or("patch 1", String::as_str)
+                    );
+                    text(pointer(), message)
+                        .help("take `as_given`, `reversed` or `{\"point\": [x, y, z]}`")
+                })?;
+                match inward {
+                    true => "towards what it curves around",
+                    false => "away from what it curves around",
+                }
+            }
             Side::Point(p) => {
                 let pose = model.motion.pose(0.0).at(pointer)?;
                 let local = pose.inverse_transform_point(&Vec3::from(p).into()).coords;
@@ -462,35 +479,4 @@ pub(super) fn joined<S: Surface>(facets: Vec<S>) -> Result<PatchSet<S>, PatchSet
 
 fn undecided(found: &ComponentSide) -> bool {
     matches!(found.outcome, SideOutcome::Undecided { .. })
-}
-
-/// The slave starts on both sides of a part.
-fn both_sides(name: &str, labels: &[String], error: &SideError) -> ModelError {
-    let SideError::BothSides {
-        patch,
-        front,
-        back,
-        patches,
-    } = error;
-    let label = |patch: &usize| labels.get(*patch).map_or("?", String::as_str);
-    let mut among: Vec<&str> = patches.iter().take(LISTED).map(label).collect();
-    if patches.len() > LISTED {
-        among.push("...");
-    }
-    let part = match patches.len() {
-        1 => String::new(),
-        n => format!(
-            ", which belongs to a part of {n} patches ({})",
-            among.join(", ")
-        ),
-    };
-    let message = format!(
-        "the outside of surface `{name}` is not clear: the slave starts on both sides of {}{part}: {front} point(s) on \
-         one side, {back} on the other",
-        label(patch)
-    );
-    text(format!("/surfaces/{name}/side"), message).help(
-        "move the surface clear of the body with `placement`, or say `side`: `as_given`, `reversed` or \
-         `{\"point\": [x, y, z]}`",
-    )
 }

@@ -48,6 +48,11 @@ impl<'a> Checker<'a> {
         self.problems
     }
 
+    /// Whether the file has a value at a JSON pointer.
+    pub fn has(&self, at: &str) -> bool {
+        self.loaded.has(at)
+    }
+
     pub fn add(&mut self, at: &str, message: impl Into<String>, help: Option<String>) {
         if self.full() {
             return;

@@ -2,10 +2,12 @@
 mod augmentation;
 mod checker;
 mod friction;
+mod material;
 mod names;
 mod shapes;
 mod small;
 
+use super::document::Document;
 use super::load::LoadedScene;
 use super::problem::{Problem, shorten, suggestion};
 use super::types::*;
@@ -16,13 +18,17 @@ use names::Sets;
 
 /// All problems of a scene, in the order of the file; none: the scene can be built.
 pub fn check(loaded: &LoadedScene) -> Vec<Problem> {
-    let mut c = Checker::new(loaded);
-    let scene = &loaded.scene;
+    problems(&loaded.scene, loaded.document())
+}
+
+/// [`check`] of a scene that may be read in part only.
+pub(super) fn problems(scene: &Scene, document: &Document) -> Vec<Problem> {
+    let mut c = Checker::new(document);
     if !names::check(&mut c, scene) {
         return c.finish();
     }
     for (name, material) in &scene.materials {
-        check_material(&mut c, name, material);
+        material::check(&mut c, name, material, &scene.units);
     }
     if scene.bodies.is_empty() {
         c.add("/bodies", "a scene needs at least one body", None);
@@ -56,6 +62,9 @@ pub fn check(loaded: &LoadedScene) -> Vec<Problem> {
     for (name, load) in &scene.loads {
         check_load(&mut c, &path(&["loads", name]), load, &sets);
     }
+    for (name, probe) in &scene.probes {
+        check_probe(&mut c, &path(&["probes", name]), probe, scene, &sets);
+    }
     check_solution(&mut c, &scene.solution);
     small::check(&mut c, scene);
     c.whole("/output/tessellation", scene.output.tessellation, 1, 200);
@@ -67,20 +76,6 @@ pub fn check(loaded: &LoadedScene) -> Vec<Problem> {
         );
     }
     c.finish()
-}
-
-fn check_material(c: &mut Checker, name: &str, material: &Material) {
-    let (law, elastic) = match material {
-        Material::StVenantKirchhoff(e) => ("st_venant_kirchhoff", e),
-        Material::NeoHooke(e) => ("neo_hooke", e),
-    };
-    let at = path(&["materials", name, law]);
-    c.positive(&format!("{at}/E"), "Young's modulus `E`", elastic.e);
-    if !(elastic.nu > -1.0 && elastic.nu < 0.5) {
-        let help = "-1 < nu < 0.5; nearly incompressible materials take e.g. 0.499";
-        let message = format!("Poisson's ratio `nu` is {}", elastic.nu);
-        c.add(&format!("{at}/nu"), message, Some(help.into()));
-    }
 }
 
 fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, sets: &Sets) {
@@ -249,8 +244,23 @@ fn check_master(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, set
     }
 }
 
+/// The sets that something acts on: at least one, each of them known; `faces`: each of them of faces.
+fn check_sets(c: &mut Checker, at: &str, on: &SetNames, sets: &Sets, (faces, user): (bool, &str)) {
+    let at = format!("{at}/on");
+    if on.iter().next().is_none() {
+        c.add(
+            &at,
+            "the list of sets is empty",
+            Some("write `body.set`".into()),
+        );
+    }
+    for (at, name) in on.places(&at) {
+        sets.check(c, &at, name, faces, user);
+    }
+}
+
 fn check_support(c: &mut Checker, at: &str, support: &Support, sets: &Sets) {
-    sets.check(c, &format!("{at}/on"), &support.on, false, "a support");
+    check_sets(c, at, &support.on, sets, (false, "a support"));
     c.exactly_one(
         at,
         "support",
@@ -293,13 +303,8 @@ fn check_load(c: &mut Checker, at: &str, load: &Load, sets: &Sets) {
     } else {
         "a traction"
     };
-    sets.check(
-        c,
-        &format!("{at}/on"),
-        &load.on,
-        on_faces,
-        if on_faces { what } else { "a force" },
-    );
+    let user = if on_faces { what } else { "a force" };
+    check_sets(c, at, &load.on, sets, (on_faces, user));
     c.exactly_one(
         at,
         "load",
@@ -333,6 +338,29 @@ fn check_load(c: &mut Checker, at: &str, load: &Load, sets: &Sets) {
             "only a pressure can follow the faces",
             Some(help.into()),
         );
+    }
+}
+
+fn check_probe(c: &mut Checker, at: &str, probe: &Probe, scene: &Scene, sets: &Sets) {
+    let whole = probe.body.is_some() && probe.near.is_none();
+    c.exactly_one(
+        at,
+        "probe",
+        &[
+            ("on", probe.on.is_some()),
+            ("near", probe.near.is_some()),
+            ("body", whole),
+        ],
+    );
+    if let Some(on) = &probe.on {
+        check_sets(c, at, on, sets, (false, "a probe"));
+    }
+    if let Some(near) = &probe.near {
+        c.finite(&format!("{at}/near"), near);
+    }
+    if let Some(body) = &probe.body {
+        let bodies = scene.bodies.keys();
+        c.refers(&format!("{at}/body"), "body", "bodies", body, bodies);
     }
 }
 

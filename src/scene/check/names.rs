@@ -7,17 +7,19 @@ use std::collections::BTreeMap;
 /// Names can be used in `body.set`, in columns of the history and in file names. Whether they are short enough for the
 /// other checks, which repeat them for everything that they belong to.
 pub(super) fn check(c: &mut Checker, scene: &Scene) -> bool {
-    let sections: [(&str, Vec<&String>); 6] = [
+    let sections: [(&str, Vec<&String>); 7] = [
         ("materials", scene.materials.keys().collect()),
         ("bodies", scene.bodies.keys().collect()),
         ("surfaces", scene.surfaces.keys().collect()),
         ("contacts", scene.contacts.keys().collect()),
         ("supports", scene.supports.keys().collect()),
         ("loads", scene.loads.keys().collect()),
+        ("probes", scene.probes.keys().collect()),
     ];
     for (section, names) in &sections {
         for name in names {
-            check_name(c, &path(&[section, name]), name, *section == "bodies");
+            let dotless = matches!(*section, "bodies" | "probes");
+            check_name(c, &path(&[section, name]), name, dotless);
         }
     }
     let long = |name: &String| name.len() > MOST_IN_NAME;
@@ -60,7 +62,7 @@ pub(super) fn check(c: &mut Checker, scene: &Scene) -> bool {
     !scene.bodies.values().any(|b| b.sets.keys().any(long))
 }
 
-fn check_name(c: &mut Checker, at: &str, name: &str, body: bool) {
+fn check_name(c: &mut Checker, at: &str, name: &str, dotless: bool) {
     if name.trim().is_empty() {
         return c.add(at, "a name is empty", None);
     }
@@ -72,10 +74,10 @@ fn check_name(c: &mut Checker, at: &str, name: &str, body: bool) {
         let help = "names become columns of the history and parts of file names";
         return c.add(at, message, Some(help.into()));
     }
-    let bad = |ch: char| ch.is_control() || matches!(ch, ',' | '"' | ';') || (body && ch == '.');
+    let bad = |ch: char| ch.is_control() || matches!(ch, ',' | '"' | ';') || (dotless && ch == '.');
     if let Some(ch) = name.chars().find(|ch| bad(*ch)) {
         let help = match ch {
-            '.' => "the dot separates body and set, as in `sheet.top`",
+            '.' => "the dot separates names, as in `sheet.top` or in columns of the history",
             _ => "names become columns of the history",
         };
         c.add(
@@ -147,7 +149,7 @@ impl<'a> Sets<'a> {
             for (set, selection) in &body.sets {
                 let faces = matches!(
                     selection,
-                    Selection::FacesInBox { .. } | Selection::FacesFacing { .. }
+                    Selection::FacesInBox(_) | Selection::FacesFacing { .. }
                 );
                 // A name that is taken is reported elsewhere.
                 sets.entry(set).or_insert(faces);

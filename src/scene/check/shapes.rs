@@ -207,8 +207,12 @@ pub(super) fn check_selection(c: &mut Checker, at: &str, selection: &Selection) 
         }
     };
     match selection {
-        Selection::NodesInBox { min, max } => check_box(c, format!("{at}/nodes_in_box"), min, max),
-        Selection::FacesInBox { min, max } => check_box(c, format!("{at}/faces_in_box"), min, max),
+        Selection::NodesInBox(Corners { min, max }) => {
+            check_box(c, format!("{at}/nodes_in_box"), min, max)
+        }
+        Selection::FacesInBox(Corners { min, max }) => {
+            check_box(c, format!("{at}/faces_in_box"), min, max)
+        }
         Selection::NodesNearPlane {
             normal, tolerance, ..
         } => {

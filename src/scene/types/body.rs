@@ -1,4 +1,5 @@
-//! Deformable bodies: materials, elements, where meshes come from, sets.
+//! Deformable bodies: elements, where meshes come from, sets.
+use super::boxes::Corners;
 use super::mesh::*;
 use super::mesh_file::MeshFile;
 use super::surface::Placement;
@@ -6,32 +7,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Constitutive law, written `{"st_venant_kirchhoff": {"E": 210000, "nu": 0.3}}`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Material {
-    /// Linear law between Green-Lagrange strain and second Piola-Kirchhoff stress: large rotations, small strains.
-    StVenantKirchhoff(Elastic),
-    /// Compressible neo-Hooke: large strains.
-    NeoHooke(Elastic),
-}
-
-/// Young's modulus (force / length^2) and Poisson's ratio.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Elastic {
-    #[serde(rename = "E")]
-    pub e: f64,
-    pub nu: f64,
-}
-
 /// A deformable body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
+    /// Where the mesh comes from.
     pub mesh: MeshSource,
     /// Name of the material.
     pub material: String,
+    /// Element formulation.
     #[serde(default)]
     pub element: Element,
     /// Where the mesh is put: first scaled, then rotated about the origin, then moved.
@@ -78,17 +62,30 @@ pub enum MeshSource {
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Selection {
     /// Nodes inside a box (its borders included).
-    NodesInBox { min: [f64; 3], max: [f64; 3] },
+    NodesInBox(Corners),
     /// Nodes within `tolerance` of a plane.
     NodesNearPlane {
+        /// A point of the plane.
         point: [f64; 3],
+        /// Normal of the plane, of any length.
         normal: [f64; 3],
+        /// Largest distance (length).
         tolerance: f64,
     },
     /// Nodes within `tolerance` of a point.
-    NodesNearPoint { point: [f64; 3], tolerance: f64 },
+    NodesNearPoint {
+        /// The point.
+        point: [f64; 3],
+        /// Largest distance (length).
+        tolerance: f64,
+    },
     /// Outer faces whose nodes all lie inside a box.
-    FacesInBox { min: [f64; 3], max: [f64; 3] },
+    FacesInBox(Corners),
     /// Outer faces whose outward normal is within `angle` degrees of `normal`.
-    FacesFacing { normal: [f64; 3], angle: f64 },
+    FacesFacing {
+        /// Direction, of any length.
+        normal: [f64; 3],
+        /// Largest angle (degrees).
+        angle: f64,
+    },
 }

@@ -1,4 +1,5 @@
 //! Supports and loads.
+use super::SetNames;
 use crate::scene::value::Value;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,8 +8,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
-    /// Node or face set, `body.set`.
-    pub on: String,
+    /// Node or face set, `body.set`, or a list of them.
+    pub on: SetNames,
     /// All three components are zero.
     #[serde(default)]
     pub fixed: bool,
@@ -37,8 +38,11 @@ pub enum Axis {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Components {
+    /// Along x.
     pub x: Option<Value>,
+    /// Along y.
     pub y: Option<Value>,
+    /// Along z.
     pub z: Option<Value>,
 }
 
@@ -47,8 +51,8 @@ pub struct Components {
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{"required": ["force"]}, {"required": ["traction"]}, {"required": ["pressure"]}]))]
 pub struct Load {
-    /// Node or face set, `body.set` (traction and pressure need faces).
-    pub on: String,
+    /// Node or face set, `body.set`, or a list of them (traction and pressure need faces).
+    pub on: SetNames,
     /// Total force, spread evenly over the nodes of a node set, over the area of a face set.
     #[serde(default)]
     pub force: Option<[Value; 3]>,

@@ -18,6 +18,7 @@ pub struct Contact {
     /// (a rigid surface has a depth of its own). Default: the depth of the elements below the faces.
     #[serde(default)]
     pub depth: Option<f64>,
+    /// Where contact is sampled on the slave faces.
     #[serde(default)]
     pub points: Points,
     /// Whether every slave point has a gap of its own, or every slave node the mean of those around it.
@@ -71,16 +72,24 @@ impl Default for Augmentation {
     }
 }
 
-/// Law of friction, written `{"coulomb": {"mu": 0.2}}` or `{"orthotropic": {"mu": [0.1, 0.3], "direction": [1, 0, 0]}}`.
+/// Law of friction, written `0.2` or `{"coulomb": {"mu": 0.2}}` (Coulomb's), or `{"orthotropic": {"mu": [0.1, 0.3], "direction": [1, 0, 0]}}`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Friction {
     /// The traction is at most `mu` times the pressure. `mu` may vary in time.
-    Coulomb { mu: Value },
+    Coulomb {
+        /// Coefficient of friction.
+        mu: Value,
+    },
     /// Coulomb's law with two coefficients, along a direction of the master and across it: the traction stays within an
     /// ellipse. The direction is given in the coordinates in which the master is given, turns with it, and is projected on
     /// its tangent plane. Both coefficients may vary in time. On rigid surfaces only.
-    Orthotropic { mu: [Value; 2], direction: [f64; 3] },
+    Orthotropic {
+        /// Coefficients along the direction and across it.
+        mu: [Value; 2],
+        /// Direction of the first coefficient, of any length.
+        direction: [f64; 3],
+    },
 }
 
 /// What becomes of slave points that start below the master.
@@ -93,7 +102,10 @@ pub enum InitialOverclosure {
     /// It counts as touching: the gap of every point is measured from where it starts, and nothing is stressed.
     StressFree,
     /// Stress-free at the start and resolved evenly until the time `until`: an interference fit.
-    Shrink { until: f64 },
+    Shrink {
+        /// Time at which nothing of it is left.
+        until: f64,
+    },
     /// An error that names the place and the amount.
     Refuse,
 }
@@ -179,8 +191,10 @@ pub enum Tangent {
     Exact,
     /// The published form, whose parts beyond the main one can be left out.
     Published {
+        /// With the part of turning normals.
         #[serde(default = "yes")]
         rotational: bool,
+        /// With the part of the master's curvature.
         #[serde(default = "yes")]
         curvature: bool,
     },

@@ -1,25 +1,70 @@
 //! What the user writes: the scene as plain data, field for field as in the JSON file.
 mod body;
+mod boxes;
 mod conditions;
 mod contact;
+mod material;
 mod mesh;
 mod mesh_file;
 mod motion;
+mod probe;
+mod set_names;
 mod solution;
 mod surface;
+mod units;
 
 pub use body::*;
+pub use boxes::*;
 pub use conditions::*;
 pub use contact::*;
+pub use material::*;
 pub use mesh::*;
 pub use mesh_file::*;
 pub use motion::*;
+pub use probe::*;
+pub use set_names::*;
 pub use solution::*;
 pub use surface::*;
+pub use units::*;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+
+/// A number or text in place of an object.
+pub(in crate::scene) struct StandsFor {
+    /// Type of the object.
+    pub name: &'static str,
+    /// The key whose value it is.
+    pub key: &'static str,
+    /// Numbers do as well as texts.
+    pub numbers: bool,
+}
+
+/// Where a number or text may stand for an object of one key. Beside these, the only key of a choice need not be written:
+/// `{"coulomb": 0.2}` is `{"coulomb": {"mu": 0.2}}`.
+pub(in crate::scene) const STANDS_FOR: [StandsFor; 4] = [
+    StandsFor {
+        name: "Friction",
+        key: "coulomb",
+        numbers: true,
+    },
+    StandsFor {
+        name: "MeshSource",
+        key: "file",
+        numbers: false,
+    },
+    StandsFor {
+        name: "MeshFile",
+        key: "path",
+        numbers: false,
+    },
+    StandsFor {
+        name: "CadFile",
+        key: "file",
+        numbers: false,
+    },
+];
 
 /// A contact problem: bodies of finite elements, rigid CAD surfaces, what presses on what, and how to solve it.
 /// Units are the user's: any consistent set, e.g. N, mm, MPa.
@@ -31,12 +76,13 @@ pub struct Scene {
     pub schema: Option<String>,
     /// Version of the scene format: 1.
     pub covact: u32,
+    /// What the scene is about; it heads reports.
     #[serde(default)]
     pub title: String,
     #[serde(default)]
     pub units: Units,
     /// Materials by name.
-    pub materials: BTreeMap<String, Material>,
+    pub materials: BTreeMap<String, MaterialChoice>,
     /// Deformable bodies by name.
     pub bodies: BTreeMap<String, Body>,
     /// Rigid surfaces by name.
@@ -51,68 +97,11 @@ pub struct Scene {
     /// Loads by name.
     #[serde(default)]
     pub loads: BTreeMap<String, Load>,
+    /// Curves of the history, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub probes: BTreeMap<String, Probe>,
     #[serde(default)]
     pub solution: Solution,
     #[serde(default)]
     pub output: Output,
-}
-
-/// Units of the scene. CAD files state their own length unit and are converted to the scene's.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Units {
-    /// Length unit of the scene.
-    pub length: LengthUnit,
-}
-
-/// Names of length units.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub enum LengthUnit {
-    #[serde(rename = "nm")]
-    Nanometre,
-    #[serde(rename = "um")]
-    Micrometre,
-    #[default]
-    #[serde(rename = "mm")]
-    Millimetre,
-    #[serde(rename = "cm")]
-    Centimetre,
-    #[serde(rename = "m")]
-    Metre,
-    #[serde(rename = "km")]
-    Kilometre,
-    #[serde(rename = "in")]
-    Inch,
-    #[serde(rename = "ft")]
-    Foot,
-}
-
-impl LengthUnit {
-    /// Metres in one unit.
-    pub fn metres(self) -> f64 {
-        match self {
-            LengthUnit::Nanometre => 1e-9,
-            LengthUnit::Micrometre => 1e-6,
-            LengthUnit::Millimetre => 1e-3,
-            LengthUnit::Centimetre => 1e-2,
-            LengthUnit::Metre => 1.0,
-            LengthUnit::Kilometre => 1e3,
-            LengthUnit::Inch => 0.0254,
-            LengthUnit::Foot => 0.3048,
-        }
-    }
-
-    /// Symbol, as scenes write it.
-    pub fn name(self) -> &'static str {
-        match self {
-            LengthUnit::Nanometre => "nm",
-            LengthUnit::Micrometre => "um",
-            LengthUnit::Millimetre => "mm",
-            LengthUnit::Centimetre => "cm",
-            LengthUnit::Metre => "m",
-            LengthUnit::Kilometre => "km",
-            LengthUnit::Inch => "in",
-            LengthUnit::Foot => "ft",
-        }
-    }
 }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct Motion {
     /// Displacement as numbers, tables or expressions in `t`.
     pub translation: [Value; 3],
+    /// Rotation about an axis.
     pub rotation: Option<Rotation>,
     /// Components that are unknown and driven by a given force or moment; all others follow what is prescribed.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,8 +37,11 @@ pub struct FreeMotion {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FreeComponents {
+    /// Along or about x.
     pub x: Option<Value>,
+    /// Along or about y.
     pub y: Option<Value>,
+    /// Along or about z.
     pub z: Option<Value>,
 }
 
@@ -59,6 +63,7 @@ pub struct Rotation {
     /// A point of the axis; it moves with the translation.
     #[serde(default)]
     pub center: [f64; 3],
+    /// Direction of the axis, of any length.
     pub axis: [f64; 3],
     /// Angle in degrees.
     pub angle: Value,

@@ -41,6 +41,7 @@ pub struct Step {
     pub initial: f64,
     /// A step that would have to be smaller ends the run as not converged.
     pub min: f64,
+    /// Largest step.
     pub max: f64,
     /// Adapt the step to the iterations it takes; a step that fails is cut in any case.
     pub adaptive: bool,
@@ -54,6 +55,7 @@ pub struct Newton {
     pub max_iterations: u32,
     /// Residual relative to the largest force in the system, or to its round-off floor where that is higher.
     pub tolerance: f64,
+    /// Shorten steps of Newton's method that do not lower the residual.
     pub line_search: bool,
 }
 

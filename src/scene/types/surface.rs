@@ -25,6 +25,7 @@ pub struct Surface {
     pub side: Side,
     /// A point deeper than this below the surface is not in contact (length); default: a tenth of the surface's size.
     pub depth: Option<f64>,
+    /// Rigid motion over time.
     pub motion: Motion,
 }
 
@@ -60,6 +61,7 @@ pub struct CadFile {
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{"required": ["chord"]}, {"required": ["size"]}, {"required": ["count"]}]))]
 pub struct Facets {
+    /// Kind of facets.
     pub kind: FacetKind,
     /// Largest distance from the exact surface (length); with `smooth` that of the quadrilaterals between its nodes.
     #[serde(default)]
@@ -99,8 +101,10 @@ impl FacetKind {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SphereShape {
+    /// Radius.
     pub radius: f64,
-    #[serde(default)]
+    /// Centre of the sphere; also written `origin`.
+    #[serde(default, alias = "origin")]
     pub center: [f64; 3],
     /// Axis through the poles of the parametrisation; default y.
     #[serde(default = "axis_y")]
@@ -111,11 +115,14 @@ pub struct SphereShape {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CylinderShape {
+    /// Radius.
     pub radius: f64,
+    /// Length along the axis.
     pub length: f64,
-    /// Centre of the cylinder, in the middle of its length.
-    #[serde(default)]
+    /// Centre of the cylinder, in the middle of its length; also written `origin`.
+    #[serde(default, alias = "origin")]
     pub center: [f64; 3],
+    /// Direction of the axis, of any length; default y.
     #[serde(default = "axis_y")]
     pub axis: [f64; 3],
 }
@@ -124,8 +131,10 @@ pub struct CylinderShape {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneShape {
+    /// Middle of the rectangle.
     #[serde(default)]
     pub center: [f64; 3],
+    /// Normal, of any length; default z.
     #[serde(default = "axis_z")]
     pub normal: [f64; 3],
     /// Edge lengths of the rectangle.
@@ -142,6 +151,7 @@ pub struct Placement {
     pub axis: [f64; 3],
     /// Degrees.
     pub angle: f64,
+    /// Displacement, after the rotation.
     pub translation: [f64; 3],
 }
 
@@ -156,6 +166,10 @@ pub enum Side {
     AsGiven,
     /// The opposite of `as_given`.
     Reversed,
+    /// Away from what the surface encloses or curves around, each connected part by itself: bodies lie outside of a pin.
+    Outward,
+    /// Towards what the surface encloses or curves around, each connected part by itself: bodies lie inside of a bore.
+    Inward,
     /// The side on which this point lies.
     Point([f64; 3]),
 }

@@ -1,118 +1,79 @@
 //! From the JSON tree to the scene's types through serde, with the place of every fault.
 //!
-//! serde's derived code tells a deserializer the keys and variants it knows, so unknown ones are found here, all of
-//! them, before the derived code would stop at the first.
-use super::json::{Fault, Kind, MORE, Member, Node};
+//! serde's derived code stops at the first fault. So that one round tells of all of them, a value that cannot be decoded is
+//! reported, replaced by a plain value of the type that was expected, and the tree is decoded again: what else is
+//! wrong shows then. Unknown keys are found here, all of them; one that is nearly a known key is read as that key.
+mod access;
+mod placeholder;
+mod state;
+mod stop;
+
+use super::json::{Fault, Kind, Member, Node};
 use super::problem::{MOST_PROBLEMS, nearest, shorten, suggestion};
-use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Unexpected, Visitor};
-use std::cell::RefCell;
-use std::fmt;
-use std::ops::Range;
+use super::types::STANDS_FOR;
+use access::{Items, Members, Variant};
+use placeholder::Placeholder;
+use serde::de::{self, Deserializer, Visitor};
+use state::State;
+use std::collections::HashSet;
+use stop::{Stop, unknown_key};
 
-/// Decodes a tree. All unknown keys are reported, and the first fault of another kind.
-pub(super) fn decode<'de, T: de::Deserialize<'de>>(root: &'de Node) -> Result<T, Vec<Fault>> {
-    let faults = RefCell::new(Vec::new());
-    let decoded = T::deserialize(Decoder {
-        node: root,
-        faults: &faults,
-    });
-    let mut faults = faults.into_inner();
-    match decoded {
-        Ok(value) if faults.is_empty() => Ok(value),
-        Ok(_) => Err(faults),
-        Err(stop) => {
-            // A key that is missing because it was misspelt is one mistake, not two.
-            if !stop.told || faults.is_empty() {
-                faults.push(Fault {
-                    message: stop.message,
-                    help: stop.help,
-                    span: stop.span.unwrap_or_else(|| root.span.clone()),
-                });
-            }
-            Err(faults)
-        }
-    }
+/// Bytes that are decoded at most, again after every fault: files of many faults are small.
+const MOST_DECODED: usize = 64 << 20;
+
+/// What became of a tree.
+pub(super) struct Decoded<T> {
+    /// The value; where there are faults, with placeholders in their place. None where too much is wrong.
+    pub value: Option<T>,
+    /// In no order.
+    pub faults: Vec<Fault>,
+    /// Where values start that placeholders stand for.
+    pub replaced: HashSet<usize>,
+    /// Where objects start that lack a key, or have one that nobody knows.
+    pub incomplete: HashSet<usize>,
+    /// Where objects start of which a misspelt key was read as the one that it is like.
+    pub misspelt: HashSet<usize>,
 }
 
-/// The fault that stops decoding.
-#[derive(Debug)]
-pub(super) struct Stop {
-    message: String,
-    help: Option<String>,
-    span: Option<Range<usize>>,
-    /// The key that is missing.
-    missing: Option<&'static str>,
-    /// Already explained by another fault.
-    told: bool,
-}
-
-impl Stop {
-    fn new(message: impl Into<String>) -> Stop {
-        Stop {
-            message: message.into(),
-            help: None,
-            span: None,
-            missing: None,
-            told: false,
-        }
-    }
-
-    fn help(mut self, help: impl Into<String>) -> Stop {
-        self.help = Some(help.into());
-        self
-    }
-
-    /// Sets the place unless a more inner one is known.
-    fn at(mut self, span: &Range<usize>) -> Stop {
-        self.span.get_or_insert_with(|| span.clone());
-        self
-    }
-}
-
-impl fmt::Display for Stop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.message)
-    }
-}
-impl std::error::Error for Stop {}
-
-impl de::Error for Stop {
-    fn custom<T: fmt::Display>(message: T) -> Stop {
-        Stop::new(message.to_string())
-    }
-    fn missing_field(field: &'static str) -> Stop {
-        let mut stop = Stop::new(format!("the key `{field}` is missing"));
-        stop.missing = Some(field);
-        stop
-    }
-    fn unknown_field(field: &str, expected: &'static [&'static str]) -> Stop {
-        unknown_key(field, expected)
-    }
-    fn invalid_type(found: Unexpected<'_>, expected: &dyn de::Expected) -> Stop {
-        let found = match found {
-            Unexpected::Bool(b) => b.to_string(),
-            Unexpected::Str(s) => format!("the text \"{}\"", shorten(s)),
-            Unexpected::Seq => "a list".into(),
-            Unexpected::Map => "an object".into(),
-            Unexpected::Unit | Unexpected::Option => "null".into(),
-            other => other.to_string(),
+/// Decodes a tree, and reports all that stands against it.
+pub(super) fn decode<'de, T: de::Deserialize<'de>>(root: &'de Node) -> Decoded<T> {
+    let rounds = (MOST_DECODED / root.span.len().max(1)).clamp(1, MOST_PROBLEMS);
+    let mut stops = Vec::new();
+    let mut state = State::default();
+    for round in 1.. {
+        state.faults.get_mut().clear();
+        state.odd.get_mut().clear();
+        state.misspelt.get_mut().clear();
+        let decoder = Decoder {
+            node: root,
+            state: &state,
         };
-        Stop::new(format!("expected {expected}, found {found}"))
+        let stop = match T::deserialize(decoder) {
+            Ok(value) => return state.finish(stops, Some(value)),
+            Err(stop) => stop.within(root),
+        };
+        // A value that no placeholder can stand for takes the one around it along.
+        let mut goes_on = round < rounds;
+        if !state.replace(&stop) {
+            goes_on &= state.replace_around(root, stop.node);
+        } else {
+            stops.push(Fault {
+                message: stop.message,
+                help: stop.help,
+                span: stop.span.unwrap_or_else(|| root.span.clone()),
+            });
+        }
+        if !goes_on {
+            break;
+        }
     }
-}
-
-fn unknown_key(key: &str, known: &'static [&'static str]) -> Stop {
-    Stop::new(format!("unknown key `{}`", shorten(key))).help(suggestion(
-        key,
-        "known keys",
-        known.iter().copied().filter(|k| !k.starts_with('$')),
-    ))
+    state.finish(stops, None)
 }
 
 #[derive(Clone, Copy)]
 struct Decoder<'de, 'f> {
     node: &'de Node,
-    faults: &'f RefCell<Vec<Fault>>,
+    state: &'f State,
 }
 
 impl<'de, 'f> Decoder<'de, 'f> {
@@ -156,27 +117,42 @@ impl<'de, 'f> Decoder<'de, 'f> {
         known: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Stop> {
-        let mut meant: Vec<&str> = Vec::new();
-        let mut unused = known.to_vec();
-        if members.iter().any(|m| !known.contains(&m.key.as_str())) {
+        let mut meant: Vec<(&'static str, &'de Node)> = Vec::new();
+        let is_known = |m: &Member| known.contains(&m.key.as_str());
+        if !members.iter().all(is_known) {
+            let mut unused = known.to_vec();
             unused.retain(|k| !members.iter().any(|m| m.key == *k));
-        }
-        for m in members.iter().filter(|m| !known.contains(&m.key.as_str())) {
-            if self.faults.borrow().len() >= MOST_PROBLEMS {
-                return Err(Stop::new(MORE).at(&m.key_span));
+            for m in members.iter().filter(|m| !is_known(m)) {
+                if self.state.faults.borrow().len() > MOST_PROBLEMS {
+                    break;
+                }
+                match nearest(&m.key, unused.iter().copied()) {
+                    Some(near) => {
+                        self.state
+                            .misspelt
+                            .borrow_mut()
+                            .insert(self.node.span.start);
+                        unused.retain(|k| *k != near);
+                        meant.extend(known.iter().filter(|k| **k == near).map(|k| (*k, &m.value)));
+                    }
+                    None => {
+                        self.state.odd.borrow_mut().insert(self.node.span.start);
+                    }
+                }
+                let stop = unknown_key(&m.key, known);
+                self.state.faults.borrow_mut().push(Fault {
+                    message: stop.message,
+                    help: stop.help,
+                    span: m.key_span.clone(),
+                });
             }
-            meant.extend(nearest(&m.key, unused.iter().copied()));
-            let stop = unknown_key(&m.key, known);
-            self.faults.borrow_mut().push(Fault {
-                message: stop.message,
-                help: stop.help,
-                span: m.key_span.clone(),
-            });
         }
         let access = Members {
             decoder: self,
             members: members.iter(),
             known: Some(known),
+            meant: meant.into_iter(),
+            lacking: self.lacking(),
             value: None,
         };
         let open = self.node.span.start..self.node.span.start + 1;
@@ -184,7 +160,6 @@ impl<'de, 'f> Decoder<'de, 'f> {
             if stop.span.is_none()
                 && let Some(missing) = stop.missing
             {
-                stop.told = meant.contains(&missing);
                 stop.help = Some(match missing {
                     "covact" => {
                         "a scene starts with the version of its format, `\"covact\": 1`".into()
@@ -197,6 +172,42 @@ impl<'de, 'f> Decoder<'de, 'f> {
                 });
             }
             stop.at(&open)
+        })
+    }
+
+    /// Keys that this object lacks, as earlier rounds found.
+    fn lacking(&self) -> std::slice::Iter<'f, &'static str> {
+        let keys = self.state.lacking.get(&self.node.span.start);
+        keys.map_or(&[][..], Vec::as_slice).iter()
+    }
+
+    /// Whether a placeholder stands for this value.
+    fn is_replaced(&self) -> bool {
+        matches!(self.node.kind, Kind::Broken)
+            || self.state.replaced.contains(&self.node.span.start)
+    }
+
+    /// The key that this number or text stands for where an object or a choice of this type is expected.
+    fn stands_for(&self, name: &str) -> Option<&'static str> {
+        let number = match &self.node.kind {
+            Kind::Text(_) => false,
+            Kind::Number(_) => true,
+            _ => return None,
+        };
+        let mut forms = STANDS_FOR.iter();
+        let form = forms.find(|s| s.name == name && (s.numbers || !number));
+        form.map(|s| s.key)
+    }
+
+    /// Reads the value as that of the only key of an object.
+    fn only_member<V: Visitor<'de>>(self, key: &'static str, visitor: V) -> Result<V::Value, Stop> {
+        visitor.visit_map(Members {
+            decoder: self,
+            members: [].iter(),
+            known: None,
+            meant: vec![(key, self.node)].into_iter(),
+            lacking: [].iter(),
+            value: None,
         })
     }
 
@@ -214,6 +225,12 @@ impl<'de, 'f> Decoder<'de, 'f> {
     }
 }
 
+/// Whether a word is like one of the names; paths and expressions are no words.
+fn is_nearly(text: &str, names: &[&str]) -> bool {
+    let word = text.chars().all(|c| c.is_alphanumeric() || c == '_');
+    word && nearest(text, names.iter().copied()).is_some()
+}
+
 fn list(names: &[&str]) -> String {
     let quoted: Vec<String> = names
         .iter()
@@ -226,6 +243,9 @@ fn list(names: &[&str]) -> String {
 macro_rules! whole_numbers {
     ($($method:ident $visit:ident $type:ty),*) => {$(
         fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
+            if self.is_replaced() {
+                return Placeholder.$method(visitor);
+            }
             let n = self.whole(<$type>::MIN as i64, <$type>::MAX as u64)?;
             visitor.$visit(n as $type).map_err(|e: Stop| e.at(&self.node.span))
         }
@@ -236,8 +256,11 @@ impl<'de> Deserializer<'de> for Decoder<'de, '_> {
     type Error = Stop;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
+        if self.is_replaced() {
+            return Placeholder.deserialize_any(visitor);
+        }
         let result = match &self.node.kind {
-            Kind::Null => visitor.visit_unit(),
+            Kind::Null | Kind::Broken => visitor.visit_unit(),
             Kind::Bool(b) => visitor.visit_bool(*b),
             Kind::Number(n) => visitor.visit_f64(*n),
             Kind::Text(t) => visitor.visit_borrowed_str(t),
@@ -248,6 +271,9 @@ impl<'de> Deserializer<'de> for Decoder<'de, '_> {
     }
 
     fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
+        if self.is_replaced() {
+            return Placeholder.deserialize_bool(visitor);
+        }
         match self.node.kind {
             Kind::Bool(b) => visitor
                 .visit_bool(b)
@@ -267,12 +293,18 @@ impl<'de> Deserializer<'de> for Decoder<'de, '_> {
     }
 
     fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
+        if self.is_replaced() {
+            return Placeholder.deserialize_f64(visitor);
+        }
         visitor
             .visit_f64(self.number()?)
             .map_err(|e: Stop| e.at(&self.node.span))
     }
 
     fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
+        if self.is_replaced() {
+            return Placeholder.deserialize_str(visitor);
+        }
         match &self.node.kind {
             Kind::Text(t) => visitor
                 .visit_borrowed_str(t)
@@ -286,6 +318,9 @@ impl<'de> Deserializer<'de> for Decoder<'de, '_> {
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
+        if self.is_replaced() {
+            return Placeholder.deserialize_option(visitor);
+        }
         match self.node.kind {
             Kind::Null => visitor.visit_none(),
             _ => visitor.visit_some(self),
@@ -293,6 +328,9 @@ impl<'de> Deserializer<'de> for Decoder<'de, '_> {
     }
 
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
+        if self.is_replaced() {
+            return Placeholder.deserialize_seq(visitor);
+        }
         match &self.node.kind {
             Kind::Array(items) => {
                 let access = Items {
@@ -306,6 +344,9 @@ impl<'de> Deserializer<'de> for Decoder<'de, '_> {
     }
 
     fn deserialize_tuple<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, Stop> {
+        if self.is_replaced() {
+            return Placeholder.deserialize_tuple(len, visitor);
+        }
         match &self.node.kind {
             Kind::Array(items) if items.len() == len => self.deserialize_seq(visitor),
             _ => Err(self.expected(&format!("a list of {len} values"))),
@@ -313,12 +354,17 @@ impl<'de> Deserializer<'de> for Decoder<'de, '_> {
     }
 
     fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
+        if self.is_replaced() {
+            return Placeholder.deserialize_map(visitor);
+        }
         match &self.node.kind {
             Kind::Object(members) => {
                 let access = Members {
                     decoder: self,
                     members: members.iter(),
                     known: None,
+                    meant: Vec::new().into_iter(),
+                    lacking: self.lacking(),
                     value: None,
                 };
                 visitor.visit_map(access).map_err(|e| e.at(&self.node.span))
@@ -329,23 +375,41 @@ impl<'de> Deserializer<'de> for Decoder<'de, '_> {
 
     fn deserialize_struct<V: Visitor<'de>>(
         self,
-        _name: &'static str,
+        name: &'static str,
         fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Stop> {
-        self.object(fields, visitor)
+        if self.is_replaced() {
+            return Placeholder.deserialize_struct(name, fields, visitor);
+        }
+        match self.stands_for(name) {
+            Some(key) => self.only_member(key, visitor),
+            None => self.object(fields, visitor),
+        }
     }
 
     fn deserialize_enum<V: Visitor<'de>>(
         self,
-        _name: &'static str,
+        type_name: &'static str,
         variants: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Stop> {
+        if self.is_replaced() {
+            return Placeholder.deserialize_enum(type_name, variants, visitor);
+        }
+        let short = self.stands_for(type_name);
         let (name, span, content) = match &self.node.kind {
-            Kind::Text(t) => (t, &self.node.span, None),
+            Kind::Text(t) if variants.contains(&t.as_str()) => (t.as_str(), &self.node.span, None),
+            // A word that is nearly the name of a variant is meant to be that.
+            Kind::Text(t) => match short.filter(|_| !is_nearly(t, variants)) {
+                Some(key) => (key, &self.node.span, Some(self.node)),
+                None => (t.as_str(), &self.node.span, None),
+            },
+            Kind::Number(_) if short.is_some() => {
+                (short.unwrap_or_default(), &self.node.span, Some(self.node))
+            }
             Kind::Object(members) => match members.as_slice() {
-                [only] => (&only.key, &only.key_span, Some(&only.value)),
+                [only] => (only.key.as_str(), &only.key_span, Some(&only.value)),
                 [] => {
                     return Err(self
                         .expected("an object with one key")
@@ -362,7 +426,7 @@ impl<'de> Deserializer<'de> for Decoder<'de, '_> {
             },
             _ => return Err(self.expected(&format!("one of {}", list(variants)))),
         };
-        if !variants.contains(&name.as_str()) {
+        if !variants.contains(&name) {
             return Err(Stop::new(format!("unknown name `{}`", shorten(name)))
                 .help(suggestion(name, "known names", variants.iter().copied()))
                 .at(span));
@@ -380,115 +444,5 @@ impl<'de> Deserializer<'de> for Decoder<'de, '_> {
 
     serde::forward_to_deserialize_any! {
         char bytes byte_buf unit unit_struct newtype_struct tuple_struct identifier ignored_any
-    }
-}
-
-struct Items<'de, 'f> {
-    decoder: Decoder<'de, 'f>,
-    items: std::slice::Iter<'de, Node>,
-}
-
-impl<'de> de::SeqAccess<'de> for Items<'de, '_> {
-    type Error = Stop;
-    fn next_element_seed<T: DeserializeSeed<'de>>(
-        &mut self,
-        seed: T,
-    ) -> Result<Option<T::Value>, Stop> {
-        let Some(node) = self.items.next() else {
-            return Ok(None);
-        };
-        seed.deserialize(self.decoder.with(node)).map(Some)
-    }
-    fn size_hint(&self) -> Option<usize> {
-        Some(self.items.len())
-    }
-}
-
-struct Members<'de, 'f> {
-    decoder: Decoder<'de, 'f>,
-    members: std::slice::Iter<'de, Member>,
-    /// Only these keys are passed on; none: all.
-    known: Option<&'static [&'static str]>,
-    value: Option<&'de Node>,
-}
-
-impl<'de> de::MapAccess<'de> for Members<'de, '_> {
-    type Error = Stop;
-    fn next_key_seed<K: DeserializeSeed<'de>>(
-        &mut self,
-        seed: K,
-    ) -> Result<Option<K::Value>, Stop> {
-        let known = self.known;
-        let Some(m) = self
-            .members
-            .find(|m| known.is_none_or(|k| k.contains(&m.key.as_str())))
-        else {
-            return Ok(None);
-        };
-        self.value = Some(&m.value);
-        let key = m.key.as_str().into_deserializer();
-        seed.deserialize(key)
-            .map(Some)
-            .map_err(|e: Stop| e.at(&m.key_span))
-    }
-    fn next_value_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<T::Value, Stop> {
-        match self.value.take() {
-            Some(node) => seed.deserialize(self.decoder.with(node)),
-            None => Err(Stop::new("a value was asked for before its key")),
-        }
-    }
-}
-
-struct Variant<'de, 'f> {
-    decoder: Decoder<'de, 'f>,
-    name: &'de str,
-    span: &'de Range<usize>,
-    content: Option<&'de Node>,
-}
-
-impl<'de, 'f> Variant<'de, 'f> {
-    fn content(&self, form: &str) -> Result<Decoder<'de, 'f>, Stop> {
-        let missing = || {
-            Stop::new(format!("`{}` needs a value", self.name))
-                .help(format!("write `{{\"{}\": {form}}}`", self.name))
-                .at(self.span)
-        };
-        self.content
-            .map(|node| self.decoder.with(node))
-            .ok_or_else(missing)
-    }
-}
-
-impl<'de, 'f> de::EnumAccess<'de> for Variant<'de, 'f> {
-    type Error = Stop;
-    type Variant = Self;
-    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Self), Stop> {
-        let variant = seed.deserialize(self.name.into_deserializer());
-        variant.map(|v| (v, self))
-    }
-}
-
-impl<'de> de::VariantAccess<'de> for Variant<'de, '_> {
-    type Error = Stop;
-    fn unit_variant(self) -> Result<(), Stop> {
-        match self.content {
-            None => Ok(()),
-            Some(_) => Err(Stop::new(format!("`{}` takes no value", self.name))
-                .help(format!("write `\"{}\"`", self.name))
-                .at(self.span)),
-        }
-    }
-    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Stop> {
-        seed.deserialize(self.content("...")?)
-    }
-    fn tuple_variant<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, Stop> {
-        self.content("[...]")?.deserialize_tuple(len, visitor)
-    }
-    fn struct_variant<V: Visitor<'de>>(
-        self,
-        fields: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Stop> {
-        self.content("{...}")?.object(fields, visitor)
     }
 }

@@ -1,0 +1,49 @@
+//! Probes of a scene: their nodes.
+use super::super::error::text;
+use super::super::probe::{ProbeModel, nearest_node};
+use super::{Builder, ModelError};
+use crate::scene::Probe;
+
+impl Builder<'_> {
+    /// Finds the nodes of all probes.
+    ///
+    /// # Errors
+    /// [`ModelError`] for unknown sets and bodies.
+    pub(super) fn probes(&self) -> Result<Vec<ProbeModel>, ModelError> {
+        let probes = self.scene.probes.iter();
+        probes
+            .map(|(name, probe)| {
+                let mut nodes = self.probed(probe, &format!("/probes/{name}"))?;
+                nodes.sort_unstable();
+                nodes.dedup();
+                Ok(ProbeModel {
+                    name: name.clone(),
+                    quantity: probe.quantity,
+                    take: probe.taken(),
+                    nodes,
+                })
+            })
+            .collect()
+    }
+
+    fn probed(&self, probe: &Probe, at: &str) -> Result<Vec<u32>, ModelError> {
+        if let Some(on) = &probe.on {
+            let mut nodes = Vec::new();
+            for (at, reference) in on.places(&format!("{at}/on")) {
+                nodes.extend(self.set_nodes(reference, &at)?.1);
+            }
+            return Ok(nodes);
+        }
+        let named = |name: &String| probe.body.as_ref().is_none_or(|own| own == name);
+        let mut bodies = self.bodies.iter().filter(|b| named(&b.name));
+        let found = match (probe.near, &probe.body) {
+            (Some(point), _) => nearest_node(bodies, point).map(|n| vec![n]),
+            (None, Some(_)) => bodies.next().map(|body| {
+                let first = body.first_node;
+                (first..first + body.mesh.nodes.len() as u32).collect()
+            }),
+            (None, None) => None,
+        };
+        found.ok_or_else(|| text(at, "the probe names no node"))
+    }
+}

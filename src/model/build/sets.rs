@@ -1,0 +1,137 @@
+//! Sets of bodies, by the names under which scenes refer to them.
+use super::super::error::{At, text};
+use super::super::slave::slave_points;
+use super::{Builder, ModelError};
+use crate::mesh::{Face, Mesh};
+use crate::scene::{self, SetNames};
+use std::collections::HashSet;
+
+/// Body and set of `body.set`.
+fn split(reference: &str) -> (&str, &str) {
+    reference.split_once('.').unwrap_or((reference, ""))
+}
+
+impl Builder<'_> {
+    /// What is wrong with references to sets: every one by itself, before any is used.
+    pub(super) fn references(&self) -> Vec<ModelError> {
+        let mut errors = Vec::new();
+        for (name, contact) in &self.scene.contacts {
+            let at = |side: &str| format!("/contacts/{name}/{side}");
+            errors.extend(self.faces(&contact.slave, &at("slave")).err());
+            if !self.scene.surfaces.contains_key(&contact.master) {
+                errors.extend(self.faces(&contact.master, &at("master")).err());
+            }
+        }
+        for (name, load) in &self.scene.loads {
+            for (at, reference) in load.on.places(&format!("/loads/{name}/on")) {
+                match load.force {
+                    Some(_) => errors.extend(self.set_nodes(reference, &at).err()),
+                    None => errors.extend(self.faces(reference, &at).err()),
+                }
+            }
+        }
+        for (name, support) in &self.scene.supports {
+            for (at, reference) in support.on.places(&format!("/supports/{name}/on")) {
+                errors.extend(self.set_nodes(reference, &at).err());
+            }
+        }
+        errors
+    }
+
+    pub(super) fn body(
+        &self,
+        reference: &str,
+        pointer: &str,
+    ) -> Result<(usize, &Mesh, u32), ModelError> {
+        let (name, _) = split(reference);
+        let index = *(self.body_index.get(name))
+            .ok_or_else(|| text(pointer, format!("there is no body `{name}`")))?;
+        let body = &self.bodies[index];
+        Ok((index, &body.mesh, body.first_node))
+    }
+
+    pub(super) fn faces(
+        &self,
+        reference: &str,
+        pointer: &str,
+    ) -> Result<(usize, Vec<Face>), ModelError> {
+        let (index, mesh, _) = self.body(reference, pointer)?;
+        let faces = mesh
+            .face_set(split(reference).1)
+            .at(|| pointer.to_owned())?;
+        Ok((index, faces.to_vec()))
+    }
+
+    /// Nodes of a node set, or of a face set where there is no node set of that name.
+    pub(super) fn set_nodes(
+        &self,
+        reference: &str,
+        pointer: &str,
+    ) -> Result<(usize, Vec<u32>), ModelError> {
+        let (index, mesh, first) = self.body(reference, pointer)?;
+        let set = split(reference).1;
+        let local = match mesh.face_sets.get(set) {
+            Some(faces) if !mesh.node_sets.contains_key(set) => mesh.nodes_of(faces),
+            _ => mesh.node_set(set).at(|| pointer.to_owned())?.to_vec(),
+        };
+        Ok((index, local.into_iter().map(|n| n + first).collect()))
+    }
+
+    /// Faces of the sets by body, each once, in the order in which bodies are first named.
+    pub(super) fn faces_of(
+        &self,
+        on: &SetNames,
+        at: &str,
+    ) -> Result<Vec<(usize, Vec<Face>)>, ModelError> {
+        let mut parts: Vec<(usize, Vec<Face>)> = Vec::new();
+        for (pointer, reference) in on.places(at) {
+            let (body, faces) = self.faces(reference, &pointer)?;
+            match parts.iter_mut().find(|(b, _)| *b == body) {
+                None => parts.push((body, faces)),
+                Some((_, all)) => {
+                    let before: HashSet<Face> = all.iter().copied().collect();
+                    all.extend(faces.into_iter().filter(|f| !before.contains(f)));
+                }
+            }
+        }
+        Ok(parts)
+    }
+
+    /// Whether `body.set` names a set of faces.
+    fn is_face_set(&self, reference: &str, pointer: &str) -> Result<bool, ModelError> {
+        let (_, mesh, _) = self.body(reference, pointer)?;
+        Ok(mesh.face_sets.contains_key(split(reference).1))
+    }
+
+    /// Share of each node in a total force: by tributary area on face sets, equal on node sets.
+    pub(super) fn shares(&self, on: &SetNames, at: &str) -> Result<Vec<(u32, f64)>, ModelError> {
+        let mut all_faces = true;
+        for (pointer, reference) in on.places(at) {
+            all_faces &= self.is_face_set(reference, &pointer)?;
+        }
+        if all_faces {
+            let mut points = Vec::new();
+            for (body, faces) in self.faces_of(on, at)? {
+                let body = &self.bodies[body];
+                let own = slave_points(&body.mesh, &faces, scene::Points::Nodes, body.first_node);
+                points.extend(own.at(|| at.to_owned())?);
+            }
+            let total: f64 = points.iter().map(|p| p.area).sum();
+            return Ok(points
+                .iter()
+                .map(|p| (p.nodes[0], p.area / total))
+                .collect());
+        }
+        let mut nodes = Vec::new();
+        for (pointer, reference) in on.places(at) {
+            nodes.extend(self.set_nodes(reference, &pointer)?.1);
+        }
+        // Sets may share nodes.
+        if matches!(on, SetNames::List(_)) {
+            nodes.sort_unstable();
+            nodes.dedup();
+        }
+        let share = 1.0 / nodes.len().max(1) as f64;
+        Ok(nodes.into_iter().map(|n| (n, share)).collect())
+    }
+}
