@@ -166,7 +166,11 @@ impl Problem<'_> {
             (s.xi[k] + x).clamp(low, high) - s.xi[k]
         };
         let cut = [clamp(0, step[0]), clamp(1, step[1])];
-        let stopped = |k: usize| cut[k].abs() < step[k].abs() * (1.0 - 1e-12);
+        // Not by the lengths: a start within rounding of a bound leaves a step along it rounded just as much.
+        let stopped = |k: usize| {
+            let [low, high] = self.range[k];
+            s.xi[k] + step[k] < low || s.xi[k] + step[k] > high
+        };
         let mut out = cut;
         for (k, cut) in cut.into_iter().enumerate() {
             let other = 1 - k;
@@ -261,4 +265,38 @@ fn damped_step(s: &Local) -> [f64; 2] {
     form.and_then(|form| s.downhill().solve(&form))
         .or_else(|| s.downhill().solve(&s.metric))
         .unwrap_or_else(|| s.downhill().diagonal_step())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::moving::{MovingFacets, MovingPlace};
+    use crate::project::{Hint, Status};
+    use crate::surface::Vec3;
+
+    /// A point beyond the border of a slightly warped facet, from the last number within the border.
+    #[test]
+    fn a_start_within_rounding_of_a_border_ends_on_it() {
+        let facets: [(&[u32], [u8; 2]); 1] = [(&[0, 1, 2, 3], [2, 2])];
+        let mut set = MovingFacets::new(&facets).unwrap();
+        let corners = [
+            Vec3::new(7.859805786579753, -0.002153071489213154, 3.858225415623029),
+            Vec3::new(9.003854949097022, -0.0031804268722559225, 3.861012482092053),
+            Vec3::new(7.85995460970505, 1.3325916594609295, 3.8572376065089706),
+            Vec3::new(9.00393699329664, 1.3324213599901187, 3.8596992211937984),
+        ];
+        set.update(|k| corners[k as usize]);
+        let q = Vec3::new(8.754040211874983, -0.005077594553957267, 3.8702171102286487);
+        let hint = Hint {
+            patch: 0,
+            xi: [0.5633248393647138, -1.0 + f64::EPSILON],
+        };
+        let far = set.project(&q, None, 1.0, |_| true).unwrap();
+        let near = set.project(&q, Some(hint), 1.0, |_| true).unwrap();
+        for foot in [&far, &near] {
+            assert_eq!(foot.status, Status::Unique);
+            assert!(matches!(foot.place, MovingPlace::Edge { .. }));
+            assert_eq!(foot.xi[1], -1.0);
+            assert!((foot.xi[0] - far.xi[0]).abs() < 1e-13);
+        }
+    }
 }
