@@ -3,7 +3,8 @@
 //! Where two facets meet at a small angle, a point below their common edge has its foot on one, on the other or, in a valley,
 //! on the edge itself, in a zone that is as narrow as the penetration times the angle. Newton's method steps across that zone
 //! and back without end. A point that was on a facet in the iteration before therefore stays there, on the facet continued
-//! past its border by a little, as long as this changes its gap by less than contact gives way anyhow.
+//! past its border by a little, as long as this changes its gap by less than contact gives way anyhow. A point in the zone of a
+//! valley of a deforming master is left alone: the edge holds it from both sides.
 //!
 //! At a free border the same holds: a point of which Poisson's ratio makes the last digit hang over would lose all of its
 //! pressure at once, come back, and lose it again.

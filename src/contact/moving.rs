@@ -114,7 +114,7 @@ impl MovingMaster<'_> {
     }
 
     /// The foot of a point on the facet `on`, where it may stand for its closest point: across a fold, and at a free border that
-    /// the point has not left yet.
+    /// the point has not left yet. A foot on a fold is none that hops.
     #[cold]
     #[inline(never)]
     fn kept<L: NormalLaw>(
@@ -132,7 +132,8 @@ impl MovingMaster<'_> {
         if border && if free(foot, x) { outside } else { !hangs } {
             return None;
         }
-        if !accept(on.patch) {
+        // In a valley the edge itself holds the point.
+        if !border && foot.place != MovingPlace::Face || !accept(on.patch) {
             return None;
         }
         let xi3 = foot.signed_distance;
