@@ -1,5 +1,6 @@
 //! Can a body move without being strained? Six rigid motions against its supports.
 use super::Model;
+use crate::scene::{TimeFunction, ValueError};
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 
@@ -43,6 +44,100 @@ impl FreeMotion {
             true => rigid / all,
             false => 0.0,
         }
+    }
+
+    /// The rigid motion that supports prescribe for the piece from the displacements `u` to `time`: the least one that fits
+    /// their increments best, and none along the motions that are free. Calls `add` with each node and its way; does nothing
+    /// where no support moves the piece.
+    ///
+    /// # Errors
+    /// A prescribed value that cannot be evaluated.
+    pub fn carried(
+        &self,
+        model: &Model,
+        u: &[f64],
+        time: f64,
+        mut add: impl FnMut(u32, Vec3),
+    ) -> Result<(), ValueError> {
+        let own = |dof: u32| self.nodes.binary_search(&(dof / 3)).is_ok();
+        let moved = (model.prescribed.iter()).any(|p| p.value.is_some() && own(p.dof))
+            || (model.means.iter()).any(|m| m.mean.is_some() && own(m.free));
+        if !moved {
+            return Ok(());
+        }
+        let position = |n: u32| {
+            let first = 3 * n as usize;
+            model.nodes[n as usize] + Vec3::from_column_slice(&u[first..first + 3])
+        };
+        let frame = Frame::new(self.nodes.iter().map(|n| position(*n)));
+        let row = |dof: u32| frame.row(position(dof / 3), dof as usize % 3);
+        let value = |f: &Option<TimeFunction>, x: Vec3| match f {
+            None => Ok(0.0),
+            Some(f) => f.eval_at(&x, time),
+        };
+        let (mut gram, mut right) = (Matrix6::zeros(), Vector6::zeros());
+        let mut constrain = |v: Vector6<f64>, increment: f64| {
+            gram += v * v.transpose();
+            right += v * increment;
+        };
+        for p in model.prescribed.iter().filter(|p| own(p.dof)) {
+            let wanted = value(&p.value, model.nodes[p.dof as usize / 3])?;
+            constrain(row(p.dof), wanted - u[p.dof as usize]);
+        }
+        for m in model.means.iter().filter(|m| own(m.free)) {
+            let node = |dof: u32| model.nodes[dof as usize / 3];
+            let wanted = value(&m.mean, (node(m.free) + node(m.tied)) * 0.5)?;
+            let now = (u[m.free as usize] + u[m.tied as usize]) * 0.5;
+            constrain((row(m.free) + row(m.tied)) * 0.5, wanted - now);
+        }
+        let eigen = SymmetricEigen::new(gram);
+        let limit = HINDERED * eigen.eigenvalues.max().max(1e-300);
+        let mut motion = Vector6::zeros();
+        for (value, vector) in (eigen.eigenvalues.iter()).zip(eigen.eigenvectors.column_iter()) {
+            if *value > limit {
+                motion += vector * (vector.dot(&right) / value);
+            }
+        }
+        for &n in &self.nodes {
+            add(n, frame.motion(&motion, position(n)));
+        }
+        Ok(())
+    }
+}
+
+/// Stiffness of a motion against the supports, relative to the stiffest, above which they hinder it.
+const HINDERED: f64 = 1e-10;
+
+/// Rigid motions of a piece: three shifts, and three turns about its centre at a radius of its size.
+struct Frame {
+    center: Vec3,
+    size: f64,
+}
+
+impl Frame {
+    fn new(nodes: impl Iterator<Item = Vec3> + Clone) -> Frame {
+        let (sum, count) = (nodes.clone()).fold((Vec3::zeros(), 0.0), |(s, n), x| (s + x, n + 1.0));
+        let center = sum / count;
+        let squares: f64 = nodes.map(|x| (x - center).norm_squared()).sum();
+        Frame {
+            center,
+            size: (squares / count).sqrt().max(f64::MIN_POSITIVE),
+        }
+    }
+
+    /// What the six motions do to a component of a point.
+    fn row(&self, x: Vec3, component: usize) -> Vector6<f64> {
+        Vector6::from_fn(|k, _| {
+            let mut unit = Vector6::zeros();
+            unit[k] = 1.0;
+            self.motion(&unit, x)[component]
+        })
+    }
+
+    /// The way of a point.
+    fn motion(&self, amounts: &Vector6<f64>, x: Vec3) -> Vec3 {
+        let (shift, turn) = (amounts.fixed_rows::<3>(0), amounts.fixed_rows::<3>(3));
+        shift + turn.into_owned().cross(&((x - self.center) / self.size))
     }
 }
 
@@ -88,30 +183,11 @@ fn pieces(nodes: usize, body: &super::BodyModel) -> Vec<Vec<u32>> {
 }
 
 fn free_motion(model: &Model, first: u32, piece: &[u32]) -> Option<FreeMotion> {
-    let position = |n: u32| model.nodes[(first + n) as usize];
-    let count = piece.len() as f64;
-    let center = piece.iter().fold(Vec3::zeros(), |s, &n| s + position(n)) / count;
-    let size = (piece
-        .iter()
-        .map(|&n| (position(n) - center).norm_squared())
-        .sum::<f64>()
-        / count)
-        .sqrt()
-        .max(f64::MIN_POSITIVE);
+    let nodes = piece.iter().map(|n| model.nodes[(first + n) as usize]);
+    let frame = Frame::new(nodes);
     let own = |dof: u32| dof / 3 >= first && piece.binary_search(&(dof / 3 - first)).is_ok();
-    // Each constraint is a row: what the six motions do to the constrained component, lengths scaled by the size.
-    let row = |dof: u32| {
-        let (node, c) = (dof / 3, dof as usize % 3);
-        let r = (model.nodes[node as usize] - center) / size;
-        let mut v = Vector6::zeros();
-        v[c] = 1.0;
-        for k in 0..3 {
-            let mut axis = Vec3::zeros();
-            axis[k] = 1.0;
-            v[3 + k] = axis.cross(&r)[c];
-        }
-        v
-    };
+    // Each constraint is a row.
+    let row = |dof: u32| frame.row(model.nodes[dof as usize / 3], dof as usize % 3);
     let mut gram = Matrix6::<f64>::zeros();
     for p in model.prescribed.iter().filter(|p| own(p.dof)) {
         let v = row(p.dof);
@@ -123,7 +199,7 @@ fn free_motion(model: &Model, first: u32, piece: &[u32]) -> Option<FreeMotion> {
     }
     let eigen = SymmetricEigen::new(gram);
     let largest = eigen.eigenvalues.max();
-    let limit = 1e-10 * largest.max(1e-300);
+    let limit = HINDERED * largest.max(1e-300);
     let free = eigen.eigenvalues.iter().filter(|&&l| l <= limit).count();
     if free == 0 {
         return None;

@@ -1,6 +1,7 @@
 //! Viscous stabilisation: what keeps a step solvable where the structure itself does not.
 //!
-//! Every unknown of every body feels the force `c m (u - u_committed) / dt`, `m` being the volume lumped to its node. In
+//! Every unknown of every body feels the force `c m (u - u_committed) / dt`, `m` being the volume lumped to its node; where
+//! supports move a body that they do not hold, the rigid motion that they prescribe is left out of `u`. In
 //! an equilibrium that stands still the force is nothing; where a structure snaps, or a body moves freely until it
 //! touches, it takes up what nothing else does. It is a backward Euler step of a structure in a viscous medium: the energy
 //! that it takes is dissipated, never stored.
@@ -14,6 +15,9 @@
 //! with T the end time: a motion evenly spread over the run meets forces of about `factor` times those that bend the
 //! softest body as far, and a snap takes a time of about `factor * T`. A scale of `E / L^2` would be `(L / h)^2` times too
 //! stiff for a shell.
+//!
+//! Where the program itself asks for it, only bodies that contact has to hold feel it, and a step in which it carries anything is
+//! solved again with next to nothing of it: contact holds the body by then, or the step stays as it was.
 use super::error::{number, text};
 use super::free_motion::FreeMotion;
 use super::{BodyModel, Model, ModelError, penalty};
@@ -30,6 +34,11 @@ const TURN: f64 = 0.25;
 const FAR: f64 = 10.0;
 /// Part of the forces that the stabilisation may be before the answer rests on it.
 pub const RESTS: f64 = 0.01;
+/// Parts of the forces between which a step is solved again with [`RELEASED`] of it. Where it is more, nothing else holds the body
+/// yet.
+pub const RELEASES: [f64; 2] = [1e-3, 0.5];
+/// What is left of the coefficient then.
+pub const RELEASED: f64 = 1e-4;
 /// Part of the strain energy that it may dissipate without a word.
 pub const DISSIPATES: f64 = 0.05;
 
@@ -40,6 +49,8 @@ pub struct StabilizationModel {
     pub coefficient: f64,
     /// Steps that start at this time or later are not stabilised.
     pub until: f64,
+    /// Whether the run releases it in steps in which contact holds what it was to hold.
+    pub released: bool,
     /// `c m` of every degree of freedom (force time / length); zero where it is no unknown of a body.
     pub weights: Vec<f64>,
     /// What only contact and the stabilisation hold.
@@ -133,6 +144,7 @@ pub fn stabilization(
     let stabilization = StabilizationModel {
         coefficient,
         until: until.unwrap_or(f64::INFINITY),
+        released: only_free,
         weights,
         free,
         size: size(model.nodes[..model.body_nodes()].iter()),

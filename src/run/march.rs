@@ -1,4 +1,5 @@
 //! The march through time: steps, roll-back, output.
+mod released;
 mod restart;
 mod settle;
 
@@ -340,6 +341,12 @@ impl<'a, 'm> March<'a, 'm> {
                 &mut trial,
             );
             let mut settled = None;
+            if let Ok(converged) = &mut result
+                && let Err(failure) =
+                    self.released((step, end), (&*committed, walk), &mut trial, converged)
+            {
+                result = Err(failure);
+            }
             if let Ok(converged) = &mut result {
                 let at = (step, end, cuts);
                 match self.settle(at, (&*committed, walk), &mut trial, converged, outputs)? {

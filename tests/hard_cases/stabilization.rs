@@ -5,6 +5,7 @@ use covact::assembly::Assembler;
 use covact::model::Model;
 use covact::model::build::build;
 use covact::model::state::State;
+use covact::output::RunStatus;
 use covact::scene::parse;
 use serde_json::{Value, json};
 
@@ -160,4 +161,45 @@ fn until_ends_it() {
     );
     assert!((a / b - 1.0).abs() < 1e-7, "{a} {b}");
     assert!(plain.history.column("energy.stabilization").is_none());
+}
+
+/// A block pressed on a floor and pushed along slides under mu N to within a thousandth, whether a support or a wall pushes it:
+/// what holds it from drifting off takes nothing away from the force that is asked for.
+#[test]
+fn a_block_that_is_pushed_feels_its_friction_only() {
+    let (mu, pressure) = (0.1, 2.0);
+    let push = json!({"table": [[0, 0], [1, 0], [2, 0.5]]});
+    let mut scene = json!({
+        "covact": 1,
+        "materials": {"alu": {"st_venant_kirchhoff": {"E": 70000, "nu": 0.33}}},
+        "bodies": {"block": {
+            "mesh": {"block": {"min": [0, 0, 0], "max": [8, 6, 5], "elements": [3, 2, 2]}}, "material": "alu"
+        }},
+        "surfaces": {"floor": {"plane": {"center": [4, 3, 0], "size": [40, 40]}}},
+        "contacts": {"rests": {"slave": "block.bottom", "master": "floor", "friction": mu}},
+        "loads": {"press": {"on": "block.top", "pressure": {"table": [[0, 0], [1, pressure]]}}},
+        "solution": {"end_time": 2},
+        "output": {"every": 0}
+    });
+    let friction = mu * pressure * 48.0;
+    let mut held = scene.clone();
+    held["supports"] = json!({"push": {"on": "block.x_min", "displacement": {"x": push}}});
+    scene["surfaces"]["wall"] = json!({
+        "plane": {"center": [0, 3, 2.5], "size": [4, 3], "normal": [1, 0, 0]},
+        "motion": {"translation": [push, 0, 0]}
+    });
+    scene["contacts"]["push"] = json!({"slave": "block.x_min", "master": "wall"});
+    for (scene, pushes) in [(held, "force.push.x"), (scene, "force.wall.x")] {
+        let outcome = solve(&scene);
+        assert_eq!(outcome.summary.status, RunStatus::Done);
+        let told = &outcome.summary.warnings;
+        assert!(!told.iter().any(|w| w.contains("rests on")), "{told:?}");
+        for time in [1.5, 2.0] {
+            let [pushes, floor] =
+                [pushes, "force.floor.x"].map(|name| outcome.at(name, time).abs());
+            println!("{pushes} {floor} {friction}");
+            assert!((floor / friction - 1.0).abs() < 1e-4);
+            assert!((pushes / friction - 1.0).abs() < 1e-3);
+        }
+    }
 }

@@ -1,5 +1,6 @@
-//! Viscous stabilisation: a force on every unknown of a body along its way since the start of the step, and a diagonal of the
-//! tangent. Linear, so exact. Nothing is allocated where the scene does not ask for it.
+//! Viscous stabilisation: a force on every unknown of a body along its way since the start of the step, but for the rigid
+//! motion that supports prescribe, and a diagonal of the tangent. Linear, so exact. Nothing is allocated where the scene does
+//! not ask for it.
 use super::Assembler;
 use crate::contact::law::PairLaw;
 use crate::model::Model;
@@ -10,28 +11,40 @@ use covact_geometry::Vec3;
 pub(super) struct Viscous {
     /// Displacements at its start.
     base: Vec<f64>,
-    /// One over its length; zero where nothing is stabilised.
+    /// The same, moved with what supports do to bodies that they hold in part: the medium goes along. Empty where there are none.
+    medium: Vec<f64>,
+    /// One over its length, times what the coefficient is reduced by; zero where nothing is stabilised.
     rate: f64,
 }
 
 /// What the stabilisation did in a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Drag {
-    /// Energy dissipated.
+    /// Energy that its forces took.
     pub work: f64,
     /// Its forces (sum of the magnitudes at nodes) relative to those of loads, supports or contacts, whichever are largest.
     pub share: f64,
 }
 
 impl Viscous {
+    /// What the forces are measured from.
+    fn medium(&self) -> &[f64] {
+        match self.medium.is_empty() {
+            true => &self.base,
+            false => &self.medium,
+        }
+    }
+
     /// Bytes of heap that it holds.
     pub fn bytes(&self) -> usize {
-        heap(&self.base)
+        heap(&self.base) + heap(&self.medium)
     }
 
     pub fn new(model: &Model) -> Option<Viscous> {
-        model.stabilization.as_ref().map(|_| Viscous {
-            base: vec![0.0; 3 * model.nodes.len()],
+        let dofs = 3 * model.nodes.len();
+        model.stabilization.as_ref().map(|own| Viscous {
+            base: vec![0.0; dofs],
+            medium: vec![0.0; if own.free.is_empty() { 0 } else { dofs }],
             rate: 0.0,
         })
     }
@@ -42,10 +55,28 @@ impl<L: PairLaw> Assembler<'_, L> {
     pub fn begin_step(&mut self, u: &[f64], start: f64, end: f64) {
         if let (Some(viscous), Some(model)) = (&mut self.viscous, &self.model.stabilization) {
             viscous.base.copy_from_slice(u);
+            if !viscous.medium.is_empty() {
+                viscous.medium.copy_from_slice(u);
+            }
+            for piece in &model.free {
+                let medium = &mut viscous.medium;
+                let go = |n: u32, way: Vec3| {
+                    (0..3).for_each(|c| medium[3 * n as usize + c] += way[c]);
+                };
+                // A value that cannot be evaluated is told where the step prescribes it.
+                let _ = piece.motion.carried(self.model, u, end, go);
+            }
             viscous.rate = match model.acts(start) {
                 true => 1.0 / (end - start),
                 false => 0.0,
             };
+        }
+    }
+
+    /// Changes the coefficient in the present step by a factor.
+    pub fn scale_drag(&mut self, factor: f64) {
+        if let Some(viscous) = &mut self.viscous {
+            viscous.rate *= factor;
         }
     }
 
@@ -61,9 +92,10 @@ impl<L: PairLaw> Assembler<'_, L> {
         if viscous.rate == 0.0 {
             return;
         }
+        let medium = viscous.medium();
         for (dof, weight) in model.weights.iter().enumerate() {
             let stiffness = weight * viscous.rate;
-            residual[dof] += stiffness * (u[dof] - viscous.base[dof]);
+            residual[dof] += stiffness * (u[dof] - medium[dof]);
             if TANGENT && stiffness > 0.0 {
                 self.matrix.add_diagonal(dof, stiffness);
             }
@@ -87,6 +119,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         let (Some(viscous), Some(model)) = (&self.viscous, &self.model.stabilization) else {
             return Drag::default();
         };
+        let medium = viscous.medium();
         let mut out = Drag::default();
         let (mut own, mut forces, mut held) = (0.0, [0.0f64; 3], 0);
         let removed: Vec<u32> = self.dofs.removed().collect();
@@ -94,7 +127,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             let (mut drag, mut node) = (0.0, [0.0f64; 3]);
             for dof in first..first + 3 {
                 let way = u[dof] - viscous.base[dof];
-                let force = model.weights[dof] * viscous.rate * way;
+                let force = model.weights[dof] * viscous.rate * (u[dof] - medium[dof]);
                 out.work += force * way;
                 drag += force * force;
                 let squared = |of: &[f64]| of.get(dof).map_or(0.0, |f| f.powi(2));
