@@ -12,9 +12,13 @@ pub(super) const HOPELESS: u32 = 3;
 /// Cuts of a step after which squeezed elements are looked into.
 pub(super) const SUSPECT: u32 = 2;
 /// Part of its length that an edge of an element has to have lost for the element to count as squeezed, and for it to be looked
-/// into: thin shells, whose elements rightly give way where they buckle, are not shortened as much.
+/// into: thin shells, whose elements rightly give way where they buckle, are not shortened as much, and stocky elements do not
+/// buckle.
 const SQUEEZED: f64 = 0.1;
 const SHORTENED: f64 = 0.05;
+const SHORTENED_STOCKY: f64 = 0.01;
+/// Thickness of a stocky element, in terms of the longest edge of its faces.
+const STOCKY: f64 = 0.5;
 /// Most elements of a body that are looked into: those that are squeezed most.
 const LOOKED_INTO: usize = 48;
 
@@ -62,6 +66,25 @@ fn shortened(body: &BodyModel, u: &[f64], e: usize) -> f64 {
     })
 }
 
+/// Part of its length that an edge of an element has to have lost for it to be looked into.
+fn worth_a_look(body: &BodyModel, e: usize) -> f64 {
+    let nodes = body.mesh.element(e);
+    let longest = |bits: &[usize]| {
+        let ends = |bit: usize| {
+            (0..8)
+                .filter(move |a| a & bit == 0)
+                .map(move |a| (a, a ^ bit))
+        };
+        let edges = bits.iter().flat_map(|bit| ends(*bit));
+        let at = |a: usize| body.mesh.nodes[nodes[a] as usize];
+        edges.fold(0.0f64, |most, (a, b)| most.max((at(a) - at(b)).norm()))
+    };
+    match longest(&[4]) >= STOCKY * longest(&[1, 2]) {
+        true => SHORTENED_STOCKY,
+        false => SHORTENED,
+    }
+}
+
 /// The bodies that have squeezed elements which give way in a shape that the plain brick resists, and where one of them is.
 pub(super) fn lost(model: &Model, state: &State) -> Vec<(usize, Vec3)> {
     let mut first = 0;
@@ -76,7 +99,7 @@ pub(super) fn lost(model: &Model, state: &State) -> Vec<(usize, Vec3)> {
         let states = &state.elements[states];
         let mut squeezed: Vec<(f64, usize)> = (0..block.elements())
             .map(|e| (shortened(body, &state.u, e), e))
-            .filter(|(part, _)| len > 0 && *part > SHORTENED)
+            .filter(|(part, e)| len > 0 && *part > worth_a_look(body, *e))
             .collect();
         squeezed.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
         squeezed.truncate(LOOKED_INTO);

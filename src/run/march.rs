@@ -25,7 +25,7 @@ use crate::contact::law::Penalty;
 use crate::machine::clock::Phases;
 use crate::model::error::number;
 use crate::model::state::State;
-use crate::model::{Model, PairModel, penalty, segments};
+use crate::model::{BodyModel, Model, PairModel, penalty, segments};
 use crate::output::atomic::sweep;
 use crate::output::{History, OutputError, Results, RunStatus};
 use crate::scene::Scene;
@@ -34,6 +34,7 @@ use crate::solve::newton::{Converged, StepFailure, Workspace};
 use crate::solve::stepping::Stepping;
 use crate::system::linear::{LinearSolver, Method};
 use covact_geometry::Vec3;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -313,8 +314,15 @@ impl<'a, 'm> March<'a, 'm> {
     ) -> Result<Ending, RunError> {
         let mut trial = committed.clone();
         let mut cuts = 0;
+        let model = self.model;
+        let number_of = |body: &BodyModel| {
+            let mut bodies = model.bodies.iter();
+            bodies.position(|b| b.name == body.name)
+        };
+        // Bodies whose elements turned inside out in a step that was cut.
+        let mut ever_turned = BTreeSet::new();
         let segmented = self.model.pairs.iter().any(|p| p.segments.is_some());
-        while !walk.stepping.done(self.progress.time) {
+        'steps: while !walk.stepping.done(self.progress.time) {
             let end = walk.stepping.next(self.progress.time);
             let dt = end - self.progress.time;
             let step = self.progress.steps + 1;
@@ -443,6 +451,7 @@ impl<'a, 'm> March<'a, 'm> {
             let reason = failure.to_string();
             // Elements that another variant would replace are not followed down to the smallest step.
             let turned = hold::turned(self.model, &failure);
+            ever_turned.extend(turned.and_then(number_of));
             let lost = match cuts >= hold::SUSPECT {
                 true => self.may_be_replaced(&hold::lost(self.model, committed)),
                 false => Vec::new(),
@@ -462,12 +471,13 @@ impl<'a, 'm> March<'a, 'm> {
                         body.block.alpha_len() > 0 && hold::compressed(body, &committed.u);
                     squeezed.then_some(body)
                 });
-                let suspect = (self.model.bodies.iter())
-                    .position(|b| suspect.is_some_and(|s| s.name == b.name));
+                // All of them at once: each would end a run of its own.
+                ever_turned.retain(|b| hold::compressed(&self.model.bodies[*b], &committed.u));
+                ever_turned.extend(suspect.and_then(number_of));
                 let squeezed = hold::remedy(turned);
                 return Ok(Ending {
                     squeezed: match lost.is_empty() {
-                        true => suspect.into_iter().collect(),
+                        true => ever_turned.into_iter().collect(),
                         false => lost,
                     },
                     status: RunStatus::NotConverged,
