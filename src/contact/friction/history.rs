@@ -88,7 +88,7 @@ impl PointHistory {
             // The mean of the tractions at both ends of the step; of a point that stuck at its start, or slid the other way, or
             // did not touch, the traction at the start is the limit there. Either is of second order in the step, and neither
             // gives energy back.
-            let slid = traction.slid(eps_t);
+            let slid = self.slid(local, traction, eps_t);
             let before = to_space.start.inverse_transform_vector(&self.t);
             let went_on = self.status == PointStatus::Slip && before.dot(&slid) > 0.0;
             let first = if went_on { &before } else { first };
@@ -132,7 +132,7 @@ impl PointHistory {
     /// Takes over the end of an accepted step in which a point that was in contact has opened, at `local` in the coordinates
     /// of the base. `foot` is its gap (length) and the unit normal at its foot, nothing where there is none. It slides, and its
     /// traction falls to nothing, in the part of the step before it opens: the normal traction is taken to pass evenly to
-    /// what the law of the pair would make of the gap.
+    /// what the law of the pair would make of the gap, or later where it goes along the surface.
     pub fn leave(
         &mut self,
         local: &Vec3,
@@ -148,10 +148,11 @@ impl PointHistory {
             if let Some((gap, normal)) = foot {
                 let beyond = self.lambda_n + law.response(gap).n;
                 if beyond > self.n {
-                    let part = self.n / (self.n - beyond);
                     let v = self.attraction(eps_t).unprojected(local);
                     // Going away from the surface is no slip.
-                    trial += (v - normal * normal.dot(&v) - before) * part;
+                    let more = v - normal * normal.dot(&v) - before;
+                    let part = self.n / (self.n - beyond);
+                    trial += more * part.max(grazing(more.norm() / eps_t, gap));
                 }
             }
             let slid = trial / eps_t;
@@ -159,6 +160,20 @@ impl PointHistory {
             self.slip += slid.norm();
         }
         self.release(local, foot.map(|(gap, _)| gap));
+    }
+
+    /// How far the point slid in a step that it ends in contact (length, a vector in the tangent plane).
+    fn slid(&self, local: &Vec3, traction: &Traction, eps_t: f64) -> Vec3 {
+        let slid = traction.slid(eps_t);
+        let trial = traction.trial.norm();
+        if self.approach == 0.0 || !self.approach.is_finite() || trial == 0.0 {
+            return slid;
+        }
+        // Along the surface, the trial traction is the way times the part of the step that contact lasted.
+        let way = (local - self.base).dot(&traction.trial) / trial;
+        let part = trial / (eps_t * way);
+        let more = (grazing(way, self.approach) - part).max(0.0);
+        slid + traction.trial * (more * way / trial)
     }
 
     /// Takes over the end of an accepted step in which the point is open: slip will be measured from where it is, `local`, in
@@ -171,6 +186,18 @@ impl PointHistory {
             dissipated: self.dissipated,
             ..PointHistory::default()
         };
+    }
+}
+
+/// Part of a step that a point touches in the mean which goes `way` along the surface while a gap closes or opens (lengths).
+///
+/// Where surfaces slide into each other, what bends out of the way keeps the gap closed from the first touch on, and of many
+/// points some touch early and some late: the mean of the forces at both ends of the step, which the works of tools and supports
+/// count, is then right for their sum. Where they meet head on a way along the surface counts for little.
+fn grazing(way: f64, gap: f64) -> f64 {
+    match way > 0.0 {
+        true => way / (way + gap.max(0.0)),
+        false => 0.0,
     }
 }
 
