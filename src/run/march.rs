@@ -20,7 +20,7 @@ use super::peaks::Peaks;
 use super::penalty_rule::PenaltyRule;
 use super::progress::Progress;
 use super::watch::{Span, Watch, Work};
-use crate::assembly::{Assembler, Drag};
+use crate::assembly::{Assembler, Drag, Totals};
 use crate::contact::law::Penalty;
 use crate::machine::clock::Phases;
 use crate::model::error::number;
@@ -41,6 +41,8 @@ use std::sync::atomic::AtomicBool;
 /// Residual relative to the forces up to which an equilibrium that only the round-off floor accepts is taken without a
 /// word.
 const RELIABLE: f64 = 1e-4;
+/// Cuts of a step after which one that gained energy out of nothing is taken, and told.
+const GIVES_IN: u32 = 4;
 
 /// Whether a pair is the second of two half passes, which is told with the first.
 fn is_back(pair: &PairModel) -> bool {
@@ -106,6 +108,12 @@ impl Outputs {
         self.table.sync()?;
         self.results.sync()
     }
+}
+
+/// What is stored, and what friction has dissipated since the start.
+fn energy(totals: &Totals, sliding: &FrictionTotals) -> f64 {
+    let stored = totals.internal_energy + totals.contact_energy + sliding.stored;
+    stored + sliding.dissipated
 }
 
 impl<'a, 'm> March<'a, 'm> {
@@ -366,7 +374,7 @@ impl<'a, 'm> March<'a, 'm> {
                 }
             }
             let failure = match result {
-                Ok(converged) => {
+                Ok(converged) => 'solved: {
                     let start = self.progress.time;
                     let Settled {
                         sliding,
@@ -381,6 +389,7 @@ impl<'a, 'm> March<'a, 'm> {
                         to: (&trial, end),
                     };
                     let drag = self.assembler.drag(&trial.u, residual);
+                    let watched = self.watch.clone();
                     let work = (self.watch)
                         .work(
                             self.model,
@@ -391,6 +400,15 @@ impl<'a, 'm> March<'a, 'm> {
                         )
                         .map_err(|e| RunError::internal(&e))?;
                     std::mem::swap(&mut trial.histories, &mut histories);
+                    let energy =
+                        energy(&converged.totals, &sliding) + committed.stabilized + drag.work;
+                    if cuts < GIVES_IN
+                        && let Some(part) = watched.gained(self.model, step, &work, energy)
+                    {
+                        self.watch = watched;
+                        self.assembler.penalties.copy_from_slice(&penalties);
+                        break 'solved StepFailure::GainedEnergy { part };
+                    }
                     match &mut walk.before {
                         Some((state, size)) => {
                             std::mem::swap(state, committed);
@@ -435,7 +453,7 @@ impl<'a, 'm> March<'a, 'm> {
                         return Ok(ending);
                     }
                     self.keep(committed, walk, outputs)?;
-                    continue;
+                    continue 'steps;
                 }
                 Err(failure) => failure,
             };
@@ -686,8 +704,7 @@ impl<'a, 'm> March<'a, 'm> {
             }
         }
         let totals = &converged.totals;
-        let stored = totals.internal_energy + totals.contact_energy + sliding.stored;
-        let energy = stored + sliding.dissipated + state.stabilized;
+        let energy = energy(totals, sliding) + state.stabilized;
         let pressed = &outputs.fields.pressed;
         let softened = converged.softened;
         let told = (self.watch).close(self.model, (step, span), work, pressed, energy, softened);

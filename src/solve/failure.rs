@@ -60,6 +60,11 @@ pub enum StepFailure {
         error: f64,
     },
     #[error(
+        "the step gained {part:.1} times the energy that there was out of nothing, which no path through equilibria does: its \
+         solution is another, folded one"
+    )]
+    GainedEnergy { part: f64 },
+    #[error(
         "contact `{pair}`: {points} point(s) that were in contact sank deeper than the `depth` {depth:.6e} of \
          {master}: the penalty is too soft for it, or the step too large"
     )]
