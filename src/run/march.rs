@@ -724,7 +724,8 @@ impl<'a, 'm> March<'a, 'm> {
             (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?;
         self.adapt(errors, growth, converged);
         (self.adapt_slip(outputs, time, converged)).map_err(|e| RunError::internal(&e))?;
-        self.peaks.step(step, &outputs.fields.bearings);
+        let bearings = &outputs.fields.bearings;
+        (self.peaks).step(self.model, step, bearings, &totals.pairs);
         let doubts = linearity_check::doubts(self.model, &mut self.assembler.masters, state, time);
         for doubt in doubts.map_err(|e| RunError::internal(&e))? {
             self.doubt(doubt);

@@ -1,6 +1,7 @@
 //! Where geometry decides about a contact force: how many slave points carried it, and how much of it acted at sharp convex
 //! edges of the tool, each at the step in which the contact's force was the largest.
 use super::bearing::{Bearing, Bearings, FEW};
+use crate::assembly::PairForce;
 use crate::model::error::number;
 use crate::model::initial::point_spacing;
 use crate::model::{Model, PairModel, sharp};
@@ -13,6 +14,9 @@ const AT_EDGES: f64 = 0.1;
 /// Part of a force at points whose penetration is prescribed above which the user is warned.
 const PRESCRIBED: f64 = 0.01;
 
+/// Part of a force by which the two half passes of a contact may disagree without a word.
+const UNBALANCED: f64 = 0.02;
+
 /// A contact at its largest force.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Peak {
@@ -20,6 +24,8 @@ struct Peak {
     at_edges: f64,
     /// The part of it at points whose penetration is prescribed.
     prescribed: f64,
+    /// What the forces on both sides do not balance; zero but for two half passes.
+    unbalanced: f64,
     active: usize,
     /// Points that carried most of it, where these were few; else 0.
     few: usize,
@@ -54,12 +60,13 @@ impl Peaks {
             force,
             at_edges,
             prescribed,
+            unbalanced,
             active,
             few,
             step,
         } in &self.0
         {
-            out.f64s(&[*force, *at_edges, *prescribed]);
+            out.f64s(&[*force, *at_edges, *prescribed, *unbalanced]);
             out.u64(*active as u64);
             out.u64(*few as u64);
             out.u32(*step);
@@ -74,9 +81,9 @@ impl Peaks {
     pub(super) fn take(&mut self, from: &mut Reader) -> Result<(), Malformed> {
         from.exactly(self.0.len(), "largest forces")?;
         for peak in &mut self.0 {
-            let mut sums = [0.0; 3];
+            let mut sums = [0.0; 4];
             from.f64s(&mut sums)?;
-            [peak.force, peak.at_edges, peak.prescribed] = sums;
+            [peak.force, peak.at_edges, peak.prescribed, peak.unbalanced] = sums;
             (peak.active, peak.few) = (from.u64()? as usize, from.u64()? as usize);
             peak.step = from.u32()?;
         }
@@ -91,8 +98,8 @@ impl Peaks {
         Ok(())
     }
 
-    /// Takes an accepted step.
-    pub fn step(&mut self, step: u32, bearings: &Bearings) {
+    /// Takes an accepted step, in which `forces` act on both sides of every pair.
+    pub fn step(&mut self, model: &Model, step: u32, bearings: &Bearings, forces: &[PairForce]) {
         for (highest, stress) in self.1.iter_mut().zip(&bearings.stress) {
             if *stress > highest.stress {
                 *highest = Stress {
@@ -101,7 +108,9 @@ impl Peaks {
                 };
             }
         }
-        for (peak, sum) in self.0.iter_mut().zip(&bearings.pairs) {
+        let pairs = model.pairs.iter().zip(forces);
+        let pairs = self.0.iter_mut().zip(&bearings.pairs).zip(pairs);
+        for ((peak, sum), (pair, PairForce { slave, master })) in pairs {
             let Bearing {
                 force,
                 at_edges,
@@ -111,10 +120,15 @@ impl Peaks {
             } = *sum;
             if force > 0.0 && force >= peak.force {
                 let few = sum.few().unwrap_or(0);
+                let unbalanced = match pair.half {
+                    Some(half) if !half.back => (slave.force + master.force).norm(),
+                    _ => 0.0,
+                };
                 *peak = Peak {
                     force,
                     at_edges,
                     prescribed,
+                    unbalanced,
                     active,
                     few,
                     step,
@@ -127,7 +141,11 @@ impl Peaks {
     pub fn warnings(&self, model: &Model) -> Vec<String> {
         let pairs = model.pairs.iter().zip(&self.0);
         let of = |(pair, peak): (&PairModel, &Peak)| {
-            [peak.at_edges(model, pair), peak.prescribed(model, pair)]
+            [
+                peak.at_edges(model, pair),
+                peak.prescribed(model, pair),
+                peak.unbalanced(pair),
+            ]
         };
         pairs.flat_map(of).flatten().collect()
     }
@@ -206,6 +224,18 @@ impl Peak {
                 100.0 * self.prescribed / self.force,
                 self.step,
                 pair.master_words(model)
+            )
+        })
+    }
+
+    fn unbalanced(&self, pair: &PairModel) -> Option<String> {
+        (self.unbalanced > UNBALANCED * self.force).then(|| {
+            format!(
+                "contact `{}`: the forces of its two half passes differ by {:.0} % of the force at step {}, and so far do the forces \
+                 on its two sides: too few points carry it. Refine both sides there, or take one pass",
+                pair.name,
+                100.0 * self.unbalanced / self.force,
+                self.step
             )
         })
     }
