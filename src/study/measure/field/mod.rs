@@ -20,10 +20,11 @@ use std::path::Path;
 const MOST: usize = 9;
 
 /// Fields that exist on slave faces only; elsewhere they are written as zero or NaN.
-const ON_SLAVE_FACES: [&str; 6] = [
+const ON_SLAVE_FACES: [&str; 7] = [
     "contact_pressure",
     "contact_gap",
     "contact_status",
+    "contact_traction",
     "friction_traction",
     "slip",
     "dissipated",
