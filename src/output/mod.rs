@@ -22,6 +22,7 @@ mod compare;
 mod error;
 mod history;
 mod lock;
+mod packed;
 mod planned;
 pub(crate) mod read;
 mod results;
