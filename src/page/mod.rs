@@ -2,7 +2,7 @@
 //! file that needs no network.
 //!
 //! [`write()`] makes `report.html` of what a run left in its folder, [`write_beside`] a page with two runs. The numbers
-//! stand in the page packed ([`pack`]); `web/` has its scripts, shaders and rules.
+//! stand in the page packed (`pack.rs`); `web/` has its scripts, shaders and rules.
 
 mod html;
 pub(crate) mod markup;
