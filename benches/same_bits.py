@@ -42,6 +42,7 @@ import sys
 import tempfile
 import time
 import xml.etree.ElementTree as ElementTree
+import zlib
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 CACHE = os.path.join(ROOT, "target", "same_bits")
@@ -359,7 +360,9 @@ def compare_json(place, old, new):
 
 def compare_grids(a, b):
     """The first difference of two .vtu files whose bytes differ."""
-    old, new = (list(ElementTree.parse(p).getroot().iter("DataArray")) for p in (a, b))
+    roots = [ElementTree.parse(p).getroot() for p in (a, b)]
+    packed = ["compressor" in root.attrib for root in roots]
+    old, new = (list(root.iter("DataArray")) for root in roots)
     names = [[array.get("Name") or "points" for array in arrays] for arrays in (old, new)]
     if names[0] != names[1]:
         alone = [n for n in names[0] + names[1] if (n in names[0]) != (n in names[1])]
@@ -367,7 +370,7 @@ def compare_grids(a, b):
     for name, first, second in zip(names[0], old, new):
         if (first.text or "").strip() == (second.text or "").strip():
             continue
-        x, y = numbers(first), numbers(second)
+        x, y = numbers(first, packed[0]), numbers(second, packed[1])
         if len(x) != len(y):
             return f"{name}: {len(x)} numbers | {len(y)} numbers"
         size = int(first.get("NumberOfComponents") or 1)
@@ -381,12 +384,21 @@ def compare_grids(a, b):
 TYPES = {"Float64": "d", "Float32": "f", "Int64": "q", "UInt64": "Q", "Int32": "i", "UInt32": "I", "Int8": "b", "UInt8": "B"}
 
 
-def numbers(array):
+def numbers(array, packed=False):
     """The numbers of an array, inline base64 behind its length or ASCII."""
     text = "".join((array.text or "").split())
     kind = TYPES[array.get("type")]
     if array.get("format") == "ascii":
         return [float(x) for x in (array.text or "").split()]
+    if packed:
+        # The number of blocks, their sizes before compression and after it, then the blocks.
+        blocks = struct.unpack("<Q", base64.b64decode(text[:12])[:8])[0]
+        head = 4 * -(-8 * (3 + blocks) // 3)
+        sizes = struct.unpack(f"<{3 + blocks}Q", base64.b64decode(text[:head]))[3:]
+        body, data = base64.b64decode(text[head:]), b""
+        for size in sizes:
+            data, body = data + zlib.decompress(body[:size]), body[size:]
+        return struct.unpack(f"<{len(data) // struct.calcsize(kind)}{kind}", data)
     # The length is a base64 block of its own, which ends in padding, or the head of the only block.
     head = base64.b64decode(text[:12])
     length = struct.unpack("<Q", head[:8])[0]

@@ -8,6 +8,7 @@ pub mod machine;
 pub mod mesh;
 pub mod model;
 pub mod output;
+pub mod page;
 pub mod plan;
 pub mod run;
 pub mod scene;

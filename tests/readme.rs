@@ -1,19 +1,19 @@
-//! What README states is what the program does.
+//! What README and the pages of docs state is what the program does.
 use covact::output::column_table;
 
 #[test]
-fn readme_lists_the_columns_of_the_history() {
-    let readme = include_str!("../README.md");
+fn docs_lists_the_columns_of_the_history() {
+    let page = include_str!("../docs/outputs.md");
     assert!(
-        readme.contains(&column_table()),
-        "put this into README.md:\n{}",
+        page.contains(&column_table()),
+        "put this into docs/outputs.md:\n{}",
         column_table()
     );
 }
 
 #[test]
-fn readme_lists_the_shipped_scenes() {
-    let readme = include_str!("../README.md");
+fn docs_lists_the_shipped_scenes() {
+    let page = include_str!("../docs/scenes.md");
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes");
     let mut scenes = 0;
     for entry in std::fs::read_dir(folder).expect("scenes") {
@@ -25,8 +25,8 @@ fn readme_lists_the_shipped_scenes() {
             .to_owned();
         if stem != "schema" {
             assert!(
-                readme.contains(&format!("`{stem}`")),
-                "README does not list {stem}"
+                page.contains(&format!("`{stem}`")),
+                "docs/scenes.md does not list {stem}"
             );
             scenes += 1;
         }
@@ -35,24 +35,26 @@ fn readme_lists_the_shipped_scenes() {
 }
 
 #[test]
-fn the_scene_in_the_readme_is_well_formed() {
-    let readme = include_str!("../README.md");
-    let start = readme.find("```json\n").expect("a scene") + 8;
-    let end = start + readme[start..].find("```").expect("its end");
-    let scene = covact::scene::parse(&readme[start..end], "README.md").expect("a scene");
-    let problems = covact::scene::check(&scene);
-    // The CAD file it names does not lie beside README.
-    assert!(
-        problems
-            .iter()
-            .all(|p| p.pointer == "/surfaces/punch/cad/file"),
-        "{problems:?}"
-    );
+fn scenes_in_readme_and_docs_are_well_formed() {
+    for (name, page) in [
+        ("README.md", include_str!("../README.md")),
+        ("docs/scenes.md", include_str!("../docs/scenes.md")),
+    ] {
+        let start = page.find("```json\n").expect("a scene") + 8;
+        let end = start + page[start..].find("```").expect("its end");
+        let scene = covact::scene::parse(&page[start..end], name).expect("a scene");
+        let problems = covact::scene::check(&scene);
+        // The CAD file it names does not lie beside the page.
+        assert!(
+            (problems.iter()).all(|p| p.pointer.starts_with("/surfaces/punch/cad")),
+            "{name}: {problems:?}"
+        );
+    }
 }
 
 #[test]
-fn readme_lists_the_cases_of_the_gauntlet() {
-    let readme = include_str!("../README.md");
+fn docs_lists_the_cases_of_the_gauntlet() {
+    let page = include_str!("../docs/hard_cases.md");
     let mut cases = 0;
     for group in covact::gauntlet::GROUPS {
         for case in group.cases {
@@ -63,7 +65,7 @@ fn readme_lists_the_cases_of_the_gauntlet() {
                 case.what,
                 case.right
             );
-            assert!(readme.contains(&row), "README lacks {row}");
+            assert!(page.contains(&row), "docs/hard_cases.md lacks {row}");
             cases += 1;
         }
     }
@@ -71,17 +73,17 @@ fn readme_lists_the_cases_of_the_gauntlet() {
 }
 
 #[test]
-fn the_study_in_the_readme_is_right() {
+fn the_study_in_the_docs_is_right() {
     use covact::study::{expand, load};
-    let readme = include_str!("../README.md");
-    let start = readme.find("{\n  \"covact_study\"").expect("a study");
-    let end = start + readme[start..].find("```").expect("its end");
+    let page = include_str!("../docs/studies.md");
+    let start = page.find("{\n  \"covact_study\"").expect("a study");
+    let end = start + page[start..].find("```").expect("its end");
     let folder = tempfile::tempdir().expect("a folder");
     let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes");
     let scene = "ball_on_plate.json";
     std::fs::copy(format!("{scenes}/{scene}"), folder.path().join(scene)).expect("its scene");
     let study = folder.path().join("study.json");
-    std::fs::write(&study, &readme[start..end]).expect("written");
+    std::fs::write(&study, &page[start..end]).expect("written");
     let study = load(&study).expect("well-formed");
     let expansion = expand(&study).expect("right");
     // Three masters with three shells, and two runs of a reference.
@@ -89,8 +91,8 @@ fn the_study_in_the_readme_is_right() {
 }
 
 #[test]
-fn readme_lists_the_shipped_studies() {
-    let readme = include_str!("../README.md");
+fn docs_lists_the_shipped_studies() {
+    let page = include_str!("../docs/studies.md");
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/studies");
     let mut studies = 0;
     for entry in std::fs::read_dir(folder).expect("studies") {
@@ -98,8 +100,8 @@ fn readme_lists_the_shipped_studies() {
         let stem = path.file_stem().and_then(|s| s.to_str()).expect("name");
         if path.extension().is_some_and(|e| e == "json") && stem != "schema" {
             assert!(
-                readme.contains(&format!("`{stem}`")),
-                "README does not list {stem}"
+                page.contains(&format!("`{stem}`")),
+                "docs/studies.md does not list {stem}"
             );
             // What it found is beside it.
             let found = path.with_file_name("found").join(stem).join("study.csv");
@@ -108,4 +110,79 @@ fn readme_lists_the_shipped_studies() {
         }
     }
     assert!(studies >= 5);
+}
+
+#[test]
+fn readme_is_short_and_leads_on() {
+    let readme = include_str!("../README.md");
+    assert!(readme.lines().count() <= 150, "{}", readme.lines().count());
+    for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/docs")).expect("docs") {
+        let name = entry.expect("entry").file_name();
+        let name = name.to_str().expect("a name");
+        let link = match name.strip_suffix(".md") {
+            Some(_) => format!("](docs/{name})"),
+            None => format!("](docs/{name}/README.md)"),
+        };
+        assert!(readme.contains(&link), "README does not link {name}");
+    }
+    // Its rows of rivals are those of the full table.
+    let all = include_str!("../docs/hard_cases.md");
+    let rows = (readme.lines()).skip_while(|l| !l.starts_with("| case | covact |"));
+    let rows: Vec<&str> = rows.take_while(|l| l.starts_with('|')).collect();
+    assert_eq!(rows.len(), 2 + 5);
+    for row in rows {
+        assert!(all.contains(row), "docs/hard_cases.md lacks {row}");
+    }
+}
+
+/// Places that the links of a page lead to, without those on the web.
+fn links(page: &str) -> impl Iterator<Item = &str> {
+    let places = page
+        .split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split_once(')'));
+    places
+        .map(|(place, _)| place)
+        .filter(|place| !place.starts_with("http"))
+}
+
+#[test]
+fn links_of_readme_and_docs_lead_somewhere() {
+    use std::path::{Path, PathBuf};
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut pages = vec![root.join("README.md")];
+    for folder in [root.join("docs"), root.join("docs/theory")] {
+        let entries = std::fs::read_dir(folder).expect("docs");
+        let files = entries.map(|e| e.expect("entry").path());
+        pages.extend(files.filter(|p: &PathBuf| p.extension().is_some_and(|e| e == "md")));
+    }
+    let mut count = 0;
+    for page in pages {
+        let text = std::fs::read_to_string(&page).expect("a page");
+        for link in links(&text) {
+            let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let target = match file {
+                "" => page.clone(),
+                file => page.parent().expect("a folder").join(file),
+            };
+            assert!(target.exists(), "{}: {link}", page.display());
+            if !anchor.is_empty() {
+                let text = std::fs::read_to_string(&target).expect("a page");
+                let heading = |line: &str| {
+                    line.trim_start_matches('#')
+                        .trim()
+                        .to_lowercase()
+                        .replace(' ', "-")
+                };
+                assert!(
+                    text.lines()
+                        .any(|l| l.starts_with('#') && heading(l) == anchor),
+                    "{}: no heading {link}",
+                    page.display()
+                );
+            }
+            count += 1;
+        }
+    }
+    assert!(count > 40, "{count}");
 }

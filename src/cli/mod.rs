@@ -14,6 +14,7 @@ mod report;
 mod run;
 mod soak;
 mod study;
+mod view;
 mod without;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
@@ -57,6 +58,10 @@ enum Command {
     Check(CheckArgs),
     /// Every effect that the program has: on or off in a scene, why, and what it costs; solve nothing
     Plan(CheckArgs),
+    /// Make the page of a run again, from the files in its folder
+    View(ViewArgs),
+    /// Make a page with two runs side by side
+    Compare(CompareArgs),
     /// Show what is in a CAD file
     Inspect(InspectArgs),
     /// Closest points of a CAD file to the points of a list
@@ -107,6 +112,26 @@ struct RunArgs {
     /// Threads; 0: as the scene says, or what the machine has
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
+    /// Leave out `report.html`
+    #[arg(long)]
+    no_report: bool,
+}
+
+#[derive(Debug, Args)]
+struct ViewArgs {
+    /// Folder with the results of a run; `report.html` is written there
+    folder: PathBuf,
+}
+
+#[derive(Debug, Args)]
+struct CompareArgs {
+    /// Folder with the results of a run
+    first: PathBuf,
+    /// Folder with the results of another run
+    second: PathBuf,
+    /// Page to write
+    #[arg(short, long, value_name = "FILE", default_value = "compare.html")]
+    out: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -277,6 +302,8 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Plan(args) => plan::plan(&args),
+        Command::View(args) => view::view(&args),
+        Command::Compare(args) => view::compare(&args),
         Command::Inspect(args) => inspect::inspect(&args),
         Command::Project(args) => project::project(&args),
         Command::Convert(args) => convert::convert(&args),

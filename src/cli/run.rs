@@ -1,7 +1,7 @@
 //! `covact run`.
 use super::log::Log;
 use super::progress::{JsonLines, Plain, Terminal};
-use super::{RunArgs, check, exit, report, without};
+use super::{RunArgs, check, exit, report, view, without};
 use crate::output::RunStatus;
 use crate::run::{self, RunOptions};
 use crate::solve::event::{Observer, Silent};
@@ -96,6 +96,9 @@ pub(super) fn run(args: &RunArgs) -> u8 {
             summary.wall_s,
             args.out.display()
         ));
+    }
+    if !args.no_report {
+        view::after_run(args);
     }
     // A run that the user stopped, or that lost its folder, is not followed by others.
     let goes_on = !matches!(summary.status, RunStatus::Interrupted | RunStatus::Failed);

@@ -145,6 +145,7 @@ fn run_without(args: &RunArgs, name: &str, out: &Path) -> std::io::Result<u8> {
         ("--quiet", args.quiet),
         ("--resume", goes_on(args, out)),
         ("--force", args.force),
+        ("--no-report", args.no_report),
     ] {
         if on {
             command.arg(flag);

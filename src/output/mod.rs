@@ -22,7 +22,9 @@ mod compare;
 mod error;
 mod history;
 mod lock;
+mod packed;
 mod planned;
+pub(crate) mod read;
 mod results;
 pub(crate) mod sum;
 mod summary;
@@ -32,7 +34,6 @@ mod vtu;
 
 pub use accuracy::{Accuracy, ContactAccuracy};
 pub use bezier::{BezierError, MAX_DEGREE, SurfacePiece};
-pub(crate) use body::vtk_cell;
 pub use body::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, SLIP, STRESS_COMPONENTS, von_mises,
 };
@@ -50,5 +51,4 @@ pub const RUN_LOG: &str = "run.log";
 
 pub use summary::{ProbeSummary, RunStatus, SUMMARY_FORMAT, Summary, Versions};
 pub use surface::{SurfaceOutput, flat_bytes};
-pub(crate) use vtu::escape;
 pub use vtu::{Field, Place};

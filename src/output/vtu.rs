@@ -4,6 +4,7 @@
 //! attributes that make ParaView use rational weights. The ranges it writes are dropped: they would be those of single
 //! components where VTK means magnitudes, and NaN where a field has one.
 use super::OutputError;
+use super::packed::{COMPRESSOR, packed};
 use std::fmt::Write;
 use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
@@ -93,7 +94,7 @@ pub(crate) const WEIGHTS: &str = "RationalWeights";
 pub(crate) const DEGREES: &str = "HigherOrderDegrees";
 
 impl Grid {
-    /// The grid as the bytes of a `.vtu` file, little endian, base64. Version 1.0 of the format, which every reader knows,
+    /// The grid as the bytes of a `.vtu` file, little endian, compressed by zlib, base64. Version 1.0 of the format, which every reader knows,
     /// where all cells are linear; else 2.2 (up to 2.0 VTK permutes edge nodes of higher-order cells).
     pub fn into_bytes(self) -> Result<Vec<u8>, OutputError> {
         let patch = TagPatch::of(&self);
@@ -184,16 +185,21 @@ impl TagPatch {
         }
     }
 
-    /// Copies the file with its tags patched. Between tags there is base64, which has no `<`.
+    /// Copies the file with its tags patched and its arrays compressed. Between tags there is base64, which has no `<`.
     fn apply(&self, bytes: &[u8]) -> Vec<u8> {
         let mut out = Vec::with_capacity(bytes.len() + 1024);
         let mut rest = bytes;
+        let mut in_array = false;
         while let Some(start) = rest.iter().position(|&b| b == b'<') {
             let end = rest[start..]
                 .iter()
                 .position(|&b| b == b'>')
                 .map_or(rest.len(), |n| start + n + 1);
-            out.extend_from_slice(&rest[..start]);
+            match in_array.then(|| packed(&rest[..start])).flatten() {
+                Some(text) => out.extend_from_slice(text.as_bytes()),
+                None => out.extend_from_slice(&rest[..start]),
+            }
+            in_array = rest[start..].starts_with(b"<DataArray ");
             match std::str::from_utf8(&rest[start..end]) {
                 Ok(tag) => out.extend_from_slice(self.tag(tag).as_bytes()),
                 Err(_) => out.extend_from_slice(&rest[start..end]),
@@ -206,7 +212,9 @@ impl TagPatch {
 
     fn tag(&self, tag: &str) -> String {
         let mut tag = tag.to_string();
-        if tag.starts_with("<DataArray ") {
+        if tag.starts_with("<VTKFile ") {
+            tag.insert_str(tag.len() - 1, COMPRESSOR);
+        } else if tag.starts_with("<DataArray ") {
             remove_attribute(&mut tag, " RangeMin=\"");
             remove_attribute(&mut tag, " RangeMax=\"");
             for (name, extra) in &self.arrays {

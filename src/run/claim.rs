@@ -4,6 +4,7 @@ use crate::output::atomic::{Replaceable, make_folder, remove_file, replaceable};
 use crate::output::{
     COLLECTIONS, FolderLock, Holder, Locking, OutputError, PartNames, RUN_LOG, listed,
 };
+use crate::page::{REPORT, is_page};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -227,6 +228,7 @@ fn look(folder: &Path) -> Result<Holdings, OutputError> {
         out.unfinished |= out.own.len() > before;
     }
     out.sort(folder.join("summary.json"), is_summary)?;
+    out.sort(folder.join(REPORT), is_page)?;
     out.sort(folder.join(RUN_LOG), |path| {
         Ok(fs::read(path)?.starts_with(b"covact "))
     })?;

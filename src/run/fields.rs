@@ -3,8 +3,10 @@ use super::RunError;
 use super::averaged::{NodeNow, nodes_now};
 use super::bearing::{Bearings, Carrier, Place};
 use super::friction_fields::{self, FrictionFields};
+use super::strain_fields::StrainFields;
 use super::stresses::{follows_stress, nodal_stresses};
 use super::surface_cells::pieces;
+use super::traction_fields::TractionFields;
 use crate::contact::friction::history::PointStatus;
 use crate::contact::law::PairLaw;
 use crate::model::master::{MasterNow, Masters};
@@ -30,6 +32,7 @@ pub struct Fields {
     /// Weighted pressure and gap of the pair at hand.
     sums: Vec<[f64; 2]>,
     friction: FrictionFields,
+    traction: TractionFields,
     /// Gaps of all slave points when last gathered, where clouds of points are written; else empty.
     gaps: Vec<f64>,
     /// Per slave point: in front of its surface or in contact when last gathered.
@@ -83,6 +86,10 @@ impl Fields {
             weight: vec![0.0; n],
             sums: vec![[0.0; 2]; n],
             friction: FrictionFields::new(model),
+            traction: match output.every {
+                0 => TractionFields::default(),
+                _ => TractionFields::new(n),
+            },
             gaps: match output.contact_points {
                 true => vec![f64::NAN; model.contact_points()],
                 false => Vec::new(),
@@ -146,6 +153,7 @@ impl Fields {
         self.bearings.clear();
         let start = std::mem::take(&mut self.start);
         self.friction.clear();
+        self.traction.clear();
         // Of a run that is continued, the segments may be other ones than the model's.
         self.front.resize(state.points.len(), false);
         if !self.gaps.is_empty() {
@@ -242,6 +250,10 @@ impl Fields {
                     None if closed => CLOSED,
                     None => OPEN,
                 };
+                let normal = place.filter(|_| closed).map(|(_, _, normal)| normal);
+                let normal = normal.unwrap_or_default();
+                let friction = history.filter(|_| closed).map_or(Vec3::zeros(), |h| -h.t);
+                self.traction.add(p, pressure * normal + friction);
                 if closed && let Some((x, hint, normal)) = place {
                     let carrier = Carrier {
                         pressure,
@@ -278,6 +290,7 @@ impl Fields {
                     self.status[node] = self.status[node].max(status);
                 }
             }
+            self.traction.end(points);
             if let (Some(_), Some(histories)) = (&pair.friction, histories) {
                 self.friction.gather(points, histories);
             }
@@ -392,6 +405,9 @@ impl Fields {
             })
             .collect();
         let stresses = nodal_stresses(model, state, |_| true);
+        let strains: Vec<StrainFields> = (model.bodies.iter().enumerate())
+            .map(|(i, b)| StrainFields::new(&b.mesh, &displacements[i], &stresses[i]))
+            .collect();
         let bodies: Vec<BodyFields> = (model.bodies.iter().enumerate())
             .map(|(i, body)| {
                 let first = body.first_node as usize;
@@ -407,7 +423,10 @@ impl Fields {
                         gap: &self.gap[range.clone()],
                         status: &self.status[range],
                     }),
-                    fields: self.friction.of(model, i, body),
+                    fields: (self.friction.of(model, i, body).into_iter())
+                        .chain(self.traction.of(model, i, body))
+                        .chain(strains[i].fields())
+                        .collect(),
                 }
             })
             .collect();

@@ -109,7 +109,7 @@ pub fn play(seed: u64, settings: &Settings) -> io::Result<Played> {
 /// Runs the program on `scene.json`; none: it was stopped at its limit.
 fn run(settings: &Settings, folder: &Path) -> io::Result<Option<ExitStatus>> {
     let mut child = Command::new(&settings.program)
-        .args(["run", "scene.json", "-o", "out", "--quiet"])
+        .args(["run", "scene.json", "-o", "out", "--quiet", "--no-report"])
         .current_dir(folder)
         .stdin(Stdio::null())
         .stdout(Stdio::null())

@@ -73,13 +73,14 @@ impl Folder {
     }
 
     /// Arguments of the program, in the study's folder, for a repeat of a run.
-    pub fn arguments(&self, id: &str, repeat: u32) -> [String; 8] {
+    pub fn arguments(&self, id: &str, repeat: u32) -> [String; 9] {
         [
             "run".to_owned(),
             format!("runs/{id}/scene.json"),
             "-o".to_owned(),
             format!("runs/{id}/{repeat}"),
             "--quiet".to_owned(),
+            "--no-report".to_owned(),
             // A job that was cut short begins anew when it is called again.
             "--force".to_owned(),
             "--threads".to_owned(),

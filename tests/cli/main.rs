@@ -13,6 +13,7 @@ mod limits;
 mod new;
 mod occupied;
 mod output;
+mod page;
 mod probes;
 mod project;
 mod resume;

@@ -72,6 +72,7 @@ fn a_run_is_replaced_on_demand_only() {
         "notes.txt",
         "plate_0000.vtu",
         "plate_0001.vtu",
+        "report.html",
         "results.pvd",
         "results_tessellated.pvd",
         "run.log",

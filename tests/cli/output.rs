@@ -321,3 +321,75 @@ fn a_full_standard_output() {
     // The results are not lost with the lines.
     assert!(folder.path().join("out/summary.json").is_file());
 }
+
+/// The numbers of a field on the points of the last step of the plate.
+fn points_of(folder: &Path, name: &str) -> Vec<f64> {
+    use vtkio::model::{Attribute, DataSet, Piece, Vtk};
+    let vtk = Vtk::import(folder.join("out/plate_0002.vtu")).unwrap();
+    let DataSet::UnstructuredGrid { pieces, .. } = vtk.data else {
+        panic!("no grid");
+    };
+    let Some(Piece::Inline(grid)) = pieces.into_iter().next() else {
+        panic!("no piece");
+    };
+    let named = grid.data.point.into_iter().find_map(|a| match a {
+        Attribute::DataArray(a) if a.name == name => a.data.cast_into(),
+        _ => None,
+    });
+    named.expect(name)
+}
+
+#[test]
+fn fields_that_are_derived_agree_with_what_they_are_derived_from() {
+    let folder = tempfile::tempdir().unwrap();
+    write_plate(folder.path(), &[]);
+    let run = covact(
+        folder.path(),
+        &["run", "scene.json", "-o", "out", "--quiet"],
+    );
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    let field = |name: &str| points_of(folder.path(), name);
+    let (pressure, traction) = (field("contact_pressure"), field("contact_traction"));
+    let mut pressed = 0;
+    for (p, t) in pressure.iter().zip(traction.chunks_exact(3)) {
+        // A ball above presses down and, being round, a little outwards; normals around a node differ.
+        let size = t.iter().map(|t| t * t).sum::<f64>().sqrt();
+        assert!(size <= p * (1.0 + 1e-12) && size >= 0.98 * p, "{size} {p}");
+        if *p > 0.0 {
+            assert!(t[2] < -0.9 * p, "{t:?} {p}");
+            pressed += 1;
+        }
+    }
+    assert!(pressed > 0);
+    let (stress, principal, mises) = (
+        field("cauchy_stress"),
+        field("principal_stress"),
+        field("von_mises"),
+    );
+    let largest = mises.iter().copied().fold(0.0, f64::max);
+    assert!(largest > 0.0);
+    for ((s, p), m) in stress
+        .chunks_exact(6)
+        .zip(principal.chunks_exact(3))
+        .zip(&mises)
+    {
+        assert!(p[0] >= p[1] && p[1] >= p[2], "{p:?}");
+        assert!((p.iter().sum::<f64>() - s[..3].iter().sum::<f64>()).abs() < 1e-9 * largest);
+        let differences = [p[0] - p[1], p[1] - p[2], p[2] - p[0]].map(|d| d * d);
+        let own = (0.5 * differences.iter().sum::<f64>()).sqrt();
+        assert!((own - m).abs() < 1e-9 * largest, "{own} {m}");
+    }
+    // Large bending stretches the plate of thickness 2, which gets thinner by a few per cent.
+    let (thickness, thinning) = (field("thickness"), field("thinning"));
+    for (now, lost) in thickness.iter().zip(&thinning) {
+        assert!((now / 2.0 + lost - 1.0).abs() < 1e-12);
+        assert!(lost.abs() < 0.1, "{lost}");
+    }
+    assert!(thinning.iter().any(|lost| *lost > 1e-4));
+    let strain = field("principal_log_strain");
+    assert!(
+        strain
+            .chunks_exact(3)
+            .all(|e| e[0] >= e[2] && e[0].abs() < 0.5)
+    );
+}

@@ -20,13 +20,13 @@ fn write(folder: &Path, scene: &Value) {
     std::fs::write(folder.join("scene.json"), text).unwrap();
 }
 
-/// All files of the results but the summary, and what tells who is at work.
+/// All files of the results but those that tell times: the summary, the log, the page; and what tells who is at work.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let name = |p: &Path| p.file_name().unwrap().to_str().unwrap().to_owned();
     (std::fs::read_dir(folder.join("out")).unwrap())
         .map(|e| e.unwrap().path())
         .filter(|p| {
-            !["summary.json", "run.log", ".covact.lock"]
+            !["summary.json", "run.log", "report.html", ".covact.lock"]
                 .iter()
                 .any(|f| p.ends_with(f))
         })

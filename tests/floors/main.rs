@@ -1,6 +1,6 @@
 //! The modules of `src` are floors: each uses those below it only.
 //!
-//! The floors are the list under `src/` in README's picture of the architecture, from the ground up: `name/` or `name.rs`. Read here is every
+//! The floors are the list under `src/` in the picture of docs/architecture.md, from the ground up: `name/` or `name.rs`. Read here is every
 //! path from the root of the crate (`crate::`, `super::` chains that end there, `$crate::` of macros), in `use` items,
 //! re-exports, expressions and macros alike; names that `lib.rs` re-exports and exported macros count as the module that
 //! defines them. Tests (`#[cfg(test)]`) may use every floor.
@@ -10,13 +10,9 @@ use sources::{Arrow, Sources, read_file, read_text};
 use std::fs;
 use std::path::Path;
 
-/// Floors from the ground up: the names under `src/` in README's picture, a line each.
-fn floors(readme: &str) -> Vec<String> {
-    let section = readme
-        .split("\n## Architecture\n")
-        .nth(1)
-        .expect("README describes the architecture");
-    let picture = section.split("```").nth(1).expect("a picture");
+/// Floors from the ground up: the names under `src/` in the picture, a line each.
+fn floors(page: &str) -> Vec<String> {
+    let picture = page.split("```").nth(1).expect("a picture");
     let lines = picture
         .lines()
         .skip_while(|line| !line.starts_with("src/"))
@@ -53,14 +49,14 @@ fn every_module_uses_lower_floors_only() {
     );
     let arrows = sources.arrows();
     assert_eq!(sources.unclear, Vec::<String>::new());
-    let readme = fs::read_to_string(root.join("README.md")).expect("README");
-    let floors = floors(&readme);
+    let page = fs::read_to_string(root.join("docs/architecture.md")).expect("the architecture");
+    let floors = floors(&page);
     let (mut listed, mut modules) = (floors.clone(), sources.modules.clone());
     listed.sort();
     modules.sort();
     assert_eq!(
         listed, modules,
-        "README's picture lists every module of src once, from the ground up"
+        "the picture lists every module of src once, from the ground up"
     );
     assert!(
         arrows.len() > 100,
@@ -208,7 +204,7 @@ fn arrows_upwards_are_found() {
         place: String::new(),
     };
     let floors = floors(
-        "\n## Architecture\n\n```\ngeometry/ x\nsrc/\n  low/   ground\n         more/ of it\n  mid.rs between\n  high/  above\ntests/ y\n```\n",
+        "```\ngeometry/ x\nsrc/\n  low/   ground\n         more/ of it\n  mid.rs between\n  high/  above\ntests/ y\n```\n",
     );
     assert_eq!(floors, ["low", "mid", "high"]);
     let arrows = [arrow("high", "low"), arrow("low", "high")];

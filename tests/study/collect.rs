@@ -48,7 +48,8 @@ fn jobs_by_hand_are_the_study() {
     assert_eq!(list.lines().count(), 6, "{list}");
     assert!(
         list.lines()
-            .all(|l| l.starts_with(program) && l.ends_with(" --quiet --force --threads 1")),
+            .all(|l| l.starts_with(program)
+                && l.ends_with(" --quiet --no-report --force --threads 1")),
         "{list}"
     );
     // Only the folder goes to another machine.
@@ -126,7 +127,7 @@ fn missing_runs_are_named() {
     let first = list.lines().next().unwrap();
     assert_eq!(
         first,
-        "covact run runs/reference_fine_1/scene.json -o runs/reference_fine_1/1 --quiet --force --threads 1"
+        "covact run runs/reference_fine_1/scene.json -o runs/reference_fine_1/1 --quiet --no-report --force --threads 1"
     );
     let arguments: Vec<&str> = first.split(' ').skip(1).collect();
     assert!(covact(&out, &arguments).status.success());

@@ -2,7 +2,7 @@
 in one single step. Every program may cut it by its own step control.
 
 The force of the whole plate, 16600 +- 60: linear solid-shells of 80 x 80 elements and quadratic ones of 20 x 20, one
-layer, end at 16577, two layers at 16640, by two independent programs (README, "Plate under a ball")."""
+layer, end at 16577, two layers at 16640, by two independent programs (docs/verification.md, "Plate under a ball")."""
 import math
 
 from lib import calculix as ccx

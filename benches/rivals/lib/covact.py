@@ -47,19 +47,32 @@ def point_field(path, name):
     """Values at the points of a `.vtu` file, and the points (rows)."""
     import base64
     import re
+    import zlib
 
     import numpy as np
 
     with open(path) as file:
         text = file.read()
 
+    def unpacked(raw):
+        if "vtkZLibDataCompressor" not in text[:400]:
+            return np.frombuffer(base64.b64decode(raw), dtype=np.uint8)[8:]
+        # The number of blocks, their sizes before compression and after it, then the blocks.
+        raw = raw.strip()
+        blocks = int.from_bytes(base64.b64decode(raw[:12])[:8], "little")
+        head = 4 * -(-8 * (3 + blocks) // 3)
+        sizes = np.frombuffer(base64.b64decode(raw[:head]), dtype="<u8")[3:]
+        body, ends = base64.b64decode(raw[head:]), np.cumsum(sizes)
+        parts = [zlib.decompress(body[int(end - size) : int(end)]) for size, end in zip(sizes, ends)]
+        return np.frombuffer(b"".join(parts), dtype=np.uint8)
+
     def array(tag):
         found = re.search(rf"<DataArray [^>]*{tag}[^>]*>([^<]*)</DataArray>", text)
         kind = np.float32 if 'type="Float32"' in found.group(0)[:200] else np.float64
-        return np.frombuffer(base64.b64decode(found.group(1)), dtype=np.uint8)[8:].view(kind)
+        return unpacked(found.group(1)).view(kind)
 
     points = re.search(r"<Points>(.*?)</Points>", text, re.S).group(1)
     raw = re.search(r">([^<]*)</DataArray>", points).group(1)
-    where = np.frombuffer(base64.b64decode(raw), dtype=np.uint8)[8:]
+    where = unpacked(raw)
     where = where.view(np.float32 if "Float32" in points else np.float64).reshape(-1, 3)
     return array(f'Name="{name}"'), where

@@ -16,7 +16,7 @@ use std::time::Duration;
 /// How runs are done.
 #[derive(Debug, Clone)]
 pub struct Settings {
-    /// The program, which is called with `run SCENE -o OUT --quiet --force --threads N`.
+    /// The program, which is called with `run SCENE -o OUT --quiet --no-report --force --threads N`.
     pub program: PathBuf,
     /// Processes at a time.
     pub together: usize,

@@ -1,10 +1,10 @@
 //! `report.html`: one file with all that a study found.
 use super::figures::Figure;
-use super::markup::{escaped, prose};
 use super::number::{digits, percent, seconds, several};
-use super::style::{DARK, LIGHT, rules, variables};
 use super::view::View;
 use super::{table, words};
+use crate::page::head;
+use crate::page::markup::{escaped, prose};
 use crate::study::record::{Ending, QuantityRecord};
 use std::fmt::Write as _;
 
@@ -22,17 +22,8 @@ pub(crate) fn html(view: &View, figures: &[Figure]) -> String {
         title => title.to_string(),
     };
     let mut out = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
-         <meta name=\"color-scheme\" content=\"light dark\"/>\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; \
-         script-src 'unsafe-inline'\"/>\n<title>{}</title>\n<style>\n:root{{{}}}\n\
-         @media (prefers-color-scheme:dark){{:root{{{}}}}}\n{}{}</style>\n</head>\n<body>\n<main>\n",
-        escaped(&title),
-        variables(&LIGHT),
-        variables(&DARK),
-        include_str!("page.css"),
-        rules(),
+        "<!DOCTYPE html>\n{}<main>\n",
+        head(&title, include_str!("page.css"))
     );
     let _ = writeln!(out, "<h1>{}</h1>", escaped(&title));
     if !record.question.trim().is_empty() {

@@ -3,8 +3,8 @@
 //! `plotters` writes colours and sizes into every shape and flattens all text and groups. A report needs shapes with
 //! classes, so that one picture follows the page from light to dark; groups that name their run, so that pointing at one
 //! marks it in every picture; a text for each of them; and as few bytes as possible. So this is written here.
-use super::markup::escaped;
-use super::style::{LIGHT, literal_rules};
+use crate::page::markup::escaped;
+use crate::page::style::{LIGHT, literal_rules};
 use std::fmt::Write as _;
 
 /// Shapes on a canvas of fixed width that grows downwards.

@@ -5,13 +5,13 @@
 //! other mesh is found at every point of integration by a tree of boxes and the inverse of the isoparametric mapping.
 mod cell;
 mod faces;
-mod file;
 mod norm;
 #[cfg(test)]
 mod tests;
 mod tree;
 
 use super::sample::Difference;
+use crate::output::read;
 use cell::Cell;
 use covact_geometry::Vec3;
 use std::path::Path;
@@ -20,10 +20,11 @@ use std::path::Path;
 const MOST: usize = 9;
 
 /// Fields that exist on slave faces only; elsewhere they are written as zero or NaN.
-const ON_SLAVE_FACES: [&str; 6] = [
+const ON_SLAVE_FACES: [&str; 7] = [
     "contact_pressure",
     "contact_gap",
     "contact_status",
+    "contact_traction",
     "friction_traction",
     "slip",
     "dissipated",
@@ -51,8 +52,8 @@ impl Field {
     /// # Errors
     /// In words: no results of such a body, no such field (with the nearest name), a file that does not hold what it says.
     pub fn read(folder: &Path, body: &str, name: &str) -> Result<Field, String> {
-        let (time, path) = file::last(folder, body)?;
-        let file = file::read(&path)?;
+        let (time, path) = read::last(folder, body)?;
+        let file = read::body(&path)?;
         let mesh = file.mesh;
         let found = file.fields.iter().find(|f| f.name == name);
         let Some(array) = found else {

@@ -1,6 +1,7 @@
-//! Bodies read back from their files of results.
+//! Bodies and rigid surfaces read back from their files of results.
+use super::body::vtk_cell;
+use super::vtu::escape;
 use crate::mesh::{ElementKind, Mesh};
-use crate::output::{escape, vtk_cell};
 use crate::scene::nearest;
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
@@ -10,53 +11,81 @@ use vtkio::model::{
 };
 
 /// A body on the disk.
-pub(super) struct BodyFile {
+pub(crate) struct BodyFile {
     pub mesh: Mesh,
     pub fields: Vec<Array>,
 }
 
 /// An array of numbers on points or cells.
-pub(super) struct Array {
+pub(crate) struct Array {
     pub name: String,
     pub components: usize,
     pub by_cell: bool,
     pub data: Vec<f64>,
 }
 
+/// A rigid surface on the disk.
+pub(crate) struct SurfaceFile {
+    pub points: Vec<Vec3>,
+    /// Flat quadrilaterals; empty where some cells are curved.
+    pub quads: Vec<[u32; 4]>,
+    pub fields: Vec<Array>,
+}
+
+/// A file that a collection lists.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Listed {
+    pub time: f64,
+    pub part: u32,
+    /// Name of the body or surface, escaped as it stands in the file.
+    pub name: String,
+    pub file: String,
+}
+
+/// Files that a collection lists, in its order.
+///
+/// # Errors
+/// In words.
+pub(crate) fn collection(path: &Path) -> Result<Vec<Listed>, String> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| format!("cannot read `{}`: {e}", path.display()))?;
+    let entry = |tag: &str| {
+        let wrong = || format!("`{}` has an entry that is not one: {tag}", path.display());
+        let read = || {
+            Some(Listed {
+                time: attribute(tag, "timestep")?.parse().ok()?,
+                part: attribute(tag, "part")?.parse().ok()?,
+                name: attribute(tag, "name")?.to_owned(),
+                file: attribute(tag, "file")?.to_owned(),
+            })
+        };
+        read().ok_or_else(wrong)
+    };
+    tags(&text, "<DataSet ").map(entry).collect()
+}
+
 /// Time and file of the last results of a body, as the collection in the folder lists them.
 ///
 /// # Errors
 /// In words.
-pub(super) fn last(folder: &Path, body: &str) -> Result<(f64, PathBuf), String> {
-    let path = folder.join("results.pvd");
-    let text = std::fs::read_to_string(&path)
-        .map_err(|e| format!("cannot read `{}`: {e}", path.display()))?;
+pub(crate) fn last(folder: &Path, body: &str) -> Result<(f64, PathBuf), String> {
+    let listed = collection(&folder.join("results.pvd"))?;
     let mut names = Vec::new();
-    let mut best: Option<(f64, u32, &str)> = None;
-    for tag in tags(&text, "<DataSet ") {
-        let entry = (|| {
-            let time = attribute(tag, "timestep")?.parse::<f64>().ok()?;
-            let part = attribute(tag, "part")?.parse::<u32>().ok()?;
-            Some((time, part, attribute(tag, "name")?, attribute(tag, "file")?))
-        })();
-        let Some((time, part, name, file)) = entry else {
-            return Err(format!(
-                "`{}` has an entry that is not one: {tag}",
-                path.display()
-            ));
-        };
-        if name != escape(body) {
-            names.push(name);
+    let mut best: Option<&Listed> = None;
+    for entry in &listed {
+        if entry.name != escape(body) {
+            names.push(entry.name.as_str());
             continue;
         }
         // A surface may share the body's name; bodies come first.
-        let later = best.is_none_or(|(t, p, _)| time > t || (time == t && part < p));
-        if later {
-            best = Some((time, part, file));
+        let later =
+            |b: &&Listed| entry.time > b.time || (entry.time == b.time && entry.part < b.part);
+        if best.as_ref().is_none_or(later) {
+            best = Some(entry);
         }
     }
     match best {
-        Some((time, _, file)) => Ok((time, folder.join(file))),
+        Some(found) => Ok((found.time, folder.join(&found.file))),
         None => Err(match nearest(body, names.iter().copied()) {
             Some(near) => format!("no results of a body `{body}`; did you mean `{near}`?"),
             None if names.is_empty() => {
@@ -67,15 +96,92 @@ pub(super) fn last(folder: &Path, body: &str) -> Result<(f64, PathBuf), String> 
     }
 }
 
-/// Reads a body. What the file says it holds is compared with what was read, since vtkio leaves out arrays that it cannot
-/// decode.
+/// What a file of results holds.
+pub(crate) enum Part {
+    Body(BodyFile),
+    Surface(SurfaceFile),
+    /// Slave points.
+    Cloud,
+}
+
+/// Reads a body, a rigid surface, or slave points.
 ///
 /// # Errors
 /// In words.
-pub(super) fn read(path: &Path) -> Result<BodyFile, String> {
+pub(crate) fn part(path: &Path) -> Result<Part, String> {
+    let grid = grid(path)?;
+    let all = |cell: CellType| grid.types.iter().all(|t| *t == cell);
+    if all(CellType::Vertex) {
+        return Ok(Part::Cloud);
+    }
+    let of_surface = |t: &CellType| matches!(t, CellType::Quad | CellType::BezierQuadrilateral);
+    if !grid.types.iter().all(of_surface) {
+        return body_of(grid).map(Part::Body).map_err(|e| bad(path, &e));
+    }
+    if grid.names_missing_points() {
+        return Err(bad(path, "has cells with points that it has not"));
+    }
+    let corners = match all(CellType::Quad) {
+        true => &grid.connectivity[..],
+        false => &[],
+    };
+    // Below the number of points in memory, which are numbered by 32 bits.
+    let quad = |c: &[u64]| [c[0], c[1], c[2], c[3]].map(|node| node as u32);
+    Ok(Part::Surface(SurfaceFile {
+        quads: corners.chunks_exact(4).map(quad).collect(),
+        points: grid.points,
+        fields: grid.fields,
+    }))
+}
+
+/// Reads a body.
+///
+/// # Errors
+/// In words.
+pub(crate) fn body(path: &Path) -> Result<BodyFile, String> {
+    body_of(grid(path)?).map_err(|what| bad(path, &what))
+}
+
+fn body_of(grid: GridFile) -> Result<BodyFile, String> {
+    let (kind, connectivity) = elements(&grid)?;
+    Ok(BodyFile {
+        mesh: Mesh {
+            kind,
+            nodes: grid.points,
+            connectivity,
+            node_sets: BTreeMap::new(),
+            face_sets: BTreeMap::new(),
+        },
+        fields: grid.fields,
+    })
+}
+
+/// A grid as it stands in a file.
+struct GridFile {
+    points: Vec<Vec3>,
+    connectivity: Vec<u64>,
+    offsets: Vec<u64>,
+    types: Vec<CellType>,
+    fields: Vec<Array>,
+}
+
+impl GridFile {
+    fn names_missing_points(&self) -> bool {
+        let points = self.points.len() as u64;
+        self.connectivity.iter().any(|node| *node >= points)
+    }
+}
+
+fn bad(path: &Path, what: &str) -> String {
+    format!("`{}` {what}", path.display())
+}
+
+/// Reads a grid. What the file says it holds is compared with what was read, since vtkio leaves out arrays that it cannot
+/// decode.
+fn grid(path: &Path) -> Result<GridFile, String> {
     let bytes =
         std::fs::read(path).map_err(|e| format!("cannot read `{}`: {e}", path.display()))?;
-    let bad = |what: &str| format!("`{}` {what}", path.display());
+    let bad = |what: &str| bad(path, what);
     let text = String::from_utf8_lossy(&bytes);
     let piece = tags(&text, "<Piece ").next();
     let piece = piece.ok_or_else(|| bad("is no grid"))?;
@@ -100,8 +206,16 @@ pub(super) fn read(path: &Path) -> Result<BodyFile, String> {
     if at.len() != 3 * points || at.iter().any(|x| !x.is_finite()) {
         return Err(bad("has not the points that it states"));
     }
-    let (kind, connectivity) = elements(&topology.cell_verts, &topology.types, [points, cells])
-        .map_err(|what| bad(&what))?;
+    let VertexNumbers::XML {
+        connectivity,
+        offsets,
+    } = topology.cell_verts
+    else {
+        return Err(bad("has cells of the older format"));
+    };
+    if topology.types.len() != cells || offsets.len() != cells || cells == 0 {
+        return Err(bad("has not the cells that it states"));
+    }
     let fields = arrays(data, [points, cells]).map_err(|what| bad(&what))?;
     let stated = (tags(&text, "<DataArray ")).filter_map(|tag| attribute(tag, "Name"));
     let structure = ["Points", "connectivity", "offsets", "types"];
@@ -115,49 +229,38 @@ pub(super) fn read(path: &Path) -> Result<BodyFile, String> {
             )));
         }
     }
-    Ok(BodyFile {
-        mesh: Mesh {
-            kind,
-            nodes: (at.chunks_exact(3))
-                .map(|x| Vec3::new(x[0], x[1], x[2]))
-                .collect(),
-            connectivity,
-            node_sets: BTreeMap::new(),
-            face_sets: BTreeMap::new(),
-        },
+    Ok(GridFile {
+        points: (at.chunks_exact(3))
+            .map(|x| Vec3::new(x[0], x[1], x[2]))
+            .collect(),
+        connectivity,
+        offsets,
+        types: topology.types,
         fields,
     })
 }
 
 /// Element shape, and node numbers in the order of a mesh.
-fn elements(
-    topology: &VertexNumbers,
-    types: &[CellType],
-    [points, cells]: [usize; 2],
-) -> Result<(ElementKind, Vec<u32>), String> {
-    let VertexNumbers::XML {
+fn elements(grid: &GridFile) -> Result<(ElementKind, Vec<u32>), String> {
+    let GridFile {
         connectivity,
         offsets,
-    } = topology
-    else {
-        return Err("has cells of the older format".into());
-    };
-    if types.len() != cells || offsets.len() != cells || cells == 0 {
-        return Err("has not the cells that it states".into());
-    }
+        types,
+        ..
+    } = grid;
     let fits = |kind: ElementKind| {
         let (order, cell) = vtk_cell(kind);
         let n = order.len();
         let mut ends = offsets.iter().enumerate();
         types.iter().all(|t| *t == cell)
-            && connectivity.len() == cells * n
+            && connectivity.len() == types.len() * n
             && ends.all(|(e, end)| *end == ((e + 1) * n) as u64)
     };
     let kind = [ElementKind::H8, ElementKind::Q18]
         .into_iter()
         .find(|kind| fits(*kind))
         .ok_or("is no body: its cells are not elements of 8 or of 18 nodes")?;
-    if connectivity.iter().any(|node| *node >= points as u64) {
+    if grid.names_missing_points() {
         return Err("has cells with points that it has not".into());
     }
     let (order, _) = vtk_cell(kind);
