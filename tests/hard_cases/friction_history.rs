@@ -166,7 +166,7 @@ fn a_point_that_comes_back_starts_without_traction_and_keeps_its_path() {
         "x": { "table": [[0, 0], [0.2, 0], [0.4, 0.1], [0.5, 0.1], [0.6, 0.2], [1, 0.2]] }, "y": 0,
         "z": { "table": [[0, 0], [0.2, -0.02], [0.4, -0.02], [0.5, 0.05], [0.6, 0.05], [0.8, -0.02], [1, -0.02]] }
     });
-    let mut scene = block(plane(), top, json!(0.3), 20);
+    let mut scene = block(plane(), top.clone(), json!(0.3), 20);
     scene["output"] = json!({ "every": 1 });
     let outcome = done(&scene);
     assert!(outcome.at("force.tool.x", 0.4).abs() > 0.1);
