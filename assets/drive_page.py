@@ -171,8 +171,8 @@ def check(browser, page, size, seconds):
         pictures = stage["pictures"]
         if stage["error"] != 0:
             wrong.append(f"WebGL error {stage['error']}")
-        if min(p["part"] for p in pictures[:3]) < 0.02:
-            wrong.append("an empty picture")
+        if min(p["part"] for p in pictures[:3]) < 0.002:
+            wrong.append(f"an empty picture: {[p['part'] for p in pictures]}")
         sums = [p["sum"] for p in pictures]
         if sums[1] == sums[2] or sums[2] == sums[3] or (stage["steps"] > 1 and sums[0] == sums[1]):
             wrong.append(f"the picture does not change with step, view or cut: {sums}")

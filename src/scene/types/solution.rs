@@ -78,7 +78,8 @@ pub enum LinearSolver {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Stabilization {
-    /// `viscous` with its default factor on bodies that only contact holds; nothing where supports hold all.
+    /// `viscous` with its default factor on bodies that only contact holds, and next to nothing of it in steps in which contact
+    /// does; nothing where supports hold all. The motion that supports prescribe for such a body meets no force.
     #[default]
     Auto,
     /// Equilibrium without help: a body must be held by its supports, and a structure that snaps fails.
