@@ -1,6 +1,6 @@
 //! Can a body move without being strained? Six rigid motions against its supports.
-use super::Model;
-use crate::scene::{TimeFunction, ValueError};
+use super::{Model, Support};
+use crate::scene::ValueError;
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 
@@ -60,35 +60,17 @@ impl FreeMotion {
         mut add: impl FnMut(u32, Vec3),
     ) -> Result<(), ValueError> {
         let own = |dof: u32| self.nodes.binary_search(&(dof / 3)).is_ok();
-        let moved = (model.prescribed.iter()).any(|p| p.value.is_some() && own(p.dof))
-            || (model.means.iter()).any(|m| m.mean.is_some() && own(m.free));
-        if !moved {
+        let supports = || model.supports().filter(|s| own(s.dofs[0]));
+        if !supports().any(|s| s.moves()) {
             return Ok(());
         }
-        let position = |n: u32| {
-            let first = 3 * n as usize;
-            model.nodes[n as usize] + Vec3::from_column_slice(&u[first..first + 3])
-        };
+        let position = |n: u32| model.position(n as usize, u);
         let frame = Frame::new(self.nodes.iter().map(|n| position(*n)));
-        let row = |dof: u32| frame.row(position(dof / 3), dof as usize % 3);
-        let value = |f: &Option<TimeFunction>, x: Vec3| match f {
-            None => Ok(0.0),
-            Some(f) => f.eval_at(&x, time),
-        };
         let (mut gram, mut right) = (Matrix6::zeros(), Vector6::zeros());
-        let mut constrain = |v: Vector6<f64>, increment: f64| {
-            gram += v * v.transpose();
-            right += v * increment;
-        };
-        for p in model.prescribed.iter().filter(|p| own(p.dof)) {
-            let wanted = value(&p.value, model.nodes[p.dof as usize / 3])?;
-            constrain(row(p.dof), wanted - u[p.dof as usize]);
-        }
-        for m in model.means.iter().filter(|m| own(m.free)) {
-            let node = |dof: u32| model.nodes[dof as usize / 3];
-            let wanted = value(&m.mean, (node(m.free) + node(m.tied)) * 0.5)?;
-            let now = (u[m.free as usize] + u[m.tied as usize]) * 0.5;
-            constrain((row(m.free) + row(m.tied)) * 0.5, wanted - now);
+        for support in supports() {
+            let row = frame.held(&support, position);
+            gram += row * row.transpose();
+            right += row * support.missing(u, time)?;
         }
         let eigen = SymmetricEigen::new(gram);
         let limit = HINDERED * eigen.eigenvalues.max().max(1e-300);
@@ -132,6 +114,12 @@ impl Frame {
             unit[k] = 1.0;
             self.motion(&unit, x)[component]
         })
+    }
+
+    /// What they do to the mean that a support holds, of nodes at these positions.
+    fn held(&self, support: &Support, position: impl Fn(u32) -> Vec3) -> Vector6<f64> {
+        let [a, b] = (support.dofs).map(|d| self.row(position(d / 3), d as usize % 3));
+        (a + b) * 0.5
     }
 
     /// The way of a point.
@@ -186,16 +174,10 @@ fn free_motion(model: &Model, first: u32, piece: &[u32]) -> Option<FreeMotion> {
     let nodes = piece.iter().map(|n| model.nodes[(first + n) as usize]);
     let frame = Frame::new(nodes);
     let own = |dof: u32| dof / 3 >= first && piece.binary_search(&(dof / 3 - first)).is_ok();
-    // Each constraint is a row.
-    let row = |dof: u32| frame.row(model.nodes[dof as usize / 3], dof as usize % 3);
     let mut gram = Matrix6::<f64>::zeros();
-    for p in model.prescribed.iter().filter(|p| own(p.dof)) {
-        let v = row(p.dof);
-        gram += v * v.transpose();
-    }
-    for m in model.means.iter().filter(|m| own(m.free)) {
-        let v = (row(m.free) + row(m.tied)) * 0.5;
-        gram += v * v.transpose();
+    for support in model.supports().filter(|s| own(s.dofs[0])) {
+        let row = frame.held(&support, |n| model.nodes[n as usize]);
+        gram += row * row.transpose();
     }
     let eigen = SymmetricEigen::new(gram);
     let largest = eigen.eigenvalues.max();

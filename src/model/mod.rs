@@ -227,26 +227,64 @@ impl Model {
         self.pairs.iter().map(|p| p.points.len()).sum()
     }
 
+    /// What supports hold: prescribed degrees of freedom first, then means of two.
+    pub fn supports(&self) -> impl Iterator<Item = Support<'_>> {
+        let node = |dof: u32| self.nodes[dof as usize / 3];
+        let held = self.prescribed.iter().map(move |p| Support {
+            dofs: [p.dof; 2],
+            at: node(p.dof),
+            value: p.value.as_ref(),
+        });
+        let means = self.means.iter().map(move |m| Support {
+            dofs: [m.free, m.tied],
+            at: (node(m.free) + node(m.tied)) * 0.5,
+            value: m.mean.as_ref(),
+        });
+        held.chain(means)
+    }
+
     /// Increments from the present displacements to what is prescribed at `time`, for prescribed degrees of freedom
     /// and those tied by mid-surface supports; returns the largest.
     pub fn increments(&self, u: &[f64], time: f64, g: &mut [f64]) -> Result<f64, ValueError> {
         g.fill(0.0);
-        let value = |f: &Option<TimeFunction>, x: Vec3| match f {
-            None => Ok(0.0),
-            Some(f) => f.eval_at(&x, time),
-        };
-        let node = |dof: u32| self.nodes[dof as usize / 3];
-        for p in &self.prescribed {
-            g[p.dof as usize] = value(&p.value, node(p.dof))? - u[p.dof as usize];
-        }
-        for m in &self.means {
-            let now = u[m.free as usize] + u[m.tied as usize];
-            let middle = (node(m.free) + node(m.tied)) * 0.5;
-            g[m.tied as usize] = 2.0 * value(&m.mean, middle)? - now;
+        for support in self.supports() {
+            let [free, tied] = support.dofs.map(|d| d as usize);
+            // A mean is met by the second of its two.
+            let both = if free == tied { 1.0 } else { 2.0 };
+            g[tied] = both * support.missing(u, time)?;
         }
         let largest = g.iter().fold(0.0f64, |a, x| a.max(x.abs()));
         self.dofs.particular(g);
         Ok(largest)
+    }
+}
+
+/// The mean of two displacements that a support holds, or one displacement, which stands twice.
+#[derive(Debug, Clone, Copy)]
+pub struct Support<'a> {
+    pub dofs: [u32; 2],
+    /// Where it is at the start.
+    pub at: Vec3,
+    value: Option<&'a TimeFunction>,
+}
+
+impl Support<'_> {
+    /// Whether it moves with time.
+    pub fn moves(&self) -> bool {
+        self.value.is_some()
+    }
+
+    /// What is missing from the displacements `u` to its value at `time`.
+    ///
+    /// # Errors
+    /// A value that cannot be evaluated.
+    pub fn missing(&self, u: &[f64], time: f64) -> Result<f64, ValueError> {
+        let wanted = match self.value {
+            None => 0.0,
+            Some(value) => value.eval_at(&self.at, time)?,
+        };
+        let [a, b] = self.dofs.map(|d| u[d as usize]);
+        Ok(wanted - 0.5 * (a + b))
     }
 }
 
