@@ -4,9 +4,10 @@ use serde::{Deserialize, Serialize};
 /// How much of the forces the compliance of contact takes away, and which slave points carry them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
-    /// Estimated relative error of forces where motions are given, of displacements where loads are; 0 without contact.
+    /// Estimated relative error of forces, and of displacements where loads are given, to first order in the compliance of contact:
+    /// the larger of those at the last step and at the step of the largest force, relative to that force; 0 without contact.
     pub force_error: f64,
-    /// Energy of contact over strain energy, at the step where the error is largest.
+    /// Energy of contact over strain energy at the step that it is of.
     pub energy_ratio: f64,
     /// Penetration over the approach of the bodies there.
     pub penetration_ratio: f64,

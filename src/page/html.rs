@@ -234,7 +234,7 @@ fn accuracy(out: &mut String, of: &str, summary: &Summary) {
     }
     let _ = writeln!(
         out,
-        "<p>The compliance of contact changes forces by about {} at most (step {}, time {}{}): the energy of contact is {} of \
+        "<p>The compliance of contact changes the largest forces by about {} (step {}, time {}{}): the energy of contact is {} of \
          the strain energy, the penetration {} of the approach of the bodies.</p>",
         percent(a.force_error),
         a.step,

@@ -6,26 +6,27 @@
 //! springs in series, that is `r / (1 + r)` of the ratio `r = E_c / E_int` to the strain energy. Where loads are given,
 //! displacements are off by as much.
 //!
+//! What such measures do not show, a wrap whose pressure is concentrated or a path that is about to turn, the linear answer to
+//! the tractions of the step itself does ([`RigidLimit`]): it is what the user is told, of the last step and of that of the
+//! largest force, and it rules the penalty where two steps in a row show too much, and at the last step.
+//!
 //! `r` alone is no sure measure: under far too soft a penalty a tool passes through, and little of anything is stored. So
 //! the deepest penetration stands beside it, relative to the approach: how far master and slave bodies move towards each
 //! other along the normal of the deepest point. In a dent the mean penetration counts, which is some .3 of the deepest. And
 //! where contact stiffens fast at the end of a path, its energy grows faster than in proportion to the work: the exponent
 //! that the last steps show is then a factor on `E_c / W`.
+mod kept;
+mod told;
+
 use super::bearing::{Bearings, Deepest};
-use crate::model::error::number;
 use crate::model::master::Master;
 use crate::model::state::State;
 use crate::model::{Model, PairModel};
-use crate::output::Accuracy;
-use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::scene::ValueError;
+use crate::solve::newton::RigidLimit;
 use covact_geometry::Vec3;
 use nalgebra::Isometry3;
 
-/// Error above which the user is warned.
-const WARNED: f64 = 0.01;
-/// Error that the proposed penalty leaves.
-const WANTED: f64 = 0.003;
 /// Mean penetration over the deepest one.
 const MEAN: f64 = 0.3;
 /// Steps whose strain energy is below this part of the largest are not judged: first touches rest on single points.
@@ -69,9 +70,9 @@ impl Measures {
     }
 }
 
-/// The step with the largest error.
+/// What was measured at a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct Worst {
+struct Measured {
     measures: Measures,
     error: f64,
     /// Strain energy.
@@ -87,11 +88,20 @@ struct Worst {
 pub struct Compliance {
     /// Largest strain energy.
     largest: f64,
-    worst: Worst,
+    /// The step with the largest error by what shows there.
+    worst: Measured,
+    /// The steps of the largest force and the last one, with the errors that rigid contact shows; without where it could not be
+    /// measured.
+    limits: [Measured; 2],
+    /// That error of the last step.
+    before: f64,
     /// Energy of contact and work at the last two steps, the last one first.
     path: [[f64; 2]; 2],
     /// Penalty per pair at the last step; empty before the first.
     penalties: Vec<f64>,
+    /// Largest force and displacement so far.
+    force: f64,
+    displacement: f64,
     /// Poses of the surfaces at the start.
     poses: Vec<Isometry3<f64>>,
 }
@@ -137,6 +147,8 @@ pub struct StepEnd<'a> {
     pub work: f64,
     /// Penalty per pair.
     pub penalties: &'a [f64],
+    /// What rigid contact would change, where it was measured.
+    pub limit: Option<&'a RigidLimit>,
 }
 
 impl Compliance {
@@ -149,68 +161,15 @@ impl Compliance {
         let pose = |s: &crate::model::SurfaceModel| s.pose(0.0, &start.u);
         Ok(Compliance {
             largest: 0.0,
-            worst: Worst::default(),
+            worst: Measured::default(),
+            limits: [Measured::default(); 2],
+            before: 0.0,
             path: [[0.0; 2]; 2],
             penalties: Vec::new(),
+            force: 0.0,
+            displacement: 0.0,
             poses: model.surfaces.iter().map(pose).collect::<Result<_, _>>()?,
         })
-    }
-
-    /// Into a checkpoint.
-    pub(super) fn put(&self, out: &mut Writer) {
-        let Compliance {
-            largest,
-            worst,
-            path,
-            penalties,
-            // Known from the model.
-            poses: _,
-        } = self;
-        let Worst {
-            measures,
-            error,
-            energy,
-            step,
-            time,
-            pair,
-        } = worst;
-        out.f64s(&[*largest, *error, *energy, *time]);
-        out.f64s(&[measures.energy, measures.penetration, measures.growth]);
-        out.u32(*step);
-        out.u32(*pair);
-        out.f64s(path.as_flattened());
-        out.count(penalties.len());
-        out.f64s(penalties);
-    }
-
-    /// [`Self::put`], read back for the same model.
-    pub(super) fn take(&mut self, model: &Model, from: &mut Reader) -> Result<(), Malformed> {
-        let (mut sums, mut measures) = ([0.0; 4], [0.0; 3]);
-        from.f64s(&mut sums)?;
-        from.f64s(&mut measures)?;
-        [
-            self.largest,
-            self.worst.error,
-            self.worst.energy,
-            self.worst.time,
-        ] = sums;
-        let [energy, penetration, growth] = measures;
-        self.worst.measures = Measures {
-            energy,
-            penetration,
-            growth,
-        };
-        (self.worst.step, self.worst.pair) = (from.u32()?, from.u32()?);
-        if self.worst.pair as usize >= model.pairs.len().max(1) {
-            return Err(from.malformed("a contact that there is not"));
-        }
-        from.f64s(self.path.as_flattened_mut())?;
-        let count = from.count(8)?;
-        if count > model.pairs.len() {
-            return Err(from.malformed("penalties of more contacts than there are"));
-        }
-        self.penalties.resize(count, 0.0);
-        from.f64s(&mut self.penalties)
     }
 
     /// Whether a step has enough strain energy to be judged.
@@ -252,6 +211,31 @@ impl Compliance {
             *error = measures.largest();
         }
         Ok(found)
+    }
+
+    /// Relative error of a step by what rigid contact would change: of forces, relative to the largest so far, and of
+    /// displacements where loads are given.
+    fn relative(&self, model: &Model, limit: &RigidLimit) -> f64 {
+        let part = |change: f64, size: f64| if size > 0.0 { change / size } else { 0.0 };
+        let forces = part(limit.change(), limit.force().max(self.force));
+        let [moved, largest] = limit.moved;
+        match model.loaded() {
+            true => forces.max(part(moved, largest.max(self.displacement))),
+            false => forces,
+        }
+    }
+
+    /// Raises the errors of a step to what rigid contact would change, each pair's by its share of the energy of contact.
+    pub fn add_limit(&self, model: &Model, end: &StepEnd, errors: &mut Errors) {
+        let pairs = &end.bearings.pairs;
+        let all: f64 = pairs.iter().map(|p| p.energy).sum();
+        let Some(limit) = end.limit.filter(|_| all > 0.0) else {
+            return;
+        };
+        let error = self.relative(model, limit);
+        for (own, pair) in errors.forces.iter_mut().zip(pairs) {
+            *own = own.max(error * pair.energy / all);
+        }
     }
 
     /// The deepest penetration of a pair over the approach of its bodies.
@@ -296,19 +280,34 @@ impl Compliance {
                 false => growth([self.path[0], before, first]),
             },
         };
-        let error = measures.error();
-        if error > self.worst.error || self.worst.energy < JUDGED * self.largest {
-            let most = (pairs.iter().enumerate()).max_by(|a, b| a.1.energy.total_cmp(&b.1.energy));
-            self.worst = Worst {
-                measures,
-                error,
-                energy: end.internal,
-                step: end.step,
-                time: end.time,
-                pair: most.map_or(0, |(index, _)| index as u32),
-            };
+        let most = (pairs.iter().enumerate()).max_by(|a, b| a.1.energy.total_cmp(&b.1.energy));
+        let mut here = Measured {
+            measures,
+            error: measures.error(),
+            energy: end.internal,
+            step: end.step,
+            time: end.time,
+            pair: most.map_or(0, |(index, _)| index as u32),
+        };
+        if here.error > self.worst.error || self.worst.energy < JUDGED * self.largest {
+            self.worst = here;
         }
-        Ok(measures.growth)
+        let Some(limit) = end.limit else {
+            return Ok(measures.growth);
+        };
+        here.error = self.relative(model, limit);
+        self.displacement = self.displacement.max(limit.moved[1]);
+        let [peak, last] = &mut self.limits;
+        if limit.force() >= self.force {
+            self.force = limit.force();
+            *peak = here;
+        }
+        *last = here;
+        // A single step may be that of a point just about to slide.
+        let lasting = here
+            .error
+            .min(std::mem::replace(&mut self.before, here.error));
+        Ok(measures.growth.max(lasting))
     }
 
     /// How far the bodies of a pair have moved towards each other along the normal at its deepest point: the spread of the
@@ -348,79 +347,6 @@ impl Compliance {
             }),
         }
         Ok(high - low)
-    }
-
-    /// What the user is told at the end of a run, under the penalties that it ended with.
-    pub fn warning(&self, model: &Model, penalties: &[f64]) -> Option<String> {
-        let Worst {
-            measures,
-            error,
-            step,
-            time,
-            pair,
-            ..
-        } = self.worst;
-        let (pair, eps) = (model.pairs.get(pair as usize)?, penalties[pair as usize]);
-        if error <= WARNED {
-            return None;
-        }
-        let off = match error > 0.5 {
-            true => "more than half".to_owned(),
-            false => format!("about {:.1} %", 100.0 * error),
-        };
-        // The larger the measure that the error comes from, the stiffer.
-        let measure = (measures.energy)
-            .max(MEAN * measures.penetration)
-            .max(measures.growth);
-        let times = (measure / WANTED).clamp(2.0, 1e15);
-        let remedy = match pair.augmentation {
-            Some(_) => "take a smaller `gap` of its `augmentation`".to_owned(),
-            None => format!(
-                "take a `penalty` of about {{\"value\": {:.0e}}} there ({times:.0e} times the present one), or `augmentation`",
-                eps * times
-            ),
-        };
-        let growth = match measures.growth > 0.0 {
-            true => format!(
-                ", and {:.2} % of the work of the last steps went into contact",
-                100.0 * measures.growth
-            ),
-            false => String::new(),
-        };
-        Some(format!(
-            "contact gives way: forces (displacements, where loads are given) are off by {off}. At step {step} (time {}) the \
-             energy of contact was {} of the strain energy, most of it in contact `{}`, and the deepest penetration {} of \
-             the approach{growth}: {remedy}",
-            number(time),
-            share(measures.energy),
-            pair.name,
-            share(measures.penetration)
-        ))
-    }
-
-    /// The measures as they stand in the summary.
-    pub fn account(&self, model: &Model) -> Accuracy {
-        let Worst { measures, .. } = self.worst;
-        let touched = self.worst.step > 0;
-        let name = model.pairs.get(self.worst.pair as usize);
-        Accuracy {
-            force_error: self.worst.error,
-            energy_ratio: measures.energy.min(f64::MAX),
-            penetration_ratio: measures.penetration.min(f64::MAX),
-            energy_growth: measures.growth,
-            step: self.worst.step,
-            time: self.worst.time,
-            contact: name.filter(|_| touched).map(|p| p.name.clone()),
-            contacts: Vec::new(),
-        }
-    }
-}
-
-/// A part in percent, or a multiple.
-fn share(x: f64) -> String {
-    match x < 1.0 {
-        true => format!("{:.2} %", 100.0 * x),
-        false => format!("{x:.1e} times"),
     }
 }
 

@@ -30,7 +30,7 @@ use crate::output::atomic::sweep;
 use crate::output::{History, OutputError, Results, RunStatus};
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
-use crate::solve::newton::{Converged, StepFailure, Workspace};
+use crate::solve::newton::{Converged, RigidLimit, StepFailure, Workspace};
 use crate::solve::stepping::Stepping;
 use crate::system::linear::{LinearSolver, Method};
 use covact_geometry::Vec3;
@@ -368,7 +368,7 @@ impl<'a, 'm> March<'a, 'm> {
                 match self.settle(at, (&*committed, walk), &mut trial, converged, outputs)? {
                     Ok(found) => settled = Some(found),
                     Err(failure) => {
-                        self.assembler.penalties.copy_from_slice(&penalties);
+                        self.take_back(&penalties);
                         result = Err(failure);
                     }
                 }
@@ -378,18 +378,15 @@ impl<'a, 'm> March<'a, 'm> {
                     let start = self.progress.time;
                     let Settled {
                         sliding,
-                        mut histories,
                         errors,
+                        limit,
                     } = settled.unwrap_or_default();
                     let residual = self.workspace.residual();
-                    // As they were while the step was solved.
-                    std::mem::swap(&mut trial.histories, &mut histories);
                     let span = Span {
                         from: (committed, start),
                         to: (&trial, end),
                     };
                     let drag = self.assembler.drag(&trial.u, residual);
-                    let watched = self.watch.clone();
                     let work = (self.watch)
                         .work(
                             self.model,
@@ -399,16 +396,15 @@ impl<'a, 'm> March<'a, 'm> {
                             &span,
                         )
                         .map_err(|e| RunError::internal(&e))?;
-                    std::mem::swap(&mut trial.histories, &mut histories);
                     let energy =
                         energy(&converged.totals, &sliding) + committed.stabilized + drag.work;
                     if cuts < GIVES_IN
-                        && let Some(part) = watched.gained(self.model, step, &work, energy)
+                        && let Some(part) = self.watch.gained(self.model, step, &work, energy)
                     {
-                        self.watch = watched;
-                        self.assembler.penalties.copy_from_slice(&penalties);
+                        self.take_back(&penalties);
                         break 'solved StepFailure::GainedEnergy { part };
                     }
+                    (self.watch).accept(self.assembler, residual, &converged.totals, &span);
                     match &mut walk.before {
                         Some((state, size)) => {
                             std::mem::swap(state, committed);
@@ -433,7 +429,7 @@ impl<'a, 'm> March<'a, 'm> {
                         &converged,
                         &sliding,
                         (work, drag),
-                        errors,
+                        (errors, limit),
                     )?;
                     cuts = 0;
                     let internal = converged.totals.internal_energy;
@@ -688,7 +684,7 @@ impl<'a, 'm> March<'a, 'm> {
         converged: &Converged,
         sliding: &FrictionTotals,
         (work, drag): (Work, Drag),
-        errors: Errors,
+        (errors, limit): (Errors, Option<RigidLimit>),
     ) -> Result<(), RunError> {
         let (step, time) = (self.progress.steps, self.progress.time);
         self.phases.start("output");
@@ -719,6 +715,7 @@ impl<'a, 'm> March<'a, 'm> {
             internal: totals.internal_energy,
             work: self.watch.external,
             penalties: &self.assembler.penalties,
+            limit: limit.as_ref(),
         };
         let growth =
             (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?;

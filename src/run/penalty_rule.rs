@@ -146,11 +146,14 @@ impl PenaltyRule {
                 continue;
             }
             let by_error = match counts {
-                true => (total / ruled.accuracy).clamp(least, most),
+                true => two_digits(total / ruled.accuracy).clamp(least, most),
                 false => 1.0,
             };
             // What is far too soft gives way by as much under a little more.
-            let by_depth = if sunk > 1.0 { DEEPER * sunk } else { 1.0 };
+            let by_depth = match sunk > 1.0 {
+                true => two_digits(DEEPER * sunk),
+                false => 1.0,
+            };
             // Between what serves and what does not.
             let between = (penalties[index] * rule.bad).sqrt();
             let bound = ruled.stiffest.min(between);
@@ -209,6 +212,7 @@ impl PenaltyRule {
             if *steps >= IDLE && *sum > MANY * *steps {
                 rule.low = [0; 2];
                 let factor = (errors.forces[index] / ruled.accuracy).max(errors.sunk[index]);
+                let factor = two_digits(factor);
                 let eps = penalties[index] * factor.clamp(LOWER, 1.0);
                 set(model, index, eps, penalties);
                 lowered = true;
@@ -231,6 +235,15 @@ pub fn untenable(model: &Model, errors: &Errors, cuts: u32) -> Option<f64> {
     let bound = UNTENABLE * f64::from(1 << cuts.min(RELENTS));
     let allowed = rules.fold(f64::INFINITY, |a, r| a.min(bound * r.accuracy));
     (total > allowed).then_some(total)
+}
+
+/// A factor to two digits: what rounding makes of an error, in other units or far from the origin, is not to reach the forces.
+fn two_digits(factor: f64) -> f64 {
+    if !(factor > 0.0 && factor.is_finite()) {
+        return factor;
+    }
+    let unit = 10f64.powi(factor.log10().floor() as i32 - 1);
+    (factor / unit).round() * unit
 }
 
 /// Sets the penalty of a pair; two half passes have one.

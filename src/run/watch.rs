@@ -224,15 +224,15 @@ impl Watch {
         Ok(watch)
     }
 
-    /// Work of an accepted step, and what acts at its end. `residual` is that of all degrees of freedom; the assembler has
-    /// evaluated the end of the step.
+    /// Work of a step that is solved. `residual` is that of all degrees of freedom; the assembler has evaluated the end of the
+    /// step.
     ///
     /// # Errors
     /// A motion of a surface without a value at an end of the step, or a point that cannot be evaluated.
     pub fn work<L: PairLaw>(
-        &mut self,
+        &self,
         model: &Model,
-        assembler: &mut Assembler<L>,
+        assembler: &Assembler<L>,
         residual: &[f64],
         totals: &Totals,
         span: &Span,
@@ -242,8 +242,8 @@ impl Watch {
         let n = self.reactions.len();
         let (was, now) = (&from.u[..n], &to.u[..n]);
         for (at, end) in [
-            (&mut self.reactions, residual),
-            (&mut self.loads, assembler.external()),
+            (&self.reactions, residual),
+            (&self.loads, assembler.external()),
         ] {
             let [mut a, mut b] = [0.0; 2];
             for (i, (a_i, b_i)) in at.iter().zip(end).enumerate() {
@@ -252,26 +252,38 @@ impl Watch {
                 b += b_i * du;
             }
             work.add(a, b);
-            let own = at.len();
-            at.copy_from_slice(&end[..own]);
         }
-        let moved = was.iter().zip(now).map(|(a, b)| (b - a).abs());
-        let speed = moved.fold(0.0, f64::max) / (span.to.1 - span.from.1);
-        self.speed = [speed, self.speed[0]];
         let twists = Twist::all(model, span)?;
         for ((twist, was), now) in twists.iter().zip(&self.surfaces).zip(&totals.surfaces) {
             if let Some(twist) = twist {
                 work.add(twist.power(was), twist.power(now));
             }
         }
-        self.surfaces.copy_from_slice(&totals.surfaces);
         work.adjusted += self.multipliers(model, assembler);
-        if self.penalties != assembler.penalties || self.ratios != assembler.ratios {
-            work.changed = true;
-            self.penalties.copy_from_slice(&assembler.penalties);
-            self.ratios.copy_from_slice(&assembler.ratios);
-        }
+        work.changed = self.penalties != assembler.penalties || self.ratios != assembler.ratios;
         Ok(work)
+    }
+
+    /// What acts at the end of an accepted step, whose work has been taken: [`Self::work`].
+    pub fn accept<L: PairLaw>(
+        &mut self,
+        assembler: &Assembler<L>,
+        residual: &[f64],
+        totals: &Totals,
+        span: &Span,
+    ) {
+        let n = self.reactions.len();
+        self.reactions.copy_from_slice(&residual[..n]);
+        let loads = self.loads.len();
+        (self.loads).copy_from_slice(&assembler.external()[..loads]);
+        self.surfaces.copy_from_slice(&totals.surfaces);
+        let (was, now) = (&span.from.0.u[..n], &span.to.0.u[..n]);
+        let moved = was.iter().zip(now).map(|(a, b)| (b - a).abs());
+        let speed = moved.fold(0.0, f64::max) / (span.to.1 - span.from.1);
+        self.speed = [speed, self.speed[0]];
+        self.penalties.copy_from_slice(&assembler.penalties);
+        self.ratios.copy_from_slice(&assembler.ratios);
+        self.keep_tractions(assembler.answers());
     }
 
     /// What a step gains out of nothing, as a part of the work turned over so far or of what was stored, where that is too much to be a path: `energy`
@@ -366,7 +378,7 @@ impl Watch {
     }
 
     /// Work of the normal tractions of points with multipliers that their penalties do not store.
-    fn multipliers<L: PairLaw>(&mut self, model: &Model, assembler: &Assembler<L>) -> f64 {
+    fn multipliers<L: PairLaw>(&self, model: &Model, assembler: &Assembler<L>) -> f64 {
         let answers = assembler.answers();
         let mut adjusted = 0.0;
         for (index, pair) in model.pairs.iter().enumerate() {
@@ -385,7 +397,6 @@ impl Watch {
             }
             adjusted += pair.share() * sum;
         }
-        self.keep_tractions(answers);
         adjusted
     }
 

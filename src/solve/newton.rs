@@ -3,7 +3,10 @@
 //! Full steps by default: a thin shell's first iterate stretches it, so that the residual jumps by orders of magnitude
 //! before it falls, and a search that forbids the jump would crawl. The line search (on the slope of the energy along
 //! the increment, which also covers steps an element cannot take) comes in where full steps fail to make headway.
+mod rigid_limit;
 mod small;
+
+pub use rigid_limit::RigidLimit;
 
 use super::convergence::{Norms, Verdict};
 use super::cycle::{Cycle, PingPong};
@@ -72,6 +75,8 @@ pub struct Workspace {
     scratch: Vec<f64>,
     absolute: Vec<f64>,
     base: State,
+    /// The solver has the factors of an iterate of the last solution.
+    factored: bool,
     /// The last tangent with negative pivots, since this was last reset.
     pub unstable: Option<Unstable>,
     /// Factorizations made so far, of failed attempts too.
@@ -89,6 +94,7 @@ impl Workspace {
             scratch: vec![0.0; n],
             absolute: vec![0.0; n],
             base: State::new(model),
+            factored: false,
             unstable: None,
             factorizations: BTreeMap::new(),
         }
@@ -104,6 +110,7 @@ impl Workspace {
             scratch,
             absolute,
             base,
+            factored: _,
             unstable: _,
             // A few counts.
             factorizations: _,
@@ -124,6 +131,7 @@ impl Workspace {
             scratch: _,
             absolute: _,
             base: _,
+            factored: _,
             unstable: _,
             factorizations,
         } = self;
@@ -212,6 +220,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
     ) -> Result<Converged, StepFailure> {
         self.opened = false;
         let w = &mut *self.workspace;
+        w.factored = false;
         let outstanding = (self.model)
             .increments(&trial.u, time, &mut w.increments)
             .map_err(Fault::from)?;
@@ -413,8 +422,10 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
 
     /// Solves for the increment.
     fn solve_linear(&mut self, pending: bool) -> Result<Factorization, StepFailure> {
+        self.workspace.factored = false;
         let factored = self.factorize()?;
         let w = &mut *self.workspace;
+        w.factored = true;
         *w.factorizations.entry(factored.method).or_default() += 1;
         self.phases.start("solve");
         w.du.copy_from_slice(&w.rhs);

@@ -1,5 +1,5 @@
 //! What the compliance of contact takes away from forces is told, with its size, and nothing is told where it is small.
-use crate::support::{Outcome, solve};
+use crate::support::{Outcome, scene_json, set, solve};
 use serde_json::{Value, json};
 
 /// Young's modulus of the sheets.
@@ -171,4 +171,81 @@ fn tools_that_pass_through_are_told() {
         told.len() == 1 && told[0].contains("by more than half"),
         "{told:?}"
     );
+}
+
+/// A strip bent over a roll lies on few points, whose gaps show in neither energies nor penetrations by as much as they change
+/// the force: what rigid contact would change is found from the tractions of the last step, and falls with the penalty. The
+/// reference is the same strip under a penalty at which nothing is left.
+#[test]
+fn what_the_penalty_takes_away_from_a_bent_strip_is_told() {
+    let bent = |penalty: f64| {
+        run(&json!({
+            "covact": 1,
+            "materials": { "m": { "st_venant_kirchhoff": { "E": 1000, "nu": 0.3 } } },
+            "bodies": { "strip": {
+                "mesh": { "plate": {
+                    "size": [20, 2], "thickness": 0.5, "elements": [24, 1], "origin": [0, 0, 0.25]
+                } },
+                "material": "m"
+            } },
+            "surfaces": { "roll": {
+                "cylinder": { "radius": 6, "length": 10, "center": [10, 1, -6.01] },
+                "motion": { "translation": [0, 0, "4*t"] }
+            } },
+            "contacts": { "over": {
+                "slave": "strip.bottom", "master": "roll", "penalty": { "value": penalty }
+            } },
+            "supports": {
+                "held": { "on": "strip.x_min", "fixed": true },
+                "guided": { "on": "strip.x_max", "displacement": { "z": 0 } },
+                "middle": { "on": "strip.y_min", "symmetry": "y" }
+            },
+            "solution": { "threads": 1 },
+            "output": { "every": 0 }
+        }))
+    };
+    let force = |outcome: &Outcome| outcome.at("force.roll.z", 1.0);
+    let rigid = force(&bent(1e5));
+    let mut last = f64::INFINITY;
+    for penalty in [100.0, 300.0, 1000.0] {
+        let outcome = bent(penalty);
+        let off = 1.0 - force(&outcome) / rigid;
+        let found = outcome.summary.accuracy.force_error;
+        println!("{penalty}: off by {off:.2e}, told {found:.2e}");
+        assert!(off > 1e-3 && found / off < 1.5 && off / found < 1.5);
+        assert!(found < 0.6 * last, "{found} after {last}");
+        assert_eq!(told(&outcome).len(), usize::from(found > 0.01));
+        last = found;
+    }
+}
+
+/// The force on the balls of `pinched_tube` grows threefold in its last step, where what a step leaves shows too late: the rule
+/// sees what rigid contact would change, and the default has the force of one that is ruled forty times as sharply over
+/// half the steps.
+#[test]
+fn a_force_that_rises_at_the_end_is_right_at_the_end() {
+    let pinched = |sharp: bool| {
+        let mut scene = scene_json("pinched_tube.json");
+        set(
+            &mut scene,
+            "/bodies/tube/mesh/cylinder_panel/elements",
+            vec![24, 14],
+        );
+        scene["output"] = json!({ "every": 0 });
+        if sharp {
+            scene["solution"]["step"] = json!({ "initial": 0.025, "max": 0.025 });
+            for contact in ["ball_above", "ball_below", "walls"] {
+                scene["contacts"][contact]["accuracy"] = json!(1e-4);
+            }
+        }
+        run(&scene)
+    };
+    let [default, sharp] = [false, true].map(pinched);
+    let [force, exact] = [&default, &sharp].map(|o| o.at("force.above.z", 1.0));
+    let off = (force / exact - 1.0).abs();
+    let found = default.summary.accuracy.force_error;
+    println!("{force} for {exact}: off by {off:.2e}, told {found:.2e}");
+    assert!(sharp.summary.accuracy.force_error < 1e-3);
+    assert!(exact < -5.0 && off < 0.01 && found < 0.01, "{off} {found}");
+    assert_eq!(told(&default), Vec::<&String>::new());
 }

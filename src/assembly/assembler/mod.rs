@@ -320,6 +320,11 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
         self.new_pattern.take()
     }
 
+    /// Whether the pattern is another than when it was last taken.
+    pub fn has_new_pattern(&self) -> bool {
+        self.new_pattern.is_some()
+    }
+
     /// Times the pattern was built anew because points touched facets that it did not couple them with.
     pub fn rebuilds(&self) -> u32 {
         self.rebuilds

@@ -4,13 +4,14 @@ use crate::contact::friction::history::PointHistory;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::RunError;
+use crate::run::bearing::{Bearing, Bearings};
 use crate::run::commit::{self, FrictionTotals};
 use crate::run::compliance::{Errors, StepEnd};
 use crate::run::penalty_rule::{self, PenaltyRule};
 use crate::run::step::Attempts;
 use crate::scene::ValueError;
 use crate::solve::event::Event;
-use crate::solve::newton::{Converged, StepFailure};
+use crate::solve::newton::{Converged, RigidLimit, StepFailure};
 
 /// Iterations of a step, those of failed attempts included, above which tangential penalties are softened.
 const STRUGGLES: u32 = 16;
@@ -21,10 +22,10 @@ const RAISES: usize = 6;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Settled {
     pub sliding: FrictionTotals,
-    /// What the points remembered while it was solved.
-    pub histories: Vec<PointHistory>,
     /// What every pair leaves; empty where the run chooses no penalty.
     pub errors: Errors,
+    /// What rigid contact would change.
+    pub limit: Option<RigidLimit>,
 }
 
 /// What a raise of penalties went out from.
@@ -32,6 +33,11 @@ struct Tried {
     state: State,
     penalties: Vec<f64>,
     errors: Errors,
+}
+
+/// Whether an equilibrium is more than what rounding leaves.
+fn reliable(converged: &Converged) -> bool {
+    (converged.history.last()).is_none_or(|last| last.0 <= RELIABLE)
 }
 
 impl<'m> March<'_, 'm> {
@@ -85,18 +91,23 @@ impl<'m> March<'_, 'm> {
             let sliding = commit::commit(self.model, self.assembler, trial, was, end)
                 .map_err(|e| RunError::internal(&e))?;
             self.gather(outputs, trial, end)?;
-            let mut settled = Settled {
-                sliding,
-                histories: Vec::new(),
-                errors: Errors::default(),
+            let limit = match reliable(converged) {
+                true => self.rigid_limit(trial, &histories, &outputs.fields.bearings, end),
+                false => None,
             };
             let Some(fields) = &fields else {
-                settled.histories = histories;
-                return Ok(Ok(settled));
+                return Ok(Ok(Settled {
+                    sliding,
+                    errors: Errors::default(),
+                    limit,
+                }));
             };
-            let errors = self.errors(outputs, trial, (step, end), converged)?;
+            let last = walk.stepping.done(end);
+            let limit_here = limit.as_ref();
+            let [errors, ruling] =
+                self.errors(outputs, trial, (step, end, last), limit_here, converged)?;
             if let Some(tried) = tried.take()
-                && !PenaltyRule::helped(&tried.errors, &errors)
+                && !PenaltyRule::helped(&tried.errors, &ruling)
             {
                 let why = "a stiffer one does not lower the error";
                 outputs.fields.back(fields);
@@ -109,8 +120,8 @@ impl<'m> March<'_, 'm> {
                 continue;
             }
             let mut stiffer = self.assembler.penalties.clone();
-            let raise = raises > 0 && self.rule.raise(self.model, &errors, rejected, &mut stiffer);
-            let error = errors.sum();
+            let raise = raises > 0 && self.rule.raise(self.model, &ruling, rejected, &mut stiffer);
+            let error = ruling.sum();
             if (converged.eased || rejected && !raise)
                 && let Some(error) = penalty_rule::untenable(self.model, &errors, cuts)
             {
@@ -119,8 +130,11 @@ impl<'m> March<'_, 'm> {
                 }));
             }
             if !raise {
-                (settled.histories, settled.errors) = (histories, errors);
-                return Ok(Ok(settled));
+                return Ok(Ok(Settled {
+                    sliding,
+                    errors,
+                    limit,
+                }));
             }
             raises -= 1;
             // Solved again from where it is.
@@ -132,7 +146,7 @@ impl<'m> March<'_, 'm> {
             let from = Tried {
                 state: trial.clone(),
                 penalties: softer,
-                errors,
+                errors: ruling,
             };
             match (self.attempts(committed, &mut walk.hold)).stiffened(step, end, trial) {
                 Ok(next) => {
@@ -162,8 +176,7 @@ impl<'m> March<'_, 'm> {
         why: &str,
     ) -> Result<Converged, StepFailure> {
         self.rule.reject(&from.penalties, &self.assembler.penalties);
-        self.assembler.penalties.copy_from_slice(&from.penalties);
-        self.hold_given();
+        self.take_back(&from.penalties);
         trial.copy_from(&from.state);
         self.observer.event(&Event::StepRetried {
             step,
@@ -173,20 +186,46 @@ impl<'m> March<'_, 'm> {
         (self.attempts(committed, &mut walk.hold)).stiffened(step, end, trial)
     }
 
+    /// What rigid contact would change; nothing where contact cannot be evaluated beside the state.
+    fn rigid_limit(
+        &mut self,
+        state: &State,
+        histories: &[PointHistory],
+        bearings: &Bearings,
+        time: f64,
+    ) -> Option<RigidLimit> {
+        if self.model.pairs.is_empty() {
+            return None;
+        }
+        self.phases.start("accuracy");
+        let limit = self.workspace.rigid_limit(
+            self.model,
+            self.assembler,
+            self.solver,
+            (state, histories),
+            time,
+        );
+        self.phases.stop("accuracy");
+        let mut limit = limit.ok().flatten()?;
+        let part = |b: &Bearing| b.prescribed / b.force.max(f64::MIN_POSITIVE);
+        limit.leave_out(bearings.pairs.iter().map(part));
+        Some(limit)
+    }
+
+    /// The errors that show at the end of a step, and those that rule its penalties: what rigid contact would change shows the
+    /// same from one step to the next, and only the last one has no next.
     fn errors(
         &self,
         outputs: &Outputs,
         state: &State,
-        (step, time): (u32, f64),
+        (step, time, last): (u32, f64, bool),
+        limit: Option<&RigidLimit>,
         converged: &Converged,
-    ) -> Result<Errors, RunError> {
+    ) -> Result<[Errors; 2], RunError> {
         // Where rounding is all there is, nothing is known.
-        if converged
-            .history
-            .last()
-            .is_some_and(|last| last.0 > RELIABLE)
-        {
-            return Ok(Errors::none(self.model));
+        if !reliable(converged) {
+            let none = Errors::none(self.model);
+            return Ok([none.clone(), none]);
         }
         let end = StepEnd {
             step,
@@ -196,8 +235,15 @@ impl<'m> March<'_, 'm> {
             internal: converged.totals.internal_energy,
             work: 0.0,
             penalties: &self.assembler.penalties,
+            limit,
         };
-        (self.compliance.errors(self.model, &end)).map_err(|e| RunError::internal(&e))
+        let errors =
+            (self.compliance.errors(self.model, &end)).map_err(|e| RunError::internal(&e))?;
+        let mut ruling = errors.clone();
+        if last {
+            self.compliance.add_limit(self.model, &end, &mut ruling);
+        }
+        Ok([errors, ruling])
     }
 
     fn tell_raise(&mut self, step: u32, softer: &[f64], error: f64) {
@@ -261,6 +307,12 @@ impl<'m> March<'_, 'm> {
             self.rule.raise(model, &errors, false, &mut penalties);
         }
         self.assembler.penalties.copy_from_slice(&penalties);
+        self.hold_given();
+    }
+
+    /// Takes the penalties that there were before a raise.
+    pub(super) fn take_back(&mut self, penalties: &[f64]) {
+        self.assembler.penalties.copy_from_slice(penalties);
         self.hold_given();
     }
 
