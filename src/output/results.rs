@@ -1,6 +1,6 @@
 //! A folder of results: one `.vtu` per part and step, listed with their times in `.pvd` collections.
 use super::atomic::{make_folder, remove_file, sync_files, write_soon};
-use super::vtu::escape;
+use super::vtu::escaped;
 use super::{BodyFields, OutputError, PointCloud, SurfaceOutput};
 use nalgebra::Isometry3;
 use std::collections::BTreeSet;
@@ -265,7 +265,7 @@ fn collection(entries: &[Entry]) -> String {
             "    <DataSet timestep=\"{:?}\" part=\"{}\" name=\"{}\" file=\"{}\"/>",
             e.time,
             e.part,
-            escape(&e.name),
+            escaped(&e.name),
             e.file
         );
     }

@@ -1,10 +1,10 @@
 //! Quantities that are curves, over one another.
 use super::super::axis::{Axis, Form};
 use super::super::legend::{Entry, Sign};
-use super::super::number::percent;
 use super::super::plot::{Kind, Path, Plot};
 use super::super::view::{STYLES, View};
 use super::{Figure, title};
+use crate::page::number::percent;
 use crate::study::record::Record;
 
 /// Points that a curve is drawn with.
