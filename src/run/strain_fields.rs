@@ -31,6 +31,11 @@ impl StrainFields {
         }
     }
 
+    /// Whether the body is a shell.
+    pub fn of_shell(&self) -> bool {
+        self.thickness.is_some()
+    }
+
     /// As fields of the output: `principal_stress`, `principal_log_strain`, and of a shell `thickness` and `thinning`.
     pub fn fields(&self) -> impl Iterator<Item = Field<'_>> {
         let three = |name, data| Field {
