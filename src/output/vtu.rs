@@ -68,6 +68,17 @@ impl Array {
     }
 }
 
+/// Numbers in single precision, whose digits suffice to look at them and take half the room; in double precision where one
+/// is too large.
+pub(crate) fn single(data: &[f64]) -> IOBuffer {
+    let single: Vec<f32> = data.iter().map(|v| *v as f32).collect();
+    let fits = |(v, s): (&f64, &f32)| s.is_finite() || !v.is_finite();
+    match data.iter().zip(&single).all(fits) {
+        true => single.into(),
+        false => data.to_vec().into(),
+    }
+}
+
 /// An unstructured grid about to be written.
 pub(crate) struct Grid {
     /// What the grid is, for error messages.

@@ -13,7 +13,7 @@ use crate::contact::friction::history::PointStatus;
 use crate::contact::law::PairLaw;
 use crate::model::master::{MasterNow, Masters};
 use crate::model::state::State;
-use crate::model::{BodyModel, Model};
+use crate::model::{BodyModel, Model, SurfaceModel};
 use crate::output::{
     BodyFields, CLOSED, ContactFields, Field, NOT_A_SLAVE, OPEN, OutputError, PartNames, Place,
     Results, SurfaceOutput, SurfaceState, von_mises,
@@ -122,6 +122,9 @@ impl Fields {
         PartNames {
             bodies: model.bodies.iter().map(|b| b.name.clone()).collect(),
             surfaces: model.surfaces.iter().map(|s| s.name.clone()).collect(),
+            still: (model.surfaces.iter().filter(|s| still(s)))
+                .map(|s| s.name.clone())
+                .collect(),
             clouds: match self.gaps.is_empty() {
                 true => Vec::new(),
                 false => friction_fields::cloud_names(model),
@@ -454,8 +457,13 @@ impl Fields {
         let poses: Vec<_> = (model.surfaces.iter())
             .map(|s| [s.motion.pose(0.0), s.pose(time, &state.u)].map(Result::unwrap_or_default))
             .collect();
-        let surfaces: Vec<SurfaceState> = (self.surfaces.iter().zip(&poses))
-            .map(|(surface, [start, at])| SurfaceState { surface, start, at })
+        let surfaces: Vec<SurfaceState> = (self.surfaces.iter().zip(&poses).zip(&model.surfaces))
+            .map(|((surface, [start, at]), model)| SurfaceState {
+                surface,
+                start,
+                at,
+                still: still(model),
+            })
             .collect();
         let clouds = match self.gaps.is_empty() {
             true => Vec::new(),
@@ -463,4 +471,9 @@ impl Fields {
         };
         results.write(step, time, &bodies, &surfaces, &clouds)
     }
+}
+
+/// Whether a surface never moves.
+fn still(surface: &SurfaceModel) -> bool {
+    !surface.motion.moves() && surface.driven.is_none()
 }
