@@ -6,6 +6,7 @@ use crate::output::NOT_A_SLAVE;
 use crate::scene::ValueError;
 use crate::shell::{ElementBlock, ElementSystem, with_block};
 use covact_geometry::Vec3;
+use rayon::prelude::*;
 
 /// Forces that supports and contacts exert on the nodes, three numbers a node: internal minus external forces of an accepted
 /// state at the degrees of freedom that supports hold and at the nodes of slaves (those with a `status`) and of bodies as
@@ -62,15 +63,27 @@ fn internal<const N: usize, B: ElementBlock<N>>(
     states: &[f64],
     u: &[f64],
     forces: &mut [f64],
-) {
+) where
+    B::Forces: Send,
+{
     let len = block.state_len();
-    let (mut own, mut system) = (vec![0.0; len], B::System::default());
-    for e in 0..block.elements() {
-        own.copy_from_slice(&states[e * len..(e + 1) * len]);
+    let of = |e: usize| -> Option<B::Forces> {
         let now = body.displacements(block, e, u);
-        // An element without forces has none to show.
-        if block.evaluate(e, &now, &mut own, &mut system).is_ok() {
-            add(forces, body.nodes_of(block, e), system.parts().0);
+        // Before the first step nothing is condensed yet, and there are no forces. An element that is impossible has none
+        // to show.
+        let moved = now.iter().any(|u| *u != Vec3::zeros());
+        let mut f = B::NO_FORCES;
+        let own = &states[e * len..(e + 1) * len];
+        (moved && block.residual(e, &now, own, &mut f).is_ok()).then_some(f)
+    };
+    let all: Vec<Option<B::Forces>> = (0..block.elements())
+        .into_par_iter()
+        .with_min_len(16)
+        .map(of)
+        .collect();
+    for (e, f) in all.iter().enumerate() {
+        if let Some(f) = f {
+            add(forces, body.nodes_of(block, e), f.as_ref());
         }
     }
 }

@@ -143,7 +143,7 @@ fn listings_fit_a_terminal() {
     let scenes = of("examples/scenes", &["json"]);
     let tools = of("assets/cad", &["igs", "stp", "step", "stl"]);
     assert!(scenes.len() > 10 && tools.len() > 3, "{scenes:?} {tools:?}");
-    let plans = scenes.iter().map(|scene| vec!["plan", scene]);
+    let plans = (scenes.iter()).flat_map(|scene| [vec!["plan", scene], vec!["check", scene]]);
     let inspections = tools.iter().map(|tool| vec!["inspect", tool]);
     for arguments in plans.chain(inspections).chain([vec!["gauntlet", "--list"]]) {
         let shown = covact(root, &arguments);

@@ -1,5 +1,5 @@
 //! `covact inspect`.
-use crate::support::{covact, stderr, stdout};
+use crate::support::{covact, stderr, stdout, unfolded};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -33,22 +33,6 @@ fn inspect(name: &str, content: &str, arguments: &[&str]) -> (Option<i32>, Strin
         .unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (status.code(), text(stdout), text(stderr))
-}
-
-/// The text with lines joined that go on below, by four columns farther in.
-fn unfolded(text: &str) -> String {
-    let mut out = String::new();
-    let mut before = 0;
-    for line in text.lines() {
-        let inside = line.len() - line.trim_start().len();
-        if inside == before + 4 {
-            out += &format!(" {}", line.trim_start());
-        } else {
-            out += &format!("\n{line}");
-            before = inside;
-        }
-    }
-    out
 }
 
 #[test]
