@@ -50,14 +50,12 @@ fn read(bytes: &[u8]) -> UnstructuredGridPiece {
 }
 
 fn array(attributes: &[Attribute], name: &str) -> (usize, Vec<f64>) {
-    for attribute in attributes {
-        if let Attribute::DataArray(a) = attribute
-            && a.name == name
-        {
-            return (a.num_comp(), a.data.cast_into::<f64>().unwrap());
-        }
-    }
-    panic!("no array {name}");
+    let found = attributes.iter().find_map(|attribute| match attribute {
+        Attribute::DataArray(a) if a.name == name => Some(a),
+        _ => None,
+    });
+    let array = found.expect(name);
+    (array.num_comp(), array.data.cast_into::<f64>().unwrap())
 }
 
 fn tag<'a>(text: &'a str, start: &str) -> &'a str {
@@ -147,19 +145,14 @@ fn a_body_reads_back_as_it_was() {
     assert_eq!(array(point, "displacement"), (3, flat));
     let flat: Vec<f64> = stress.iter().flatten().copied().map(single).collect();
     assert_eq!(array(point, "cauchy_stress"), (6, flat));
-    assert_eq!(
-        array(point, "von_mises").1[2],
-        single(von_mises(&stress[2]))
-    );
+    let mises = single(von_mises(&stress[2]));
+    assert_eq!(array(point, "von_mises").1[2], mises);
     assert_eq!(array(point, "contact_pressure"), (1, pressure.clone()));
     // Too large for single precision.
     assert_eq!(array(point, "temperature"), (1, hot.clone()));
     let back = array(point, "contact_gap").1;
-    assert!(
-        back.iter()
-            .zip(&gap)
-            .all(|(a, b)| a.to_bits() == b.to_bits())
-    );
+    let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits();
+    assert!(back.iter().zip(&gap).all(same));
     assert!(back[4].is_nan() && !back[5].is_nan());
     let status: Vec<f64> = status.iter().map(|&s| f64::from(s)).collect();
     assert_eq!(array(point, "contact_status"), (1, status));
@@ -390,11 +383,8 @@ fn the_normal_at_a_pole_is_that_of_the_sphere() {
         divisions: None,
     };
     let surface = SurfaceOutput::new("ball", vec![piece], 6).unwrap();
-    let grid = read(
-        &surface
-            .to_tessellated_vtu([&Isometry3::identity(); 2])
-            .unwrap(),
-    );
+    let identity = Isometry3::identity();
+    let grid = read(&surface.to_tessellated_vtu([&identity; 2]).unwrap());
     let x = grid.points.cast_into::<f64>().unwrap();
     let n = array(&grid.data.point, "normal").1;
     let mut poles = 0;
