@@ -1,7 +1,7 @@
 //! The folder of a run: collections, history, summary.
 use covact::mesh::{ElementKind, Mesh};
 use covact::output::{
-    Accuracy, BodyFields, COLUMNS, History, OutputError, Results, RunStatus, Summary,
+    Accuracy, BodyFields, COLUMNS, History, OutputError, PartNames, Results, RunStatus, Summary,
     SurfaceOutput, SurfacePiece, SurfaceState, Versions, column_table, documented, file_stem,
     read_csv,
 };
@@ -88,6 +88,7 @@ fn collections_list_every_part_at_every_time() {
             surface: &surface,
             start: &at,
             at: &at,
+            still: false,
         };
         results.write(step, time, &bodies, &[state], &[]).unwrap();
     }
@@ -304,4 +305,64 @@ fn a_summary_reads_back() {
     ] {
         assert!(json.get(key).is_some(), "{key}");
     }
+}
+
+/// A surface that never moves has one file, which the collections list at every time, when the run is gone on with too.
+#[test]
+fn a_surface_that_never_moves_is_written_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    let pvd = out.join("results.pvd");
+    let surfaces = [square("floor"), square("punch")];
+    let start = Isometry3::identity();
+    let write = |results: &mut Results, step: u32| {
+        let time = f64::from(step);
+        let at = Isometry3::translation(0.0, 0.0, time);
+        let states = [(&start, true), (&at, false)];
+        let states: Vec<SurfaceState> = (surfaces.iter().zip(states))
+            .map(|(surface, (at, still))| SurfaceState {
+                surface,
+                start: &start,
+                at,
+                still,
+            })
+            .collect();
+        results.write(step, time, &[], &states, &[]).unwrap();
+    };
+    let mut results = Results::create(out).unwrap();
+    write(&mut results, 0);
+    write(&mut results, 1);
+    let parts = PartNames {
+        surfaces: vec!["floor".into(), "punch".into()],
+        still: vec!["floor".into()],
+        ..PartNames::default()
+    };
+    let mut results = Results::resume(out, results.written().to_vec(), &parts).unwrap();
+    // Files of a step that was cut short.
+    std::fs::write(out.join("punch_0002.vtu"), "half").unwrap();
+    results.remove(2, &parts).unwrap();
+    assert!(!out.join("punch_0002.vtu").exists());
+    write(&mut results, 2);
+    let expected = |kind: &str| {
+        let of = |step: u32| {
+            [
+                format!("floor{kind}_0000.vtu"),
+                format!("punch{kind}_000{step}.vtu"),
+            ]
+        };
+        (0..3).flat_map(of).collect::<Vec<_>>()
+    };
+    assert_eq!(attributes(&pvd, "file"), expected(""));
+    let flat = attributes(&out.join("results_tessellated.pvd"), "file");
+    assert_eq!(flat, expected("_tessellated"));
+    assert_eq!(
+        attributes(&pvd, "timestep"),
+        ["0.0", "0.0", "1.0", "1.0", "2.0", "2.0"]
+    );
+    for file in attributes(&pvd, "file").iter().chain(&flat) {
+        Vtk::import(out.join(file)).unwrap();
+    }
+    let files = std::fs::read_dir(out).unwrap().count();
+    // Two collections, twice the floor and three times the punch, each exact and flat.
+    assert_eq!(files, 2 + 2 + 6);
 }

@@ -6,12 +6,16 @@ it in this folder.
     ___|              |___        z = 0, two feet, 8 wide
 
 All of it is 60 long (y from -30 to 30). Quadrilaterals of about 3 mm, in the groups `crown`, `webs` and `feet`; the border of
-the hole is the group `hole`.
+the hole is the group `hole`. Of another size into another file: python3 make_hat.py 0.62 hat_fine.msh (11,377 of them).
 """
+
+import sys
 
 import gmsh
 
-HALF, LENGTH, HEIGHT, FOOT, SIZE = 15.0, 30.0, 12.0, 8.0, 3.0
+HALF, LENGTH, HEIGHT, FOOT = 15.0, 30.0, 12.0, 8.0
+SIZE = float(sys.argv[1]) if len(sys.argv) > 1 else 3.0
+FILE = sys.argv[2] if len(sys.argv) > 2 else "hat.msh"
 
 gmsh.initialize()
 gmsh.option.setNumber("General.Terminal", 0)
@@ -50,7 +54,7 @@ gmsh.option.setNumber("Mesh.Algorithm", 8)
 gmsh.option.setNumber("Mesh.RecombinationAlgorithm", 2)
 mesh.generate(2)
 mesh.removeDuplicateNodes()
-gmsh.write("hat.msh")
+gmsh.write(FILE)
 types, tags, _ = mesh.getElements(2)
 print({mesh.getElementProperties(t)[0]: len(n) for t, n in zip(types, tags)})
 gmsh.finalize()

@@ -1,4 +1,5 @@
 //! `covact check`.
+use super::text::folded;
 use super::{CheckArgs, print, print_json, report};
 use crate::machine::memory::Size;
 use crate::model::EffectKind;
@@ -24,7 +25,7 @@ pub(super) fn check(args: &CheckArgs) -> u8 {
     match run::check(&scene) {
         Ok(found) if args.json => print_json(&found),
         Ok(found) => {
-            let code = print(&listing(&found));
+            let code = print(&folded(&listing(&found)));
             found.warnings.iter().for_each(|w| report::warning(w));
             code
         }

@@ -1,4 +1,5 @@
 //! `covact gauntlet`.
+use super::text::folded;
 use super::{GauntletArgs, exit, print, print_json, report};
 use crate::gauntlet::{Case, GROUPS, Verdict, markdown, plain};
 use rayon::prelude::*;
@@ -37,13 +38,13 @@ pub(super) fn gauntlet(args: &GauntletArgs) -> u8 {
         let lines = cases
             .iter()
             .map(|(group, c)| format!("{group}/{}: {}; right: {}\n", c.name, c.what, c.right));
-        return print(&lines.collect::<String>());
+        return print(&folded(&lines.collect::<String>()));
     }
     let quiet = args.json || args.markdown;
     let run = |(group, case): &(&'static str, &'static Case)| {
         let verdict = case.run_on(args.threads);
         if !quiet {
-            print(&plain(group, case, &verdict));
+            print(&folded(&plain(group, case, &verdict)));
         }
         verdict
     };

@@ -5,6 +5,7 @@ mod listing;
 mod stl;
 
 use super::cad::{Stop, fault};
+use super::text::folded;
 use super::{InspectArgs, exit, print, print_json, report};
 use covact_geometry::PatchSet;
 use covact_geometry::io::{CadError, CadFile, ReadOptions, read_path_with, read_stl_path};
@@ -58,7 +59,7 @@ fn cad(args: &InspectArgs, file: &CadFile) -> u8 {
     let findings = Findings::new(file, set.as_ref());
     let code = match args.json {
         true => print_json(&findings),
-        false => print(&listing::listing(&findings)),
+        false => print(&folded(&listing::listing(&findings))),
     };
     if let Some(wrong) = wrong {
         report::error(&format!("{}: {wrong}", file.path));

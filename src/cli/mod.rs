@@ -14,6 +14,7 @@ mod report;
 mod run;
 mod soak;
 mod study;
+mod text;
 mod view;
 mod without;
 
@@ -80,6 +81,8 @@ enum Command {
     New(NewArgs),
     /// Print the completions of a shell, to be read by it
     Completions(CompletionsArgs),
+    /// Write the manual pages of the program and of its commands
+    Man(ManArgs),
 }
 
 #[derive(Debug, Args)]
@@ -276,6 +279,29 @@ struct CompletionsArgs {
     shell: clap_complete::Shell,
 }
 
+#[derive(Debug, Args)]
+struct ManArgs {
+    /// Folder for the pages, made where it is missing; `man` finds them in `man1` of a folder of its path
+    #[arg(short, long, value_name = "FOLDER")]
+    out: PathBuf,
+}
+
+/// Writes the manual pages.
+fn man(args: &ManArgs) -> u8 {
+    let written = std::fs::create_dir_all(&args.out)
+        .and_then(|()| clap_mangen::generate_to(Cli::command(), &args.out));
+    match written {
+        Ok(()) => 0,
+        Err(e) => {
+            report::error(&format!(
+                "cannot write manual pages to {}: {e}",
+                args.out.display()
+            ));
+            exit::IO
+        }
+    }
+}
+
 /// Prints the completions of a shell.
 fn completions(args: &CompletionsArgs) -> u8 {
     let mut text = Vec::new();
@@ -316,6 +342,7 @@ pub fn main() -> ExitCode {
         }),
         Command::New(args) => new::new(&args),
         Command::Completions(args) => completions(&args),
+        Command::Man(args) => man(&args),
     });
     // The hook has told about the panic.
     let code = result.unwrap_or(exit::BUG);

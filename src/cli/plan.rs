@@ -1,4 +1,5 @@
 //! `covact plan`.
+use super::text::folded;
 use super::{CheckArgs, check, print, print_json, report};
 use crate::machine::memory::Size;
 use crate::plan::{Effect, PairPlan, Per};
@@ -12,26 +13,20 @@ pub(super) fn plan(args: &CheckArgs) -> u8 {
     };
     match run::plan(&scene) {
         Ok(found) if args.json => print_json(&found),
-        Ok(found) => print(&listing(&found)),
+        Ok(found) => print(&folded(&listing(&found))),
         Err(e) => report::run_error(&e, &scene, args.json),
     }
 }
 
 /// Titles of the columns.
-const TITLES: [&str; 7] = [
-    "",
-    "effect",
-    "per point",
-    "per element",
-    "in all",
-    "decided at",
-    "why",
-];
+const TITLES: [&str; 5] = ["", "effect", "per point", "per element", "in all"];
+/// Where the line below an effect begins.
+const BELOW: &str = "       ";
 
-/// A table whose columns are as wide as what stands in them; sizes to the right.
+/// A table whose columns are as wide as what stands in them, sizes to the right, with a line below each row.
 #[derive(Default)]
 struct Table {
-    rows: Vec<[String; 7]>,
+    rows: Vec<([String; 5], String)>,
 }
 
 impl Table {
@@ -51,26 +46,27 @@ impl Table {
         if !effect.cost.is_empty() {
             why += &format!(" [{}]", effect.cost);
         }
-        self.rows.push([
+        let cells = [
             if effect.on { "on" } else { "off" }.to_owned(),
             effect.name.to_owned(),
             size(effect.bytes_per(Per::Point)),
             size(effect.bytes_per(Per::Element)),
             all,
-            format!("{file}:{}", effect.place.line),
-            why,
-        ]);
+        ];
+        let below = format!("{BELOW}{file}:{}: {why}", effect.place.line);
+        self.rows.push((cells, below));
     }
 
     fn write(&self, out: &mut String) {
         let titles = TITLES.map(str::to_owned);
         let mut widths = titles.clone().map(|t| t.chars().count());
-        for row in &self.rows {
+        for (row, _) in &self.rows {
             for (width, cell) in widths.iter_mut().zip(row) {
                 *width = cell.chars().count().max(*width);
             }
         }
-        for row in std::iter::once(&titles).chain(&self.rows) {
+        let head = (titles, format!("{BELOW}decided at: why"));
+        for (row, below) in std::iter::once(&head).chain(&self.rows) {
             let mut line = String::new();
             for (k, (cell, width)) in row.iter().zip(widths).enumerate() {
                 line += "  ";
@@ -79,8 +75,7 @@ impl Table {
                     _ => format!("{cell:<width$}"),
                 };
             }
-            *out += line.trim_end();
-            out.push('\n');
+            *out += &format!("{}\n{}\n", line.trim_end(), below.trim_end());
         }
     }
 }

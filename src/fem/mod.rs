@@ -5,5 +5,5 @@
 pub mod face;
 pub mod quadrature;
 
-pub use face::{FaceNodes, Quad};
+pub use face::{FaceNodes, Quad, shape, shape_derivatives};
 pub use quadrature::{Rule, gauss, lobatto};

@@ -172,6 +172,12 @@ impl ThicknessColumns {
         (bottom != top).then_some([bottom, top])
     }
 
+    /// The nodes of the column that begins at `bottom` (see [`ThicknessColumns::ends`]), upwards.
+    pub fn upwards(&self, bottom: u32) -> impl Iterator<Item = u32> {
+        let next = |node: &u32| self.up.get(*node as usize).copied().filter(|n| *n < BRANCH);
+        std::iter::successors(Some(bottom), next)
+    }
+
     /// [`ThicknessColumns::partner`] of every node.
     pub fn partners(&self) -> Vec<Option<u32>> {
         (0..self.up.len() as u32).map(|n| self.partner(n)).collect()

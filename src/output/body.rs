@@ -1,6 +1,6 @@
 //! Fields of a deformable body.
 use super::OutputError;
-use super::vtu::{Array, DEGREES, Field, Grid, Place};
+use super::vtu::{Array, DEGREES, Field, Grid, Place, single};
 use crate::mesh::{ElementKind, Mesh};
 use covact_geometry::Vec3;
 use vtkio::model::CellType;
@@ -71,7 +71,8 @@ impl BodyFields<'_> {
     /// The body as the bytes of a `.vtu` file; `id` is written as cell data `body`.
     ///
     /// Point data: `displacement` (3), `cauchy_stress` (6), `von_mises`, `contact_pressure`, `contact_gap`,
-    /// `contact_status` and the further fields; cell data: `element` (counted from 0) and `body`.
+    /// `contact_status` and the further fields; cell data: `element` (counted from 0) and `body`. Positions, displacements,
+    /// pressures and gaps are in double precision, the others in single precision.
     ///
     /// # Errors
     /// [`OutputError::FieldLength`], [`OutputError::DuplicateField`] or [`OutputError::NoSuchNode`] when the fields and
@@ -92,11 +93,11 @@ impl BodyFields<'_> {
         if let Some(stress) = self.stress {
             self.check("cauchy_stress", nodes, stress.len())?;
             let flat: Vec<f64> = stress.iter().flatten().copied().collect();
-            let mut array = Array::new("cauchy_stress", 6, flat);
+            let mut array = Array::new("cauchy_stress", 6, single(&flat));
             array.component_names = STRESS_COMPONENTS.iter().map(|s| s.to_string()).collect();
             point_data.push(array);
             let mises: Vec<f64> = stress.iter().map(von_mises).collect();
-            point_data.push(Array::new("von_mises", 1, mises));
+            point_data.push(Array::new("von_mises", 1, single(&mises)));
         }
         if let Some(contact) = &self.contact {
             self.check("contact_pressure", nodes, contact.pressure.len())?;
@@ -127,7 +128,7 @@ impl BodyFields<'_> {
                     field: field.name.to_string(),
                 });
             }
-            let mut array = Array::new(field.name, field.components as u32, field.data.to_vec());
+            let mut array = Array::new(field.name, field.components as u32, single(field.data));
             array.component_names = field
                 .component_names
                 .iter()

@@ -134,7 +134,7 @@ pub const COLUMNS: &[ColumnDoc] = &[
     doc(
         "energy.stabilization",
         "energy",
-        "energy dissipated by stabilisation since the start; only with it",
+        "energy that the forces of the stabilisation took since the start (they may give some back); only with it",
     ),
     doc(
         "stabilization.share",

@@ -51,4 +51,5 @@ pub const RUN_LOG: &str = "run.log";
 
 pub use summary::{ProbeSummary, RunStatus, SUMMARY_FORMAT, Summary, Versions};
 pub use surface::{SurfaceOutput, flat_bytes};
+pub(crate) use vtu::escaped;
 pub use vtu::{Field, Place};

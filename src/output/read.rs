@@ -1,6 +1,6 @@
 //! Bodies and rigid surfaces read back from their files of results.
 use super::body::vtk_cell;
-use super::vtu::escape;
+use super::vtu::escaped;
 use crate::mesh::{ElementKind, Mesh};
 use crate::scene::nearest;
 use covact_geometry::Vec3;
@@ -73,7 +73,7 @@ pub(crate) fn last(folder: &Path, body: &str) -> Result<(f64, PathBuf), String> 
     let mut names = Vec::new();
     let mut best: Option<&Listed> = None;
     for entry in &listed {
-        if entry.name != escape(body) {
+        if entry.name != escaped(body) {
             names.push(entry.name.as_str());
             continue;
         }
@@ -222,7 +222,7 @@ fn grid(path: &Path) -> Result<GridFile, String> {
     for name in stated.filter(|name| !structure.contains(name)) {
         if !fields
             .iter()
-            .any(|f| escape(&f.name) == name || f.name == name)
+            .any(|f| escaped(&f.name) == name || f.name == name)
         {
             return Err(bad(&format!(
                 "has an array `{name}` that cannot be decoded"

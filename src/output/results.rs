@@ -1,6 +1,6 @@
 //! A folder of results: one `.vtu` per part and step, listed with their times in `.pvd` collections.
 use super::atomic::{make_folder, remove_file, sync_files, write_soon};
-use super::vtu::escape;
+use super::vtu::escaped;
 use super::{BodyFields, OutputError, PointCloud, SurfaceOutput};
 use nalgebra::Isometry3;
 use std::collections::BTreeSet;
@@ -16,6 +16,8 @@ pub struct SurfaceState<'a> {
     pub start: &'a Isometry3<f64>,
     /// From its own coordinates to where it is.
     pub at: &'a Isometry3<f64>,
+    /// It never moves: its files are written with the first step and listed with all.
+    pub still: bool,
 }
 
 /// Writes the field files of a run and keeps the collections up to date.
@@ -38,6 +40,8 @@ pub struct Results {
 pub struct PartNames {
     pub bodies: Vec<String>,
     pub surfaces: Vec<String>,
+    /// Those of them that never move.
+    pub still: Vec<String>,
     pub clouds: Vec<String>,
 }
 
@@ -68,7 +72,8 @@ impl Results {
         parts: &PartNames,
     ) -> Result<Self, OutputError> {
         let mut results = Results::empty(folder);
-        for &(step, time) in &written {
+        results.written = written;
+        for (step, time) in results.written.clone() {
             for [exact, tessellated] in results.entries(step, time, &parts.listed()) {
                 results.exact.push(exact);
                 results.tessellated.push(tessellated);
@@ -76,7 +81,6 @@ impl Results {
         }
         let (exact, tessellated) = (results.exact.clone(), results.tessellated.clone());
         results.write_collections(&exact, &tessellated)?;
-        results.written = written;
         Ok(results)
     }
 
@@ -115,13 +119,18 @@ impl Results {
 
     /// Removes the files of a step that is not listed, where there are any.
     pub fn remove(&mut self, step: u32, parts: &PartNames) -> Result<(), OutputError> {
-        for file in self.entries(step, 0.0, &parts.listed()).iter().flatten() {
+        let mut parts = parts.listed();
+        if !self.written.is_empty() {
+            // Those of surfaces that never move are another step's.
+            parts.retain(|(kind, _)| *kind != Kind::Still);
+        }
+        for file in self.entries(step, 0.0, &parts).iter().flatten() {
             remove_file(&self.folder.join(&file.file))?;
         }
         Ok(())
     }
 
-    /// Writes every part at an accepted step, then the collections. The part numbers and file names are those of the
+    /// Writes every part at an accepted step, surfaces that never move with the first one only, then the collections. The part numbers and file names are those of the
     /// first call that brought the part, so parts may come and go. When a file cannot be written, the collections stay
     /// as they were. Files are whole at once, and on the disk after [`Results::sync`].
     pub fn write(
@@ -133,35 +142,37 @@ impl Results {
         clouds: &[PointCloud],
     ) -> Result<(), OutputError> {
         let parts: Vec<(Kind, &str)> = (bodies.iter().map(|b| (Kind::Body, b.name)))
-            .chain(surfaces.iter().map(|s| (Kind::Surface, s.surface.name())))
+            .chain(
+                surfaces
+                    .iter()
+                    .map(|s| (Kind::surface(s.still), s.surface.name())),
+            )
             .chain(clouds.iter().map(|c| (Kind::Cloud, c.name.as_str())))
             .collect();
         let entries = self.entries(step, time, &parts);
-        let mut next = entries.iter();
+        let first = self.written.is_empty();
         let (folder, unsynced) = (&self.folder, &mut self.unsynced);
-        let mut put_one = |file: &str, bytes: &[u8]| -> Result<(), OutputError> {
-            let path = folder.join(file);
-            write_soon(&path, bytes)?;
+        let mut put = |entry: &Entry, bytes: Vec<u8>| -> Result<(), OutputError> {
+            let path = folder.join(&entry.file);
+            write_soon(&path, &bytes)?;
             unsynced.push(path);
             Ok(())
         };
-        let mut put = |bytes: Vec<u8>, tessellated: Option<Vec<u8>>| {
-            let Some([exact, other]) = next.next() else {
-                return Ok(());
-            };
-            put_one(&exact.file, &bytes)?;
-            tessellated.map_or(Ok(()), |bytes| put_one(&other.file, &bytes))
-        };
-        for (body, [entry, _]) in bodies.iter().zip(&entries) {
-            put(body.to_vtu(entry.part as u32)?, None)?;
+        let (of_bodies, rest) = entries.split_at(bodies.len());
+        let (of_surfaces, of_clouds) = rest.split_at(surfaces.len());
+        for (body, [entry, _]) in bodies.iter().zip(of_bodies) {
+            put(entry, body.to_vtu(entry.part as u32)?)?;
         }
-        for state in surfaces {
+        for (state, [exact, tessellated]) in surfaces.iter().zip(of_surfaces) {
+            if state.still && !first {
+                continue;
+            }
             let poses = [state.start, state.at];
-            let exact = state.surface.to_vtu(poses)?;
-            put(exact, Some(state.surface.to_tessellated_vtu(poses)?))?;
+            put(exact, state.surface.to_vtu(poses)?)?;
+            put(tessellated, state.surface.to_tessellated_vtu(poses)?)?;
         }
-        for cloud in clouds {
-            put(cloud.to_vtu()?, None)?;
+        for (cloud, [entry, _]) in clouds.iter().zip(of_clouds) {
+            put(entry, cloud.to_vtu()?)?;
         }
         let mut exact = self.exact.clone();
         let mut tessellated = self.tessellated.clone();
@@ -183,6 +194,10 @@ impl Results {
             .map(|&(kind, name)| {
                 let part = self.stems.part(kind, name);
                 let stem = &self.stems.of[part].stem;
+                let step = match (kind, self.written.first()) {
+                    (Kind::Still, Some(first)) => first.0,
+                    _ => step,
+                };
                 let entry = |file| Entry {
                     time,
                     part,
@@ -191,7 +206,9 @@ impl Results {
                 };
                 let exact = entry(format!("{stem}_{step:04}.vtu"));
                 match kind {
-                    Kind::Surface => [exact, entry(format!("{stem}_tessellated_{step:04}.vtu"))],
+                    Kind::Surface | Kind::Still => {
+                        [exact, entry(format!("{stem}_tessellated_{step:04}.vtu"))]
+                    }
                     Kind::Body | Kind::Cloud => [exact.clone(), exact],
                 }
             })
@@ -239,7 +256,7 @@ impl PartNames {
         for (kind, name) in self.listed() {
             stems.part(kind, name);
         }
-        let surfaces = stems.of.iter().filter(|part| part.kind == Kind::Surface);
+        let surfaces = stems.of.iter().filter(|part| part.kind.is_surface());
         let tessellated: Vec<String> =
             (surfaces.map(|part| format!("{}_tessellated", part.stem))).collect();
         (stems.of.into_iter().map(|part| part.stem))
@@ -249,7 +266,9 @@ impl PartNames {
 
     fn listed(&self) -> Vec<(Kind, &str)> {
         (self.bodies.iter().map(|n| (Kind::Body, n.as_str())))
-            .chain(self.surfaces.iter().map(|n| (Kind::Surface, n.as_str())))
+            .chain(
+                (self.surfaces.iter()).map(|n| (Kind::surface(self.still.contains(n)), n.as_str())),
+            )
             .chain(self.clouds.iter().map(|n| (Kind::Cloud, n.as_str())))
             .collect()
     }
@@ -265,7 +284,7 @@ fn collection(entries: &[Entry]) -> String {
             "    <DataSet timestep=\"{:?}\" part=\"{}\" name=\"{}\" file=\"{}\"/>",
             e.time,
             e.part,
-            escape(&e.name),
+            escaped(&e.name),
             e.file
         );
     }
@@ -278,7 +297,22 @@ fn collection(entries: &[Entry]) -> String {
 enum Kind {
     Body,
     Surface,
+    /// A surface that never moves.
+    Still,
     Cloud,
+}
+
+impl Kind {
+    fn surface(still: bool) -> Kind {
+        match still {
+            true => Kind::Still,
+            false => Kind::Surface,
+        }
+    }
+
+    fn is_surface(self) -> bool {
+        matches!(self, Kind::Surface | Kind::Still)
+    }
 }
 
 #[derive(Debug)]
@@ -314,7 +348,7 @@ impl Stems {
             n += 1;
         }
         self.taken.insert(stem.to_lowercase());
-        if kind == Kind::Surface {
+        if kind.is_surface() {
             self.taken
                 .insert(format!("{stem}_tessellated").to_lowercase());
         }
@@ -329,7 +363,7 @@ impl Stems {
     fn free(&self, kind: Kind, stem: &str) -> bool {
         let stem = stem.to_lowercase();
         let tessellated = format!("{stem}_tessellated");
-        !self.taken.contains(&stem) && (kind != Kind::Surface || !self.taken.contains(&tessellated))
+        !self.taken.contains(&stem) && (!kind.is_surface() || !self.taken.contains(&tessellated))
     }
 }
 

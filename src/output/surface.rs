@@ -1,7 +1,7 @@
 //! Rigid surfaces as exact rational Bezier cells, bilinear ones as plain quadrilaterals, and as flat quadrilaterals.
 use super::OutputError;
 use super::bezier::{MAX_DEGREE, SurfacePiece, vtk_order};
-use super::vtu::{Array, DEGREES, Grid, WEIGHTS};
+use super::vtu::{Array, DEGREES, Grid, WEIGHTS, single};
 use crate::machine::memory::times;
 use nalgebra::{Isometry3, Point3, Vector3};
 use vtkio::model::CellType;
@@ -146,7 +146,7 @@ impl SurfaceOutput {
             types: vec![CellType::Quad; cells],
             point_data: vec![
                 displacement(&points, moved(&f.points, at)),
-                Array::new("normal", 3, normals),
+                Array::new("normal", 3, single(&normals)),
             ],
             points,
             cell_data: vec![
@@ -207,10 +207,11 @@ impl Flat {
 /// Name of the point data that bodies and surfaces are warped by.
 const DISPLACEMENT: &str = "displacement";
 
-/// What leads from the points to where they are now.
+/// What leads from the points to where they are now. In single precision, which the rounding of the difference is below: all
+/// points of a surface that does not turn have the same, which is compressed to nothing.
 fn displacement(points: &[f64], now: Vec<f64>) -> Array {
     let way: Vec<f64> = now.iter().zip(points).map(|(b, a)| b - a).collect();
-    Array::new(DISPLACEMENT, 3, way)
+    Array::new(DISPLACEMENT, 3, single(&way))
 }
 
 fn moved(points: &[Point3<f64>], at: &Isometry3<f64>) -> Vec<f64> {

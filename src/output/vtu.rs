@@ -68,6 +68,17 @@ impl Array {
     }
 }
 
+/// Numbers in single precision, whose digits suffice to look at them and take half the room; in double precision where one
+/// is too large.
+pub(crate) fn single(data: &[f64]) -> IOBuffer {
+    let single: Vec<f32> = data.iter().map(|v| *v as f32).collect();
+    let fits = |(v, s): (&f64, &f32)| s.is_finite() || !v.is_finite();
+    match data.iter().zip(&single).all(fits) {
+        true => single.into(),
+        false => data.to_vec().into(),
+    }
+}
+
 /// An unstructured grid about to be written.
 pub(crate) struct Grid {
     /// What the grid is, for error messages.
@@ -174,9 +185,9 @@ impl TagPatch {
             let mut extra = String::new();
             for (i, name) in array.component_names.iter().enumerate() {
                 // Writing to a String does not fail.
-                let _ = write!(extra, " ComponentName{i}=\"{}\"", escape(name));
+                let _ = write!(extra, " ComponentName{i}=\"{}\"", escaped(name));
             }
-            arrays.push((format!(" Name=\"{}\"", escape(&array.name)), extra));
+            arrays.push((format!(" Name=\"{}\"", escaped(&array.name)), extra));
         }
         TagPatch {
             arrays,
@@ -241,20 +252,8 @@ fn remove_attribute(tag: &mut String, start: &str) {
     }
 }
 
-/// Text as the value of an XML attribute.
-pub(crate) fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&apos;"),
-            // XML 1.0 has no way to write other control characters.
-            c if c.is_control() => out.push('_'),
-            c => out.push(c),
-        }
-    }
-    out
+/// Text as XML and HTML hold it, in an attribute too. Control characters, which XML 1.0 cannot hold, become spaces.
+pub(crate) fn escaped(text: &str) -> String {
+    let forbidden = |c: char| c.is_control() || c == '\u{fffe}' || c == '\u{ffff}';
+    quick_xml::escape::escape(&text.replace(forbidden, " ")).into_owned()
 }

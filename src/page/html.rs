@@ -1,5 +1,6 @@
 //! The text of the page.
 use super::markup::{escaped, prose};
+use super::number::digits;
 use super::pack::{Chunk, Pack};
 use super::places::place;
 use super::shapes::Shapes;
@@ -384,42 +385,9 @@ fn table(out: &mut String, heads: &[&str], rows: impl Iterator<Item = Vec<String
 
 /// A number in four digits.
 fn number(v: f64) -> String {
-    let a = v.abs();
-    if v == 0.0 || !v.is_finite() {
-        return v.to_string();
-    }
-    if !(1e-3..1e6).contains(&a) {
-        return format!("{v:.3e}");
-    }
-    let digits = (3 - a.log10().floor() as i32).max(0) as usize;
-    let text = format!("{v:.digits$}");
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
+    digits(v, 4)
 }
 
 fn percent(v: f64) -> String {
     format!("{} %", number(100.0 * v))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_have_four_digits() {
-        for (v, text) in [
-            (0.0, "0"),
-            (1.0, "1"),
-            (1234.56, "1235"),
-            (0.012_345_6, "0.01235"),
-            (-9.999_96, "-10"),
-            (1.5e-7, "1.500e-7"),
-            (f64::NAN, "NaN"),
-        ] {
-            assert_eq!(number(v), text);
-        }
-        assert_eq!(percent(0.0123), "1.23 %");
-    }
 }

@@ -1,22 +1,6 @@
 //! Text inside HTML and SVG.
 
-/// Text with the characters escaped that mean something in HTML and XML, and without those that XML does not allow.
-pub(crate) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len() + 8);
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            '\t' | '\n' | '\r' => out.push(' '),
-            c if c.is_control() || c == '\u{fffe}' || c == '\u{ffff}' => {}
-            c => out.push(c),
-        }
-    }
-    out
-}
+pub(crate) use crate::output::escaped;
 
 /// Escaped text; what stands between backquotes is set as code, and a power after `^` is raised.
 pub(crate) fn prose(text: &str) -> String {
@@ -105,7 +89,7 @@ mod tests {
     fn what_means_something_is_escaped() {
         assert_eq!(
             escaped("a<b & \"c\"\u{1}'>"),
-            "a&lt;b &amp; &quot;c&quot;&#39;&gt;"
+            "a&lt;b &amp; &quot;c&quot; &apos;&gt;"
         );
         assert_eq!(
             prose("h^1.9. `a<b` 1 %"),

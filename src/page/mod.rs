@@ -6,6 +6,7 @@
 
 mod html;
 pub(crate) mod markup;
+pub(crate) mod number;
 mod pack;
 mod places;
 mod shapes;

@@ -1,16 +1,6 @@
 //! The outside of a body: faces that belong to one element only, with the edges of elements on them.
-use crate::mesh::{ElementKind, Mesh};
+use crate::mesh::{ElementKind, H8_FACES, Mesh};
 use std::collections::HashMap;
-
-/// Faces of a hexahedron whose nodes are numbered `i + 2 j + 4 k`, counter-clockwise seen from outside.
-const FACES: [[usize; 4]; 6] = [
-    [0, 2, 3, 1],
-    [4, 5, 7, 6],
-    [0, 1, 5, 4],
-    [2, 6, 7, 3],
-    [0, 4, 6, 2],
-    [1, 3, 7, 5],
-];
 
 /// Faces of a body's outside on nodes of their own.
 #[derive(Debug, Default, PartialEq)]
@@ -62,7 +52,9 @@ pub(super) fn skin(mesh: &Mesh) -> Skin {
                     false => outer(0) && outer(1),
                 }
             };
-            for face in &FACES {
+            for [a, b, c, d] in H8_FACES.map(|face| face.map(usize::from)) {
+                // Around the face, counter-clockwise seen from outside.
+                let face = [a, b, d, c];
                 let corners = face.map(node);
                 let mut key = corners;
                 key.sort_unstable();

@@ -1,8 +1,10 @@
 //! Fields of an accepted state, gathered on nodes for the output.
 use super::RunError;
 use super::averaged::{NodeNow, nodes_now};
-use super::bearing::{Bearings, Carrier, Place};
+use super::bearing::{Bearings, Carrier, Place as BearingPlace};
 use super::friction_fields::{self, FrictionFields};
+use super::reaction_fields::reactions;
+use super::resultants::Resultants;
 use super::strain_fields::StrainFields;
 use super::stresses::{follows_stress, nodal_stresses};
 use super::surface_cells::pieces;
@@ -11,10 +13,10 @@ use crate::contact::friction::history::PointStatus;
 use crate::contact::law::PairLaw;
 use crate::model::master::{MasterNow, Masters};
 use crate::model::state::State;
-use crate::model::{BodyModel, Model};
+use crate::model::{BodyModel, Model, SurfaceModel};
 use crate::output::{
-    BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, OutputError, PartNames, Results,
-    SurfaceOutput, SurfaceState, von_mises,
+    BodyFields, CLOSED, ContactFields, Field, NOT_A_SLAVE, OPEN, OutputError, PartNames, Place,
+    Results, SurfaceOutput, SurfaceState, von_mises,
 };
 use crate::scene::Output;
 use covact_geometry::Vec3;
@@ -120,6 +122,9 @@ impl Fields {
         PartNames {
             bodies: model.bodies.iter().map(|b| b.name.clone()).collect(),
             surfaces: model.surfaces.iter().map(|s| s.name.clone()).collect(),
+            still: (model.surfaces.iter().filter(|s| still(s)))
+                .map(|s| s.name.clone())
+                .collect(),
             clouds: match self.gaps.is_empty() {
                 true => Vec::new(),
                 false => friction_fields::cloud_names(model),
@@ -260,7 +265,7 @@ impl Fields {
                         gap,
                         area: p.area,
                         share: pair.share(),
-                        place: Some(Place {
+                        place: Some(BearingPlace {
                             point: p,
                             x,
                             local: into_master(x),
@@ -408,6 +413,17 @@ impl Fields {
         let strains: Vec<StrainFields> = (model.bodies.iter().enumerate())
             .map(|(i, b)| StrainFields::new(&b.mesh, &displacements[i], &stresses[i]))
             .collect();
+        let resultants: Vec<Option<Resultants>> = (model.bodies.iter().enumerate())
+            .map(|(i, b)| {
+                let u = displacements[i].iter();
+                let now: Vec<Vec3> = match model.small {
+                    None => b.mesh.nodes.iter().zip(u).map(|(x, u)| x + u).collect(),
+                    Some(_) => b.mesh.nodes.clone(),
+                };
+                (strains[i].of_shell()).then(|| Resultants::new(&b.mesh, &now, &stresses[i]))
+            })
+            .collect();
+        let reactions = reactions(model, state, &self.status, time);
         let bodies: Vec<BodyFields> = (model.bodies.iter().enumerate())
             .map(|(i, body)| {
                 let first = body.first_node as usize;
@@ -421,11 +437,19 @@ impl Fields {
                     contact: slave.then(|| ContactFields {
                         pressure: &self.pressure[range.clone()],
                         gap: &self.gap[range.clone()],
-                        status: &self.status[range],
+                        status: &self.status[range.clone()],
                     }),
                     fields: (self.friction.of(model, i, body).into_iter())
                         .chain(self.traction.of(model, i, body))
                         .chain(strains[i].fields())
+                        .chain(resultants[i].iter().flat_map(Resultants::fields))
+                        .chain(reactions.as_ref().map(|all| Field {
+                            name: "reaction",
+                            components: 3,
+                            component_names: &[],
+                            data: &all[3 * range.start..3 * range.end],
+                            place: Place::Point,
+                        }))
                         .collect(),
                 }
             })
@@ -433,8 +457,13 @@ impl Fields {
         let poses: Vec<_> = (model.surfaces.iter())
             .map(|s| [s.motion.pose(0.0), s.pose(time, &state.u)].map(Result::unwrap_or_default))
             .collect();
-        let surfaces: Vec<SurfaceState> = (self.surfaces.iter().zip(&poses))
-            .map(|(surface, [start, at])| SurfaceState { surface, start, at })
+        let surfaces: Vec<SurfaceState> = (self.surfaces.iter().zip(&poses).zip(&model.surfaces))
+            .map(|((surface, [start, at]), model)| SurfaceState {
+                surface,
+                start,
+                at,
+                still: still(model),
+            })
             .collect();
         let clouds = match self.gaps.is_empty() {
             true => Vec::new(),
@@ -442,4 +471,9 @@ impl Fields {
         };
         results.write(step, time, &bodies, &surfaces, &clouds)
     }
+}
+
+/// Whether a surface never moves.
+fn still(surface: &SurfaceModel) -> bool {
+    !surface.motion.moves() && surface.driven.is_none()
 }

@@ -1,5 +1,6 @@
 //! Fields of a body that are worked out for the output only: principal stresses, principal logarithmic strains, thickness
 //! and thinning.
+use crate::fem::{shape, shape_derivatives};
 use crate::mesh::{ElementKind, Mesh, ThicknessColumns};
 use crate::output::{Field, Place};
 use covact_geometry::Vec3;
@@ -28,6 +29,11 @@ impl StrainFields {
             strain: strain.iter().flat_map(principal).collect(),
             thickness: thickness(mesh, displacement),
         }
+    }
+
+    /// Whether the body is a shell.
+    pub fn of_shell(&self) -> bool {
+        self.thickness.is_some()
     }
 
     /// As fields of the output: `principal_stress`, `principal_log_strain`, and of a shell `thickness` and `thinning`.
@@ -110,10 +116,9 @@ fn strain_at(
     nodes: &[u32],
     at: [f64; 3],
 ) -> Option<(Matrix3<f64>, f64)> {
-    let side = if nodes.len() == 8 { 2 } else { 3 };
     let (mut from, mut to) = (Matrix3::zeros(), Matrix3::zeros());
-    for (m, &node) in nodes.iter().enumerate() {
-        let gradient = shape_gradient(side, m, at).transpose();
+    for (gradient, &node) in shape_gradients(mesh.kind, at).zip(nodes) {
+        let gradient = gradient.transpose();
         let x = mesh.nodes[node as usize];
         from += x * gradient;
         to += (x + displacement[node as usize]) * gradient;
@@ -126,24 +131,20 @@ fn strain_at(
     (volume > 0.0 && strain.iter().all(|v| v.is_finite())).then_some((strain, volume))
 }
 
-/// Derivatives of a shape function by the three natural coordinates: of `side` x `side` x 2 nodes, along the first the
-/// fastest.
-fn shape_gradient(side: usize, node: usize, at: [f64; 3]) -> Vec3 {
-    let index = [node % side, node / side % side, node / (side * side)];
-    let values: [[f64; 2]; 3] =
-        std::array::from_fn(|d| lagrange(if d < 2 { side } else { 2 }, index[d], at[d]));
-    Vec3::from_fn(|d, _| (0..3).map(|k| values[k][usize::from(k == d)]).product())
-}
-
-/// Lagrange polynomial of 2 or 3 even nodes in [-1, 1], and its derivative.
-fn lagrange(nodes: usize, k: usize, x: f64) -> [f64; 2] {
-    match (nodes, k) {
-        (2, 0) => [0.5 * (1.0 - x), -0.5],
-        (2, _) => [0.5 * (1.0 + x), 0.5],
-        (_, 0) => [0.5 * x * (x - 1.0), x - 0.5],
-        (_, 1) => [1.0 - x * x, -2.0 * x],
-        _ => [0.5 * x * (x + 1.0), x + 0.5],
-    }
+/// Derivatives of the shape functions of an element along r, s and t, in the order of its nodes: the functions of its bottom
+/// in r and s, linear in t.
+fn shape_gradients(kind: ElementKind, [r, s, t]: [f64; 3]) -> impl Iterator<Item = Vec3> {
+    let side = match kind {
+        ElementKind::H8 => 2,
+        ElementKind::Q18 => 3,
+    };
+    let n = shape([side; 2], r, s);
+    let [along_r, along_s] = shape_derivatives([side; 2], r, s);
+    [-0.5, 0.5].into_iter().flat_map(move |slope| {
+        let through = 0.5 + slope * t;
+        (0..usize::from(side * side))
+            .map(move |a| Vec3::new(along_r[a] * through, along_s[a] * through, n[a] * slope))
+    })
 }
 
 /// Distance between the ends of the column through each node, and the part of it that is lost (negative where a shell

@@ -284,7 +284,7 @@ fn a_face_on_the_surface_finds_its_side() {
     let output = covact(folder.path(), &["check", "scene.json"]);
     assert_eq!(stderr(&output), "");
     assert_parts(
-        &stdout(&output),
+        &unfolded(&stdout(&output)),
         &[
             "where the slave starts (normals of 1 of 1 patch(es) turned round)",
             "no warnings",

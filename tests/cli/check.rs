@@ -24,7 +24,7 @@ fn everything_a_scene_amounts_to() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(stderr(&output), "");
     assert_parts(
-        &stdout(&output),
+        &unfolded(&stdout(&output)),
         &[
             "plate under a ball\n",
             // 50 nodes: 5 x 5 on two faces; 4 x 4 pairs are free, in two components on the two symmetry planes.
@@ -134,7 +134,7 @@ fn distortion() {
     assert_eq!(stderr(&output), "");
     // ln(3.5 / 3) of the middle diagonal's stretch at the corner: 0.154 of 0.55.
     assert_parts(
-        &stdout(&output),
+        &unfolded(&stdout(&output)),
         &[
             "distortion      0.28",
             " of the limit at worst: element 3 at (30.625, 30.625, 0), skewed or tapered in the surface\n",

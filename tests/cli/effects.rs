@@ -10,7 +10,7 @@ fn effects(folder: &Path, scene: &Value) -> BTreeMap<String, String> {
     std::fs::write(folder.join("scene.json"), scene.to_string()).unwrap();
     let output = covact(folder, &["check", "scene.json"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let text = stdout(&output);
+    let text = unfolded(&stdout(&output));
     let (_, list) = text.split_once("effects that are on").unwrap();
     let lines = list
         .lines()

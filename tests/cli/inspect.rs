@@ -1,5 +1,5 @@
 //! `covact inspect`.
-use crate::support::{covact, stderr, stdout};
+use crate::support::{covact, stderr, stdout, unfolded};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -262,6 +262,7 @@ const APART: &str = r#"{"covact_geometry": 1, "unit": "mm", "resolution": null, 
 fn gaps_are_named_with_their_places() {
     let (code, text, error) = inspect("apart.json", APART, &["apart.json"]);
     assert_eq!((code, error.as_str()), (Some(0), ""));
+    let text = unfolded(&text);
     for part in [
         "Covact file, unit mm",
         "  open gap   2.000e-2 at (10.010000, ",
@@ -299,6 +300,7 @@ fn plates(x: f64, z: f64) -> String {
 fn what_is_joined_over_a_gap_and_what_is_not_is_told() {
     let (code, text, _) = inspect("two.json", &plates(0.0, 1e-3), &["two.json"]);
     assert_eq!(code, Some(0));
+    let text = unfolded(&text);
     for part in [
         "edges      0 shared",
         "  stacked    1.000e-3 at (",
@@ -309,6 +311,7 @@ fn what_is_joined_over_a_gap_and_what_is_not_is_told() {
     }
     assert!(!text.contains("closed, volume"), "{text}");
     let (_, text, _) = inspect("two.json", &plates(15.001, 0.0), &["two.json"]);
+    let text = unfolded(&text);
     for part in [
         "edges      1 shared",
         "  bridged    gap of 1.000e-3 at (15.000500, ",

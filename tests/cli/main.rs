@@ -16,6 +16,7 @@ mod output;
 mod page;
 mod probes;
 mod project;
+mod resultants;
 mod resume;
 mod rounds;
 mod run;

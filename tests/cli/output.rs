@@ -349,12 +349,14 @@ fn fields_that_are_derived_agree_with_what_they_are_derived_from() {
     );
     assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
     let field = |name: &str| points_of(folder.path(), name);
+    // Several numbers in single precision, each rounded.
+    let single = 8.0 * f64::from(f32::EPSILON);
     let (pressure, traction) = (field("contact_pressure"), field("contact_traction"));
     let mut pressed = 0;
     for (p, t) in pressure.iter().zip(traction.chunks_exact(3)) {
         // A ball above presses down and, being round, a little outwards; normals around a node differ.
         let size = t.iter().map(|t| t * t).sum::<f64>().sqrt();
-        assert!(size <= p * (1.0 + 1e-12) && size >= 0.98 * p, "{size} {p}");
+        assert!(size <= p * (1.0 + single) && size >= 0.98 * p, "{size} {p}");
         if *p > 0.0 {
             assert!(t[2] < -0.9 * p, "{t:?} {p}");
             pressed += 1;
@@ -374,15 +376,15 @@ fn fields_that_are_derived_agree_with_what_they_are_derived_from() {
         .zip(&mises)
     {
         assert!(p[0] >= p[1] && p[1] >= p[2], "{p:?}");
-        assert!((p.iter().sum::<f64>() - s[..3].iter().sum::<f64>()).abs() < 1e-9 * largest);
+        assert!((p.iter().sum::<f64>() - s[..3].iter().sum::<f64>()).abs() < single * largest);
         let differences = [p[0] - p[1], p[1] - p[2], p[2] - p[0]].map(|d| d * d);
         let own = (0.5 * differences.iter().sum::<f64>()).sqrt();
-        assert!((own - m).abs() < 1e-9 * largest, "{own} {m}");
+        assert!((own - m).abs() < single * largest, "{own} {m}");
     }
     // Large bending stretches the plate of thickness 2, which gets thinner by a few per cent.
     let (thickness, thinning) = (field("thickness"), field("thinning"));
     for (now, lost) in thickness.iter().zip(&thinning) {
-        assert!((now / 2.0 + lost - 1.0).abs() < 1e-12);
+        assert!((now / 2.0 + lost - 1.0).abs() < single);
         assert!(lost.abs() < 0.1, "{lost}");
     }
     assert!(thinning.iter().any(|lost| *lost > 1e-4));

@@ -40,6 +40,23 @@ pub fn refused_in(folder: &Path, text: &[u8]) -> String {
     stderr(&check)
 }
 
+/// The text with lines joined that go on below, by four columns farther in.
+pub fn unfolded(text: &str) -> String {
+    let mut out = String::new();
+    let mut before = 0;
+    for line in text.lines() {
+        let inside = line.len() - line.trim_start().len();
+        if inside == before + 4 {
+            out.pop();
+            out += &format!(" {}\n", line.trim_start());
+        } else {
+            out += &format!("{line}\n");
+            before = inside;
+        }
+    }
+    out
+}
+
 /// All parts occur, in this order.
 pub fn assert_parts(message: &str, parts: &[&str]) {
     let mut rest = message;

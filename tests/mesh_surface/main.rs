@@ -1,6 +1,7 @@
 //! Surface meshes that become bodies: formats, thickness, sense, sets, and what is refused.
 mod formats;
 mod inp;
+mod large;
 mod sets;
 mod support;
 mod thickness;

@@ -86,7 +86,7 @@ fn names_are_escaped() {
     let page = read(folder.path(), "report.html");
     assert!(page.contains("A &lt;b&gt;title&lt;/b&gt; &amp; &quot;more&quot; &lt;/script&gt;"));
     assert!(!page.contains("<b>") && !page.contains("<i>") && !page.contains("alert('x')"));
-    assert!(page.contains("alert(&#39;x&#39;)"));
+    assert!(page.contains("alert(&apos;x&apos;)"));
 }
 
 #[test]

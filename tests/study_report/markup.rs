@@ -55,7 +55,7 @@ fn plain(text: &str) -> Result<(), String> {
     }
     for (at, _) in text.match_indices('&') {
         let end = text[at..].find(';').unwrap_or(0);
-        if !["&amp", "&lt", "&gt", "&quot", "&#39"].contains(&&text[at..at + end]) {
+        if !["&amp", "&lt", "&gt", "&quot", "&apos"].contains(&&text[at..at + end]) {
             return Err(format!("`&` in the text {text:?}"));
         }
     }

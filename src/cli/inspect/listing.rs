@@ -1,5 +1,6 @@
 //! The findings as text.
 use super::findings::{Curvature, EdgeName, Findings, GapPlace, Patch, Surface};
+use crate::model::error::number;
 use covact_geometry::io::{FaceBorder, SkipKind};
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -113,7 +114,7 @@ fn patches(out: &mut String, f: &Findings) {
     }
     let _ = writeln!(
         out,
-        "{:>8} {:>5} {:>9} {:>6} {:>9} {:>8} {:>12} {:>12} {:>12}  bounds",
+        "{:>7} {:>4} {:>9} {:>6} {:>7} {:>8} {:>11} {:>10} {:>10}\n        bounds",
         "entity", "type", "border", "degree", "points", "rational", "area", "convex R", "concave R"
     );
     for p in &f.patches {
@@ -123,7 +124,7 @@ fn patches(out: &mut String, f: &Findings) {
 
 fn patch(out: &mut String, p: &Patch) {
     let radius = |r: Option<Option<f64>>| match r {
-        Some(Some(r)) => format!("{r:.6}"),
+        Some(Some(r)) => number(r),
         Some(None) => "-".to_string(),
         None => "?".to_string(),
     };
@@ -140,12 +141,12 @@ fn patch(out: &mut String, p: &Patch) {
     };
     let _ = writeln!(
         out,
-        "{:>8} {kind:>5} {border:>9} {:>6} {:>9} {:>8} {:>12} {convex:>12} {concave:>12}  {}",
+        "{:>7} {kind:>4} {border:>9} {:>6} {:>7} {:>8} {:>11} {convex:>10} {concave:>10}\n        {}",
         p.entity,
         format!("{}x{}", p.degree[0], p.degree[1]),
         format!("{}x{}", p.control_points[0], p.control_points[1]),
         if p.rational { "yes" } else { "no" },
-        p.area.map_or("?".to_string(), |a| format!("{a:.6}")),
+        p.area.map_or("?".to_string(), number),
         match (&p.bounds, &p.fault) {
             (Some(b), _) => bounds(b),
             (None, fault) => fault.clone().unwrap_or_default(),

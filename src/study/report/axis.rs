@@ -1,5 +1,5 @@
 //! Scales of plots and their ticks.
-use super::number::{digits, superscript};
+use crate::page::number::{digits, superscript};
 
 /// How ticks are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,7 +13,6 @@ mod figures;
 mod fit;
 mod front;
 mod legend;
-mod number;
 mod page;
 mod plot;
 mod rates;

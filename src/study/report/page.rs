@@ -1,10 +1,10 @@
 //! `report.html`: one file with all that a study found.
 use super::figures::Figure;
-use super::number::{digits, percent, seconds, several};
 use super::view::View;
 use super::{table, words};
 use crate::page::head;
 use crate::page::markup::{escaped, prose};
+use crate::page::number::{digits, percent, seconds, several};
 use crate::study::record::{Ending, QuantityRecord};
 use std::fmt::Write as _;
 

@@ -1,9 +1,9 @@
 //! The table of all runs.
 use super::figures::{per_step, phases_in_words};
 use super::front::pareto;
-use super::number::{count, digits, percent, seconds, several};
 use super::view::View;
 use crate::page::markup::escaped;
+use crate::page::number::{count, digits, percent, seconds, several};
 use crate::study::record::Ending;
 use std::fmt::Write as _;
 

@@ -1,5 +1,5 @@
 //! What the runs of a study have in common and in what they differ: series, lines of refinement, names.
-use super::number::listed;
+use crate::page::number::listed;
 use crate::study::record::{Ending, Label, Measured, Record, RunRecord, Spread};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -2,12 +2,12 @@
 use super::super::axis::{Axis, Form};
 use super::super::bars::{Bars, Row, Shape};
 use super::super::legend::{self, Entry, Sign};
-use super::super::number::{count, digits, percent, seconds};
 use super::super::plot::{Path, Plot};
 use super::super::view::View;
 use super::value::{ROWS, some_of};
 use super::{Figure, joined, point, series_of, title};
 use crate::page::markup::slug;
+use crate::page::number::{count, digits, percent, seconds};
 use crate::study::record::Ending;
 
 /// Phases with a colour of their own; the rest has the last one.

@@ -1,14 +1,16 @@
 //! Quantities that are curves, over one another.
 use super::super::axis::{Axis, Form};
 use super::super::legend::{Entry, Sign};
-use super::super::number::percent;
 use super::super::plot::{Kind, Path, Plot};
 use super::super::view::{STYLES, View};
 use super::{Figure, title};
+use crate::page::number::{listed, percent};
 use crate::study::record::Record;
 
 /// Points that a curve is drawn with.
 const POINTS: usize = 400;
+/// Curves that are closer than this part of the plot's size hide one another: about two pixels.
+const COINCIDE: f64 = 0.005;
 
 pub(super) fn figures(view: &View, q: usize, out: &mut Vec<Figure>) {
     let quantity = &view.record.quantities[q];
@@ -51,12 +53,31 @@ pub(super) fn figures(view: &View, q: usize, out: &mut Vec<Figure>) {
         legend: Vec::new(),
     };
     let mut of_colour = [0; STYLES];
-    for (&i, curve) in shown.iter().zip(&curves) {
+    // In parts of the plot's size, where curves that lie on one another are found.
+    let placed: Vec<Vec<[f64; 2]>> = (curves.iter().map(|c| thinned(c)))
+        .map(|c| {
+            c.iter()
+                .map(|p| [plot.x.place(p[0]), plot.y.place(p[1])])
+                .collect()
+        })
+        .collect();
+    for (k, (&i, curve)) in shown.iter().zip(&curves).enumerate() {
+        let below: Vec<usize> = (0..k)
+            .filter(|&j| lies_on(&placed[k], &placed[j]))
+            .collect();
         let error = view.error(i, q).map(percent);
         let said = error.map_or("no error known".to_string(), |e| format!("error {e}"));
         let colour = view.style(i).colour;
-        let dashes = of_colour[colour];
-        of_colour[colour] += 1;
+        // The curves below show through the gaps of the dashes.
+        let dashes = below.len().max(of_colour[colour]);
+        of_colour[colour] = dashes + 1;
+        let said = match below.is_empty() {
+            true => said,
+            false => {
+                let names: Vec<String> = below.iter().map(|&j| view.name(shown[j])).collect();
+                format!("{said}; lies on {}", listed(&names))
+            }
+        };
         plot.paths.push(Path {
             points: thinned(curve),
             colour,
@@ -85,6 +106,22 @@ pub(super) fn figures(view: &View, q: usize, out: &mut Vec<Figure>) {
         svg: plot.draw(),
         quantity: None,
     });
+}
+
+/// Whether every point of a curve lies as good as on another, in parts of the plot's size.
+fn lies_on(points: &[[f64; 2]], curve: &[[f64; 2]]) -> bool {
+    let off = |p: &[f64; 2], a: &[f64; 2], b: &[f64; 2]| {
+        let [along, to] = [[b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]];
+        let length = along[0].powi(2) + along[1].powi(2);
+        let part = match length > 0.0 {
+            true => ((to[0] * along[0] + to[1] * along[1]) / length).clamp(0.0, 1.0),
+            false => 0.0,
+        };
+        (to[0] - part * along[0]).hypot(to[1] - part * along[1])
+    };
+    points
+        .iter()
+        .all(|p| curve.windows(2).any(|s| off(p, &s[0], &s[1]) < COINCIDE))
 }
 
 /// The best and the worst run of as many series as there are colours for.
@@ -140,4 +177,24 @@ fn thinned(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
     out.push(curve[curve.len() - 1]);
     out.dedup();
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_that_hide_one_another() {
+        let curve = |n: usize, off: f64| -> Vec<[f64; 2]> {
+            let at = |k: usize| k as f64 / n as f64;
+            (0..=n).map(|k| [at(k), at(k).powi(2) + off]).collect()
+        };
+        // However many points each has.
+        assert!(lies_on(&curve(7, 0.001), &curve(50, 0.0)));
+        assert!(lies_on(&curve(50, 0.001), &curve(30, 0.0)));
+        assert!(!lies_on(&curve(7, 0.02), &curve(50, 0.0)));
+        // A part of another lies on it, not the other way round.
+        let part = curve(50, 0.0)[..20].to_vec();
+        assert!(lies_on(&part, &curve(50, 0.0)) && !lies_on(&curve(50, 0.0), &part));
+    }
 }

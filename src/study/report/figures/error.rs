@@ -2,12 +2,12 @@
 use super::super::axis::{Axis, Form};
 use super::super::front::pareto;
 use super::super::legend::{self, Entry, Sign};
-use super::super::number::{digits, percent, several};
 use super::super::plot::{Kind, Path, Plot};
 use super::super::rates::{error_rate, own_error};
 use super::super::view::{Line, View};
 use super::{Figure, band_text, joined, point, series_of, title, without};
 use crate::page::markup::slug;
+use crate::page::number::{digits, percent, several};
 
 pub(super) fn figures(view: &View, q: usize, out: &mut Vec<Figure>) {
     let done = view.done();

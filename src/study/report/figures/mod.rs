@@ -6,11 +6,11 @@ mod value;
 
 pub(crate) use cost::{per_step, phases_in_words};
 
-use super::number::{count, percent, seconds};
 use super::plot::{Kind, Point};
 use super::svg::Svg;
 use super::view::{Line, View};
 use crate::page::markup::slug;
+use crate::page::number::{count, percent, seconds};
 
 /// A picture with its words.
 pub(crate) struct Figure {

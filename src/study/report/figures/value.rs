@@ -2,12 +2,12 @@
 use super::super::axis::{Axis, Form};
 use super::super::bars::{Bars, Row, Shape};
 use super::super::legend;
-use super::super::number::{digits, percent};
 use super::super::plot::{Path, Plot};
 use super::super::view::View;
 use super::error::levels;
 use super::{Figure, joined, point, series_of, title, without};
 use crate::page::markup::slug;
+use crate::page::number::{digits, percent};
 
 /// Bars beyond these many are left out.
 pub(super) const ROWS: usize = 48;

@@ -1,8 +1,8 @@
 //! What a target error costs, with what, and what it costs with everything else.
-use super::super::number::{listed, percent, seconds};
 use super::super::rates::own_error;
 use super::super::view::{View, finer};
 use super::{by_series, overlap};
+use crate::page::number::{listed, percent, seconds};
 
 /// What a set of runs says about a target.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,6 @@
 //! Runs that failed or have not been done.
-use super::super::number::{count, several};
 use super::super::view::View;
+use crate::page::number::{count, several};
 use crate::study::record::Ending;
 
 /// Runs that are named at most.

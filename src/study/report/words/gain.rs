@@ -1,7 +1,7 @@
 //! What a choice gains or costs in iterations and time, with everything else equal.
-use super::super::number::{digits, listed, several};
 use super::super::view::View;
 use super::surely_less;
+use crate::page::number::{digits, listed, several};
 
 /// Two runs that differ in one choice only.
 type Pair = (usize, usize);

@@ -1,6 +1,6 @@
 //! How much a quantity that should be smooth swings.
-use super::super::number::{listed, percent};
 use super::super::view::View;
+use crate::page::number::{listed, percent};
 
 /// Labels that a sentence names one by one.
 const NAMED: usize = 6;

@@ -1,7 +1,7 @@
 //! How fast errors fall.
-use super::super::number::{digits, listed};
 use super::super::rates::error_rate;
 use super::super::view::View;
+use crate::page::number::{digits, listed};
 
 /// Series that a sentence names at most.
 const NAMED: usize = 6;
