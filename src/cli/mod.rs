@@ -150,7 +150,7 @@ struct InspectArgs {
     /// Print the findings as JSON
     #[arg(long)]
     json: bool,
-    /// Read what the CAD system hides (blanked entities of IGES) as well
+    /// Read what the CAD system hides (blanked entities of IGES, invisible items and layers of STEP) as well
     #[arg(long)]
     hidden: bool,
 }

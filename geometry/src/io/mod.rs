@@ -25,7 +25,7 @@ pub use report::{
     CadBody, CadFile, CadFormat, CadPatch, CadTags, EntityCount, FaceBorder, SkipKind, Skipped,
     Summary, TrimReport,
 };
-pub use step::read_step;
+pub use step::{read_step, read_step_with};
 pub use stl::{Stl, StlError, StlReport, read_stl, read_stl_path, write_stl};
 pub use unit::LengthUnit;
 
@@ -34,7 +34,8 @@ use std::path::Path;
 /// What to read of a CAD file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ReadOptions {
-    /// Read what the CAD system hides (blanked entities) as well; otherwise it is skipped.
+    /// Read what the CAD system hides as well (IGES: blanked entities; STEP: items of INVISIBILITY, by themselves or by
+    /// their layer); otherwise it is skipped.
     pub hidden: bool,
 }
 
@@ -63,7 +64,7 @@ pub fn read_path_with(path: &Path, options: &ReadOptions) -> Result<CadFile, Cad
         return read_json(text, &name);
     }
     if step::is_step(start) {
-        return read_step(text, &name);
+        return read_step_with(text, &name, options);
     }
     let kind = if start.is_empty() {
         Some("an empty file")

@@ -121,7 +121,7 @@ pub struct Skipped {
 }
 
 /// Kinds of reasons not to read a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SkipKind {
     /// Hidden in the CAD system.

@@ -10,6 +10,7 @@ mod punch;
 mod samples;
 mod step;
 mod step_builder;
+mod step_hidden;
 mod step_mutants;
 mod step_poles;
 mod step_shapes;

@@ -3,7 +3,7 @@
 //! The layers, one file each: tokens and values (`scan`, `text`), the file and where its instances stand (`exchange`),
 //! instances with attributes by type and number (`schema`, `entity`). On these stand geometry (`place`, `units`, `curve*`,
 //! `spline`, `profile`, `surface*`), faces with what bounds them (`bounds`, `face`), bodies (`shells`), products and where they stand
-//! (`assembly`, `copies`), and `bodies`, which decides what every face becomes.
+//! (`assembly`, `copies`), what is shown and how (`labels`, `hidden`), and `bodies`, which decides what every face becomes.
 
 mod assembly;
 mod bodies;
@@ -14,6 +14,7 @@ mod curve_read;
 mod entity;
 mod exchange;
 mod face;
+mod hidden;
 mod labels;
 mod place;
 mod profile;
@@ -27,9 +28,9 @@ mod surface_read;
 mod text;
 mod units;
 
-use super::CadError;
 use super::error::Fail;
 use super::report::{CadFile, CadFormat, EntityCount};
+use super::{CadError, ReadOptions};
 use exchange::Exchange;
 use std::collections::BTreeMap;
 
@@ -50,13 +51,25 @@ pub fn is_step(bytes: &[u8]) -> bool {
 /// [`CadError::Content`] with the place where the structure of the file is damaged. Wrong values and references cost the faces
 /// that need them; a sound file that holds no surface is no error.
 pub fn read_step(bytes: &[u8], name: &str) -> Result<CadFile, CadError> {
-    read(bytes, name).map_err(|fail| fail.in_file(name))
+    read_step_with(bytes, name, &ReadOptions::default())
 }
 
-fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
+/// Reads a STEP file as [`read_step`] does, with options.
+///
+/// # Errors
+/// As [`read_step`].
+pub fn read_step_with(
+    bytes: &[u8],
+    name: &str,
+    options: &ReadOptions,
+) -> Result<CadFile, CadError> {
+    read(bytes, name, options).map_err(|fail| fail.in_file(name))
+}
+
+fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<CadFile, Fail> {
     let exchange = Exchange::read(bytes)?;
     let mut notes = Vec::new();
-    let read = bodies::read(&exchange, &mut notes);
+    let read = bodies::read(&exchange, options, &mut notes);
     Ok(CadFile {
         path: name.to_owned(),
         format: CadFormat::Step,
