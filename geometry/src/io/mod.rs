@@ -7,15 +7,18 @@
 mod brep;
 mod error;
 mod file;
+mod healing;
 mod iges;
 mod json;
 mod report;
 mod step;
 mod stl;
+mod surface;
 mod unit;
 
 pub use error::CadError;
 pub use file::{MOST_BYTES, not_regular, read_whole, read_within};
+pub use healing::{Healing, LeftOut, LeftOutKind};
 pub use iges::{
     BasePatch, BaseSurface, Border, IgesCurve, IgesGeometry, IgesSurface, ParameterMap,
     Reparametrise, Unbounded, entity_name, read_iges, read_iges_geometry, read_iges_with,
@@ -27,6 +30,7 @@ pub use report::{
 };
 pub use step::{read_step, read_step_with};
 pub use stl::{Stl, StlError, StlReport, read_stl, read_stl_path, write_stl};
+pub use surface::{CadFace, CadSurface, SurfaceError};
 pub use unit::LengthUnit;
 
 use std::path::Path;

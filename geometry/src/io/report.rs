@@ -1,5 +1,6 @@
 //! What was found in a CAD file.
 
+use super::healing::Healing;
 use super::{CadError, LengthUnit};
 use crate::NurbsPatch;
 use serde::Serialize;
@@ -204,6 +205,8 @@ pub struct CadFile {
     pub skipped: Vec<Skipped>,
     /// What happened to the boundary curves.
     pub trims: TrimReport,
+    /// Faces that were read, but left out.
+    pub healing: Healing,
     /// What was tolerated although the standard does not allow it, and what was changed on reading.
     pub notes: Vec<String>,
 }
@@ -234,6 +237,7 @@ impl CadFile {
             entities: Vec::new(),
             skipped: Vec::new(),
             trims: TrimReport::default(),
+            healing: Healing::default(),
             notes: Vec::new(),
         }
     }
@@ -298,6 +302,7 @@ impl CadFile {
         ] {
             *length *= factor;
         }
+        self.healing.scale(factor);
         Ok(())
     }
 }

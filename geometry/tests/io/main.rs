@@ -3,6 +3,7 @@
 
 mod damage;
 mod habits;
+mod healing;
 mod iges;
 mod json;
 mod offsets;
@@ -15,3 +16,4 @@ mod step_mutants;
 mod step_poles;
 mod step_shapes;
 mod support;
+mod surface;

@@ -29,6 +29,7 @@ mod text;
 mod units;
 
 use super::error::Fail;
+use super::healing::{Healing, heal};
 use super::report::{CadFile, CadFormat, EntityCount};
 use super::{CadError, ReadOptions};
 use exchange::Exchange;
@@ -70,7 +71,7 @@ fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<CadFile, Fail
     let exchange = Exchange::read(bytes)?;
     let mut notes = Vec::new();
     let read = bodies::read(&exchange, options, &mut notes);
-    Ok(CadFile {
+    let mut file = CadFile {
         path: name.to_owned(),
         format: CadFormat::Step,
         unit: read.units.length,
@@ -80,8 +81,11 @@ fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<CadFile, Fail
         entities: counts(&exchange),
         skipped: read.skipped,
         trims: read.trims,
+        healing: Healing::default(),
         notes,
-    })
+    };
+    heal(&mut file);
+    Ok(file)
 }
 
 /// How often each type of entity occurs.
