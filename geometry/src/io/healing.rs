@@ -133,8 +133,6 @@ pub fn heal(file: &mut CadFile) {
 
 /// What is cheap to know of a face.
 struct Outline {
-    /// Parameters of points of the border and of the inside, where they belong to the face.
-    points: Vec<[f64; 2]>,
     bounds: [Vec3; 2],
     /// No less than twice the area divided by the length of the border.
     width: f64,
@@ -154,18 +152,15 @@ impl Outline {
                 area += 0.5 * (x * (b[1] - a[1]) - y * (b[0] - a[0]));
             }
         }
-        let inside = inside(patch);
-        let points: Vec<[f64; 2]> = rings.into_iter().flatten().chain(inside).collect();
         let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
         let mut stretch = 0.0f64;
-        for &xi in &points {
+        for xi in points(rings, patch) {
             let jet = patch.jet(xi);
             (low, high) = (low.inf(&jet.rho), high.sup(&jet.rho));
             stretch = stretch.max(jet.rho_i[0].cross(&jet.rho_i[1]).norm());
         }
         let most = 2.0 * area.abs() * stretch;
         Self {
-            points,
             bounds: [low, high],
             width: if most > 0.0 { most / length } else { 0.0 },
         }
@@ -204,6 +199,11 @@ fn rings(patch: &NurbsPatch) -> Vec<Vec<[f64; 2]>> {
     vec![ring]
 }
 
+/// Points of the border and of the inside.
+fn points(rings: Vec<Vec<[f64; 2]>>, patch: &NurbsPatch) -> impl Iterator<Item = [f64; 2]> + '_ {
+    rings.into_iter().flatten().chain(inside(patch))
+}
+
 /// Points of a grid that belong to the face.
 fn inside(patch: &NurbsPatch) -> impl Iterator<Item = [f64; 2]> + '_ {
     const GRID: usize = 5;
@@ -226,59 +226,77 @@ fn duplicates(file: &CadFile, outlines: &[Outline], near: f64, why: &mut [Option
         .map(|k| middle(k).dot(&Vec3::new(0.32, 0.25, 0.29)))
         .collect();
     order.sort_by(|&a, &b| keys[a].total_cmp(&keys[b]));
-    let mut pairs = Vec::new();
-    for (place, &a) in order.iter().enumerate() {
+    let mut sets: HashMap<usize, Option<PatchSet>> = HashMap::new();
+    // Of those before it a face is compared with the ones that stay.
+    let mut staying: Vec<usize> = Vec::with_capacity(order.len());
+    for &face in &order {
         // Two faces that are parametrised in other ways are sampled at other points.
-        let [low, high] = outlines[a].bounds;
+        let [low, high] = outlines[face].bounds;
         let alike = near + ALIKE * (high - low).norm();
-        let after = order[place + 1..].iter().copied();
-        let candidates = after
-            .take_while(|&b| keys[b] - keys[a] <= 2.0 * alike)
-            .filter(|&b| {
-                let apart =
-                    |side: usize| (outlines[a].bounds[side] - outlines[b].bounds[side]).amax();
-                file.patches[a].tags.body == file.patches[b].tags.body
+        let before = (0..staying.len()).rev();
+        let candidates = before
+            .take_while(|&k| keys[face] - keys[staying[k]] <= 2.0 * alike)
+            .filter(|&k| {
+                let (one, other) = (staying[k], face);
+                let apart = |side: usize| {
+                    (outlines[one].bounds[side] - outlines[other].bounds[side]).amax()
+                };
+                file.patches[one].tags.body == file.patches[other].tags.body
                     && apart(0).max(apart(1)) <= alike
             })
             .take(COMPARED);
-        pairs.extend(candidates.map(|b| (a.min(b), a.max(b))));
-    }
-    pairs.sort_unstable();
-    let mut sets: HashMap<usize, Option<PatchSet>> = HashMap::new();
-    for (a, b) in pairs {
-        if why[a].is_some() || why[b].is_some() {
-            continue;
-        }
-        for k in [a, b] {
-            sets.entry(k)
-                .or_insert_with(|| PatchSet::new(vec![file.patches[k].patch.clone()], None).ok());
-        }
-        let (Some(one), Some(other)) = (&sets[&a], &sets[&b]) else {
-            continue;
-        };
-        // Two sheets of one body may touch back to back, and so may the bodies of a file that does not list them.
-        let body = file.patches[a].tags.body.and_then(|k| file.bodies.get(k));
-        let facing = body.is_none_or(|body| body.solid);
-        let there = apart(one, &outlines[a], other, near, facing);
-        let back = there.and_then(|d| Some(d.max(apart(other, &outlines[b], one, near, facing)?)));
-        if let Some(distance) = back {
-            let of = file.patches[a].entity;
-            why[b] = Some(LeftOutKind::Duplicate { of, distance });
+        let candidates: Vec<usize> = candidates.collect();
+        let found = candidates.into_iter().find_map(|k| {
+            let distance = coincide(file, [staying[k], face], near, &mut sets)?;
+            Some((k, distance))
+        });
+        match found {
+            Some((k, distance)) => {
+                // The first in the file stays.
+                let [stays, goes] = [staying[k].min(face), staying[k].max(face)];
+                staying[k] = stays;
+                sets.remove(&goes);
+                let of = file.patches[stays].entity;
+                why[goes] = Some(LeftOutKind::Duplicate { of, distance });
+            }
+            None => staying.push(face),
         }
     }
 }
 
+/// Largest distance between two faces, if they coincide.
+fn coincide(
+    file: &CadFile,
+    pair: [usize; 2],
+    near: f64,
+    sets: &mut HashMap<usize, Option<PatchSet>>,
+) -> Option<f64> {
+    // What was compared long ago lies elsewhere.
+    if sets.len() > 2 * COMPARED {
+        sets.clear();
+    }
+    for k in pair {
+        sets.entry(k)
+            .or_insert_with(|| PatchSet::new(vec![file.patches[k].patch.clone()], None).ok());
+    }
+    let [Some(one), Some(other)] = pair.map(|k| sets[&k].as_ref()) else {
+        return None;
+    };
+    // Two sheets of one body may touch back to back, and so may the bodies of a file that does not list them.
+    let body = file.patches[pair[0]]
+        .tags
+        .body
+        .and_then(|k| file.bodies.get(k));
+    let facing = body.is_none_or(|body| body.solid);
+    let there = apart(one, other, near, facing)?;
+    Some(there.max(apart(other, one, near, facing)?))
+}
+
 /// Largest distance of points of `one` from `other`, if none is larger than `near`; with `facing`, only where the normals
 /// agree.
-fn apart(
-    one: &PatchSet,
-    outline: &Outline,
-    other: &PatchSet,
-    near: f64,
-    facing: bool,
-) -> Option<f64> {
+fn apart(one: &PatchSet, other: &PatchSet, near: f64, facing: bool) -> Option<f64> {
     let mut worst = 0.0f64;
-    for &xi in &outline.points {
+    for xi in points(rings(&one.patches()[0]), &one.patches()[0]) {
         let jet = one.patches()[0].jet(xi);
         let foot = other.project(&jet.rho, None, 2.0 * near)?;
         worst = worst.max(foot.distance);

@@ -5,6 +5,7 @@ mod damage;
 mod habits;
 mod healing;
 mod iges;
+mod iges_write;
 mod json;
 mod offsets;
 mod punch;

@@ -27,11 +27,13 @@ mod surface;
 mod surfaces;
 mod transform;
 mod trimmed;
+mod write;
 
 pub use super::brep::{BasePatch, ParameterMap, Reparametrise};
 pub use base::{IgesCurve, IgesGeometry, IgesSurface, read_iges_geometry};
 pub use names::entity_name;
 pub use surfaces::{BaseSurface, Border, Unbounded};
+pub use write::{IgesWriteError, write_iges};
 
 use super::CadError;
 use super::ReadOptions;

@@ -13,9 +13,9 @@ use super::schema::is_a;
 use super::scope::{Budget, Scope};
 use super::shells::{self, Found, Member};
 use super::units::Units;
-use crate::io::ReadOptions;
 use crate::io::brep::Grant;
 use crate::io::report::{CadBody, CadPatch, CadTags, SkipKind, Skipped, TrimReport};
+use crate::io::{ReadOptions, ReadProgress};
 use std::collections::{HashMap, HashSet};
 
 /// All bodies of a file.
@@ -35,7 +35,12 @@ struct Placed {
 }
 
 /// Reads all bodies, in the order in which the assembly holds them.
-pub fn read(exchange: &Exchange, options: &ReadOptions, notes: &mut Vec<String>) -> Outcome {
+pub fn read(
+    exchange: &Exchange,
+    options: &ReadOptions,
+    notes: &mut Vec<String>,
+    watch: &mut dyn FnMut(ReadProgress),
+) -> Outcome {
     let budget = Budget::of(exchange);
     let assembly = Assembly::read(exchange, notes);
     let mut reader = Reader {
@@ -58,6 +63,8 @@ pub fn read(exchange: &Exchange, options: &ReadOptions, notes: &mut Vec<String>)
         },
         assembly: &assembly,
         notes,
+        progress: ReadProgress { faces: 0, of: 0 },
+        watch,
     };
     reader.all();
     reader.out
@@ -76,6 +83,8 @@ struct Reader<'a, 'r> {
     told: HashSet<(u32, SkipKind)>,
     out: Outcome,
     notes: &'r mut Vec<String>,
+    progress: ReadProgress,
+    watch: &'r mut dyn FnMut(ReadProgress),
 }
 
 impl<'a> Reader<'a, '_> {
@@ -112,6 +121,7 @@ impl<'a> Reader<'a, '_> {
         for member in bodies.iter().flat_map(|p| &p.faces) {
             *uses.entry(member.index).or_insert(0) += 1;
         }
+        self.progress.of = bodies.iter().map(|p| p.faces.len()).sum();
         for placed in bodies {
             self.body(&placed, &mut uses);
         }
@@ -233,6 +243,8 @@ impl<'a> Reader<'a, '_> {
         let body = self.out.bodies.len();
         let [mut read, mut skipped] = [0, 0];
         for member in faces {
+            self.progress.faces += 1;
+            (self.watch)(self.progress);
             let left = uses.entry(member.index).or_insert(1);
             *left = left.saturating_sub(1);
             let last = *left == 0;

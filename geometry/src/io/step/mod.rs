@@ -31,7 +31,7 @@ mod units;
 use super::error::Fail;
 use super::healing::{Healing, heal};
 use super::report::{CadFile, CadFormat, EntityCount};
-use super::{CadError, ReadOptions};
+use super::{CadError, ReadOptions, ReadProgress};
 use exchange::Exchange;
 use std::collections::BTreeMap;
 
@@ -64,13 +64,31 @@ pub fn read_step_with(
     name: &str,
     options: &ReadOptions,
 ) -> Result<CadFile, CadError> {
-    read(bytes, name, options).map_err(|fail| fail.in_file(name))
+    read_step_watched(bytes, name, options, &mut |_| {})
 }
 
-fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<CadFile, Fail> {
+/// Reads a STEP file as [`read_step_with`] does and calls `watch` after every face.
+///
+/// # Errors
+/// As [`read_step`].
+pub fn read_step_watched(
+    bytes: &[u8],
+    name: &str,
+    options: &ReadOptions,
+    watch: &mut dyn FnMut(ReadProgress),
+) -> Result<CadFile, CadError> {
+    read(bytes, name, options, watch).map_err(|fail| fail.in_file(name))
+}
+
+fn read(
+    bytes: &[u8],
+    name: &str,
+    options: &ReadOptions,
+    watch: &mut dyn FnMut(ReadProgress),
+) -> Result<CadFile, Fail> {
     let exchange = Exchange::read(bytes)?;
     let mut notes = Vec::new();
-    let read = bodies::read(&exchange, options, &mut notes);
+    let read = bodies::read(&exchange, options, &mut notes, watch);
     let mut file = CadFile {
         path: name.to_owned(),
         format: CadFormat::Step,

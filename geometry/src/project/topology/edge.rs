@@ -1,17 +1,22 @@
 //! Edges of patches: the sides of the domain or, on a trimmed patch, the trim curves. Both are curves `t -> xi -> rho`.
 
 use super::super::EdgeKind;
+use super::super::piece::box_distance2;
 use super::super::set::PatchSet;
 use crate::surface::{Jet, Surface, Vec3};
 
 /// Tangents turn by no more than this (radians) from sample to sample, as long as [`DEPTH`] bisections allow.
 const TURN: f64 = 0.25;
 const DEPTH: usize = 6;
+/// Chords in a block of a long polyline.
+const BLOCK: usize = 16;
 /// Share of a chord by which the box around it grows: more than an arc that turns by [`TURN`] bulges.
 const BULGE: f64 = 0.15;
 /// Most steps of the iteration for the nearest point, and halvings of one step.
 const ITERATIONS: usize = 30;
 const HALVINGS: usize = 12;
+/// Steps shorter than this share of the size are not halved.
+const SHORT: f64 = 1e-9;
 
 /// Which curve an edge is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,6 +63,8 @@ pub(in crate::project) struct Edge {
     /// Number of the file's curve or edge, 0 for none.
     pub entity: u32,
     pub samples: Vec<Sample>,
+    /// Boxes around every [`BLOCK`] chords of a long polyline, else none.
+    pub blocks: Vec<[Vec3; 2]>,
     /// A box that holds it.
     pub bounds: [Vec3; 2],
     /// Share of its length by which the box of a chord must grow to hold the arc; 0 for a straight edge.
@@ -170,6 +177,7 @@ pub(super) fn edges_of<S: Surface>(set: &PatchSet<S>, patch: u32) -> Vec<Edge> {
         sense,
         entity,
         samples: Vec::new(),
+        blocks: Vec::new(),
         bounds: [Vec3::zeros(); 2],
         bulge: BULGE,
         axis: Vec3::zeros(),
@@ -428,6 +436,16 @@ fn sample<S: Surface>(set: &PatchSet<S>, edge: &mut Edge, breaks: &[f64], parts:
             point: p.jet.rho,
         })
         .collect();
+    if edge.samples.len() > 2 * BLOCK {
+        let around = |k: usize| {
+            let end = (k + BLOCK + 1).min(edge.samples.len());
+            let own = edge.samples[k..end].iter().map(|s| s.point);
+            let first = edge.samples[k].point;
+            own.fold([first; 2], |[low, high], x| [low.inf(&x), high.sup(&x)])
+        };
+        let chords = edge.samples.len() - 1;
+        edge.blocks = (0..chords).step_by(BLOCK).map(around).collect();
+    }
     edge.bounds = [low, high];
     edge.length = length;
 }
@@ -493,7 +511,31 @@ pub(in crate::project) fn nearest_on_edge<S: Surface>(
     edge: &Edge,
 ) -> EdgePoint {
     let mut best = (f64::INFINITY, edge.interval[0]);
-    for pair in edge.samples.windows(2) {
+    if edge.blocks.is_empty() {
+        nearest_chord(q, &edge.samples, &mut best);
+        return nearest_from(set, q, edge, best.1);
+    }
+    // The nearest block first: its chords leave few other blocks to look at.
+    let far = |k: usize| box_distance2(q, &edge.blocks[k][0], &edge.blocks[k][1]);
+    let chords = |k: usize| {
+        let end = ((k + 1) * BLOCK + 1).min(edge.samples.len());
+        &edge.samples[k * BLOCK..end]
+    };
+    let count = edge.blocks.len();
+    let nearest = (0..count).map(|k| (far(k), k));
+    let (_, first) = nearest.fold((f64::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a });
+    nearest_chord(q, chords(first), &mut best);
+    for k in (0..count).filter(|&k| k != first) {
+        if far(k) < best.0 {
+            nearest_chord(q, chords(k), &mut best);
+        }
+    }
+    nearest_from(set, q, edge, best.1)
+}
+
+/// Takes a chord that is nearer to `q` than the best one: its squared distance and the parameter of its nearest point.
+fn nearest_chord(q: &Vec3, samples: &[Sample], best: &mut (f64, f64)) {
+    for pair in samples.windows(2) {
         let chord = pair[1].point - pair[0].point;
         let along = (q - pair[0].point).dot(&chord) / chord.norm_squared();
         let s = if along.is_finite() {
@@ -503,10 +545,9 @@ pub(in crate::project) fn nearest_on_edge<S: Surface>(
         };
         let d2 = (pair[0].point + chord * s - q).norm_squared();
         if d2 < best.0 {
-            best = (d2, pair[0].t + s * (pair[1].t - pair[0].t));
+            *best = (d2, pair[0].t + s * (pair[1].t - pair[0].t));
         }
     }
-    nearest_from(set, q, edge, best.1)
 }
 
 fn nearest_from<S: Surface>(set: &PatchSet<S>, q: &Vec3, edge: &Edge, start: f64) -> EdgePoint {
@@ -524,7 +565,14 @@ fn nearest_from<S: Surface>(set: &PatchSet<S>, q: &Vec3, edge: &Edge, start: f64
         }
         let mut step = -slope / f;
         let mut better = None;
-        for _ in 0..HALVINGS {
+        // A step this short that leads no nearer is lost in rounding, and so are its parts.
+        let short = SHORT * set.size;
+        let halvings = if step * step * a <= short * short {
+            1
+        } else {
+            HALVINGS
+        };
+        for _ in 0..halvings {
             let t = (now.t + step).clamp(low, high);
             if t == now.t {
                 break;
