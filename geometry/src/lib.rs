@@ -55,9 +55,11 @@ pub mod bezier;
 pub mod curve;
 pub mod facet;
 pub mod frame;
+#[cfg(feature = "io")]
 pub mod io;
 pub mod memory;
 pub mod moving;
+mod parallel;
 pub mod patch;
 pub mod primitives;
 pub mod project;

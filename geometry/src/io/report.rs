@@ -8,6 +8,7 @@ use serde::Serialize;
 /// Format of a CAD file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum CadFormat {
     /// IGES (ANS US PRO/IPO-100), fixed-length ASCII records.
     Iges,
@@ -124,6 +125,7 @@ pub struct Skipped {
 /// Kinds of reasons not to read a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum SkipKind {
     /// Hidden in the CAD system.
     Blanked,

@@ -1,7 +1,7 @@
 //! Cells: pieces small enough to be nearly flat, each with a block of cells around it for which one test proves that a
 //! stationary point is the nearest one, and with its distance from everything outside of the block.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::convex::{Axes, Convex, Tangents, axes, tangents};
 use super::local::Local;

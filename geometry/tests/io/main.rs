@@ -7,6 +7,8 @@ mod healing;
 mod iges;
 mod iges_write;
 mod json;
+#[path = "../mutate_common/mod.rs"]
+mod mutate;
 mod offsets;
 mod punch;
 mod samples;

@@ -187,9 +187,10 @@ pub(super) struct TurnedFace {
 
 impl<'a> Findings<'a> {
     /// The set is that of all patches of the file, none where they make no set.
-    pub fn new(file: &'a CadFile, set: Option<&PatchSet>) -> Self {
+    /// If `brief`, nothing is measured that needs a search.
+    pub fn new(file: &'a CadFile, set: Option<&PatchSet>, brief: bool) -> Self {
         let summary = file.summary();
-        let patches = patches(file);
+        let patches = patches(file, brief);
         Findings {
             file: &file.path,
             format: file.format,
@@ -214,12 +215,15 @@ impl<'a> Findings<'a> {
     }
 }
 
-fn patches(file: &CadFile) -> Vec<Patch<'_>> {
+fn patches(file: &CadFile, brief: bool) -> Vec<Patch<'_>> {
     let one = |patch: &NurbsPatch| PatchSet::new(vec![patch.clone()], None);
     let patches = file.patches.iter().map(|p| {
-        let (set, fault) = match one(&p.patch) {
-            Ok(set) => (Some(set), None),
-            Err(e) => (None, Some(e.to_string())),
+        let (set, fault) = match brief {
+            true => (None, None),
+            false => match one(&p.patch) {
+                Ok(set) => (Some(set), None),
+                Err(e) => (None, Some(e.to_string())),
+            },
         };
         Patch {
             entity: p.entity,

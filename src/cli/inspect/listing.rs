@@ -321,6 +321,7 @@ fn reason(kind: SkipKind) -> &'static str {
         SkipKind::Unsupported => "of a type that is not read",
         SkipKind::Surface => "with data that gives no surface",
         SkipKind::Boundary => "with boundary curves that give no trim",
+        _ => "for other reasons",
     }
 }
 

@@ -1,6 +1,6 @@
 //! Pairs of edges that coincide, and what every edge is.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::super::EdgeKind;
 use super::super::set::{PatchSet, SHARP_ANGLE};
