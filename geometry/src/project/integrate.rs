@@ -58,7 +58,7 @@ pub(super) fn over<S: Surface, const N: usize>(
         let a_loop = loop_of(&edges[start]);
         let count = edges[start..].iter();
         let count = count.take_while(|e| loop_of(e) == a_loop).count();
-        let along = walk(set, &edges[start..start + count], &cells.breaks);
+        let along = walk(set, &edges[start..start + count], cells.breaks);
         start += count;
         let Some(last) = along.last() else { continue };
         let mut before = last.cell[0];

@@ -225,7 +225,11 @@ impl Writer {
             })
             .collect();
         let surface = self.surface(&patch, PART, "");
-        for (outer, ring) in loops.iter().enumerate().filter(|(k, _)| depth[*k] % 2 == 0) {
+        for (outer, ring) in loops
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| depth[*k].is_multiple_of(2))
+        {
             let inside = |&k: &usize| depth[k] == depth[outer] + 1 && ring.holds(&loops[k]);
             let holes: Vec<usize> = (0..loops.len()).filter(inside).collect();
             let mut values = vec![
