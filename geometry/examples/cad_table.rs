@@ -3,7 +3,9 @@
 //! `cargo run -p covact-geometry --example cad_table -- FOLDER [--truth TABLE.json] [--notes] [--faces]`
 //!
 //! The table is an object with an entry for each file name: `{"part.step": {"faces": 6, "area_mm2": 24.0, "volumes_mm3":
-//! [8.0], "box_mm": [0, 0, 0, 2, 2, 2], "face_areas": [4, 4, 4, 4, 4, 4]}}`; any of them may be missing.
+//! [8.0], "box_mm": [0, 0, 0, 2, 2, 2], "face_areas": [4, 4, 4, 4, 4, 4], "points": [[3, 1, 1, 1.0, 1]]}}`; any of them may be
+//! missing. Points are x, y, z, the distance from the faces and -1 inside of a solid, 1 outside, 0 for none. The script
+//! `tests/data/cad_truth.py` makes such a table.
 
 use covact_geometry::io::{CadFile, LengthUnit, read_path};
 use covact_geometry::project::Joining;
@@ -121,6 +123,9 @@ fn row(name: &str, mut file: CadFile, truth: &Value, (seconds, notes, faces): (f
             s.entity, s.name, s.kind, s.reason
         );
     }
+    if truth["points"].is_array() {
+        println!("  {}", points_off(&file, &truth["points"], faces));
+    }
     if notes {
         for note in &file.notes {
             println!("  note: {note}");
@@ -186,13 +191,63 @@ fn box_off(measured: &[Measures], truth: &Value) -> Option<f64> {
     Some(off.fold(0.0, f64::max) / (high - low).norm())
 }
 
+/// The largest difference of distances, as a share of the size, and how many points are on another side.
+fn points_off(file: &CadFile, points: &Value, listed: bool) -> String {
+    let surface = match file.surface() {
+        Ok(surface) => surface,
+        Err(error) => return error.to_string(),
+    };
+    let size = surface.set().size();
+    let (mut farther, mut nearer, mut count, mut wrong) = (0.0f64, 0.0f64, 0, 0);
+    // Bodies may touch or hold each other: a point is inside where it is inside of one.
+    let mut bodies: Vec<Option<usize>> = file.patches.iter().map(|p| p.tags.body).collect();
+    bodies.sort();
+    bodies.dedup();
+    let bodies: Vec<PatchSet> = bodies.into_iter().filter_map(|b| solid(file, b)).collect();
+    for row in points.as_array().into_iter().flatten() {
+        let row = numbers(row);
+        let [x, y, z, distance, side] = row[..] else {
+            return "a point without five numbers".to_owned();
+        };
+        let q = Vec3::new(x, y, z);
+        let foot = match surface.closest(&q) {
+            Ok(foot) => foot,
+            Err(error) => return error.to_string(),
+        };
+        let off = (foot.distance - distance) / size;
+        (farther, nearer) = (farther.max(off), nearer.max(-off));
+        count += 1;
+        let signs = bodies.iter().filter_map(|b| b.closest(&q).ok());
+        let own = signs.fold(1.0, |s: f64, f| s.min(f.signed_distance.signum()));
+        let differs = side != 0.0 && own != side;
+        wrong += usize::from(differs);
+        if listed && (off.abs() > 1e-6 || differs) {
+            println!(
+                "    {x} {y} {z}: {} on #{} {:?} instead of {distance} (side {side})",
+                foot.signed_distance,
+                surface.entity(foot.patch),
+                foot.location
+            );
+        }
+    }
+    format!(
+        "{count} points: at most {farther:.1e} of the size farther and {nearer:.1e} nearer; {wrong} on another side; {} closed bodies",
+        bodies.len()
+    )
+}
+
+/// One body by itself, if it is closed.
+fn solid(file: &CadFile, body: Option<usize>) -> Option<PatchSet> {
+    let own = file.patches.iter().filter(|p| p.tags.body == body);
+    let patches = own.map(|p| p.patch.clone()).collect();
+    let set = PatchSet::join(patches, file.joining()).ok()?;
+    set.volumes().iter().any(Option::is_some).then_some(set)
+}
+
 fn measures(file: &CadFile, body: Option<usize>) -> Result<Measures, Box<dyn std::error::Error>> {
     let own = file.patches.iter().filter(|p| p.tags.body == body);
     let (patches, entities): (Vec<_>, Vec<_>) = own.map(|p| (fine(&p.patch), p.entity)).unzip();
-    let joining = Joining {
-        resolution: file.resolution,
-        ..Joining::default()
-    };
+    let joining = file.joining();
     let mut set = PatchSet::join(patches.clone(), joining)?;
     // The knots added above part edges, which are joined over a tenth of the gaps that whole ones are joined over.
     if set.volumes().iter().any(Option::is_none) {

@@ -55,9 +55,11 @@ pub mod bezier;
 pub mod curve;
 pub mod facet;
 pub mod frame;
+#[cfg(feature = "io")]
 pub mod io;
 pub mod memory;
 pub mod moving;
+mod parallel;
 pub mod patch;
 pub mod primitives;
 pub mod project;
@@ -69,6 +71,8 @@ pub use curve::NurbsCurve;
 pub use facet::{Bilinear, Biquadratic, FacetMesh};
 pub use frame::Frame;
 pub use moving::{CurvedRows, MovingError, MovingFacets, MovingFoot, MovingPlace, ShapeRows};
+/// Vectors, points and poses are those of nalgebra.
+pub use nalgebra;
 pub use patch::{NurbsPatch, PatchError, PatchShape};
 pub use project::{EdgeKind, Foot, Hint, Location, PatchSet, Status};
 pub use surface::{Jet, Jet3, Surface, Vec3};

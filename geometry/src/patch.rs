@@ -11,6 +11,7 @@ mod kernel;
 mod refine;
 mod shape;
 mod surface;
+#[cfg(feature = "truck")]
 mod truck;
 
 pub use shape::PatchShape;
@@ -23,6 +24,7 @@ use std::sync::Arc;
 
 /// Why a patch could not be made. Directions and indices count from zero.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PatchError {
     /// Degree, knots or domain of one direction.
     #[error("direction {direction}: {reason}")]

@@ -3,6 +3,7 @@
 //! A reader may hold 100 times the file and 1 MB on top of that. Time is bounded loosely, because machines differ and are busy.
 
 mod iges_builder;
+mod mutate_common;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -10,10 +11,11 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use covact_geometry::io::{
-    CadFile, read_iges, read_iges_geometry, read_json, read_stl, write_json,
+    CadFile, read_iges, read_iges_geometry, read_json, read_step, read_stl, write_json,
 };
 use covact_geometry::{PatchSet, Vec3};
 use iges_builder::Builder;
+use mutate_common::{Random, damaged};
 
 /// The system's allocator, counting for each thread the bytes in use and the most there ever were.
 struct Counting;
@@ -140,6 +142,53 @@ fn found_files_within_bounds() {
         count += 1;
     }
     assert!(count > 0, "no files");
+}
+
+/// Five files of STEP and five of IGES, damaged 200 times each: whatever is left of them is read, or refused, within the
+/// bounds.
+#[test]
+fn two_thousand_mutants_within_bounds() {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = [
+        (
+            "tests/data/step",
+            ["box", "cone", "cylinder", "revolution", "torus"],
+            "step",
+        ),
+        (
+            "../assets/cad",
+            [
+                "bead",
+                "cone_brep",
+                "cylinder_faces",
+                "sphere_brep",
+                "torus_faces",
+            ],
+            "igs",
+        ),
+    ];
+    let mut random = Random(20261123);
+    let [mut read, mut refused] = [[0; 2]; 2];
+    for (kind, (folder, names, ending)) in folders.into_iter().enumerate() {
+        for name in names {
+            let path = own.join(folder).join(format!("{name}.{ending}"));
+            let bytes = std::fs::read(&path).unwrap();
+            for _ in 0..200 {
+                let bytes = damaged(&bytes, &mut random);
+                let found = bounded(&path, &bytes, || match kind {
+                    0 => read_step(&bytes, name),
+                    _ => read_iges(&bytes, name),
+                });
+                match found {
+                    Ok(_) => read[kind] += 1,
+                    Err(_) => refused[kind] += 1,
+                }
+            }
+        }
+    }
+    // Both happen to both.
+    let all = [read, refused].concat();
+    assert!(all.iter().all(|&n| n > 100), "{all:?}");
 }
 
 /// A plane 128 over [0, 4] x [0, 2] with these as parameters.

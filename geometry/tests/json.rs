@@ -2,7 +2,7 @@
 //! trims are known, `trimmed.geomdl.json` written by geomdl 5.3.1 itself.
 
 use covact_geometry::io::{
-    CadFile, CadFormat, CadPatch, CadTags, FaceBorder, LengthUnit, TrimReport, read_json,
+    CadFile, CadFormat, CadPatch, CadTags, FaceBorder, Healing, LengthUnit, TrimReport, read_json,
     read_path, write_json,
 };
 use covact_geometry::{NurbsCurve, NurbsPatch, Trim, TrimCurve, TrimLoop};
@@ -235,6 +235,7 @@ fn awkward() -> CadFile {
         entities: Vec::new(),
         skipped: Vec::new(),
         trims: TrimReport::default(),
+        healing: Healing::default(),
         notes: Vec::new(),
     }
 }

@@ -1,8 +1,8 @@
-//! `covact convert`.
+//! `covact convert`: JSON without loss, or faces of IGES.
 use super::cad::{self, Stop};
 use super::{ConvertArgs, exit, print, report};
 use crate::output::atomic::write_through;
-use covact_geometry::io::write_json;
+use covact_geometry::io::{IgesWriteError, write_iges, write_json};
 
 pub(super) fn convert(args: &ConvertArgs) -> u8 {
     let done = run(args);
@@ -14,8 +14,24 @@ pub(super) fn convert(args: &ConvertArgs) -> u8 {
 
 fn run(args: &ConvertArgs) -> Result<u8, Stop> {
     let file = cad::read(&args.file, args.unit.as_deref())?;
-    let text = write_json(&file)
-        .map_err(|e| Stop(format!("cannot write the patches as JSON: {e}"), exit::BUG))?;
+    let ending = args.out.extension().unwrap_or_default().to_string_lossy();
+    let text = match ending.to_lowercase().as_str() {
+        "igs" | "iges" => write_iges(&file).map_err(|e| {
+            let help = match e {
+                IgesWriteError::Unit { .. } | IgesWriteError::UnknownUnit { .. } => {
+                    "; --unit names one, for instance `--unit mm`"
+                }
+                _ => "",
+            };
+            Stop(format!("{e}{help}"), exit::SCENE)
+        })?,
+        "step" | "stp" => {
+            let text = "STEP is read, not written: expected a file `.igs` or `.json` after --out";
+            return Err(Stop(text.to_owned(), exit::USAGE));
+        }
+        _ => write_json(&file)
+            .map_err(|e| Stop(format!("cannot write the patches as JSON: {e}"), exit::BUG))?,
+    };
     if args.out.as_os_str() == "-" {
         return Ok(print(&text));
     }

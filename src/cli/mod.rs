@@ -153,9 +153,12 @@ struct InspectArgs {
     /// Print the findings as JSON
     #[arg(long)]
     json: bool,
-    /// Read what the CAD system hides (blanked entities of IGES) as well
+    /// Read what the CAD system hides (blanked entities of IGES, invisible items and layers of STEP) as well
     #[arg(long)]
     hidden: bool,
+    /// List what the file holds, without areas, curvatures, edges and volumes: for large files
+    #[arg(long)]
+    brief: bool,
 }
 
 #[derive(Debug, Args)]
@@ -187,7 +190,7 @@ struct ProjectArgs {
 struct ConvertArgs {
     /// STEP or IGES file, or JSON of Kratos or geomdl
     file: PathBuf,
-    /// File to write; - is the standard output
+    /// File to write: IGES faces if it ends in .igs or .iges, else JSON; - is the standard output
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// Length unit to convert to (mm, m, in, ...); else that of the CAD file, and every number stays as it is

@@ -116,3 +116,43 @@ fn units_and_faults() {
     }
     assert!(!folder.path().join("out.json").exists());
 }
+
+/// By its ending: the same faces, areas and unit, and a message where IGES cannot have them.
+#[test]
+fn iges_faces() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |arguments: &[&str]| covact(folder.path(), &[&["convert"], arguments].concat());
+    for name in ["cad/cone_faces.igs", "cad/trimmed_patch_faces.igs"] {
+        let source = asset(name).display().to_string();
+        let output = run(&[&source, "-o", "out.igs"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let (before, after) = (
+            inspect(folder.path(), &source),
+            inspect(folder.path(), "out.igs"),
+        );
+        assert_eq!(after["format"], "iges");
+        assert_eq!(before["unit"], after["unit"]);
+        let areas = |found: &Value| -> Vec<f64> {
+            let patches = found["patches"].as_array().unwrap().iter();
+            patches.map(|p| p["area"].as_f64().unwrap()).collect()
+        };
+        let (one, two) = (areas(&before), areas(&after));
+        assert_eq!(one.len(), two.len());
+        for (a, b) in one.into_iter().zip(two) {
+            assert!((a / b - 1.0).abs() < 1e-9, "{name}: {a} {b}");
+        }
+    }
+    let source = asset("cad/quarter_cylinder.cad.json").display().to_string();
+    let output = run(&[&source, "-o", "out.IGES"]);
+    assert_eq!(output.status.code(), Some(3));
+    let told = stderr(&output);
+    assert!(
+        told.contains("the file states no length unit, and IGES must name one; --unit names one"),
+        "{told}"
+    );
+    let output = run(&[&source, "-o", "out.IGES", "--unit", "mm"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let output = run(&[&source, "-o", "out.stp"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("STEP is read, not written"));
+}

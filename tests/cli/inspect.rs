@@ -409,3 +409,70 @@ fn triangles_of_stl_files() {
         stderr(&output)
     );
 }
+
+/// A box with one of its faces listed twice: closed all the same, and said; nothing is measured with `--brief`.
+#[test]
+fn faces_left_out_and_brief_lists() {
+    let path = format!(
+        "{}/geometry/tests/data/step/box.step",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let text = std::fs::read_to_string(path).unwrap();
+    let start = text.find("ADVANCED_FACE").unwrap();
+    let end = start + text[start..].find(';').unwrap();
+    let copy = format!("#9001={};\nENDSEC;\nEND-ISO", &text[start..end]);
+    let (body, _) = text.rsplit_once("ENDSEC;").unwrap();
+    let (before, after) = body.split_once("CLOSED_SHELL('',(").unwrap();
+    let twice = format!("{before}CLOSED_SHELL('',(#9001,{after}{copy}-10303-21;\n");
+    let (code, shown, _) = inspect("box.step", &twice, &["box.step"]);
+    assert_eq!(code, Some(0), "{shown}");
+    for part in [
+        "left out: 0 sliver(s), the widest 0.0e0; 1 duplicate face(s), at most 0.0e0 from those that stay",
+        "coincides with entity",
+        "6 patches, area",
+        "closed, volume",
+    ] {
+        assert!(shown.contains(part), "no {part} in\n{shown}");
+    }
+    let (_, json, _) = inspect("box.step", &twice, &["box.step", "--json"]);
+    let found: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(found["healing"]["duplicates"], 1);
+    assert_eq!(found["healing"]["left_out"][0]["kind"], "duplicate");
+    assert_eq!(found["surface"]["turned"], serde_json::json!([]));
+
+    let (code, json, _) = inspect("box.step", &text, &["box.step", "--json", "--brief"]);
+    let found: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(code, Some(0));
+    assert_eq!(found["summary"]["patches"], 6);
+    assert!(found["surface"].is_null() && found["patches"][0]["area"].is_null());
+    let (_, shown, _) = inspect("box.step", &text, &["box.step", "--brief"]);
+    assert!(!shown.contains("all patches") && shown.contains("bodies: 1"));
+}
+
+/// A face that a file turns over among its neighbours is turned back, and named.
+#[test]
+fn turned_faces_are_named() {
+    let path = format!(
+        "{}/geometry/tests/data/step/box.step",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let text = std::fs::read_to_string(path).unwrap();
+    let start = text.find("ADVANCED_FACE").unwrap();
+    let end = start + text[start..].find(';').unwrap();
+    let face = &text[start..end];
+    let other = match face.contains(".T.)") {
+        true => face.replace(".T.)", ".F.)"),
+        false => face.replace(".F.)", ".T.)"),
+    };
+    let turned = text.replace(face, &other);
+    let (_, json, _) = inspect("box.step", &turned, &["box.step", "--json"]);
+    let found: Value = serde_json::from_str(&json).unwrap();
+    let list = found["surface"]["turned"].as_array().unwrap();
+    assert_eq!(list.len(), 1);
+    assert_eq!(found["surface"]["largest_turned"], list[0]["area"]);
+    let (_, shown, _) = inspect("box.step", &turned, &["box.step"]);
+    assert!(
+        shown.contains("1 face(s) were turned over to agree with their neighbours"),
+        "{shown}"
+    );
+}

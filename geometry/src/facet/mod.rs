@@ -29,6 +29,7 @@ pub use smooth::{distance_from, smooth_patches};
 
 /// Why facets could not be made. Numbers count from zero.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FacetError {
     /// A coordinate is infinite or not a number.
     #[error("node {0} is not finite")]

@@ -1,6 +1,6 @@
 //! Facets of smooth surfaces.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::deviation::{Cell, deviation, shares};
 use super::lines::{Lines, along, carry};

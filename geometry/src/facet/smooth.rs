@@ -1,6 +1,6 @@
 //! The smooth surface over quadrilaterals as patches.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::{FacetError, FacetMesh};
 use crate::moving::MovingFacets;
@@ -73,5 +73,6 @@ pub fn distance_from<S: Surface, T: Surface>(surface: &PatchSet<S>, patches: &[T
         }
         largest
     };
-    patches.par_iter().map(one).reduce(|| 0.0, f64::max)
+    let all: Vec<f64> = patches.par_iter().map(one).collect();
+    all.into_iter().fold(0.0, f64::max)
 }

@@ -2,6 +2,7 @@
 
 /// Why a CAD file could not be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CadError {
     /// The operating system refused.
     #[error("{path}: cannot be read: {source}")]

@@ -1,4 +1,5 @@
-//! Readers of CAD files: STEP (AP203, AP214, AP242), IGES 5.3, and JSON of Kratos, geomdl and our own ([`write_json`]).
+//! Readers of CAD files: STEP (AP203, AP214, AP242), IGES 5.3, and JSON of Kratos, geomdl and our own; writers of the latter
+//! ([`write_json`]) and of IGES ([`write_iges`]).
 //!
 //! [`read_path`] tells the format from the content. What comes back is a [`CadFile`]: NURBS patches with
 //! their trims, and an account of everything else the file holds. Nothing is dropped silently: a surface that was not read is
@@ -7,26 +8,31 @@
 mod brep;
 mod error;
 mod file;
+mod healing;
 mod iges;
 mod json;
 mod report;
 mod step;
 mod stl;
+mod surface;
 mod unit;
 
 pub use error::CadError;
 pub use file::{MOST_BYTES, not_regular, read_whole, read_within};
+pub use healing::{Healing, LeftOut, LeftOutKind};
 pub use iges::{
-    BasePatch, BaseSurface, Border, IgesCurve, IgesGeometry, IgesSurface, ParameterMap,
-    Reparametrise, Unbounded, entity_name, read_iges, read_iges_geometry, read_iges_with,
+    BasePatch, BaseSurface, Border, IgesCurve, IgesGeometry, IgesSurface, IgesWriteError,
+    ParameterMap, Reparametrise, Unbounded, entity_name, read_iges, read_iges_geometry,
+    read_iges_with, write_iges,
 };
 pub use json::{read_json, write_json};
 pub use report::{
     CadBody, CadFile, CadFormat, CadPatch, CadTags, EntityCount, FaceBorder, SkipKind, Skipped,
     Summary, TrimReport,
 };
-pub use step::read_step;
+pub use step::{read_step, read_step_watched, read_step_with};
 pub use stl::{Stl, StlError, StlReport, read_stl, read_stl_path, write_stl};
+pub use surface::{CadFace, CadSurface, SurfaceError};
 pub use unit::LengthUnit;
 
 use std::path::Path;
@@ -34,7 +40,8 @@ use std::path::Path;
 /// What to read of a CAD file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ReadOptions {
-    /// Read what the CAD system hides (blanked entities) as well; otherwise it is skipped.
+    /// Read what the CAD system hides as well (IGES: blanked entities; STEP: items of INVISIBILITY, by themselves or by
+    /// their layer); otherwise it is skipped.
     pub hidden: bool,
 }
 
@@ -52,6 +59,29 @@ pub fn read_path(path: &Path) -> Result<CadFile, CadError> {
 /// # Errors
 /// As [`read_path`].
 pub fn read_path_with(path: &Path, options: &ReadOptions) -> Result<CadFile, CadError> {
+    read_path_watched(path, options, &mut |_| {})
+}
+
+/// How far the reader of a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ReadProgress {
+    /// Faces that were read, or refused.
+    pub faces: usize,
+    /// Faces of the file.
+    pub of: usize,
+}
+
+/// Reads a CAD file as [`read_path_with`] does and calls `watch` after every face of a STEP file. (Files of other formats are
+/// read without a call.)
+///
+/// # Errors
+/// As [`read_path`].
+pub fn read_path_watched(
+    path: &Path,
+    options: &ReadOptions,
+    watch: &mut dyn FnMut(ReadProgress),
+) -> Result<CadFile, CadError> {
     let name = path.display().to_string();
     let bytes = read_whole(path).map_err(|source| CadError::Read {
         path: name.clone(),
@@ -63,7 +93,7 @@ pub fn read_path_with(path: &Path, options: &ReadOptions) -> Result<CadFile, Cad
         return read_json(text, &name);
     }
     if step::is_step(start) {
-        return read_step(text, &name);
+        return read_step_watched(text, &name, options, watch);
     }
     let kind = if start.is_empty() {
         Some("an empty file")

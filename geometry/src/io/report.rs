@@ -1,5 +1,6 @@
 //! What was found in a CAD file.
 
+use super::healing::Healing;
 use super::{CadError, LengthUnit};
 use crate::NurbsPatch;
 use serde::Serialize;
@@ -7,6 +8,7 @@ use serde::Serialize;
 /// Format of a CAD file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum CadFormat {
     /// IGES (ANS US PRO/IPO-100), fixed-length ASCII records.
     Iges,
@@ -121,8 +123,9 @@ pub struct Skipped {
 }
 
 /// Kinds of reasons not to read a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum SkipKind {
     /// Hidden in the CAD system.
     Blanked,
@@ -204,6 +207,8 @@ pub struct CadFile {
     pub skipped: Vec<Skipped>,
     /// What happened to the boundary curves.
     pub trims: TrimReport,
+    /// Faces that were read, but left out.
+    pub healing: Healing,
     /// What was tolerated although the standard does not allow it, and what was changed on reading.
     pub notes: Vec<String>,
 }
@@ -234,6 +239,7 @@ impl CadFile {
             entities: Vec::new(),
             skipped: Vec::new(),
             trims: TrimReport::default(),
+            healing: Healing::default(),
             notes: Vec::new(),
         }
     }
@@ -298,6 +304,7 @@ impl CadFile {
         ] {
             *length *= factor;
         }
+        self.healing.scale(factor);
         Ok(())
     }
 }

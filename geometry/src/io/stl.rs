@@ -17,6 +17,7 @@ const RECORD: usize = 50;
 
 /// Why an STL file could not be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StlError {
     /// The operating system refused.
     #[error("{path}: cannot be read: {source}")]

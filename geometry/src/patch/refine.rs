@@ -41,6 +41,20 @@ impl NurbsPatch {
         self.refined(dir, Basis::clamped)
     }
 
+    /// The same surface with knots that end, clamped, where its domain does. A trim is kept.
+    ///
+    /// # Errors
+    /// As [`clamped`](Self::clamped).
+    pub fn cut_to_domain(&self) -> Result<Self, PatchError> {
+        let mut patch = self.clone();
+        for dir in 0..2 {
+            let domain = patch.domain()[dir];
+            patch = patch.clamped(dir)?;
+            patch = patch.refined(dir, |basis| basis.part(domain))?;
+        }
+        Ok(patch)
+    }
+
     /// The two patches on both sides of parameter `t` of direction `dir`, first the one below, each clamped at `t`.
     ///
     /// # Errors

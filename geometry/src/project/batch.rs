@@ -1,6 +1,6 @@
 //! Many queries at once.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::{Foot, Hint, PatchSet};
 use crate::surface::{Surface, Vec3};

@@ -1,7 +1,7 @@
 //! Cells: pieces small enough to be nearly flat, each with a block of cells around it for which one test proves that a
 //! stationary point is the nearest one, and with its distance from everything outside of the block.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::convex::{Axes, Convex, Tangents, axes, tangents};
 use super::local::Local;
@@ -299,10 +299,24 @@ fn cell(
     let members = (block[1][0]..block[1][1])
         .flat_map(|j| (block[0][0]..block[0][1]).map(move |i| grid.piece([i, j])));
     out.around = Convex::new(pieces, tangents, &axes, members);
+    // The cells beside the block are outside of it and near: the scan has little left to look at.
     let mut clear2 = f64::INFINITY;
+    for k in 0..2 {
+        let last = grid.cells[k][grid.spans[k]];
+        let beside = [block[k][0].checked_sub(1), Some(block[k][1])];
+        for place in beside.into_iter().flatten().filter(|&place| place < last) {
+            let mut cell = piece.cell;
+            cell[k] = place;
+            let other = &pieces.list[grid.piece(cell) as usize];
+            clear2 = clear2.min(out.slab.net_separation2(pieces.net(other)));
+        }
+    }
+    if clear2 <= 0.0 {
+        return out;
+    }
     tree.scan(
         |low, high| out.slab.box_separation2(low, high),
-        f64::INFINITY,
+        clear2,
         |number| {
             // Trim curves lie in cells, which count.
             if let Some(other) = pieces.list.get(number as usize)

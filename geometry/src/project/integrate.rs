@@ -18,8 +18,9 @@ const INTERVALS: usize = 6;
 
 /// Integrates `f dxi1 dxi2` over the part of the domain that belongs to the surface: 4 x 4 Gauss points per Bezier piece of
 /// an untrimmed patch. On a trimmed patch the divergence theorem of the parameter plane turns it into an integral along
-/// the trim curves of the primitive of `f` in xi1, each by Gauss points in the spans of the surface: the intervals of the
-/// curves' polylines are cut where they cross its knot lines.
+/// the trim curves of the primitive of `f` in xi1. The intervals of the curves' polylines are cut where they cross knot lines
+/// of the surface; each is integrated with the primitive that starts at the knot line in front of it, and every crossing adds
+/// a column of whole cells.
 pub(super) fn over<S: Surface, const N: usize>(
     set: &PatchSet<S>,
     patch: u32,
@@ -49,20 +50,65 @@ pub(super) fn over<S: Surface, const N: usize>(
         }
         return sum;
     }
-    // The primitive starts amid the curves, so that it is small.
-    let all = || edges.iter().flat_map(|e| &e.samples).map(|s| s.xi[0]);
-    let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-        (a.min(x), b.max(x))
-    });
-    let start = 0.5 * (low + high);
-    let grid = &set.grids[patch as usize];
-    let breaks = &grid.breaks[0];
-    let degree = set.pieces.list[grid.first as usize].degree[0];
-    let parts = if degree > 1 {
-        INTERVALS.div_ceil(breaks.len())
-    } else {
-        1
-    };
+    let cells = Cells::new(set, patch, &f);
+    let mut columns = vec![None; cells.breaks[0].len() - 1];
+    let mut start = 0;
+    while start < edges.len() {
+        // One loop after the other.
+        let a_loop = loop_of(&edges[start]);
+        let count = edges[start..].iter();
+        let count = count.take_while(|e| loop_of(e) == a_loop).count();
+        let along = walk(set, &edges[start..start + count], cells.breaks);
+        start += count;
+        let Some(last) = along.last() else { continue };
+        let mut before = last.cell[0];
+        for part in &along {
+            // Crossing a knot line adds or takes away the whole column in front of it, up to where it is crossed.
+            let (from, to) = (before.min(part.cell[0]), before.max(part.cell[0]));
+            let sign = if part.cell[0] > before { -1.0 } else { 1.0 };
+            for (column, rows) in columns.iter_mut().enumerate().take(to).skip(from) {
+                let rows = rows.get_or_insert_with(|| cells.column(column));
+                add(part.sense * sign, cells.below(column, rows, part.start));
+            }
+            before = part.cell[0];
+            // Within its column: the primitive from the knot line to the curve.
+            let [a, b] = part.interval;
+            for (x, w) in GAUSS {
+                let jet = part.curve.jet(a + (b - a) * x);
+                let outer = part.sense * w * (b - a) * jet.d1.y;
+                let from = cells.breaks[0][part.cell[0]];
+                let row = cells.row([from, jet.point.x], jet.point.y, part.cell);
+                add(outer, row);
+            }
+        }
+    }
+    sum
+}
+
+fn loop_of(edge: &Edge) -> usize {
+    match edge.curve {
+        EdgeCurve::Trim { a_loop, .. } => a_loop,
+        EdgeCurve::Side { .. } => usize::MAX,
+    }
+}
+
+/// A part of a trim curve within one cell of knot lines.
+struct Part<'c> {
+    curve: &'c NurbsCurve<2>,
+    interval: [f64; 2],
+    cell: [usize; 2],
+    /// Second parameter of the surface where it starts.
+    start: f64,
+    sense: f64,
+}
+
+/// A loop of trim curves, cut where it crosses knot lines.
+fn walk<'s, S: Surface>(
+    set: &'s PatchSet<S>,
+    edges: &[Edge],
+    breaks: &[Vec<f64>; 2],
+) -> Vec<Part<'s>> {
+    let mut out = Vec::new();
     let mut cuts = Vec::new();
     for edge in edges {
         let Some(curve) = edge_curve(set, edge) else {
@@ -72,41 +118,113 @@ pub(super) fn over<S: Surface, const N: usize>(
         for pair in edge.samples.windows(2) {
             cuts.push(pair[0].t);
             let first = cuts.len();
-            for (dir, breaks) in grid.breaks.iter().enumerate() {
+            for (dir, breaks) in breaks.iter().enumerate() {
                 crossings(curve, dir, breaks, [pair[0].t, pair[1].t], &mut cuts);
             }
             cuts[first..].sort_by(f64::total_cmp);
         }
         cuts.extend(edge.samples.last().map(|s| s.t));
-        for pair in cuts.windows(2) {
-            let [a, b] = [pair[0], pair[1]];
+        out.extend(cuts.windows(2).map(|pair| {
+            let middle = curve.point(0.5 * (pair[0] + pair[1]));
+            Part {
+                curve,
+                interval: [pair[0], pair[1]],
+                cell: [0, 1].map(|k| cell(&breaks[k], middle[k])),
+                start: curve.point(pair[0]).y,
+                sense: edge.sense,
+            }
+        }));
+    }
+    out
+}
+
+/// Number of the interval between breaks that holds `x`, the first or the last one beyond them.
+fn cell(breaks: &[f64], x: f64) -> usize {
+    let after = breaks.partition_point(|&b| b <= x);
+    after.saturating_sub(1).min(breaks.len() - 2)
+}
+
+/// Integrals over the cells of knot lines.
+struct Cells<'a, S: Surface, F, const N: usize> {
+    surface: &'a S,
+    breaks: &'a [Vec<f64>; 2],
+    /// Cells are cut into so many parts in each direction.
+    parts: [usize; 2],
+    f: &'a F,
+}
+
+impl<'a, S: Surface, F: Fn(&Jet) -> [f64; N], const N: usize> Cells<'a, S, F, N> {
+    fn new(set: &'a PatchSet<S>, patch: u32, f: &'a F) -> Self {
+        let grid = &set.grids[patch as usize];
+        let degree = set.pieces.list[grid.first as usize].degree;
+        let parts = |k: usize| match degree[k] {
+            0 | 1 => 1,
+            _ => INTERVALS.div_ceil(grid.breaks[k].len()),
+        };
+        Self {
+            surface: &set.patches[patch as usize],
+            breaks: &grid.breaks,
+            parts: [parts(0), parts(1)],
+            f,
+        }
+    }
+
+    /// Integral along a line of constant second parameter.
+    fn row(&self, [from, to]: [f64; 2], at: f64, cell: [usize; 2]) -> [f64; N] {
+        let mut sum = [0.0; N];
+        let h = (to - from) / self.parts[0] as f64;
+        for part in 0..self.parts[0] {
             for (x, w) in GAUSS {
-                let jet = curve.jet(a + (b - a) * x);
-                let at = [jet.point.x, jet.point.y];
-                let outer = edge.sense * w * (b - a) * jet.d1.y;
-                // From the start to the curve, span by span.
-                let (from, to, sign) = if at[0] >= start {
-                    (start, at[0], 1.0)
-                } else {
-                    (at[0], start, -1.0)
-                };
-                for span in breaks.windows(2) {
-                    let (s, e) = (span[0].max(from), span[1].min(to));
-                    if e <= s {
-                        continue;
-                    }
-                    let h = (e - s) / parts as f64;
-                    for part in 0..parts {
-                        for (x, w) in GAUSS {
-                            let xi = [s + h * (part as f64 + x), at[1]];
-                            add(outer * sign * w * h, f(&surface.jet(xi)));
-                        }
-                    }
+                let xi = [from + h * (part as f64 + x), at];
+                let values = (self.f)(&self.surface.jet_in_span(cell, xi));
+                for (sum, value) in sum.iter_mut().zip(values) {
+                    *sum += w * h * value;
                 }
             }
         }
+        sum
     }
-    sum
+
+    /// Integral over the part of a cell between two values of the second parameter.
+    fn slab(&self, [from, to]: [f64; 2], cell: [usize; 2]) -> [f64; N] {
+        let mut sum = [0.0; N];
+        let line = [self.breaks[0][cell[0]], self.breaks[0][cell[0] + 1]];
+        let h = (to - from) / self.parts[1] as f64;
+        for part in 0..self.parts[1] {
+            for (y, w) in GAUSS {
+                let values = self.row(line, from + h * (part as f64 + y), cell);
+                for (sum, value) in sum.iter_mut().zip(values) {
+                    *sum += w * h * value;
+                }
+            }
+        }
+        sum
+    }
+
+    /// Integrals over a column from its start to every break.
+    fn column(&self, column: usize) -> Vec<[f64; N]> {
+        let breaks = &self.breaks[1];
+        let mut sum = [0.0; N];
+        let mut out = vec![sum];
+        for row in 0..breaks.len() - 1 {
+            let values = self.slab([breaks[row], breaks[row + 1]], [column, row]);
+            for (sum, value) in sum.iter_mut().zip(values) {
+                *sum += value;
+            }
+            out.push(sum);
+        }
+        out
+    }
+
+    /// Integral over a column from its start to `y`.
+    fn below(&self, column: usize, rows: &[[f64; N]], y: f64) -> [f64; N] {
+        let row = cell(&self.breaks[1], y);
+        let mut sum = self.slab([self.breaks[1][row], y], [column, row]);
+        for (sum, value) in sum.iter_mut().zip(rows[row]) {
+            *sum += value;
+        }
+        sum
+    }
 }
 
 /// The curve of an edge of a trimmed patch.

@@ -20,6 +20,7 @@ mod location;
 mod neighbour;
 mod normals;
 pub(crate) mod piece;
+mod query;
 mod report;
 mod round;
 mod search;
@@ -36,6 +37,7 @@ mod turn;
 
 pub use batch::BatchError;
 pub use neighbour::Neighbour;
+pub use query::QueryError;
 pub use report::{CurvatureExtreme, CurvatureRange};
 pub use set::{Joining, PatchSet, PatchSetError};
 pub use sharp::SharpEdge;

@@ -19,6 +19,7 @@ pub(crate) const SHARP_ANGLE: f64 = std::f64::consts::PI / 180.0;
 
 /// Why a set of patches could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PatchSetError {
     /// No patches.
     #[error("there are no patches")]

@@ -22,6 +22,7 @@ pub(crate) use monotone::{Monotone, product};
 
 /// Why a trim could not be made. Loops and curves count from zero, curves within their loop.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TrimError {
     /// A loop without curves.
     #[error("trim loop {0} has no curves")]

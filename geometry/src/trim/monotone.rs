@@ -278,17 +278,33 @@ fn turning(net: &[[f64; 3]], k: usize) -> Vec<f64> {
 
 /// Product of polynomials in Bernstein form.
 pub(crate) fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
-    let (p, q) = (a.len() - 1, b.len() - 1);
-    let mut out = vec![0.0; p + q + 1];
-    for (i, a) in a.iter().enumerate() {
-        for (j, b) in b.iter().enumerate() {
-            out[i + j] += a * b * choose(p, i) * choose(q, j) / choose(p + q, i + j);
+    let n = a.len() + b.len() - 2;
+    let b: Vec<f64> = b
+        .iter()
+        .zip(binomials(b.len() - 1))
+        .map(|(b, c)| b * c)
+        .collect();
+    let mut out = vec![0.0; n + 1];
+    for (i, (a, c)) in a.iter().zip(binomials(a.len() - 1)).enumerate() {
+        for (out, b) in out[i..].iter_mut().zip(&b) {
+            *out += a * c * b;
         }
+    }
+    for (out, c) in out.iter_mut().zip(binomials(n)) {
+        *out /= c;
     }
     out
 }
 
+/// The binomial coefficients of `n` as floats, in order.
+fn binomials(n: usize) -> impl Iterator<Item = f64> {
+    let next =
+        move |&(k, c): &(usize, f64)| (k < n).then(|| (k + 1, c * (n - k) as f64 / (k + 1) as f64));
+    std::iter::successors(Some((0, 1.0)), next).map(|(_, c)| c)
+}
+
 /// Binomial coefficient as a float.
+#[cfg(test)]
 pub(crate) fn choose(n: usize, k: usize) -> f64 {
     let k = k.min(n - k);
     (0..k).fold(1.0, |c, i| c * (n - i) as f64 / (i + 1) as f64)

@@ -3,14 +3,20 @@
 
 mod damage;
 mod habits;
+mod healing;
 mod iges;
+mod iges_write;
 mod json;
+#[path = "../mutate_common/mod.rs"]
+mod mutate;
 mod offsets;
 mod punch;
 mod samples;
 mod step;
 mod step_builder;
+mod step_hidden;
 mod step_mutants;
 mod step_poles;
 mod step_shapes;
 mod support;
+mod surface;

@@ -1,20 +1,8 @@
 //! Damaged STEP files: never a panic, never without end, never a face less without a word.
 
+use crate::mutate::{Random, damaged};
 use covact_geometry::io::read_step;
 use std::path::PathBuf;
-
-/// Pseudo-random numbers.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 33) as usize % n
-    }
-}
 
 fn files() -> Vec<Vec<u8>> {
     let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/step"));
@@ -25,56 +13,6 @@ fn files() -> Vec<Vec<u8>> {
     paths.sort();
     let files = paths.iter().map(|p| std::fs::read(p).unwrap());
     files.filter(|f| f.len() < 20_000).collect()
-}
-
-/// A file with one of several kinds of damage.
-fn damaged(file: &[u8], random: &mut Random) -> Vec<u8> {
-    let mut out = file.to_vec();
-    match random.below(5) {
-        0 => {
-            let signs = b"0123456789-+.,;'#()$*EHT/\\ \n\xff";
-            for _ in 0..1 + random.below(4) {
-                let at = random.below(out.len());
-                out[at] = signs[random.below(signs.len())];
-            }
-        }
-        1 => out.truncate(random.below(file.len())),
-        // One reference for another.
-        2 => {
-            let starts: Vec<usize> = (0..file.len()).filter(|&k| file[k] == b'#').collect();
-            let name = |k: usize| {
-                let digits = file[k + 1..]
-                    .iter()
-                    .take_while(|b| b.is_ascii_digit())
-                    .count();
-                k..k + 1 + digits
-            };
-            let (a, b) = (
-                name(starts[random.below(starts.len())]),
-                name(starts[random.below(starts.len())]),
-            );
-            out.splice(a, file[b].iter().copied());
-        }
-        // A number of another size.
-        3 => {
-            let digits: Vec<usize> = (0..file.len())
-                .filter(|&k| file[k].is_ascii_digit())
-                .collect();
-            let at = digits[random.below(digits.len())];
-            let numbers = ["0.", "-1.", "1.E30", "1.E-30", "99999999", "0", "3"];
-            let number = numbers[random.below(numbers.len())];
-            out.splice(at..=at, number.bytes());
-        }
-        // A line less or twice.
-        _ => {
-            let lines: Vec<&[u8]> = file.split_inclusive(|&b| b == b'\n').collect();
-            let at = random.below(lines.len());
-            let copies = 2 * random.below(2);
-            let one = |(k, line): (usize, &&[u8])| line.repeat(if k == at { copies } else { 1 });
-            out = lines.iter().enumerate().flat_map(one).collect();
-        }
-    }
-    out
 }
 
 #[test]

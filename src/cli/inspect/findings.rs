@@ -1,7 +1,7 @@
 //! What `covact inspect` finds in a CAD file.
 use super::extent::{extent, join};
 use covact_geometry::io::{
-    CadBody, CadFile, CadFormat, EntityCount, FaceBorder, LengthUnit, SkipKind, Skipped,
+    CadBody, CadFile, CadFormat, EntityCount, FaceBorder, Healing, LengthUnit, SkipKind, Skipped,
     TrimReport, entity_name,
 };
 use covact_geometry::project::{Border, CurvatureExtreme, CurvatureRange, Gap, Overlap};
@@ -25,6 +25,8 @@ pub(super) struct Findings<'a> {
     pub bodies: &'a [CadBody],
     pub patches: Vec<Patch<'a>>,
     pub skipped: &'a [Skipped],
+    /// Slivers and duplicates that were left out.
+    pub healing: &'a Healing,
     pub notes: &'a [String],
     /// None when no patch was read.
     pub surface: Option<Surface>,
@@ -118,6 +120,10 @@ pub(super) struct Surface {
     pub overlaps: Vec<OverlapPlace>,
     pub borders: Vec<Rim>,
     pub parts: Vec<Part>,
+    /// Faces that were turned over, because the normals of most of their part point to the other side.
+    pub turned: Vec<TurnedFace>,
+    /// Area of the largest of them.
+    pub largest_turned: f64,
 }
 
 /// An edge of a patch: 0 to 3 are the sides of its domain (xi1 = start, end, xi2 = start, end), 4 + k trim curve k.
@@ -170,11 +176,21 @@ pub(super) struct Part {
     pub patches: Vec<usize>,
 }
 
+/// A face whose normal in the file does not agree with those of its neighbours.
+#[derive(Debug, Serialize)]
+pub(super) struct TurnedFace {
+    pub entity: u32,
+    /// Number in the list of patches, from 0.
+    pub patch: usize,
+    pub area: f64,
+}
+
 impl<'a> Findings<'a> {
     /// The set is that of all patches of the file, none where they make no set.
-    pub fn new(file: &'a CadFile, set: Option<&PatchSet>) -> Self {
+    /// If `brief`, nothing is measured that needs a search.
+    pub fn new(file: &'a CadFile, set: Option<&PatchSet>, brief: bool) -> Self {
         let summary = file.summary();
-        let patches = patches(file);
+        let patches = patches(file, brief);
         Findings {
             file: &file.path,
             format: file.format,
@@ -193,17 +209,21 @@ impl<'a> Findings<'a> {
             surface: set.map(|set| Surface::new(set, &patches)),
             patches,
             skipped: &file.skipped,
+            healing: &file.healing,
             notes: &file.notes,
         }
     }
 }
 
-fn patches(file: &CadFile) -> Vec<Patch<'_>> {
+fn patches(file: &CadFile, brief: bool) -> Vec<Patch<'_>> {
     let one = |patch: &NurbsPatch| PatchSet::new(vec![patch.clone()], None);
     let patches = file.patches.iter().map(|p| {
-        let (set, fault) = match one(&p.patch) {
-            Ok(set) => (Some(set), None),
-            Err(e) => (None, Some(e.to_string())),
+        let (set, fault) = match brief {
+            true => (None, None),
+            false => match one(&p.patch) {
+                Ok(set) => (Some(set), None),
+                Err(e) => (None, Some(e.to_string())),
+            },
         };
         Patch {
             entity: p.entity,
@@ -278,6 +298,14 @@ impl Surface {
             area: members.iter().map(|&p| areas[p]).sum(),
             patches: members.clone(),
         };
+        let turned: Vec<TurnedFace> = (set.components().iter())
+            .flat_map(|members| turned(set, members, &areas))
+            .map(|patch| TurnedFace {
+                entity: entity(patch as u32),
+                patch,
+                area: areas[patch],
+            })
+            .collect();
         let boxes = patches.iter().filter_map(|p| p.bounds).reduce(join);
         Surface {
             bounds: boxes.unwrap_or_else(|| extent(set)),
@@ -305,6 +333,19 @@ impl Surface {
                 .zip(set.volumes())
                 .map(part)
                 .collect(),
+            largest_turned: turned.iter().map(|t| t.area).fold(0.0, f64::max),
+            turned,
         }
     }
+}
+
+/// The faces of a part that lie turned over among the others: those on the side of less area.
+fn turned(set: &PatchSet, members: &[usize], areas: &[f64]) -> Vec<usize> {
+    let on = |side: f64| {
+        let own = members.iter().copied();
+        own.filter(move |&p| set.sides()[p] == side)
+    };
+    let area = |side: f64| on(side).map(|p| areas[p]).sum::<f64>();
+    let fewer = if area(1.0) < area(-1.0) { 1.0 } else { -1.0 };
+    on(fewer).collect()
 }

@@ -1,7 +1,7 @@
 //! The findings as text.
 use super::findings::{Curvature, EdgeName, Findings, GapPlace, Patch, Surface};
 use crate::model::error::number;
-use covact_geometry::io::{FaceBorder, SkipKind};
+use covact_geometry::io::{FaceBorder, LeftOutKind, SkipKind};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -24,6 +24,7 @@ pub(super) fn listing(f: &Findings) -> String {
         let _ = writeln!(out, "{:>7} x {number:<7} {}", e.count, e.name);
     }
     bodies(&mut out, f);
+    healed(&mut out, f);
     patches(&mut out, f);
     if let Some(surface) = &f.surface {
         all(&mut out, surface);
@@ -72,6 +73,27 @@ fn bodies(out: &mut String, f: &Findings) {
             listed("colour", own().filter_map(|p| p.colour).collect()),
         );
     }
+}
+
+/// Faces that were read but left out.
+fn healed(out: &mut String, f: &Findings) {
+    let h = f.healing;
+    if h.left_out.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        out,
+        "\nleft out: {} sliver(s), the widest {:.1e}; {} duplicate face(s), at most {:.1e} from those that stay",
+        h.slivers, h.widest_sliver, h.duplicates, h.farthest_duplicate
+    );
+    listed(out, "left out", &h.left_out, |l| match l.why {
+        LeftOutKind::Sliver { width } => format!("entity {}: a sliver {width:.1e} wide", l.entity),
+        LeftOutKind::Duplicate { of, distance } => format!(
+            "entity {}: coincides with entity {of} within {distance:.1e}",
+            l.entity
+        ),
+        _ => format!("entity {}", l.entity),
+    });
 }
 
 fn patches(out: &mut String, f: &Findings) {
@@ -234,6 +256,17 @@ fn all(out: &mut String, s: &Surface) {
             edges(&b.edges)
         )
     });
+    if !s.turned.is_empty() {
+        let _ = writeln!(
+            out,
+            "  turned     {} face(s) were turned over to agree with their neighbours, the largest of area {:.6}",
+            s.turned.len(),
+            s.largest_turned
+        );
+        listed(out, "turned", &s.turned, |t| {
+            format!("entity {} of area {:.6}", t.entity, t.area)
+        });
+    }
     listed(out, "part", &s.parts, |p| {
         let n = p.patches.len();
         let inside = match p.volume {
@@ -289,6 +322,7 @@ fn reason(kind: SkipKind) -> &'static str {
         SkipKind::Unsupported => "of a type that is not read",
         SkipKind::Surface => "with data that gives no surface",
         SkipKind::Boundary => "with boundary curves that give no trim",
+        _ => "for other reasons",
     }
 }
 

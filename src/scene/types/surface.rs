@@ -47,7 +47,8 @@ pub struct CadFile {
     /// Go on although the file holds surfaces that cannot be read (they are reported).
     #[serde(default)]
     pub allow_skipped: bool,
-    /// Use what the CAD system hides (blanked entities of IGES) as well; otherwise it counts as not read.
+    /// Use what the CAD system hides (blanked entities of IGES, invisible items and layers of STEP) as well; otherwise it
+    /// counts as not read.
     #[serde(default)]
     pub hidden: bool,
     /// Edges of patches closer than this are the same edge (length), in an STL file vertices; default from the file's own

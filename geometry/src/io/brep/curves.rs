@@ -5,6 +5,7 @@ use super::super::report::TrimReport;
 use super::face::{Part, Stretch};
 use super::fit::{Fitted, fit, smooth_breaks};
 use super::host::{Host, Xi};
+use super::sides::along_side;
 use crate::trim::TrimCurve;
 use crate::{NurbsCurve, Vec3};
 
@@ -315,7 +316,13 @@ fn projected(host: &Host, stretch: &Stretch, tally: &mut Tally) -> Result<Vec<Tr
                     .fold(0.0, f64::max);
                 (Fitted { curve, error: 0.0 }, off)
             }
-            None => project(host, part, near)?,
+            None => {
+                let points: Vec<Vec3> = sample_space(&part.curve).map(|(_, x)| x).collect();
+                match along_side(host, &points) {
+                    Some((curve, off)) => (Fitted { curve, error: 0.0 }, off),
+                    None => project(host, part, near)?,
+                }
+            }
         };
         belongs(host, part, off)?;
         near = fitted.curve.ends()[1];

@@ -20,6 +20,7 @@ mod offset_fit;
 mod parameter_map;
 mod reparametrise;
 mod revolve;
+mod sides;
 
 pub use areas::{by_parameters, disagreement};
 pub use base::BasePatch;

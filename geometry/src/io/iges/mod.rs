@@ -27,15 +27,18 @@ mod surface;
 mod surfaces;
 mod transform;
 mod trimmed;
+mod write;
 
 pub use super::brep::{BasePatch, ParameterMap, Reparametrise};
 pub use base::{IgesCurve, IgesGeometry, IgesSurface, read_iges_geometry};
 pub use names::entity_name;
 pub use surfaces::{BaseSurface, Border, Unbounded};
+pub use write::{IgesWriteError, write_iges};
 
 use super::CadError;
 use super::ReadOptions;
 use super::error::Fail;
+use super::healing::{Healing, heal};
 use super::report::{CadFile, CadFormat, EntityCount};
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -132,7 +135,7 @@ fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<CadFile, Fail
     if read.patches.is_empty() && read.skipped.is_empty() {
         notes.push(drawing::account(&model.entries));
     }
-    Ok(CadFile {
+    let mut file = CadFile {
         path: name.to_owned(),
         format: CadFormat::Iges,
         unit: model.global.unit.clone(),
@@ -142,8 +145,11 @@ fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<CadFile, Fail
         entities,
         skipped: read.skipped,
         trims: read.trims,
+        healing: Healing::default(),
         notes,
-    })
+    };
+    heal(&mut file);
+    Ok(file)
 }
 
 /// Everything below the entities.

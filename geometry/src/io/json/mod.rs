@@ -9,6 +9,7 @@ mod trims;
 pub use native::write_json;
 
 use super::error::Fail;
+use super::healing::Healing;
 use super::report::{CadFile, CadFormat, CadPatch, EntityCount, Skipped, TrimReport};
 use super::{CadError, LengthUnit};
 use serde::de::{DeserializeOwned, IgnoredAny};
@@ -71,6 +72,7 @@ pub fn read_json(bytes: &[u8], name: &str) -> Result<CadFile, CadError> {
         entities: content.entities,
         skipped: content.skipped,
         trims: TrimReport::default(),
+        healing: Healing::default(),
         notes: content.notes,
     })
 }

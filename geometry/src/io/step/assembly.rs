@@ -10,6 +10,8 @@ use std::rc::Rc;
 
 /// A representation with what its numbers mean.
 pub struct Representation {
+    /// Its number.
+    pub index: u32,
     pub items: Vec<u32>,
     /// Those that are no placements and no copies of other representations.
     pub bodies: Vec<u32>,
@@ -138,6 +140,7 @@ impl Assembly {
             !(is("PLACEMENT") || is("MAPPED_ITEM"))
         });
         self.representations.push(Representation {
+            index,
             items,
             bodies,
             units,

@@ -5,6 +5,7 @@ use super::copies::Copy;
 use super::entity::Entity;
 use super::exchange::Exchange;
 use super::face::{self, Account, FacePatch, Refusal};
+use super::hidden::Hidden;
 use super::labels::Labels;
 use super::number_of;
 use super::place::Placement;
@@ -14,6 +15,7 @@ use super::shells::{self, Found, Member};
 use super::units::Units;
 use crate::io::brep::Grant;
 use crate::io::report::{CadBody, CadPatch, CadTags, SkipKind, Skipped, TrimReport};
+use crate::io::{ReadOptions, ReadProgress};
 use std::collections::{HashMap, HashSet};
 
 /// All bodies of a file.
@@ -33,7 +35,12 @@ struct Placed {
 }
 
 /// Reads all bodies, in the order in which the assembly holds them.
-pub fn read(exchange: &Exchange, notes: &mut Vec<String>) -> Outcome {
+pub fn read(
+    exchange: &Exchange,
+    options: &ReadOptions,
+    notes: &mut Vec<String>,
+    watch: &mut dyn FnMut(ReadProgress),
+) -> Outcome {
     let budget = Budget::of(exchange);
     let assembly = Assembly::read(exchange, notes);
     let mut reader = Reader {
@@ -41,6 +48,10 @@ pub fn read(exchange: &Exchange, notes: &mut Vec<String>) -> Outcome {
         budget: &budget,
         grant: Grant::of_length(exchange.bytes()),
         labels: Labels::read(exchange),
+        hidden: match options.hidden {
+            true => Hidden::default(),
+            false => Hidden::read(exchange),
+        },
         faces: HashMap::new(),
         told: HashSet::new(),
         out: Outcome {
@@ -52,6 +63,8 @@ pub fn read(exchange: &Exchange, notes: &mut Vec<String>) -> Outcome {
         },
         assembly: &assembly,
         notes,
+        progress: ReadProgress { faces: 0, of: 0 },
+        watch,
     };
     reader.all();
     reader.out
@@ -62,13 +75,16 @@ struct Reader<'a, 'r> {
     budget: &'r Budget,
     grant: Grant,
     labels: Labels,
+    hidden: Hidden,
     assembly: &'r Assembly,
     /// Faces that were read, where several copies need them.
     faces: HashMap<u32, Result<FacePatch, Refusal>>,
     /// Numbers of what was skipped: the copies of a face differ in place only.
-    told: HashSet<u32>,
+    told: HashSet<(u32, SkipKind)>,
     out: Outcome,
     notes: &'r mut Vec<String>,
+    progress: ReadProgress,
+    watch: &'r mut dyn FnMut(ReadProgress),
 }
 
 impl<'a> Reader<'a, '_> {
@@ -85,14 +101,14 @@ impl<'a> Reader<'a, '_> {
     }
 
     fn all(&mut self) {
-        let copies = self.assembly.copies(self.exchange, self.notes);
+        let copies = (self.assembly).copies(self.exchange, &self.hidden, self.notes);
         let mut bodies = Vec::new();
         let mut items = HashSet::new();
         // The same item in several representations of one product is one body.
         let mut seen = HashSet::new();
         for copy in copies {
             items.insert(copy.item);
-            if seen.insert((copy.item, copy.map.bits())) {
+            if seen.insert((copy.item, copy.map.bits(), copy.hidden_by)) {
                 self.item(copy, &mut bodies);
             }
         }
@@ -105,6 +121,7 @@ impl<'a> Reader<'a, '_> {
         for member in bodies.iter().flat_map(|p| &p.faces) {
             *uses.entry(member.index).or_insert(0) += 1;
         }
+        self.progress.of = bodies.iter().map(|p| p.faces.len()).sum();
         for placed in bodies {
             self.body(&placed, &mut uses);
         }
@@ -158,6 +175,7 @@ impl<'a> Reader<'a, '_> {
                             map: Placement::identity(),
                             instance: None,
                             path: Default::default(),
+                            hidden_by: self.hidden.item(index),
                         },
                         faces,
                         solid,
@@ -192,7 +210,7 @@ impl<'a> Reader<'a, '_> {
 
     fn skip(&mut self, index: u32, kind: SkipKind, reason: String) {
         let entity = number_of(self.exchange, index);
-        if !self.told.insert(entity) {
+        if !self.told.insert((entity, kind)) {
             return;
         }
         let label = Entity::read(self.exchange, index)
@@ -225,9 +243,20 @@ impl<'a> Reader<'a, '_> {
         let body = self.out.bodies.len();
         let [mut read, mut skipped] = [0, 0];
         for member in faces {
+            self.progress.faces += 1;
+            (self.watch)(self.progress);
             let left = uses.entry(member.index).or_insert(1);
             *left = left.saturating_sub(1);
             let last = *left == 0;
+            let hidden = [member.index, member.shell];
+            let by = hidden.iter().find_map(|&part| self.hidden.item(part));
+            if let Some(by) = copy.hidden_by.or(by) {
+                skipped += 1;
+                let by = self.exchange.name(by);
+                let reason = format!("hidden in the file by #{by} (INVISIBILITY)");
+                self.skip(member.index, SkipKind::Blanked, reason);
+                continue;
+            }
             let found = match self.faces.remove(&member.index) {
                 Some(found) => found,
                 None => self.face(copy, member),

@@ -2,6 +2,7 @@
 
 use super::assembly::Assembly;
 use super::exchange::Exchange;
+use super::hidden::Hidden;
 use super::place::Placement;
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
@@ -25,11 +26,18 @@ pub struct Copy {
     pub instance: Option<u32>,
     /// Names of the products from the root down to the one that the item belongs to.
     pub path: Rc<Vec<Rc<str>>>,
+    /// The INVISIBILITY that hides this copy.
+    pub hidden_by: Option<u32>,
 }
 
 impl Assembly {
     /// Every item of every representation where it stands, from the roots down.
-    pub fn copies(&self, exchange: &Exchange, notes: &mut Vec<String>) -> Vec<Copy> {
+    pub fn copies(
+        &self,
+        exchange: &Exchange,
+        hidden: &Hidden,
+        notes: &mut Vec<String>,
+    ) -> Vec<Copy> {
         let mut children: HashMap<usize, Vec<usize>> = HashMap::new();
         let mut placed = HashSet::new();
         for (k, link) in self.links.iter().enumerate() {
@@ -42,10 +50,12 @@ impl Assembly {
         }
         let mut walk = Walk {
             assembly: self,
+            hidden,
             children,
             members,
             left: FREE + COPIES * exchange.len(),
             chain: Vec::new(),
+            instances: Vec::new(),
             visited: HashSet::new(),
             out: Vec::new(),
             faults: Vec::new(),
@@ -70,7 +80,7 @@ impl Assembly {
             .filter(|&r| !placed.contains(&r) && !repeated(r))
             .collect();
         for root in tops {
-            walk.group(root, Placement::identity(), None, &mut Vec::new());
+            walk.group(root, Placement::identity(), None, &mut Vec::new(), None);
         }
         // Only those are left that hang in a circle.
         for &root in &roots {
@@ -79,7 +89,7 @@ impl Assembly {
                 walk.faults.push(format!(
                     "the product \"{name}\" is part of itself; it is read once, where it is defined"
                 ));
-                walk.group(root, Placement::identity(), None, &mut Vec::new());
+                walk.group(root, Placement::identity(), None, &mut Vec::new(), None);
             }
         }
         notes.append(&mut walk.faults);
@@ -89,10 +99,13 @@ impl Assembly {
 
 struct Walk<'w> {
     assembly: &'w Assembly,
+    hidden: &'w Hidden,
     children: HashMap<usize, Vec<usize>>,
     members: HashMap<usize, Vec<usize>>,
     left: usize,
     chain: Vec<usize>,
+    /// Occurrences and mapped items on the way down.
+    instances: Vec<u32>,
     visited: HashSet<usize>,
     out: Vec<Copy>,
     faults: Vec<String>,
@@ -105,6 +118,7 @@ impl Walk<'_> {
         map: Placement,
         instance: Option<u32>,
         path: &mut Vec<Rc<str>>,
+        hidden_by: Option<u32>,
     ) {
         if self.chain.contains(&group) || self.chain.len() >= DEPTH {
             let text = "an assembly is part of itself or nested too deep; that copy is left out";
@@ -115,6 +129,7 @@ impl Walk<'_> {
         }
         self.visited.insert(group);
         self.chain.push(group);
+        let hidden_by = hidden_by.or_else(|| self.hides(group));
         let named = self.assembly.names[group].clone();
         path.extend(named.clone());
         let shared = Rc::new(path.clone());
@@ -132,6 +147,9 @@ impl Walk<'_> {
                     map: own,
                     instance,
                     path: Rc::clone(&shared),
+                    hidden_by: hidden_by
+                        .or_else(|| self.hidden.item(item))
+                        .or_else(|| self.hidden.within(&self.instances, item)),
                 });
             }
         }
@@ -149,12 +167,39 @@ impl Walk<'_> {
             self.left = left;
             let outermost = instance.or(Some(link.instance));
             let depth = path.len();
-            self.group(link.child, map.after(&link.map), outermost, path);
+            self.instances.push(link.instance);
+            let by = hidden_by
+                .or_else(|| self.hidden.item(link.instance))
+                .or_else(|| self.hidden.within(&self.instances, link.instance));
+            self.group(link.child, map.after(&link.map), outermost, path, by);
+            self.instances.pop();
             path.truncate(depth);
         }
         if named.is_some() {
             path.pop();
         }
         self.chain.pop();
+    }
+
+    /// What hides all of a product: one of its representations is hidden, or what stands for the whole in it.
+    fn hides(&self, group: usize) -> Option<u32> {
+        let members = self.members.get(&group).into_iter().flatten();
+        let mut own = members.map(|&k| &self.assembly.representations[k]);
+        own.find_map(|representation| {
+            let index = representation.index;
+            let whole = self.hidden.item(index);
+            let here = || self.hidden.within(&self.instances, index);
+            let frames = || {
+                let items = representation.items.iter();
+                let placed = |item| self.assembly.links.iter().any(|l| l.instance == item);
+                let frames = items.filter(|item| !representation.bodies.contains(item));
+                let mut by = frames.filter_map(|&item| {
+                    let by = self.hidden.within(&self.instances, item)?;
+                    (!placed(item)).then_some(by)
+                });
+                by.next()
+            };
+            whole.or_else(here).or_else(frames)
+        })
     }
 }

@@ -3,7 +3,7 @@
 //! The layers, one file each: tokens and values (`scan`, `text`), the file and where its instances stand (`exchange`),
 //! instances with attributes by type and number (`schema`, `entity`). On these stand geometry (`place`, `units`, `curve*`,
 //! `spline`, `profile`, `surface*`), faces with what bounds them (`bounds`, `face`), bodies (`shells`), products and where they stand
-//! (`assembly`, `copies`), and `bodies`, which decides what every face becomes.
+//! (`assembly`, `copies`), what is shown and how (`labels`, `hidden`), and `bodies`, which decides what every face becomes.
 
 mod assembly;
 mod bodies;
@@ -14,6 +14,7 @@ mod curve_read;
 mod entity;
 mod exchange;
 mod face;
+mod hidden;
 mod labels;
 mod place;
 mod profile;
@@ -27,9 +28,10 @@ mod surface_read;
 mod text;
 mod units;
 
-use super::CadError;
 use super::error::Fail;
+use super::healing::{Healing, heal};
 use super::report::{CadFile, CadFormat, EntityCount};
+use super::{CadError, ReadOptions, ReadProgress};
 use exchange::Exchange;
 use std::collections::BTreeMap;
 
@@ -50,14 +52,44 @@ pub fn is_step(bytes: &[u8]) -> bool {
 /// [`CadError::Content`] with the place where the structure of the file is damaged. Wrong values and references cost the faces
 /// that need them; a sound file that holds no surface is no error.
 pub fn read_step(bytes: &[u8], name: &str) -> Result<CadFile, CadError> {
-    read(bytes, name).map_err(|fail| fail.in_file(name))
+    read_step_with(bytes, name, &ReadOptions::default())
 }
 
-fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
+/// Reads a STEP file as [`read_step`] does, with options.
+///
+/// # Errors
+/// As [`read_step`].
+pub fn read_step_with(
+    bytes: &[u8],
+    name: &str,
+    options: &ReadOptions,
+) -> Result<CadFile, CadError> {
+    read_step_watched(bytes, name, options, &mut |_| {})
+}
+
+/// Reads a STEP file as [`read_step_with`] does and calls `watch` after every face.
+///
+/// # Errors
+/// As [`read_step`].
+pub fn read_step_watched(
+    bytes: &[u8],
+    name: &str,
+    options: &ReadOptions,
+    watch: &mut dyn FnMut(ReadProgress),
+) -> Result<CadFile, CadError> {
+    read(bytes, name, options, watch).map_err(|fail| fail.in_file(name))
+}
+
+fn read(
+    bytes: &[u8],
+    name: &str,
+    options: &ReadOptions,
+    watch: &mut dyn FnMut(ReadProgress),
+) -> Result<CadFile, Fail> {
     let exchange = Exchange::read(bytes)?;
     let mut notes = Vec::new();
-    let read = bodies::read(&exchange, &mut notes);
-    Ok(CadFile {
+    let read = bodies::read(&exchange, options, &mut notes, watch);
+    let mut file = CadFile {
         path: name.to_owned(),
         format: CadFormat::Step,
         unit: read.units.length,
@@ -67,8 +99,11 @@ fn read(bytes: &[u8], name: &str) -> Result<CadFile, Fail> {
         entities: counts(&exchange),
         skipped: read.skipped,
         trims: read.trims,
+        healing: Healing::default(),
         notes,
-    })
+    };
+    heal(&mut file);
+    Ok(file)
 }
 
 /// How often each type of entity occurs.

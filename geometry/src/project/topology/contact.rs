@@ -2,7 +2,8 @@
 
 use super::super::piece::box_distance2;
 use super::super::set::PatchSet;
-use super::edge::{Edge, EdgePoint, chord_box, edge_point, nearest_on_edge};
+use super::edge::{Edge, EdgePoint, chord_box, edge_point};
+use super::nearest::nearest_on_edge;
 use crate::frame::Frame;
 use crate::surface::{Surface, Vec3};
 

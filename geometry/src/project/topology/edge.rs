@@ -7,11 +7,10 @@ use crate::surface::{Jet, Surface, Vec3};
 /// Tangents turn by no more than this (radians) from sample to sample, as long as [`DEPTH`] bisections allow.
 const TURN: f64 = 0.25;
 const DEPTH: usize = 6;
+/// Chords in a block of a long polyline.
+pub(super) const BLOCK: usize = 16;
 /// Share of a chord by which the box around it grows: more than an arc that turns by [`TURN`] bulges.
 const BULGE: f64 = 0.15;
-/// Most steps of the iteration for the nearest point, and halvings of one step.
-const ITERATIONS: usize = 30;
-const HALVINGS: usize = 12;
 
 /// Which curve an edge is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,6 +57,8 @@ pub(in crate::project) struct Edge {
     /// Number of the file's curve or edge, 0 for none.
     pub entity: u32,
     pub samples: Vec<Sample>,
+    /// Boxes around every [`BLOCK`] chords of a long polyline, else none.
+    pub blocks: Vec<[Vec3; 2]>,
     /// A box that holds it.
     pub bounds: [Vec3; 2],
     /// Share of its length by which the box of a chord must grow to hold the arc; 0 for a straight edge.
@@ -170,6 +171,7 @@ pub(super) fn edges_of<S: Surface>(set: &PatchSet<S>, patch: u32) -> Vec<Edge> {
         sense,
         entity,
         samples: Vec::new(),
+        blocks: Vec::new(),
         bounds: [Vec3::zeros(); 2],
         bulge: BULGE,
         axis: Vec3::zeros(),
@@ -428,6 +430,16 @@ fn sample<S: Surface>(set: &PatchSet<S>, edge: &mut Edge, breaks: &[f64], parts:
             point: p.jet.rho,
         })
         .collect();
+    if edge.samples.len() > 2 * BLOCK {
+        let around = |k: usize| {
+            let end = (k + BLOCK + 1).min(edge.samples.len());
+            let own = edge.samples[k..end].iter().map(|s| s.point);
+            let first = edge.samples[k].point;
+            own.fold([first; 2], |[low, high], x| [low.inf(&x), high.sup(&x)])
+        };
+        let chords = edge.samples.len() - 1;
+        edge.blocks = (0..chords).step_by(BLOCK).map(around).collect();
+    }
     edge.bounds = [low, high];
     edge.length = length;
 }
@@ -483,64 +495,4 @@ fn bisect<S: Surface>(
 pub(super) fn chord_box(a: &Vec3, b: &Vec3, bulge: f64) -> [Vec3; 2] {
     let grow = Vec3::from_element(bulge * (b - a).norm());
     [a.inf(b) - grow, a.sup(b) + grow]
-}
-
-/// Nearest point of an edge to `q`: the nearest chord of the polyline gives the start of a safeguarded Newton iteration
-/// along the edge.
-pub(in crate::project) fn nearest_on_edge<S: Surface>(
-    set: &PatchSet<S>,
-    q: &Vec3,
-    edge: &Edge,
-) -> EdgePoint {
-    let mut best = (f64::INFINITY, edge.interval[0]);
-    for pair in edge.samples.windows(2) {
-        let chord = pair[1].point - pair[0].point;
-        let along = (q - pair[0].point).dot(&chord) / chord.norm_squared();
-        let s = if along.is_finite() {
-            along.clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        let d2 = (pair[0].point + chord * s - q).norm_squared();
-        if d2 < best.0 {
-            best = (d2, pair[0].t + s * (pair[1].t - pair[0].t));
-        }
-    }
-    nearest_from(set, q, edge, best.1)
-}
-
-fn nearest_from<S: Surface>(set: &PatchSet<S>, q: &Vec3, edge: &Edge, start: f64) -> EdgePoint {
-    let [low, high] = edge.interval;
-    let mut now = edge_point(set, edge, start.clamp(low, high));
-    let mut d2 = (q - now.jet.rho).norm_squared();
-    for _ in 0..ITERATIONS {
-        let d = now.jet.rho - q;
-        let a = now.d1.norm_squared();
-        let slope = d.dot(&now.d1);
-        let bend = a + d.dot(&now.d2);
-        let f = if bend > 0.1 * a { bend } else { a };
-        if f <= 0.0 || slope * slope <= 1e-32 * a * (d2 + set.size * set.size) {
-            break;
-        }
-        let mut step = -slope / f;
-        let mut better = None;
-        for _ in 0..HALVINGS {
-            let t = (now.t + step).clamp(low, high);
-            if t == now.t {
-                break;
-            }
-            let next = edge_point(set, edge, t);
-            let next2 = (q - next.jet.rho).norm_squared();
-            if next2 < d2 {
-                better = Some((next, next2));
-                break;
-            }
-            step *= 0.5;
-        }
-        let Some((next, next2)) = better else {
-            break;
-        };
-        (now, d2) = (next, next2);
-    }
-    now
 }

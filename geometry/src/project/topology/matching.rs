@@ -1,12 +1,13 @@
 //! Pairs of edges that coincide, and what every edge is.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::super::EdgeKind;
 use super::super::set::{PatchSet, SHARP_ANGLE};
 use super::super::tree::Tree;
 use super::contact::{Contact, apart, contact};
-use super::edge::{Edge, Link, nearest_on_edge, subtract};
+use super::edge::{Edge, Link, subtract};
+use super::nearest::nearest_on_edge;
 use super::report::{EdgeReport, Gap, Joint, PartialJoint};
 use crate::surface::{Surface, Vec3};
 

@@ -10,12 +10,14 @@ mod contact;
 mod corners;
 mod edge;
 mod matching;
+mod nearest;
 mod orient;
 mod overlap;
 mod report;
 
 pub(super) use corners::{CornerGroup, corner_at, edges_at};
-pub(super) use edge::{Edge, EdgeCurve, EdgePoint, Link, edge_point, nearest_on_edge};
+pub(super) use edge::{Edge, EdgeCurve, EdgePoint, Link, edge_point};
+pub(super) use nearest::nearest_on_edge;
 pub use report::{Border, EdgeReport, Gap, Joint, Overlap, PartialJoint};
 
 use super::set::{Joining, PatchSet};

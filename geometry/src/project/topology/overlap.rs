@@ -7,8 +7,9 @@ use super::super::piece::box_distance2;
 use super::super::search::region_of;
 use super::super::set::PatchSet;
 use super::Topology;
-use super::edge::{edge_point, nearest_on_edge};
+use super::edge::edge_point;
 use super::matching::name;
+use super::nearest::nearest_on_edge;
 use super::report::Overlap;
 use crate::surface::{Surface, Vec3};
 
