@@ -1,5 +1,7 @@
 //! The march through time: steps, roll-back, output.
+mod accepted;
 mod released;
+mod replaced;
 mod restart;
 mod settle;
 
@@ -10,30 +12,28 @@ use settle::Settled;
 use super::RunError;
 use super::checkpoint::{CheckpointError, Keeper};
 use super::commit::{self, FrictionTotals};
-use super::compliance::{Compliance, Errors, StepEnd};
+use super::compliance::Compliance;
 use super::cost::Cost;
 use super::fields::Fields;
 use super::history;
 use super::hold;
-use super::linearity_check;
 use super::peaks::Peaks;
 use super::penalty_rule::PenaltyRule;
 use super::progress::Progress;
-use super::watch::{Span, Watch, Work};
-use crate::assembly::{Assembler, Drag, Totals};
+use super::watch::{Span, Watch};
+use crate::assembly::{Assembler, Totals};
 use crate::contact::law::Penalty;
 use crate::machine::clock::Phases;
 use crate::model::error::number;
 use crate::model::state::State;
-use crate::model::{BodyModel, Model, PairModel, penalty, segments};
+use crate::model::{BodyModel, Model, PairModel, segments};
 use crate::output::atomic::sweep;
 use crate::output::{History, OutputError, Results, RunStatus};
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
-use crate::solve::newton::{Converged, RigidLimit, StepFailure, Workspace};
+use crate::solve::newton::{StepFailure, Workspace};
 use crate::solve::stepping::Stepping;
-use crate::system::linear::{LinearSolver, Method};
-use covact_geometry::Vec3;
+use crate::system::linear::LinearSolver;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -515,45 +515,6 @@ impl<'a, 'm> March<'a, 'm> {
         Ok(self.ending())
     }
 
-    /// Looks into squeezed elements after a step whose tangent has negative pivots. Where other elements may replace them the run
-    /// ends, else the body is told. The sign of a determinant, which is all that is known of an unsymmetric tangent, says too
-    /// little: friction may turn it.
-    fn lost_hold(&mut self, committed: &State, converged: &Converged) -> Option<Ending> {
-        let last = converged.factorization?;
-        if last.method == Method::Lu || last.negative_pivots == 0 {
-            return None;
-        }
-        let lost = hold::lost(self.model, committed);
-        let (body, at) = *lost.first()?;
-        let name = &self.model.bodies[body].name;
-        let text = format!(
-            "body `{name}`: elements with enhanced strains near ({}, {}, {}) lose their hold where they are squeezed",
-            number(at.x),
-            number(at.y),
-            number(at.z)
-        );
-        let squeezed = self.may_be_replaced(&lost);
-        if !squeezed.is_empty() {
-            return Some(Ending {
-                status: RunStatus::NotConverged,
-                reason: Some(text),
-                squeezed,
-            });
-        }
-        // Once for a body, wherever its elements do so later.
-        let head = format!("body `{name}`: elements with enhanced strains near");
-        if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
-            self.warn(format!("{text}, from time {} on: what the body answers may be far off; `h8_displacement` holds", number(self.progress.time)));
-        }
-        None
-    }
-
-    /// Those of the bodies that other elements may replace.
-    fn may_be_replaced(&self, lost: &[(usize, Vec3)]) -> Vec<usize> {
-        let may = |body: &usize| self.replaceable.contains(&self.model.bodies[*body].name);
-        lost.iter().map(|(body, _)| *body).filter(may).collect()
-    }
-
     /// How a run that reached its end time ended.
     fn ending(&self) -> Ending {
         let pairs = self.model.pairs.iter().enumerate();
@@ -585,170 +546,10 @@ impl<'a, 'm> March<'a, 'm> {
         flags[i] || self.model.pairs[i].half.is_some_and(|h| flags[h.other])
     }
 
-    fn accept(&mut self, step: u32, end: f64, converged: &Converged) {
-        self.progress.steps = step;
-        self.progress.time = end;
-        let touching = &converged.totals.touching;
-        let before = std::mem::replace(&mut self.touching, touching.clone());
-        for (i, pair) in self.model.pairs.iter().enumerate() {
-            let deepest = converged.totals.penetration[i];
-            self.touched[i] |= touching[i];
-            if self.either(&before, i) && !self.either(touching, i) && !is_back(pair) {
-                self.warn(format!(
-                    "contact `{}` opened at step {step} (time {}): none of its points touches any more",
-                    pair.name,
-                    number(end)
-                ));
-            }
-            let allowed = penalty::TOLERATED * pair.element_size;
-            if pair.ruled.is_none() && pair.augmentation.is_none() && deepest > allowed {
-                self.warn(format!(
-                    "contact `{}`: penetration above 1 % of an element ({allowed:.3e}) under the given penalty",
-                    pair.name
-                ));
-            }
-        }
-        let residual = converged.history.last().map_or(0.0, |last| last.0);
-        if converged.totals.active > 0 && residual > RELIABLE {
-            self.warn(format!(
-                "step {step} is balanced to {residual:.1e} of its forces only, which is what rounding leaves: a penalty, \
-                 a stiffness or a displacement is too large for double precision"
-            ));
-        }
-        for (index, surface, driven) in self.model.driven() {
-            let mut share = [0.0f64; 6];
-            for loose in (converged.totals.loose.iter()).filter(|l| l.surface == index) {
-                for (s, d) in share.iter_mut().zip(loose.direction) {
-                    *s += d * d;
-                }
-            }
-            if share.iter().any(|s| *s > 0.0) {
-                self.warn(format!(
-                    "surface `{}` is free to move {}, but nothing resists it there and nothing drives it: it is held as \
-                     it stands",
-                    surface.name,
-                    driven.direction_words(&share)
-                ));
-            }
-        }
-        if let Some(last) = converged.factorization {
-            let negative = last.negative_pivots;
-            if negative > 0 && last.method == Method::Lu {
-                self.warn(format!(
-                    "step {step}: the determinant of the step's last tangent is negative: the equilibrium may be \
-                     unstable"
-                ));
-            } else if negative > 0 {
-                self.warn(format!(
-                    "step {step}: the last tangent of the step has {negative} negative pivot(s): the equilibrium may be \
-                     unstable"
-                ));
-            }
-            if last.perturbed_pivots > 0 {
-                self.warn(format!(
-                    "step {step}: {} pivot(s) of the last tangent were too small and were replaced; the solution was \
-                     refined",
-                    last.perturbed_pivots
-                ));
-            }
-        }
-        let spent = self.progress.iterations - self.progress.counted;
-        self.progress.counted = self.progress.iterations;
-        self.progress.accepted += u64::from(converged.iterations);
-        let failed = spent.saturating_sub(u64::from(converged.iterations));
-        self.failed = u32::try_from(failed).unwrap_or(u32::MAX);
-        self.observer.event(&Event::StepAccepted {
-            step,
-            time: end,
-            iterations: converged.iterations,
-            failed_iterations: self.failed,
-            active: converged.totals.active,
-            penetration: (converged.totals.penetration.iter()).fold(0.0, |a, b| a.max(*b)),
-        });
-    }
-
     fn gather(&mut self, outputs: &mut Outputs, state: &State, time: f64) -> Result<(), RunError> {
         let assembler = &mut *self.assembler;
         let masters = &mut assembler.masters;
         (outputs.fields).gather::<Penalty>(self.model, &assembler.penalties, masters, state, time)
-    }
-
-    /// The row of an accepted step, and its fields where they are wanted.
-    #[allow(clippy::too_many_arguments)]
-    fn record(
-        &mut self,
-        outputs: &mut Outputs,
-        state: &State,
-        span: [f64; 2],
-        cuts: u32,
-        converged: &Converged,
-        sliding: &FrictionTotals,
-        (work, drag): (Work, Drag),
-        (errors, limit): (Errors, Option<RigidLimit>),
-    ) -> Result<(), RunError> {
-        let (step, time) = (self.progress.steps, self.progress.time);
-        self.phases.start("output");
-        for (pair, sunk) in self.model.pairs.iter().zip(&outputs.fields.sunk) {
-            if *sunk > 0 {
-                self.warn(format!(
-                    "contact `{}`: {sunk} point(s) passed through {} at step {step}, deeper than its `depth` {}, and are \
-                     not in contact: take smaller steps or a larger `depth`",
-                    pair.name,
-                    pair.master_words(self.model),
-                    number(pair.master.depth(self.model))
-                ));
-            }
-        }
-        let totals = &converged.totals;
-        let energy = energy(totals, sliding) + state.stabilized;
-        let pressed = &outputs.fields.pressed;
-        let softened = converged.softened;
-        let told = (self.watch).close(self.model, (step, span), work, pressed, energy, softened);
-        if let Some(text) = told {
-            self.warn(text);
-        }
-        let end = StepEnd {
-            step,
-            time,
-            state,
-            bearings: &outputs.fields.bearings,
-            internal: totals.internal_energy,
-            work: self.watch.external,
-            penalties: &self.assembler.penalties,
-            limit: limit.as_ref(),
-        };
-        let growth =
-            (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?;
-        self.adapt(errors, growth, converged);
-        (self.adapt_slip(outputs, time, converged)).map_err(|e| RunError::internal(&e))?;
-        let bearings = &outputs.fields.bearings;
-        (self.peaks).step(self.model, step, bearings, &totals.pairs);
-        let doubts = linearity_check::doubts(self.model, &mut self.assembler.masters, state, time);
-        for doubt in doubts.map_err(|e| RunError::internal(&e))? {
-            self.doubt(doubt);
-        }
-        let row = history::row(&history::Record {
-            model: self.model,
-            step,
-            time,
-            dt: span[1] - span[0],
-            cuts,
-            failed: self.failed,
-            converged,
-            sliding,
-            stabilized: (state.stabilized, drag.share),
-            residual: self.workspace.residual(),
-            u: &state.u,
-            fields: &outputs.fields,
-            watch: &self.watch,
-        });
-        outputs.table.push(&row)?;
-        self.phases.stop("output");
-        let every = self.scene.output.every;
-        if every > 0 && step.is_multiple_of(every) {
-            self.write(outputs, state)?;
-        }
-        Ok(())
     }
 
     /// Reports a warning once.

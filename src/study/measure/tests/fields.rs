@@ -5,9 +5,6 @@ use crate::scene::Block;
 use ElementKind::{H8, Q18};
 use covact_geometry::Vec3;
 
-/// Fields are written in single precision; sums over several of them are off by a few roundings.
-const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
-
 /// The unit square, .1 thick.
 pub(super) fn square(kind: ElementKind, n: u32, layers: u32) -> Mesh {
     let block = Block {
@@ -103,11 +100,11 @@ fn linear_fields_agree_on_all_meshes() {
     scalar(&mut bench, "reference", &distorted(square(Q18, 5, 2)), f);
     let (_, warnings) = against_last(&mut bench);
     for (id, _) in &meshes {
-        assert!(bench.error(id) < ROUNDING, "{id}: {}", bench.error(id));
+        assert!(bench.error(id) < 1e-12, "{id}: {}", bench.error(id));
     }
     // The mean square of f on the box, by its moments: mean 0.75, variances of 2 x, 3 y and 0.5 z' over 12.
     let size = (0.75f64.powi(2) + (4.0 + 9.0 + 0.25) / 12.0).sqrt();
-    near(bench.error("off"), 0.01 / size, ROUNDING);
+    near(bench.error("off"), 0.01 / size, 1e-10);
     assert!(warnings.is_empty(), "{warnings:?}");
 }
 
@@ -121,8 +118,8 @@ fn quadratic_fields_agree_on_quadratic_meshes() {
     scalar(&mut bench, "h8", &square(H8, 7, 2), f);
     scalar(&mut bench, "reference", &square(Q18, 3, 1), f);
     against_last(&mut bench);
-    assert!(bench.error("two") < ROUNDING);
-    assert!(bench.error("seven") < ROUNDING);
+    assert!(bench.error("two") < 1e-12);
+    assert!(bench.error("seven") < 1e-12);
     assert!(bench.error("h8") > 1e-3);
 }
 
@@ -217,7 +214,7 @@ fn fields_that_are_nan_somewhere() {
     scalar(&mut bench, "nowhere", &a, |_| f64::NAN);
     scalar(&mut bench, "reference", &a, first);
     let (_, warnings) = against_last(&mut bench);
-    near(bench.error("other"), 0.1, ROUNDING);
+    near(bench.error("other"), 0.1, 1e-12);
     // The fifth column covers .8 of the fourth one: 3 of 4 Gauss points are not those of exact parts, so compare loosely.
     let told = warnings
         .iter()
@@ -235,7 +232,7 @@ fn fields_that_are_nan_somewhere() {
         &warnings,
         &["left out of the norm", "`whole` (25.000 % of the region)"],
     );
-    near(bench.error("whole"), 0.1, ROUNDING);
+    near(bench.error("whole"), 0.1, 1e-12);
 }
 
 /// Piecewise constant fields, and tensors.

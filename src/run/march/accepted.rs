@@ -1,0 +1,177 @@
+//! What is told and written of an accepted step.
+use super::{March, Outputs, RELIABLE, energy, is_back};
+use crate::assembly::Drag;
+use crate::model::error::number;
+use crate::model::penalty;
+use crate::model::state::State;
+use crate::run::RunError;
+use crate::run::commit::FrictionTotals;
+use crate::run::compliance::{Errors, StepEnd};
+use crate::run::history;
+use crate::run::linearity_check;
+use crate::run::watch::Work;
+use crate::solve::event::Event;
+use crate::solve::newton::{Converged, RigidLimit};
+use crate::system::linear::Method;
+
+impl March<'_, '_> {
+    pub(super) fn accept(&mut self, step: u32, end: f64, converged: &Converged) {
+        self.progress.steps = step;
+        self.progress.time = end;
+        let touching = &converged.totals.touching;
+        let before = std::mem::replace(&mut self.touching, touching.clone());
+        for (i, pair) in self.model.pairs.iter().enumerate() {
+            let deepest = converged.totals.penetration[i];
+            self.touched[i] |= touching[i];
+            if self.either(&before, i) && !self.either(touching, i) && !is_back(pair) {
+                self.warn(format!(
+                    "contact `{}` opened at step {step} (time {}): none of its points touches any more",
+                    pair.name,
+                    number(end)
+                ));
+            }
+            let allowed = penalty::TOLERATED * pair.element_size;
+            if pair.ruled.is_none() && pair.augmentation.is_none() && deepest > allowed {
+                self.warn(format!(
+                    "contact `{}`: penetration above 1 % of an element ({allowed:.3e}) under the given penalty",
+                    pair.name
+                ));
+            }
+        }
+        let residual = converged.history.last().map_or(0.0, |last| last.0);
+        if converged.totals.active > 0 && residual > RELIABLE {
+            self.warn(format!(
+                "step {step} is balanced to {residual:.1e} of its forces only, which is what rounding leaves: a penalty, \
+                 a stiffness or a displacement is too large for double precision"
+            ));
+        }
+        for (index, surface, driven) in self.model.driven() {
+            let mut share = [0.0f64; 6];
+            for loose in (converged.totals.loose.iter()).filter(|l| l.surface == index) {
+                for (s, d) in share.iter_mut().zip(loose.direction) {
+                    *s += d * d;
+                }
+            }
+            if share.iter().any(|s| *s > 0.0) {
+                self.warn(format!(
+                    "surface `{}` is free to move {}, but nothing resists it there and nothing drives it: it is held as \
+                     it stands",
+                    surface.name,
+                    driven.direction_words(&share)
+                ));
+            }
+        }
+        if let Some(last) = converged.factorization {
+            let negative = last.negative_pivots;
+            if negative > 0 && last.method == Method::Lu {
+                self.warn(format!(
+                    "step {step}: the determinant of the step's last tangent is negative: the equilibrium may be \
+                     unstable"
+                ));
+            } else if negative > 0 {
+                self.warn(format!(
+                    "step {step}: the last tangent of the step has {negative} negative pivot(s): the equilibrium may be \
+                     unstable"
+                ));
+            }
+            if last.perturbed_pivots > 0 {
+                self.warn(format!(
+                    "step {step}: {} pivot(s) of the last tangent were too small and were replaced; the solution was \
+                     refined",
+                    last.perturbed_pivots
+                ));
+            }
+        }
+        let spent = self.progress.iterations - self.progress.counted;
+        self.progress.counted = self.progress.iterations;
+        self.progress.accepted += u64::from(converged.iterations);
+        let failed = spent.saturating_sub(u64::from(converged.iterations));
+        self.failed = u32::try_from(failed).unwrap_or(u32::MAX);
+        self.observer.event(&Event::StepAccepted {
+            step,
+            time: end,
+            iterations: converged.iterations,
+            failed_iterations: self.failed,
+            active: converged.totals.active,
+            penetration: (converged.totals.penetration.iter()).fold(0.0, |a, b| a.max(*b)),
+        });
+    }
+
+    /// The row of an accepted step, and its fields where they are wanted.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn record(
+        &mut self,
+        outputs: &mut Outputs,
+        state: &State,
+        span: [f64; 2],
+        cuts: u32,
+        converged: &Converged,
+        sliding: &FrictionTotals,
+        (work, drag): (Work, Drag),
+        (errors, limit): (Errors, Option<RigidLimit>),
+    ) -> Result<(), RunError> {
+        let (step, time) = (self.progress.steps, self.progress.time);
+        self.phases.start("output");
+        for (pair, sunk) in self.model.pairs.iter().zip(&outputs.fields.sunk) {
+            if *sunk > 0 {
+                self.warn(format!(
+                    "contact `{}`: {sunk} point(s) passed through {} at step {step}, deeper than its `depth` {}, and are \
+                     not in contact: take smaller steps or a larger `depth`",
+                    pair.name,
+                    pair.master_words(self.model),
+                    number(pair.master.depth(self.model))
+                ));
+            }
+        }
+        let totals = &converged.totals;
+        let energy = energy(totals, sliding) + state.stabilized;
+        let pressed = &outputs.fields.pressed;
+        let softened = converged.softened;
+        let told = (self.watch).close(self.model, (step, span), work, pressed, energy, softened);
+        if let Some(text) = told {
+            self.warn(text);
+        }
+        let end = StepEnd {
+            step,
+            time,
+            state,
+            bearings: &outputs.fields.bearings,
+            internal: totals.internal_energy,
+            work: self.watch.external,
+            penalties: &self.assembler.penalties,
+            limit: limit.as_ref(),
+        };
+        let growth =
+            (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?;
+        self.adapt(errors, growth, converged);
+        (self.adapt_slip(outputs, time, converged)).map_err(|e| RunError::internal(&e))?;
+        let bearings = &outputs.fields.bearings;
+        (self.peaks).step(self.model, step, bearings, &totals.pairs);
+        let doubts = linearity_check::doubts(self.model, &mut self.assembler.masters, state, time);
+        for doubt in doubts.map_err(|e| RunError::internal(&e))? {
+            self.doubt(doubt);
+        }
+        let row = history::row(&history::Record {
+            model: self.model,
+            step,
+            time,
+            dt: span[1] - span[0],
+            cuts,
+            failed: self.failed,
+            converged,
+            sliding,
+            stabilized: (state.stabilized, drag.share),
+            residual: self.workspace.residual(),
+            u: &state.u,
+            fields: &outputs.fields,
+            watch: &self.watch,
+        });
+        outputs.table.push(&row)?;
+        self.phases.stop("output");
+        let every = self.scene.output.every;
+        if every > 0 && step.is_multiple_of(every) {
+            self.write(outputs, state)?;
+        }
+        Ok(())
+    }
+}
