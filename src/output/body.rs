@@ -71,8 +71,8 @@ impl BodyFields<'_> {
     /// The body as the bytes of a `.vtu` file; `id` is written as cell data `body`.
     ///
     /// Point data: `displacement` (3), `cauchy_stress` (6), `von_mises`, `contact_pressure`, `contact_gap`,
-    /// `contact_status` and the further fields; cell data: `element` (counted from 0) and `body`. Positions, displacements,
-    /// pressures and gaps are in double precision, the others in single precision.
+    /// `contact_status` and the further fields; cell data: `element` (counted from 0) and `body`. What is computed from
+    /// other fields is in single precision.
     ///
     /// # Errors
     /// [`OutputError::FieldLength`], [`OutputError::DuplicateField`] or [`OutputError::NoSuchNode`] when the fields and
@@ -93,7 +93,7 @@ impl BodyFields<'_> {
         if let Some(stress) = self.stress {
             self.check("cauchy_stress", nodes, stress.len())?;
             let flat: Vec<f64> = stress.iter().flatten().copied().collect();
-            let mut array = Array::new("cauchy_stress", 6, single(&flat));
+            let mut array = Array::new("cauchy_stress", 6, flat);
             array.component_names = STRESS_COMPONENTS.iter().map(|s| s.to_string()).collect();
             point_data.push(array);
             let mises: Vec<f64> = stress.iter().map(von_mises).collect();
@@ -128,7 +128,11 @@ impl BodyFields<'_> {
                     field: field.name.to_string(),
                 });
             }
-            let mut array = Array::new(field.name, field.components as u32, single(field.data));
+            let data = match field.derived {
+                true => single(field.data),
+                false => field.data.to_vec().into(),
+            };
+            let mut array = Array::new(field.name, field.components as u32, data);
             array.component_names = field
                 .component_names
                 .iter()

@@ -34,6 +34,8 @@ pub struct Field<'a> {
     pub data: &'a [f64],
     /// On nodes or on elements.
     pub place: Place,
+    /// Computed from fields that are written, too, and therefore in single precision.
+    pub derived: bool,
 }
 
 impl<'a> Field<'a> {
@@ -45,6 +47,15 @@ impl<'a> Field<'a> {
             component_names: &[],
             data,
             place: Place::Point,
+            derived: false,
+        }
+    }
+
+    /// A scalar field on the nodes that is computed from fields that are written, too.
+    pub fn derived(name: &'a str, data: &'a [f64]) -> Self {
+        Field {
+            derived: true,
+            ..Field::point(name, data)
         }
     }
 }

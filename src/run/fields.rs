@@ -449,6 +449,7 @@ impl Fields {
                             component_names: &[],
                             data: &all[3 * range.start..3 * range.end],
                             place: Place::Point,
+                            derived: false,
                         }))
                         .collect(),
                 }

@@ -84,6 +84,7 @@ impl FrictionFields {
                 component_names: &[],
                 data: &self.traction[3 * first..3 * last],
                 place: Place::Point,
+                derived: false,
             },
             Field::point("slip", &self.slip[first..last]),
             Field::point("dissipated", &self.dissipated[first..last]),

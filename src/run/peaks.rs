@@ -24,8 +24,9 @@ struct Peak {
     at_edges: f64,
     /// The part of it at points whose penetration is prescribed.
     prescribed: f64,
-    /// What the forces on both sides do not balance; zero but for two half passes.
+    /// Most of what the forces on both sides did not balance in a step, and that step; zero but for two half passes.
     unbalanced: f64,
+    unbalanced_step: u32,
     active: usize,
     /// Points that carried most of it, where these were few; else 0.
     few: usize,
@@ -61,6 +62,7 @@ impl Peaks {
             at_edges,
             prescribed,
             unbalanced,
+            unbalanced_step,
             active,
             few,
             step,
@@ -70,6 +72,7 @@ impl Peaks {
             out.u64(*active as u64);
             out.u64(*few as u64);
             out.u32(*step);
+            out.u32(*unbalanced_step);
         }
         for Stress { stress, step } in &self.1 {
             out.f64s(&[*stress]);
@@ -85,7 +88,7 @@ impl Peaks {
             from.f64s(&mut sums)?;
             [peak.force, peak.at_edges, peak.prescribed, peak.unbalanced] = sums;
             (peak.active, peak.few) = (from.u64()? as usize, from.u64()? as usize);
-            peak.step = from.u32()?;
+            (peak.step, peak.unbalanced_step) = (from.u32()?, from.u32()?);
         }
         for highest in &mut self.1 {
             let mut stress = [0.0];
@@ -119,20 +122,22 @@ impl Peaks {
                 ..
             } = *sum;
             if force > 0.0 && force >= peak.force {
-                let few = sum.few().unwrap_or(0);
-                let unbalanced = match pair.half {
-                    Some(half) if !half.back => (slave.force + master.force).norm(),
-                    _ => 0.0,
-                };
                 *peak = Peak {
                     force,
                     at_edges,
                     prescribed,
-                    unbalanced,
                     active,
-                    few,
+                    few: sum.few().unwrap_or(0),
                     step,
+                    ..*peak
                 };
+            }
+            let unbalanced = match pair.half {
+                Some(half) if !half.back => (slave.force + master.force).norm(),
+                _ => 0.0,
+            };
+            if unbalanced > peak.unbalanced {
+                (peak.unbalanced, peak.unbalanced_step) = (unbalanced, step);
             }
         }
     }
@@ -231,11 +236,11 @@ impl Peak {
     fn unbalanced(&self, pair: &PairModel) -> Option<String> {
         (self.unbalanced > UNBALANCED * self.force).then(|| {
             format!(
-                "contact `{}`: the forces of its two half passes differ by {:.0} % of the force at step {}, and so far do the forces \
-                 on its two sides: too few points carry it. Refine both sides there, or take one pass",
+                "contact `{}`: the forces of its two half passes differ at step {} by {:.0} % of the largest force, and so far do the \
+                 forces on its two sides: too few points carry them. Refine both sides there, or take one pass",
                 pair.name,
-                100.0 * self.unbalanced / self.force,
-                self.step
+                self.unbalanced_step,
+                100.0 * self.unbalanced / self.force
             )
         })
     }

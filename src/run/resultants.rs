@@ -88,6 +88,7 @@ impl Resultants {
             component_names,
             data,
             place: Place::Point,
+            derived: true,
         };
         [
             field("membrane_force", &PLANE, &self.membrane),

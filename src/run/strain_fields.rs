@@ -44,11 +44,12 @@ impl StrainFields {
             component_names: &PRINCIPAL,
             data,
             place: Place::Point,
+            derived: true,
         };
         let shell = self.thickness.iter().flat_map(|[now, thinning]| {
             [
-                Field::point("thickness", now),
-                Field::point("thinning", thinning),
+                Field::derived("thickness", now),
+                Field::derived("thinning", thinning),
             ]
         });
         [

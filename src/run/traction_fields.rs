@@ -71,6 +71,7 @@ impl TractionFields {
                 .traction
                 .get(first..first + 3 * body.mesh.nodes.len())?,
             place: Place::Point,
+            derived: false,
         })
     }
 }

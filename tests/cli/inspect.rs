@@ -426,8 +426,11 @@ fn faces_left_out_and_brief_lists() {
     let twice = format!("{before}CLOSED_SHELL('',(#9001,{after}{copy}-10303-21;\n");
     let (code, shown, _) = inspect("box.step", &twice, &["box.step"]);
     assert_eq!(code, Some(0), "{shown}");
+    // Whatever the width of the terminal.
+    let shown = shown.split_whitespace().collect::<Vec<_>>().join(" ");
     for part in [
-        "left out: 0 sliver(s), the widest 0.0e0; 1 duplicate face(s), at most 0.0e0 from those that stay",
+        // How far apart is rounding.
+        "left out: 0 sliver(s), the widest 0.0e0; 1 duplicate face(s), at most ",
         "coincides with entity",
         "6 patches, area",
         "closed, volume",

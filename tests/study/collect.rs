@@ -18,8 +18,7 @@ fn prepare(folder: &Path) {
     ]);
     study["timing"] = json!({ "repeats": 2 });
     let mut scene = scene();
-    // What the penalty takes away is not to be seen beside what the facets do.
-    scene["contacts"]["press"]["accuracy"] = json!(1e-5);
+    scene["contacts"]["press"]["accuracy"] = json!(1e-4);
     write(folder, "scene.json", &scene);
     write(folder, "study.json", &study);
 }
@@ -88,14 +87,11 @@ fn jobs_by_hand_are_the_study() {
         );
         assert_eq!((a.wall.unwrap().repeats, b.wall.unwrap().repeats), (2, 2));
     }
-    // The facets of the sphere are inside it.
+    // Only its pole touches, which is a point of the facets, too.
     let force = |i: usize| direct.runs[i].measured[0].value.unwrap();
-    assert!(
-        force(1) > force(0) && force(0) < 0.0,
-        "{} {}",
-        force(0),
-        force(1)
-    );
+    let [exact, facets] = [force(0), force(1)];
+    assert!(exact < -100.0 && exact != facets, "{exact} {facets}");
+    assert!((facets / exact - 1.0).abs() < 1e-3, "{exact} {facets}");
     assert_eq!(direct.quantities, collected.quantities);
     // The scenes are written for people, with their files beside them.
     let scene = folder.path().join("direct/runs/001_STL_4_x_4/scene.json");

@@ -254,6 +254,7 @@ fn fields_on_cells_and_of_several_components() {
             component_names: &[],
             data,
             place,
+            derived: false,
         };
         let fields = vec![
             field("c", 1, &cells[..], Place::Cell),
