@@ -161,3 +161,58 @@ fn contact_that_both_passes_have_lost_is_told_once() {
     let told = |w: &&String| w.contains("contact `press` opened at step");
     assert_eq!(outcome.summary.warnings.iter().filter(told).count(), 1);
 }
+
+/// Two coarse half tubes, crown to crown, meet at few points, and each pass finds another force: that is told, at the step
+/// where it is most. One pass has the same force on both sides, and nothing to tell.
+#[test]
+fn passes_that_do_not_balance_are_told() {
+    let pressed = |passes: &str| {
+        let panel = |radius: f64, angles: [f64; 2], elements: u32, z: f64| {
+            json!({
+                "mesh": { "cylinder_panel": {
+                    "radius": radius, "thickness": 1.5, "angles": angles, "y": [0, 1], "elements": [elements, 1],
+                    "origin": [0, 0, z]
+                } },
+                "material": "rubber"
+            })
+        };
+        let moved = |on: &str| json!({ "on": on, "displacement": { "x": 0, "y": 0, "z": "-3*t" } });
+        let plane = |on: &str| json!({ "on": on, "symmetry": "y" });
+        done(&json!({
+            "covact": 1,
+            "materials": { "rubber": { "neo_hooke": { "E": 5, "nu": 0.3 } } },
+            "bodies": {
+                "upper": panel(8.0, [90.0, 270.0], 10, 18.6), "lower": panel(9.0, [-90.0, 90.0], 9, 0.0)
+            },
+            "contacts": { "crowns": {
+                "slave": "upper.outer", "master": "lower.outer", "passes": passes, "points": { "gauss": 2 }
+            } },
+            "supports": {
+                "left": { "on": "lower.phi_min", "fixed": true }, "right": { "on": "lower.phi_max", "fixed": true },
+                "down_left": moved("upper.phi_min"), "down_right": moved("upper.phi_max"),
+                "a": plane("upper.y_min"), "b": plane("upper.y_max"), "c": plane("lower.y_min"), "d": plane("lower.y_max")
+            },
+            "output": { "every": 0 }
+        }))
+    };
+    let told = |outcome: &crate::support::Outcome| -> Vec<String> {
+        let all = outcome.summary.warnings.iter();
+        all.filter(|w| w.contains("two half passes differ"))
+            .cloned()
+            .collect()
+    };
+    let halves = pressed("two_half");
+    let imbalance = halves.column("imbalance.force.crowns");
+    let worst = (0..imbalance.len())
+        .max_by(|a, b| imbalance[*a].total_cmp(&imbalance[*b]))
+        .expect("steps");
+    println!("{imbalance:?}");
+    let warnings = told(&halves);
+    assert!(
+        imbalance[worst] > 0.05 && warnings.len() == 1,
+        "{warnings:?}"
+    );
+    let step = format!("at step {} ", halves.column("step")[worst]);
+    assert!(warnings[0].contains(&step), "{step}: {warnings:?}");
+    assert_eq!(told(&pressed("one")), Vec::<String>::new());
+}
