@@ -421,7 +421,7 @@ impl<'a, 'm> March<'a, 'm> {
                         walk.before = None;
                     }
                     self.accept(step, end, &converged);
-                    self.record(
+                    let jumped = self.record(
                         outputs,
                         committed,
                         [start, end],
@@ -445,7 +445,7 @@ impl<'a, 'm> March<'a, 'm> {
                     {
                         return Ok(ending);
                     }
-                    if let Some(ending) = self.lost_hold(committed, &converged) {
+                    if let Some(ending) = self.lost_hold(committed, &converged, jumped) {
                         return Ok(ending);
                     }
                     self.keep(committed, walk, outputs)?;

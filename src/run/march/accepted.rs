@@ -97,7 +97,7 @@ impl March<'_, '_> {
         });
     }
 
-    /// The row of an accepted step, and its fields where they are wanted.
+    /// The row of an accepted step, and its fields where they are wanted; whether its energies tell of a jump.
     #[allow(clippy::too_many_arguments)]
     pub(super) fn record(
         &mut self,
@@ -109,7 +109,7 @@ impl March<'_, '_> {
         sliding: &FrictionTotals,
         (work, drag): (Work, Drag),
         (errors, limit): (Errors, Option<RigidLimit>),
-    ) -> Result<(), RunError> {
+    ) -> Result<bool, RunError> {
         let (step, time) = (self.progress.steps, self.progress.time);
         self.phases.start("output");
         for (pair, sunk) in self.model.pairs.iter().zip(&outputs.fields.sunk) {
@@ -128,6 +128,7 @@ impl March<'_, '_> {
         let pressed = &outputs.fields.pressed;
         let softened = converged.softened;
         let told = (self.watch).close(self.model, (step, span), work, pressed, energy, softened);
+        let jumped = told.is_some();
         if let Some(text) = told {
             self.warn(text);
         }
@@ -172,6 +173,6 @@ impl March<'_, '_> {
         if every > 0 && step.is_multiple_of(every) {
             self.write(outputs, state)?;
         }
-        Ok(())
+        Ok(jumped)
     }
 }

@@ -11,10 +11,16 @@ use covact_geometry::Vec3;
 impl March<'_, '_> {
     /// Looks into squeezed elements after a step whose tangent has negative pivots. Where other elements may replace them the run
     /// ends, else the body is told. The sign of a determinant, which is all that is known of an unsymmetric tangent, says too
-    /// little: friction may turn it.
-    pub(super) fn lost_hold(&mut self, committed: &State, converged: &Converged) -> Option<Ending> {
+    /// little: friction may turn it. A step whose energies tell of a jump is looked into whatever its tangent.
+    pub(super) fn lost_hold(
+        &mut self,
+        committed: &State,
+        converged: &Converged,
+        jumped: bool,
+    ) -> Option<Ending> {
         let last = converged.factorization?;
-        if last.method == Method::Lu || last.negative_pivots == 0 {
+        let unstable = last.method != Method::Lu && last.negative_pivots > 0;
+        if !unstable && !jumped {
             return None;
         }
         let lost = hold::lost(self.model, committed);
