@@ -19,6 +19,7 @@ mod kept;
 mod told;
 
 use super::bearing::{Bearings, Deepest};
+use super::penalty_rule;
 use crate::model::master::Master;
 use crate::model::state::State;
 use crate::model::{Model, PairModel};
@@ -37,6 +38,9 @@ const THROUGH: f64 = 0.3;
 const GROWN: f64 = 1e-3;
 /// Factor by which the energy of contact grows in a step above which the step is a first touch rather than growth.
 const TOUCHED: f64 = 20.0;
+
+/// Part of the error to rigid contact that a raise between two steps may leave for another one to follow.
+const HELPED: f64 = 0.9;
 
 /// Measures of an accepted step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -95,6 +99,8 @@ pub struct Compliance {
     limits: [Measured; 2],
     /// That error of the last step.
     before: f64,
+    /// That error when it last raised a penalty, while it is too large; else infinite.
+    raised: f64,
     /// Energy of contact and work at the last two steps, the last one first.
     path: [[f64; 2]; 2],
     /// Penalty per pair at the last step; empty before the first.
@@ -164,6 +170,7 @@ impl Compliance {
             worst: Measured::default(),
             limits: [Measured::default(); 2],
             before: 0.0,
+            raised: f64::INFINITY,
             path: [[0.0; 2]; 2],
             penalties: Vec::new(),
             force: 0.0,
@@ -307,6 +314,15 @@ impl Compliance {
         let lasting = here
             .error
             .min(std::mem::replace(&mut self.before, here.error));
+        if lasting <= penalty_rule::raises_from(model) {
+            self.raised = f64::INFINITY;
+            return Ok(measures.growth);
+        }
+        // What a stiffer penalty did not lower, another will not.
+        if here.error > HELPED * self.raised {
+            return Ok(measures.growth);
+        }
+        self.raised = here.error;
         Ok(measures.growth.max(lasting))
     }
 

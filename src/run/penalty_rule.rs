@@ -246,6 +246,12 @@ fn two_digits(factor: f64) -> f64 {
     (factor / unit).round() * unit
 }
 
+/// The smallest error that raises a penalty; infinite where the run chooses none.
+pub fn raises_from(model: &Model) -> f64 {
+    let rules = model.pairs.iter().filter_map(|p| p.ruled);
+    rules.fold(f64::INFINITY, |a, r| a.min(HIGH * r.accuracy))
+}
+
 /// Sets the penalty of a pair; two half passes have one.
 fn set(model: &Model, index: usize, eps: f64, penalties: &mut [f64]) {
     let other = model.pairs[index].half.map_or(index, |half| half.other);

@@ -11,6 +11,7 @@ impl Compliance {
             worst,
             limits,
             before,
+            raised,
             force,
             displacement,
             path,
@@ -18,7 +19,7 @@ impl Compliance {
             // Known from the model.
             poses: _,
         } = self;
-        out.f64s(&[*largest, *before, *force, *displacement]);
+        out.f64s(&[*largest, *before, *raised, *force, *displacement]);
         for measured in [worst, &limits[0], &limits[1]] {
             measured.put(out);
         }
@@ -33,9 +34,15 @@ impl Compliance {
         model: &Model,
         from: &mut Reader,
     ) -> Result<(), Malformed> {
-        let mut sums = [0.0; 4];
+        let mut sums = [0.0; 5];
         from.f64s(&mut sums)?;
-        [self.largest, self.before, self.force, self.displacement] = sums;
+        [
+            self.largest,
+            self.before,
+            self.raised,
+            self.force,
+            self.displacement,
+        ] = sums;
         self.worst = Measured::take(model, from)?;
         self.limits = [Measured::take(model, from)?, Measured::take(model, from)?];
         from.f64s(self.path.as_flattened_mut())?;
