@@ -4,18 +4,17 @@ mod released;
 mod replaced;
 mod restart;
 mod settle;
+mod start;
 
 pub(super) use restart::Kept;
-use restart::lines_behind;
 use settle::Settled;
 
 use super::RunError;
-use super::checkpoint::{CheckpointError, Keeper};
-use super::commit::{self, FrictionTotals};
+use super::checkpoint::Keeper;
+use super::commit::FrictionTotals;
 use super::compliance::Compliance;
 use super::cost::Cost;
 use super::fields::Fields;
-use super::history;
 use super::hold;
 use super::peaks::Peaks;
 use super::penalty_rule::PenaltyRule;
@@ -24,10 +23,8 @@ use super::watch::{Span, Watch};
 use crate::assembly::{Assembler, Totals};
 use crate::contact::law::Penalty;
 use crate::machine::clock::Phases;
-use crate::model::error::number;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model, PairModel, segments};
-use crate::output::atomic::sweep;
 use crate::output::{History, OutputError, Results, RunStatus};
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
@@ -205,115 +202,6 @@ impl<'a, 'm> March<'a, 'm> {
         Ok(ending)
     }
 
-    /// Starts at time 0, in a folder that has been cleared of another run.
-    fn begin(
-        &mut self,
-        out: &Path,
-        fields: Fields,
-        stepping: Stepping,
-    ) -> Result<(State, StepControl, Outputs), RunError> {
-        sweep(out);
-        let mut outputs = Outputs {
-            results: Results::create(out)?,
-            table: History::create(&out.join("history.csv"), history::columns(self.model))?,
-            fields,
-            written: None,
-        };
-        for note in outputs.fields.notes() {
-            self.warn(note);
-        }
-        let mut committed = State::new(self.model);
-        let masters = &mut self.assembler.masters;
-        commit::start(self.model, masters, &mut committed).map_err(|e| RunError::internal(&e))?;
-        self.gather(&mut outputs, &committed, 0.0)?;
-        self.write(&mut outputs, &committed)?;
-        let walk = StepControl {
-            stepping,
-            before: None,
-            hold: false,
-        };
-        Ok((committed, walk, outputs))
-    }
-
-    /// Takes up a run where it was kept: files are as they were then, and what was written later is dropped.
-    fn go_on(
-        &mut self,
-        out: &Path,
-        fields: Fields,
-        mut stepping: Stepping,
-        kept: Kept,
-    ) -> Result<(State, StepControl, Outputs), RunError> {
-        let Kept {
-            slot,
-            passed_over,
-            committed,
-            before,
-            dt,
-            hold,
-            progress,
-            touched,
-            touching,
-            watch,
-            compliance,
-            rule,
-            peaks,
-            table: mark,
-            written,
-            factorizations,
-            // Given back where the pattern is analysed.
-            assembler: _,
-            expects_indefinite: _,
-            spent,
-        } = kept;
-        self.workspace.factorizations = factorizations;
-        (self.progress, self.touched, self.touching) = (progress, touched, touching);
-        (self.watch, self.compliance, self.peaks) = (watch, compliance, peaks);
-        self.rule = rule;
-        self.cost.earlier = spent;
-        self.cost.earlier.resumed += 1;
-        stepping.set_size(dt);
-        let (step, time) = (self.progress.steps, self.progress.time);
-        let path = out.join("history.csv");
-        let lost = lines_behind(&path, mark.length);
-        let Some(table) = History::resume(&path, history::columns(self.model), mark)? else {
-            return Err(CheckpointError::History { path }.into());
-        };
-        self.keeper.go_on(slot);
-        sweep(out);
-        let parts = fields.part_names(self.model);
-        let last = written.last().map(|last| last.0);
-        let mut results = Results::resume(out, written, &parts)?;
-        let every = self.scene.output.every;
-        for step in (step..=step.saturating_add(lost)).filter(|_| every > 0) {
-            // Written because the run ended there, which it does not.
-            if last != Some(step) && !step.is_multiple_of(every) {
-                results.remove(step, &parts)?;
-            }
-        }
-        let mut outputs = Outputs {
-            results,
-            table,
-            fields,
-            written: last,
-        };
-        if step > 0 {
-            outputs.fields.went_on();
-        }
-        self.gather(&mut outputs, &committed, time)?;
-        for text in passed_over {
-            let text = format!("{text}; the checkpoint before it is taken");
-            self.observer.event(&Event::Note { text });
-        }
-        let text = format!("continued after step {step} (time {})", number(time));
-        self.observer.event(&Event::Note { text });
-        let walk = StepControl {
-            stepping,
-            before,
-            hold,
-        };
-        Ok((committed, walk, outputs))
-    }
-
     fn steps(
         &mut self,
         committed: &mut State,
@@ -445,7 +333,8 @@ impl<'a, 'm> March<'a, 'm> {
                     {
                         return Ok(ending);
                     }
-                    if let Some(ending) = self.lost_hold(committed, &converged, jumped) {
+                    let before = walk.before.as_ref().map(|(state, _)| state);
+                    if let Some(ending) = self.lost_hold(committed, before, &converged, jumped) {
                         return Ok(ending);
                     }
                     self.keep(committed, walk, outputs)?;

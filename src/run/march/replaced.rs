@@ -5,25 +5,27 @@ use crate::model::state::State;
 use crate::output::RunStatus;
 use crate::run::hold;
 use crate::solve::newton::Converged;
-use crate::system::linear::Method;
 use covact_geometry::Vec3;
 
 impl March<'_, '_> {
-    /// Looks into squeezed elements after a step whose tangent has negative pivots. Where other elements may replace them the run
-    /// ends, else the body is told. The sign of a determinant, which is all that is known of an unsymmetric tangent, says too
-    /// little: friction may turn it. A step whose energies tell of a jump is looked into whatever its tangent.
+    /// Looks into squeezed elements after a step whose tangent has negative pivots (a negative determinant, where that is all that
+    /// is known), or whose energies tell of a jump: at its end, and where it jumped also at its start, since what gave way may
+    /// stand at rest behind the jump. Where other elements may replace them the run ends, else the body is told.
     pub(super) fn lost_hold(
         &mut self,
         committed: &State,
+        before: Option<&State>,
         converged: &Converged,
         jumped: bool,
     ) -> Option<Ending> {
-        let last = converged.factorization?;
-        let unstable = last.method != Method::Lu && last.negative_pivots > 0;
+        let unstable = converged.factorization?.negative_pivots > 0;
         if !unstable && !jumped {
             return None;
         }
-        let lost = hold::lost(self.model, committed);
+        let mut lost = hold::lost(self.model, committed);
+        if lost.is_empty() && jumped {
+            lost = before.map_or(Vec::new(), |state| hold::lost(self.model, state));
+        }
         let (body, at) = *lost.first()?;
         let name = &self.model.bodies[body].name;
         let text = format!(
