@@ -105,6 +105,11 @@ pub struct Bearings {
 }
 
 impl Bearings {
+    /// Pressure times area of all pairs (force).
+    pub fn force(&self) -> f64 {
+        self.pairs.iter().map(|pair| pair.force).sum()
+    }
+
     pub fn new(model: &Model) -> Self {
         let mut prescribed = vec![0; model.nodes.len()];
         for p in &model.prescribed {

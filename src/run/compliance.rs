@@ -6,15 +6,16 @@
 //! springs in series, that is `r / (1 + r)` of the ratio `r = E_c / E_int` to the strain energy. Where loads are given,
 //! displacements are off by as much.
 //!
-//! What such measures do not show, a wrap whose pressure is concentrated or a path that is about to turn, the linear answer to
-//! the tractions of the step itself does ([`RigidLimit`]): it is what the user is told, of the last step and of that of the
-//! largest force, and it rules the penalty where two steps in a row show too much, and at the last step.
-//!
 //! `r` alone is no sure measure: under far too soft a penalty a tool passes through, and little of anything is stored. So
 //! the deepest penetration stands beside it, relative to the approach: how far master and slave bodies move towards each
 //! other along the normal of the deepest point. In a dent the mean penetration counts, which is some .3 of the deepest. And
 //! where contact stiffens fast at the end of a path, its energy grows faster than in proportion to the work: the exponent
 //! that the last steps show is then a factor on `E_c / W`.
+//!
+//! What such measures do not show, a wrap whose pressure is concentrated or a path that is about to turn, the linear answer to
+//! the tractions of the step itself does ([`RigidLimit`]): it is what the user is told, of the last step and of that of the
+//! largest force, and it rules the penalty where two steps in a row show too much, and at the last step. It costs as much as a few
+//! assemblies of contact: as long as it shows little it is made at fewer and fewer steps, and wherever forces have grown.
 mod kept;
 mod told;
 
@@ -39,6 +40,14 @@ const GROWN: f64 = 1e-3;
 /// Factor by which the energy of contact grows in a step above which the step is a first touch rather than growth.
 const TOUCHED: f64 = 20.0;
 
+/// Error above which the user is warned.
+const WARNED: f64 = 0.01;
+/// Steps from one measurement of what rigid contact would change to the next at most, and the growth of the largest force above
+/// which none is left out.
+const SELDOM: u32 = 8;
+const LARGER: f64 = 1.2;
+/// Part of the smallest error that raises a penalty below which fewer steps are measured.
+const LITTLE: f64 = 0.4;
 /// Part of the error to rigid contact that a raise between two steps may leave for another one to follow.
 const HELPED: f64 = 0.9;
 
@@ -97,6 +106,9 @@ pub struct Compliance {
     /// The steps of the largest force and the last one, with the errors that rigid contact shows; without where it could not be
     /// measured.
     limits: [Measured; 2],
+    /// Steps from the last one to the next that is to show it, and the largest force between bodies at such steps.
+    gap: u32,
+    bearing: f64,
     /// That error of the last step.
     before: f64,
     /// That error when it last raised a penalty, while it is too large; else infinite.
@@ -169,6 +181,8 @@ impl Compliance {
             largest: 0.0,
             worst: Measured::default(),
             limits: [Measured::default(); 2],
+            gap: 0,
+            bearing: 0.0,
             before: 0.0,
             raised: f64::INFINITY,
             path: [[0.0; 2]; 2],
@@ -230,6 +244,17 @@ impl Compliance {
             true => forces.max(part(moved, largest.max(self.displacement))),
             false => forces,
         }
+    }
+
+    /// Whether what rigid contact would change is to be measured at a step.
+    pub fn is_due(&self, step: u32, bearings: &Bearings) -> bool {
+        let last = self.limits[1].step;
+        last == 0 || step >= last + self.gap || bearings.force() > LARGER * self.bearing
+    }
+
+    /// The error below which it does not matter how it comes about, given penalties included.
+    pub fn little(model: &Model) -> f64 {
+        LITTLE * penalty_rule::raises_from(model).min(WARNED)
     }
 
     /// Raises the errors of a step to what rigid contact would change, each pair's by its share of the energy of contact.
@@ -303,6 +328,11 @@ impl Compliance {
             return Ok(measures.growth);
         };
         here.error = self.relative(model, limit);
+        self.bearing = self.bearing.max(end.bearings.force());
+        self.gap = match here.error < LITTLE * penalty_rule::raises_from(model) {
+            true => (2 * self.gap).clamp(1, SELDOM),
+            false => 1,
+        };
         self.displacement = self.displacement.max(limit.moved[1]);
         let [peak, last] = &mut self.limits;
         if limit.force() >= self.force {

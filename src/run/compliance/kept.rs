@@ -10,6 +10,8 @@ impl Compliance {
             largest,
             worst,
             limits,
+            gap,
+            bearing,
             before,
             raised,
             force,
@@ -19,7 +21,8 @@ impl Compliance {
             // Known from the model.
             poses: _,
         } = self;
-        out.f64s(&[*largest, *before, *raised, *force, *displacement]);
+        out.f64s(&[*largest, *bearing, *before, *raised, *force, *displacement]);
+        out.u32(*gap);
         for measured in [worst, &limits[0], &limits[1]] {
             measured.put(out);
         }
@@ -34,15 +37,17 @@ impl Compliance {
         model: &Model,
         from: &mut Reader,
     ) -> Result<(), Malformed> {
-        let mut sums = [0.0; 5];
+        let mut sums = [0.0; 6];
         from.f64s(&mut sums)?;
         [
             self.largest,
+            self.bearing,
             self.before,
             self.raised,
             self.force,
             self.displacement,
         ] = sums;
+        self.gap = from.u32()?;
         self.worst = Measured::take(model, from)?;
         self.limits = [Measured::take(model, from)?, Measured::take(model, from)?];
         from.f64s(self.path.as_flattened_mut())?;

@@ -1,11 +1,9 @@
 //! What the user is told of the compliance of contact.
-use super::{Compliance, MEAN, Measured};
+use super::{Compliance, MEAN, Measured, WARNED};
 use crate::model::Model;
 use crate::model::error::number;
 use crate::output::Accuracy;
 
-/// Error above which the user is warned.
-const WARNED: f64 = 0.01;
 /// Error that the proposed penalty leaves.
 const WANTED: f64 = 0.003;
 /// Error from which on the linear estimate says no more than that contact gives way.

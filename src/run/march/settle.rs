@@ -6,7 +6,7 @@ use crate::model::state::State;
 use crate::run::RunError;
 use crate::run::bearing::{Bearing, Bearings};
 use crate::run::commit::{self, FrictionTotals};
-use crate::run::compliance::{Errors, StepEnd};
+use crate::run::compliance::{Compliance, Errors, StepEnd};
 use crate::run::penalty_rule::{self, PenaltyRule};
 use crate::run::step::Attempts;
 use crate::scene::ValueError;
@@ -91,8 +91,11 @@ impl<'m> March<'_, 'm> {
             let sliding = commit::commit(self.model, self.assembler, trial, was, end)
                 .map_err(|e| RunError::internal(&e))?;
             self.gather(outputs, trial, end)?;
-            let limit = match reliable(converged) {
-                true => self.rigid_limit(trial, &histories, &outputs.fields.bearings, end),
+            let last = walk.stepping.done(end);
+            let bearings = &outputs.fields.bearings;
+            let due = last || self.compliance.is_due(step, bearings);
+            let limit = match due && reliable(converged) {
+                true => self.rigid_limit(trial, &histories, bearings, end),
                 false => None,
             };
             let Some(fields) = &fields else {
@@ -102,10 +105,8 @@ impl<'m> March<'_, 'm> {
                     limit,
                 }));
             };
-            let last = walk.stepping.done(end);
-            let limit_here = limit.as_ref();
-            let [errors, ruling] =
-                self.errors(outputs, trial, (step, end, last), limit_here, converged)?;
+            let at = (step, end, last);
+            let [errors, ruling] = self.errors(outputs, trial, at, limit.as_ref(), converged)?;
             if let Some(tried) = tried.take()
                 && !PenaltyRule::helped(&tried.errors, &ruling)
             {
@@ -203,7 +204,7 @@ impl<'m> March<'_, 'm> {
             self.assembler,
             self.solver,
             (state, histories),
-            time,
+            (time, Compliance::little(self.model)),
         );
         self.phases.stop("accuracy");
         let mut limit = limit.ok().flatten()?;

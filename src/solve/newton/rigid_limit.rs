@@ -52,6 +52,14 @@ impl RigidLimit {
         self.forces.iter().fold(gross, |a, f| a.max(f[0]))
     }
 
+    fn finite(&self) -> bool {
+        let pairs = self.forces.iter().flatten();
+        pairs
+            .chain(&self.gross)
+            .chain(&self.moved)
+            .all(|x| x.is_finite())
+    }
+
     /// Leaves out what acts at points whose penetration is prescribed, a part of the force of every pair: rigid contact could not
     /// be there.
     pub fn leave_out(&mut self, parts: impl Iterator<Item = f64>) {
@@ -68,56 +76,70 @@ impl RigidLimit {
 
 impl Workspace {
     /// Measures the step that was just solved for, at `state` with the `histories` that it was solved with; nothing where the
-    /// linear solver cannot. What the last evaluation left in the assembler is then that of contact at `state`.
+    /// linear solver cannot, or contact has no value beside the state. What is then left in the assembler is contact at `state`. A
+    /// relative change of forces below `little` is taken as it comes: the smaller one without friction is not looked for.
     ///
     /// # Errors
-    /// A point that cannot be evaluated beside the state.
+    /// A point that cannot be evaluated at the state itself.
     pub fn rigid_limit<S: LinearSolver + ?Sized>(
         &mut self,
         model: &Model,
         assembler: &mut Assembler,
         solver: &mut S,
         (state, histories): (&State, &[PointHistory]),
-        time: f64,
+        (time, little): (f64, f64),
     ) -> Result<Option<RigidLimit>, Fault> {
         if model.small.is_some() || assembler.has_new_pattern() {
             return Ok(None);
         }
-        // All of these are written by a step before it reads them.
+        // All of these are written by a step before it reads them, and contact reads nothing of elements.
+        let base = &mut self.base;
+        base.cuts.clone_from(&state.cuts);
+        base.histories.copy_from_slice(histories);
+        place(base, state);
+        let found = self.measure(model, assembler, solver, state, (time, little));
+        place(&mut self.base, state);
+        assembler.contact(&mut self.base, time, &mut self.scratch)?;
+        Ok(found.ok().flatten().filter(RigidLimit::finite))
+    }
+
+    /// The measurement; leaves the assembler beside the state.
+    fn measure<S: LinearSolver + ?Sized>(
+        &mut self,
+        model: &Model,
+        assembler: &mut Assembler,
+        solver: &mut S,
+        state: &State,
+        (time, little): (f64, f64),
+    ) -> Result<Option<RigidLimit>, Fault> {
         let Workspace {
             rhs: was,
             du,
             scratch: now,
-            absolute: added,
+            absolute: stiffer,
             base,
             factored,
             ..
         } = self;
-        base.copy_from(state);
-        base.histories.copy_from_slice(histories);
-        stiffened(assembler, 1.0 + PART, |a| a.contact(base, time, added))?;
-        assembler.contact(base, time, was)?;
-        for (f, w) in added.iter_mut().zip(&*was) {
-            *f = (*f - w) / PART;
-        }
+        let mut probe = Probe {
+            model,
+            base,
+            time,
+            forces: [was, stiffer, now],
+        };
+        let before = probe.before(assembler)?;
         if !*factored {
             if solver.factorize(assembler.matrix()).is_err() {
                 return Ok(None);
             }
             *factored = true;
         }
-        let right = |du: &mut [f64]| {
-            for (d, f) in du.iter_mut().zip(&*added) {
-                *d = -f;
-            }
-            model.dofs.fold(du);
-        };
-        right(du);
+        probe.added(du);
         match solver.solve_with(assembler.matrix(), du) {
             Ok(()) => {}
             // The factors are those of the iterate before, and an estimate needs few digits.
             Err(LinearError::Inaccurate { .. }) => {
-                right(du);
+                probe.added(du);
                 if solver.solve_in_place(du).is_err() {
                     return Ok(None);
                 }
@@ -125,16 +147,14 @@ impl Workspace {
             Err(_) => return Ok(None),
         }
         model.dofs.expand(du, None);
-        let mut probe = Probe {
-            model,
-            base,
-            at: &state.u,
-            du,
-            forces: [was, added, now],
-        };
-        let mut limit = probe.measure(assembler, time)?;
-        if model.pairs.iter().any(|p| p.friction.is_some()) {
-            let normal = without_friction(assembler, |a| probe.measure(a, time))?;
+        let mut limit = probe.after(assembler, &before, du)?;
+        let slides = model.pairs.iter().any(|p| p.friction.is_some());
+        if slides && limit.change() >= little * limit.force() {
+            place(probe.base, state);
+            let normal = without_friction(assembler, |assembler| {
+                let before = probe.before(assembler)?;
+                probe.after(assembler, &before, du)
+            })?;
             if normal.change() < limit.change() {
                 limit = normal;
             }
@@ -142,45 +162,61 @@ impl Workspace {
         let bodies = 3 * model.body_nodes();
         let largest = |u: &[f64]| u[..bodies].iter().fold(0.0f64, |m, x| m.max(x.abs()));
         limit.moved = [largest(du), largest(&state.u)];
-        base.u.copy_from_slice(&state.u);
-        base.points.clone_from(&state.points);
-        base.nodes.copy_from_slice(&state.nodes);
-        assembler.contact(base, time, now)?;
-        let finite = |v: &[f64]| v.iter().all(|x| x.is_finite());
-        let known = limit.forces.iter().all(|f| finite(f)) && finite(&limit.gross);
-        Ok(Some(limit).filter(|l| known && finite(&l.moved)))
+        Ok(Some(limit))
     }
+}
+
+/// Puts the points of a state where those of another one are.
+fn place(base: &mut State, state: &State) {
+    base.u.copy_from_slice(&state.u);
+    base.points.clone_from(&state.points);
+    base.nodes.copy_from_slice(&state.nodes);
 }
 
 /// What a measurement of forces works on.
 struct Probe<'a> {
     model: &'a Model,
     base: &'a mut State,
-    /// Displacements of the step, and their change to rigid contact.
-    at: &'a [f64],
-    du: &'a [f64],
-    /// Room for nodal forces.
+    time: f64,
+    /// Forces at nodes: at the state, under stiffer penalties, and beside the state.
     forces: [&'a mut Vec<f64>; 3],
 }
 
 impl Probe<'_> {
-    /// The change of forces: those added, and what the change of the displacements makes of those of the step.
-    fn measure(&mut self, assembler: &mut Assembler, time: f64) -> Result<RigidLimit, Fault> {
-        let [was, added, now] = &mut self.forces;
-        let base = &mut *self.base;
-        base.u.copy_from_slice(self.at);
-        let stiffer = stiffened(assembler, 1.0 + PART, |a| a.contact(base, time, added))?;
-        let totals = assembler.contact(base, time, was)?;
-        for (u, d) in base.u.iter_mut().zip(self.du) {
+    /// Evaluates contact at the state, under stiffer penalties first; the totals of both in the order of the forces.
+    fn before(&mut self, assembler: &mut Assembler) -> Result<[Totals; 2], Fault> {
+        let ([was, stiffer, _], time) = (&mut self.forces, self.time);
+        let more = stiffened(assembler, |a| a.contact(self.base, time, stiffer))?;
+        Ok([assembler.contact(self.base, time, was)?, more])
+    }
+
+    /// The right-hand side of the tractions as loads.
+    fn added(&self, du: &mut [f64]) {
+        let [was, stiffer, _] = &self.forces;
+        for ((d, s), w) in du.iter_mut().zip(&**stiffer).zip(&**was) {
+            *d = (w - s) / PART;
+        }
+        self.model.dofs.fold(du);
+    }
+
+    /// The change of forces: those added, and what the change `du` of the displacements makes of those of the step.
+    fn after(
+        &mut self,
+        assembler: &mut Assembler,
+        [totals, more]: &[Totals; 2],
+        du: &[f64],
+    ) -> Result<RigidLimit, Fault> {
+        for (u, d) in self.base.u.iter_mut().zip(du) {
             *u += PART * d;
         }
-        let moved = assembler.contact(base, time, now)?;
+        let [was, stiffer, now] = &mut self.forces;
+        let moved = assembler.contact(self.base, self.time, now)?;
         let mut gross = [0.0; 2];
         let nodes = was.as_chunks::<3>().0.iter().zip(now.as_chunks::<3>().0);
-        for ((w, n), a) in nodes.zip(added.as_chunks::<3>().0) {
+        for ((w, n), s) in nodes.zip(stiffer.as_chunks::<3>().0) {
             let size = w.iter().map(|w| w * w).sum::<f64>().sqrt();
             if size > 0.0 {
-                let along: f64 = (0..3).map(|c| (n[c] + a[c] - 2.0 * w[c]) * w[c]).sum();
+                let along: f64 = (0..3).map(|c| (n[c] + s[c] - 2.0 * w[c]) * w[c]).sum();
                 gross[0] += along / (PART * size);
                 gross[1] += size;
             }
@@ -188,7 +224,7 @@ impl Probe<'_> {
         gross[0] = gross[0].abs();
         let forces = (self.model.pairs.iter().enumerate())
             .map(|(index, pair)| {
-                let [w, s, m] = [&totals, &stiffer, &moved].map(|t| force(pair, index, t));
+                let [w, s, m] = [totals, more, &moved].map(|t| force(pair, index, t));
                 [(s + m - 2.0 * w).norm() / PART, w.norm()]
             })
             .collect();
@@ -204,13 +240,12 @@ impl Probe<'_> {
 const NO_FRICTION: f64 = 1e-12;
 
 /// Evaluates under stiffer penalties, normal and tangential ones.
-fn stiffened<T>(
-    assembler: &mut Assembler,
-    factor: f64,
-    evaluate: impl FnOnce(&mut Assembler) -> T,
-) -> T {
+fn stiffened<T>(assembler: &mut Assembler, evaluate: impl FnOnce(&mut Assembler) -> T) -> T {
     let penalties = assembler.penalties.clone();
-    assembler.penalties.iter_mut().for_each(|e| *e *= factor);
+    assembler
+        .penalties
+        .iter_mut()
+        .for_each(|e| *e *= 1.0 + PART);
     let result = evaluate(assembler);
     assembler.penalties = penalties;
     result
