@@ -255,23 +255,43 @@ fn few_points_under_a_force_are_told() {
 }
 
 /// A tube whose end is held by its rim: a diaphragm across the axis lets fibres turn (the pinched cylinder comes out the same
-/// with `mid_surface`), while what holds both faces along the axis clamps them.
+/// with `mid_surface`), while what holds both faces along the axis clamps them. What holds all components is meant: it is noted
+/// what it is.
 #[test]
-fn a_border_that_cannot_turn_is_warned_of() {
-    let warnings = |displacement: Value, mid_surface: bool| {
+fn what_a_support_means_for_a_border_is_told() {
+    let said = |support: Value| {
         let mut scene = fit([8, 8], json!("nodes"));
         for body in ["inner", "outer"] {
             scene["bodies"][body]["mesh"]["cylinder_panel"]["y"] = json!([0, 40]);
         }
-        scene["supports"]["outer_y_max"] = json!({
-            "on": "outer.y_max", "displacement": displacement, "mid_surface": mid_surface
-        });
-        let warnings = model(&scene).warnings;
-        told(&warnings, "support `outer_y_max`: it holds both faces").len()
+        scene["supports"]["outer_y_max"] = support;
+        let model = model(&scene);
+        let count = |texts: &[String], text: &str| told(texts, text).len();
+        let border = "support `outer_y_max`: along the border of body `outer`";
+        let notes: Vec<String> = told(&model.notes, border).into_iter().cloned().collect();
+        [
+            count(
+                &model.warnings,
+                "support `outer_y_max`: it holds both faces",
+            ),
+            notes
+                .iter()
+                .filter(|n| n.contains("clamped (hinged with"))
+                .count(),
+            notes.iter().filter(|n| n.ends_with("hinged")).count(),
+        ]
     };
-    assert_eq!(warnings(json!({ "x": 0, "z": 0 }), false), 0);
-    assert_eq!(warnings(json!({ "y": 0, "z": 0 }), false), 1);
-    assert_eq!(warnings(json!({ "y": 0, "z": 0 }), true), 0);
-    assert_eq!(warnings(json!({ "x": 0, "y": 0, "z": 0 }), false), 0);
-    assert_eq!(warnings(json!({ "y": 0 }), false), 0);
+    let held = |displacement: Value, mid_surface: bool| {
+        said(
+            json!({ "on": "outer.y_max", "displacement": displacement, "mid_surface": mid_surface }),
+        )
+    };
+    assert_eq!(held(json!({ "x": 0, "z": 0 }), false), [0, 0, 0]);
+    assert_eq!(held(json!({ "y": 0, "z": 0 }), false), [1, 0, 0]);
+    assert_eq!(held(json!({ "y": 0, "z": 0 }), true), [0, 0, 0]);
+    assert_eq!(held(json!({ "x": 0, "y": 0, "z": 0 }), false), [0, 1, 0]);
+    assert_eq!(held(json!({ "x": 0, "y": 0, "z": 0 }), true), [0, 0, 1]);
+    assert_eq!(held(json!({ "y": 0 }), false), [0, 0, 0]);
+    let fixed = said(json!({ "on": "outer.y_max", "fixed": true }));
+    assert_eq!(fixed, [0, 1, 0]);
 }

@@ -3,6 +3,7 @@
 use super::supports::components;
 use super::{Builder, ModelError};
 use crate::mesh::ThicknessColumns;
+use crate::model::BodyModel;
 use crate::model::error::At;
 use crate::scene::{POSITION_AND_TIME, TimeFunction};
 use covact_geometry::Vec3;
@@ -16,20 +17,21 @@ const ACROSS: f64 = 0.7;
 const TIMES: [f64; 4] = [0.0, 0.31, 0.77, 1.0];
 
 impl Builder<'_> {
-    /// Warns of supports that hold both ends of fibres alike in the direction that points into the shell, across its border, and
-    /// leave another component free: the border cannot turn. A single component that is zero is a symmetry plane, and all three
-    /// are a clamp: these are meant so. Held along the border and across the shell alone, as by a diaphragm, fibres turn.
+    /// What supports mean for the fibres of shells. Warns of those that hold both ends of fibres alike in the direction that points
+    /// into the shell, across its border, and leave another component free: the border cannot turn. A single component that is
+    /// zero is a symmetry plane. Where all three are held that is a clamp, which is noted, as is a hinge: a support at the
+    /// mid-surface. Held along the border and across the shell alone, as by a diaphragm, fibres turn.
     ///
     /// # Errors
     /// As for [`Builder::supports`].
     pub(super) fn held_fibres(&mut self) -> Result<(), ModelError> {
         let scene = self.scene;
-        let mut warnings = Vec::new();
+        let (mut warnings, mut notes) = (Vec::new(), Vec::new());
         for (name, support) in &scene.supports {
             let pointer = |field: &str| format!("/supports/{name}/{field}");
             let held = components(support);
             let plane = held.len() == 1 && held[0].1.is_none();
-            if support.mid_surface || support.displacement.is_none() || held.len() == 3 || plane {
+            if held.is_empty() || plane {
                 continue;
             }
             let mut values = Vec::new();
@@ -44,62 +46,92 @@ impl Builder<'_> {
             }
             for (body, set) in sets {
                 let body = &self.bodies[body];
-                let columns = ThicknessColumns::new(&body.mesh);
-                let [low, high] = body.mesh.bounds();
-                let mut fibres = 0;
-                for node in &set {
-                    let Some([bottom, top]) = columns.ends(node - body.first_node) else {
-                        continue;
-                    };
-                    // Every fibre once.
-                    if *node != bottom + body.first_node || !set.contains(&(top + body.first_node))
-                    {
-                        continue;
-                    }
-                    let ends = [bottom, top].map(|n| body.mesh.nodes[n as usize]);
-                    let along = ends[1] - ends[0];
-                    if along.norm() > SHELL * (high - low).norm() {
-                        continue;
-                    }
-                    let along = along.normalize();
-                    let beside = (0..body.mesh.elements())
-                        .filter(|&e| body.mesh.element(e).contains(&bottom));
-                    let middle = (ends[0] + ends[1]) * 0.5;
-                    let inward = beside.fold(Vec3::zeros(), |sum, e| {
-                        let way = body.mesh.element_center(e) - middle;
-                        sum + (way - along * along.dot(&way))
-                            .try_normalize(0.0)
-                            .unwrap_or_default()
-                    });
-                    // Inside of the shell, or at an end of the border, nothing is said.
-                    let Some(inward) = inward.try_normalize(0.1) else {
-                        continue;
-                    };
-                    let turns = |component: usize| inward[component].abs() > ACROSS;
-                    let turned = (values.iter()).any(|(component, value)| {
-                        turns(*component) && !alike(value.as_ref(), ends, scene.solution.end_time)
-                    });
-                    let kept = values.iter().any(|(component, _)| turns(*component));
-                    fibres += usize::from(kept && !turned);
+                let fibres = border_fibres(body, &set, &values, scene.solution.end_time);
+                if fibres == 0 {
+                    continue;
                 }
-                if fibres > 0 {
-                    let axes: Vec<&str> = held
-                        .iter()
-                        .map(|(c, _)| ["x", "y", "z"][*c as usize])
-                        .collect();
-                    warnings.push(format!(
-                    "support `{name}`: it holds both faces of body `{}` alike along {} at {fibres} place(s), so that fibres through \
-                     the thickness cannot turn: the border is clamped, not hinged, which may change stiffness by a large part. With \
-                     `mid_surface` they turn freely; hold all three components where a clamp is meant",
-                    body.name,
-                    axes.join(" and ")
-                ));
+                let all = held.len() == 3;
+                let of = format!("support `{name}`: along the border of body `{}`", body.name);
+                match (support.mid_surface, all) {
+                    (true, true) => notes.push(format!(
+                        "{of} fibres through the thickness turn freely at {fibres} place(s): hinged"
+                    )),
+                    (true, false) => {}
+                    (false, true) => notes.push(format!(
+                        "{of} both faces are held at {fibres} place(s), so that fibres through the thickness cannot turn: clamped \
+                         (hinged with `mid_surface`)"
+                    )),
+                    (false, false) => {
+                        let axes: Vec<&str> = held
+                            .iter()
+                            .map(|(c, _)| ["x", "y", "z"][*c as usize])
+                            .collect();
+                        warnings.push(format!(
+                            "support `{name}`: it holds both faces of body `{}` alike along {} at {fibres} place(s), so that fibres through \
+                             the thickness cannot turn: the border is clamped, not hinged, which may change stiffness by a large part. With \
+                             `mid_surface` they turn freely; hold all three components where a clamp is meant",
+                            body.name,
+                            axes.join(" and ")
+                        ));
+                    }
                 }
             }
         }
         self.warnings.extend(warnings);
+        self.notes.extend(notes);
         Ok(())
     }
+}
+
+/// The number of fibres at the border of a thin body both of whose ends are in the set and alike held in the direction that points
+/// into the body, by components with their prescribed values.
+fn border_fibres(
+    body: &BodyModel,
+    set: &BTreeSet<u32>,
+    values: &[(usize, Option<TimeFunction>)],
+    end: f64,
+) -> usize {
+    let columns = ThicknessColumns::new(&body.mesh);
+    let [low, high] = body.mesh.bounds();
+    let mut beside: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for e in 0..body.mesh.elements() {
+        for node in body.mesh.element(e) {
+            if set.contains(&(node + body.first_node)) {
+                beside.entry(*node).or_default().push(e);
+            }
+        }
+    }
+    let holds = |node: &&u32| {
+        let Some([bottom, top]) = columns.ends(**node - body.first_node) else {
+            return false;
+        };
+        // Every fibre once.
+        if **node != bottom + body.first_node || !set.contains(&(top + body.first_node)) {
+            return false;
+        }
+        let ends = [bottom, top].map(|n| body.mesh.nodes[n as usize]);
+        let along = ends[1] - ends[0];
+        if along.norm() > SHELL * (high - low).norm() {
+            return false;
+        }
+        let along = along.normalize();
+        let middle = (ends[0] + ends[1]) * 0.5;
+        let inward = beside[&bottom].iter().fold(Vec3::zeros(), |sum, e| {
+            let way = body.mesh.element_center(*e) - middle;
+            sum + (way - along * along.dot(&way))
+                .try_normalize(0.0)
+                .unwrap_or_default()
+        });
+        // Inside of the shell, or at an end of the border, nothing is said.
+        let Some(inward) = inward.try_normalize(0.1) else {
+            return false;
+        };
+        let turns = |component: usize| inward[component].abs() > ACROSS;
+        let turned = (values.iter())
+            .any(|(component, value)| turns(*component) && !alike(value.as_ref(), ends, end));
+        values.iter().any(|(component, _)| turns(*component)) && !turned
+    };
+    set.iter().filter(holds).count()
 }
 
 /// Whether a prescribed displacement is the same at both ends of a fibre.
