@@ -13,7 +13,6 @@
 //! point is, and on the other side up to about the radius of curvature.
 
 use super::piece::{Pieces, difference, hull, row_of_pascal};
-use crate::basis::WIDTH;
 use crate::surface::Vec3;
 
 /// Range of a number.
@@ -123,18 +122,17 @@ impl Derivatives {
     ) -> Derivatives {
         let [low, high] = hull(net);
         let middle = (low + high) * 0.5;
-        let mut turned = [[0.0; 4]; WIDTH * WIDTH];
-        let turned = &mut turned[..net.len()];
         let mut place = [EMPTY; 3];
-        for (out, &[x, y, z, w]) in turned.iter_mut().zip(net) {
+        let turn = |&[x, y, z, w]: &[f64; 4]| {
             let p = Vec3::new(x, y, z) - middle * w;
-            for k in 0..3 {
-                out[k] = p.dot(&axes[k]);
-                place[k].take(out[k] / w);
+            let [a, b, c] = axes.map(|axis| p.dot(&axis));
+            for (place, x) in place.iter_mut().zip([a, b, c]) {
+                place.take(x / w);
             }
-            out[3] = w;
-        }
-        let of = |orders| ranges(turned, degree, orders);
+            [a, b, c, w]
+        };
+        let turned: Vec<[f64; 4]> = net.iter().map(turn).collect();
+        let of = |orders| ranges(&turned, degree, orders);
         let w0 = of([0, 0])[3];
         let nets = [of([1, 0]), of([0, 1]), of([2, 0]), of([1, 1]), of([0, 2])];
         let w = nets.map(|n| n[3]);

@@ -74,11 +74,11 @@ impl<S: Surface> PatchSet<S> {
     pub(super) fn settled_foot(&self, q: &Vec3, rough: Local, hops: usize) -> Local {
         // The search may have stopped at the border of a piece, which is none of the surface's.
         let region = self.region(rough.region.patch, rough.span);
-        let mut best = if rough.trim.is_some() || rough.region == region {
-            self.polish(q, rough)
-        } else {
-            self.polish(q, self.state(q, &region, rough.xi, rough.span))
-        };
+        let mut best = rough;
+        if best.trim.is_none() && best.region != region {
+            best = self.state(q, &region, best.xi, best.span);
+        }
+        self.polish_in_place(q, &mut best);
         if best.at != [0, 0] || best.trim.is_some() {
             best = self.cross(q, best, hops);
         }

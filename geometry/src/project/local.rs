@@ -159,13 +159,17 @@ impl<S: Surface> PatchSet<S> {
             tolerance
         };
         let limit = tolerance * tolerance * s.d2.max(self.size * self.size);
-        if self.residual2(s, floor) > limit {
-            return false;
-        }
         let scale = &self.grids[s.region.patch as usize].scale;
-        let short =
-            |k: usize| !s.active[k] && s.metric[2 * k] < floor * floor * scale[k] * scale[k];
-        !(short(0) || short(1)) || self.is_lost_in_rounding(s, floor, limit)
+        let mut short = false;
+        for k in 0..2 {
+            let (length2, least) = (s.metric[2 * k], floor * floor * scale[k] * scale[k]);
+            let ends = s.gradient[k] * s.gradient[k] <= limit * length2.max(least);
+            if !s.active[k] && !ends {
+                return false;
+            }
+            short |= !s.active[k] && length2 < least;
+        }
+        !short || self.is_lost_in_rounding(s, floor, limit)
     }
 
     /// Whether the slope at a point with a short tangent is below rounding also by the bounds of the cell that it lies in:
@@ -231,13 +235,6 @@ impl<S: Surface> PatchSet<S> {
     ) -> Local {
         let mut pair = [Local::in_region(region); 2];
         self.evaluate(q, xi, span, &mut pair[0]);
-        let last = self.iterate(q, &mut pair, tolerance);
-        pair[last]
-    }
-
-    fn descend_from(&self, q: &Vec3, s: Local, tolerance: f64) -> Local {
-        let mut pair = [s; 2];
-        pair[0].converged = false;
         let last = self.iterate(q, &mut pair, tolerance);
         pair[last]
     }
@@ -353,27 +350,34 @@ impl<S: Surface> PatchSet<S> {
     /// it is not or they do not suffice, the safeguarded iteration before them. The result converges as `converged` says.
     /// On a trimmed patch a point stops at the trim.
     pub(super) fn polish(&self, q: &Vec3, mut s: Local) -> Local {
-        if self.patches[s.region.patch as usize].trim().is_none() {
-            self.polish_face(q, &mut s);
-            s
-        } else if s.trim.is_some() {
-            self.polish_on_trim(q, s)
-        } else {
-            self.polish_face(q, &mut s);
-            self.stopped_by_trim(q, s)
+        self.polish_in_place(q, &mut s);
+        s
+    }
+
+    /// See [`polish`](Self::polish).
+    #[inline]
+    pub(super) fn polish_in_place(&self, q: &Vec3, s: &mut Local) {
+        let trimmed = self.patches[s.region.patch as usize].trim().is_some();
+        if trimmed && s.trim.is_some() {
+            *s = self.polish_on_trim(q, *s);
+            return;
+        }
+        self.polish_face(q, s);
+        if trimmed {
+            *s = self.stopped_by_trim(q, *s);
         }
     }
 
     /// [`polish`](Self::polish) of a point that no trim holds, whatever the trim of its patch.
     pub(super) fn polish_face(&self, q: &Vec3, s: &mut Local) {
-        let start = *s;
-        if start.converged {
+        let (xi, span) = (s.xi, s.span);
+        if s.converged {
             self.refine(q, s);
             if self.stationary(s, 1e-12) {
                 return;
             }
         }
-        *s = self.descend_from(q, start, 1e-12);
+        *s = self.descend(q, &s.region, xi, span, 1e-12);
         self.refine(q, s);
         let tolerance = self.attainable(s).clamp(1e-12, 1e-9);
         s.converged = s.converged || self.stationary(s, tolerance);
@@ -381,17 +385,13 @@ impl<S: Surface> PatchSet<S> {
 
     /// Undamped Newton steps as far as they help.
     pub(super) fn refine(&self, q: &Vec3, s: &mut Local) {
+        // Most points are as good as they can be.
+        let Some(mut step) = step_to_make(s) else {
+            return;
+        };
+        let domain = s.region.domain;
         let mut trial = *s;
         for _ in 0..3 {
-            let Some(step) = undamped_step(&trial) else {
-                break;
-            };
-            let domain = s.region.domain;
-            // What the last step left is rounding.
-            let tiny = |k: usize| step[k].abs() <= 1e-14 * (domain[k][1] - domain[k][0]);
-            if tiny(0) && tiny(1) {
-                break;
-            }
             self.evaluate(q, moved(&trial, step, 1.0), trial.span, &mut trial);
             // Undamped does not mean blind: close to a pole rounding alone can lead away again. But there a first step in
             // the turning parameter may also cost what the second one gains.
@@ -407,8 +407,21 @@ impl<S: Surface> PatchSet<S> {
             if better && (0..2).all(|k| step[k].abs() <= 1e-8 * (domain[k][1] - domain[k][0])) {
                 break;
             }
+            match step_to_make(&trial) {
+                Some(next) => step = next,
+                None => break,
+            }
         }
     }
+}
+
+/// The Newton step, where there is one and it is more than what rounding leaves.
+#[inline]
+fn step_to_make(s: &Local) -> Option<[f64; 2]> {
+    let step = undamped_step(s)?;
+    let domain = s.region.domain;
+    let tiny = |k: usize| step[k].abs() <= 1e-14 * (domain[k][1] - domain[k][0]);
+    (!(tiny(0) && tiny(1))).then_some(step)
 }
 
 fn moved(s: &Local, step: [f64; 2], factor: f64) -> [f64; 2] {

@@ -7,6 +7,7 @@ use super::piece::Piece;
 use super::round::Sphere;
 use super::subdivide::covered;
 use crate::surface::{Surface, Vec3};
+use std::cell::Cell;
 
 /// Tolerance of local iterations during the search; the winner is polished afterwards.
 pub(super) const ROUGH: f64 = 1e-10;
@@ -51,6 +52,18 @@ pub(super) struct Search<'a, S: Surface> {
     centred: bool,
     /// Whether the best point is as exact as it can be.
     sharp: bool,
+    /// The sphere of the patch that was looked at last: pieces of one patch follow each other.
+    sphere: Cell<Option<Beyond>>,
+    /// Whether distances do not change about the best point, once it was asked for.
+    flat: Cell<Option<bool>>,
+}
+
+/// The sphere that a patch lies on, and the query.
+#[derive(Clone, Copy)]
+struct Beyond {
+    patch: u32,
+    distance: f64,
+    near_centre: bool,
 }
 
 impl<'a, S: Surface> Search<'a, S> {
@@ -74,6 +87,8 @@ impl<'a, S: Surface> Search<'a, S> {
             loose: false,
             centred: false,
             sharp: false,
+            sphere: Cell::new(None),
+            flat: Cell::new(None),
         };
         search.slack = search.least_slack();
         search
@@ -111,6 +126,7 @@ impl<'a, S: Surface> Search<'a, S> {
         self.distance = distance;
         self.loose = false;
         self.sharp = false;
+        self.flat.set(None);
         (self.cut, self.wide) = if distance > tolerance {
             (distance - tolerance, (distance + tolerance).min(self.reach))
         } else {
@@ -351,16 +367,33 @@ impl<'a, S: Surface> Search<'a, S> {
         let (Some(sphere), Some((_, best))) = (&set.spheres[patch as usize], &self.best) else {
             return false;
         };
-        let bound = sphere.distance(&self.q);
+        let known = self.sphere.get().filter(|b| b.patch == patch);
+        let beyond = known.unwrap_or_else(|| self.beyond(patch, sphere));
+        let bound = beyond.distance;
+        let flat = || {
+            let flat = self.flat.get().unwrap_or_else(|| set.flat(best));
+            self.flat.set(Some(flat));
+            flat
+        };
         // At the centre all points are as near, and which of them is taken means nothing.
-        let nothing_nearer = sphere.has_near_centre(&self.q) && bound >= self.cut
-            || bound + 1e-14 * (set.size + self.distance) >= self.distance && set.flat(best);
+        let nothing_nearer = beyond.near_centre && bound >= self.cut
+            || bound + 1e-14 * (set.size + self.distance) >= self.distance && flat();
         let own = |other: &Sphere| other.number == sphere.number;
         nothing_nearer
             && (bound >= self.wide
                 || set.spheres[best.region.patch as usize]
                     .as_ref()
                     .is_some_and(own))
+    }
+
+    fn beyond(&self, patch: u32, sphere: &Sphere) -> Beyond {
+        let beyond = Beyond {
+            patch,
+            distance: sphere.distance(&self.q),
+            near_centre: sphere.has_near_centre(&self.q),
+        };
+        self.sphere.set(Some(beyond));
+        beyond
     }
 
     /// Whether the sphere that a patch lies on is nowhere nearer than the best point.
