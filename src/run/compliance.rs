@@ -15,7 +15,8 @@
 //! What such measures do not show, a wrap whose pressure is concentrated or a path that is about to turn, the linear answer to
 //! the tractions of the step itself does ([`RigidLimit`]): it is what the user is told, of the last step and of that of the
 //! largest force, and it rules the penalty where two steps in a row show too much, and at the last step. It costs as much as a few
-//! assemblies of contact: as long as it shows little it is made at fewer and fewer steps, and wherever forces have grown.
+//! assemblies of contact: as long as it shows little it is made at fewer and fewer steps, and wherever forces have grown or motions
+//! have turned.
 mod kept;
 mod told;
 
@@ -246,8 +247,12 @@ impl Compliance {
         }
     }
 
-    /// Whether what rigid contact would change is to be measured at a step.
-    pub fn is_due(&self, step: u32, bearings: &Bearings) -> bool {
+    /// Whether what rigid contact would change is to be measured at a step; `turned` says that motions or loads had a kink at its
+    /// start, behind which nothing is known.
+    pub fn is_due(&mut self, step: u32, bearings: &Bearings, turned: bool) -> bool {
+        if turned {
+            self.gap = 0;
+        }
         let last = self.limits[1].step;
         last == 0 || step >= last + self.gap || bearings.force() > LARGER * self.bearing
     }

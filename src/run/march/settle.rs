@@ -93,7 +93,8 @@ impl<'m> March<'_, 'm> {
             self.gather(outputs, trial, end)?;
             let last = walk.stepping.done(end);
             let bearings = &outputs.fields.bearings;
-            let due = last || self.compliance.is_due(step, bearings);
+            let turned = walk.stepping.at_kink(start);
+            let due = self.compliance.is_due(step, bearings, turned) || last;
             let limit = match due && reliable(converged) {
                 true => self.rigid_limit(trial, &histories, bearings, end),
                 false => None,
