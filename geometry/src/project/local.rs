@@ -161,8 +161,8 @@ impl<S: Surface> PatchSet<S> {
         let limit = tolerance * tolerance * s.d2.max(self.size * self.size);
         let scale = &self.grids[s.region.patch as usize].scale;
         let mut short = false;
-        for k in 0..2 {
-            let (length2, least) = (s.metric[2 * k], floor * floor * scale[k] * scale[k]);
+        for (k, scale) in scale.iter().enumerate() {
+            let (length2, least) = (s.metric[2 * k], floor * floor * scale * scale);
             let ends = s.gradient[k] * s.gradient[k] <= limit * length2.max(least);
             if !s.active[k] && !ends {
                 return false;
@@ -370,14 +370,18 @@ impl<S: Surface> PatchSet<S> {
 
     /// [`polish`](Self::polish) of a point that no trim holds, whatever the trim of its patch.
     pub(super) fn polish_face(&self, q: &Vec3, s: &mut Local) {
-        let (xi, span) = (s.xi, s.span);
         if s.converged {
+            let (xi, span) = (s.xi, s.span);
             self.refine(q, s);
             if self.stationary(s, 1e-12) {
                 return;
             }
+            *s = self.descend(q, &s.region, xi, span, 1e-12);
+        } else {
+            let mut pair = [*s; 2];
+            let last = self.iterate(q, &mut pair, 1e-12);
+            *s = pair[last];
         }
-        *s = self.descend(q, &s.region, xi, span, 1e-12);
         self.refine(q, s);
         let tolerance = self.attainable(s).clamp(1e-12, 1e-9);
         s.converged = s.converged || self.stationary(s, tolerance);

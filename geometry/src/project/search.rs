@@ -448,16 +448,25 @@ impl<'a, S: Surface> Search<'a, S> {
                 }
             }
         }
+        let ends = |search: &Self, local: &Local| {
+            cell.settles_itself(&search.q, local, search.slack) || search.cut < 0.0
+        };
         let local = match &self.best {
-            Some((best, local)) if *best == id => *local,
+            Some((best, local)) if *best == id => {
+                if ends(self, local) {
+                    return;
+                }
+                *local
+            }
             _ => {
                 let u = cell.seed(&self.q).map(|u| u.clamp(0.05, 0.95));
-                self.iterate(id, piece, u)
+                let local = self.iterate(id, piece, u);
+                if ends(self, &local) {
+                    return;
+                }
+                local
             }
         };
-        if cell.settles_itself(&self.q, &local, self.slack) || self.cut < 0.0 {
-            return;
-        }
         let known = self.known(piece, &local);
         if !covered(piece, &known, &[[0.0, 1.0]; 2]) {
             self.subdivide(id, piece, known);
