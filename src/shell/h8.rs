@@ -1,7 +1,7 @@
 //! The elements of one body: what assembly calls.
 use super::error::{ElementFault, FaultCause, ShellError};
 use super::kinematics::{self, Fields, V};
-use super::material::{Collapsed, Law, MaterialLaw};
+use super::material::{Collapsed, Law, MaterialLaw, with_law};
 use super::reference::{MODES, Reference};
 use super::{brick, stress, tangent};
 use crate::mesh::{ElementKind, Mesh};
@@ -89,16 +89,6 @@ pub struct H8Block {
     law: Law,
     nodes: Vec<[u32; 8]>,
     reference: Vec<Reference>,
-}
-
-/// Runs a block of code with `$law` bound to the concrete law.
-macro_rules! with_law {
-    ($self:ident, $law:ident => $body:expr) => {
-        match &$self.law {
-            Law::StVenantKirchhoff($law) => $body,
-            Law::NeoHooke($law) => $body,
-        }
-    };
 }
 
 impl H8Block {
@@ -232,7 +222,7 @@ impl H8Block {
     ) -> Result<(), ElementFault> {
         let u = arrays(u);
         let re = &self.reference[e];
-        with_law!(self, law => match self.formulation {
+        with_law!(&self.law, law => match self.formulation {
             Formulation::Eas7 => tangent::evaluate::<_, 7>(law, re, &u, state, out),
             Formulation::Eas3 => tangent::evaluate::<_, 3>(law, re, &u, state, out),
             Formulation::Eas0 => tangent::evaluate::<_, 0>(law, re, &u, state, out),
@@ -255,9 +245,11 @@ impl H8Block {
         out: &mut H8System,
     ) -> Result<(), ElementFault> {
         let (u, re) = (arrays(u), &self.reference[e]);
-        with_law!(self, law => brick::evaluate(law, re, &u, out)).map_err(|cause| ElementFault {
-            element: e as u32,
-            cause,
+        with_law!(&self.law, law => brick::evaluate(law, re, &u, out)).map_err(|cause| {
+            ElementFault {
+                element: e as u32,
+                cause,
+            }
         })
     }
 
@@ -282,7 +274,7 @@ impl H8Block {
     ) -> Result<f64, ElementFault> {
         let u = arrays(u);
         let re = &self.reference[e];
-        with_law!(self, law => match self.formulation {
+        with_law!(&self.law, law => match self.formulation {
             Formulation::Eas7 => residual::<_, 7>(law, re, &u, state, f),
             Formulation::Eas3 => residual::<_, 3>(law, re, &u, state, f),
             Formulation::Eas0 => residual::<_, 0>(law, re, &u, state, f),
@@ -340,7 +332,7 @@ impl H8Block {
             }
         };
         for g in 0..8 {
-            out[g] = with_law!(self, law => stress::cauchy(
+            out[g] = with_law!(&self.law, law => stress::cauchy(
                 law, &re.metric[g], &big.at(g), &du.at(g), &strain[g]
             ))
             .map_err(|c| fault(e, g as u8, c))?;
@@ -374,7 +366,7 @@ impl H8Block {
             }
         };
         for g in 0..8 {
-            out[g] = with_law!(self, law => stress::linear(
+            out[g] = with_law!(&self.law, law => stress::linear(
                 law, &re.metric[g], &big.at(g), &strain[g]
             ))
             .map_err(|c| fault(e, g as u8, c))?;

@@ -1,7 +1,7 @@
 //! Derivatives of laws and elements against dual numbers, and the rank of the element.
 use super::h8::{Formulation, H8Block, H8System};
 use super::kinematics::{self, V};
-use super::material::{Collapsed, Law, MaterialLaw, Metric};
+use super::material::{Collapsed, Law, MaterialLaw, Metric, with_law};
 use super::reference::Reference;
 use super::tangent::{self, factors};
 use super::{ElementFault, FaultCause, ShellError, brick};
@@ -97,10 +97,7 @@ fn energy_gives_stress_gives_tangent() {
     for law in laws() {
         for metric in [Metric::CARTESIAN, skew] {
             for strain in &strains {
-                let errors = match &law {
-                    Law::StVenantKirchhoff(law) => check_law(law, &metric, strain),
-                    Law::NeoHooke(law) => check_law(law, &metric, strain),
-                };
+                let errors = with_law!(&law, law => check_law(law, &metric, strain));
                 println!("{law:?}: {errors:?}");
                 assert!(errors.0 < 1e-12 && errors.1 < 1e-12, "{law:?} {errors:?}");
             }
@@ -277,10 +274,7 @@ fn element_tangent_is_the_derivative_of_its_forces() {
                     }
                 };
             }
-            let errors = match &law {
-                Law::StVenantKirchhoff(law) => all!(law),
-                Law::NeoHooke(law) => all!(law),
-            };
+            let errors = with_law!(&law, law => all!(law));
             println!("{formulation:?}: tangent, forces, gradient of the energy {errors:?}");
             assert!(
                 errors.iter().all(|e| *e < 1e-12),
@@ -319,10 +313,7 @@ fn condensed_tangent_is_the_derivative_of_condensed_forces() {
             let mut ud = u.map(|u| u.data.0[0].map(Dual64::from));
             ud[column / 3][column % 3] = ud[column / 3][column % 3].derivative();
             let mut alpha: [Dual64; 7] = std::array::from_fn(|m| Dual64::from(state[m]));
-            let forces = |alpha: &[Dual64; 7]| match &law {
-                Law::StVenantKirchhoff(law) => kinematics::forces(law, &re, &ud, alpha).unwrap(),
-                Law::NeoHooke(law) => kinematics::forces(law, &re, &ud, alpha).unwrap(),
-            };
+            let forces = |alpha: &[Dual64; 7]| with_law!(&law, law => kinematics::forces(law, &re, &ud, alpha).unwrap());
             for _ in 0..2 {
                 let (_, _, h) = forces(&alpha);
                 // D from duals in alpha alone.
@@ -330,14 +321,7 @@ fn condensed_tangent_is_the_derivative_of_condensed_forces() {
                     let mut a = alpha.map(|a| Dual64::from(a.re));
                     a[j] = a[j].derivative();
                     let uf = ud.map(|u| u.map(|u| Dual64::from(u.re)));
-                    match &law {
-                        Law::StVenantKirchhoff(law) => {
-                            kinematics::forces(law, &re, &uf, &a).unwrap().2[i].eps
-                        }
-                        Law::NeoHooke(law) => {
-                            kinematics::forces(law, &re, &uf, &a).unwrap().2[i].eps
-                        }
-                    }
+                    with_law!(&law, law => kinematics::forces(law, &re, &uf, &a).unwrap().2[i].eps)
                 });
                 let inverse = d.try_inverse().unwrap();
                 for m in 0..7 {

@@ -44,6 +44,36 @@ pub enum Material {
     NeoHooke(Elastic),
 }
 
+impl Material {
+    /// The key in scenes; the name of its effect is `material.` and this key.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Material::StVenantKirchhoff(_) => "st_venant_kirchhoff",
+            Material::NeoHooke(_) => "neo_hooke",
+        }
+    }
+
+    /// The name in prose.
+    pub fn title(&self) -> &'static str {
+        match self {
+            Material::StVenantKirchhoff(_) => "St. Venant-Kirchhoff",
+            Material::NeoHooke(_) => "neo-Hooke",
+        }
+    }
+
+    /// Constants of the law at small strain.
+    pub fn elastic(&self) -> &Elastic {
+        match self {
+            Material::StVenantKirchhoff(elastic) | Material::NeoHooke(elastic) => elastic,
+        }
+    }
+
+    /// Whether stress and Green-Lagrange strain are proportional at any strain.
+    pub fn is_linear(&self) -> bool {
+        matches!(self, Material::StVenantKirchhoff(_))
+    }
+}
+
 /// Young's modulus (force / length^2) and Poisson's ratio.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -70,6 +100,15 @@ fn modulus_of_hardness(shore: f64) -> f64 {
 }
 
 impl MaterialChoice {
+    /// A law that is written out with its constants; none for a name.
+    pub fn written(self) -> Option<Material> {
+        match self {
+            MaterialChoice::StVenantKirchhoff(e) => Some(Material::StVenantKirchhoff(e)),
+            MaterialChoice::NeoHooke(e) => Some(Material::NeoHooke(e)),
+            _ => None,
+        }
+    }
+
     fn known(self) -> Option<KnownMaterial> {
         let metal = |name, e, yield_strength| {
             Some(KnownMaterial {
@@ -107,11 +146,7 @@ impl MaterialChoice {
     /// The law with its constants in the units of the scene; none for a name where the force unit is not given.
     pub fn law(self, units: &Units) -> Option<Material> {
         let Some(known) = self.known() else {
-            return match self {
-                MaterialChoice::StVenantKirchhoff(e) => Some(Material::StVenantKirchhoff(e)),
-                MaterialChoice::NeoHooke(e) => Some(Material::NeoHooke(e)),
-                _ => None,
-            };
+            return self.written();
         };
         let elastic = Elastic {
             e: known.e / units.pascals()?,

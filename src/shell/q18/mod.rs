@@ -13,7 +13,7 @@ mod tests;
 
 use super::error::{ElementFault, FaultCause, ShellError};
 use super::kinematics::V;
-use super::material::{Collapsed, Law};
+use super::material::{Collapsed, Law, with_law};
 use super::stress;
 use crate::mesh::{ElementKind, Mesh};
 use covact_geometry::Vec3;
@@ -57,16 +57,6 @@ pub struct Q18Block {
     law: Law,
     nodes: Vec<[u32; 18]>,
     reference: Vec<Reference>,
-}
-
-/// Runs a block of code with `$law` bound to the concrete law.
-macro_rules! with_law {
-    ($self:ident, $law:ident => $body:expr) => {
-        match &$self.law {
-            Law::StVenantKirchhoff($law) => $body,
-            Law::NeoHooke($law) => $body,
-        }
-    };
 }
 
 impl Q18Block {
@@ -169,7 +159,7 @@ impl Q18Block {
         out: &mut Q18System,
     ) -> Result<(), ElementFault> {
         let (u, re) = (arrays(u), &self.reference[e]);
-        with_law!(self, law => tangent::evaluate(law, re, &u, state, out)).map_err(|cause| {
+        with_law!(&self.law, law => tangent::evaluate(law, re, &u, state, out)).map_err(|cause| {
             ElementFault {
                 element: e as u32,
                 cause,
@@ -190,7 +180,7 @@ impl Q18Block {
         f: &mut [f64; DOFS],
     ) -> Result<f64, ElementFault> {
         let (u, re) = (arrays(u), &self.reference[e]);
-        let (energy, forces, mut h) = with_law!(self, law =>
+        let (energy, forces, mut h) = with_law!(&self.law, law =>
             strain::forces(law, re, &split(&u), &head(state)))
         .map_err(|(point, c)| fault(e, point, c))?;
         for node in 0..18 {
@@ -242,7 +232,7 @@ impl Q18Block {
         for (g, point) in TABLES.points.iter().enumerate() {
             let big = point.n.map(|n| strain::along(&n, &re.y));
             let moved = point.n.map(|n| strain::along(&n, &du));
-            out[g] = with_law!(self, law =>
+            out[g] = with_law!(&self.law, law =>
                 stress::cauchy(law, &re.metric[g], &big, &moved, &strain[g]))
             .map_err(|c| fault(e, g as u8, c))?;
         }
@@ -266,8 +256,9 @@ impl Q18Block {
         let strain = strain::strains(re, &stress::from_zero(&split(&arrays(u))), &alpha);
         for (g, point) in TABLES.points.iter().enumerate() {
             let big = point.n.map(|n| strain::along(&n, &re.y));
-            out[g] = with_law!(self, law => stress::linear(law, &re.metric[g], &big, &strain[g]))
-                .map_err(|c| fault(e, g as u8, c))?;
+            out[g] =
+                with_law!(&self.law, law => stress::linear(law, &re.metric[g], &big, &strain[g]))
+                    .map_err(|c| fault(e, g as u8, c))?;
         }
         Ok(())
     }

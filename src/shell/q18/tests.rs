@@ -1,5 +1,5 @@
 //! Derivatives of Q18 against dual numbers, and its rank.
-use super::super::material::Law;
+use super::super::material::{Law, with_law};
 use super::reference::{MODES, Reference};
 use super::strain::forces;
 use super::{DOFS, Q18Block, Q18System};
@@ -85,11 +85,7 @@ fn dual(
             }
         })
     });
-    let (energy, f, h) = match law {
-        Law::StVenantKirchhoff(law) => forces(law, re, &y, &a),
-        Law::NeoHooke(law) => forces(law, re, &y, &a),
-    }
-    .unwrap();
+    let (energy, f, h) = with_law!(law, law => forces(law, re, &y, &a)).unwrap();
     let mut out = vec![energy];
     for node in 0..18 {
         for k in 0..3 {
