@@ -42,11 +42,12 @@ fn mesh(nodes: &[Vec3; 8]) -> Mesh {
     }
 }
 
-fn laws() -> [Law; 2] {
+fn laws() -> [Law; 3] {
     let elastic = Elastic { e: 1000.0, nu: 0.3 };
     [
         Material::StVenantKirchhoff(elastic),
         Material::NeoHooke(elastic),
+        Material::Hencky(elastic),
     ]
     .map(|m| Law::new(&m).unwrap())
 }

@@ -12,6 +12,8 @@ pub enum MaterialChoice {
     StVenantKirchhoff(Elastic),
     /// Compressible neo-Hooke: large strains.
     NeoHooke(Elastic),
+    /// Hencky: linear law between logarithmic strain and its conjugate stress. Moderately large strains, stretches of 1/2 to 2.
+    Hencky(Elastic),
     /// Structural steel S235: E 210 GPa, nu 0.3 (EN 1993-1-1, 3.2.6); yield strength 235 MPa (EN 10025-2).
     /// St. Venant-Kirchhoff.
     Steel,
@@ -42,6 +44,8 @@ pub enum Material {
     StVenantKirchhoff(Elastic),
     /// Compressible neo-Hooke: large strains.
     NeoHooke(Elastic),
+    /// Hencky: linear law between logarithmic strain and its conjugate stress. Moderately large strains, stretches of 1/2 to 2.
+    Hencky(Elastic),
 }
 
 impl Material {
@@ -50,6 +54,7 @@ impl Material {
         match self {
             Material::StVenantKirchhoff(_) => "st_venant_kirchhoff",
             Material::NeoHooke(_) => "neo_hooke",
+            Material::Hencky(_) => "hencky",
         }
     }
 
@@ -58,13 +63,16 @@ impl Material {
         match self {
             Material::StVenantKirchhoff(_) => "St. Venant-Kirchhoff",
             Material::NeoHooke(_) => "neo-Hooke",
+            Material::Hencky(_) => "Hencky",
         }
     }
 
     /// Constants of the law at small strain.
     pub fn elastic(&self) -> &Elastic {
         match self {
-            Material::StVenantKirchhoff(elastic) | Material::NeoHooke(elastic) => elastic,
+            Material::StVenantKirchhoff(elastic)
+            | Material::NeoHooke(elastic)
+            | Material::Hencky(elastic) => elastic,
         }
     }
 
@@ -105,6 +113,7 @@ impl MaterialChoice {
         match self {
             MaterialChoice::StVenantKirchhoff(e) => Some(Material::StVenantKirchhoff(e)),
             MaterialChoice::NeoHooke(e) => Some(Material::NeoHooke(e)),
+            MaterialChoice::Hencky(e) => Some(Material::Hencky(e)),
             _ => None,
         }
     }
@@ -127,7 +136,9 @@ impl MaterialChoice {
             })
         };
         match self {
-            MaterialChoice::StVenantKirchhoff(_) | MaterialChoice::NeoHooke(_) => None,
+            MaterialChoice::StVenantKirchhoff(_)
+            | MaterialChoice::NeoHooke(_)
+            | MaterialChoice::Hencky(_) => None,
             MaterialChoice::Steel => metal("steel", 210e9, 235e6),
             MaterialChoice::StainlessSteel => metal("stainless_steel", 200e9, 210e6),
             MaterialChoice::Aluminium => metal("aluminium", 70e9, 240e6),

@@ -6,12 +6,15 @@
 //!
 //! Source of the formulas: J. Bonet and R. D. Wood, *Nonlinear Continuum Mechanics for Finite Element Analysis*, 2008,
 //! chapter 6, here in convected components.
+mod hencky;
+mod logarithm;
 mod neo_hooke;
 mod st_venant_kirchhoff;
 mod tensor;
 
 use super::error::ShellError;
 use crate::scene::{Elastic, Material};
+pub use hencky::Hencky;
 pub use neo_hooke::NeoHooke;
 use num_dual::DualNum;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
@@ -90,6 +93,7 @@ pub trait MaterialLaw: Copy + Send + Sync {
 pub enum Law {
     StVenantKirchhoff(StVenantKirchhoff),
     NeoHooke(NeoHooke),
+    Hencky(Hencky),
 }
 
 /// Runs a block of code with `$law` bound to the concrete law of a [`Law`].
@@ -98,6 +102,7 @@ macro_rules! with_law {
         match $enum {
             $crate::shell::Law::StVenantKirchhoff($law) => $body,
             $crate::shell::Law::NeoHooke($law) => $body,
+            $crate::shell::Law::Hencky($law) => $body,
         }
     };
 }
@@ -115,6 +120,7 @@ impl Law {
                 Law::StVenantKirchhoff(StVenantKirchhoff { lambda, mu })
             }
             Material::NeoHooke(_) => Law::NeoHooke(NeoHooke { lambda, mu }),
+            Material::Hencky(_) => Law::Hencky(Hencky { lambda, mu }),
         })
     }
 

@@ -44,11 +44,12 @@ fn block(law: Law) -> Q18Block {
     Q18Block::new(&mesh, law).unwrap()
 }
 
-fn laws() -> [Law; 2] {
+fn laws() -> [Law; 3] {
     let elastic = Elastic { e: 1000.0, nu: 0.3 };
     [
         Material::StVenantKirchhoff(elastic),
         Material::NeoHooke(elastic),
+        Material::Hencky(elastic),
     ]
     .map(|m| Law::new(&m).unwrap())
 }
