@@ -19,6 +19,7 @@ mod brick;
 pub mod distortion;
 mod error;
 mod h8;
+mod history;
 mod hold;
 mod kinematics;
 pub mod material;

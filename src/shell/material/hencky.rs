@@ -28,10 +28,13 @@ impl Hencky {
 }
 
 impl MaterialLaw for Hencky {
+    type State = ();
+
     fn energy<D: DualNum<f64> + Copy>(
         &self,
         metric: &Metric,
         strain: &[D; 6],
+        (): &(),
     ) -> Result<D, Collapsed> {
         let h = Logarithm::new(metric, strain)?;
         Ok(self.conjugate(metric, &h.mixed).0)
@@ -41,6 +44,7 @@ impl MaterialLaw for Hencky {
         &self,
         metric: &Metric,
         strain: &[D; 6],
+        (): &(),
     ) -> Result<(D, [D; 6]), Collapsed> {
         let h = Logarithm::new(metric, strain)?;
         let (energy, t) = self.conjugate(metric, &h.mixed);
@@ -48,7 +52,7 @@ impl MaterialLaw for Hencky {
     }
 
     #[inline]
-    fn response(&self, metric: &Metric, strain: &[f64; 6]) -> Result<Response, Collapsed> {
+    fn response(&self, metric: &Metric, strain: &[f64; 6], (): &()) -> Result<Response, Collapsed> {
         let h = Logarithm::new(metric, strain)?;
         let (energy, t) = self.conjugate(metric, &h.mixed);
         let moduli = isotropic(&metric.upper, self.lambda, self.mu);
@@ -85,7 +89,7 @@ mod tests {
     fn kirchhoff(f: &Matrix3<f64>, frame: &Matrix3<f64>) -> (f64, Matrix3<f64>) {
         let e = frame.transpose() * (f.transpose() * f - Matrix3::identity()) * frame * 0.5;
         let metric = Metric::new(voigt(&(frame.transpose() * frame), 1.0));
-        let response = LAW.response(&metric, &voigt(&e, 2.0)).unwrap();
+        let response = LAW.response(&metric, &voigt(&e, 2.0), &()).unwrap();
         let [a, b, c, d, g, h] = response.stress;
         let s = Matrix3::new(a, d, h, d, b, g, h, g, c);
         let now = f * frame;

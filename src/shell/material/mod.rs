@@ -59,8 +59,40 @@ pub struct Response {
     pub tangent: [[f64; 6]; 6],
 }
 
-/// A hyperelastic law. Energy and stress are generic over the scalar, so that dual numbers can check derivatives.
+/// What a material point remembers of the accepted steps: plain numbers, zero at first.
+pub trait LawState: Copy + Send + Sync {
+    /// How many numbers.
+    const LEN: usize;
+    /// That of a point which nothing has happened to.
+    const UNUSED: Self;
+    /// From [`LawState::LEN`] numbers.
+    fn read(from: &[f64]) -> Self;
+    /// Into [`LawState::LEN`] numbers.
+    fn write(&self, to: &mut [f64]);
+}
+
+/// Elastic laws remember nothing.
+impl LawState for () {
+    const LEN: usize = 0;
+    const UNUSED: () = ();
+    #[inline(always)]
+    fn read(_: &[f64]) {}
+    #[inline(always)]
+    fn write(&self, _: &mut [f64]) {}
+}
+
+/// The state of point `point` among the states of an element's points.
+#[inline(always)]
+pub(super) fn state_of<L: MaterialLaw>(states: &[f64], point: usize) -> L::State {
+    L::State::read(&states[point * L::State::LEN..][..L::State::LEN])
+}
+
+/// A law whose stress is the gradient of an energy at constant `old`, the state at the end of the last accepted step.
+/// Energy and stress are generic over the scalar, so that dual numbers can check derivatives.
 pub trait MaterialLaw: Copy + Send + Sync {
+    /// What a point remembers between steps.
+    type State: LawState;
+
     /// Energy per undeformed volume.
     ///
     /// # Errors
@@ -69,6 +101,7 @@ pub trait MaterialLaw: Copy + Send + Sync {
         &self,
         metric: &Metric,
         strain: &[D; 6],
+        old: &Self::State,
     ) -> Result<D, Collapsed>;
 
     /// Energy density and stress.
@@ -79,13 +112,32 @@ pub trait MaterialLaw: Copy + Send + Sync {
         &self,
         metric: &Metric,
         strain: &[D; 6],
+        old: &Self::State,
     ) -> Result<(D, [D; 6]), Collapsed>;
 
     /// Energy density, stress and tangent.
     ///
     /// # Errors
     /// [`Collapsed`] where C is not positive definite.
-    fn response(&self, metric: &Metric, strain: &[f64; 6]) -> Result<Response, Collapsed>;
+    fn response(
+        &self,
+        metric: &Metric,
+        strain: &[f64; 6],
+        old: &Self::State,
+    ) -> Result<Response, Collapsed>;
+
+    /// The state at the end of a step that is accepted at this strain.
+    ///
+    /// # Errors
+    /// [`Collapsed`] where C is not positive definite.
+    fn advance(
+        &self,
+        _metric: &Metric,
+        _strain: &[f64; 6],
+        old: &Self::State,
+    ) -> Result<Self::State, Collapsed> {
+        Ok(*old)
+    }
 }
 
 /// A law chosen at run time; elements branch on it once and run monomorphised loops.
@@ -134,6 +186,14 @@ impl Law {
     pub fn young(&self) -> f64 {
         let (lambda, mu) = self.lame();
         mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu)
+    }
+
+    /// Numbers that a point remembers between steps.
+    pub fn state_len(&self) -> usize {
+        fn len<L: MaterialLaw>(_: &L) -> usize {
+            L::State::LEN
+        }
+        with_law!(self, law => len(law))
     }
 
     fn lame(&self) -> (f64, f64) {

@@ -35,10 +35,13 @@ impl NeoHooke {
 }
 
 impl MaterialLaw for NeoHooke {
+    type State = ();
+
     fn energy<D: DualNum<f64> + Copy>(
         &self,
         metric: &Metric,
         strain: &[D; 6],
+        (): &(),
     ) -> Result<D, Collapsed> {
         let (i1, i2, i3) = invariants(&mixed(metric, strain));
         let (_, change) = cauchy_green(metric, strain, (i1, i2, i3))?;
@@ -50,13 +53,14 @@ impl MaterialLaw for NeoHooke {
         &self,
         metric: &Metric,
         strain: &[D; 6],
+        (): &(),
     ) -> Result<(D, [D; 6]), Collapsed> {
         let (energy, s, _, _) = self.all(metric, strain)?;
         Ok((energy, s))
     }
 
     #[inline]
-    fn response(&self, metric: &Metric, strain: &[f64; 6]) -> Result<Response, Collapsed> {
+    fn response(&self, metric: &Metric, strain: &[f64; 6], (): &()) -> Result<Response, Collapsed> {
         let (energy, stress, ci, ln_j) = self.all(metric, strain)?;
         let tangent = isotropic(&ci, self.lambda, self.mu - self.lambda * ln_j);
         Ok(Response {

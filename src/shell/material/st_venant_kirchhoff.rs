@@ -12,10 +12,13 @@ pub struct StVenantKirchhoff {
 }
 
 impl MaterialLaw for StVenantKirchhoff {
+    type State = ();
+
     fn energy<D: DualNum<f64> + Copy>(
         &self,
         metric: &Metric,
         strain: &[D; 6],
+        (): &(),
     ) -> Result<D, Collapsed> {
         let m = mixed(metric, strain);
         let (i1, i2, i3) = invariants(&m);
@@ -28,6 +31,7 @@ impl MaterialLaw for StVenantKirchhoff {
         &self,
         metric: &Metric,
         strain: &[D; 6],
+        (): &(),
     ) -> Result<(D, [D; 6]), Collapsed> {
         let m = mixed(metric, strain);
         let (i1, i2, i3) = invariants(&m);
@@ -42,8 +46,8 @@ impl MaterialLaw for StVenantKirchhoff {
     }
 
     #[inline]
-    fn response(&self, metric: &Metric, strain: &[f64; 6]) -> Result<Response, Collapsed> {
-        let (energy, stress) = self.stress(metric, strain)?;
+    fn response(&self, metric: &Metric, strain: &[f64; 6], (): &()) -> Result<Response, Collapsed> {
+        let (energy, stress) = self.stress(metric, strain, &())?;
         let tangent = isotropic(&metric.upper, self.lambda, self.mu);
         Ok(Response {
             energy,

@@ -86,7 +86,9 @@ fn dual(
             }
         })
     });
-    let (energy, f, h) = with_law!(law, law => forces(law, re, &y, &a)).unwrap();
+    let law_len = law.state_len();
+    let (energy, f, h) =
+        with_law!(law, law => forces(law, re, &y, &a, &vec![0.0; 18 * law_len])).unwrap();
     let mut out = vec![energy];
     for node in 0..18 {
         for k in 0..3 {
