@@ -1,7 +1,7 @@
 //! Derivatives of laws and elements against dual numbers, and the rank of the element.
 use super::h8::{Formulation, H8Block, H8System};
 use super::kinematics::{self, V};
-use super::material::{Collapsed, Law, LawState, MaterialLaw, Metric, with_law};
+use super::material::{Collapsed, Hardening, J2, Law, LawState, MaterialLaw, Metric, with_law};
 use super::reference::Reference;
 use super::tangent::{self, factors};
 use super::{ElementFault, FaultCause, ShellError, brick};
@@ -42,14 +42,25 @@ fn mesh(nodes: &[Vec3; 8]) -> Mesh {
     }
 }
 
-fn laws() -> [Law; 3] {
+fn laws() -> [Law; 4] {
     let elastic = Elastic { e: 1000.0, nu: 0.3 };
-    [
+    let [a, b, c] = [
         Material::StVenantKirchhoff(elastic),
         Material::NeoHooke(elastic),
         Material::Hencky(elastic),
     ]
-    .map(|m| Law::new(&m).unwrap())
+    .map(|m| Law::new(&m).unwrap());
+    // Most points flow.
+    let metal = Law::J2(J2 {
+        lambda: 577.0,
+        mu: 385.0,
+        hardening: Hardening::Voce {
+            initial: 20.0,
+            rise: 30.0,
+            rate: 15.0,
+        },
+    });
+    [a, b, c, metal]
 }
 
 const FORMULATIONS: [Formulation; 4] = [

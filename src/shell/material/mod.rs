@@ -1,4 +1,4 @@
-//! Isotropic hyperelastic laws between Green-Lagrange strain and second Piola-Kirchhoff stress.
+//! Isotropic elastic and elastoplastic laws between Green-Lagrange strain and second Piola-Kirchhoff stress.
 //!
 //! A law is evaluated in any frame: strain in covariant components `E_ij` (Voigt order 11, 22, 33, 12, 23, 13, shears
 //! `2 E_ij`), stress in contravariant components `S^ij`, and the metric of the undeformed frame ties them together. In
@@ -7,6 +7,7 @@
 //! Source of the formulas: J. Bonet and R. D. Wood, *Nonlinear Continuum Mechanics for Finite Element Analysis*, 2008,
 //! chapter 6, here in convected components.
 mod hencky;
+mod j2;
 mod logarithm;
 mod neo_hooke;
 mod st_venant_kirchhoff;
@@ -15,6 +16,7 @@ mod tensor;
 use super::error::ShellError;
 use crate::scene::{Elastic, Material};
 pub use hencky::Hencky;
+pub use j2::{Hardening, J2, J2State};
 pub use neo_hooke::NeoHooke;
 use num_dual::DualNum;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
@@ -146,6 +148,7 @@ pub enum Law {
     StVenantKirchhoff(StVenantKirchhoff),
     NeoHooke(NeoHooke),
     Hencky(Hencky),
+    J2(J2),
 }
 
 /// Runs a block of code with `$law` bound to the concrete law of a [`Law`].
@@ -155,6 +158,7 @@ macro_rules! with_law {
             $crate::shell::Law::StVenantKirchhoff($law) => $body,
             $crate::shell::Law::NeoHooke($law) => $body,
             $crate::shell::Law::Hencky($law) => $body,
+            $crate::shell::Law::J2($law) => $body,
         }
     };
 }
