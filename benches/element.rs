@@ -27,6 +27,7 @@ fn element(c: &mut Criterion) {
     for (name, material) in [
         ("st_venant_kirchhoff", Material::StVenantKirchhoff(elastic)),
         ("neo_hooke", Material::NeoHooke(elastic)),
+        ("hencky", Material::Hencky(elastic)),
     ] {
         let Ok(law) = Law::new(&material) else { return };
         for formulation in [

@@ -51,6 +51,7 @@ effects! {
     EnhancedStrains, "element.enhanced_strains", detail: "further strains inside an element, condensed";
     StVenantKirchhoff, "material.st_venant_kirchhoff", listed: "linear stress-strain law for small strains";
     NeoHooke, "material.neo_hooke", listed: "rubber-like law for large strains";
+    Hencky, "material.hencky", listed: "linear law in logarithmic strains, for moderately large strains";
     DrivenByForce, "surface.driven_by_force", listed: "components of a surface's motion are unknowns with given forces";
     SurfaceMotion, "surface.motion", detail: "rigid surfaces move as prescribed";
     MidSurface, "support.mid_surface", listed: "supports on the mean of both faces of a shell";

@@ -1,6 +1,6 @@
 //! Automatic penalty.
 use crate::mesh::{ElementKind, Face, Mesh};
-use crate::scene::{Elastic, Material};
+use crate::scene::Material;
 
 /// Penalty as a multiple of `E / s`, `s` being the smaller of the faces' edge length and the thickness of the elements
 /// below them; of two deformable sides the softer one counts. A pressure of a fifth of Young's modulus then sinks in by 1 % of `s`; a stiffer value would
@@ -54,11 +54,7 @@ pub fn judge(given: f64, automatic: f64) -> Given {
 
 /// Young's modulus of a material.
 pub fn modulus(material: &Material) -> f64 {
-    match material {
-        Material::StVenantKirchhoff(Elastic { e, .. }) | Material::NeoHooke(Elastic { e, .. }) => {
-            *e
-        }
-    }
+    material.elastic().e
 }
 
 /// Sizes of the elements under some faces.
@@ -177,8 +173,5 @@ pub fn automatic(material: &Material, size: &FaceSize) -> f64 {
 
 /// Poisson's ratio of a material.
 pub fn poisson(material: &Material) -> f64 {
-    match material {
-        Material::StVenantKirchhoff(Elastic { nu, .. })
-        | Material::NeoHooke(Elastic { nu, .. }) => *nu,
-    }
+    material.elastic().nu
 }

@@ -2,7 +2,10 @@
 use super::Model;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::points::SlavePoint;
+use crate::shell::{ElementBlock, ElementFault, with_block};
 use covact_geometry::Hint;
+use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Where the last search for a slave point ended, and whether the point was closed. Nothing here outlives the next search.
@@ -80,8 +83,8 @@ impl State {
     /// Continues the change from `before` to `self` by `ratio` into `out`: a start for the next step that has the
     /// rotations right to second order, where standing still would stretch a thin shell. (The condensation caches
     /// among the element states are continued too, to no effect: the next linearisation writes them before they are
-    /// read.)
-    pub fn extrapolate(&self, before: &State, ratio: f64, out: &mut State) {
+    /// read.) What material laws remember is kept as it is: it belongs to the last accepted step.
+    pub fn extrapolate(&self, model: &Model, before: &State, ratio: f64, out: &mut State) {
         let along = |now: &[f64], before: &[f64], out: &mut [f64]| {
             for ((o, n), b) in out.iter_mut().zip(now).zip(before) {
                 *o = n + ratio * (n - b);
@@ -89,6 +92,9 @@ impl State {
         };
         along(&self.u, &before.u, &mut out.u);
         along(&self.elements, &before.elements, &mut out.elements);
+        for history in histories_of_laws(model) {
+            out.elements[history.clone()].copy_from_slice(&self.elements[history]);
+        }
         out.points.clone_from(&self.points);
         out.nodes.copy_from_slice(&self.nodes);
         // Normal multipliers are the tractions of an equilibrium and follow the same path; all else is what was.
@@ -102,6 +108,33 @@ impl State {
         }
         out.cuts.clone_from(&self.cuts);
         out.stabilized = self.stabilized;
+    }
+
+    /// Takes the displacements and enhanced strains of an accepted step into what material laws remember.
+    ///
+    /// # Errors
+    /// The body and the element whose strain is impossible.
+    pub fn remember(&mut self, model: &Model) -> Result<(), (String, ElementFault)> {
+        let mut first = 0;
+        for body in &model.bodies {
+            let len = model.state_len(body);
+            let own = first..first + len * body.block.elements();
+            first = own.end;
+            if len == 0 || body.block.history_len() == 0 {
+                continue;
+            }
+            let (u, states) = (&self.u, &mut self.elements[own]);
+            with_block!(&body.block, block => {
+                (states.par_chunks_mut(len).enumerate())
+                    .with_min_len(64)
+                    .try_for_each(|(e, state)| {
+                        let u = body.displacements(block, e, u);
+                        ElementBlock::remember(block, e, &u, state)
+                    })
+            })
+            .map_err(|fault| (body.name.clone(), fault))?;
+        }
+        Ok(())
     }
 
     /// Bytes of heap that this state holds, by part.
@@ -131,6 +164,22 @@ impl State {
     pub fn bytes(&self) -> usize {
         self.parts().iter().map(|(_, bytes)| bytes).sum()
     }
+}
+
+/// Where the elements of bodies with such laws keep what their laws remember, among all element states.
+pub fn histories_of_laws(model: &Model) -> impl Iterator<Item = Range<usize>> + '_ {
+    let mut first = 0;
+    (model.bodies.iter()).flat_map(move |body| {
+        let (len, count) = (model.state_len(body), body.block.elements());
+        let history = body.block.history_len().min(len);
+        let start = first;
+        first += len * count;
+        let elements = if history > 0 { count } else { 0 };
+        (0..elements).map(move |e| {
+            let end = start + len * (e + 1);
+            end - history..end
+        })
+    })
 }
 
 /// Bytes of heap that a vector holds itself.

@@ -3,7 +3,7 @@ use super::{Effect, Held, Per, Reporter, why};
 use crate::assembly::sizes;
 use crate::model::BodyModel;
 use crate::model::EffectKind;
-use crate::scene::{Body, Element, Material, pointer};
+use crate::scene::{Body, Element, pointer};
 
 /// Names of bodies as a message lists them.
 fn listed<'n>(names: impl Iterator<Item = &'n str>) -> String {
@@ -144,17 +144,9 @@ impl Reporter<'_> {
     }
 
     fn materials(&self) -> Vec<Effect> {
-        type Kind = (EffectKind, &'static str, fn(&Material) -> bool);
-        let kinds: [Kind; 2] = [
-            (EffectKind::StVenantKirchhoff, "st_venant_kirchhoff", |m| {
-                matches!(m, Material::StVenantKirchhoff(_))
-            }),
-            (EffectKind::NeoHooke, "neo_hooke", |m| {
-                matches!(m, Material::NeoHooke(_))
-            }),
-        ];
-        let effect = |(effect, word, is): Kind| {
-            let own = |b: &&(&BodyModel, &Body)| is(&b.0.material);
+        let effect = |effect: &EffectKind| {
+            let word = effect.name().strip_prefix("material.")?;
+            let own = |b: &&(&BodyModel, &Body)| b.0.material.key() == word;
             let all: Vec<_> = self.described().collect();
             let first = all.iter().find(own);
             let at = match first {
@@ -162,18 +154,19 @@ impl Reporter<'_> {
                 None => "/materials".to_owned(),
             };
             let names = listed(all.iter().filter(own).map(|(b, _)| b.name.as_str()));
+            let linear = first.is_none_or(|(body, _)| body.material.is_linear());
             let reason = why(
                 first.is_some(),
-                match (word, self.model.small.is_some()) {
-                    ("neo_hooke", true) => format!(
+                match !linear && self.model.small.is_some() {
+                    true => format!(
                         "the material of body {names}; at small displacements it acts as Hooke's law"
                     ),
-                    _ => format!("the material of body {names}"),
+                    false => format!("the material of body {names}"),
                 },
                 format!("no body has a `{word}` material"),
             );
-            self.effect(effect, at, reason)
+            Some(self.effect(*effect, at, reason))
         };
-        kinds.into_iter().map(effect).collect()
+        EffectKind::ALL.iter().filter_map(effect).collect()
     }
 }

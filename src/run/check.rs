@@ -6,7 +6,7 @@ use crate::model::error::number;
 use crate::model::initial::{initial_gap, point_spacing};
 use crate::model::{self, BodyModel, Model, SurfaceModel};
 use crate::plan::Plan;
-use crate::scene::{Element, LoadedScene, Material, Penalty, Points, Scene, Support};
+use crate::scene::{Element, LoadedScene, Penalty, Points, Scene, Support};
 use crate::shell::distortion::most_distorted;
 use serde::Serialize;
 
@@ -232,10 +232,7 @@ fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
         Element::H8Displacement => "8-node brick without enhancement",
         Element::Q18 => "18-node quadratic solid-shell",
     };
-    let (law, e) = match &body.material {
-        Material::StVenantKirchhoff(e) => ("St. Venant-Kirchhoff", e),
-        Material::NeoHooke(e) => ("neo-Hooke", e),
-    };
+    let (law, e) = (body.material.title(), body.material.elastic());
     let known = scene
         .materials
         .get(&described.material)

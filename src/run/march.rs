@@ -20,7 +20,7 @@ use super::peaks::Peaks;
 use super::penalty_rule::PenaltyRule;
 use super::progress::Progress;
 use super::watch::{Span, Watch};
-use crate::assembly::{Assembler, Totals};
+use crate::assembly::{Assembler, Fault, Totals};
 use crate::contact::law::Penalty;
 use crate::machine::clock::Phases;
 use crate::model::state::State;
@@ -301,6 +301,9 @@ impl<'a, 'm> March<'a, 'm> {
                         None => walk.before = Some((committed.clone(), dt)),
                     }
                     committed.copy_from(&trial);
+                    (committed.remember(self.model)).map_err(|(body, fault)| {
+                        RunError::internal(&Fault::Element { body, fault })
+                    })?;
                     committed.stabilized += drag.work;
                     // Augmentations say nothing of how far a step may go.
                     walk.stepping

@@ -150,7 +150,7 @@ impl Attempts<'_, '_> {
         let touching = !self.model.pairs.is_empty();
         if let Some((state, size)) = before {
             for hold in [*self.hold, true] {
-                self.committed.extrapolate(state, dt / size, trial);
+                (self.committed).extrapolate(self.model, state, dt / size, trial);
                 // The path of a body that nothing holds yet may lead through what it is to meet.
                 let stabilization = self.model.stabilization.as_ref();
                 if stabilization.is_some_and(|s| s.leaps(&self.committed.u, &trial.u)) {

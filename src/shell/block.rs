@@ -40,6 +40,10 @@ pub trait ElementBlock<const N: usize>: Sync {
     fn state_len(&self) -> usize;
     /// Numbers of enhanced strains per element, at the start of its state.
     fn alpha_len(&self) -> usize;
+    /// Numbers that the law remembers per element, at the end of its state.
+    fn history_len(&self) -> usize;
+    /// Takes an accepted step into the states of the law; see [`H8Block::remember`].
+    fn remember(&self, e: usize, u: &[Vec3; N], state: &mut [f64]) -> Result<(), ElementFault>;
     /// Undeformed volume of element `e`.
     fn volume(&self, e: usize) -> f64;
     /// Condensed forces and tangent; see [`H8Block::evaluate`].
@@ -114,6 +118,21 @@ macro_rules! delegate {
             self.volume(e)
         }
         #[inline]
+        fn state_len(&self) -> usize {
+            self.state_len()
+        }
+        fn history_len(&self) -> usize {
+            self.history_len()
+        }
+        fn remember(
+            &self,
+            e: usize,
+            u: &[Vec3; $n],
+            state: &mut [f64],
+        ) -> Result<(), ElementFault> {
+            self.remember(e, u, state)
+        }
+        #[inline]
         fn evaluate(
             &self,
             e: usize,
@@ -146,10 +165,6 @@ impl ElementBlock<8> for H8Block {
     const NO_FORCES: [f64; 24] = [0.0; 24];
     delegate!(8);
 
-    #[inline]
-    fn state_len(&self) -> usize {
-        self.state_len()
-    }
     #[inline]
     fn alpha_len(&self) -> usize {
         self.alpha_len()
@@ -186,10 +201,6 @@ impl ElementBlock<18> for Q18Block {
     const NO_FORCES: [f64; DOFS] = [0.0; DOFS];
     delegate!(18);
 
-    #[inline]
-    fn state_len(&self) -> usize {
-        Q18Block::STATE_LEN
-    }
     #[inline]
     fn alpha_len(&self) -> usize {
         Q18Block::ALPHA_LEN
@@ -265,6 +276,11 @@ impl Block {
     /// Numbers of enhanced strains per element, at the start of its state.
     pub fn alpha_len(&self) -> usize {
         with_block!(self, b => ElementBlock::alpha_len(b))
+    }
+
+    /// Numbers that the law remembers per element, at the end of its state.
+    pub fn history_len(&self) -> usize {
+        with_block!(self, b => b.history_len())
     }
 
     /// The law of all elements.

@@ -3,7 +3,7 @@
 use super::error::FaultCause;
 use super::h8::H8System;
 use super::kinematics::{Fields, V, add};
-use super::material::{Collapsed, MaterialLaw};
+use super::material::{Collapsed, MaterialLaw, state_of};
 use super::reference::{LINE, Reference, sign};
 use num_dual::DualNum;
 
@@ -42,6 +42,7 @@ pub(super) fn forces<D: DualNum<f64> + Copy, L: MaterialLaw>(
     law: &L,
     re: &Reference,
     u: &[V<D>; 8],
+    states: &[f64],
 ) -> Result<(D, [D; 24]), (u8, Collapsed)> {
     let big = Fields::new(&re.nodes);
     let du = Fields::new(u);
@@ -49,7 +50,9 @@ pub(super) fn forces<D: DualNum<f64> + Copy, L: MaterialLaw>(
     let (mut energy, mut f) = (D::zero(), [D::zero(); 24]);
     for g in 0..8 {
         let e = strain(&big.at(g), &du.at(g));
-        let (psi, s) = law.stress(&re.metric[g], &e).map_err(|c| (g as u8, c))?;
+        let (psi, s) = law
+            .stress(&re.metric[g], &e, &state_of::<L>(states, g))
+            .map_err(|c| (g as u8, c))?;
         energy += psi * re.volume[g];
         let frame = now.at(g);
         let n = derivatives(g);
@@ -73,6 +76,7 @@ pub(super) fn evaluate<L: MaterialLaw>(
     law: &L,
     re: &Reference,
     u: &[V<f64>; 8],
+    states: &[f64],
     out: &mut H8System,
 ) -> Result<(), FaultCause> {
     let big = Fields::new(&re.nodes);
@@ -82,7 +86,7 @@ pub(super) fn evaluate<L: MaterialLaw>(
     for g in 0..8 {
         let e = strain(&big.at(g), &du.at(g));
         let response = law
-            .response(&re.metric[g], &e)
+            .response(&re.metric[g], &e, &state_of::<L>(states, g))
             .map_err(|c| FaultCause::Collapsed {
                 point: g as u8,
                 ratio: c.ratio,

@@ -1,7 +1,8 @@
 //! The elements of one body: what assembly calls.
 use super::error::{ElementFault, FaultCause, ShellError};
+use super::history::{advance, cauchy};
 use super::kinematics::{self, Fields, V};
-use super::material::{Collapsed, Law, MaterialLaw};
+use super::material::{Collapsed, Law, MaterialLaw, with_law};
 use super::reference::{MODES, Reference};
 use super::{brick, stress, tangent};
 use crate::mesh::{ElementKind, Mesh};
@@ -91,16 +92,6 @@ pub struct H8Block {
     reference: Vec<Reference>,
 }
 
-/// Runs a block of code with `$law` bound to the concrete law.
-macro_rules! with_law {
-    ($self:ident, $law:ident => $body:expr) => {
-        match &$self.law {
-            Law::StVenantKirchhoff($law) => $body,
-            Law::NeoHooke($law) => $body,
-        }
-    };
-}
-
 impl H8Block {
     /// Bytes of an element here.
     pub(super) const BYTES: usize = size_of::<Reference>() + size_of::<[u32; 8]>();
@@ -188,8 +179,18 @@ impl H8Block {
         self.law
     }
 
-    /// Numbers of state per element (210 for seven enhanced strains, none without).
-    pub const fn state_len(&self) -> usize {
+    /// Numbers of state per element: 210 for seven enhanced strains and none without, then those of the law.
+    pub fn state_len(&self) -> usize {
+        self.condensation_len() + self.history_len()
+    }
+
+    /// Numbers that the law remembers per element, at the end of its state.
+    pub fn history_len(&self) -> usize {
+        8 * self.law.state_len()
+    }
+
+    /// Enhanced strains and the condensation cache.
+    const fn condensation_len(&self) -> usize {
         tangent::state_len(self.formulation.modes())
     }
 
@@ -232,11 +233,11 @@ impl H8Block {
     ) -> Result<(), ElementFault> {
         let u = arrays(u);
         let re = &self.reference[e];
-        with_law!(self, law => match self.formulation {
+        with_law!(&self.law, law => match self.formulation {
             Formulation::Eas7 => tangent::evaluate::<_, 7>(law, re, &u, state, out),
             Formulation::Eas3 => tangent::evaluate::<_, 3>(law, re, &u, state, out),
             Formulation::Eas0 => tangent::evaluate::<_, 0>(law, re, &u, state, out),
-            Formulation::Displacement => brick::evaluate(law, re, &u, out),
+            Formulation::Displacement => brick::evaluate(law, re, &u, state, out),
         })
         .map_err(|cause| ElementFault {
             element: e as u32,
@@ -252,12 +253,16 @@ impl H8Block {
         &self,
         e: usize,
         u: &[Vec3; 8],
+        state: &[f64],
         out: &mut H8System,
     ) -> Result<(), ElementFault> {
         let (u, re) = (arrays(u), &self.reference[e]);
-        with_law!(self, law => brick::evaluate(law, re, &u, out)).map_err(|cause| ElementFault {
-            element: e as u32,
-            cause,
+        let states = &state[self.condensation_len()..];
+        with_law!(&self.law, law => brick::evaluate(law, re, &u, states, out)).map_err(|cause| {
+            ElementFault {
+                element: e as u32,
+                cause,
+            }
         })
     }
 
@@ -282,11 +287,11 @@ impl H8Block {
     ) -> Result<f64, ElementFault> {
         let u = arrays(u);
         let re = &self.reference[e];
-        with_law!(self, law => match self.formulation {
+        with_law!(&self.law, law => match self.formulation {
             Formulation::Eas7 => residual::<_, 7>(law, re, &u, state, f),
             Formulation::Eas3 => residual::<_, 3>(law, re, &u, state, f),
             Formulation::Eas0 => residual::<_, 0>(law, re, &u, state, f),
-            Formulation::Displacement => brick::forces(law, re, &u).map(|(energy, forces)| {
+            Formulation::Displacement => brick::forces(law, re, &u, state).map(|(energy, forces)| {
                 *f = forces;
                 energy
             }),
@@ -327,25 +332,44 @@ impl H8Block {
         let u = arrays(u);
         let re = &self.reference[e];
         let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
-        let strain = match self.formulation {
-            Formulation::Eas7 => kinematics::strains(re, &big, &du, &head::<7>(state)),
-            Formulation::Eas3 => kinematics::strains(re, &big, &du, &head::<3>(state)),
-            Formulation::Eas0 => kinematics::strains(re, &big, &du, &[]),
-            Formulation::Displacement => {
-                let mut strain = [[0.0; 6]; 8];
-                for (g, strain) in strain.iter_mut().enumerate() {
-                    *strain = brick::strain(&big.at(g), &du.at(g));
-                }
-                strain
-            }
-        };
+        let strain = self.strains(re, (&big, &du), state);
+        let states = &state[self.condensation_len().min(state.len())..];
         for g in 0..8 {
-            out[g] = with_law!(self, law => stress::cauchy(
-                law, &re.metric[g], &big.at(g), &du.at(g), &strain[g]
+            out[g] = with_law!(&self.law, law => cauchy(
+                law, (&re.metric[g], g), &big.at(g), &du.at(g), &strain[g], states
             ))
             .map_err(|c| fault(e, g as u8, c))?;
         }
         Ok(())
+    }
+
+    /// Takes a step that is accepted at displacements `u` and the enhanced strains in `state` into the states of the law.
+    ///
+    /// # Errors
+    /// [`ElementFault`] where the strain is impossible.
+    pub fn remember(&self, e: usize, u: &[Vec3; 8], state: &mut [f64]) -> Result<(), ElementFault> {
+        let u = arrays(u);
+        let re = &self.reference[e];
+        let strain = self.strains(re, (&Fields::new(&re.nodes), &Fields::new(&u)), state);
+        let states = &mut state[self.condensation_len()..];
+        with_law!(&self.law, law => advance(law, &re.metric, &strain, states))
+            .map_err(|(point, c)| fault(e, point, c))
+    }
+
+    fn strains(
+        &self,
+        re: &Reference,
+        (big, du): (&Fields<f64>, &Fields<f64>),
+        state: &[f64],
+    ) -> [[f64; 6]; 8] {
+        match self.formulation {
+            Formulation::Eas7 => kinematics::strains(re, big, du, &head::<7>(state)),
+            Formulation::Eas3 => kinematics::strains(re, big, du, &head::<3>(state)),
+            Formulation::Eas0 => kinematics::strains(re, big, du, &[]),
+            Formulation::Displacement => {
+                std::array::from_fn(|g| brick::strain(&big.at(g), &du.at(g)))
+            }
+        }
     }
 }
 
@@ -374,7 +398,7 @@ impl H8Block {
             }
         };
         for g in 0..8 {
-            out[g] = with_law!(self, law => stress::linear(
+            out[g] = with_law!(&self.law, law => stress::linear(
                 law, &re.metric[g], &big.at(g), &strain[g]
             ))
             .map_err(|c| fault(e, g as u8, c))?;
@@ -415,7 +439,13 @@ fn residual<L: MaterialLaw, const NE: usize>(
     state: &[f64],
     f: &mut [f64; 24],
 ) -> Result<f64, (u8, Collapsed)> {
-    let (energy, forces, mut h) = kinematics::forces(law, re, u, &head::<NE>(state))?;
+    let (energy, forces, mut h) = kinematics::forces(
+        law,
+        re,
+        u,
+        &head::<NE>(state),
+        &state[tangent::state_len(NE)..],
+    )?;
     *f = forces;
     if NE > 0 {
         solve(&state[tangent::factors(NE)..], &mut h);

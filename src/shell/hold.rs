@@ -31,7 +31,7 @@ impl H8Block {
         if own == 0 {
             return Ok(false);
         }
-        self.evaluate_plain(e, u, &mut system)?;
+        self.evaluate_plain(e, u, &state, &mut system)?;
         Ok(own > unstable(&system, &self.corners(e, u)))
     }
 }

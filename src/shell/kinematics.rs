@@ -1,5 +1,5 @@
 //! Tangents of the trilinear element and the strains made of them, generic over the scalar.
-use super::material::{Collapsed, MaterialLaw};
+use super::material::{Collapsed, MaterialLaw, state_of};
 use super::reference::{BASE, GP, LINE, PARAMETERS, Reference, TYING, WEIGHT, sign};
 use num_dual::DualNum;
 
@@ -180,13 +180,15 @@ pub(super) fn strains<D: DualNum<f64> + Copy, const NE: usize>(
     strains
 }
 
-/// Energy, nodal forces `f` (numbered `3 node + axis`) and enhanced-strain forces `h` of the solid-shell element.
+/// Energy, nodal forces `f` (numbered `3 node + axis`) and enhanced-strain forces `h` of the solid-shell element. `states` are those
+/// of the law at the Gauss points.
 #[allow(clippy::type_complexity)]
 pub(super) fn forces<D: DualNum<f64> + Copy, L: MaterialLaw, const NE: usize>(
     law: &L,
     re: &Reference,
     u: &[V<D>; 8],
     alpha: &[D; NE],
+    states: &[f64],
 ) -> Result<(D, [D; 24], [D; NE]), (u8, Collapsed)> {
     let big = Fields::new(&re.nodes);
     let du = Fields::new(u);
@@ -200,7 +202,7 @@ pub(super) fn forces<D: DualNum<f64> + Copy, L: MaterialLaw, const NE: usize>(
         let (i, j, k) = (g & 1, (g >> 1) & 1, g >> 2);
         let w = &WEIGHT[g & 3];
         let (psi, s) = law
-            .stress(&re.metric[g], &strain[g])
+            .stress(&re.metric[g], &strain[g], &state_of::<L>(states, g))
             .map_err(|c| (g as u8, c))?;
         energy += psi * re.volume[g];
         let s = s.map(|s| s * re.volume[g]);

@@ -8,7 +8,7 @@
 //!
 //! - [`H8Block`], [`Q18Block`]: the elements of one body, evaluated one at a time ([`H8System`], [`Q18System`] receive
 //!   forces and tangent); [`Block`] is either.
-//! - [`material`]: St. Venant-Kirchhoff and neo-Hooke.
+//! - [`material`]: laws, one file each.
 //! - [`distortion`]: how far an element is from the shape it computes best in.
 
 // Index loops show the sums the way they are written on paper, over several arrays at once.
@@ -19,6 +19,7 @@ mod brick;
 pub mod distortion;
 mod error;
 mod h8;
+mod history;
 mod hold;
 mod kinematics;
 pub mod material;

@@ -1,7 +1,7 @@
 //! Cauchy stress from the modified strain.
 use super::VOIGT;
 use super::kinematics::V;
-use super::material::{Collapsed, MaterialLaw, Metric};
+use super::material::{Collapsed, LawState, MaterialLaw, Metric};
 use super::reference::{GP, contravariant, det, sign};
 use crate::fem::quadrature::GAUSS_3;
 use covact_geometry::Vec3;
@@ -24,8 +24,9 @@ pub(super) fn cauchy<L: MaterialLaw>(
     big: &[V<f64>; 3],
     du: &[V<f64>; 3],
     strain: &[f64; 6],
+    old: &L::State,
 ) -> Result<[f64; 6], Collapsed> {
-    let (_, s) = law.stress(metric, strain)?;
+    let (_, s) = law.stress(metric, strain, old)?;
     let frame = matrix(big);
     let dual = matrix(&contravariant(big, det(big)));
     let stress = frame * full(&s, 1.0) * frame.transpose();
@@ -57,7 +58,7 @@ pub(super) fn linear<L: MaterialLaw>(
     big: &[V<f64>; 3],
     strain: &[Dual64; 6],
 ) -> Result<[f64; 6], Collapsed> {
-    let tangent = law.response(metric, &[0.0; 6])?.tangent;
+    let tangent = law.response(metric, &[0.0; 6], &L::State::UNUSED)?.tangent;
     let s = tangent.map(|row| row.iter().zip(strain).map(|(c, e)| c * e.eps).sum());
     let frame = matrix(big);
     let sigma = frame * full(&s, 1.0) * frame.transpose();

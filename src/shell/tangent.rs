@@ -13,7 +13,7 @@
 use super::error::FaultCause;
 use super::h8::H8System;
 use super::kinematics::{Fields, V, add, strains};
-use super::material::MaterialLaw;
+use super::material::{MaterialLaw, state_of};
 use super::reference::{BASE, GP, LINE, MODES, PARAMETERS, Reference, TYING, WEIGHT, sign};
 
 /// Component pairs that are computed, i <= j; the others follow from symmetry.
@@ -50,8 +50,8 @@ const fn used<const NE: usize>(parameter: usize) -> bool {
     parameter < TYING + NE || parameter == PARAMETERS - 1
 }
 
-/// Evaluates one element at displacements `u`: `out` receives condensed forces and tangent, `state` (its alpha being
-/// read) the condensation cache.
+/// Evaluates one element at displacements `u`: `out` receives condensed forces and tangent, `state` (its alpha and
+/// the states of the law being read) the condensation cache.
 pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
     law: &L,
     re: &Reference,
@@ -65,7 +65,7 @@ pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
     let mut alpha = [0.0; NE];
     alpha.copy_from_slice(&state[..NE]);
     let strain = strains(re, &big, &du, &alpha);
-    let sums = gauss_loop::<L, NE>(law, re, &now, &strain)?;
+    let sums = gauss_loop::<L, NE>(law, re, &now, &strain, &state[state_len(NE)..])?;
     let membrane = membrane_blocks(&sums.membrane);
     let b = tying_rows(&now);
 
@@ -156,6 +156,7 @@ fn gauss_loop<L: MaterialLaw, const NE: usize>(
     re: &Reference,
     now: &Fields<f64>,
     strain: &[[f64; 6]; 8],
+    states: &[f64],
 ) -> Result<Sums, FaultCause> {
     let mut sums = Sums {
         membrane: [[[0.0; LANES]; 4]; 4],
@@ -170,12 +171,12 @@ fn gauss_loop<L: MaterialLaw, const NE: usize>(
         let mut base = [[0.0; 8]; 7];
         for k in 0..2 {
             let g = q + 4 * k;
-            let response =
-                law.response(&re.metric[g], &strain[g])
-                    .map_err(|c| FaultCause::Collapsed {
-                        point: g as u8,
-                        ratio: c.ratio,
-                    })?;
+            let response = law
+                .response(&re.metric[g], &strain[g], &state_of::<L>(states, g))
+                .map_err(|c| FaultCause::Collapsed {
+                    point: g as u8,
+                    ratio: c.ratio,
+                })?;
             let dv = re.volume[g];
             sums.energy += response.energy * dv;
             let s = response.stress.map(|s| s * dv);

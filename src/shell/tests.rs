@@ -1,7 +1,7 @@
 //! Derivatives of laws and elements against dual numbers, and the rank of the element.
 use super::h8::{Formulation, H8Block, H8System};
 use super::kinematics::{self, V};
-use super::material::{Collapsed, Law, MaterialLaw, Metric};
+use super::material::{Collapsed, Hardening, J2, Law, LawState, MaterialLaw, Metric, with_law};
 use super::reference::Reference;
 use super::tangent::{self, factors};
 use super::{ElementFault, FaultCause, ShellError, brick};
@@ -42,13 +42,25 @@ fn mesh(nodes: &[Vec3; 8]) -> Mesh {
     }
 }
 
-fn laws() -> [Law; 2] {
+fn laws() -> [Law; 4] {
     let elastic = Elastic { e: 1000.0, nu: 0.3 };
-    [
+    let [a, b, c] = [
         Material::StVenantKirchhoff(elastic),
         Material::NeoHooke(elastic),
+        Material::Hencky(elastic),
     ]
-    .map(|m| Law::new(&m).unwrap())
+    .map(|m| Law::new(&m).unwrap());
+    // Most points flow.
+    let metal = Law::J2(J2 {
+        lambda: 577.0,
+        mu: 385.0,
+        hardening: Hardening::Voce {
+            initial: 20.0,
+            rise: 30.0,
+            rate: 15.0,
+        },
+    });
+    [a, b, c, metal]
 }
 
 const FORMULATIONS: [Formulation; 4] = [
@@ -70,14 +82,40 @@ fn relative(found: &[f64], expected: &[f64]) -> f64 {
         / scale
 }
 
-fn check_law<L: MaterialLaw>(law: &L, metric: &Metric, strain: &[f64; 6]) -> (f64, f64) {
-    let response = law.response(metric, strain).unwrap();
+/// States of the law at the points of an element that nothing has happened to.
+fn unused<L: MaterialLaw>(_: &L, points: usize) -> Vec<f64> {
+    vec![0.0; points * L::State::LEN]
+}
+
+/// A strain at which a step ends before the one that is looked at.
+const BEFORE: [f64; 6] = [0.05, -0.02, 0.03, 0.2, 0.1, -0.05];
+
+/// Errors of the derivatives at a strain, at the beginning and after a step that is accepted at `before`.
+fn check_law<L: MaterialLaw>(
+    law: &L,
+    metric: &Metric,
+    strain: &[f64; 6],
+    before: &[f64; 6],
+) -> (f64, f64) {
+    let later = law.advance(metric, before, &L::State::UNUSED).unwrap();
+    let first = check_step(law, metric, strain, &L::State::UNUSED);
+    let second = check_step(law, metric, strain, &later);
+    (first.0.max(second.0), first.1.max(second.1))
+}
+
+fn check_step<L: MaterialLaw>(
+    law: &L,
+    metric: &Metric,
+    strain: &[f64; 6],
+    old: &L::State,
+) -> (f64, f64) {
+    let response = law.response(metric, strain, old).unwrap();
     let (mut stress, mut tangent) = ([0.0; 6], [[0.0; 6]; 6]);
     for v in 0..6 {
         let mut e = strain.map(Dual64::from);
         e[v] = e[v].derivative();
-        stress[v] = law.energy(metric, &e).unwrap().eps;
-        let (energy, s) = law.stress(metric, &e).unwrap();
+        stress[v] = law.energy(metric, &e, old).unwrap().eps;
+        let (energy, s) = law.stress(metric, &e, old).unwrap();
         assert!((energy.re - response.energy).abs() <= 1e-14 * response.energy.abs());
         tangent[v] = s.map(|s| s.eps);
     }
@@ -97,10 +135,7 @@ fn energy_gives_stress_gives_tangent() {
     for law in laws() {
         for metric in [Metric::CARTESIAN, skew] {
             for strain in &strains {
-                let errors = match &law {
-                    Law::StVenantKirchhoff(law) => check_law(law, &metric, strain),
-                    Law::NeoHooke(law) => check_law(law, &metric, strain),
-                };
+                let errors = with_law!(&law, law => check_law(law, &metric, strain, &BEFORE));
                 println!("{law:?}: {errors:?}");
                 assert!(errors.0 < 1e-12 && errors.1 < 1e-12, "{law:?} {errors:?}");
             }
@@ -120,7 +155,7 @@ fn neo_hooke_keeps_its_digits_at_small_strain() {
         let s2: f64 = 1.0 + 2.0 * strain;
         // mu (1 - 1/s^2) = mu 2 e / s^2.
         let exact = (law.mu * 2.0 * strain + law.lambda * 0.5 * (2.0 * strain).ln_1p()) / s2;
-        let found = law.response(&Metric::CARTESIAN, &e).unwrap().stress[0];
+        let found = law.response(&Metric::CARTESIAN, &e, &()).unwrap().stress[0];
         assert!(
             (found / exact - 1.0).abs() < 1e-14,
             "{strain}: {found} {exact}"
@@ -146,10 +181,10 @@ fn dual_tangent<L: MaterialLaw, const NE: usize>(
                 ad[column - 24] = ad[column - 24].derivative();
             }
             if displacement {
-                let (_, f) = brick::forces(law, re, &ud).unwrap();
+                let (_, f) = brick::forces(law, re, &ud, &unused(law, 8)).unwrap();
                 f.map(|f| f.eps).to_vec()
             } else {
-                let (_, f, h) = kinematics::forces(law, re, &ud, &ad).unwrap();
+                let (_, f, h) = kinematics::forces(law, re, &ud, &ad, &unused(law, 8)).unwrap();
                 f.iter().chain(&h).map(|f| f.eps).collect()
             }
         })
@@ -172,9 +207,14 @@ fn energy_gradient<L: MaterialLaw, const NE: usize>(
         } else {
             ad[column - 24] = ad[column - 24].derivative();
         }
-        gradient.push(kinematics::forces(law, re, &ud, &ad).unwrap().0.eps);
+        gradient.push(
+            kinematics::forces(law, re, &ud, &ad, &unused(law, 8))
+                .unwrap()
+                .0
+                .eps,
+        );
     }
-    let (_, f, h) = kinematics::forces(law, re, u, alpha).unwrap();
+    let (_, f, h) = kinematics::forces(law, re, u, alpha, &unused(law, 8)).unwrap();
     (gradient, f.iter().chain(&h).copied().collect())
 }
 
@@ -195,10 +235,11 @@ fn check_element<L: MaterialLaw, const NE: usize>(law: &L, formulation: Formulat
     let mut seed = 3;
     let alpha: [f64; NE] = std::array::from_fn(|_| 0.002 * random(&mut seed));
     let mut state = vec![0.0; tangent::state_len(NE)];
+    state.extend(unused(law, 8));
     state[..NE].copy_from_slice(&alpha);
     let mut out = H8System::default();
     if displacement {
-        brick::evaluate(law, &re, &ua, &mut out).unwrap();
+        brick::evaluate(law, &re, &ua, &unused(law, 8), &mut out).unwrap();
     } else {
         tangent::evaluate::<_, NE>(law, &re, &ua, &mut state, &mut out).unwrap();
     }
@@ -252,7 +293,7 @@ fn check_element<L: MaterialLaw, const NE: usize>(law: &L, formulation: Formulat
         }
     }
     if displacement {
-        let (_, exact) = brick::forces(law, &re, &ua).unwrap();
+        let (_, exact) = brick::forces(law, &re, &ua, &unused(law, 8)).unwrap();
         return [tangent_error, relative(&out.f, &exact), 0.0];
     }
     let (gradient, forces) = energy_gradient(law, &re, &ua, &alpha);
@@ -277,10 +318,7 @@ fn element_tangent_is_the_derivative_of_its_forces() {
                     }
                 };
             }
-            let errors = match &law {
-                Law::StVenantKirchhoff(law) => all!(law),
-                Law::NeoHooke(law) => all!(law),
-            };
+            let errors = with_law!(&law, law => all!(law));
             println!("{formulation:?}: tangent, forces, gradient of the energy {errors:?}");
             assert!(
                 errors.iter().all(|e| *e < 1e-12),
@@ -319,10 +357,7 @@ fn condensed_tangent_is_the_derivative_of_condensed_forces() {
             let mut ud = u.map(|u| u.data.0[0].map(Dual64::from));
             ud[column / 3][column % 3] = ud[column / 3][column % 3].derivative();
             let mut alpha: [Dual64; 7] = std::array::from_fn(|m| Dual64::from(state[m]));
-            let forces = |alpha: &[Dual64; 7]| match &law {
-                Law::StVenantKirchhoff(law) => kinematics::forces(law, &re, &ud, alpha).unwrap(),
-                Law::NeoHooke(law) => kinematics::forces(law, &re, &ud, alpha).unwrap(),
-            };
+            let forces = |alpha: &[Dual64; 7]| with_law!(&law, law => kinematics::forces(law, &re, &ud, alpha, &unused(law, 8)).unwrap());
             for _ in 0..2 {
                 let (_, _, h) = forces(&alpha);
                 // D from duals in alpha alone.
@@ -330,14 +365,7 @@ fn condensed_tangent_is_the_derivative_of_condensed_forces() {
                     let mut a = alpha.map(|a| Dual64::from(a.re));
                     a[j] = a[j].derivative();
                     let uf = ud.map(|u| u.map(|u| Dual64::from(u.re)));
-                    match &law {
-                        Law::StVenantKirchhoff(law) => {
-                            kinematics::forces(law, &re, &uf, &a).unwrap().2[i].eps
-                        }
-                        Law::NeoHooke(law) => {
-                            kinematics::forces(law, &re, &uf, &a).unwrap().2[i].eps
-                        }
-                    }
+                    with_law!(&law, law => kinematics::forces(law, &re, &uf, &a, &unused(law, 8)).unwrap().2[i].eps)
                 });
                 let inverse = d.try_inverse().unwrap();
                 for m in 0..7 {
@@ -520,7 +548,9 @@ fn impossible_strain_is_a_typed_fault() {
     let Law::NeoHooke(law) = laws()[1] else {
         unreachable!()
     };
-    assert!(matches!(law.energy(&Metric::CARTESIAN, &e), Err(Collapsed { ratio }) if ratio > 0.0));
+    assert!(
+        matches!(law.energy(&Metric::CARTESIAN, &e, &()), Err(Collapsed { ratio }) if ratio > 0.0)
+    );
 }
 
 #[test]

@@ -120,6 +120,10 @@ fn scenes() -> Vec<Value> {
         plate_with(&[("/solution/kinematics", json!("small"))]),
         plate_with(&[
             ("/bodies/plate/element", json!("q18")),
+            (
+                "/materials/steel",
+                json!({"hencky": {"E": 12000, "nu": 0.3}}),
+            ),
             ("/contacts/press/points", json!({"gauss": 2})),
             ("/contacts/press/friction", json!({"coulomb": {"mu": 0.3}})),
             ("/output", json!({"contact_points": true})),

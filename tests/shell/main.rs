@@ -1,6 +1,7 @@
 //! Verification of the solid-shell elements: patch tests, the linear obstacle course, nearly incompressible material,
 //! and a large-rotation cantilever.
 mod distortion;
+mod hencky;
 mod hinged_roof;
 mod incompressible;
 mod large_rotation;

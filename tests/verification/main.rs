@@ -11,6 +11,7 @@ mod extruded;
 mod facets;
 mod friction;
 mod friction_kernel;
+mod hencky;
 mod hertz;
 mod hertz_bodies;
 mod hinged_roof;

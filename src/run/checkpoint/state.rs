@@ -123,16 +123,18 @@ pub fn take_before(
     Ok(state)
 }
 
-/// The enhanced strains: what else the states of elements hold is written by every linearisation before it is read.
+/// The enhanced strains and what laws remember: what else the states of elements hold is written by every linearisation before it is read.
 fn put_elements(model: &Model, elements: &[f64], out: &mut Writer) {
     out.count(elements.len());
     let mut first = 0;
     for body in &model.bodies {
         let len = model.state_len(body);
         let kept = body.block.alpha_len().min(len);
+        let history = body.block.history_len().min(len);
         for _ in 0..body.block.elements() {
             out.f64s(&elements[first..first + kept]);
             first += len;
+            out.f64s(&elements[first - history..first]);
         }
     }
 }
@@ -144,9 +146,11 @@ fn take_elements(model: &Model, elements: &mut [f64], from: &mut Reader) -> Resu
     for body in &model.bodies {
         let len = model.state_len(body);
         let kept = body.block.alpha_len().min(len);
+        let history = body.block.history_len().min(len);
         for _ in 0..body.block.elements() {
             from.f64s(&mut elements[first..first + kept])?;
             first += len;
+            from.f64s(&mut elements[first - history..first])?;
         }
     }
     Ok(())

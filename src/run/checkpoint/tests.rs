@@ -5,7 +5,9 @@ use crate::model::{Model, build};
 use crate::run::march::Kept;
 use crate::run::{RunOptions, run};
 use crate::scene::{self, LoadedScene};
+use crate::shell::ElementBlock;
 use crate::solve::event::{Event, Observer};
+use covact_geometry::Vec3;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Two blocks with friction, cut into segments elsewhere: every section has something in it.
@@ -272,6 +274,94 @@ fn a_torn_slot_gives_way_to_the_one_before() {
         error.contains("checkpoint.0.bin` is no checkpoint of covact"),
         "{error}"
     );
+}
+
+fn evaluate<const N: usize, B: ElementBlock<N>>(block: &B, u: &[Vec3; N], state: &mut [f64]) {
+    block
+        .evaluate(0, u, state, &mut B::System::default())
+        .unwrap();
+    block
+        .residual(0, u, state, &mut B::NO_FORCES.clone())
+        .unwrap();
+}
+
+/// What a law remembers is written when a step is accepted and not by evaluations, stays as it is in the start of the next
+/// step, and comes back from a checkpoint bit by bit.
+#[test]
+fn what_laws_remember_is_committed_and_kept() {
+    use crate::model::state::{State, histories_of_laws};
+    use crate::shell::material::{Hardening, J2};
+    use crate::shell::{Block, Law, with_block};
+    for element in [
+        scene::Element::H8,
+        scene::Element::H8Displacement,
+        scene::Element::Q18,
+    ] {
+        let mut loaded = scene::parse(SCENE, "scene.json").unwrap();
+        for body in loaded.scene.bodies.values_mut() {
+            body.element = element;
+        }
+        let mut model = build::build(&loaded).unwrap();
+        let metal = Law::J2(J2 {
+            lambda: 60.0,
+            mu: 40.0,
+            hardening: Hardening::Linear {
+                initial: 1.0,
+                slope: 5.0,
+            },
+        });
+        // The second body remembers, the first does not.
+        let block = Block::new(&model.bodies[1].mesh, element, metal).unwrap();
+        model.bodies[1].block = block;
+        let start = State::new(&model);
+        let numbers = |state: &State| -> Vec<f64> {
+            histories_of_laws(&model)
+                .flat_map(|range| state.elements[range].to_vec())
+                .collect()
+        };
+        let points = if element == scene::Element::Q18 {
+            18
+        } else {
+            8
+        };
+        assert_eq!(numbers(&start).len(), 7 * points);
+
+        let sheared = |state: &mut State, by: f64| {
+            for (u, x) in state.u.chunks_exact_mut(3).zip(&model.nodes) {
+                u.copy_from_slice(&[by * x.z, 0.0, 0.0]);
+            }
+        };
+        let body = &model.bodies[1];
+        let first = model.state_len(&model.bodies[0]) * model.bodies[0].block.elements();
+        let mut trial = start.clone();
+        for by in [0.3, -0.4, 0.1] {
+            sheared(&mut trial, by);
+            let state = &mut trial.elements[first..];
+            with_block!(&body.block, block => {
+                let u = body.displacements(block, 0, &trial.u);
+                evaluate(block, &u, state);
+            });
+            assert_eq!(numbers(&trial), numbers(&start));
+        }
+        trial.remember(&model).unwrap();
+        let first = numbers(&trial);
+        assert!(first.iter().any(|x| x.abs() > 1e-3));
+
+        // The next step: the predictor continues displacements alone.
+        let mut next = start.clone();
+        trial.extrapolate(&model, &start, 1.0, &mut next);
+        assert_eq!(numbers(&next), first);
+        assert!(next.u.iter().zip(&trial.u).any(|(a, b)| a != b));
+        sheared(&mut next, 0.3);
+        next.remember(&model).unwrap();
+        assert_ne!(numbers(&next), first);
+
+        let mut out = bytes::Writer::default();
+        state::put(&model, &next, &mut out);
+        let mut from = bytes::Reader::new(out.bytes());
+        let back = state::take(&model, &mut from).unwrap();
+        assert_eq!(numbers(&back), numbers(&next));
+    }
 }
 
 #[test]

@@ -12,6 +12,8 @@ pub enum MaterialChoice {
     StVenantKirchhoff(Elastic),
     /// Compressible neo-Hooke: large strains.
     NeoHooke(Elastic),
+    /// Hencky: linear law between logarithmic strain and its conjugate stress. Moderately large strains, stretches of 1/2 to 2.
+    Hencky(Elastic),
     /// Structural steel S235: E 210 GPa, nu 0.3 (EN 1993-1-1, 3.2.6); yield strength 235 MPa (EN 10025-2).
     /// St. Venant-Kirchhoff.
     Steel,
@@ -42,6 +44,42 @@ pub enum Material {
     StVenantKirchhoff(Elastic),
     /// Compressible neo-Hooke: large strains.
     NeoHooke(Elastic),
+    /// Hencky: linear law between logarithmic strain and its conjugate stress. Moderately large strains, stretches of 1/2 to 2.
+    Hencky(Elastic),
+}
+
+impl Material {
+    /// The key in scenes; the name of its effect is `material.` and this key.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Material::StVenantKirchhoff(_) => "st_venant_kirchhoff",
+            Material::NeoHooke(_) => "neo_hooke",
+            Material::Hencky(_) => "hencky",
+        }
+    }
+
+    /// The name in prose.
+    pub fn title(&self) -> &'static str {
+        match self {
+            Material::StVenantKirchhoff(_) => "St. Venant-Kirchhoff",
+            Material::NeoHooke(_) => "neo-Hooke",
+            Material::Hencky(_) => "Hencky",
+        }
+    }
+
+    /// Constants of the law at small strain.
+    pub fn elastic(&self) -> &Elastic {
+        match self {
+            Material::StVenantKirchhoff(elastic)
+            | Material::NeoHooke(elastic)
+            | Material::Hencky(elastic) => elastic,
+        }
+    }
+
+    /// Whether stress and Green-Lagrange strain are proportional at any strain.
+    pub fn is_linear(&self) -> bool {
+        matches!(self, Material::StVenantKirchhoff(_))
+    }
 }
 
 /// Young's modulus (force / length^2) and Poisson's ratio.
@@ -70,6 +108,16 @@ fn modulus_of_hardness(shore: f64) -> f64 {
 }
 
 impl MaterialChoice {
+    /// A law that is written out with its constants; none for a name.
+    pub fn written(self) -> Option<Material> {
+        match self {
+            MaterialChoice::StVenantKirchhoff(e) => Some(Material::StVenantKirchhoff(e)),
+            MaterialChoice::NeoHooke(e) => Some(Material::NeoHooke(e)),
+            MaterialChoice::Hencky(e) => Some(Material::Hencky(e)),
+            _ => None,
+        }
+    }
+
     fn known(self) -> Option<KnownMaterial> {
         let metal = |name, e, yield_strength| {
             Some(KnownMaterial {
@@ -88,7 +136,9 @@ impl MaterialChoice {
             })
         };
         match self {
-            MaterialChoice::StVenantKirchhoff(_) | MaterialChoice::NeoHooke(_) => None,
+            MaterialChoice::StVenantKirchhoff(_)
+            | MaterialChoice::NeoHooke(_)
+            | MaterialChoice::Hencky(_) => None,
             MaterialChoice::Steel => metal("steel", 210e9, 235e6),
             MaterialChoice::StainlessSteel => metal("stainless_steel", 200e9, 210e6),
             MaterialChoice::Aluminium => metal("aluminium", 70e9, 240e6),
@@ -107,11 +157,7 @@ impl MaterialChoice {
     /// The law with its constants in the units of the scene; none for a name where the force unit is not given.
     pub fn law(self, units: &Units) -> Option<Material> {
         let Some(known) = self.known() else {
-            return match self {
-                MaterialChoice::StVenantKirchhoff(e) => Some(Material::StVenantKirchhoff(e)),
-                MaterialChoice::NeoHooke(e) => Some(Material::NeoHooke(e)),
-                _ => None,
-            };
+            return self.written();
         };
         let elastic = Elastic {
             e: known.e / units.pascals()?,

@@ -12,8 +12,9 @@ mod tangent;
 mod tests;
 
 use super::error::{ElementFault, FaultCause, ShellError};
+use super::history::{advance, cauchy};
 use super::kinematics::V;
-use super::material::{Collapsed, Law};
+use super::material::{Collapsed, Law, with_law};
 use super::stress;
 use crate::mesh::{ElementKind, Mesh};
 use covact_geometry::Vec3;
@@ -59,20 +60,10 @@ pub struct Q18Block {
     reference: Vec<Reference>,
 }
 
-/// Runs a block of code with `$law` bound to the concrete law.
-macro_rules! with_law {
-    ($self:ident, $law:ident => $body:expr) => {
-        match &$self.law {
-            Law::StVenantKirchhoff($law) => $body,
-            Law::NeoHooke($law) => $body,
-        }
-    };
-}
-
 impl Q18Block {
     /// Bytes of an element here.
     pub(super) const BYTES: usize = size_of::<Reference>() + size_of::<[u32; 18]>();
-    /// Numbers of state per element.
+    /// Numbers of state per element of an elastic law.
     pub const STATE_LEN: usize = tangent::STATE;
     /// Numbers of enhanced strains per element, at the start of its state.
     pub const ALPHA_LEN: usize = MODES;
@@ -150,6 +141,16 @@ impl Q18Block {
         self.law
     }
 
+    /// Numbers of state per element: [`Q18Block::STATE_LEN`], then those of the law.
+    pub fn state_len(&self) -> usize {
+        Self::STATE_LEN + self.history_len()
+    }
+
+    /// Numbers that the law remembers per element, at the end of its state.
+    pub fn history_len(&self) -> usize {
+        POINTS * self.law.state_len()
+    }
+
     /// Undeformed volume of element `e`.
     pub fn volume(&self, e: usize) -> f64 {
         self.reference[e].volume.iter().sum()
@@ -169,7 +170,7 @@ impl Q18Block {
         out: &mut Q18System,
     ) -> Result<(), ElementFault> {
         let (u, re) = (arrays(u), &self.reference[e]);
-        with_law!(self, law => tangent::evaluate(law, re, &u, state, out)).map_err(|cause| {
+        with_law!(&self.law, law => tangent::evaluate(law, re, &u, state, out)).map_err(|cause| {
             ElementFault {
                 element: e as u32,
                 cause,
@@ -190,8 +191,8 @@ impl Q18Block {
         f: &mut [f64; DOFS],
     ) -> Result<f64, ElementFault> {
         let (u, re) = (arrays(u), &self.reference[e]);
-        let (energy, forces, mut h) = with_law!(self, law =>
-            strain::forces(law, re, &split(&u), &head(state)))
+        let (energy, forces, mut h) = with_law!(&self.law, law =>
+            strain::forces(law, re, &split(&u), &head(state), &state[tangent::STATE..]))
         .map_err(|(point, c)| fault(e, point, c))?;
         for node in 0..18 {
             let sign = if node < 9 { -1.0 } else { 1.0 };
@@ -242,11 +243,28 @@ impl Q18Block {
         for (g, point) in TABLES.points.iter().enumerate() {
             let big = point.n.map(|n| strain::along(&n, &re.y));
             let moved = point.n.map(|n| strain::along(&n, &du));
-            out[g] = with_law!(self, law =>
-                stress::cauchy(law, &re.metric[g], &big, &moved, &strain[g]))
+            out[g] = with_law!(&self.law, law =>
+                cauchy(law, (&re.metric[g], g), &big, &moved, &strain[g], &state[tangent::STATE..]))
             .map_err(|c| fault(e, g as u8, c))?;
         }
         Ok(())
+    }
+
+    /// Takes an accepted step into the states of the law; see [`H8Block::remember`](super::H8Block::remember).
+    ///
+    /// # Errors
+    /// [`ElementFault`] where the strain is impossible.
+    pub fn remember(
+        &self,
+        e: usize,
+        u: &[Vec3; 18],
+        state: &mut [f64],
+    ) -> Result<(), ElementFault> {
+        let (u, re) = (arrays(u), &self.reference[e]);
+        let strain = strain::strains(re, &split(&u), &head(state));
+        let states = &mut state[tangent::STATE..];
+        with_law!(&self.law, law => advance(law, &re.metric, &strain, states))
+            .map_err(|(point, c)| fault(e, point, c))
     }
 
     /// Stress of the linear element (xx, yy, zz, xy, yz, xz) at the Gauss points `i + 3 j + 9 k`; see
@@ -266,8 +284,9 @@ impl Q18Block {
         let strain = strain::strains(re, &stress::from_zero(&split(&arrays(u))), &alpha);
         for (g, point) in TABLES.points.iter().enumerate() {
             let big = point.n.map(|n| strain::along(&n, &re.y));
-            out[g] = with_law!(self, law => stress::linear(law, &re.metric[g], &big, &strain[g]))
-                .map_err(|c| fault(e, g as u8, c))?;
+            out[g] =
+                with_law!(&self.law, law => stress::linear(law, &re.metric[g], &big, &strain[g]))
+                    .map_err(|c| fault(e, g as u8, c))?;
         }
         Ok(())
     }

@@ -12,7 +12,7 @@
 //! 3. The volume strain `G^ij E_ij` is projected on 1, r, s, rs, t, rt, st, rst (after J. C. Nagtegaal, D. M. Parks and
 //!    J. R. Rice, CMAME 4 (1974)): 18 conditions of constant volume become 8, of which enhanced strains meet four.
 use super::super::kinematics::V;
-use super::super::material::{Collapsed, MaterialLaw};
+use super::super::material::{Collapsed, MaterialLaw, state_of};
 use super::reference::{MODES, Reference, VOLUMES, as_strain, volume_functions};
 use super::tables::{POINTS, SAMPLES, TABLES, TIED};
 use num_dual::DualNum;
@@ -303,13 +303,14 @@ pub(super) fn forces<D: DualNum<f64> + Copy + Linear, L: MaterialLaw>(
     re: &Reference,
     u: &[V<D>; 18],
     alpha: &[D; MODES],
+    states: &[f64],
 ) -> Result<(D, [V<D>; 18], [D; MODES]), (u8, Collapsed)> {
     let strain = strains(re, u, alpha);
     let (mut energy, mut h) = (D::zero(), [D::zero(); MODES]);
     let mut stress = [[D::nil(); 6]; POINTS];
     for g in 0..POINTS {
         let (psi, s) = law
-            .stress(&re.metric[g], &strain[g])
+            .stress(&re.metric[g], &strain[g], &state_of::<L>(states, g))
             .map_err(|c| (g as u8, c))?;
         energy += psi * re.volume[g];
         stress[g] = s.map(|s| s * re.volume[g]);

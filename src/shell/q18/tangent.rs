@@ -4,7 +4,7 @@
 //! itself. Rows are over mid-surface points and half directors; nodes come in at the end.
 use super::super::error::FaultCause;
 use super::super::kinematics::V;
-use super::super::material::MaterialLaw;
+use super::super::material::{MaterialLaw, state_of};
 use super::reference::{MODES, Reference, split};
 use super::strain::{Compatible, along, assumed, strains, transposed};
 use super::tables::{POINTS, SAMPLES, TABLES};
@@ -101,7 +101,7 @@ fn geometric(force: &Compatible<f64>) -> [[f64; 18]; 18] {
 }
 
 /// Evaluates one element at displacements `u` of its nodes: `out` receives condensed forces and tangent, `state` (its
-/// alpha being read) the condensation cache.
+/// alpha and the states of the law being read) the condensation cache.
 pub(super) fn evaluate<L: MaterialLaw>(
     law: &L,
     re: &Reference,
@@ -126,12 +126,16 @@ pub(super) fn evaluate<L: MaterialLaw>(
     let mut h = [0.0; MODES];
     let mut stress = [[0.0; 6]; POINTS];
     for g in 0..POINTS {
-        let response =
-            law.response(&re.metric[g], &strain[g])
-                .map_err(|c| FaultCause::Collapsed {
-                    point: g as u8,
-                    ratio: c.ratio,
-                })?;
+        let response = law
+            .response(
+                &re.metric[g],
+                &strain[g],
+                &state_of::<L>(&state[STATE..], g),
+            )
+            .map_err(|c| FaultCause::Collapsed {
+                point: g as u8,
+                ratio: c.ratio,
+            })?;
         let dv = re.volume[g];
         out.energy += response.energy * dv;
         stress[g] = response.stress.map(|s| s * dv);

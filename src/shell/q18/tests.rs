@@ -1,5 +1,5 @@
 //! Derivatives of Q18 against dual numbers, and its rank.
-use super::super::material::Law;
+use super::super::material::{Hardening, J2, Law, with_law};
 use super::reference::{MODES, Reference};
 use super::strain::forces;
 use super::{DOFS, Q18Block, Q18System};
@@ -44,13 +44,24 @@ fn block(law: Law) -> Q18Block {
     Q18Block::new(&mesh, law).unwrap()
 }
 
-fn laws() -> [Law; 2] {
+fn laws() -> [Law; 4] {
     let elastic = Elastic { e: 1000.0, nu: 0.3 };
-    [
+    let [a, b, c] = [
         Material::StVenantKirchhoff(elastic),
         Material::NeoHooke(elastic),
+        Material::Hencky(elastic),
     ]
-    .map(|m| Law::new(&m).unwrap())
+    .map(|m| Law::new(&m).unwrap());
+    // Most points flow.
+    let metal = Law::J2(J2 {
+        lambda: 577.0,
+        mu: 385.0,
+        hardening: Hardening::Linear {
+            initial: 5.0,
+            slope: 50.0,
+        },
+    });
+    [a, b, c, metal]
 }
 
 fn displacement() -> [Vec3; 18] {
@@ -85,11 +96,9 @@ fn dual(
             }
         })
     });
-    let (energy, f, h) = match law {
-        Law::StVenantKirchhoff(law) => forces(law, re, &y, &a),
-        Law::NeoHooke(law) => forces(law, re, &y, &a),
-    }
-    .unwrap();
+    let law_len = law.state_len();
+    let (energy, f, h) =
+        with_law!(law, law => forces(law, re, &y, &a, &vec![0.0; 18 * law_len])).unwrap();
     let mut out = vec![energy];
     for node in 0..18 {
         for k in 0..3 {
@@ -110,7 +119,7 @@ fn derivatives_are_those_of_dual_numbers() {
         let re = &block.reference[0];
         let u = displacement();
         let alpha = [0.001, -0.002, 0.0015, 0.0005];
-        let mut state = vec![0.0; Q18Block::STATE_LEN];
+        let mut state = vec![0.0; block.state_len()];
         state[..MODES].copy_from_slice(&alpha);
         let mut system = Q18System::default();
         block.evaluate(0, &u, &mut state, &mut system).unwrap();
@@ -155,7 +164,7 @@ fn derivatives_are_those_of_dual_numbers() {
 fn six_rigid_motions() {
     for law in laws() {
         let block = block(law);
-        let mut state = vec![0.0; Q18Block::STATE_LEN];
+        let mut state = vec![0.0; block.state_len()];
         let mut system = Q18System::default();
         let zero = [Vec3::zeros(); 18];
         block.evaluate(0, &zero, &mut state, &mut system).unwrap();
@@ -177,7 +186,7 @@ fn rigid_rotation_is_free() {
     let block = block(laws()[0]);
     let rotation = nalgebra::Rotation3::from_euler_angles(0.7, -1.1, 2.0);
     let u = nodes().map(|x| rotation * x - x);
-    let mut state = vec![0.0; Q18Block::STATE_LEN];
+    let mut state = vec![0.0; block.state_len()];
     let mut system = Q18System::default();
     block.evaluate(0, &u, &mut state, &mut system).unwrap();
     let stiffness = system.k.iter().fold(0.0f64, |m, k| m.max(k.abs()));

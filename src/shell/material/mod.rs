@@ -1,0 +1,229 @@
+//! Isotropic elastic and elastoplastic laws between Green-Lagrange strain and second Piola-Kirchhoff stress.
+//!
+//! A law is evaluated in any frame: strain in covariant components `E_ij` (Voigt order 11, 22, 33, 12, 23, 13, shears
+//! `2 E_ij`), stress in contravariant components `S^ij`, and the metric of the undeformed frame ties them together. In
+//! Cartesian axes ([`Metric::CARTESIAN`]) these are the usual components.
+//!
+//! Source of the formulas: J. Bonet and R. D. Wood, *Nonlinear Continuum Mechanics for Finite Element Analysis*, 2008,
+//! chapter 6, here in convected components.
+mod hencky;
+mod j2;
+mod logarithm;
+mod neo_hooke;
+mod st_venant_kirchhoff;
+mod tensor;
+
+use super::error::ShellError;
+use crate::scene::{Elastic, Material};
+pub use hencky::Hencky;
+pub use j2::{Hardening, J2, J2State};
+pub use neo_hooke::NeoHooke;
+use num_dual::DualNum;
+pub use st_venant_kirchhoff::StVenantKirchhoff;
+use tensor::inverse;
+
+/// Metric of the undeformed frame: covariant `G_ij` and contravariant `G^ij`, in Voigt order without factors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Metric {
+    pub lower: [f64; 6],
+    pub upper: [f64; 6],
+}
+
+impl Metric {
+    /// Cartesian axes.
+    pub const CARTESIAN: Metric = Metric {
+        lower: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
+        upper: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
+    };
+
+    /// From the covariant metric; it must be positive definite.
+    pub fn new(lower: [f64; 6]) -> Metric {
+        let (upper, _) = inverse(&lower);
+        Metric { lower, upper }
+    }
+}
+
+/// The strain is one that no deformation has: C = G + 2E is not positive definite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Collapsed {
+    /// det C / det G.
+    pub ratio: f64,
+}
+
+/// Energy density, stress and tangent at one point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Response {
+    /// Energy per undeformed volume.
+    pub energy: f64,
+    /// `S^ij` (force per undeformed area).
+    pub stress: [f64; 6],
+    /// `dS^ij / dE_kl` against Voigt strains; symmetric.
+    pub tangent: [[f64; 6]; 6],
+}
+
+/// What a material point remembers of the accepted steps: plain numbers, zero at first.
+pub trait LawState: Copy + Send + Sync {
+    /// How many numbers.
+    const LEN: usize;
+    /// That of a point which nothing has happened to.
+    const UNUSED: Self;
+    /// From [`LawState::LEN`] numbers.
+    fn read(from: &[f64]) -> Self;
+    /// Into [`LawState::LEN`] numbers.
+    fn write(&self, to: &mut [f64]);
+}
+
+/// Elastic laws remember nothing.
+impl LawState for () {
+    const LEN: usize = 0;
+    const UNUSED: () = ();
+    #[inline(always)]
+    fn read(_: &[f64]) {}
+    #[inline(always)]
+    fn write(&self, _: &mut [f64]) {}
+}
+
+/// The state of point `point` among the states of an element's points.
+#[inline(always)]
+pub(super) fn state_of<L: MaterialLaw>(states: &[f64], point: usize) -> L::State {
+    L::State::read(&states[point * L::State::LEN..][..L::State::LEN])
+}
+
+/// A law whose stress is the gradient of an energy at constant `old`, the state at the end of the last accepted step.
+/// Energy and stress are generic over the scalar, so that dual numbers can check derivatives.
+pub trait MaterialLaw: Copy + Send + Sync {
+    /// What a point remembers between steps.
+    type State: LawState;
+
+    /// Energy per undeformed volume.
+    ///
+    /// # Errors
+    /// [`Collapsed`] where C is not positive definite.
+    fn energy<D: DualNum<f64> + Copy>(
+        &self,
+        metric: &Metric,
+        strain: &[D; 6],
+        old: &Self::State,
+    ) -> Result<D, Collapsed>;
+
+    /// Energy density and stress.
+    ///
+    /// # Errors
+    /// [`Collapsed`] where C is not positive definite.
+    fn stress<D: DualNum<f64> + Copy>(
+        &self,
+        metric: &Metric,
+        strain: &[D; 6],
+        old: &Self::State,
+    ) -> Result<(D, [D; 6]), Collapsed>;
+
+    /// Energy density, stress and tangent.
+    ///
+    /// # Errors
+    /// [`Collapsed`] where C is not positive definite.
+    fn response(
+        &self,
+        metric: &Metric,
+        strain: &[f64; 6],
+        old: &Self::State,
+    ) -> Result<Response, Collapsed>;
+
+    /// The state at the end of a step that is accepted at this strain.
+    ///
+    /// # Errors
+    /// [`Collapsed`] where C is not positive definite.
+    fn advance(
+        &self,
+        _metric: &Metric,
+        _strain: &[f64; 6],
+        old: &Self::State,
+    ) -> Result<Self::State, Collapsed> {
+        Ok(*old)
+    }
+}
+
+/// A law chosen at run time; elements branch on it once and run monomorphised loops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    StVenantKirchhoff(StVenantKirchhoff),
+    NeoHooke(NeoHooke),
+    Hencky(Hencky),
+    J2(J2),
+}
+
+/// Runs a block of code with `$law` bound to the concrete law of a [`Law`].
+macro_rules! with_law {
+    ($enum:expr, $law:ident => $body:expr) => {
+        match $enum {
+            $crate::shell::Law::StVenantKirchhoff($law) => $body,
+            $crate::shell::Law::NeoHooke($law) => $body,
+            $crate::shell::Law::Hencky($law) => $body,
+            $crate::shell::Law::J2($law) => $body,
+        }
+    };
+}
+pub(in crate::shell) use with_law;
+
+impl Law {
+    /// From the scene's constants.
+    ///
+    /// # Errors
+    /// [`ShellError::Material`] unless E > 0 and -1 < nu < 0.5.
+    pub fn new(material: &Material) -> Result<Law, ShellError> {
+        let (lambda, mu) = lame(material.elastic())?;
+        Ok(match material {
+            Material::StVenantKirchhoff(_) => {
+                Law::StVenantKirchhoff(StVenantKirchhoff { lambda, mu })
+            }
+            Material::NeoHooke(_) => Law::NeoHooke(NeoHooke { lambda, mu }),
+            Material::Hencky(_) => Law::Hencky(Hencky { lambda, mu }),
+        })
+    }
+
+    /// Poisson's ratio of the linearised law.
+    pub fn nu(&self) -> f64 {
+        let (lambda, mu) = self.lame();
+        0.5 * lambda / (lambda + mu)
+    }
+
+    /// Young's modulus of the linearised law.
+    pub fn young(&self) -> f64 {
+        let (lambda, mu) = self.lame();
+        mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu)
+    }
+
+    /// Numbers that a point remembers between steps.
+    pub fn state_len(&self) -> usize {
+        fn len<L: MaterialLaw>(_: &L) -> usize {
+            L::State::LEN
+        }
+        with_law!(self, law => len(law))
+    }
+
+    fn lame(&self) -> (f64, f64) {
+        with_law!(self, law => (law.lambda, law.mu))
+    }
+}
+
+/// Lamé's constants.
+fn lame(elastic: &Elastic) -> Result<(f64, f64), ShellError> {
+    let Elastic { e, nu } = *elastic;
+    if !(e > 0.0 && e.is_finite()) {
+        return Err(ShellError::Material {
+            name: "E",
+            value: e,
+            range: "positive",
+        });
+    }
+    if !(nu > -1.0 && nu < 0.5) {
+        return Err(ShellError::Material {
+            name: "nu",
+            value: nu,
+            range: "between -1 and 0.5",
+        });
+    }
+    Ok((
+        e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        0.5 * e / (1.0 + nu),
+    ))
+}
