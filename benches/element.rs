@@ -23,7 +23,11 @@ fn element(c: &mut Criterion) {
         face_sets: Default::default(),
     };
     let u = nodes.map(|x| Vec3::new(0.01 * x.y * x.x, -0.02 * x.x * x.z, 0.01 * x.x * x.x));
-    let elastic = Elastic { e: 210e3, nu: 0.3 };
+    let elastic = Elastic {
+        e: 210e3,
+        nu: 0.3,
+        density: None,
+    };
     for (name, material) in [
         ("st_venant_kirchhoff", Material::StVenantKirchhoff(elastic)),
         ("neo_hooke", Material::NeoHooke(elastic)),

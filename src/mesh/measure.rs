@@ -1,6 +1,7 @@
 //! Lengths, areas, volumes and shape quality of elements.
 use super::{ElementKind, Face, Mesh};
 use crate::fem::Quad;
+use crate::fem::face::shape as shape_functions;
 use crate::fem::quadrature::{GAUSS_2, GAUSS_3};
 use covact_geometry::Vec3;
 
@@ -168,6 +169,38 @@ impl Mesh {
             }
         }
         volume
+    }
+
+    /// Integral of the shape function of every node over the mesh: the volume that it stands for under a force per volume.
+    pub fn nodal_volumes(&self) -> Vec<f64> {
+        let mut volumes = vec![0.0; self.nodes.len()];
+        let rule = match self.kind {
+            ElementKind::H8 => GAUSS_2,
+            ElementKind::Q18 => GAUSS_3,
+        };
+        for e in 0..self.elements() {
+            let sides = self.bottom_and_top(e);
+            let count = sides[0].count;
+            let half = self.element(e).len() / 2;
+            for (s, ws) in rule.iter() {
+                for (r, wr) in rule.iter() {
+                    let [low, high] =
+                        [0, 1].map(|i| (sides[i].point(r, s), sides[i].tangents(r, s)));
+                    let along_t = (high.0 - low.0) * 0.5;
+                    let shapes = shape_functions(count, r, s);
+                    for (t, wt) in GAUSS_2.iter() {
+                        let parts = [0.5 - 0.5 * t, 0.5 + 0.5 * t];
+                        let along = |i: usize| low.1[i] * parts[0] + high.1[i] * parts[1];
+                        let volume = wr * ws * wt * along(0).cross(&along(1)).dot(&along_t);
+                        for (k, node) in self.element(e).iter().enumerate() {
+                            let weight = shapes[k % half] * parts[k / half];
+                            volumes[*node as usize] += weight * volume;
+                        }
+                    }
+                }
+            }
+        }
+        volumes
     }
 
     /// Volume of the whole mesh.

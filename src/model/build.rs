@@ -436,6 +436,12 @@ impl<'s> Builder<'s> {
                 dead.push((name.clone(), DeadLoad::Force { shares, value }));
                 continue;
             }
+            if let Some(gravity) = &load.gravity {
+                let shares = self.masses(&load.on, &pointer("on"))?;
+                let value = vector(gravity, "gravity", &TIME)?;
+                dead.push((name.clone(), DeadLoad::Force { shares, value }));
+                continue;
+            }
             let parts = self.faces_of(&load.on, &pointer("on"))?;
             let parts: Vec<(&Mesh, u32, Vec<Face>)> = (parts.into_iter())
                 .map(|(body, faces)| {

@@ -360,6 +360,7 @@ fn loads(scene: &Scene) -> Vec<LoadReport> {
             name: name.clone(),
             on: load.on.to_string(),
             kind: match (&load.force, &load.traction, load.follower) {
+                _ if load.gravity.is_some() => "gravity",
                 (Some(_), ..) => "force",
                 (_, Some(_), _) => "traction",
                 (.., true) => "follower pressure",

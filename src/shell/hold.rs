@@ -88,7 +88,12 @@ mod tests {
             node_sets: Default::default(),
             face_sets: Default::default(),
         };
-        let law = Law::new(&Material::NeoHooke(Elastic { e: 5.0, nu })).unwrap();
+        let law = Law::new(&Material::NeoHooke(Elastic {
+            e: 5.0,
+            nu,
+            density: None,
+        }))
+        .unwrap();
         let block = H8Block::new(&mesh, Formulation::Eas7, law).unwrap();
         let wide = (1.0 - part).powf(-nu);
         let now = |a: usize| at(a, [wide, wide, height * (1.0 - part)]);

@@ -43,7 +43,11 @@ fn mesh(nodes: &[Vec3; 8]) -> Mesh {
 }
 
 fn laws() -> [Law; 4] {
-    let elastic = Elastic { e: 1000.0, nu: 0.3 };
+    let elastic = Elastic {
+        e: 1000.0,
+        nu: 0.3,
+        density: None,
+    };
     let [a, b, c] = [
         Material::StVenantKirchhoff(elastic),
         Material::NeoHooke(elastic),
@@ -580,9 +584,22 @@ fn bad_meshes_and_constants_are_refused() {
             nodes: 8
         }
     );
-    let soft = |nu| Law::new(&Material::NeoHooke(Elastic { e: 1.0, nu }));
+    let soft = |nu| {
+        Law::new(&Material::NeoHooke(Elastic {
+            e: 1.0,
+            nu,
+            density: None,
+        }))
+    };
     assert!(soft(0.5).is_err() && soft(f64::NAN).is_err() && soft(-1.0).is_err());
-    assert!(Law::new(&Material::NeoHooke(Elastic { e: 0.0, nu: 0.3 })).is_err());
+    assert!(
+        Law::new(&Material::NeoHooke(Elastic {
+            e: 0.0,
+            nu: 0.3,
+            density: None
+        }))
+        .is_err()
+    );
     assert!(matches!(
         H8Block::new(&mesh(&nodes()), Formulation::Eas3, soft(0.49).unwrap()),
         Err(ShellError::TooFewEnhanced { .. })

@@ -9,7 +9,12 @@ const E: f64 = 1000.0;
 const NU: f64 = 0.3;
 
 fn law() -> Law {
-    Law::new(&Material::Hencky(Elastic { e: E, nu: NU })).unwrap()
+    Law::new(&Material::Hencky(Elastic {
+        e: E,
+        nu: NU,
+        density: None,
+    }))
+    .unwrap()
 }
 
 /// Two unequal elements along x, of this skewness in plane, in the box 3 x 2 x 0.5.

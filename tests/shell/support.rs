@@ -97,7 +97,12 @@ impl Grid {
 }
 
 pub fn st_venant(e: f64, nu: f64) -> Law {
-    Law::new(&Material::StVenantKirchhoff(Elastic { e, nu })).unwrap()
+    Law::new(&Material::StVenantKirchhoff(Elastic {
+        e,
+        nu,
+        density: None,
+    }))
+    .unwrap()
 }
 
 /// Elements of either kind.

@@ -11,6 +11,7 @@ mod extruded;
 mod facets;
 mod friction;
 mod friction_kernel;
+mod gravity;
 mod hencky;
 mod hertz;
 mod hertz_bodies;

@@ -24,9 +24,10 @@ impl Builder<'_> {
         }
         for (name, load) in &self.scene.loads {
             for (at, reference) in load.on.places(&format!("/loads/{name}/on")) {
-                match load.force {
-                    Some(_) => errors.extend(self.set_nodes(reference, &at).err()),
-                    None => errors.extend(self.faces(reference, &at).err()),
+                match (&load.force, &load.gravity) {
+                    (_, Some(_)) => errors.extend(self.body(reference, &at).err()),
+                    (Some(_), _) => errors.extend(self.set_nodes(reference, &at).err()),
+                    _ => errors.extend(self.faces(reference, &at).err()),
                 }
             }
         }
@@ -101,6 +102,24 @@ impl Builder<'_> {
     fn is_face_set(&self, reference: &str, pointer: &str) -> Result<bool, ModelError> {
         let (_, mesh, _) = self.body(reference, pointer)?;
         Ok(mesh.face_sets.contains_key(split(reference).1))
+    }
+
+    /// Mass that each node of some bodies stands for.
+    pub(super) fn masses(&self, on: &SetNames, at: &str) -> Result<Vec<(u32, f64)>, ModelError> {
+        let mut masses = Vec::new();
+        for (pointer, name) in on.places(at) {
+            let (index, mesh, first) = self.body(name, &pointer)?;
+            let density = self.bodies[index].material.elastic().density;
+            let density = density.ok_or_else(|| {
+                text(
+                    &pointer,
+                    format!("the material of body `{name}` has no density"),
+                )
+            })?;
+            let volumes = mesh.nodal_volumes().into_iter().zip(first..);
+            masses.extend(volumes.map(|(volume, node)| (node, density * volume)));
+        }
+        Ok(masses)
     }
 
     /// Share of each node in a total force: by tributary area on face sets, equal on node sets.

@@ -17,6 +17,9 @@ pub(super) fn check(c: &mut Checker, name: &str, material: &MaterialChoice, unit
     let elastic = law.elastic();
     let at = path(&["materials", name, law.key()]);
     c.positive(&format!("{at}/E"), "Young's modulus `E`", elastic.e);
+    if let Some(density) = elastic.density {
+        c.positive(&format!("{at}/density"), "the `density`", density);
+    }
     if !(elastic.nu > -1.0 && elastic.nu < 0.5) {
         let help = "-1 < nu < 0.5; nearly incompressible materials take e.g. 0.499";
         let message = format!("Poisson's ratio `nu` is {}", elastic.nu);

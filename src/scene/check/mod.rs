@@ -60,7 +60,7 @@ pub(super) fn problems(scene: &Scene, document: &Document) -> Vec<Problem> {
         check_support(&mut c, &path(&["supports", name]), support, &sets);
     }
     for (name, load) in &scene.loads {
-        check_load(&mut c, &path(&["loads", name]), load, &sets);
+        check_load(&mut c, &path(&["loads", name]), load, &sets, scene);
     }
     for (name, probe) in &scene.probes {
         check_probe(&mut c, &path(&["probes", name]), probe, scene, &sets);
@@ -296,7 +296,29 @@ fn check_support(c: &mut Checker, at: &str, support: &Support, sets: &Sets) {
     }
 }
 
-fn check_load(c: &mut Checker, at: &str, load: &Load, sets: &Sets) {
+/// Gravity acts on bodies whose density is known.
+fn check_weight(c: &mut Checker, at: &str, load: &Load, sets: &Sets, scene: &Scene) {
+    for (at, name) in load.on.places(&format!("{at}/on")) {
+        let Some(body) = scene.bodies.get(name) else {
+            sets.not_a_body(c, &at, name);
+            continue;
+        };
+        let material = scene.materials.get(&body.material);
+        let law = material.and_then(|m| m.law(&scene.units));
+        if law.is_some_and(|law| law.elastic().density.is_none()) {
+            c.add(
+                &at,
+                format!(
+                    "the material `{}` of body `{name}` has no density",
+                    body.material
+                ),
+                Some("give it one: `\"density\": 7.85e-9` is steel in N, mm and s".into()),
+            );
+        }
+    }
+}
+
+fn check_load(c: &mut Checker, at: &str, load: &Load, sets: &Sets, scene: &Scene) {
     let on_faces = load.force.is_none();
     let what = if load.pressure.is_some() {
         "a pressure"
@@ -304,7 +326,10 @@ fn check_load(c: &mut Checker, at: &str, load: &Load, sets: &Sets) {
         "a traction"
     };
     let user = if on_faces { what } else { "a force" };
-    check_sets(c, at, &load.on, sets, (on_faces, user));
+    match load.gravity {
+        None => check_sets(c, at, &load.on, sets, (on_faces, user)),
+        Some(_) => check_weight(c, at, load, sets, scene),
+    }
     c.exactly_one(
         at,
         "load",
@@ -312,11 +337,13 @@ fn check_load(c: &mut Checker, at: &str, load: &Load, sets: &Sets) {
             ("force", load.force.is_some()),
             ("traction", load.traction.is_some()),
             ("pressure", load.pressure.is_some()),
+            ("gravity", load.gravity.is_some()),
         ],
     );
     // A total force is one vector for the whole set, so it cannot depend on position.
     for (key, values, variables) in [
         ("force", &load.force, &TIME[..]),
+        ("gravity", &load.gravity, &TIME[..]),
         ("traction", &load.traction, &POSITION_AND_TIME[..]),
     ] {
         for (i, value) in values.iter().flatten().enumerate() {

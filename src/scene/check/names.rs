@@ -170,6 +170,25 @@ impl<'a> Sets<'a> {
         (self.bodies.get(body)).is_some_and(|b| b.open || b.sets.contains_key(set))
     }
 
+    /// `reference` should have been the name of a body.
+    pub fn not_a_body(&self, c: &mut Checker, at: &str, reference: &str) {
+        let name = reference.split('.').next().unwrap_or_default();
+        let (message, help) = match self.bodies.contains_key(name) {
+            true => (
+                format!(
+                    "gravity acts on whole bodies, and `{}` is a set",
+                    shorten(reference)
+                ),
+                format!("write `{}`", shorten(name)),
+            ),
+            false => (
+                format!("there is no body `{}`", shorten(reference)),
+                suggestion(reference, "bodies", self.bodies.keys().copied()),
+            ),
+        };
+        c.add(at, message, Some(help));
+    }
+
     /// `reference` is `body.set` of a body and, where that is known, of one of its sets; `user` needs faces.
     pub fn check(&self, c: &mut Checker, at: &str, reference: &str, faces: bool, user: &str) {
         if c.full() {

@@ -46,12 +46,12 @@ pub struct Components {
     pub z: Option<Value>,
 }
 
-/// A load: exactly one of `force`, `traction`, `pressure`.
+/// A load: exactly one of `force`, `traction`, `pressure`, `gravity`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(extend("oneOf" = [{"required": ["force"]}, {"required": ["traction"]}, {"required": ["pressure"]}]))]
+#[schemars(extend("oneOf" = [{"required": ["force"]}, {"required": ["traction"]}, {"required": ["pressure"]}, {"required": ["gravity"]}]))]
 pub struct Load {
-    /// Node or face set, `body.set`, or a list of them (traction and pressure need faces).
+    /// Node or face set, `body.set`, or a list of them (traction and pressure need faces); for gravity a body, or a list.
     pub on: SetNames,
     /// Total force, spread evenly over the nodes of a node set, over the area of a face set.
     #[serde(default)]
@@ -62,6 +62,10 @@ pub struct Load {
     /// Pressure against the outward normal (force / area). Expressions may use x, y, z and t; those of a follower t.
     #[serde(default)]
     pub pressure: Option<Value>,
+    /// Acceleration that acts on the mass of whole bodies (length / time^2): `[0, 0, -9810]` in mm and s. Their materials need a
+    /// `density`.
+    #[serde(default)]
+    pub gravity: Option<[Value; 3]>,
     /// The pressure follows the deformed faces (their area and normal).
     #[serde(default)]
     pub follower: bool,

@@ -14,12 +14,12 @@ pub enum MaterialChoice {
     NeoHooke(Elastic),
     /// Hencky: linear law between logarithmic strain and its conjugate stress. Moderately large strains, stretches of 1/2 to 2.
     Hencky(Elastic),
-    /// Structural steel S235: E 210 GPa, nu 0.3 (EN 1993-1-1, 3.2.6); yield strength 235 MPa (EN 10025-2).
+    /// Structural steel S235: E 210 GPa, nu 0.3 (EN 1993-1-1, 3.2.6); yield strength 235 MPa (EN 10025-2); 7850 kg/m^3.
     /// St. Venant-Kirchhoff.
     Steel,
-    /// Stainless steel 1.4301: E 200 GPa, nu 0.3, yield strength 210 MPa (EN 1993-1-4, 2.1). St. Venant-Kirchhoff.
+    /// Stainless steel 1.4301: E 200 GPa, nu 0.3, yield strength 210 MPa (EN 1993-1-4, 2.1); 7900 kg/m^3. St. Venant-Kirchhoff.
     StainlessSteel,
-    /// Aluminium EN AW-6061 T6: E 70 GPa, nu 0.3 (EN 1999-1-1, 3.2.5); yield strength 240 MPa (EN 755-2).
+    /// Aluminium EN AW-6061 T6: E 70 GPa, nu 0.3 (EN 1999-1-1, 3.2.5); yield strength 240 MPa (EN 755-2); 2700 kg/m^3.
     /// St. Venant-Kirchhoff.
     Aluminium,
     /// Rubber of Shore A hardness 40: E 1.69 MPa from the hardness (A. N. Gent, Rubber Chemistry and Technology 31, 1958),
@@ -91,6 +91,9 @@ pub struct Elastic {
     pub e: f64,
     /// Poisson's ratio, below 0.5.
     pub nu: f64,
+    /// Mass per undeformed volume (force time^2 / length^4: t/mm^3 for N, mm and s). Loads by gravity ask for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<f64>,
 }
 
 /// Constants of a well-known material, in Pa.
@@ -100,6 +103,8 @@ struct KnownMaterial {
     nu: f64,
     /// Yield strength of a metal; none: a rubber.
     yield_strength: Option<f64>,
+    /// Density (kg/m^3); none where it depends on what is mixed in.
+    density: Option<f64>,
 }
 
 /// Young's modulus (Pa) of a rubber of this Shore A hardness after Gent (1958).
@@ -119,12 +124,13 @@ impl MaterialChoice {
     }
 
     fn known(self) -> Option<KnownMaterial> {
-        let metal = |name, e, yield_strength| {
+        let metal = |name, e, yield_strength, density| {
             Some(KnownMaterial {
                 name,
                 e,
                 nu: 0.3,
                 yield_strength: Some(yield_strength),
+                density: Some(density),
             })
         };
         let rubber = |name, shore| {
@@ -133,15 +139,16 @@ impl MaterialChoice {
                 e: modulus_of_hardness(shore),
                 nu: 0.499,
                 yield_strength: None,
+                density: None,
             })
         };
         match self {
             MaterialChoice::StVenantKirchhoff(_)
             | MaterialChoice::NeoHooke(_)
             | MaterialChoice::Hencky(_) => None,
-            MaterialChoice::Steel => metal("steel", 210e9, 235e6),
-            MaterialChoice::StainlessSteel => metal("stainless_steel", 200e9, 210e6),
-            MaterialChoice::Aluminium => metal("aluminium", 70e9, 240e6),
+            MaterialChoice::Steel => metal("steel", 210e9, 235e6, 7850.0),
+            MaterialChoice::StainlessSteel => metal("stainless_steel", 200e9, 210e6, 7900.0),
+            MaterialChoice::Aluminium => metal("aluminium", 70e9, 240e6, 2700.0),
             MaterialChoice::Rubber40 => rubber("rubber_40", 40.0),
             MaterialChoice::Rubber50 => rubber("rubber_50", 50.0),
             MaterialChoice::Rubber60 => rubber("rubber_60", 60.0),
@@ -162,6 +169,10 @@ impl MaterialChoice {
         let elastic = Elastic {
             e: known.e / units.pascals()?,
             nu: known.nu,
+            density: known
+                .density
+                .zip(units.densities())
+                .map(|(rho, unit)| rho / unit),
         };
         Some(match known.yield_strength {
             Some(_) => Material::StVenantKirchhoff(elastic),

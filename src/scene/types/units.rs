@@ -19,6 +19,12 @@ impl Units {
         let length = self.length.metres();
         self.force.map(|force| force.newtons() / (length * length))
     }
+
+    /// Kilograms per cubic metre in one unit of density, time being in seconds; none where the force unit is not given.
+    pub fn densities(&self) -> Option<f64> {
+        let length = self.length.metres();
+        Some(self.pascals()? / (length * length))
+    }
 }
 
 /// Names of force units.

@@ -207,7 +207,7 @@ impl Law {
 
 /// Lamé's constants.
 fn lame(elastic: &Elastic) -> Result<(f64, f64), ShellError> {
-    let Elastic { e, nu } = *elastic;
+    let Elastic { e, nu, .. } = *elastic;
     if !(e > 0.0 && e.is_finite()) {
         return Err(ShellError::Material {
             name: "E",

@@ -45,7 +45,11 @@ fn block(law: Law) -> Q18Block {
 }
 
 fn laws() -> [Law; 4] {
-    let elastic = Elastic { e: 1000.0, nu: 0.3 };
+    let elastic = Elastic {
+        e: 1000.0,
+        nu: 0.3,
+        density: None,
+    };
     let [a, b, c] = [
         Material::StVenantKirchhoff(elastic),
         Material::NeoHooke(elastic),
