@@ -110,7 +110,7 @@ fn missing_keys_and_unknown_names() {
         (
             ", \"nu\": 0.3",
             "",
-            "4:50: the key `nu` is missing (known keys: `E`, `nu`)",
+            "4:50: the key `nu` is missing (known keys: `E`, `nu`, `density`)",
         ),
         (
             "\"covact\": 1,",

@@ -233,20 +233,31 @@ impl<S: Surface> PatchSet<S> {
         span: [usize; 2],
         tolerance: f64,
     ) -> Local {
-        let mut pair = [Local::in_region(region); 2];
-        self.evaluate(q, xi, span, &mut pair[0]);
-        let last = self.iterate(q, &mut pair, tolerance);
-        pair[last]
+        let mut s = Local::in_region(region);
+        self.evaluate(q, xi, span, &mut s);
+        self.iterate(q, &mut s, tolerance);
+        s
     }
 
-    /// Iterates from the first of two points, with room for the next one in the second; which of them is the last one.
-    fn iterate(&self, q: &Vec3, pair: &mut [Local; 2], tolerance: f64) -> usize {
-        let mut now = 0;
+    /// Iterates from a point, in place.
+    #[inline]
+    fn iterate(&self, q: &Vec3, s: &mut Local, tolerance: f64) {
+        let mut other = Local::in_region(&s.region);
+        if self.iterate_between(q, [s, &mut other], tolerance) {
+            *s = other;
+        }
+    }
+
+    /// Iterates from the first of two points, with room for the next one in the second; whether that is the last one.
+    fn iterate_between(&self, q: &Vec3, [first, second]: [&mut Local; 2], tolerance: f64) -> bool {
+        let mut now = false;
         let mut escapes = 0;
         let rough = tolerance >= ROUGH;
         for _ in 0..ITERATIONS {
-            let [a, b] = &mut *pair;
-            let (s, next) = if now == 0 { (a, b) } else { (b, a) };
+            let (s, next) = match now {
+                false => (&mut *first, &mut *second),
+                true => (&mut *second, &mut *first),
+            };
             if self.stationary(s, tolerance) {
                 s.converged = true;
                 if escapes < 2
@@ -292,7 +303,7 @@ impl<S: Surface> PatchSet<S> {
                 s.converged = self.stationary(s, tolerance.max(1e-9));
                 return now;
             }
-            now = 1 - now;
+            now = !now;
         }
         now
     }
@@ -378,9 +389,7 @@ impl<S: Surface> PatchSet<S> {
             }
             *s = self.descend(q, &s.region, xi, span, 1e-12);
         } else {
-            let mut pair = [*s; 2];
-            let last = self.iterate(q, &mut pair, 1e-12);
-            *s = pair[last];
+            self.iterate(q, s, 1e-12);
         }
         self.refine(q, s);
         let tolerance = self.attainable(s).clamp(1e-12, 1e-9);
