@@ -210,6 +210,14 @@ impl Sliding {
                     ];
                     up.map(|up| n * (xi3 * up.dot(&t) * point.area))
                 }
+                // The slip along the line that the foot moves on.
+                Held::Edge(free) if self.full => {
+                    let line = &frame.rho_i[free];
+                    let lever = n * (xi3 * line.dot(&t) / line.dot(line) * point.area);
+                    let mut levers = [V::from_element(D::zero()); 2];
+                    levers[free] = lever;
+                    levers
+                }
                 _ => [V::from_element(D::zero()); 2],
             };
             for (k, n) in point.shape.iter().enumerate() {
@@ -326,5 +334,58 @@ fn friction_on_edges_and_vertices_that_move() {
                 sliding.check(&name);
             }
         }
+    }
+}
+
+/// A point at the border of a face does the same work on either side of it where it is drawn along the border: faces of two bodies
+/// that end in one plane have all their points there.
+#[test]
+fn friction_along_a_border_is_the_same_on_either_side_of_it() {
+    let forces = |beyond: f64| {
+        let (nodes, faces) = crate::cases::mesh(2, 1, |x, y| V::new(x, y, 0.05 * x * x));
+        let surface = Surface::of(crate::cases::plain(&nodes, &faces, 1));
+        let (slave, _) = crate::cases::mesh(1, 1, |x, y| {
+            V::new(0.4 + 0.05 * x, 1.0 + beyond + 0.05 * (y - 1.0), -0.02)
+        });
+        // The last of the face's nodes lies at the border, or a little beyond it.
+        let points = crate::cases::slave_points(&slave, Scheme::Lobatto(2));
+        let case = Case {
+            name: "border".to_owned(),
+            points: points.into_iter().skip(3).collect(),
+            slave,
+            master: nodes,
+            surface,
+        };
+        let x = combine(&case.slave, &case.points[0].shape);
+        let mut sliding = Sliding::new(case, Where::Same, 0.1, 0.0, true);
+        let place = sliding.histories[0].place;
+        let mut history = PointHistory {
+            base: x + V::new(0.02, 0.0, 0.015),
+            lambda: V::new(-0.04, 0.0, 0.02),
+            lambda_n: LAMBDA_N,
+            ..PointHistory::default()
+        };
+        let master = MovingMaster {
+            facets: facets(&sliding.case),
+            depth: 1.0,
+            keep: false,
+        };
+        master.attach(&mut history, place);
+        sliding.histories[0] = history;
+        let touch = &sliding.touches(&Full)[0];
+        let edge = matches!(sliding.held[0], Held::Edge(_));
+        (
+            sliding.assemble().0,
+            edge,
+            touch.gap * touch.response.slip.t,
+        )
+    };
+    for step in [1e-6, 1e-8] {
+        let ((inside, on_face, _), (outside, on_edge, moment)) = (forces(-step), forces(step));
+        assert!(!on_face && on_edge, "{on_face} {on_edge}");
+        assert!(moment.x.abs() > 1e-4, "no moment to lose: {moment:?}");
+        let jump = (&inside - &outside).norm() / inside.norm();
+        // The direction of the distance turns by the step over the penetration.
+        assert!(jump < 2.0 * step / 0.02, "{step:e}: {jump:e}");
     }
 }

@@ -11,8 +11,10 @@
 //! `xi3 (rho^i . T) n` in slots 1 and 2, takes up. This is the [`Full`] form, whose two sides balance in force and moment;
 //! the [`Reduced`] form leaves the second part out, as is usual where `xi3` is small.
 //!
-//! On an edge or a vertex of the master, where a foot has no plane around it, the form is the reduced one: a moment of
-//! `|xi3| |T|` per area is left there.
+//! On an edge of the master, where a foot has a line and no plane around it, the slip along the line is conjugate to
+//! `xi3 tau n . drho'`, `tau = T . rho' / |rho'|^2`: what is left of the second part, so that a point at the border of a face
+//! does the same work on either side of it. A moment of `|xi3|` times the traction across the edge is left there, and
+//! at a vertex one of `|xi3| |T|`, per area.
 //!
 //! ```text
 //! T_tr = P v,  P = I - n x n       dT_tr = P dv - (n . v) dn - n (v . dn)       dn = -rho^i q_i
@@ -103,6 +105,34 @@ pub fn respond_with_friction<D: DualNum<f64> + Copy, F: FrictionLaw, M: Form>(
         add(&mut tangent, 1 + m, &(-t * x.transpose()));
     }
     if M::FULL
+        && let PointGeometry::Edge {
+            d,
+            xi3,
+            direction,
+            rho_s,
+            rho_ss,
+        } = geometry
+    {
+        let ds = travel_along(d, direction, rho_s, rho_ss);
+        let shorter = rho_s.dot(rho_s).recip();
+        let tau = rho_s.dot(&t) * shorter;
+        // d(T . rho' - tau rho' . rho')
+        let stretch = t - rho_s * (tau * 2.0);
+        let mut drho_s = ds * rho_ss.dot(&stretch);
+        for (i, part) in direction.iter().enumerate() {
+            drho_s += in_slot(1 + i, &stretch) * *part;
+        }
+        let dtau = (dt.transpose() * rho_s + drho_s) * shorter;
+        let dtau_anchor = dt_anchor.transpose() * rho_s * shorter;
+        let rows = n * (g3 * tau + dtau * *xi3).transpose() + turn * (*xi3 * tau);
+        let rows_anchor = n * (dtau_anchor * *xi3).transpose();
+        for (i, part) in direction.iter().enumerate() {
+            add_rows(&mut residual, 1 + i, &(n * (*xi3 * tau * *part)));
+            add(&mut tangent, 1 + i, &(rows * *part));
+            add(&mut anchor, 1 + i, &(rows_anchor * *part));
+        }
+    }
+    if M::FULL
         && let PointGeometry::Face { frame, xi3 } = geometry
     {
         let up = dual(frame);
@@ -155,14 +185,23 @@ fn follow<D: DualNum<f64> + Copy>(
             rho_s,
             rho_ss,
         } => {
-            let ds = corner::along_edge(d, direction, rho_s)
-                * corner::curvature(d, rho_s, rho_ss).recip();
+            let ds = travel_along(d, direction, rho_s, rho_ss);
             let turn = (across(n) - rho_s * ds.transpose()) * xi3.recip();
             (turn, direction.map(|t| ds * t))
         }
         PointGeometry::Vertex { xi3, .. } => (across(n) * xi3.recip(), still),
         PointGeometry::Pole { .. } => (Columns::from_element(D::zero()), still),
     }
+}
+
+/// How the foot travels along an edge.
+fn travel_along<D: DualNum<f64> + Copy>(
+    d: &Vector3<D>,
+    direction: &[D; 2],
+    rho_s: &Vector3<D>,
+    rho_ss: &Vector3<D>,
+) -> Slots<D> {
+    corner::along_edge(d, direction, rho_s) * corner::curvature(d, rho_s, rho_ss).recip()
 }
 
 /// `I - n x n` in slot 0.
