@@ -31,6 +31,9 @@ pub enum RunError {
     /// A run cannot be continued.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    /// A sink of the caller's could not go on.
+    #[error("{0}")]
+    Sink(Box<dyn std::error::Error + Send + Sync>),
     /// A fault of this program.
     #[error("internal error: {0}")]
     Internal(String),
@@ -68,7 +71,7 @@ impl RunError {
             RunError::Scene { .. } => 3,
             RunError::Folder(_) => 2,
             RunError::Checkpoint(e) if e.is_scene() => 3,
-            RunError::Output(_) | RunError::Checkpoint(_) => 5,
+            RunError::Output(_) | RunError::Checkpoint(_) | RunError::Sink(_) => 5,
             RunError::Internal(_) => 1,
         }
     }

@@ -17,6 +17,7 @@ mod lost;
 mod parametrisation;
 mod resume;
 mod rollback;
+mod simulation;
 mod soak;
 mod stabilization;
 #[path = "../verification/support.rs"]
