@@ -20,3 +20,5 @@ pub mod system;
 
 #[cfg(feature = "cli")]
 pub mod cli;
+
+pub use covact_geometry as geometry;

@@ -135,6 +135,7 @@ impl Reporter<'_> {
             Some(s) if s.cad.is_some() => "cad",
             Some(s) if s.sphere.is_some() => "sphere",
             Some(s) if s.cylinder.is_some() => "cylinder",
+            Some(s) if s.patches.is_some() => "patches",
             _ => "plane",
         };
         let at = crate::scene::pointer(&["surfaces", &surface.name, shape]);

@@ -15,7 +15,7 @@ use crate::machine::clock::Phases;
 use crate::model::{self, Model};
 use crate::output::{RunStatus, Summary, Table};
 use crate::plan::Plan;
-use crate::scene::{Element, LoadedScene};
+use crate::scene::{self, Element, LoadedScene};
 use crate::solve::event::{Event, Observer, Silent};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -124,6 +124,7 @@ impl<'o> Simulation<'o> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn new(scene: LoadedScene, options: Options<'o>) -> Result<Self, RunError> {
+        RunError::of(scene::check(&scene))?;
         Self::start(scene, None, None, options)
     }
 
