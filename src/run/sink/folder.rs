@@ -166,13 +166,16 @@ impl Sink for ResultsFolder {
         if !self.entered {
             self.enter(run)?;
         }
-        let mut files = match run.kept_files() {
-            Some(kept) => return Ok(self.files = Some(self.take_up(run, kept)?)),
-            None => self.create(run)?,
+        let files = match run.kept_files() {
+            Some(kept) => self.take_up(run, kept)?,
+            None => {
+                let mut files = self.create(run)?;
+                if run.scene().scene.output.every > 0 {
+                    files.write(run)?;
+                }
+                files
+            }
         };
-        if run.scene().scene.output.every > 0 {
-            files.write(run)?;
-        }
         self.files = Some(files);
         Ok(())
     }
