@@ -37,7 +37,7 @@ mod surface_cells;
 mod traction_fields;
 mod tunneling;
 mod validity;
-pub mod watch;
+pub(crate) mod watch;
 
 pub use check::{
     BodyReport, CheckReport, LoadReport, PairReport, SupportReport, SurfaceReport, check,
