@@ -7,7 +7,7 @@ mod pairs;
 mod rest;
 mod summary;
 mod tangents;
-pub(crate) mod without;
+pub mod without;
 
 pub use held::{Held, Holder, Per};
 
