@@ -25,7 +25,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Exit codes of the program; 0 is success.
-pub mod exit {
+pub(crate) mod exit {
     /// A fault of the program itself.
     pub const BUG: u8 = 1;
     /// The command line is wrong, or the folder that it names for results is taken.

@@ -1,5 +1,5 @@
 //! The machine that a run has: its memory, its processors, and the time it takes.
-pub mod clock;
+pub(crate) mod clock;
 pub mod memory;
 mod packing;
 mod threads;

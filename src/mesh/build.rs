@@ -1,8 +1,11 @@
 //! From the scene's description to a mesh.
 use super::extrude::Extrusion;
 use super::raw::{ThicknessRule, report};
-use super::{ElementKind, Mesh, MeshError, MeshReport, block, cylinder_panel, plate, sphere_panel};
-use crate::scene::{MeshFile, MeshSource};
+use super::{
+    ElementKind, Face, Mesh, MeshError, MeshReport, block, cylinder_panel, plate, sphere_panel,
+};
+use crate::scene::{MeshArrays, MeshFile, MeshSource};
+use covact_geometry::Vec3;
 use std::path::Path;
 
 /// Makes or reads the mesh of a body and checks it. Files are looked for relative to `scene_dir`.
@@ -20,10 +23,68 @@ pub fn build(
         MeshSource::SpherePanel(p) => sphere_panel(p, kind)?,
         MeshSource::Block(p) => block(p, kind)?,
         MeshSource::File(file) => return read_file(file, kind, scene_dir),
+        MeshSource::Arrays(arrays) => Mesh::of(arrays, kind)?,
     };
     mesh.check()?;
     let report = report(&mesh, Vec::new(), ThicknessRule::Generated)?;
     Ok((mesh, report))
+}
+
+impl Mesh {
+    /// The mesh of arrays that a program gives.
+    fn of(arrays: &MeshArrays, kind: ElementKind) -> Result<Self, MeshError> {
+        let invalid = |field: &str, value: usize, expected| MeshError::Invalid {
+            what: "mesh",
+            field: field.to_owned(),
+            value: value.to_string(),
+            expected,
+        };
+        let (each, numbers) = (arrays.nodes_per_element, arrays.elements.len());
+        if each != kind.nodes() {
+            let expected = format!("{}, which the element of the body has", kind.nodes());
+            return Err(invalid("nodes_per_element", each, expected));
+        }
+        if !numbers.is_multiple_of(each) {
+            let expected = format!("a multiple of {each} node numbers");
+            return Err(invalid("elements", numbers, expected));
+        }
+        let mut mesh = Mesh {
+            kind,
+            nodes: arrays.nodes.iter().map(|x| Vec3::from(*x)).collect(),
+            connectivity: arrays.elements.clone(),
+            node_sets: arrays.node_sets.clone(),
+            face_sets: (arrays.face_sets.iter())
+                .map(|(name, set)| {
+                    let face = |&(element, face)| Face { element, face };
+                    (name.clone(), set.iter().map(face).collect())
+                })
+                .collect(),
+        };
+        mesh.node_sets.values_mut().for_each(sort);
+        mesh.face_sets.values_mut().for_each(sort);
+        Ok(mesh)
+    }
+}
+
+/// Sorted, and each member once.
+fn sort<T: Ord>(set: &mut Vec<T>) {
+    set.sort_unstable();
+    set.dedup();
+}
+
+impl From<Mesh> for MeshSource {
+    /// A body of such a mesh of [`ElementKind::Q18`] has to name its element.
+    fn from(mesh: Mesh) -> Self {
+        let faces = |set: Vec<Face>| set.into_iter().map(|f| (f.element, f.face)).collect();
+        let face_sets = mesh.face_sets.into_iter();
+        MeshSource::from(MeshArrays {
+            nodes: mesh.nodes.iter().map(|x| (*x).into()).collect(),
+            nodes_per_element: mesh.kind.nodes(),
+            elements: mesh.connectivity,
+            node_sets: mesh.node_sets,
+            face_sets: face_sets.map(|(name, set)| (name, faces(set))).collect(),
+        })
+    }
 }
 
 /// Reads a mesh file.

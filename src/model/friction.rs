@@ -29,15 +29,14 @@ pub enum LawModel {
     },
 }
 
-/// A law of friction at a time; [`with_law`](crate::with_law) compiles what runs over points for each.
+/// A law of friction at a time; `with_law` compiles what runs over points for each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LawNow {
     Coulomb(Coulomb),
     Orthotropic(Orthotropic),
 }
 
-/// Evaluates an expression with the law of a [`LawNow`], compiled once for each kind.
-#[macro_export]
+/// Evaluates an expression with the law of a `LawNow`, compiled once for each kind.
 macro_rules! with_law {
     ($now:expr, $law:ident => $then:expr) => {
         match $now {
@@ -46,6 +45,7 @@ macro_rules! with_law {
         }
     };
 }
+pub(crate) use with_law;
 
 impl LawModel {
     /// The law of a scene.

@@ -118,7 +118,7 @@ impl fmt::Display for Kernel {
 }
 
 impl SurfaceModel {
-    /// What its closest points are looked for on; [`with_patches`](crate::with_patches) compiles loops for each.
+    /// What its closest points are looked for on; `with_patches` compiles loops for each.
     pub fn kind(&self) -> MasterKind {
         match self.set {
             SurfaceSet::Nurbs(_) => MasterKind::RigidNurbs,
@@ -129,7 +129,7 @@ impl SurfaceModel {
 }
 
 impl LawNow {
-    /// Which law it is; [`with_law`](crate::with_law) compiles loops for each.
+    /// Which law it is; `with_law` compiles loops for each.
     pub fn kind(&self) -> FrictionKind {
         match self {
             LawNow::Coulomb(_) => FrictionKind::Coulomb,

@@ -1,33 +1,33 @@
 //! The model: what a scene becomes before anything is solved. All choices of effects are made here, once.
-pub mod augmentation;
-pub mod averaged;
+pub(crate) mod augmentation;
+pub(crate) mod averaged;
 pub mod build;
-pub mod constraints;
-pub mod driven;
+pub(crate) mod constraints;
+pub(crate) mod driven;
 mod effect;
-pub mod error;
-pub mod free_motion;
-pub mod friction;
-pub mod grid;
-pub mod initial;
-pub mod kernel;
+pub(crate) mod error;
+pub(crate) mod free_motion;
+pub(crate) mod friction;
+pub(crate) mod grid;
+pub(crate) mod initial;
+pub(crate) mod kernel;
 pub mod loads;
-pub mod master;
-pub mod motion;
-pub mod overclosure;
-pub mod pace;
-pub mod penalty;
-pub mod probe;
+pub(crate) mod master;
+pub(crate) mod motion;
+pub(crate) mod overclosure;
+pub(crate) mod pace;
+pub(crate) mod penalty;
+pub(crate) mod probe;
 mod sagitta;
 pub mod segments;
-pub mod self_contact;
-pub mod sharp;
-pub mod slave;
-pub mod small;
-pub mod stabilization;
+pub(crate) mod self_contact;
+pub(crate) mod sharp;
+pub(crate) mod slave;
+pub(crate) mod small;
+pub(crate) mod stabilization;
 pub mod state;
 pub mod surface;
-pub mod symmetry;
+pub(crate) mod symmetry;
 
 use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
@@ -73,7 +73,7 @@ pub struct Model {
     pub stabilization: Option<StabilizationModel>,
     /// Contact as it is linearised at the start, where the scene declares displacements small.
     pub small: Option<SmallModel>,
-    /// Whether the tangent is symmetric ([`symmetry::unsymmetric_effects`]).
+    /// Whether the tangent is symmetric (`symmetry::unsymmetric_effects`).
     pub symmetric: bool,
     /// What makes it unsymmetric.
     pub unsymmetric: Vec<Unsymmetric>,

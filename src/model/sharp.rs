@@ -2,7 +2,7 @@
 //! two points it sinks into the slave's faces, and what it carries depends on the mesh.
 use super::error::number;
 use super::{Model, PairModel, SurfaceModel};
-use crate::with_patches;
+use crate::model::surface::with_patches;
 use covact_geometry::Vec3;
 
 /// Angle between the normals of both sides above which an edge is sharp (radians): as much as a rounding turns over the

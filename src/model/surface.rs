@@ -49,7 +49,7 @@ pub fn facet_bytes(kind: Option<FacetKind>) -> u64 {
 }
 
 /// Patches of one kind: what runs over points is compiled for each, and the choice is made outside (see
-/// [`with_patches`](crate::with_patches)).
+/// `with_patches`).
 #[derive(Debug)]
 pub enum SurfaceSet {
     /// Exact patches, or the bicubic ones of a smooth surface over facets.
@@ -59,7 +59,6 @@ pub enum SurfaceSet {
 }
 
 /// Evaluates an expression with the patches of a [`SurfaceSet`], compiled once for each kind.
-#[macro_export]
 macro_rules! with_patches {
     ($set:expr, $patches:ident => $then:expr) => {
         match $set {
@@ -69,6 +68,7 @@ macro_rules! with_patches {
         }
     };
 }
+pub(crate) use with_patches;
 
 impl ClosestPoint for SurfaceSet {
     fn project(&self, q: &Vec3, hint: Option<Hint>, reach: f64) -> Option<Foot> {

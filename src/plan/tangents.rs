@@ -5,8 +5,8 @@ use crate::contact::kind::TangentKind;
 use crate::model::EffectKind;
 use crate::model::error::number;
 use crate::model::kernel::GapKind;
+use crate::model::surface::with_patches;
 use crate::scene::FacetKind;
-use crate::with_patches;
 use covact_geometry::Surface;
 
 /// Cosine of the angle between normals above which a patch is smooth across a knot: a degree.
@@ -135,6 +135,7 @@ impl Reporter<'_> {
             Some(s) if s.cad.is_some() => "cad",
             Some(s) if s.sphere.is_some() => "sphere",
             Some(s) if s.cylinder.is_some() => "cylinder",
+            Some(s) if s.patches.is_some() => "patches",
             _ => "plane",
         };
         let at = crate::scene::pointer(&["surfaces", &surface.name, shape]);

@@ -266,6 +266,7 @@ fn surface_report(scene: &Scene, surface: &SurfaceModel) -> SurfaceReport {
         (Some(cad), ..) => cad.file.display().to_string(),
         (_, Some(s), _) => format!("sphere of radius {}", s.radius),
         (_, _, Some(c)) => format!("cylinder of radius {} and length {}", c.radius, c.length),
+        _ if described.patches.is_some() => "patches".to_owned(),
         _ => "plane".to_owned(),
     };
     let edges = surface.set.edges();

@@ -82,23 +82,23 @@ struct Holdings {
 
 /// A folder that is a run's own until it ends.
 #[derive(Debug)]
-pub struct Claim<'a> {
-    folder: &'a Path,
+pub struct Claim {
+    folder: PathBuf,
     entry: Entry,
     lock: Option<FolderLock>,
     /// Why it could not be locked; to be told.
     pub unlocked: Option<String>,
 }
 
-impl<'a> Claim<'a> {
+impl Claim {
     /// Looks whether a run may write to `folder`, and locks it where it exists already: what would be refused is refused
     /// before anything is computed.
     ///
     /// # Errors
     /// [`FolderError`], or what the operating system has against it.
-    pub fn new(folder: &'a Path, entry: Entry) -> Result<Self, ClaimError> {
+    pub fn new(folder: &Path, entry: Entry) -> Result<Self, ClaimError> {
         let mut claim = Claim {
-            folder,
+            folder: folder.to_path_buf(),
             entry,
             lock: None,
             unlocked: None,
@@ -120,7 +120,7 @@ impl<'a> Claim<'a> {
     /// # Errors
     /// As [`Claim::new`], and [`FolderError::Foreign`] for a field of another program that the run would write over.
     pub fn enter(&mut self, parts: Option<&PartNames>) -> Result<bool, ClaimError> {
-        make_folder(self.folder)?;
+        make_folder(&self.folder)?;
         if self.lock.is_none() && self.unlocked.is_none() {
             self.lock()?;
         }
@@ -135,9 +135,14 @@ impl<'a> Claim<'a> {
         Ok(!holdings.own.is_empty())
     }
 
+    /// The next time that it is entered, what the run itself has written is replaced.
+    pub fn replace(&mut self) {
+        self.entry = Entry::Replace;
+    }
+
     fn admit_fields(&self, parts: &PartNames) -> Result<(), ClaimError> {
         let stems = parts.stems();
-        let mut names: Vec<String> = (fs::read_dir(self.folder).into_iter().flatten().flatten())
+        let mut names: Vec<String> = (fs::read_dir(&self.folder).into_iter().flatten().flatten())
             .filter_map(|entry| entry.file_name().into_string().ok())
             .filter(|name| field_of(name).is_some_and(|stem| stems.contains(stem)))
             .collect();
@@ -151,7 +156,7 @@ impl<'a> Claim<'a> {
     }
 
     fn lock(&mut self) -> Result<(), ClaimError> {
-        match FolderLock::take(self.folder)? {
+        match FolderLock::take(&self.folder)? {
             Locking::Locked(lock) => self.lock = Some(lock),
             Locking::Impossible(reason) => self.unlocked = Some(reason),
             Locking::InUse(holder) => {
@@ -164,7 +169,7 @@ impl<'a> Claim<'a> {
 
     /// What the folder holds, where that does not stand against the run.
     fn admit(&self) -> Result<Holdings, ClaimError> {
-        let mut holdings = look(self.folder)?;
+        let mut holdings = look(&self.folder)?;
         if self.entry == Entry::Resume {
             // Whether there is a run to continue, and of which scene, is for the reader of checkpoints to say.
             (holdings.foreign)
@@ -191,7 +196,7 @@ impl<'a> Claim<'a> {
 /// [`FolderError::Occupied`], [`FolderError::Foreign`], or what the operating system has against looking.
 pub fn vacant(folder: &Path) -> Result<(), ClaimError> {
     let claim = Claim {
-        folder,
+        folder: folder.to_path_buf(),
         entry: Entry::Start,
         lock: None,
         unlocked: None,

@@ -3,7 +3,7 @@ use super::checkpoint::CheckpointError;
 use super::claim::{ClaimError, FolderError};
 use crate::model::ModelError;
 use crate::output::OutputError;
-use crate::scene::{LoadedScene, Place, ValueError};
+use crate::scene::{LoadedScene, Place, Problem, ValueError};
 
 /// An error with the process's exit code: 3 where the scene or a file it names is wrong (or not the one that is to be
 /// continued), 2 where the folder of the results is not to be written to, 5 where a result cannot be written or a checkpoint
@@ -31,6 +31,9 @@ pub enum RunError {
     /// A run cannot be continued.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    /// A sink of the caller's could not go on.
+    #[error("{0}")]
+    Sink(Box<dyn std::error::Error + Send + Sync>),
     /// A fault of this program.
     #[error("internal error: {0}")]
     Internal(String),
@@ -44,6 +47,25 @@ impl RunError {
             place: Some(loaded.place_of(pointer)),
             help: None,
             others: Vec::new(),
+        }
+    }
+
+    /// What a check of the scene has found.
+    pub(super) fn of(problems: Vec<Problem>) -> Result<(), Self> {
+        let error = |problem: Problem, others| RunError::Scene {
+            message: problem.message,
+            pointer: problem.pointer,
+            place: Some(problem.place),
+            help: problem.help,
+            others,
+        };
+        let mut problems = problems.into_iter();
+        match problems.next() {
+            None => Ok(()),
+            Some(first) => Err(error(
+                first,
+                problems.map(|p| error(p, Vec::new())).collect(),
+            )),
         }
     }
 
@@ -68,7 +90,7 @@ impl RunError {
             RunError::Scene { .. } => 3,
             RunError::Folder(_) => 2,
             RunError::Checkpoint(e) if e.is_scene() => 3,
-            RunError::Output(_) | RunError::Checkpoint(_) => 5,
+            RunError::Output(_) | RunError::Checkpoint(_) | RunError::Sink(_) => 5,
             RunError::Internal(_) => 1,
         }
     }

@@ -392,15 +392,14 @@ impl Fields {
         Ok(())
     }
 
-    /// Writes all bodies and surfaces of an accepted step.
-    pub fn write(
+    /// All fields of all bodies at an accepted step, for `read`.
+    pub fn with_bodies<T>(
         &self,
         model: &Model,
-        results: &mut Results,
-        step: u32,
         time: f64,
         state: &State,
-    ) -> Result<(), OutputError> {
+        read: impl FnOnce(&[BodyFields]) -> T,
+    ) -> T {
         let displacements: Vec<Vec<Vec3>> = (model.bodies.iter())
             .map(|b| {
                 let first = 3 * b.first_node as usize;
@@ -455,6 +454,18 @@ impl Fields {
                 }
             })
             .collect();
+        read(&bodies)
+    }
+
+    /// Writes all bodies and surfaces of an accepted step.
+    pub fn write(
+        &self,
+        model: &Model,
+        results: &mut Results,
+        step: u32,
+        time: f64,
+        state: &State,
+    ) -> Result<(), OutputError> {
         let poses: Vec<_> = (model.surfaces.iter())
             .map(|s| [s.motion.pose(0.0), s.pose(time, &state.u)].map(Result::unwrap_or_default))
             .collect();
@@ -470,7 +481,9 @@ impl Fields {
             true => Vec::new(),
             false => friction_fields::clouds(model, state, &self.gaps),
         };
-        results.write(step, time, &bodies, &surfaces, &clouds)
+        self.with_bodies(model, time, state, |bodies| {
+            results.write(step, time, bodies, &surfaces, &clouds)
+        })
     }
 }
 

@@ -1,19 +1,19 @@
-//! The march through time: steps, roll-back, output.
+//! The march through time: one accepted step after another, with cuts, retries and roll-back inside.
 mod accepted;
 mod released;
 mod replaced;
 mod restart;
 mod settle;
 mod start;
+mod summary;
 
-pub(super) use restart::Kept;
+pub(super) use restart::{Kept, KeptFiles};
 use settle::Settled;
+pub(super) use start::{Problem, RunState};
 
 use super::RunError;
-use super::checkpoint::Keeper;
 use super::commit::FrictionTotals;
 use super::compliance::Compliance;
-use super::cost::Cost;
 use super::fields::Fields;
 use super::hold;
 use super::peaks::Peaks;
@@ -25,14 +25,13 @@ use crate::contact::law::Penalty;
 use crate::machine::clock::Phases;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model, PairModel, segments};
-use crate::output::{History, OutputError, Results, RunStatus};
+use crate::output::RunStatus;
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
 use crate::solve::newton::{StepFailure, Workspace};
 use crate::solve::stepping::Stepping;
 use crate::system::linear::LinearSolver;
 use std::collections::BTreeSet;
-use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// Residual relative to the forces up to which an equilibrium that only the round-off floor accepts is taken without a
@@ -47,6 +46,7 @@ fn is_back(pair: &PairModel) -> bool {
 }
 
 /// How a run ended.
+#[derive(Debug, Clone)]
 pub(super) struct Ending {
     pub status: RunStatus,
     pub reason: Option<String>,
@@ -54,57 +54,77 @@ pub(super) struct Ending {
     pub squeezed: Vec<usize>,
 }
 
-/// A run under way.
+/// What a caller lends to a run while it goes on.
+pub(super) struct Caller<'a> {
+    pub observer: &'a mut (dyn Observer + Send),
+    pub interrupt: &'a AtomicBool,
+}
+
+/// A run going on: what it is made of ([`RunState`]) and what its caller lends it.
 pub(super) struct March<'a, 'm> {
-    pub(super) scene: &'a Scene,
+    pub(super) scene: &'m Scene,
     pub(super) model: &'m Model,
     pub assembler: &'a mut Assembler<'m>,
     pub(super) solver: &'a mut dyn LinearSolver,
-    pub workspace: Workspace,
+    pub workspace: &'a mut Workspace,
     pub observer: &'a mut (dyn Observer + Send),
     interrupt: &'a AtomicBool,
-    pub phases: Phases,
-    pub progress: Progress,
-    /// Iterations of the last accepted step's attempts that failed.
+    pub phases: &'a mut Phases,
+    pub progress: &'a mut Progress,
+    /// Iterations of the step's attempts that failed, once it is accepted.
     failed: u32,
     /// Pairs that were in contact at some accepted step.
-    touched: Vec<bool>,
+    touched: &'a mut Vec<bool>,
     /// Pairs that are in contact at the last accepted step.
-    touching: Vec<bool>,
-    pub watch: Watch,
-    pub compliance: Compliance,
-    rule: PenaltyRule,
+    touching: &'a mut Vec<bool>,
+    pub watch: &'a mut Watch,
+    pub compliance: &'a mut Compliance,
+    rule: &'a mut PenaltyRule,
     /// Bodies whose elements another variant may replace.
-    pub replaceable: Vec<String>,
-    pub peaks: Peaks,
-    pub cost: Cost,
-    pub keeper: Keeper,
+    replaceable: &'a [String],
+    pub peaks: &'a mut Peaks,
 }
 
 /// What carries over from one step to the next, beside the accepted state.
-struct StepControl {
-    stepping: Stepping,
+pub(super) struct StepControl {
+    pub(super) stepping: Stepping,
     /// The state before the last accepted step and that step's size, while the path is smooth.
     before: Option<(State, f64)>,
     /// Whether the last step needed its points kept.
     hold: bool,
+    /// Bodies whose elements turned inside out in a step that was cut.
+    turned: BTreeSet<usize>,
 }
 
-/// Folder, table and fields of a run.
-struct Outputs {
-    results: Results,
-    table: History,
-    fields: Fields,
-    /// Last step whose fields were written.
-    written: Option<u32>,
+/// What an accepted step tells.
+pub(super) struct Outputs {
+    pub fields: Fields,
+    /// Its line of the history.
+    pub row: Vec<f64>,
 }
 
-impl Outputs {
-    /// Brings the table and the fields to the disk.
-    fn sync(&mut self) -> Result<(), OutputError> {
-        self.table.sync()?;
-        self.results.sync()
-    }
+/// Where a run is, and how it goes on from there.
+pub(super) struct Course {
+    pub committed: State,
+    /// Room for the state that is tried.
+    trial: State,
+    pub walk: StepControl,
+    pub outputs: Outputs,
+}
+
+/// What came of a step.
+pub(super) enum Outcome {
+    /// It was accepted; with an ending where the run does not go on from there.
+    Accepted(AcceptedStep, Option<Ending>),
+    /// It was not.
+    Stopped(Ending),
+}
+
+/// An accepted step.
+pub(super) struct AcceptedStep {
+    pub dt: f64,
+    pub iterations: u32,
+    pub cuts: u32,
 }
 
 /// What is stored, and what friction has dissipated since the start.
@@ -113,112 +133,23 @@ fn energy(totals: &Totals, sliding: &FrictionTotals) -> f64 {
     stored + sliding.dissipated
 }
 
-impl<'a, 'm> March<'a, 'm> {
-    #[expect(clippy::too_many_arguments)]
-    pub fn new(
-        scene: &'a Scene,
-        model: &'m Model,
-        assembler: &'a mut Assembler<'m>,
-        solver: &'a mut dyn LinearSolver,
-        observer: &'a mut (dyn Observer + Send),
-        interrupt: &'a AtomicBool,
-        phases: Phases,
-        cost: Cost,
-        keeper: Keeper,
-    ) -> Result<Self, RunError> {
-        let compliance = Compliance::new(model).map_err(|e| RunError::internal(&e))?;
-        Ok(March {
-            scene,
-            model,
-            assembler,
-            solver,
-            workspace: Workspace::new(model),
-            observer,
-            interrupt,
-            phases,
-            progress: Progress {
-                warnings: model.warnings.clone(),
-                ..Progress::default()
-            },
-            failed: 0,
-            // A pair whose overclosure counts as touching touches from the start.
-            touched: (model.pairs.iter())
-                .map(|p| p.overclosure.is_some())
-                .collect(),
-            touching: vec![false; model.pairs.len()],
-            watch: Watch::new(model),
-            compliance,
-            rule: PenaltyRule::new(model),
-            replaceable: Vec::new(),
-            peaks: Peaks::new(model),
-            cost,
-            keeper,
-        })
-    }
-
-    /// Runs to the end, or to where it gets: from where it was when it was `kept`, else from time 0.
-    pub fn run(
-        &mut self,
-        out: &Path,
-        fields: Fields,
-        kept: Option<Kept>,
-    ) -> Result<Ending, RunError> {
-        let settings = &self.scene.solution;
-        let stepping = Stepping::new(
-            settings.step,
-            settings.end_time,
-            &self.model.kinks,
-            &settings.stops,
-        );
-        let (mut committed, mut walk, mut outputs) = match kept {
-            None => self.begin(out, fields, stepping)?,
-            Some(kept) => self.go_on(out, fields, stepping, kept)?,
-        };
-        self.keep(&committed, &walk, &mut outputs)?;
-        let ending = self.steps(&mut committed, &mut walk, &mut outputs);
-        if let Some(text) = self.watch.drift(self.model) {
-            self.warn(text);
-        }
-        let soft = (self.compliance).warning(self.model, &self.assembler.penalties);
-        for text in soft.into_iter().chain(self.peaks.warnings(self.model)) {
-            self.warn(text);
-        }
-        for text in self.peaks.notes(self.model) {
-            self.observer.event(&Event::Note { text });
-        }
-        // Whatever went wrong, the last accepted step is not lost.
-        let reached = |e: &Ending| matches!(e.status, RunStatus::Done | RunStatus::NoContact);
-        let flushed = match &ending {
-            Ok(ending) if reached(ending) => Ok(()),
-            _ => self.keeper.flush(|| outputs.sync()),
-        };
-        if self.scene.output.every > 0 && outputs.written != Some(self.progress.steps) {
-            self.write(&mut outputs, &committed)?;
-        }
-        let ending = ending?;
-        flushed?;
-        // Before the summary tells of them.
-        outputs.sync()?;
-        Ok(ending)
-    }
-
-    fn steps(
-        &mut self,
-        committed: &mut State,
-        walk: &mut StepControl,
-        outputs: &mut Outputs,
-    ) -> Result<Ending, RunError> {
-        let mut trial = committed.clone();
+impl March<'_, '_> {
+    /// Goes on to the next accepted step, with as many cuts as it takes. At the end of the run there is none to come.
+    pub fn step(&mut self, course: &mut Course) -> Result<Outcome, RunError> {
+        let Course {
+            committed,
+            trial,
+            walk,
+            outputs,
+        } = course;
         let mut cuts = 0;
         let model = self.model;
         let number_of = |body: &BodyModel| {
             let mut bodies = model.bodies.iter();
             bodies.position(|b| b.name == body.name)
         };
-        // Bodies whose elements turned inside out in a step that was cut.
-        let mut ever_turned = BTreeSet::new();
         let segmented = self.model.pairs.iter().any(|p| p.segments.is_some());
-        'steps: while !walk.stepping.done(self.progress.time) {
+        while !walk.stepping.done(self.progress.time) {
             let end = walk.stepping.next(self.progress.time);
             let dt = end - self.progress.time;
             let step = self.progress.steps + 1;
@@ -242,18 +173,18 @@ impl<'a, 'm> March<'a, 'm> {
                 end,
                 dt,
                 walk.before.as_ref(),
-                &mut trial,
+                trial,
             );
             let mut settled = None;
             if let Ok(converged) = &mut result
                 && let Err(failure) =
-                    self.released((step, end), (&*committed, walk), &mut trial, converged)
+                    self.released((step, end), (&*committed, walk), trial, converged)
             {
                 result = Err(failure);
             }
             if let Ok(converged) = &mut result {
                 let at = (step, end, cuts);
-                match self.settle(at, (&*committed, walk), &mut trial, converged, outputs)? {
+                match self.settle(at, (&*committed, walk), trial, converged, outputs)? {
                     Ok(found) => settled = Some(found),
                     Err(failure) => {
                         self.take_back(&penalties);
@@ -272,7 +203,7 @@ impl<'a, 'm> March<'a, 'm> {
                     let residual = self.workspace.residual();
                     let span = Span {
                         from: (committed, start),
-                        to: (&trial, end),
+                        to: (&*trial, end),
                     };
                     let drag = self.assembler.drag(&trial.u, residual);
                     let work = (self.watch)
@@ -300,7 +231,7 @@ impl<'a, 'm> March<'a, 'm> {
                         }
                         None => walk.before = Some((committed.clone(), dt)),
                     }
-                    committed.copy_from(&trial);
+                    committed.copy_from(trial);
                     (committed.remember(self.model)).map_err(|(body, fault)| {
                         RunError::internal(&Fault::Element { body, fault })
                     })?;
@@ -322,7 +253,6 @@ impl<'a, 'm> March<'a, 'm> {
                         (work, drag),
                         (errors, limit),
                     )?;
-                    cuts = 0;
                     let internal = converged.totals.internal_energy;
                     // A load that goes up and down again between kinks is seen, too.
                     let grown = internal > 2.0 * self.progress.measured;
@@ -331,33 +261,35 @@ impl<'a, 'm> March<'a, 'm> {
                     {
                         self.beyond_linear(committed, internal);
                     }
-                    if let Some(ending) =
-                        self.stabilized(committed, &drag, &converged, walk.stepping.done(end))
-                    {
-                        return Ok(ending);
+                    let done = walk.stepping.done(end);
+                    let mut ending = self.stabilized(committed, &drag, &converged, done);
+                    if ending.is_none() {
+                        let before = walk.before.as_ref().map(|(state, _)| state);
+                        ending = self.lost_hold(committed, before, &converged, jumped);
                     }
-                    let before = walk.before.as_ref().map(|(state, _)| state);
-                    if let Some(ending) = self.lost_hold(committed, before, &converged, jumped) {
-                        return Ok(ending);
-                    }
-                    self.keep(committed, walk, outputs)?;
-                    continue 'steps;
+                    let accepted = AcceptedStep {
+                        dt,
+                        iterations: converged.iterations,
+                        cuts,
+                    };
+                    let ending = ending.or_else(|| done.then(|| self.ending()));
+                    return Ok(Outcome::Accepted(accepted, ending));
                 }
                 Err(failure) => failure,
             };
             if failure == StepFailure::Interrupted {
-                return Ok(Ending {
+                return Ok(Outcome::Stopped(Ending {
                     status: RunStatus::Interrupted,
                     reason: Some("stopped by the user".to_owned()),
                     squeezed: Vec::new(),
-                });
+                }));
             }
             cuts += 1;
             self.progress.cuts += 1;
             let reason = failure.to_string();
             // Elements that another variant would replace are not followed down to the smallest step.
             let turned = hold::turned(self.model, &failure);
-            ever_turned.extend(turned.and_then(number_of));
+            walk.turned.extend(turned.and_then(number_of));
             let lost = match cuts >= hold::SUSPECT {
                 true => self.may_be_replaced(&hold::lost(self.model, committed)),
                 false => Vec::new(),
@@ -378,12 +310,12 @@ impl<'a, 'm> March<'a, 'm> {
                     squeezed.then_some(body)
                 });
                 // All of them at once: each would end a run of its own.
-                ever_turned.retain(|b| hold::compressed(&self.model.bodies[*b], &committed.u));
-                ever_turned.extend(suspect.and_then(number_of));
+                (walk.turned).retain(|b| hold::compressed(&self.model.bodies[*b], &committed.u));
+                walk.turned.extend(suspect.and_then(number_of));
                 let squeezed = hold::remedy(turned);
-                return Ok(Ending {
+                return Ok(Outcome::Stopped(Ending {
                     squeezed: match lost.is_empty() {
-                        true => ever_turned.into_iter().collect(),
+                        true => walk.turned.iter().copied().collect(),
                         false => lost,
                     },
                     status: RunStatus::NotConverged,
@@ -395,7 +327,7 @@ impl<'a, 'm> March<'a, 'm> {
                             false => "at the smallest step size",
                         }
                     )),
-                });
+                }));
             };
             self.observer.event(&Event::StepCut {
                 step,
@@ -404,14 +336,28 @@ impl<'a, 'm> March<'a, 'm> {
                 reason,
             });
         }
-        Ok(self.ending())
+        Ok(Outcome::Stopped(self.ending()))
+    }
+
+    /// Tells what is known once a run has ended, however it did.
+    pub fn conclude(&mut self) {
+        if let Some(text) = self.watch.drift(self.model) {
+            self.warn(text);
+        }
+        let soft = (self.compliance).warning(self.model, &self.assembler.penalties);
+        for text in soft.into_iter().chain(self.peaks.warnings(self.model)) {
+            self.warn(text);
+        }
+        for text in self.peaks.notes(self.model) {
+            self.observer.event(&Event::Note { text });
+        }
     }
 
     /// How a run that reached its end time ended.
     fn ending(&self) -> Ending {
         let pairs = self.model.pairs.iter().enumerate();
         let never: Vec<&str> = pairs
-            .filter(|(i, pair)| !self.either(&self.touched, *i) && !is_back(pair))
+            .filter(|(i, pair)| !self.either(self.touched, *i) && !is_back(pair))
             .map(|(_, pair)| pair.name.as_str())
             .collect();
         if never.is_empty() {
@@ -438,6 +384,7 @@ impl<'a, 'm> March<'a, 'm> {
         flags[i] || self.model.pairs[i].half.is_some_and(|h| flags[h.other])
     }
 
+    /// Gathers the fields of a state.
     fn gather(&mut self, outputs: &mut Outputs, state: &State, time: f64) -> Result<(), RunError> {
         let assembler = &mut *self.assembler;
         let masters = &mut assembler.masters;
@@ -450,17 +397,5 @@ impl<'a, 'm> March<'a, 'm> {
             self.observer.event(&Event::Warning { text: text.clone() });
             self.progress.warnings.push(text);
         }
-    }
-
-    fn write(&mut self, outputs: &mut Outputs, state: &State) -> Result<(), RunError> {
-        if self.scene.output.every == 0 {
-            return Ok(());
-        }
-        let (step, time) = (self.progress.steps, self.progress.time);
-        self.phases.start("output");
-        let written = (outputs.fields).write(self.model, &mut outputs.results, step, time, state);
-        self.phases.stop("output");
-        outputs.written = Some(step);
-        Ok(written?)
     }
 }

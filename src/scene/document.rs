@@ -88,7 +88,21 @@ pub(crate) fn parse<T: Form>(text: &str, name: &str) -> Result<(T, Document), Sc
     parse_in(text, name, PathBuf::from("."))
 }
 
-fn parse_in<T: Form>(text: &str, name: &str, dir: PathBuf) -> Result<(T, Document), SceneError> {
+/// A text that a program has written, and that is not decoded: for the places of what it holds.
+pub(super) fn of_program<T: Form>(text: &str, name: &str) -> Result<Document, SceneError> {
+    let (document, faults) = read_in::<T>(text, name, PathBuf::from("."))?;
+    match faults.is_empty() {
+        true => Ok(document),
+        false => Err(document.wrong(faults, Vec::new())),
+    }
+}
+
+/// The tree of a text, with faults that it can be read in spite of.
+fn read_in<T: Form>(
+    text: &str,
+    name: &str,
+    dir: PathBuf,
+) -> Result<(Document, Vec<Fault>), SceneError> {
     let lines = Lines::new(text);
     let mut faults = Vec::new();
     let root = json::read(text, T::NAME, T::START, &mut faults);
@@ -110,6 +124,11 @@ fn parse_in<T: Form>(text: &str, name: &str, dir: PathBuf) -> Result<(T, Documen
             return Err(document.wrong(faults, Vec::new()));
         }
     }
+    Ok((document, faults))
+}
+
+fn parse_in<T: Form>(text: &str, name: &str, dir: PathBuf) -> Result<(T, Document), SceneError> {
+    let (document, mut faults) = read_in::<T>(text, name, dir)?;
     if let Some(fault) = other_version::<T>(&document.root) {
         // Another version's keys would only add confusing faults.
         return Err(document.wrong(vec![fault], Vec::new()));

@@ -24,7 +24,7 @@ impl Form for Scene {
 #[derive(Debug, Clone)]
 pub struct LoadedScene {
     pub scene: Scene,
-    document: Document,
+    pub(super) document: Document,
 }
 
 impl Deref for LoadedScene {

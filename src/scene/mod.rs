@@ -2,6 +2,7 @@
 //!
 //! [`load`] reads a file into a [`LoadedScene`]; [`check()`] finds everything that is wrong without a mesh or CAD file
 //! being read. Both say where in the file.
+mod builder;
 mod check;
 mod decode;
 mod document;
@@ -13,6 +14,7 @@ mod schema;
 mod types;
 mod value;
 
+pub use builder::SceneBuilder;
 pub(crate) use check::Checker;
 pub use check::check;
 pub use document::{Document, pointer};

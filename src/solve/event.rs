@@ -119,3 +119,9 @@ pub struct Silent;
 impl Observer for Silent {
     fn event(&mut self, _: &Event) {}
 }
+
+impl<O: Observer + ?Sized> Observer for &mut O {
+    fn event(&mut self, event: &Event) {
+        (**self).event(event);
+    }
+}

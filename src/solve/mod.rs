@@ -1,9 +1,9 @@
 //! Newton's method with incremental loading on a sparse direct solver.
-pub mod convergence;
+pub(crate) mod convergence;
 mod cycle;
 pub mod event;
-pub mod failure;
+pub(crate) mod failure;
 pub mod newton;
-pub mod place;
-pub mod stepping;
-pub mod unstable;
+pub(crate) mod place;
+pub(crate) mod stepping;
+pub(crate) mod unstable;

@@ -14,7 +14,7 @@ mod folder;
 mod gather;
 mod label;
 mod load;
-pub mod measure;
+pub(crate) mod measure;
 mod play;
 pub mod record;
 pub mod report;

@@ -1,4 +1,5 @@
 //! What must not change a result, and what an effect must not cost: invariances on a small plate under a ball.
+mod built;
 mod common;
 mod convergence;
 mod cost;
@@ -17,6 +18,7 @@ mod lost;
 mod parametrisation;
 mod resume;
 mod rollback;
+mod simulation;
 mod soak;
 mod stabilization;
 #[path = "../verification/support.rs"]

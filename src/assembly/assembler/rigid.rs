@@ -13,11 +13,12 @@ use crate::contact::law::{
 };
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::{Exact, PointFault, RigidMaster, RigidTangent, Touch};
+use crate::model::friction::with_law;
 use crate::model::kernel::{GapKind, Kernel, SideKind};
 use crate::model::master::Master;
 use crate::model::state::{PointState, State};
+use crate::model::surface::with_patches;
 use crate::model::{Model, PairModel};
-use crate::{with_law, with_patches};
 use covact_geometry::Vec3;
 use rayon::prelude::*;
 

@@ -129,6 +129,16 @@ impl Builder<'_> {
             let p = primitives::plane(p.center.into(), p.normal.into(), p.size);
             return made("plane", p.map(|p| vec![p]));
         }
+        if let Some(patches) = &surface.patches {
+            if patches.is_empty() {
+                return Err(text(field("patches"), "there are no patches"));
+            }
+            return Ok(Patches {
+                labels: (1..=patches.len()).map(|i| format!("patch {i}")).collect(),
+                patches: patches.to_vec(),
+                joining: Joining::default(),
+            });
+        }
         Err(text(
             format!("/surfaces/{name}"),
             "a surface needs one of `cad`, `sphere`, `cylinder`, `plane`",

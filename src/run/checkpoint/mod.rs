@@ -165,6 +165,11 @@ pub struct Sections {
 }
 
 impl Sections {
+    /// The folder that they were found in.
+    pub fn folder(&self) -> &Path {
+        self.path.parent().unwrap_or(Path::new("."))
+    }
+
     /// Reads them.
     ///
     /// # Errors

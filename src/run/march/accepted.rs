@@ -1,4 +1,4 @@
-//! What is told and written of an accepted step.
+//! What is told of an accepted step, and its line of the history.
 use super::{March, Outputs, RELIABLE, energy, is_back};
 use crate::assembly::Drag;
 use crate::model::error::number;
@@ -19,7 +19,7 @@ impl March<'_, '_> {
         self.progress.steps = step;
         self.progress.time = end;
         let touching = &converged.totals.touching;
-        let before = std::mem::replace(&mut self.touching, touching.clone());
+        let before = std::mem::replace(self.touching, touching.clone());
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let deepest = converged.totals.penetration[i];
             self.touched[i] |= touching[i];
@@ -97,7 +97,7 @@ impl March<'_, '_> {
         });
     }
 
-    /// The row of an accepted step, and its fields where they are wanted; whether its energies tell of a jump.
+    /// Makes the row of an accepted step; whether its energies tell of a jump.
     #[allow(clippy::too_many_arguments)]
     pub(super) fn record(
         &mut self,
@@ -152,7 +152,7 @@ impl March<'_, '_> {
         for doubt in doubts.map_err(|e| RunError::internal(&e))? {
             self.doubt(doubt);
         }
-        let row = history::row(&history::Record {
+        outputs.row = history::row(&history::Record {
             model: self.model,
             step,
             time,
@@ -165,14 +165,9 @@ impl March<'_, '_> {
             residual: self.workspace.residual(),
             u: &state.u,
             fields: &outputs.fields,
-            watch: &self.watch,
+            watch: &*self.watch,
         });
-        outputs.table.push(&row)?;
         self.phases.stop("output");
-        let every = self.scene.output.every;
-        if every > 0 && step.is_multiple_of(every) {
-            self.write(outputs, state)?;
-        }
         Ok(jumped)
     }
 }

@@ -2,13 +2,13 @@
 //!
 //! Everything that evolves is taken apart field by field: a new field does not compile until it is decided here whether it
 //! is kept. What is kept needs a line in `put` and one in `take`, and a new [format](crate::run::checkpoint).
-use super::{March, Outputs, StepControl};
+use super::{Course, Outputs, RunState, StepControl};
 use crate::assembly::{AssemblerMemory, CouplingMemory, Factored};
 use crate::model::Model;
 use crate::model::state::State;
 use crate::output::{HistoryMark, OutputError};
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
-use crate::run::checkpoint::{CheckpointError, Sections, Slot, state};
+use crate::run::checkpoint::{CheckpointError, Keeper, Sections, Slot, state};
 use crate::run::compliance::Compliance;
 use crate::run::cost::ResourceUse;
 use crate::run::peaks::Peaks;
@@ -17,14 +17,10 @@ use crate::run::progress::Progress;
 use crate::run::watch::Watch;
 use crate::system::linear::Method;
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{BufRead, BufReader, Seek, SeekFrom};
-use std::path::Path;
 
 /// A run under way at an accepted step.
 pub struct Kept {
-    /// Where it was found, and what is wrong with later ones.
-    pub(super) slot: Slot,
+    /// What is wrong with later ones.
     pub(super) passed_over: Vec<String>,
     pub(super) committed: State,
     pub(super) before: Option<(State, f64)>,
@@ -37,13 +33,22 @@ pub struct Kept {
     pub(super) compliance: Compliance,
     pub(super) rule: PenaltyRule,
     pub(super) peaks: Peaks,
-    pub(super) table: HistoryMark,
-    /// Steps whose fields were written, with their times.
-    pub(super) written: Vec<(u32, f64)>,
+    pub(super) files: KeptFiles,
     pub(super) factorizations: BTreeMap<Method, u64>,
     pub assembler: AssemblerMemory,
     pub expects_indefinite: bool,
     pub(super) spent: ResourceUse,
+}
+
+/// The files of a run at a checkpoint.
+#[derive(Debug, Clone)]
+pub(crate) struct KeptFiles {
+    /// Where the checkpoint was found.
+    pub slot: Slot,
+    /// Where the table of the history ended.
+    pub table: HistoryMark,
+    /// Steps whose fields were written, with their times.
+    pub written: Vec<(u32, f64)>,
 }
 
 impl Kept {
@@ -91,7 +96,6 @@ impl Kept {
             Ok((table, written?))
         })?;
         Ok(Kept {
-            slot: sections.slot,
             passed_over: sections.passed_over.clone(),
             committed,
             before,
@@ -104,8 +108,11 @@ impl Kept {
             compliance,
             rule,
             peaks,
-            table,
-            written,
+            files: KeptFiles {
+                slot: sections.slot,
+                table,
+                written,
+            },
             factorizations,
             assembler,
             expects_indefinite,
@@ -114,54 +121,58 @@ impl Kept {
     }
 }
 
-impl March<'_, '_> {
-    /// Writes the checkpoint of the last accepted step, whose other files are all written.
-    pub(super) fn keep(
-        &mut self,
-        committed: &State,
-        walk: &StepControl,
-        outputs: &mut Outputs,
-    ) -> Result<(), OutputError> {
-        let March {
-            scene: _,
-            model,
+impl RunState<'_> {
+    /// Writes the checkpoint of the last accepted step: `table` and `fields` are where the history ends and what fields are
+    /// written. Says whether it is time to bring everything to the disk.
+    pub fn keep(
+        &self,
+        keeper: &mut Keeper,
+        table: HistoryMark,
+        fields: &[(u32, f64)],
+    ) -> Result<bool, OutputError> {
+        let RunState {
+            // Given by the scene.
+            problem,
             assembler,
             solver,
             workspace,
-            observer: _,
-            interrupt: _,
             phases,
             progress,
-            // Of the step that is accepted, and written to the table with it.
-            failed: _,
             touched,
             touching,
             watch,
             compliance,
             rule,
-            // Given by the scene.
-            replaceable: _,
             peaks,
             cost,
-            keeper,
+            course,
+            // Of the checkpoint that the run went on from.
+            files: _,
         } = self;
+        let Course {
+            committed,
+            // Made anew by every step.
+            trial: _,
+            walk,
+            outputs,
+        } = course;
         let StepControl {
             stepping,
             before,
             hold,
+            // Of steps that were cut: a run that goes on finds them anew.
+            turned: _,
         } = walk;
         let Outputs {
-            results,
-            table,
             // Gathered anew from the accepted state.
             fields: _,
-            // The last of what `results` has written.
-            written: _,
+            // In the table.
+            row: _,
         } = outputs;
-        phases.start("checkpoint");
+        let model = &problem.model;
         let spent = cost.spent(phases);
         let memory = assembler.memory();
-        let written = keeper.keep(|out| {
+        keeper.keep(|out| {
             out.section("progress", |out| {
                 put_progress(progress, out);
                 spent.put(out);
@@ -192,35 +203,17 @@ impl March<'_, '_> {
                 put_counts(workspace.kept(), out);
             });
             out.section("output", |out| {
-                let HistoryMark { length, sum } = table.mark();
+                let HistoryMark { length, sum } = table;
                 out.u64(length);
                 out.u64(sum);
-                out.count(results.written().len());
-                for (step, time) in results.written() {
+                out.count(fields.len());
+                for (step, time) in fields {
                     out.u32(*step);
                     out.f64(*time);
                 }
             });
-        });
-        // The table and the fields are brought to the disk as rarely as checkpoints are.
-        let written = written.and_then(|due| match due {
-            true => keeper.flush(|| outputs.sync()),
-            false => Ok(()),
-        });
-        phases.stop("checkpoint");
-        written
+        })
     }
-}
-
-/// Number of lines that a table has behind its first `length` bytes; 0 where it cannot be read.
-pub(super) fn lines_behind(path: &Path, length: u64) -> u32 {
-    let count = || -> std::io::Result<u32> {
-        let mut file = File::open(path)?;
-        file.seek(SeekFrom::Start(length))?;
-        let mut lines = BufReader::new(file).split(b'\n');
-        lines.try_fold(0, |count, line| line.map(|_| count + 1))
-    };
-    count().unwrap_or(0)
 }
 
 fn put_progress(progress: &Progress, out: &mut Writer) {

@@ -1,60 +1,164 @@
-//! Where a run starts: at time 0, or where it was kept.
-use super::restart::lines_behind;
-use super::{Kept, March, Outputs, StepControl};
+//! What a run is made of, at time 0 or where it was kept.
+use super::{Caller, Course, Kept, KeptFiles, March, Outputs, StepControl};
+use crate::assembly::Assembler;
+use crate::machine::clock::Phases;
+use crate::model::Model;
 use crate::model::error::number;
 use crate::model::state::State;
-use crate::output::atomic::sweep;
-use crate::output::{History, Results};
-use crate::run::RunError;
-use crate::run::checkpoint::CheckpointError;
+use crate::plan::Plan;
+use crate::run::checkpoint::{CheckpointError, Sections};
 use crate::run::commit;
+use crate::run::compliance::Compliance;
+use crate::run::cost::Cost;
 use crate::run::fields::Fields;
-use crate::run::history;
-use crate::solve::event::Event;
+use crate::run::peaks::Peaks;
+use crate::run::penalty_rule::PenaltyRule;
+use crate::run::progress::Progress;
+use crate::run::watch::Watch;
+use crate::run::{RunError, memory};
+use crate::scene::{LoadedScene, Scene};
+use crate::solve::event::{Event, Observer};
+use crate::solve::newton::Workspace;
 use crate::solve::stepping::Stepping;
-use std::path::Path;
+use crate::system::linear::{DirectSolver, LinearSolver, LuSolver, SolverOptions};
+use std::collections::BTreeSet;
+use std::sync::atomic::AtomicBool;
 
-impl March<'_, '_> {
-    /// Starts at time 0, in a folder that has been cleared of another run.
-    pub(super) fn begin(
-        &mut self,
-        out: &Path,
-        fields: Fields,
-        stepping: Stepping,
-    ) -> Result<(State, StepControl, Outputs), RunError> {
-        sweep(out);
-        let mut outputs = Outputs {
-            results: Results::create(out)?,
-            table: History::create(&out.join("history.csv"), history::columns(self.model))?,
-            fields,
-            written: None,
-        };
-        for note in outputs.fields.notes() {
-            self.warn(note);
+/// What a run solves.
+#[derive(Debug)]
+pub(crate) struct Problem {
+    pub loaded: LoadedScene,
+    pub model: Model,
+    pub plan: Plan,
+    /// Bodies whose elements another variant may replace.
+    pub replaceable: Vec<String>,
+}
+
+/// Everything of a run that lasts from one step to the next.
+pub(crate) struct RunState<'m> {
+    pub(super) problem: &'m Problem,
+    pub(super) assembler: Assembler<'m>,
+    pub(super) solver: Box<dyn LinearSolver + Send>,
+    pub(super) workspace: Workspace,
+    pub(in crate::run) phases: Phases,
+    pub(in crate::run) progress: Progress,
+    pub(super) touched: Vec<bool>,
+    pub(super) touching: Vec<bool>,
+    pub(super) watch: Watch,
+    pub(super) compliance: Compliance,
+    pub(super) rule: PenaltyRule,
+    pub(super) peaks: Peaks,
+    pub(super) cost: Cost,
+    pub(in crate::run) course: Course,
+    /// The files of the checkpoint that the run went on from.
+    pub(in crate::run) files: Option<KeptFiles>,
+}
+
+impl<'m> RunState<'m> {
+    /// A run at time 0, or as it was when its checkpoint was written.
+    ///
+    /// # Errors
+    /// What has no room in memory, a checkpoint that does not fit the model, or a field that cannot be made.
+    pub fn new(
+        problem: &'m Problem,
+        (mut phases, cost): (Phases, Cost),
+        threads: usize,
+        sections: Option<&Sections>,
+        observer: &mut (dyn Observer + Send),
+    ) -> Result<Self, RunError> {
+        let (loaded, model) = (&problem.loaded, &problem.model);
+        memory::flat_copies(loaded, model)?;
+        phases.start("analysis");
+        let mut assembler =
+            Assembler::new(model, &model.dofs).map_err(|e| memory::pattern(loaded, &e))?;
+        let kept = sections.map(|sections| Kept::read(sections, model));
+        let kept = kept.transpose()?;
+        if let (Some(kept), Some(sections)) = (&kept, sections) {
+            (assembler.restore(&kept.assembler))
+                .map_err(|e| CheckpointError::misfit(sections.folder(), &e.to_string()))?;
         }
-        let mut committed = State::new(self.model);
-        let masters = &mut self.assembler.masters;
-        commit::start(self.model, masters, &mut committed).map_err(|e| RunError::internal(&e))?;
-        self.gather(&mut outputs, &committed, 0.0)?;
-        self.write(&mut outputs, &committed)?;
+        let mut solver = solver(&loaded.scene, model.symmetric, threads);
+        if let Some(pattern) = assembler.take_new_pattern() {
+            let analysis = solver.analyze(&pattern);
+            let factorizing = analysis.map_err(|e| memory::analysis(loaded, &e))?.threads;
+            memory::packing(loaded, factorizing)?;
+        }
+        if let Some(kept) = &kept {
+            solver.expect_indefinite(kept.expects_indefinite);
+        }
+        phases.stop("analysis");
+        let settings = &loaded.scene.solution;
         let walk = StepControl {
-            stepping,
+            stepping: Stepping::new(
+                settings.step,
+                settings.end_time,
+                &model.kinks,
+                &settings.stops,
+            ),
             before: None,
             hold: false,
+            turned: BTreeSet::new(),
         };
-        Ok((committed, walk, outputs))
+        let outputs = Outputs {
+            fields: Fields::new(model, &loaded.scene.output)?,
+            row: Vec::new(),
+        };
+        let committed = State::new(model);
+        let mut run = RunState {
+            problem,
+            assembler,
+            solver,
+            workspace: Workspace::new(model),
+            phases,
+            progress: Progress {
+                warnings: model.warnings.clone(),
+                ..Progress::default()
+            },
+            // A pair whose overclosure counts as touching touches from the start.
+            touched: (model.pairs.iter())
+                .map(|p| p.overclosure.is_some())
+                .collect(),
+            touching: vec![false; model.pairs.len()],
+            watch: Watch::new(model),
+            compliance: Compliance::new(model).map_err(|e| RunError::internal(&e))?,
+            rule: PenaltyRule::new(model),
+            peaks: Peaks::new(model),
+            cost,
+            course: Course {
+                trial: committed.clone(),
+                committed,
+                walk,
+                outputs,
+            },
+            files: None,
+        };
+        match kept {
+            None => run.begin(observer)?,
+            Some(kept) => run.go_on(kept, observer)?,
+        }
+        Ok(run)
     }
 
-    /// Takes up a run where it was kept: files are as they were then, and what was written later is dropped.
-    pub(super) fn go_on(
-        &mut self,
-        out: &Path,
-        fields: Fields,
-        mut stepping: Stepping,
-        kept: Kept,
-    ) -> Result<(State, StepControl, Outputs), RunError> {
+    /// Starts at time 0.
+    fn begin(&mut self, observer: &mut (dyn Observer + Send)) -> Result<(), RunError> {
+        let never = AtomicBool::new(false);
+        let (mut march, course) = self.march(Caller {
+            observer,
+            interrupt: &never,
+        });
+        for note in course.outputs.fields.notes() {
+            march.warn(note);
+        }
+        let masters = &mut march.assembler.masters;
+        commit::start(march.model, masters, &mut course.committed)
+            .map_err(|e| RunError::internal(&e))?;
+        course.trial = course.committed.clone();
+        march.gather(&mut course.outputs, &course.committed, 0.0)
+    }
+
+    /// Takes up a run where it was kept.
+    fn go_on(&mut self, kept: Kept, observer: &mut (dyn Observer + Send)) -> Result<(), RunError> {
         let Kept {
-            slot,
             passed_over,
             committed,
             before,
@@ -67,60 +171,100 @@ impl March<'_, '_> {
             compliance,
             rule,
             peaks,
-            table: mark,
-            written,
             factorizations,
             // Given back where the pattern is analysed.
             assembler: _,
             expects_indefinite: _,
             spent,
+            files,
         } = kept;
+        self.files = Some(files);
         self.workspace.factorizations = factorizations;
         (self.progress, self.touched, self.touching) = (progress, touched, touching);
         (self.watch, self.compliance, self.peaks) = (watch, compliance, peaks);
         self.rule = rule;
         self.cost.earlier = spent;
         self.cost.earlier.resumed += 1;
-        stepping.set_size(dt);
+        let course = &mut self.course;
+        course.walk.stepping.set_size(dt);
+        (course.walk.before, course.walk.hold) = (before, hold);
+        (course.trial, course.committed) = (committed.clone(), committed);
         let (step, time) = (self.progress.steps, self.progress.time);
-        let path = out.join("history.csv");
-        let lost = lines_behind(&path, mark.length);
-        let Some(table) = History::resume(&path, history::columns(self.model), mark)? else {
-            return Err(CheckpointError::History { path }.into());
-        };
-        self.keeper.go_on(slot);
-        sweep(out);
-        let parts = fields.part_names(self.model);
-        let last = written.last().map(|last| last.0);
-        let mut results = Results::resume(out, written, &parts)?;
-        let every = self.scene.output.every;
-        for step in (step..=step.saturating_add(lost)).filter(|_| every > 0) {
-            // Written because the run ended there, which it does not.
-            if last != Some(step) && !step.is_multiple_of(every) {
-                results.remove(step, &parts)?;
-            }
-        }
-        let mut outputs = Outputs {
-            results,
-            table,
-            fields,
-            written: last,
-        };
+        let never = AtomicBool::new(false);
+        let (mut march, course) = self.march(Caller {
+            observer,
+            interrupt: &never,
+        });
         if step > 0 {
-            outputs.fields.went_on();
+            course.outputs.fields.went_on();
         }
-        self.gather(&mut outputs, &committed, time)?;
+        march.gather(&mut course.outputs, &course.committed, time)?;
         for text in passed_over {
             let text = format!("{text}; the checkpoint before it is taken");
-            self.observer.event(&Event::Note { text });
+            march.observer.event(&Event::Note { text });
         }
         let text = format!("continued after step {step} (time {})", number(time));
-        self.observer.event(&Event::Note { text });
-        let walk = StepControl {
-            stepping,
-            before,
-            hold,
-        };
-        Ok((committed, walk, outputs))
+        march.observer.event(&Event::Note { text });
+        Ok(())
     }
+
+    /// The run going on, and where it is.
+    pub fn march<'a>(&'a mut self, caller: Caller<'a>) -> (March<'a, 'm>, &'a mut Course) {
+        let RunState {
+            problem,
+            assembler,
+            solver,
+            workspace,
+            phases,
+            progress,
+            touched,
+            touching,
+            watch,
+            compliance,
+            rule,
+            peaks,
+            cost: _,
+            course,
+            files: _,
+        } = self;
+        let march = March {
+            scene: &problem.loaded.scene,
+            model: &problem.model,
+            assembler,
+            solver: &mut **solver,
+            workspace,
+            observer: caller.observer,
+            interrupt: caller.interrupt,
+            phases,
+            progress,
+            failed: 0,
+            touched,
+            touching,
+            watch,
+            compliance,
+            rule,
+            replaceable: &problem.replaceable,
+            peaks,
+        };
+        (march, course)
+    }
+}
+
+/// The solver that the scene asks for; an unsymmetric system has only one, which the model has checked.
+fn solver(scene: &Scene, symmetric: bool, threads: usize) -> Box<dyn LinearSolver + Send> {
+    use crate::scene::LinearSolver as Choice;
+    use crate::system::linear::Mode;
+    let options = |mode| SolverOptions {
+        mode,
+        threads,
+        ..SolverOptions::default()
+    };
+    let mode = match scene.solution.linear_solver {
+        _ if !symmetric => return Box::new(LuSolver::new(options(Mode::Auto))),
+        Choice::Lu => return Box::new(LuSolver::new(options(Mode::Auto))),
+        Choice::Auto => Mode::Auto,
+        Choice::Llt => Mode::Llt,
+        Choice::Ldlt => Mode::Ldlt,
+    };
+    Box::new(DirectSolver::new(options(mode)))
 }

@@ -119,6 +119,7 @@ fn generated_sets(mesh: &MeshSource) -> (Vec<&'static str>, &'static str) {
             (sets, false, "block")
         }
         MeshSource::File(_) => (Vec::new(), false, "file"),
+        MeshSource::Arrays(_) => (Vec::new(), false, "mesh"),
     };
     if closed {
         sets.retain(|s| !s.starts_with("phi") && !s.starts_with("longitude"));
@@ -153,6 +154,13 @@ impl<'a> Sets<'a> {
                 );
                 // A name that is taken is reported elsewhere.
                 sets.entry(set).or_insert(faces);
+            }
+            if let MeshSource::Arrays(mesh) = &body.mesh {
+                let own = (mesh.face_sets.keys().map(|set| (set, true)))
+                    .chain(mesh.node_sets.keys().map(|set| (set, false)));
+                for (set, faces) in own {
+                    *sets.entry(set).or_insert(faces) |= faces;
+                }
             }
             let open = matches!(body.mesh, MeshSource::File(_));
             (name.as_str(), BodySets { sets, open })

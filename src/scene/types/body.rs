@@ -1,5 +1,6 @@
 //! Deformable bodies: elements, where meshes come from, sets.
 use super::boxes::Corners;
+use super::given::{Given, MeshArrays};
 use super::mesh::*;
 use super::mesh_file::MeshFile;
 use super::surface::Placement;
@@ -55,6 +56,10 @@ pub enum MeshSource {
     /// Mesh file of hexahedra, or of a surface that `thickness` makes a body of: gmsh, Abaqus and CalculiX, Nastran, VTK,
     /// STL.
     File(MeshFile),
+    /// Arrays that a program gives; a scene file names a file in their place.
+    #[serde(skip_deserializing)]
+    #[schemars(skip)]
+    Arrays(Given<MeshArrays>),
 }
 
 /// Set selected by geometry, on the undeformed mesh.

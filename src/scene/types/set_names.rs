@@ -15,6 +15,18 @@ pub enum SetNames {
     List(Vec<String>),
 }
 
+impl From<&str> for SetNames {
+    fn from(set: &str) -> Self {
+        SetNames::One(set.to_owned())
+    }
+}
+
+impl<const N: usize> From<[&str; N]> for SetNames {
+    fn from(sets: [&str; N]) -> Self {
+        SetNames::List(sets.map(str::to_owned).to_vec())
+    }
+}
+
 impl SetNames {
     /// The names in their order.
     pub fn iter(&self) -> impl Iterator<Item = &str> {

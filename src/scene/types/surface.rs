@@ -1,5 +1,7 @@
 //! Rigid surfaces: CAD files and exact shapes, facets in their place, where they are and which side is outside.
+use super::given::Given;
 use super::motion::Motion;
+use covact_geometry::NurbsPatch;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -17,6 +19,10 @@ pub struct Surface {
     pub cylinder: Option<CylinderShape>,
     /// Flat rectangle.
     pub plane: Option<PlaneShape>,
+    /// NURBS patches that a program gives, in the units of the scene; a scene file names a CAD file in their place.
+    #[serde(skip_deserializing, skip_serializing_if = "Option::is_none")]
+    #[schemars(skip)]
+    pub patches: Option<Given<Vec<NurbsPatch>>>,
     /// Facets in place of the exact surface; default: none, the surface is used as it is.
     pub facets: Option<Facets>,
     /// Placement: first rotated, then moved.

@@ -1,0 +1,74 @@
+//! How a run went: the account of it.
+use super::RunState;
+use super::start::Problem;
+use crate::output::{Accuracy, RunStatus, Summary, Versions};
+use crate::run::cost::ResourceUse;
+use crate::run::history;
+use crate::run::progress::Progress;
+use std::collections::BTreeMap;
+
+impl RunState<'_> {
+    /// How the run went so far, and what it cost. Probes and the checksum of the scene are the caller's to add.
+    pub fn summary(&self, threads: usize, status: RunStatus, reason: Option<String>) -> Summary {
+        let ResourceUse {
+            wall_s,
+            cpu_s,
+            phases,
+            peak_memory_mb,
+            resumed,
+        } = self.cost.spent(&self.phases);
+        let Progress {
+            warnings,
+            iterations,
+            accepted,
+            counted: _,
+            cuts,
+            ping_pongs,
+            steps,
+            time,
+            measured: _,
+        } = &self.progress;
+        let Problem { model, plan, .. } = self.problem;
+        let factorizations = self.workspace.factorizations.iter();
+        Summary {
+            status,
+            reason,
+            time: *time,
+            wall_s,
+            cpu_s,
+            phases,
+            peak_memory_mb,
+            threads,
+            dofs: model.unknowns(),
+            contact_points: model.contact_points(),
+            newton_iterations: *iterations,
+            failed_iterations: iterations.saturating_sub(*accepted),
+            factorizations: factorizations
+                .map(|(method, count)| (method.name().to_owned(), *count))
+                .collect(),
+            steps: *steps,
+            cuts: *cuts,
+            ping_pongs: *ping_pongs,
+            pattern_rebuilds: self.assembler.rebuilds(),
+            effects: plan.names(),
+            plan: Some(plan.summary(self.assembler.ran())),
+            accuracy: Accuracy {
+                contacts: (self.peaks)
+                    .account(model, [&self.assembler.penalties, &self.assembler.ratios]),
+                ..self.compliance.account(model)
+            },
+            probes: BTreeMap::new(),
+            warnings: warnings.clone(),
+            resumed,
+            scene: String::new(),
+            versions: Versions::default(),
+        }
+    }
+}
+
+impl RunState<'_> {
+    /// Names of the columns of the history.
+    pub fn columns(&self) -> Vec<String> {
+        history::columns(&self.problem.model)
+    }
+}

@@ -1,0 +1,477 @@
+//! A run in memory: stepped from outside or run through, with its results at hand and no file touched.
+mod read;
+pub(super) mod variant;
+
+pub use read::{Force, NodalField, ReadError};
+
+use super::RunError;
+use super::checkpoint::{self, Fingerprint, Sections};
+use super::cost::Cost;
+use super::march::{AcceptedStep, Caller, Ending, KeptFiles, Outcome, Problem, RunState};
+use super::probes;
+use super::sink::Sink;
+use crate::machine;
+use crate::machine::clock::Phases;
+use crate::model::{self, Model};
+use crate::output::{RunStatus, Summary, Table};
+use crate::plan::Plan;
+use crate::scene::{self, Element, LoadedScene};
+use crate::solve::event::{Event, Observer, Silent};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use variant::{Safe, names_element, safe_variant};
+
+/// Nobody interrupts.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
+self_cell::self_cell!(
+    /// A problem with the run that borrows it.
+    struct Running {
+        owner: Box<Problem>,
+        #[covariant]
+        dependent: RunState,
+    }
+);
+
+/// Choices of the caller of a simulation.
+pub struct Options<'o> {
+    /// Threads; 0 takes the scene's number, and where that is 0 too, what the machine has. No more are used than that.
+    pub threads: usize,
+    /// Receives the events of the run; by default nobody.
+    pub observer: Box<dyn Observer + Send + 'o>,
+    /// Ends the run when it becomes true, at the latest after one iteration of Newton's method; by default never.
+    pub interrupt: &'o AtomicBool,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Options {
+            threads: 0,
+            observer: Box::new(Silent),
+            interrupt: &NEVER,
+        }
+    }
+}
+
+/// An accepted step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Step {
+    /// Number of the step, from 1.
+    pub number: u32,
+    /// Time at its end.
+    pub time: f64,
+    /// Its size.
+    pub dt: f64,
+    /// Newton iterations of the attempt that was accepted.
+    pub iterations: u32,
+    /// How many times the step was cut before.
+    pub cuts: u32,
+    /// Which run it belongs to: 1, or more where the run began again with other elements ([`Simulation::step`]).
+    pub attempt: u32,
+}
+
+/// Why there is no further step.
+#[derive(Debug, thiserror::Error)]
+pub enum StepError {
+    /// No equilibrium was found, even with the smallest step.
+    #[error("{reason}")]
+    NotConverged {
+        /// What went wrong, in words.
+        reason: String,
+    },
+    /// [`Options::interrupt`] was set. Once it is reset, the next step goes on.
+    #[error("interrupted")]
+    Interrupted,
+    /// Something else went wrong.
+    #[error(transparent)]
+    Run(#[from] RunError),
+}
+
+/// A run of a scene: it starts at time 0 and goes on a step at a time ([`Self::step`]) or to its end ([`Self::run`]).
+/// Whatever it computes is read in memory; files are written by [sinks](Sink) alone. `'o` is the life of its observer.
+pub struct Simulation<'o> {
+    /// The scene as it was given.
+    scene: LoadedScene,
+    /// The scene in its place, once elements had to be replaced.
+    safe: Option<Safe>,
+    running: Running,
+    pool: Arc<rayon::ThreadPool>,
+    options: Options<'o>,
+    fingerprint: Fingerprint,
+    history: Table,
+    /// The history is that of the whole run.
+    whole: bool,
+    ended: Option<Ending>,
+    /// What there is to say at the end has been said.
+    concluded: bool,
+    attempt: u32,
+}
+
+impl<'o> Simulation<'o> {
+    /// Builds the model of a scene, at time 0.
+    ///
+    /// # Errors
+    /// [`RunError::Scene`] with what is wrong with the scene, or what it has no memory for.
+    ///
+    /// ```
+    /// use covact::run::{Options, Simulation};
+    /// let scene = covact::scene::load("examples/scenes/ball_on_plate.json")?;
+    /// let mut simulation = Simulation::new(scene, Options::default())?;
+    /// let first = simulation.step()?.expect("the run has a step");
+    /// assert_eq!(first.number, 1);
+    /// assert!(simulation.force("ball")?.force.z < 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn new(scene: LoadedScene, options: Options<'o>) -> Result<Self, RunError> {
+        RunError::of(scene::check(&scene))?;
+        Self::start(scene, None, None, options)
+    }
+
+    /// [`Self::new`] with other elements where they were replaced before, or from a checkpoint.
+    pub(super) fn start(
+        scene: LoadedScene,
+        safe: Option<Safe>,
+        sections: Option<&Sections>,
+        mut options: Options<'o>,
+    ) -> Result<Self, RunError> {
+        let asked = match options.threads {
+            0 => scene.scene.solution.threads as usize,
+            n => n,
+        };
+        let (used, capped) = machine::threads(asked);
+        if let Some(text) = capped {
+            options.observer.event(&Event::Note { text });
+        }
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(used)
+            .build()
+            .map_err(|e| RunError::scene(&scene, "/solution/threads", e.to_string()))?;
+        let observer = &mut *options.observer;
+        let (running, fingerprint) =
+            pool.install(|| running(&scene, safe.as_ref(), sections, observer))?;
+        let run = running.borrow_dependent();
+        let history = Table {
+            columns: run.columns(),
+            rows: Vec::new(),
+        };
+        Ok(Simulation {
+            whole: sections.is_none(),
+            scene,
+            safe,
+            running,
+            pool: Arc::new(pool),
+            options,
+            fingerprint,
+            history,
+            ended: None,
+            concluded: false,
+            attempt: 1,
+        })
+    }
+
+    /// Goes on to the next accepted step, with as many cuts and retries as it takes; `None` once the run has reached its
+    /// end time. Where the default elements of a body give way in strong compression, the run begins again at time 0 with
+    /// others for it, and what is returned is its first step ([`Step::attempt`]).
+    ///
+    /// # Errors
+    /// [`StepError`]; the simulation stays at the last accepted step.
+    pub fn step(&mut self) -> Result<Option<Step>, StepError> {
+        let pool = Arc::clone(&self.pool);
+        pool.install(|| {
+            loop {
+                let step = self.advance()?;
+                let reached = self.done();
+                if step.is_none() && !reached && self.begin_again()? {
+                    continue;
+                }
+                if reached || step.is_none() {
+                    self.conclude();
+                }
+                return match (step, &self.ended) {
+                    (Some(step), _) => Ok(Some(step)),
+                    (None, Some(ending)) if ending.status == RunStatus::Interrupted => {
+                        Err(StepError::Interrupted)
+                    }
+                    (None, Some(ending)) if !reached => {
+                        let reason = ending.reason.clone().unwrap_or_default();
+                        Err(StepError::NotConverged { reason })
+                    }
+                    (None, _) => Ok(None),
+                };
+            }
+        })
+    }
+
+    /// Goes on to the end, or as far as it gets, and hands every accepted step to the sinks. A run that does not reach its
+    /// end returns its summary with a status that says so.
+    ///
+    /// # Errors
+    /// [`RunError`]: what a sink could not write, or a fault of the program.
+    pub fn run(&mut self, sinks: &mut [&mut dyn Sink]) -> Result<Summary, RunError> {
+        let pool = Arc::clone(&self.pool);
+        pool.install(|| {
+            loop {
+                let mut failure = self.follow(sinks).err();
+                if let Some(error) = &failure {
+                    self.fail(error);
+                }
+                self.conclude();
+                for sink in sinks.iter_mut() {
+                    if let Err(error) = self.timed("output", |run| sink.close(run))
+                        && failure.is_none()
+                    {
+                        self.fail(&error);
+                        failure = Some(error);
+                    }
+                }
+                let summary = self.summary();
+                for sink in sinks.iter_mut() {
+                    let written = sink.summary(self, &summary);
+                    failure = failure.or(written.err());
+                }
+                if let Some(error) = failure {
+                    return Err(error);
+                }
+                self.options.observer.event(&Event::Finished {
+                    status: summary.status.name().to_owned(),
+                    wall_s: summary.wall_s,
+                });
+                if !self.begin_again()? {
+                    return Ok(summary);
+                }
+            }
+        })
+    }
+
+    /// From where it is to the end of the run, or as far as it gets.
+    fn follow(&mut self, sinks: &mut [&mut dyn Sink]) -> Result<(), RunError> {
+        for sink in sinks.iter_mut() {
+            self.timed("output", |run| sink.begin(run))?;
+            for text in sink.notes() {
+                self.options.observer.event(&Event::Note { text });
+            }
+        }
+        self.keep(sinks)?;
+        while self.advance()?.is_some() {
+            for sink in sinks.iter_mut() {
+                self.timed("output", |run| sink.step(run))?;
+            }
+            // A run that ends before its time can be continued before the step that ended it.
+            if self.ended.is_none() || self.done() {
+                self.keep(sinks)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn keep(&mut self, sinks: &mut [&mut dyn Sink]) -> Result<(), RunError> {
+        for sink in sinks.iter_mut() {
+            self.timed("checkpoint", |run| sink.keep(run))?;
+        }
+        Ok(())
+    }
+
+    /// Does some work as a phase of the run.
+    fn timed<T>(&mut self, phase: &'static str, work: impl FnOnce(&Self) -> T) -> T {
+        (self.running).with_dependent_mut(|_, run| run.phases.start(phase));
+        let done = work(self);
+        (self.running).with_dependent_mut(|_, run| run.phases.stop(phase));
+        done
+    }
+
+    /// The next accepted step, or none where the run has ended.
+    fn advance(&mut self) -> Result<Option<Step>, RunError> {
+        if (self.ended.as_ref()).is_some_and(|e| e.status != RunStatus::Interrupted) {
+            return Ok(None);
+        }
+        (self.ended, self.concluded) = (None, false);
+        let caller = Caller {
+            observer: &mut *self.options.observer,
+            interrupt: self.options.interrupt,
+        };
+        let outcome = (self.running).with_dependent_mut(|_, run| {
+            let (mut march, course) = run.march(caller);
+            march.step(course)
+        });
+        match outcome {
+            Ok(Outcome::Accepted(accepted, ending)) => {
+                self.ended = ending;
+                let run = self.running.borrow_dependent();
+                self.history.rows.push(run.course.outputs.row.clone());
+                let AcceptedStep {
+                    dt,
+                    iterations,
+                    cuts,
+                } = accepted;
+                Ok(Some(Step {
+                    number: run.progress.steps,
+                    time: run.progress.time,
+                    dt,
+                    iterations,
+                    cuts,
+                    attempt: self.attempt,
+                }))
+            }
+            Ok(Outcome::Stopped(ending)) => {
+                self.ended = Some(ending);
+                Ok(None)
+            }
+            Err(error) => {
+                self.fail(&error);
+                Err(error)
+            }
+        }
+    }
+
+    fn fail(&mut self, error: &RunError) {
+        self.ended = Some(Ending {
+            status: RunStatus::Failed,
+            reason: Some(error.to_string()),
+            squeezed: Vec::new(),
+        });
+    }
+
+    /// Tells once what is known when a run has ended.
+    fn conclude(&mut self) {
+        if std::mem::replace(&mut self.concluded, true) {
+            return;
+        }
+        let caller = Caller {
+            observer: &mut *self.options.observer,
+            interrupt: self.options.interrupt,
+        };
+        (self.running).with_dependent_mut(|_, run| run.march(caller).0.conclude());
+    }
+
+    /// Begins again at time 0 where elements of the scene's choice may replace those that gave way.
+    fn begin_again(&mut self) -> Result<bool, RunError> {
+        let Some(ending) = &self.ended else {
+            return Ok(false);
+        };
+        let bodies = &self.running.borrow_owner().model.bodies;
+        let squeezed = (ending.squeezed.iter()).map(|&body| bodies[body].name.as_str());
+        let before = self.safe.as_ref();
+        let Some(safe) = safe_variant(&self.scene, before, squeezed, self.time()) else {
+            return Ok(false);
+        };
+        let observer = &mut *self.options.observer;
+        let (running, fingerprint) = running(&self.scene, Some(&safe), None, observer)?;
+        (self.running, self.fingerprint) = (running, fingerprint);
+        self.safe = Some(safe);
+        self.history.rows.clear();
+        (self.whole, self.ended, self.concluded) = (true, None, false);
+        self.attempt += 1;
+        Ok(true)
+    }
+
+    /// How the run went so far. Before its end the status is [`RunStatus::Interrupted`].
+    pub fn summary(&self) -> Summary {
+        let (status, reason) = match &self.ended {
+            Some(ending) => (ending.status, ending.reason.clone()),
+            None => (RunStatus::Interrupted, None),
+        };
+        let run = self.running.borrow_dependent();
+        let threads = self.pool.current_num_threads();
+        let probed = self.whole && !self.model().probes.is_empty();
+        Summary {
+            probes: match probed {
+                true => probes::summary(self.model(), &self.history),
+                false => Default::default(),
+            },
+            scene: checkpoint::name(&self.fingerprint),
+            ..run.summary(threads, status, reason)
+        }
+    }
+
+    /// Takes the rows of the history before the checkpoint that the run went on from.
+    pub(super) fn set_earlier(&mut self, table: Option<Table>) {
+        let step = self.history.columns.iter().position(|c| c == "step");
+        if let (Some(mut earlier), Some(step)) = (table, step)
+            && earlier.columns == self.history.columns
+        {
+            let last = f64::from(self.steps());
+            // Later ones are of steps that the run does anew.
+            earlier.rows.retain(|row| row[step] <= last);
+            (self.history, self.whole) = (earlier, true);
+        }
+    }
+
+    pub(super) fn run_state(&self) -> &RunState<'_> {
+        self.running.borrow_dependent()
+    }
+
+    pub(super) fn fingerprint(&self) -> &Fingerprint {
+        &self.fingerprint
+    }
+
+    /// The files of the checkpoint that the run went on from.
+    pub(super) fn kept_files(&self) -> Option<&KeptFiles> {
+        self.run_state().files.as_ref()
+    }
+
+    /// The scene that is solved: as it was given, or with the elements that replaced others.
+    pub fn scene(&self) -> &LoadedScene {
+        &self.running.borrow_owner().loaded
+    }
+
+    /// The model of the scene.
+    pub fn model(&self) -> &Model {
+        &self.running.borrow_owner().model
+    }
+
+    /// How the run ended; `None` while it goes on.
+    pub fn status(&self) -> Option<RunStatus> {
+        Some(self.ended.as_ref()?.status)
+    }
+
+    /// Whether the end time has been reached.
+    pub fn done(&self) -> bool {
+        matches!(self.status(), Some(RunStatus::Done | RunStatus::NoContact))
+    }
+}
+
+/// The model of a scene with its run, and the checksums of both.
+fn running(
+    scene: &LoadedScene,
+    safe: Option<&Safe>,
+    sections: Option<&Sections>,
+    observer: &mut (dyn Observer + Send),
+) -> Result<(Running, Fingerprint), RunError> {
+    let cost = Cost::start();
+    let (loaded, changed) = match safe {
+        None => (scene, &[][..]),
+        Some(Safe { loaded, changed }) => (loaded, &changed[..]),
+    };
+    let fingerprint = Fingerprint::new(loaded);
+    let mut phases = Phases::new();
+    phases.start("model");
+    let mut model = model::build::build(loaded).map_err(|e| RunError::model(loaded, e))?;
+    model.warnings.extend_from_slice(changed);
+    let plan = Plan::new(loaded, &model);
+    phases.stop("model");
+    observer.event(&Event::Model {
+        dofs: model.unknowns(),
+        contact_points: model.contact_points(),
+        effects: plan.names(),
+        notes: model.notes.clone(),
+    });
+    for text in &model.warnings {
+        observer.event(&Event::Warning { text: text.clone() });
+    }
+    let replaceable = (loaded.scene.bodies.iter())
+        .filter(|(name, body)| body.element == Element::H8 && !names_element(loaded, name))
+        .map(|(name, _)| name.clone())
+        .collect();
+    let problem = Box::new(Problem {
+        loaded: loaded.clone(),
+        model,
+        plan,
+        replaceable,
+    });
+    let threads = rayon::current_num_threads();
+    let running = Running::try_new(problem, |problem| {
+        RunState::new(problem, (phases, cost), threads, sections, observer)
+    })?;
+    Ok((running, fingerprint))
+}

@@ -1,0 +1,101 @@
+//! Meshes and surfaces that a program gives as values. Scene files name files in their place.
+use covact_geometry::NurbsPatch;
+use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hasher};
+use std::ops::Deref;
+use std::sync::Arc;
+
+/// A mesh as arrays.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct MeshArrays {
+    /// Positions of the nodes.
+    pub nodes: Vec<[f64; 3]>,
+    /// Nodes of an element: 8, or 18 for a body of [`Element::Q18`](super::Element::Q18).
+    pub nodes_per_element: usize,
+    /// Node numbers of the elements, one after the other. Local node order is tensor-product: along r fastest, then s, then t (the
+    /// thickness); H8 node `i + 2 j + 4 k`, Q18 node `i + 3 j + 9 k`.
+    pub elements: Vec<u32>,
+    /// Numbers of the nodes of named sets.
+    pub node_sets: BTreeMap<String, Vec<u32>>,
+    /// Element numbers and local faces of named sets. Local faces: 0 is r = -1, 1 is r = +1, 2 is s = -1, 3 is s = +1, 4 is
+    /// t = -1 (bottom), 5 is t = +1 (top).
+    pub face_sets: BTreeMap<String, Vec<(u32, u8)>>,
+}
+
+/// A value shared by the scenes that hold it. Where a scene is written as text, a checksum stands in its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Given<T>(Arc<T>);
+
+impl<T> From<T> for Given<T> {
+    fn from(value: T) -> Self {
+        Given(Arc::new(value))
+    }
+}
+
+impl<T> Deref for Given<T> {
+    type Target = T;
+    fn deref(&self) -> &T {
+        &self.0
+    }
+}
+
+/// What a checksum is made of.
+trait Digest {
+    fn add(&self, hasher: &mut DefaultHasher);
+}
+
+impl<T: Digest> Serialize for Given<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut hasher = DefaultHasher::new();
+        self.0.add(&mut hasher);
+        serializer.collect_str(&format_args!(
+            "in memory, checksum {:016x}",
+            hasher.finish()
+        ))
+    }
+}
+
+fn add_numbers(numbers: &[f64], hasher: &mut DefaultHasher) {
+    hasher.write_usize(numbers.len());
+    numbers.iter().for_each(|x| hasher.write_u64(x.to_bits()));
+}
+
+impl Digest for MeshArrays {
+    fn add(&self, hasher: &mut DefaultHasher) {
+        let MeshArrays {
+            nodes,
+            nodes_per_element,
+            elements,
+            node_sets,
+            face_sets,
+        } = self;
+        add_numbers(nodes.as_flattened(), hasher);
+        hasher.write_usize(*nodes_per_element);
+        hasher.write_usize(elements.len());
+        elements.iter().for_each(|n| hasher.write_u32(*n));
+        for (name, set) in node_sets {
+            hasher.write(name.as_bytes());
+            hasher.write_usize(set.len());
+            set.iter().for_each(|n| hasher.write_u32(*n));
+        }
+        for (name, set) in face_sets {
+            hasher.write(name.as_bytes());
+            hasher.write_usize(set.len());
+            for (element, face) in set {
+                hasher.write_u32(*element);
+                hasher.write_u8(*face);
+            }
+        }
+    }
+}
+
+impl Digest for Vec<NurbsPatch> {
+    fn add(&self, hasher: &mut DefaultHasher) {
+        hasher.write_usize(self.len());
+        for patch in self {
+            // All of it, trims included.
+            hasher.write(format!("{patch:?}").as_bytes());
+        }
+    }
+}
