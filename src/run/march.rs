@@ -107,10 +107,10 @@ impl Outputs {
     }
 }
 
-/// What is stored, and what friction has dissipated since the start.
+/// What is stored, and what friction and plastic flow have taken since the start.
 fn energy(totals: &Totals, sliding: &FrictionTotals) -> f64 {
     let stored = totals.internal_energy + totals.contact_energy + sliding.stored;
-    stored + sliding.dissipated
+    stored + sliding.dissipated + totals.plastic_work
 }
 
 impl<'a, 'm> March<'a, 'm> {
@@ -262,7 +262,7 @@ impl<'a, 'm> March<'a, 'm> {
                 }
             }
             let failure = match result {
-                Ok(converged) => 'solved: {
+                Ok(mut converged) => 'solved: {
                     let start = self.progress.time;
                     let Settled {
                         sliding,
@@ -284,8 +284,11 @@ impl<'a, 'm> March<'a, 'm> {
                             &span,
                         )
                         .map_err(|e| RunError::internal(&e))?;
-                    let energy =
-                        energy(&converged.totals, &sliding) + committed.stabilized + drag.work;
+                    let flowed = committed.plastic_work(self.model);
+                    let energy = energy(&converged.totals, &sliding) + flowed.done
+                        - flowed.in_energy
+                        + committed.stabilized
+                        + drag.work;
                     if cuts < GIVES_IN
                         && let Some(part) = self.watch.gained(self.model, step, &work, energy)
                     {
@@ -304,6 +307,9 @@ impl<'a, 'm> March<'a, 'm> {
                     (committed.remember(self.model)).map_err(|(body, fault)| {
                         RunError::internal(&Fault::Element { body, fault })
                     })?;
+                    let flowed = committed.plastic_work(self.model);
+                    converged.totals.internal_energy -= flowed.in_energy;
+                    converged.totals.plastic_work = flowed.done;
                     committed.stabilized += drag.work;
                     // Augmentations say nothing of how far a step may go.
                     walk.stepping
