@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 /// `"steel"`. A name needs `units` with `length` and `force`, in which its constants are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+// Few of them, and plain values: a box would make them lose `Copy`.
+#[allow(clippy::large_enum_variant)]
 pub enum MaterialChoice {
     /// Linear law between Green-Lagrange strain and second Piola-Kirchhoff stress: large rotations, small strains.
     StVenantKirchhoff(Elastic),
@@ -41,6 +43,8 @@ pub enum MaterialChoice {
 
 /// Constitutive law.
 #[derive(Debug, Clone, Copy, PartialEq)]
+// Few of them, and plain values: a box would make them lose `Copy`.
+#[allow(clippy::large_enum_variant)]
 pub enum Material {
     /// Linear law between Green-Lagrange strain and second Piola-Kirchhoff stress: large rotations, small strains.
     StVenantKirchhoff(Elastic),

@@ -34,6 +34,8 @@ impl Metal {
 /// Yield stress over equivalent plastic strain p, written as `{"linear": {"yield_stress": 200, "slope": 1000}}`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+// Few of them, and plain values: a box would make them lose `Copy`.
+#[allow(clippy::large_enum_variant)]
 pub enum HardeningCurve {
     /// `yield_stress + slope p`.
     Linear(LinearHardening),

@@ -4,6 +4,8 @@ use num_dual::DualNum;
 
 /// Yield stress (Kirchhoff) over equivalent plastic strain; never falls.
 #[derive(Debug, Clone, Copy, PartialEq)]
+// Few of them, and plain values: a box would make them lose `Copy`.
+#[allow(clippy::large_enum_variant)]
 pub enum Hardening {
     /// `initial + slope p`.
     Linear { initial: f64, slope: f64 },

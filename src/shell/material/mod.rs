@@ -157,6 +157,8 @@ pub trait MaterialLaw: Copy + Send + Sync {
 
 /// A law chosen at run time; elements branch on it once and run monomorphised loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
+// Few of them, and plain values: a box would make them lose `Copy`.
+#[allow(clippy::large_enum_variant)]
 pub enum Law {
     StVenantKirchhoff(StVenantKirchhoff),
     NeoHooke(NeoHooke),
