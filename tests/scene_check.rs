@@ -450,3 +450,90 @@ fn facets_say_how_fine_they_are() {
         );
     }
 }
+
+/// Constants of metals, and what does not go with them.
+#[test]
+fn metals() {
+    let steel = "\"steel\": {\"neo_hooke\": {\"E\": 210000, \"nu\": 0.3}}";
+    let metal = |nu: &str, hardening: &str| {
+        format!(
+            "\"steel\": {{\"j2\": {{\"E\": 210000, \"nu\": {nu}, \"hardening\": {hardening}}}}}"
+        )
+    };
+    let of = |hardening: &str| metal("0.3", hardening);
+    assert_eq!(
+        problems(&SCENE.replace(steel, &of("{\"table\": [[0, 200], [0.1, 250]]}"))),
+        Vec::<String>::new()
+    );
+    let cases = [
+        (
+            metal("0.495", "{\"linear\": {\"yield_stress\": 200}}"),
+            "Poisson's ratio `nu` is 0.495, above 0.49",
+        ),
+        (
+            of("{\"linear\": {\"yield_stress\": 0}}"),
+            "the `yield_stress` is 0",
+        ),
+        (
+            of("{\"linear\": {\"yield_stress\": 200, \"slope\": -1}}"),
+            "the `slope` is -1",
+        ),
+        (
+            of("{\"swift\": {\"strength\": 500, \"offset\": 0, \"exponent\": 0.2}}"),
+            "the `offset` is 0",
+        ),
+        (
+            of("{\"swift\": {\"strength\": 500, \"offset\": 0.01, \"exponent\": 2}}"),
+            "the `exponent` is 2",
+        ),
+        (
+            of("{\"voce\": {\"yield_stress\": 200, \"rise\": -1, \"rate\": 5}}"),
+            "the `rise` is -1",
+        ),
+        (
+            of("{\"table\": []}"),
+            "a table of yield stresses without rows",
+        ),
+        (
+            of("{\"table\": [[0.1, 200]]}"),
+            "the first row has a plastic strain of 0.1",
+        ),
+        (
+            of("{\"table\": [[0, 200], [0, 250]]}"),
+            "a plastic strain of 0 follows 0",
+        ),
+        (
+            of("{\"table\": [[0, 200], [0.1, 150]]}"),
+            "a yield stress of 150 follows 200",
+        ),
+    ];
+    for (text, expected) in cases {
+        let found = problems(&SCENE.replace(steel, &text));
+        // With its place.
+        assert!(
+            found.len() == 1 && found[0].starts_with("3:") && found[0].contains(expected),
+            "{text}: {found:?}"
+        );
+    }
+    let scene = SCENE.replace(steel, &of("{\"linear\": {\"yield_stress\": 200}}"));
+    let quadratic = scene.replace(
+        "\"material\": \"steel\"",
+        "\"element\": \"q18\", \"material\": \"steel\"",
+    );
+    let found = problems(&quadratic);
+    assert!(
+        found.len() == 1 && found[0].contains("the material `steel` flows, which `q18`"),
+        "{found:?}"
+    );
+    let small = scene.replace(
+        "\"solution\": {",
+        "\"solution\": {\"kinematics\": \"small\", ",
+    );
+    let found = problems(&small);
+    assert!(
+        found
+            .iter()
+            .any(|p| p.contains("is linear, but the material `steel` of body `sheet` flows")),
+        "{found:?}"
+    );
+}

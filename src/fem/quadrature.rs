@@ -23,6 +23,16 @@ impl Rule {
         &self.weights[..self.n]
     }
 
+    /// Points of a rule that is known when compiled; those past its number are 0.
+    pub(crate) const fn all_points(&self) -> &[f64; MAX_POINTS] {
+        &self.points
+    }
+
+    /// The weights likewise.
+    pub(crate) const fn all_weights(&self) -> &[f64; MAX_POINTS] {
+        &self.weights
+    }
+
     /// Pairs (point, weight).
     pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.points()

@@ -266,8 +266,8 @@ fn mesh_error(body: &str, source: &MeshSource, error: mesh::MeshError) -> ModelE
     error
 }
 
-/// Whether a run on the mesh of a body fits in memory, as far as its counts of elements tell before it is made.
-fn room(name: &str, body: &scene::Body) -> Result<(), ModelError> {
+/// Whether a run on the mesh of a body, whose material may flow, fits in memory, as far as its counts of elements tell before it is made.
+fn room(name: &str, body: &scene::Body, flows: bool) -> Result<(), ModelError> {
     let counts = match &body.mesh {
         MeshSource::Plate(p) => [p.elements[0], p.elements[1], p.layers],
         MeshSource::CylinderPanel(p) => [p.elements[0], p.elements[1], p.layers],
@@ -276,7 +276,11 @@ fn room(name: &str, body: &scene::Body) -> Result<(), ModelError> {
         MeshSource::File(_) | MeshSource::Arrays(_) => return Ok(()),
     };
     let element = body.element;
-    let grid = grid::Grid { element, counts };
+    let grid = grid::Grid {
+        element,
+        counts,
+        flows,
+    };
     // Half of the estimate, which may be wrong by so much: the rest is checked when the system is known.
     memory::ask(grid.bytes(true) / 2).map_err(|mut shortage| {
         shortage.needed = grid.bytes(true);
@@ -330,7 +334,8 @@ impl<'s> Builder<'s> {
     /// Reads or makes the mesh of a body and adds the body.
     fn add_body(&mut self, name: &'s str, body: &'s scene::Body) -> Result<(), ModelError> {
         let at = || format!("/bodies/{name}/mesh");
-        room(name, body)?;
+        let (material, metal) = self.material(name, &body.material)?;
+        room(name, body, material.flows())?;
         let (mut mesh, report) = mesh::build(&body.mesh, body.element.into(), self.dir)
             .map_err(|e| mesh_error(name, &body.mesh, e))?;
         place(&mut mesh, &body.placement);
@@ -341,10 +346,11 @@ impl<'s> Builder<'s> {
         }
         mesh.check().at(at)?;
         (self.notes).extend(report.notes.iter().map(|n| format!("body `{name}`: {n}")));
-        let (material, metal) = self.material(name, &body.material)?;
         let law = Law::new(&material).at(|| format!("/bodies/{name}/material"))?;
         let elements = mesh.elements() as u64;
-        let each: usize = bytes_per_element(body.element).iter().sum();
+        let each: usize = bytes_per_element(body.element, material.flows())
+            .iter()
+            .sum();
         memory::ask(memory::times(elements, each as u64)).map_err(|shortage| {
             let message = format!("body `{name}` with its {elements} elements: {shortage}");
             text(elements_key(name, &body.mesh), message).help(FEWER)

@@ -52,6 +52,7 @@ effects! {
     StVenantKirchhoff, "material.st_venant_kirchhoff", listed: "linear stress-strain law for small strains";
     NeoHooke, "material.neo_hooke", listed: "rubber-like law for large strains";
     Hencky, "material.hencky", listed: "linear law in logarithmic strains, for moderately large strains";
+    J2, "material.j2", listed: "metal that yields and hardens (von Mises), for forming and springback";
     DrivenByForce, "surface.driven_by_force", listed: "components of a surface's motion are unknowns with given forces";
     SurfaceMotion, "surface.motion", detail: "rigid surfaces move as prescribed";
     MidSurface, "support.mid_surface", listed: "supports on the mean of both faces of a shell";

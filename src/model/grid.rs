@@ -11,6 +11,8 @@ use std::collections::HashMap;
 pub struct Grid {
     pub element: Element,
     pub counts: [u32; 3],
+    /// Whether the material may flow.
+    pub flows: bool,
 }
 
 /// Bytes of a node in a mesh (position) and in the vectors of a solution (six of three numbers, seven fields).
@@ -75,7 +77,7 @@ impl Grid {
         let elements = self.elements();
         let nodes = self.kind().nodes() as u64;
         let maps = 4 * nodes * (nodes + 1) / 2;
-        let [block, states] = bytes_per_element(self.element).map(|b| b as u64);
+        let [block, states] = bytes_per_element(self.element, self.flows).map(|b| b as u64);
         let each = 4 * nodes + FACES + maps + block + states;
         let both = if symmetric { 1 } else { 2 };
         let factor = times(self.factor_blocks(), 72 * both);
@@ -155,7 +157,11 @@ mod tests {
             (Element::H8, [60, 2, 1]),
             (Element::Q18, [14, 11, 2]),
         ] {
-            let grid = Grid { element, counts };
+            let grid = Grid {
+                element,
+                counts,
+                flows: false,
+            };
             let mesh = mesh(&grid);
             assert_eq!(grid.nodes(), mesh.nodes.len() as u64);
             assert_eq!(grid.elements(), mesh.elements() as u64);
@@ -175,12 +181,14 @@ mod tests {
         let grid = Grid {
             element: Element::Q18,
             counts: [u32::MAX; 3],
+            flows: false,
         };
         assert_eq!(grid.bytes(false), u64::MAX);
         assert!(grid.bytes(true) > 1 << 62);
         let plate = Grid {
             element: Element::H8,
             counts: [u32::MAX, u32::MAX, 1],
+            flows: true,
         };
         assert!(plate.bytes(true) > 1 << 62);
     }

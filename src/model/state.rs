@@ -2,7 +2,7 @@
 use super::Model;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::points::SlavePoint;
-use crate::shell::{ElementBlock, ElementFault, with_block};
+use crate::shell::{ElementBlock, ElementFault, PlasticWork, with_block};
 use covact_geometry::Hint;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -135,6 +135,26 @@ impl State {
             .map_err(|fault| (body.name.clone(), fault))?;
         }
         Ok(())
+    }
+
+    /// Work that plastic flow has taken since the start; zero where no law flows.
+    pub fn plastic_work(&self, model: &Model) -> PlasticWork {
+        let mut first = 0;
+        let bodies = model.bodies.iter().map(|body| {
+            let len = model.state_len(body);
+            let own = first..first + len * body.block.elements();
+            first = own.end;
+            if len == 0 || body.block.history_len() == 0 {
+                return PlasticWork::default();
+            }
+            // One after the other: the same bits on any number of threads.
+            with_block!(&body.block, block => {
+                (self.elements[own].chunks(len).enumerate())
+                    .map(|(e, state)| ElementBlock::plastic_work(block, e, state))
+                    .sum()
+            })
+        });
+        bodies.sum()
     }
 
     /// Bytes of heap that this state holds, by part.

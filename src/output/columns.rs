@@ -132,6 +132,11 @@ pub const COLUMNS: &[ColumnDoc] = &[
     ),
     doc("points.slip", "-", "slave points that slide"),
     doc(
+        "energy.plastic",
+        "energy",
+        "work that plastic flow has taken since the start; only with a material that flows",
+    ),
+    doc(
         "energy.stabilization",
         "energy",
         "energy that the forces of the stabilisation took since the start (they may give some back); only with it",

@@ -48,7 +48,8 @@ impl Estimate {
         let of_bodies = (model.bodies.iter().zip(elements)).map(|(body, &element)| {
             let count = body.block.elements() as u64;
             let nodes = body.mesh.kind.nodes() as u64;
-            let [shape, mut states] = bytes_per_element(element).map(|b| b as u64);
+            let [shape, mut states] =
+                bytes_per_element(element, body.material.flows()).map(|b| b as u64);
             if model.small.is_some() {
                 // While the stiffness is made.
                 states /= STATES as u64;

@@ -2,6 +2,7 @@
 use super::RunError;
 use super::averaged::{NodeNow, nodes_now};
 use super::bearing::{Bearings, Carrier, Place as BearingPlace};
+use super::flow_fields::FlowFields;
 use super::friction_fields::{self, FrictionFields};
 use super::reaction_fields::reactions;
 use super::resultants::Resultants;
@@ -422,6 +423,7 @@ impl Fields {
                 (strains[i].of_shell()).then(|| Resultants::new(&b.mesh, &now, &stresses[i]))
             })
             .collect();
+        let flow = FlowFields::of(model, state);
         let reactions = reactions(model, state, &self.status, time);
         let bodies: Vec<BodyFields> = (model.bodies.iter().enumerate())
             .map(|(i, body)| {
@@ -441,6 +443,7 @@ impl Fields {
                     fields: (self.friction.of(model, i, body).into_iter())
                         .chain(self.traction.of(model, i, body))
                         .chain(strains[i].fields())
+                        .chain(flow[i].fields())
                         .chain(resultants[i].iter().flat_map(Resultants::fields))
                         .chain(reactions.as_ref().map(|all| Field {
                             name: "reaction",

@@ -96,6 +96,9 @@ pub fn columns(model: &Model) -> Vec<String> {
             .map(String::from),
         );
     }
+    if flows(model) {
+        names.push("energy.plastic".into());
+    }
     if model.stabilization.is_some() {
         names.extend(["energy.stabilization", "stabilization.share"].map(String::from));
     }
@@ -166,12 +169,20 @@ pub fn row(r: &Record) -> Vec<f64> {
         let s = r.sliding;
         out.extend([s.stored, s.dissipated, s.stick as f64, s.slip as f64]);
     }
+    if flows(r.model) {
+        out.push(totals.plastic_work);
+    }
     if r.model.stabilization.is_some() {
         out.extend([r.stabilized.0, r.stabilized.1]);
     }
     out.extend([r.watch.external, r.watch.adjusted, r.watch.imbalance]);
     out.extend(probes::values(r.model, r.time, r.u, r.residual, r.fields));
     out
+}
+
+/// Whether any material flows.
+fn flows(model: &Model) -> bool {
+    model.bodies.iter().any(|body| body.material.flows())
 }
 
 /// Whether any contact has multipliers.

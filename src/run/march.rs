@@ -127,10 +127,10 @@ pub(super) struct AcceptedStep {
     pub cuts: u32,
 }
 
-/// What is stored, and what friction has dissipated since the start.
+/// What is stored, and what friction and plastic flow have taken since the start.
 fn energy(totals: &Totals, sliding: &FrictionTotals) -> f64 {
     let stored = totals.internal_energy + totals.contact_energy + sliding.stored;
-    stored + sliding.dissipated
+    stored + sliding.dissipated + totals.plastic_work
 }
 
 impl March<'_, '_> {
@@ -193,7 +193,7 @@ impl March<'_, '_> {
                 }
             }
             let failure = match result {
-                Ok(converged) => 'solved: {
+                Ok(mut converged) => 'solved: {
                     let start = self.progress.time;
                     let Settled {
                         sliding,
@@ -215,8 +215,11 @@ impl March<'_, '_> {
                             &span,
                         )
                         .map_err(|e| RunError::internal(&e))?;
-                    let energy =
-                        energy(&converged.totals, &sliding) + committed.stabilized + drag.work;
+                    let flowed = committed.plastic_work(self.model);
+                    let energy = energy(&converged.totals, &sliding) + flowed.done
+                        - flowed.in_energy
+                        + committed.stabilized
+                        + drag.work;
                     if cuts < GIVES_IN
                         && let Some(part) = self.watch.gained(self.model, step, &work, energy)
                     {
@@ -235,6 +238,9 @@ impl March<'_, '_> {
                     (committed.remember(self.model)).map_err(|(body, fault)| {
                         RunError::internal(&Fault::Element { body, fault })
                     })?;
+                    let flowed = committed.plastic_work(self.model);
+                    converged.totals.internal_energy -= flowed.in_energy;
+                    converged.totals.plastic_work = flowed.done;
                     committed.stabilized += drag.work;
                     // Augmentations say nothing of how far a step may go.
                     walk.stepping

@@ -11,6 +11,7 @@ mod cost;
 mod error;
 mod estimate;
 mod fields;
+mod flow_fields;
 mod friction_fields;
 mod history;
 mod hold;

@@ -41,6 +41,26 @@ pub fn nodal_stresses(
     out
 }
 
+/// Equivalent plastic strain and equivalent stress over yield stress at the nodes of each body that flows, else nothing;
+/// averaged as [`nodal_stresses`] are.
+pub fn flow_measures(model: &Model, state: &State) -> Vec<Vec<[f64; 2]>> {
+    let mut first = 0;
+    let bodies = model.bodies.iter().map(|body| {
+        let len = model.state_len(body);
+        let own = first..first + len * body.block.elements();
+        first = own.end;
+        if !body.material.flows() {
+            return Vec::new();
+        }
+        let states = &state.elements[own];
+        with_block!(&body.block, block => averaged(block, body.mesh.nodes.len(), |e, nodal| {
+            *nodal = ElementBlock::flow_measures(block, e, &states[e * len..(e + 1) * len]);
+            Ok(())
+        }))
+    });
+    bodies.collect()
+}
+
 /// Stress of the linear elements of a body, whose enhanced strains are worked out anew.
 fn linear_stresses<const N: usize, B: ElementBlock<N>>(
     body: &BodyModel,
@@ -50,7 +70,7 @@ fn linear_stresses<const N: usize, B: ElementBlock<N>>(
     let (len, alphas) = (block.state_len(), block.alpha_len());
     let none = vec![0.0; alphas];
     let (mut state, mut system) = (vec![0.0; len], B::System::default());
-    averaged_stresses(block, body.mesh.nodes.len(), |e, nodal| {
+    averaged(block, body.mesh.nodes.len(), |e, nodal| {
         state.fill(0.0);
         if len > 0 {
             block.evaluate(e, &[Vec3::zeros(); N], &mut state, &mut system)?;
@@ -68,22 +88,22 @@ fn body_stresses<const N: usize>(
     u: &[f64],
 ) -> Vec<[f64; 6]> {
     let len = block.state_len();
-    averaged_stresses(block, body.mesh.nodes.len(), |e, nodal| {
+    averaged(block, body.mesh.nodes.len(), |e, nodal| {
         let u = body.displacements(block, e, u);
         block.nodal_stresses(e, &u, &states[e * len..(e + 1) * len], nodal)
     })
 }
 
 /// Averages what `of` says of the nodes of every element between the elements, by volume; what fails is left out.
-fn averaged_stresses<const N: usize>(
+fn averaged<const N: usize, const K: usize>(
     block: &impl ElementBlock<N>,
     nodes: usize,
-    mut of: impl FnMut(usize, &mut [[f64; 6]; N]) -> Result<(), ElementFault>,
-) -> Vec<[f64; 6]> {
-    let mut sum = vec![[0.0; 6]; nodes];
+    mut of: impl FnMut(usize, &mut [[f64; K]; N]) -> Result<(), ElementFault>,
+) -> Vec<[f64; K]> {
+    let mut sum = vec![[0.0; K]; nodes];
     let mut weight = vec![0.0; nodes];
     for e in 0..block.elements() {
-        let mut nodal = [[0.0; 6]; N];
+        let mut nodal = [[0.0; K]; N];
         if of(e, &mut nodal).is_err() {
             continue;
         }

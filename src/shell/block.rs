@@ -1,7 +1,8 @@
 //! The elements of a body, whatever their shape: one trait for the loops, one enum for the body.
 use super::error::{ElementFault, ShellError};
 use super::h8::{Formulation, H8Block, H8System};
-use super::material::Law;
+use super::history::PlasticWork;
+use super::material::{J2State, Law, LawState};
 use super::q18::{DOFS, Q18Block, Q18System};
 use super::stress::{extrapolate, extrapolate_quadratic};
 use crate::mesh::Mesh;
@@ -12,12 +13,16 @@ use covact_geometry::Vec3;
 /// the attempts at a step.
 pub const STATES: usize = 5;
 
-/// Bytes that an element of this kind takes: what is worked out once about its shape, and its states in a run.
-pub const fn bytes_per_element(element: Element) -> [usize; 2] {
-    let (shape, state) = match element {
-        Element::H8 => (H8Block::BYTES, Formulation::Eas7.state_len()),
-        Element::H8Displacement => (H8Block::BYTES, Formulation::Displacement.state_len()),
-        Element::Q18 => (Q18Block::BYTES, Q18Block::STATE_LEN),
+/// Bytes that an element of this kind takes: what is worked out once about its shape, and its states in a run. `flows` as for
+/// [`Formulation::of`].
+pub const fn bytes_per_element(element: Element, flows: bool) -> [usize; 2] {
+    let memory = if flows { J2State::LEN } else { 0 };
+    let (shape, state) = match Formulation::of(element, flows) {
+        Some(formulation) => (
+            H8Block::BYTES,
+            formulation.state_len() + formulation.points() * memory,
+        ),
+        None => (Q18Block::BYTES, Q18Block::STATE_LEN + 18 * memory),
     };
     [shape, STATES * 8 * state]
 }
@@ -44,6 +49,10 @@ pub trait ElementBlock<const N: usize>: Sync {
     fn history_len(&self) -> usize;
     /// Takes an accepted step into the states of the law; see [`H8Block::remember`].
     fn remember(&self, e: usize, u: &[Vec3; N], state: &mut [f64]) -> Result<(), ElementFault>;
+    /// Equivalent plastic strain, and equivalent stress over yield stress, at the nodes.
+    fn flow_measures(&self, e: usize, state: &[f64]) -> [[f64; 2]; N];
+    /// What flow has taken of the work on element `e`.
+    fn plastic_work(&self, e: usize, state: &[f64]) -> PlasticWork;
     /// Undeformed volume of element `e`.
     fn volume(&self, e: usize) -> f64;
     /// Condensed forces and tangent; see [`H8Block::evaluate`].
@@ -132,6 +141,12 @@ macro_rules! delegate {
         ) -> Result<(), ElementFault> {
             self.remember(e, u, state)
         }
+        fn flow_measures(&self, e: usize, state: &[f64]) -> [[f64; 2]; $n] {
+            self.flow_measures(e, state)
+        }
+        fn plastic_work(&self, e: usize, state: &[f64]) -> PlasticWork {
+            self.plastic_work(e, state)
+        }
         #[inline]
         fn evaluate(
             &self,
@@ -176,9 +191,7 @@ impl ElementBlock<8> for H8Block {
         state: &[f64],
         out: &mut [[f64; 6]; 8],
     ) -> Result<(), ElementFault> {
-        let mut points = [[0.0; 6]; 8];
-        self.stresses(e, u, state, &mut points)?;
-        *out = extrapolate(&points);
+        *out = H8Block::nodal_stresses(self, e, u, state)?;
         Ok(())
     }
     fn linear_nodal_stresses(
@@ -257,7 +270,7 @@ impl Block {
     /// # Errors
     /// Those of [`H8Block::new`] and [`Q18Block::new`].
     pub fn new(mesh: &Mesh, element: Element, law: Law) -> Result<Block, ShellError> {
-        Ok(match super::Formulation::of(element) {
+        Ok(match Formulation::of(element, law.state_len() > 0) {
             Some(formulation) => Block::H8(H8Block::new(mesh, formulation, law)?),
             None => Block::Q18(Q18Block::new(mesh, law)?),
         })

@@ -1,16 +1,16 @@
 //! The elements of one body: what assembly calls.
 use super::error::{ElementFault, FaultCause, ShellError};
-use super::history::{advance, cauchy};
+use super::history::{PlasticWork, advance, cauchy, measures, plastic_work};
 use super::kinematics::{self, Fields, V};
 use super::material::{Collapsed, Law, MaterialLaw, with_law};
-use super::reference::{MODES, Reference};
-use super::{brick, stress, tangent};
+use super::reference::Reference;
+use super::{brick, layered, stress, tangent};
 use crate::mesh::{ElementKind, Mesh};
 use crate::scene::Element;
 use covact_geometry::Vec3;
 use num_dual::Dual64;
 
-/// Variants of the 8-node element; all have 2 x 2 x 2 Gauss points.
+/// Variants of the 8-node element, with 2 x 2 x 2 Gauss points unless said otherwise.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Formulation {
     /// Solid-shell with assumed transverse shear and thickness strains and seven enhanced strains (33: t, rt, st;
@@ -22,6 +22,9 @@ pub enum Formulation {
     Eas3,
     /// Assumed strains only; Poisson thickness locking makes it 1.22 times too stiff in bending at nu = 0.3.
     Eas0,
+    /// [`Formulation::Eas7`] with a further enhanced strain, 33: t^2 - 1/3, and six points over the thickness, three in each
+    /// half: what bending asks of laws with plastic flow.
+    Layered,
     /// Displacement brick without assumed or enhanced strains.
     Displacement,
 }
@@ -31,8 +34,17 @@ impl Formulation {
     pub const fn modes(self) -> usize {
         match self {
             Formulation::Eas7 => 7,
+            Formulation::Layered => layered::MODES,
             Formulation::Eas3 => 3,
             Formulation::Eas0 | Formulation::Displacement => 0,
+        }
+    }
+
+    /// Points at which the law is evaluated.
+    pub const fn points(self) -> usize {
+        match self {
+            Formulation::Layered => layered::POINTS,
+            _ => 8,
         }
     }
 
@@ -43,9 +55,10 @@ impl Formulation {
 }
 
 impl Formulation {
-    /// The formulation of a scene's element; `None` for elements that do not have 8 nodes.
-    pub fn of(element: Element) -> Option<Formulation> {
+    /// The formulation of a scene's element, whose law may have plastic flow; `None` for elements that do not have 8 nodes.
+    pub const fn of(element: Element, flows: bool) -> Option<Formulation> {
         match element {
+            Element::H8 if flows => Some(Formulation::Layered),
             Element::H8 => Some(Formulation::Eas7),
             Element::H8Displacement => Some(Formulation::Displacement),
             Element::Q18 => None,
@@ -186,7 +199,7 @@ impl H8Block {
 
     /// Numbers that the law remembers per element, at the end of its state.
     pub fn history_len(&self) -> usize {
-        8 * self.law.state_len()
+        self.formulation.points() * self.law.state_len()
     }
 
     /// Enhanced strains and the condensation cache.
@@ -235,6 +248,7 @@ impl H8Block {
         let re = &self.reference[e];
         with_law!(&self.law, law => match self.formulation {
             Formulation::Eas7 => tangent::evaluate::<_, 7>(law, re, &u, state, out),
+            Formulation::Layered => layered::evaluate(law, &re.nodes, &u, state, out),
             Formulation::Eas3 => tangent::evaluate::<_, 3>(law, re, &u, state, out),
             Formulation::Eas0 => tangent::evaluate::<_, 0>(law, re, &u, state, out),
             Formulation::Displacement => brick::evaluate(law, re, &u, state, out),
@@ -289,6 +303,11 @@ impl H8Block {
         let re = &self.reference[e];
         with_law!(&self.law, law => match self.formulation {
             Formulation::Eas7 => residual::<_, 7>(law, re, &u, state, f),
+            Formulation::Layered => {
+                let states = &state[self.condensation_len()..];
+                layered::forces(law, &re.nodes, &u, &head(state), states)
+                    .map(|(energy, forces, h)| condensed(energy, (forces, h), state, f))
+            }
             Formulation::Eas3 => residual::<_, 3>(law, re, &u, state, f),
             Formulation::Eas0 => residual::<_, 0>(law, re, &u, state, f),
             Formulation::Displacement => brick::forces(law, re, &u, state).map(|(energy, forces)| {
@@ -302,7 +321,7 @@ impl H8Block {
     /// `alpha = alpha_from - scale D^-1 (h + L du)`, with D, h, L of the evaluation that produced `du`.
     pub fn update_alpha(&self, state: &mut [f64], du: &[Vec3; 8], scale: f64, alpha_from: &[f64]) {
         let ne = self.formulation.modes();
-        let mut step = [0.0; MODES];
+        let mut step = [0.0; layered::MODES];
         for m in 0..ne {
             let row = &state[2 * ne + 24 * m..][..24];
             step[m] = state[ne + m];
@@ -316,9 +335,9 @@ impl H8Block {
         }
     }
 
-    /// Cauchy stress (xx, yy, zz, xy, yz, xz) at the Gauss points `i + 2 j + 4 k`, consistent with the assumed and
-    /// enhanced strain: pushed forward with `F = R U`, U being the root of the modified C and R the rotation of the
-    /// element's own deformation gradient.
+    /// Cauchy stress (xx, yy, zz, xy, yz, xz) at the Gauss points `i + 2 j + 4 k`, those of [`Formulation::Layered`] being
+    /// the lowest and the highest of each column. It is consistent with the assumed and enhanced strain: pushed forward
+    /// with `F = R U`, U being the root of the modified C and R the rotation of the element's own deformation gradient.
     ///
     /// # Errors
     /// [`ElementFault`] where the strain is impossible.
@@ -329,6 +348,12 @@ impl H8Block {
         state: &[f64],
         out: &mut [[f64; 6]; 8],
     ) -> Result<(), ElementFault> {
+        if self.formulation == Formulation::Layered {
+            for (out, [at, _]) in out.iter_mut().zip(self.layered_stresses(e, u, state)?) {
+                *out = at;
+            }
+            return Ok(());
+        }
         let u = arrays(u);
         let re = &self.reference[e];
         let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
@@ -343,17 +368,92 @@ impl H8Block {
         Ok(())
     }
 
+    /// The same at the nodes.
+    ///
+    /// # Errors
+    /// [`ElementFault`] where the strain is impossible.
+    pub fn nodal_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; 8],
+        state: &[f64],
+    ) -> Result<[[f64; 6]; 8], ElementFault> {
+        if self.formulation == Formulation::Layered {
+            return Ok(layered::to_nodes(&self.layered_stresses(e, u, state)?));
+        }
+        let mut points = [[0.0; 6]; 8];
+        self.stresses(e, u, state, &mut points)?;
+        Ok(stress::extrapolate(&points))
+    }
+
+    /// Stresses at the lowest and highest points of [`Formulation::Layered`], each with that of the next point inwards.
+    fn layered_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; 8],
+        state: &[f64],
+    ) -> Result<[[[f64; 6]; 2]; 8], ElementFault> {
+        let nodes = &self.reference[e].nodes;
+        let strains = layered::Strains::new(nodes, &arrays(u), &head(state));
+        let states = &state[self.condensation_len()..];
+        let mut out = [[[0.0; 6]; 2]; 8];
+        for (corner, out) in out.iter_mut().enumerate() {
+            for (out, g) in out.iter_mut().zip(layered::outer(corner)) {
+                let (place, du, strain) = strains.at(g);
+                *out = with_law!(&self.law, law => cauchy(
+                    law, (&place.metric, g), &place.frame, &du, &strain, states
+                ))
+                .map_err(|c| fault(e, g as u8, c))?;
+            }
+        }
+        Ok(out)
+    }
+
     /// Takes a step that is accepted at displacements `u` and the enhanced strains in `state` into the states of the law.
     ///
     /// # Errors
     /// [`ElementFault`] where the strain is impossible.
     pub fn remember(&self, e: usize, u: &[Vec3; 8], state: &mut [f64]) -> Result<(), ElementFault> {
+        if self.law.state_len() == 0 {
+            return Ok(());
+        }
         let u = arrays(u);
         let re = &self.reference[e];
-        let strain = self.strains(re, (&Fields::new(&re.nodes), &Fields::new(&u)), state);
-        let states = &mut state[self.condensation_len()..];
-        with_law!(&self.law, law => advance(law, &re.metric, &strain, states))
+        let (condensation, states) = state.split_at_mut(self.condensation_len());
+        if self.formulation == Formulation::Layered {
+            let strains = layered::Strains::new(&re.nodes, &u, &head(condensation));
+            let at = |g| {
+                let (place, _, strain) = strains.at(g);
+                (place.metric, strain)
+            };
+            return with_law!(&self.law, law => advance(law, at, states))
+                .map_err(|(point, c)| fault(e, point, c));
+        }
+        let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
+        let strain = self.strains(re, (&big, &du), condensation);
+        with_law!(&self.law, law => advance(law, |g| (re.metric[g], strain[g]), states))
             .map_err(|(point, c)| fault(e, point, c))
+    }
+
+    /// Equivalent plastic strain, and equivalent stress over yield stress, at the nodes.
+    pub fn flow_measures(&self, e: usize, state: &[f64]) -> [[f64; 2]; 8] {
+        let (re, states) = (&self.reference[e], &state[self.condensation_len()..]);
+        with_law!(&self.law, law => match self.formulation {
+            Formulation::Layered => layered::to_nodes(&std::array::from_fn(|corner| {
+                layered::outer(corner)
+                    .map(|g| measures(law, &layered::metric(&re.nodes, g), g, states))
+            })),
+            _ => stress::extrapolate(&std::array::from_fn(|g| measures(law, &re.metric[g], g, states))),
+        })
+    }
+
+    /// What the law has done with the work on the points of an element, times their volumes.
+    pub fn plastic_work(&self, e: usize, state: &[f64]) -> PlasticWork {
+        let (re, states) = (&self.reference[e], &state[self.condensation_len()..]);
+        with_law!(&self.law, law => match self.formulation {
+            Formulation::Layered => plastic_work(law, layered::volumes(&re.nodes), states),
+            _ => plastic_work(law, re.volume.into_iter(), states),
+        })
     }
 
     fn strains(
@@ -366,7 +466,8 @@ impl H8Block {
             Formulation::Eas7 => kinematics::strains(re, big, du, &head::<7>(state)),
             Formulation::Eas3 => kinematics::strains(re, big, du, &head::<3>(state)),
             Formulation::Eas0 => kinematics::strains(re, big, du, &[]),
-            Formulation::Displacement => {
+            // Strains of layered elements are taken at other points.
+            Formulation::Displacement | Formulation::Layered => {
                 std::array::from_fn(|g| brick::strain(&big.at(g), &du.at(g)))
             }
         }
@@ -388,12 +489,25 @@ impl H8Block {
     ) -> Result<(), ElementFault> {
         let u = stress::from_zero(&arrays(u));
         let re = &self.reference[e];
+        if self.formulation == Formulation::Layered {
+            let alpha = dual_head(alpha);
+            let strains = layered::Strains::new(&re.nodes, &u, &alpha);
+            for (corner, out) in out.iter_mut().enumerate() {
+                let [g, _] = layered::outer(corner);
+                let (place, _, strain) = strains.at(g);
+                *out = with_law!(&self.law, law => stress::linear(
+                    law, &place.metric, &place.frame, &strain
+                ))
+                .map_err(|c| fault(e, g as u8, c))?;
+            }
+            return Ok(());
+        }
         let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
         let strain = match self.formulation {
             Formulation::Eas7 => kinematics::strains(re, &big, &du, &dual_head::<7>(alpha)),
             Formulation::Eas3 => kinematics::strains(re, &big, &du, &dual_head::<3>(alpha)),
             Formulation::Eas0 => kinematics::strains(re, &big, &du, &[]),
-            Formulation::Displacement => {
+            Formulation::Displacement | Formulation::Layered => {
                 std::array::from_fn(|g| brick::strain(&big.at(g), &du.at(g)))
             }
         };
@@ -439,13 +553,23 @@ fn residual<L: MaterialLaw, const NE: usize>(
     state: &[f64],
     f: &mut [f64; 24],
 ) -> Result<f64, (u8, Collapsed)> {
-    let (energy, forces, mut h) = kinematics::forces(
+    let (energy, forces, h) = kinematics::forces(
         law,
         re,
         u,
         &head::<NE>(state),
         &state[tangent::state_len(NE)..],
     )?;
+    Ok(condensed(energy, (forces, h), state, f))
+}
+
+/// Condenses forces on enhanced strains with what the last evaluation left in the state; passes the energy on.
+fn condensed<const NE: usize>(
+    energy: f64,
+    (forces, mut h): ([f64; 24], [f64; NE]),
+    state: &[f64],
+    f: &mut [f64; 24],
+) -> f64 {
     *f = forces;
     if NE > 0 {
         solve(&state[tangent::factors(NE)..], &mut h);
@@ -455,7 +579,7 @@ fn residual<L: MaterialLaw, const NE: usize>(
             }
         }
     }
-    Ok(energy)
+    energy
 }
 
 /// Solves with packed factors unit lower, diagonal.

@@ -15,13 +15,17 @@ type Matrix = SMatrix<f64, 24, 24>;
 const ROUNDING: f64 = 1e-9;
 
 impl H8Block {
-    /// Whether element `e` has more shapes at nodal displacements `u` in which it gives way than the plain brick has there.
+    /// Whether element `e` has more shapes at nodal displacements `u` in which it gives way than the plain brick has there. Not
+    /// asked of elements whose material flows, which softens them in many shapes.
     /// `state` as for [`H8Block::evaluate`], of which the enhanced strains are read.
     ///
     /// # Errors
     /// [`ElementFault`] where the strain is impossible.
     pub fn loses_hold(&self, e: usize, u: &[Vec3; 8], state: &[f64]) -> Result<bool, ElementFault> {
-        if self.formulation() == Formulation::Displacement {
+        if matches!(
+            self.formulation(),
+            Formulation::Displacement | Formulation::Layered
+        ) {
             return Ok(false);
         }
         let mut system = H8System::default();

@@ -88,6 +88,15 @@ impl<D: DualNum<f64> + Copy> Fields<D> {
         [self.r[k][j], self.s[k][i], t]
     }
 
+    /// The three derivatives at in-plane Gauss point `q` and any t.
+    #[inline(always)]
+    pub fn over(&self, q: usize, t: f64) -> [V<D>; 3] {
+        let (low, high) = (0.5 - 0.5 / GP * t, 0.5 + 0.5 / GP * t);
+        let at =
+            |e: &[[V<D>; 2]; 2], n: usize| [0, 1, 2].map(|x| e[0][n][x] * low + e[1][n][x] * high);
+        [at(&self.r, q >> 1), at(&self.s, q & 1), self.at(q)[2]]
+    }
+
     /// The three derivatives at the element centre.
     pub fn centre(&self) -> [V<D>; 3] {
         [
@@ -114,14 +123,14 @@ fn bilinear<D: DualNum<f64> + Copy>(e: &[[V<D>; 2]; 2]) -> [[V<D>; 2]; 2] {
 
 /// `(g.g - G.G)/2` from `G` and the displacement's derivative, without the cancellation of that difference.
 #[inline(always)]
-fn stretch<D: DualNum<f64> + Copy>(big: &V<f64>, u: &V<D>) -> D {
+pub(super) fn stretch<D: DualNum<f64> + Copy>(big: &V<f64>, u: &V<D>) -> D {
     let f = |x: usize| u[x] * (u[x] * 0.5 + big[x]);
     f(0) + f(1) + f(2)
 }
 
 /// `g_a.g_b - G_a.G_b`, likewise.
 #[inline(always)]
-fn shear<D: DualNum<f64> + Copy>(big: [&V<f64>; 2], u: [&V<D>; 2]) -> D {
+pub(super) fn shear<D: DualNum<f64> + Copy>(big: [&V<f64>; 2], u: [&V<D>; 2]) -> D {
     dot_plain(u[0], big[1]) + dot_plain(u[1], big[0]) + dot(u[0], u[1])
 }
 

@@ -79,25 +79,8 @@ impl Reference {
             let frame = fields.at(g);
             volume[g] = det(&frame);
             smallest = smallest.min(volume[g]);
-            let [a, b, c] = frame;
-            metric[g] = Metric::new([
-                dot(&a, &a),
-                dot(&b, &b),
-                dot(&c, &c),
-                dot(&a, &b),
-                dot(&b, &c),
-                dot(&a, &c),
-            ]);
-            // E_ij = J_i^k J_j^l e_kl with J_i^k = G_i . G_0^k.
-            let j = frame.map(|gi| dual.map(|gk| dot(&gi, &gk)));
-            let f = det0 / volume[g];
-            for (v, (i, k)) in super::VOIGT.into_iter().enumerate() {
-                let shear = if i == k { 1.0 } else { 2.0 };
-                for (m, n) in [2, 0, 1].into_iter().enumerate() {
-                    enhanced[g][v][m] = f * shear * j[i][n] * j[k][n];
-                }
-                enhanced[g][v][3] = f * shear * 0.5 * (j[i][0] * j[k][1] + j[i][1] * j[k][0]);
-            }
+            metric[g] = metric_of(&frame);
+            enhanced[g] = self::enhanced(&frame, &dual, det0 / volume[g]);
         }
         (
             Reference {
@@ -109,6 +92,34 @@ impl Reference {
             smallest,
         )
     }
+}
+
+/// The metric of a frame.
+pub(super) fn metric_of([a, b, c]: &[V<f64>; 3]) -> Metric {
+    Metric::new([
+        dot(a, a),
+        dot(b, b),
+        dot(c, c),
+        dot(a, b),
+        dot(b, c),
+        dot(a, c),
+    ])
+}
+
+/// Covariant strains at a frame of unit strains 33, 11, 22, 12 in the frame of the element centre, whose contravariant
+/// vectors are `dual`; times `f = det J_0 / det J`.
+pub(super) fn enhanced(frame: &[V<f64>; 3], dual: &[V<f64>; 3], f: f64) -> [[f64; 4]; 6] {
+    // E_ij = J_i^k J_j^l e_kl with J_i^k = G_i . G_0^k.
+    let j = frame.map(|gi| dual.map(|gk| dot(&gi, &gk)));
+    let mut strains = [[0.0; 4]; 6];
+    for (v, (i, k)) in super::VOIGT.into_iter().enumerate() {
+        let shear = if i == k { 1.0 } else { 2.0 };
+        for (m, n) in [2, 0, 1].into_iter().enumerate() {
+            strains[v][m] = f * shear * j[i][n] * j[k][n];
+        }
+        strains[v][3] = f * shear * 0.5 * (j[i][0] * j[k][1] + j[i][1] * j[k][0]);
+    }
+    strains
 }
 
 /// Triple product of a frame.

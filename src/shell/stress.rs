@@ -71,8 +71,8 @@ pub(super) fn from_zero<const N: usize>(u: &[V<f64>; N]) -> [V<Dual64>; N] {
 }
 
 /// Extends values at the Gauss points of an element to its eight nodes, trilinearly.
-pub fn extrapolate(points: &[[f64; 6]; 8]) -> [[f64; 6]; 8] {
-    let mut nodes = [[0.0; 6]; 8];
+pub fn extrapolate<const K: usize>(points: &[[f64; K]; 8]) -> [[f64; K]; 8] {
+    let mut nodes = [[0.0; K]; 8];
     for (a, node) in nodes.iter_mut().enumerate() {
         for (g, point) in points.iter().enumerate() {
             // The node lies at -+1/GP in coordinates that put the Gauss points at -+1.
@@ -89,12 +89,12 @@ pub fn extrapolate(points: &[[f64; 6]; 8]) -> [[f64; 6]; 8] {
 /// least squares fit that Gauss's weights make of the three points in the plane. That fit passes through the parabola's
 /// values at the two-point Gauss points, where the strains of a quadratic element are more accurate than elsewhere
 /// (J. Barlow, IJNME 10 (1976)).
-pub fn extrapolate_quadratic(points: &[[f64; 6]; 18]) -> [[f64; 6]; 18] {
+pub fn extrapolate_quadratic<const K: usize>(points: &[[f64; K]; 18]) -> [[f64; K]; 18] {
     let line = |node: usize, point: usize| {
         let x = node as f64 - 1.0;
         GAUSS_3.weights()[point] * (0.5 + 1.5 * x * GAUSS_3.points()[point])
     };
-    let mut nodes = [[0.0; 6]; 18];
+    let mut nodes = [[0.0; K]; 18];
     for (a, node) in nodes.iter_mut().enumerate() {
         for (g, point) in points.iter().enumerate() {
             let through = 0.5 * (1.0 + if a / 9 == g / 9 { 1.0 } else { -1.0 } / GP);

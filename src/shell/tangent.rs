@@ -117,7 +117,7 @@ pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
         for m in 0..NE {
             d[m][..NE].copy_from_slice(&sums.c[TYING + m][TYING..TYING + NE]);
         }
-        out.negative_pivots = factorise::<NE>(&mut d)?;
+        out.negative_pivots = factorise::<NE, MODES>(&mut d)?;
         let packed = &mut state[factors(NE)..];
         let mut h = [0.0; MODES];
         for m in 0..NE {
@@ -420,7 +420,7 @@ fn times_rows(z: &[f64; 24], c: &[f64; PARAMETERS], b: &[[f64; 24]; 3], factor: 
 
 /// Half of the initial-stress stiffness of the transverse strains, a scalar per pair of nodes.
 #[inline(always)]
-fn transverse_geometric(force: &[f64; PARAMETERS]) -> [[f64; 8]; 8] {
+pub(super) fn transverse_geometric(force: &[f64; PARAMETERS]) -> [[f64; 8]; 8] {
     let mut k = [[0.0; 8]; 8];
     for c in 0..4 {
         let value = 0.125 * force[c];
@@ -452,7 +452,9 @@ const fn side_s(side: usize, m: usize) -> usize {
 
 /// Replaces the lower triangle of `d` by its factors, unit lower and diagonal; returns the number of negative pivots.
 #[inline(always)]
-fn factorise<const NE: usize>(d: &mut [[f64; MODES]; MODES]) -> Result<u8, FaultCause> {
+pub(super) fn factorise<const NE: usize, const SIZE: usize>(
+    d: &mut [[f64; SIZE]; SIZE],
+) -> Result<u8, FaultCause> {
     let mut negative = 0;
     for j in 0..NE {
         for i in j..NE {

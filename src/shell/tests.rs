@@ -4,7 +4,7 @@ use super::kinematics::{self, V};
 use super::material::{Collapsed, Hardening, J2, Law, LawState, MaterialLaw, Metric, with_law};
 use super::reference::Reference;
 use super::tangent::{self, factors};
-use super::{ElementFault, FaultCause, ShellError, brick};
+use super::{ElementFault, FaultCause, ShellError, brick, layered};
 use crate::mesh::{ElementKind, Mesh};
 use crate::scene::{Elastic, Material};
 use covact_geometry::Vec3;
@@ -67,8 +67,9 @@ fn laws() -> [Law; 4] {
     [a, b, c, metal]
 }
 
-const FORMULATIONS: [Formulation; 4] = [
+const FORMULATIONS: [Formulation; 5] = [
     Formulation::Eas7,
+    Formulation::Layered,
     Formulation::Eas3,
     Formulation::Eas0,
     Formulation::Displacement,
@@ -167,6 +168,22 @@ fn neo_hooke_keeps_its_digits_at_small_strain() {
     }
 }
 
+/// Energy, forces and forces on the enhanced strains; eight of these are those of the layered element.
+fn forces<D: num_dual::DualNum<f64> + Copy, L: MaterialLaw, const NE: usize>(
+    law: &L,
+    re: &Reference,
+    u: &[V<D>; 8],
+    alpha: &[D; NE],
+) -> (D, [D; 24], [D; NE]) {
+    if NE < layered::MODES {
+        return kinematics::forces(law, re, u, alpha, &unused(law, 8)).unwrap();
+    }
+    let all = std::array::from_fn(|m| alpha[m]);
+    let states = unused(law, layered::POINTS);
+    let (energy, f, h) = layered::forces(law, &re.nodes, u, &all, &states).unwrap();
+    (energy, f, std::array::from_fn(|m| h[m]))
+}
+
 /// Full tangent of (u, alpha) by dual numbers, columns first.
 fn dual_tangent<L: MaterialLaw, const NE: usize>(
     law: &L,
@@ -188,7 +205,7 @@ fn dual_tangent<L: MaterialLaw, const NE: usize>(
                 let (_, f) = brick::forces(law, re, &ud, &unused(law, 8)).unwrap();
                 f.map(|f| f.eps).to_vec()
             } else {
-                let (_, f, h) = kinematics::forces(law, re, &ud, &ad, &unused(law, 8)).unwrap();
+                let (_, f, h) = forces(law, re, &ud, &ad);
                 f.iter().chain(&h).map(|f| f.eps).collect()
             }
         })
@@ -211,14 +228,9 @@ fn energy_gradient<L: MaterialLaw, const NE: usize>(
         } else {
             ad[column - 24] = ad[column - 24].derivative();
         }
-        gradient.push(
-            kinematics::forces(law, re, &ud, &ad, &unused(law, 8))
-                .unwrap()
-                .0
-                .eps,
-        );
+        gradient.push(forces(law, re, &ud, &ad).0.eps);
     }
-    let (_, f, h) = kinematics::forces(law, re, u, alpha, &unused(law, 8)).unwrap();
+    let (_, f, h) = forces(law, re, u, alpha);
     (gradient, f.iter().chain(&h).copied().collect())
 }
 
@@ -239,11 +251,13 @@ fn check_element<L: MaterialLaw, const NE: usize>(law: &L, formulation: Formulat
     let mut seed = 3;
     let alpha: [f64; NE] = std::array::from_fn(|_| 0.002 * random(&mut seed));
     let mut state = vec![0.0; tangent::state_len(NE)];
-    state.extend(unused(law, 8));
+    state.extend(unused(law, layered::POINTS));
     state[..NE].copy_from_slice(&alpha);
     let mut out = H8System::default();
     if displacement {
         brick::evaluate(law, &re, &ua, &unused(law, 8), &mut out).unwrap();
+    } else if NE == layered::MODES {
+        layered::evaluate(law, &re.nodes, &ua, &mut state, &mut out).unwrap();
     } else {
         tangent::evaluate::<_, NE>(law, &re, &ua, &mut state, &mut out).unwrap();
     }
@@ -317,6 +331,7 @@ fn element_tangent_is_the_derivative_of_its_forces() {
                 ($law:expr) => {
                     match formulation {
                         Formulation::Eas7 => check_element::<_, 7>($law, formulation),
+                        Formulation::Layered => check_element::<_, 8>($law, formulation),
                         Formulation::Eas3 => check_element::<_, 3>($law, formulation),
                         _ => check_element::<_, 0>($law, formulation),
                     }

@@ -139,6 +139,12 @@ fn scenes() -> Vec<Value> {
             ("/contacts/press/offset", json!(0.1)),
             ("/solution/stabilization", json!({"viscous": {}})),
         ]),
+        plate_with(&[(
+            "/materials/steel",
+            json!({"j2": {
+                "E": 12000, "nu": 0.3, "hardening": {"linear": {"yield_stress": 20}}
+            }}),
+        )]),
         facets("bilinear"),
         facets("biquadratic"),
         facets("smooth"),

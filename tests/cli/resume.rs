@@ -172,6 +172,27 @@ fn killed(scene: &Value) {
     assert_eq!(summary(whole.path())["resumed"], json!(0));
 }
 
+/// A metal sheet that is bent over a tool and let go: what its points remember is continued.
+#[test]
+fn killed_while_it_flows() {
+    killed(&json!({
+        "covact": 1,
+        "materials": {"metal": {"j2": {
+            "E": 200e3, "nu": 0.3, "hardening": {"swift": {"strength": 500, "offset": 0.01, "exponent": 0.2}}
+        }}},
+        "bodies": {"strip": {
+            "mesh": {"plate": {"size": [40, 5], "thickness": 1, "elements": [16, 1]}},
+            "material": "metal"
+        }},
+        "supports": {
+            "clamped": {"on": "strip.x_min", "fixed": true},
+            "side": {"on": "strip.y_min", "symmetry": "y"},
+            "tip": {"on": "strip.x_max", "displacement": {"z": {"table": [[0, 0], [0.6, 8], [1, 6]]}}}
+        },
+        "solution": {"step": {"initial": 0.02, "max": 0.02}},
+    }));
+}
+
 /// Friction and augmentation on a rigid surface, enhanced strains; slave points are written.
 #[test]
 fn killed_while_it_slides() {

@@ -8,5 +8,6 @@ mod large_rotation;
 mod nonlinear;
 mod obstacle;
 mod patch;
+mod plastic;
 mod quadratic;
 mod support;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 const T: f64 = 1e-3;
 const NU: f64 = 0.25;
-const POINTS: [[f64; 2]; 8] = [
+pub const POINTS: [[f64; 2]; 8] = [
     [0.0, 0.0],
     [0.24, 0.0],
     [0.24, 0.12],
@@ -17,7 +17,7 @@ const POINTS: [[f64; 2]; 8] = [
     [0.16, 0.08],
     [0.08, 0.08],
 ];
-const QUADS: [[u32; 4]; 5] = [
+pub const QUADS: [[u32; 4]; 5] = [
     [0, 1, 4, 5],
     [1, 2, 5, 6],
     [2, 3, 6, 7],

@@ -18,6 +18,7 @@ mod hertz_bodies;
 mod hinged_roof;
 mod ironing;
 mod loads;
+mod metal;
 mod offset;
 mod overclosure;
 mod placed;

@@ -137,8 +137,10 @@ impl PairForce {
 /// Totals of one evaluation.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Totals {
-    /// Strain energy.
+    /// Strain energy; of a step that is not accepted yet it contains what plastic flow takes.
     pub internal_energy: f64,
+    /// Work that plastic flow has taken up to the last accepted step.
+    pub plastic_work: f64,
     /// Energy stored in the penalty.
     pub contact_energy: f64,
     /// Per surface of the model.

@@ -319,12 +319,12 @@ fn what_laws_remember_is_committed_and_kept() {
                 .flat_map(|range| state.elements[range].to_vec())
                 .collect()
         };
-        let points = if element == scene::Element::Q18 {
-            18
-        } else {
-            8
+        let points = match element {
+            scene::Element::H8 => 24,
+            scene::Element::H8Displacement => 8,
+            scene::Element::Q18 => 18,
         };
-        assert_eq!(numbers(&start).len(), 7 * points);
+        assert_eq!(numbers(&start).len(), 14 * points);
 
         let sheared = |state: &mut State, by: f64| {
             for (u, x) in state.u.chunks_exact_mut(3).zip(&model.nodes) {

@@ -42,6 +42,7 @@ pub(super) fn problems(scene: &Scene, document: &Document) -> Vec<Problem> {
             &body.material,
             scene.materials.keys(),
         );
+        material::check_body(&mut c, name, body, scene);
         shapes::check_mesh(&mut c, &format!("{at}/mesh"), &body.mesh);
         shapes::check_placement(&mut c, &format!("{at}/placement"), &body.placement);
         for (set, selection) in &body.sets {

@@ -1,5 +1,5 @@
 //! Materials: laws with their constants, and well-known materials by name.
-use super::Units;
+use super::{Metal, Units};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 /// `"steel"`. A name needs `units` with `length` and `force`, in which its constants are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+// Few of them, and plain values: a box would make them lose `Copy`.
+#[allow(clippy::large_enum_variant)]
 pub enum MaterialChoice {
     /// Linear law between Green-Lagrange strain and second Piola-Kirchhoff stress: large rotations, small strains.
     StVenantKirchhoff(Elastic),
@@ -14,6 +16,8 @@ pub enum MaterialChoice {
     NeoHooke(Elastic),
     /// Hencky: linear law between logarithmic strain and its conjugate stress. Moderately large strains, stretches of 1/2 to 2.
     Hencky(Elastic),
+    /// Metal plasticity after von Mises (J2) with isotropic hardening, in logarithmic strains: sheets that are formed.
+    J2(Metal),
     /// Structural steel S235: E 210 GPa, nu 0.3 (EN 1993-1-1, 3.2.6); yield strength 235 MPa (EN 10025-2); 7850 kg/m^3.
     /// St. Venant-Kirchhoff.
     Steel,
@@ -39,6 +43,8 @@ pub enum MaterialChoice {
 
 /// Constitutive law.
 #[derive(Debug, Clone, Copy, PartialEq)]
+// Few of them, and plain values: a box would make them lose `Copy`.
+#[allow(clippy::large_enum_variant)]
 pub enum Material {
     /// Linear law between Green-Lagrange strain and second Piola-Kirchhoff stress: large rotations, small strains.
     StVenantKirchhoff(Elastic),
@@ -46,6 +52,8 @@ pub enum Material {
     NeoHooke(Elastic),
     /// Hencky: linear law between logarithmic strain and its conjugate stress. Moderately large strains, stretches of 1/2 to 2.
     Hencky(Elastic),
+    /// Metal plasticity after von Mises (J2) with isotropic hardening, in logarithmic strains: sheets that are formed.
+    J2(Metal),
 }
 
 impl Material {
@@ -55,6 +63,7 @@ impl Material {
             Material::StVenantKirchhoff(_) => "st_venant_kirchhoff",
             Material::NeoHooke(_) => "neo_hooke",
             Material::Hencky(_) => "hencky",
+            Material::J2(_) => "j2",
         }
     }
 
@@ -64,16 +73,23 @@ impl Material {
             Material::StVenantKirchhoff(_) => "St. Venant-Kirchhoff",
             Material::NeoHooke(_) => "neo-Hooke",
             Material::Hencky(_) => "Hencky",
+            Material::J2(_) => "von Mises plasticity",
         }
     }
 
     /// Constants of the law at small strain.
-    pub fn elastic(&self) -> &Elastic {
+    pub fn elastic(&self) -> Elastic {
         match self {
             Material::StVenantKirchhoff(elastic)
             | Material::NeoHooke(elastic)
-            | Material::Hencky(elastic) => elastic,
+            | Material::Hencky(elastic) => *elastic,
+            Material::J2(metal) => metal.elastic(),
         }
+    }
+
+    /// Whether it may flow, so that it remembers what was done to it.
+    pub fn flows(&self) -> bool {
+        matches!(self, Material::J2(_))
     }
 
     /// Whether stress and Green-Lagrange strain are proportional at any strain.
@@ -119,6 +135,7 @@ impl MaterialChoice {
             MaterialChoice::StVenantKirchhoff(e) => Some(Material::StVenantKirchhoff(e)),
             MaterialChoice::NeoHooke(e) => Some(Material::NeoHooke(e)),
             MaterialChoice::Hencky(e) => Some(Material::Hencky(e)),
+            MaterialChoice::J2(metal) => Some(Material::J2(metal)),
             _ => None,
         }
     }
@@ -145,7 +162,8 @@ impl MaterialChoice {
         match self {
             MaterialChoice::StVenantKirchhoff(_)
             | MaterialChoice::NeoHooke(_)
-            | MaterialChoice::Hencky(_) => None,
+            | MaterialChoice::Hencky(_)
+            | MaterialChoice::J2(_) => None,
             MaterialChoice::Steel => metal("steel", 210e9, 235e6, 7850.0),
             MaterialChoice::StainlessSteel => metal("stainless_steel", 200e9, 210e6, 7900.0),
             MaterialChoice::Aluminium => metal("aluminium", 70e9, 240e6, 2700.0),

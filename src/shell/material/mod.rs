@@ -6,6 +6,7 @@
 //!
 //! Source of the formulas: J. Bonet and R. D. Wood, *Nonlinear Continuum Mechanics for Finite Element Analysis*, 2008,
 //! chapter 6, here in convected components.
+mod hardening;
 mod hencky;
 mod j2;
 mod logarithm;
@@ -14,9 +15,11 @@ mod st_venant_kirchhoff;
 mod tensor;
 
 use super::error::ShellError;
+use super::history::PlasticWork;
 use crate::scene::{Elastic, Material};
+pub use hardening::Hardening;
 pub use hencky::Hencky;
-pub use j2::{Hardening, J2, J2State};
+pub use j2::{J2, J2State};
 pub use neo_hooke::NeoHooke;
 use num_dual::DualNum;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
@@ -140,10 +143,22 @@ pub trait MaterialLaw: Copy + Send + Sync {
     ) -> Result<Self::State, Collapsed> {
         Ok(*old)
     }
+
+    /// Equivalent plastic strain, and equivalent stress over yield stress, of a point.
+    fn flow_measures(&self, _metric: &Metric, _state: &Self::State) -> [f64; 2] {
+        [0.0; 2]
+    }
+
+    /// What flow has taken of the work on a point, per undeformed volume.
+    fn plastic_work(&self, _state: &Self::State) -> PlasticWork {
+        PlasticWork::default()
+    }
 }
 
 /// A law chosen at run time; elements branch on it once and run monomorphised loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
+// Few of them, and plain values: a box would make them lose `Copy`.
+#[allow(clippy::large_enum_variant)]
 pub enum Law {
     StVenantKirchhoff(StVenantKirchhoff),
     NeoHooke(NeoHooke),
@@ -177,6 +192,11 @@ impl Law {
             }
             Material::NeoHooke(_) => Law::NeoHooke(NeoHooke { lambda, mu }),
             Material::Hencky(_) => Law::Hencky(Hencky { lambda, mu }),
+            Material::J2(metal) => Law::J2(J2 {
+                lambda,
+                mu,
+                hardening: Hardening::from(metal.hardening),
+            }),
         })
     }
 
@@ -206,8 +226,8 @@ impl Law {
 }
 
 /// Lamé's constants.
-fn lame(elastic: &Elastic) -> Result<(f64, f64), ShellError> {
-    let Elastic { e, nu, .. } = *elastic;
+fn lame(elastic: Elastic) -> Result<(f64, f64), ShellError> {
+    let Elastic { e, nu, .. } = elastic;
     if !(e > 0.0 && e.is_finite()) {
         return Err(ShellError::Material {
             name: "E",

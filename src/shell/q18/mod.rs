@@ -12,7 +12,7 @@ mod tangent;
 mod tests;
 
 use super::error::{ElementFault, FaultCause, ShellError};
-use super::history::{advance, cauchy};
+use super::history::{PlasticWork, advance, cauchy, measures, plastic_work};
 use super::kinematics::V;
 use super::material::{Collapsed, Law, with_law};
 use super::stress;
@@ -263,8 +263,22 @@ impl Q18Block {
         let (u, re) = (arrays(u), &self.reference[e]);
         let strain = strain::strains(re, &split(&u), &head(state));
         let states = &mut state[tangent::STATE..];
-        with_law!(&self.law, law => advance(law, &re.metric, &strain, states))
+        with_law!(&self.law, law => advance(law, |g| (re.metric[g], strain[g]), states))
             .map_err(|(point, c)| fault(e, point, c))
+    }
+
+    /// Equivalent plastic strain, and equivalent stress over yield stress, at the nodes.
+    pub fn flow_measures(&self, e: usize, state: &[f64]) -> [[f64; 2]; 18] {
+        let (re, states) = (&self.reference[e], &state[tangent::STATE..]);
+        with_law!(&self.law, law => stress::extrapolate_quadratic(
+            &std::array::from_fn(|g| measures(law, &re.metric[g], g, states))
+        ))
+    }
+
+    /// What the law has done with the work on the points of an element, times their volumes.
+    pub fn plastic_work(&self, e: usize, state: &[f64]) -> PlasticWork {
+        let (volumes, states) = (self.reference[e].volume, &state[tangent::STATE..]);
+        with_law!(&self.law, law => plastic_work(law, volumes.into_iter(), states))
     }
 
     /// Stress of the linear element (xx, yy, zz, xy, yz, xz) at the Gauss points `i + 3 j + 9 k`; see

@@ -1,0 +1,162 @@
+//! Metals in scenes: uniaxial tension, and the balance of its energies.
+use crate::support::solve;
+use serde_json::{Value, json};
+
+const E: f64 = 200e3;
+
+/// A strip 10 x 4 x 1 free sideways, drawn along x by `stretch - 1` times a function of the time.
+fn strip(element: &str, hardening: &Value, stretch: f64, course: &str) -> Value {
+    json!({
+        "covact": 1,
+        "materials": { "m": { "j2": { "E": E, "nu": 0.3, "hardening": hardening } } },
+        "bodies": { "strip": {
+            "element": element,
+            "mesh": { "plate": { "size": [10, 4], "thickness": 1, "elements": [3, 2] } },
+            "material": "m"
+        } },
+        "supports": {
+            "x": { "on": "strip.x_min", "symmetry": "x" },
+            "y": { "on": "strip.y_min", "symmetry": "y" },
+            "z": { "on": "strip.bottom", "symmetry": "z" },
+            "pull": { "on": "strip.x_max", "displacement": { "x": format!("{}*{course}", 10.0 * (stretch - 1.0)) } }
+        },
+        "solution": { "step": { "initial": 0.02, "max": 0.02 } }
+    })
+}
+
+/// Hardening as in scenes, its yield stress over plastic strain, and the integral of that.
+type Curve = (Value, fn(f64) -> f64, fn(f64) -> f64);
+
+const CURVES: [fn() -> Curve; 4] = [
+    || {
+        let json = json!({ "linear": { "yield_stress": 200, "slope": 800 } });
+        (json, |p| 200.0 + 800.0 * p, |p| 200.0 * p + 400.0 * p * p)
+    },
+    || {
+        let json = json!({ "swift": { "strength": 500, "offset": 0.01, "exponent": 0.2 } });
+        (
+            json,
+            |p| 500.0 * (0.01 + p).powf(0.2),
+            |p| 500.0 / 1.2 * ((0.01 + p).powf(1.2) - 0.01f64.powf(1.2)),
+        )
+    },
+    || {
+        let json = json!({ "voce": { "yield_stress": 200, "rise": 150, "rate": 15 } });
+        (
+            json,
+            |p| 350.0 - 150.0 * (-15.0 * p).exp(),
+            |p| 350.0 * p - 10.0 * (1.0 - (-15.0 * p).exp()),
+        )
+    },
+    || {
+        let json = json!({ "table": [[0, 200], [0.05, 260], [0.5, 350]] });
+        (
+            json,
+            |p| match p < 0.05 {
+                true => 200.0 + 1200.0 * p,
+                false => 260.0 + 200.0 * (p - 0.05),
+            },
+            |p| match p < 0.05 {
+                true => 200.0 * p + 600.0 * p * p,
+                false => 11.5 + 260.0 * (p - 0.05) + 100.0 * (p - 0.05).powi(2),
+            },
+        )
+    },
+];
+
+/// Axial Kirchhoff stress: the root of `tau = sigma_y(ln l - tau / E)`.
+fn tau(yield_stress: fn(f64) -> f64, log: f64) -> f64 {
+    let (mut low, mut high) = (0.0, E * log);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        match middle < yield_stress(log - middle / E) {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    low
+}
+
+/// The force is `tau / l` per undeformed area, and the energies are those of the closed form.
+#[test]
+fn uniaxial_tension_follows_the_hardening() {
+    let stretch = 1.15f64;
+    for curve in CURVES {
+        let (json, yield_stress, work) = curve();
+        for element in ["h8", "h8_displacement"] {
+            let outcome = solve(&strip(element, &json, stretch, "t"));
+            assert_eq!(outcome.summary.status.name(), "done");
+            let effects = &outcome.summary.effects;
+            assert!(effects.iter().any(|e| e == "material.j2"), "{effects:?}");
+            let log = stretch.ln();
+            let tau = tau(yield_stress, log);
+            let close = |name: &str, exact: f64, tolerance: f64| {
+                let found = outcome.at(name, 1.0);
+                let off = (found / exact - 1.0).abs();
+                println!("{json} {element} {name}: {found} {exact} {off:.1e}");
+                assert!(off < tolerance, "{json} {element} {name}: {found} {exact}");
+            };
+            close("force.pull.x", 4.0 * tau / stretch, 1e-7);
+            close("energy.internal", 40.0 * 0.5 * tau * tau / E, 1e-6);
+            // The trapezoidal rule over fifty steps, of which the first passes from no stress to flow.
+            close("energy.plastic", 40.0 * work(log - tau / E), 1e-2);
+            let left = outcome.at("energy.imbalance", 1.0) / outcome.at("energy.external", 1.0);
+            assert!(left.abs() < 1e-4, "{json} {element}: {left:e}");
+            let warnings = &outcome.summary.warnings;
+            assert!(
+                !warnings.iter().any(|w| w.contains("energy")),
+                "{warnings:?}"
+            );
+        }
+    }
+}
+
+/// A strip that is bent by its tip and let go over the rest of the time: it keeps a part of its deflection and holds no force,
+/// what flowed is in the fields, and the work is that of the energies.
+#[test]
+fn a_bent_strip_springs_back_in_part() {
+    let scene = json!({
+        "covact": 1,
+        "materials": { "m": { "j2": {
+            "E": E, "nu": 0.3, "hardening": { "linear": { "yield_stress": 200, "slope": 500 } }
+        } } },
+        "bodies": { "strip": {
+            "mesh": { "plate": { "size": [40, 5], "thickness": 1, "elements": [20, 1] } },
+            "material": "m"
+        } },
+        "supports": {
+            "clamped": { "on": "strip.x_min", "fixed": true },
+            "front": { "on": "strip.y_min", "symmetry": "y" },
+            "back": { "on": "strip.y_max", "symmetry": "y" }
+        },
+        "loads": { "tip": { "on": "strip.x_max", "force": [0, 0, { "table": [[0, 0], [1, 6.5], [2, 0]] }] } },
+        "probes": { "tip": { "on": "strip.x_max", "quantity": "displacement" } },
+        "solution": { "step": { "initial": 0.05, "max": 0.05 }, "end_time": 2 }
+    });
+    let outcome = solve(&scene);
+    assert_eq!(outcome.summary.status.name(), "done");
+    let plastic = outcome.column("energy.plastic");
+    // What has flowed stays, and nothing flows while the strip is let go.
+    assert!(plastic.windows(2).all(|w| w[1] >= w[0]));
+    let (top, end) = (
+        outcome.at("energy.plastic", 1.0),
+        outcome.at("energy.plastic", 2.0),
+    );
+    assert!(top > 0.0 && end - top < 0.02 * top, "{top} {end}");
+    let external = outcome
+        .column("energy.external")
+        .iter()
+        .copied()
+        .fold(0.0, f64::max);
+    let left = outcome.at("energy.imbalance", 2.0) / external;
+    assert!(left.abs() < 2e-3, "{left:e}");
+    let body = outcome.body("strip", outcome.column("step").len() as u32);
+    let (strain, ratio) = (body.field("plastic_strain"), body.field("yield_ratio"));
+    let most = strain.iter().copied().fold(0.0, f64::max);
+    assert!(most > 1e-4 && strain.iter().any(|p| *p == 0.0), "{most}");
+    assert!(ratio.iter().all(|r| *r < 1.0 + 0.3));
+    let deflection = |time: f64| outcome.at("probe.tip.z", time);
+    let kept = deflection(2.0) / deflection(1.0);
+    println!("deflection {} of which {kept} stays", deflection(1.0));
+    assert!((0.05..0.95).contains(&kept), "{kept}");
+}
