@@ -1,6 +1,9 @@
 //! The elements of one body: what assembly calls.
+mod flow;
+mod linear;
+
 use super::error::{ElementFault, FaultCause, ShellError};
-use super::history::{PlasticWork, advance, cauchy, measures, plastic_work};
+use super::history::cauchy;
 use super::kinematics::{self, Fields, V};
 use super::material::{Collapsed, Law, MaterialLaw, with_law};
 use super::reference::Reference;
@@ -386,76 +389,6 @@ impl H8Block {
         Ok(stress::extrapolate(&points))
     }
 
-    /// Stresses at the lowest and highest points of [`Formulation::Layered`], each with that of the next point inwards.
-    fn layered_stresses(
-        &self,
-        e: usize,
-        u: &[Vec3; 8],
-        state: &[f64],
-    ) -> Result<[[[f64; 6]; 2]; 8], ElementFault> {
-        let nodes = &self.reference[e].nodes;
-        let strains = layered::Strains::new(nodes, &arrays(u), &head(state));
-        let states = &state[self.condensation_len()..];
-        let mut out = [[[0.0; 6]; 2]; 8];
-        for (corner, out) in out.iter_mut().enumerate() {
-            for (out, g) in out.iter_mut().zip(layered::outer(corner)) {
-                let (place, du, strain) = strains.at(g);
-                *out = with_law!(&self.law, law => cauchy(
-                    law, (&place.metric, g), &place.frame, &du, &strain, states
-                ))
-                .map_err(|c| fault(e, g as u8, c))?;
-            }
-        }
-        Ok(out)
-    }
-
-    /// Takes a step that is accepted at displacements `u` and the enhanced strains in `state` into the states of the law.
-    ///
-    /// # Errors
-    /// [`ElementFault`] where the strain is impossible.
-    pub fn remember(&self, e: usize, u: &[Vec3; 8], state: &mut [f64]) -> Result<(), ElementFault> {
-        if self.law.state_len() == 0 {
-            return Ok(());
-        }
-        let u = arrays(u);
-        let re = &self.reference[e];
-        let (condensation, states) = state.split_at_mut(self.condensation_len());
-        if self.formulation == Formulation::Layered {
-            let strains = layered::Strains::new(&re.nodes, &u, &head(condensation));
-            let at = |g| {
-                let (place, _, strain) = strains.at(g);
-                (place.metric, strain)
-            };
-            return with_law!(&self.law, law => advance(law, at, states))
-                .map_err(|(point, c)| fault(e, point, c));
-        }
-        let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
-        let strain = self.strains(re, (&big, &du), condensation);
-        with_law!(&self.law, law => advance(law, |g| (re.metric[g], strain[g]), states))
-            .map_err(|(point, c)| fault(e, point, c))
-    }
-
-    /// Equivalent plastic strain, and equivalent stress over yield stress, at the nodes.
-    pub fn flow_measures(&self, e: usize, state: &[f64]) -> [[f64; 2]; 8] {
-        let (re, states) = (&self.reference[e], &state[self.condensation_len()..]);
-        with_law!(&self.law, law => match self.formulation {
-            Formulation::Layered => layered::to_nodes(&std::array::from_fn(|corner| {
-                layered::outer(corner)
-                    .map(|g| measures(law, &layered::metric(&re.nodes, g), g, states))
-            })),
-            _ => stress::extrapolate(&std::array::from_fn(|g| measures(law, &re.metric[g], g, states))),
-        })
-    }
-
-    /// What the law has done with the work on the points of an element, times their volumes.
-    pub fn plastic_work(&self, e: usize, state: &[f64]) -> PlasticWork {
-        let (re, states) = (&self.reference[e], &state[self.condensation_len()..]);
-        with_law!(&self.law, law => match self.formulation {
-            Formulation::Layered => plastic_work(law, layered::volumes(&re.nodes), states),
-            _ => plastic_work(law, re.volume.into_iter(), states),
-        })
-    }
-
     fn strains(
         &self,
         re: &Reference,
@@ -471,53 +404,6 @@ impl H8Block {
                 std::array::from_fn(|g| brick::strain(&big.at(g), &du.at(g)))
             }
         }
-    }
-}
-
-impl H8Block {
-    /// Stress of the linear element (xx, yy, zz, xy, yz, xz) at the Gauss points `i + 2 j + 4 k`: Hooke's law on the linear
-    /// part of the assumed and enhanced strain. `alpha` are the enhanced strains that belong to `u`.
-    ///
-    /// # Errors
-    /// [`ElementFault`] where the law has no stiffness.
-    pub fn linear_stresses(
-        &self,
-        e: usize,
-        u: &[Vec3; 8],
-        alpha: &[f64],
-        out: &mut [[f64; 6]; 8],
-    ) -> Result<(), ElementFault> {
-        let u = stress::from_zero(&arrays(u));
-        let re = &self.reference[e];
-        if self.formulation == Formulation::Layered {
-            let alpha = dual_head(alpha);
-            let strains = layered::Strains::new(&re.nodes, &u, &alpha);
-            for (corner, out) in out.iter_mut().enumerate() {
-                let [g, _] = layered::outer(corner);
-                let (place, _, strain) = strains.at(g);
-                *out = with_law!(&self.law, law => stress::linear(
-                    law, &place.metric, &place.frame, &strain
-                ))
-                .map_err(|c| fault(e, g as u8, c))?;
-            }
-            return Ok(());
-        }
-        let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
-        let strain = match self.formulation {
-            Formulation::Eas7 => kinematics::strains(re, &big, &du, &dual_head::<7>(alpha)),
-            Formulation::Eas3 => kinematics::strains(re, &big, &du, &dual_head::<3>(alpha)),
-            Formulation::Eas0 => kinematics::strains(re, &big, &du, &[]),
-            Formulation::Displacement | Formulation::Layered => {
-                std::array::from_fn(|g| brick::strain(&big.at(g), &du.at(g)))
-            }
-        };
-        for g in 0..8 {
-            out[g] = with_law!(&self.law, law => stress::linear(
-                law, &re.metric[g], &big.at(g), &strain[g]
-            ))
-            .map_err(|c| fault(e, g as u8, c))?;
-        }
-        Ok(())
     }
 }
 

@@ -122,7 +122,9 @@ mod tests {
             for p in [0.0, 0.02, 0.7] {
                 let (stress, work) = hardening.at(Dual64::from(p).derivative());
                 assert!((work.eps / stress.re - 1.0).abs() < 1e-13);
-                assert!((stress.eps / hardening.slope(p) - 1.0).abs() < 1e-13);
+                // Beyond the last row of a table the slope is nothing.
+                let slope = hardening.slope(p);
+                assert!((stress.eps - slope).abs() <= 1e-13 * slope.abs());
             }
         }
     }

@@ -1,0 +1,80 @@
+//! Elements whose law remembers: what a step leaves in the states of their points, and what these say.
+use super::{Formulation, H8Block, arrays, fault, head};
+use crate::shell::error::ElementFault;
+use crate::shell::history::{PlasticWork, advance, cauchy, measures, plastic_work};
+use crate::shell::kinematics::Fields;
+use crate::shell::material::with_law;
+use crate::shell::{layered, stress};
+use covact_geometry::Vec3;
+
+impl H8Block {
+    /// Stresses at the lowest and highest points of [`Formulation::Layered`], each with that of the next point inwards.
+    pub(super) fn layered_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; 8],
+        state: &[f64],
+    ) -> Result<[[[f64; 6]; 2]; 8], ElementFault> {
+        let nodes = &self.reference[e].nodes;
+        let strains = layered::Strains::new(nodes, &arrays(u), &head(state));
+        let states = &state[self.condensation_len()..];
+        let mut out = [[[0.0; 6]; 2]; 8];
+        for (corner, out) in out.iter_mut().enumerate() {
+            for (out, g) in out.iter_mut().zip(layered::outer(corner)) {
+                let (place, du, strain) = strains.at(g);
+                *out = with_law!(&self.law, law => cauchy(
+                    law, (&place.metric, g), &place.frame, &du, &strain, states
+                ))
+                .map_err(|c| fault(e, g as u8, c))?;
+            }
+        }
+        Ok(out)
+    }
+
+    /// Takes a step that is accepted at displacements `u` and the enhanced strains in `state` into the states of the law.
+    ///
+    /// # Errors
+    /// [`ElementFault`] where the strain is impossible.
+    pub fn remember(&self, e: usize, u: &[Vec3; 8], state: &mut [f64]) -> Result<(), ElementFault> {
+        if self.law.state_len() == 0 {
+            return Ok(());
+        }
+        let u = arrays(u);
+        let re = &self.reference[e];
+        let (condensation, states) = state.split_at_mut(self.condensation_len());
+        if self.formulation == Formulation::Layered {
+            let strains = layered::Strains::new(&re.nodes, &u, &head(condensation));
+            let at = |g| {
+                let (place, _, strain) = strains.at(g);
+                (place.metric, strain)
+            };
+            return with_law!(&self.law, law => advance(law, at, states))
+                .map_err(|(point, c)| fault(e, point, c));
+        }
+        let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
+        let strain = self.strains(re, (&big, &du), condensation);
+        with_law!(&self.law, law => advance(law, |g| (re.metric[g], strain[g]), states))
+            .map_err(|(point, c)| fault(e, point, c))
+    }
+
+    /// Equivalent plastic strain, and equivalent stress over yield stress, at the nodes.
+    pub fn flow_measures(&self, e: usize, state: &[f64]) -> [[f64; 2]; 8] {
+        let (re, states) = (&self.reference[e], &state[self.condensation_len()..]);
+        with_law!(&self.law, law => match self.formulation {
+            Formulation::Layered => layered::to_nodes(&std::array::from_fn(|corner| {
+                layered::outer(corner)
+                    .map(|g| measures(law, &layered::metric(&re.nodes, g), g, states))
+            })),
+            _ => stress::extrapolate(&std::array::from_fn(|g| measures(law, &re.metric[g], g, states))),
+        })
+    }
+
+    /// What the law has done with the work on the points of an element, times their volumes.
+    pub fn plastic_work(&self, e: usize, state: &[f64]) -> PlasticWork {
+        let (re, states) = (&self.reference[e], &state[self.condensation_len()..]);
+        with_law!(&self.law, law => match self.formulation {
+            Formulation::Layered => plastic_work(law, layered::volumes(&re.nodes), states),
+            _ => plastic_work(law, re.volume.into_iter(), states),
+        })
+    }
+}
