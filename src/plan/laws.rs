@@ -72,8 +72,10 @@ impl Reporter<'_> {
             }
             let rubs = |p: &PairModel| p.friction.is_some();
             if self.model.pairs.iter().position(rubs) == Some(told.index) {
-                let nodes = self.model.nodes.len();
+                let (nodes, n) = (self.model.nodes.len(), self.model.histories());
                 held.push(Held::run("friction fields", Per::Node, 88, nodes));
+                // One list for all points with history.
+                held.push(Held::assembler("slips", Per::Point, sizes::SLIP, n));
             }
             let surface = pair.rigid_master().map(|s| &self.model.surfaces[s]);
             if surface.is_some_and(|s| s.driven.is_some()) {

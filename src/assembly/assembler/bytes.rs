@@ -25,6 +25,7 @@ pub(crate) mod sizes {
     use crate::model::kernel::Kernel;
     use crate::model::master::BodySurface;
     use crate::model::{Model, PairModel};
+    use covact_geometry::Vec3;
     use std::collections::BTreeSet;
     use std::sync::Arc;
 
@@ -41,6 +42,8 @@ pub(crate) mod sizes {
     pub const COUPLINGS: usize = PerPair::<Couplings>::HEAD;
     /// What an augmentation makes of a point.
     pub const ANSWER: usize = size_of::<Option<PointAnswer>>();
+    /// The last traction of a point with history.
+    pub const SLIP: usize = size_of::<Vec3>();
     /// The segments of a pair, but for the points that states share.
     pub const CUT: usize = size_of::<Option<Arc<[SlavePoint]>>>();
     /// What small displacements are computed with, but for what it holds.
@@ -118,6 +121,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             touches,
             held,
             answers,
+            slips,
             masters,
             couplings,
             meetings,
@@ -158,6 +162,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             ("points kept", heap(held)),
             ("follower maps", heap(follower_maps) + followers),
             ("answers", heap(answers)),
+            ("slips", heap(slips)),
             ("masters", masters.bytes()),
             ("couplings", couplings.bytes(Couplings::bytes)),
             ("links", links),

@@ -58,6 +58,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             touches: _,
             held: _,
             answers: _,
+            slips: _,
             masters: _,
             couplings,
             meetings: _,

@@ -205,6 +205,8 @@ pub struct Assembler<'m, L = Penalty> {
     held: Vec<bool>,
     /// Per point with history, of pairs with friction or augmentation; nothing where it is open. Empty without augmentation.
     answers: Vec<Option<PointAnswer>>,
+    /// Tangential traction of every point with history at the last linearisation since [`Assembler::forget_slips`].
+    slips: Vec<Vec3>,
     /// The surfaces of masters that are bodies, at the last state evaluated.
     pub masters: Masters,
     /// Per pair whose master is a body: the nodes that the pattern couples, and the points at the last state.
@@ -294,6 +296,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
             touches: vec![Ok(None); rigid::most(model)],
             held: Vec::new(),
             answers: vec![None; answer::count(model)],
+            slips: vec![Vec3::zeros(); sliding::slips(model)],
             masters,
             couplings,
             meetings: PerPair::new(pairs().map(Meetings::new)),

@@ -241,7 +241,11 @@ impl<L: PairLaw> Assembler<'_, L> {
                     &state.u,
                     time,
                     &mut state.points[range],
-                    &state.histories[histories.clone()],
+                    (
+                        &state.histories[histories.clone()],
+                        &mut self.slips[histories.clone()],
+                        TANGENT,
+                    ),
                 )?;
                 self.ran[index] = Some(ran);
                 if kernel.law == LawKind::Multipliers {

@@ -2,10 +2,11 @@
 use super::answer::PointAnswer;
 use super::maps::PointMaps;
 use super::pressed::{Pressed, PressedSums};
+use super::sliding::Secants;
 use super::{Assembler, Fault, Linearization, PairForce, SurfaceForce, Totals, touched};
 use crate::contact::closest::ClosestPoint;
 use crate::contact::friction::history::PointHistory;
-use crate::contact::friction::law::{FrictionLaw, Secant};
+use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::{Friction, FrictionTouch};
 use crate::contact::kind::{FrictionKind, LawKind, TangentKind};
 use crate::contact::law::{
@@ -133,18 +134,22 @@ impl<L: PairLaw> Assembler<'_, L> {
                         (FrictionKind::None, batch.choose(points, touches, &NoOffset))
                     }
                     (planned, Some((now, eps_t, histories))) => with_law!(*now, law => {
-                        let law = Secant { law, on: secant };
                         let friction = Friction { law, eps_t: *eps_t };
+                        let slips = &mut self.slips[pair.history().unwrap_or(0..0)];
+                        let slips = (slips, Secants {
+                            all: secant,
+                            keep: TANGENT && planned != LawKind::Multipliers,
+                        });
                         let ran = match planned {
                             LawKind::Multipliers => {
                                 let told = &mut self.answers[pair.history().unwrap_or(0..0)];
                                 let (s, t) = (&mut *points, &mut *touches);
-                                batch.slide(s, t, told, &friction, histories, offsets, hold)
+                                batch.slide(s, t, told, slips, &friction, histories, offsets, hold)
                             }
                             _ => {
                                 let told = &mut vec![(); n][..];
                                 let (s, t) = (&mut *points, &mut *touches);
-                                batch.slide(s, t, told, &friction, histories, offsets, hold)
+                                batch.slide(s, t, told, slips, &friction, histories, offsets, hold)
                             }
                         };
                         (now.kind(), ran)
@@ -249,6 +254,7 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
         states: &mut [PointState],
         touches: &mut [Result<Option<Touch>, PointFault>],
         answers: &mut [A],
+        (slips, secants): (&mut [Vec3], Secants),
         friction: &Friction<F>,
         histories: &[PointHistory],
         offsets: Option<Offsets>,
@@ -259,16 +265,21 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
             .zip(answers.par_iter_mut())
+            .zip(slips.par_iter_mut())
             .zip(histories)
             .enumerate()
             .with_min_len(64)
-            .for_each(|(i, ((((p, s), out), answer), history))| {
+            .for_each(|(i, (((((p, s), out), answer), slip), history))| {
                 let x = self.model.position_of(p, self.u);
                 let law = Augmented {
                     held: hold && s.closed,
                     ..history.law(*self.law, offsets.map_or(0.0, |o| o.at(i)))
                 };
-                let touch = placed.touch_with_friction(&x, &mut s.hint, &law, friction, history);
+                let secant = friction.secant(secants.all, slip);
+                let touch = placed.touch_with_friction(&x, &mut s.hint, &law, &secant, history);
+                if secants.keep {
+                    *slip = touched::of(&touch).map_or_else(Vec3::zeros, |t| t.traction.slip.t);
+                }
                 answer.tell(touched::of(&touch), history, friction.eps_t);
                 *out = touch.map(|t| t.map(|t| t.touch));
             });

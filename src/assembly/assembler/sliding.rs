@@ -6,7 +6,7 @@ use super::rigid::rounding;
 use super::touched::{self, Touched};
 use super::{Assembler, Fault, Linearization, PairForce, SurfaceForce, Totals, put};
 use crate::contact::friction::history::PointHistory;
-use crate::contact::friction::law::{FrictionLaw, Secant};
+use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::moving::{Form, Full, Reduced};
 use crate::contact::friction::rigid::Friction;
 use crate::contact::friction::scatter::PointNodes;
@@ -22,7 +22,7 @@ use crate::model::master::{BodyMaster, BodySurface};
 use crate::model::self_contact::{Accept, All, Opposing};
 use crate::model::state::{PointState, State, heap};
 use crate::model::{Model, PairModel};
-use covact_geometry::{CurvedRows, ShapeRows};
+use covact_geometry::{CurvedRows, ShapeRows, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -128,7 +128,7 @@ impl Sliding {
         u: &[f64],
         time: f64,
         states: &mut [PointState],
-        histories: &[PointHistory],
+        (histories, slips, tangent): (&[PointHistory], &mut [Vec3], bool),
     ) -> Result<Kernel, Fault> {
         let batch = Batch {
             model,
@@ -142,23 +142,26 @@ impl Sliding {
             law: L::of(penalty),
             u,
             histories,
+            secants: Secants {
+                all: linearization.secant_slip,
+                keep: tangent && kernel.law != LawKind::Multipliers,
+            },
             offsets: pair.offsets(time),
         };
         let eps_t = ratio * penalty;
         let touches = &mut self.touched.all;
         let now = friction.law.at(time)?;
         let ran = with_law!(now, law => {
-            let law = Secant { law, on: linearization.secant_slip };
             let friction = Friction { law, eps_t };
             match &master.own {
-                None => batch.choose(states, touches, &friction, &All),
+                None => batch.choose(states, (touches, slips), &friction, &All),
                 Some(own) => {
                     let accept = Opposing {
                         own,
                         normals: &surface.normals,
                         position: |n: u32| model.position(n as usize, u),
                     };
-                    batch.choose(states, touches, &friction, &accept)
+                    batch.choose(states, (touches, slips), &friction, &accept)
                 }
             }
         });
@@ -171,6 +174,11 @@ impl Sliding {
 }
 
 impl<L: PairLaw> Assembler<'_, L> {
+    /// Begins a solution: no point has a traction to turn from.
+    pub fn forget_slips(&mut self) {
+        self.slips.fill(Vec3::zeros());
+    }
+
     /// Sums up a pair with friction that [`Assembler::meet`] has evaluated.
     #[allow(clippy::too_many_arguments)]
     pub(super) fn slide<const TANGENT: bool>(
@@ -316,6 +324,24 @@ impl<L: PairLaw> Assembler<'_, L> {
     }
 }
 
+/// Number of tractions that an assembler keeps: those of all points with history, where any pair has friction.
+pub(super) fn slips(model: &Model) -> usize {
+    match model.pairs.iter().any(|p| p.friction.is_some()) {
+        true => model.histories(),
+        false => 0,
+    }
+}
+
+/// Where friction is linearised by its secant.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Secants {
+    /// At every point that slides, and not only where one has turned.
+    pub all: bool,
+    /// Whether the tractions found are those that the next linearisation compares with. Not so with multipliers: they hold a
+    /// point already, and the secant, which knows nothing of them, leads to other equilibria.
+    pub keep: bool,
+}
+
 /// The slave points of a pair at one trial state.
 struct Batch<'a, L> {
     model: &'a Model,
@@ -325,6 +351,7 @@ struct Batch<'a, L> {
     law: L,
     u: &'a [f64],
     histories: &'a [PointHistory],
+    secants: Secants,
     offsets: Option<Offsets<'a>>,
 }
 
@@ -335,13 +362,13 @@ impl<L: PairLaw> Batch<'_, L> {
     fn choose<F: FrictionLaw, A: Accept>(
         &self,
         states: &mut [PointState],
-        touches: &mut Touches,
+        found: (&mut Touches, &mut [Vec3]),
         friction: &Friction<F>,
         accept: &A,
     ) -> Kernel {
         match self.kernel.sides {
-            SideKind::Both => self.evaluate(states, touches, friction, accept, &Full),
-            SideKind::Slave => self.evaluate(states, touches, friction, accept, &Reduced),
+            SideKind::Both => self.evaluate(states, found, friction, accept, &Full),
+            SideKind::Slave => self.evaluate(states, found, friction, accept, &Reduced),
         }
     }
 
@@ -349,7 +376,7 @@ impl<L: PairLaw> Batch<'_, L> {
     fn evaluate<F: FrictionLaw, A: Accept, M: Form>(
         &self,
         states: &mut [PointState],
-        touches: &mut Touches,
+        (touches, slips): (&mut Touches, &mut [Vec3]),
         friction: &Friction<F>,
         accept: &A,
         form: &M,
@@ -357,17 +384,22 @@ impl<L: PairLaw> Batch<'_, L> {
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
+            .zip(slips.par_iter_mut())
             .zip(self.histories)
             .enumerate()
             .with_min_len(32)
-            .for_each(|(i, (((p, s), out), history))| {
+            .for_each(|(i, ((((p, s), out), slip), history))| {
                 let x = self.model.point_position(p, self.u);
                 let law = history.law(self.law, self.offsets.map_or(0.0, |o| o.at(i)));
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
                 let hint = &mut s.hint;
+                let secant = friction.secant(self.secants.all, slip);
                 *out = (self.master)
-                    .touch_with_friction(&x, hint, &law, friction, history, form, facet);
+                    .touch_with_friction(&x, hint, &law, &secant, history, form, facet);
+                if self.secants.keep {
+                    *slip = touched::of(out).map_or_else(Vec3::zeros, |t| t.response.slip.t);
+                }
             });
         Kernel {
             gap: GapKind::Pointwise,

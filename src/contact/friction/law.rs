@@ -82,12 +82,16 @@ impl FrictionLaw for Coulomb {
 
 /// A law with the tangent of its secant where a point slides: `dT/dT_tr = |T| / |T_tr|` in all directions. A traction that slides
 /// offers no resistance along its direction, so that Newton's method overshoots points that should stick, whose range is as
-/// small as the penalty is stiff, and sends them to and fro. The secant holds all points until it shows which way they go.
+/// small as the penalty is stiff, and sends them to and fro. The secant holds all points until it shows which way they go, and
+/// brings back one that has gone past where it should have stopped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Secant<F> {
     pub law: F,
-    /// Off: the law as it is.
+    /// Every point that slides.
     pub on: bool,
+    /// Traction at the last linearisation (force / length^2): a point that slides the other way now has gone too far. Zero where
+    /// there is none.
+    pub last: Vector3<f64>,
 }
 
 impl<F: FrictionLaw> FrictionLaw for Secant<F> {
@@ -99,7 +103,8 @@ impl<F: FrictionLaw> FrictionLaw for Secant<F> {
         pressure: D,
     ) -> Slip<D> {
         let slip = self.law.slip(trial, normal, pressure);
-        if !self.on || !slip.slides {
+        let turned = || slip.t.map(|x| x.re()).dot(&self.last) < 0.0;
+        if !slip.slides || !(self.on || turned()) {
             return slip;
         }
         let norm = |v: &Vector3<D>| v.map(|x| x.re()).norm();
@@ -119,8 +124,18 @@ mod tests {
         let law = Coulomb { mu: 0.25 };
         let (n, trial) = (Vector3::z(), Vector3::new(3.0, 4.0, 0.0));
         let exact = law.slip(&trial, &n, 2.0);
-        assert_eq!(Secant { law, on: false }.slip(&trial, &n, 2.0), exact);
-        let secant = Secant { law, on: true };
+        // A point that was drawn the other way has turned; one that was drawn as now, or not at all, has not.
+        let secant = |on, last: f64| Secant {
+            law,
+            on,
+            last: exact.t * last,
+        };
+        assert_eq!(secant(false, 0.0).slip(&trial, &n, 2.0), exact);
+        assert_eq!(secant(false, 0.7).slip(&trial, &n, 2.0), exact);
+        let turned = secant(false, -0.1).slip(&trial, &n, 2.0);
+        assert_eq!(turned, secant(true, 0.0).slip(&trial, &n, 2.0));
+        assert_ne!(turned.d_trial, exact.d_trial);
+        let secant = secant(true, 0.0);
         let slip = secant.slip(&trial, &n, 2.0);
         assert_eq!((slip.t, slip.d_pressure), (exact.t, exact.d_pressure));
         assert!((exact.d_trial * trial).norm() < 1e-15);

@@ -1,6 +1,6 @@
 //! Contact with friction on a rigid master.
 use super::history::PointHistory;
-use super::law::FrictionLaw;
+use super::law::{FrictionLaw, Secant};
 use super::trial::{Attraction, Traction};
 use crate::contact::closest::ClosestPoint;
 use crate::contact::corner::Steady;
@@ -30,6 +30,23 @@ pub struct FrictionTouch {
     pub local: Vec3,
     /// Unit normal at the foot, in the same coordinates.
     pub normal: Vec3,
+}
+
+impl<F> Friction<F> {
+    /// The law of a point whose traction was `last` at the last linearisation; `on`: with the secant wherever it slides.
+    pub fn secant(&self, on: bool, last: &Vec3) -> Friction<Secant<F>>
+    where
+        F: Copy,
+    {
+        Friction {
+            law: Secant {
+                law: self.law,
+                on,
+                last: *last,
+            },
+            eps_t: self.eps_t,
+        }
+    }
 }
 
 impl PointHistory {
