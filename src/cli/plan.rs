@@ -123,7 +123,11 @@ fn head(pair: &PairPlan) -> String {
     format!(
         "contact `{}`{}: {} points of {} on {}, kernel {}",
         pair.name,
-        if pair.back { ", second half pass" } else { "" },
+        match (pair.edges, pair.back) {
+            (true, _) => ", edges of its master",
+            (false, true) => ", second half pass",
+            (false, false) => "",
+        },
         pair.points,
         pair.slave,
         pair.master,

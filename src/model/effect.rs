@@ -78,6 +78,7 @@ effects! {
     PointsSegments, "contact.points.segments", listed: "contact is integrated over faces cut by those they meet";
     AveragedGap, "contact.gap.averaged", listed: "gaps averaged over the faces around slave nodes";
     TwoHalfPasses, "contact.passes.two_half", listed: "each side of a contact is the slave once, no side preferred";
+    EdgePass, "contact.passes.edges", listed: "sharp edges of the master are slaves as well";
     TangentExact, "contact.tangent.exact", listed: "tangent matrix exact at every penetration";
     TangentPublished, "contact.tangent.published", listed: "tangent matrix of the published form";
     TangentMain, "contact.tangent.main", detail: "main part of the tangent: stiffness along the normal";

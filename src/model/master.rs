@@ -5,9 +5,9 @@ use super::surface::SurfaceSet;
 use super::{Model, PairModel};
 use crate::contact::moving;
 use crate::contact::rigid::{self, RigidMaster};
-use crate::mesh::Face;
+use crate::mesh::{Face, Mesh};
 use crate::scene::ValueError;
-use covact_geometry::{Hint, MovingFacets, Vec3};
+use covact_geometry::{Hint, MovingError, MovingFacets, Vec3};
 
 /// What the slave points of a pair meet. Chosen once, when the model is built.
 #[derive(Debug)]
@@ -37,6 +37,30 @@ pub struct BodyMaster {
     pub element_size: f64,
     /// What the slave points do not touch, where they belong to the same body.
     pub own: Option<OwnFacets>,
+}
+
+/// Faces of a body whose first node has this number in the model, as facets that move with it, or one smooth surface through
+/// their nodes; `position` gives the places of nodes by their numbers in the model.
+///
+/// # Errors
+/// [`MovingError`]: faces that make no surface.
+pub fn moving_facets(
+    mesh: &Mesh,
+    first_node: u32,
+    faces: &[Face],
+    smooth: bool,
+    position: impl Fn(u32) -> Vec3 + Copy + Sync,
+) -> Result<MovingFacets, MovingError> {
+    let nodes: Vec<_> = (faces.iter())
+        .map(|&f| mesh.face_nodes(f).shifted(first_node))
+        .collect();
+    let facets: Vec<_> = nodes.iter().map(|f| (f.nodes(), f.count)).collect();
+    let mut facets = match smooth {
+        false => MovingFacets::new(&facets),
+        true => MovingFacets::smooth(&facets, position),
+    }?;
+    facets.update(position);
+    Ok(facets)
 }
 
 /// A surface of a body, where a state puts it.

@@ -4,6 +4,7 @@ pub(crate) mod averaged;
 pub mod build;
 pub(crate) mod constraints;
 pub(crate) mod driven;
+pub(crate) mod edges;
 mod effect;
 pub(crate) mod error;
 pub(crate) mod free_motion;
@@ -120,6 +121,8 @@ pub struct PairModel {
     pub segments: Option<u8>,
     /// One of the two passes of a contact whose sides are both slaves.
     pub half: Option<HalfPass>,
+    /// The points are the sharp edges of the master of this pair, and the master is its slave ([`edges`]).
+    pub edges_of: Option<usize>,
     /// Penalty (force / length^3).
     pub eps_n: f64,
     /// What the run may choose the penalty by; nothing where it is given, or tractions are augmented.
@@ -289,6 +292,12 @@ impl Support<'_> {
 }
 
 impl PairModel {
+    /// Whether another pair of the same contact is the one by which it is known: this is the second of two half passes, or
+    /// holds the edges of the master.
+    pub fn is_second(&self) -> bool {
+        self.edges_of.is_some() || self.half.is_some_and(|half| half.back)
+    }
+
     /// Share of the pair in the energy of its contact: both passes of two are one contact with two sides, whose energy is
     /// the mean of both.
     #[inline]

@@ -47,9 +47,9 @@ pub fn unsymmetric_effects(model: &Model) -> Vec<Unsymmetric> {
                 "the follower pressure `{name}` acts on faces whose border is free to move"
             ),
         });
-    // The second of two half passes has the friction of the first.
+    // Another pair of the same contact has its friction.
     let friction = (model.pairs.iter())
-        .filter(|p| !p.half.is_some_and(|h| h.back))
+        .filter(|p| !p.is_second())
         .filter_map(|p| {
             let effect = match p.friction.as_ref()?.law {
                 LawModel::Coulomb { .. } => EffectKind::Coulomb,

@@ -31,6 +31,9 @@ pub struct PairSummary {
     /// The second of two half passes.
     #[serde(default)]
     pub back: bool,
+    /// The sharp edges of the master as slaves.
+    #[serde(default)]
+    pub edges: bool,
     /// The loop over its points that was planned.
     pub kernel: String,
     /// The one that evaluated the points last, told by what it was compiled for; none where none did.

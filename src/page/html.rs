@@ -315,9 +315,10 @@ fn plan(out: &mut String, of: &str, summary: &Summary) {
     let _ = writeln!(out, "<p>{}</p>", prose(&system));
     let whole = plan.effects.iter().map(|e| (String::new(), e));
     let paired = plan.pairs.iter().flat_map(|p| {
-        let name = match p.back {
-            true => format!("{} (back)", p.name),
-            false => p.name.clone(),
+        let name = match (p.edges, p.back) {
+            (true, _) => format!("{} (edges)", p.name),
+            (false, true) => format!("{} (back)", p.name),
+            (false, false) => p.name.clone(),
         };
         p.effects.iter().map(move |e| (name.clone(), e))
     });

@@ -46,6 +46,8 @@ pub struct PairPlan {
     pub name: String,
     /// The second of two half passes.
     pub back: bool,
+    /// The sharp edges of the master as slaves.
+    pub edges: bool,
     /// Slave faces, `body.set`.
     pub slave: String,
     /// Name of the rigid surface, or `body.set`.
@@ -94,6 +96,7 @@ impl Plan {
             PairPlan {
                 name: pair.name.clone(),
                 back: pair.half.is_some_and(|h| h.back),
+                edges: pair.edges_of.is_some(),
                 slave: pair.slave.clone(),
                 master: pair.master_name(model).to_owned(),
                 points: pair.points.len(),

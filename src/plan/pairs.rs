@@ -328,6 +328,18 @@ impl Reporter<'_> {
                 },
             ),
         );
-        vec![averaged, self.unsymmetric(halves, &pair.name)]
+        let edges = self.effect(
+            EffectKind::EdgePass,
+            told.key("passes"),
+            why(
+                pair.edges_of.is_some(),
+                format!(
+                    "`passes` are `edges`: {} nodes on sharp edges of the master",
+                    pair.points.len()
+                ),
+                "the slave's own points",
+            ),
+        );
+        vec![averaged, self.unsymmetric(halves, &pair.name), edges]
     }
 }

@@ -23,6 +23,7 @@ impl Plan {
                 .map(|(pair, ran)| PairSummary {
                     name: pair.name.clone(),
                     back: pair.back,
+                    edges: pair.edges,
                     kernel: pair.kernel.to_string(),
                     ran: ran.map(|k| k.to_string()),
                     effects: on(&pair.effects),

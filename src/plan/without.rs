@@ -104,7 +104,13 @@ pub const REMOVABLE: &[Removable] = &[
         name: "two_half",
         instead: "the slave is one side",
         effects: &["contact.passes.two_half"],
-        remove: |scene| contacts(scene, |c| std::mem::take(&mut c.passes) == Passes::TwoHalf),
+        remove: |scene| contacts(scene, |c| take_pass(c, Passes::TwoHalf)),
+    },
+    Removable {
+        name: "edges",
+        instead: "edges of the master sink into the slave between its points",
+        effects: &["contact.passes.edges"],
+        remove: |scene| contacts(scene, |c| take_pass(c, Passes::Edges)),
     },
     Removable {
         name: "smooth",
@@ -208,6 +214,15 @@ pub const REMOVABLE: &[Removable] = &[
 fn contacts(scene: &mut Scene, change: impl Fn(&mut Contact) -> bool) -> bool {
     let all = scene.contacts.values_mut();
     all.map(change).fold(false, |a, b| a | b)
+}
+
+/// Leaves a contact one pass where it has this one.
+fn take_pass(contact: &mut Contact, pass: Passes) -> bool {
+    let on = contact.passes == pass;
+    if on {
+        contact.passes = Passes::One;
+    }
+    on
 }
 
 /// Leaves out parts of the published tangent, where that form goes with what else a contact has.

@@ -101,10 +101,14 @@ pub(super) fn status(history: &PointHistory) -> u8 {
     }
 }
 
-/// What the slave points of a contact are called; its two passes have one name.
+/// What the slave points of a contact are called; all its passes have one name.
 fn cloud_name(pair: &PairModel) -> String {
-    let back = pair.half.is_some_and(|half| half.back);
-    format!("{}{}_points", pair.name, if back { "_back" } else { "" })
+    let pass = match (pair.edges_of, pair.half) {
+        (Some(_), _) => "_edges",
+        (None, Some(half)) if half.back => "_back",
+        (None, _) => "",
+    };
+    format!("{}{pass}_points", pair.name)
 }
 
 /// Names of [`clouds`].

@@ -195,11 +195,10 @@ fn frictional(model: &Model) -> bool {
     model.pairs.iter().any(|p| p.friction.is_some())
 }
 
-/// Contacts whose master is a body, with their numbers; two half passes are one.
+/// Contacts whose master is a body, with their numbers; all passes of one are one.
 fn deformable(model: &Model) -> impl Iterator<Item = (usize, &PairModel)> {
-    let back = |pair: &PairModel| pair.half.is_some_and(|half| half.back);
     let pairs = model.pairs.iter().enumerate();
-    pairs.filter(move |(_, p)| p.body_master().is_some() && !back(p))
+    pairs.filter(|(_, p)| p.body_master().is_some() && !p.is_second())
 }
 
 /// Force and moment about the origin that each support exerts on the deformed body.

@@ -24,7 +24,7 @@ use crate::assembly::{Assembler, Fault, Totals};
 use crate::contact::law::Penalty;
 use crate::machine::clock::Phases;
 use crate::model::state::State;
-use crate::model::{BodyModel, Model, PairModel, segments};
+use crate::model::{BodyModel, Model, segments};
 use crate::output::RunStatus;
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
@@ -40,9 +40,14 @@ const RELIABLE: f64 = 1e-4;
 /// Cuts of a step after which one that gained energy out of nothing is taken, and told.
 const GIVES_IN: u32 = 4;
 
-/// Whether a pair is the second of two half passes, which is told with the first.
-fn is_back(pair: &PairModel) -> bool {
-    pair.half.is_some_and(|h| h.back)
+/// The first of the steps that the head of a warning names, `step 3: ` or `steps 3 to 9 (4 of them): `, and how many they are.
+fn steps_told(head: &str) -> Option<(u32, u32)> {
+    if let Some(step) = head.strip_prefix("step ") {
+        return Some((step.strip_suffix(": ")?.parse().ok()?, 1));
+    }
+    let (first, rest) = head.strip_prefix("steps ")?.split_once(" to ")?;
+    let (_, count) = rest.strip_suffix(" of them): ")?.split_once(" (")?;
+    Some((first.parse().ok()?, count.parse().ok()?))
 }
 
 /// How a run ended.
@@ -363,7 +368,7 @@ impl March<'_, '_> {
     fn ending(&self) -> Ending {
         let pairs = self.model.pairs.iter().enumerate();
         let never: Vec<&str> = pairs
-            .filter(|(i, pair)| !self.either(self.touched, *i) && !is_back(pair))
+            .filter(|(i, pair)| !self.either(self.touched, *i) && !pair.is_second())
             .map(|(_, pair)| pair.name.as_str())
             .collect();
         if never.is_empty() {
@@ -384,10 +389,13 @@ impl March<'_, '_> {
         }
     }
 
-    /// Whether a flag is set for pair `i`, or for the other pass of a contact of two half passes: of two curved sides one
-    /// may have no slave point where they touch.
+    /// Whether a flag is set for pair `i`, or for another pass of its contact: of two curved sides one may have no slave
+    /// point where they touch, and an edge may bear all.
     fn either(&self, flags: &[bool], i: usize) -> bool {
-        flags[i] || self.model.pairs[i].half.is_some_and(|h| flags[h.other])
+        let edges = |j: usize| self.model.pairs[j].edges_of == Some(i) && flags[j];
+        flags[i]
+            || self.model.pairs[i].half.is_some_and(|h| flags[h.other])
+            || (0..flags.len()).any(edges)
     }
 
     /// Gathers the fields of a state.
@@ -397,11 +405,39 @@ impl March<'_, '_> {
         (outputs.fields).gather::<Penalty>(self.model, &assembler.penalties, masters, state, time)
     }
 
+    /// Reports a warning of a step. What is told of several steps in the same words is reported when it is first, and kept as
+    /// one warning that counts them.
+    pub(super) fn warn_of_step(&mut self, step: u32, text: &str) {
+        let counted = (self.progress.warnings.iter_mut()).find_map(|told| {
+            let (first, count) = steps_told(told.strip_suffix(text)?)?;
+            Some((told, first, count + 1))
+        });
+        match counted {
+            Some((told, first, count)) => {
+                *told = format!("steps {first} to {step} ({count} of them): {text}");
+            }
+            None => self.warn(format!("step {step}: {text}")),
+        }
+    }
+
     /// Reports a warning once.
     pub(super) fn warn(&mut self, text: String) {
         if !self.progress.warnings.contains(&text) {
             self.observer.event(&Event::Warning { text: text.clone() });
             self.progress.warnings.push(text);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::steps_told;
+
+    #[test]
+    fn steps_of_a_warning_are_counted() {
+        assert_eq!(steps_told("step 3: "), Some((3, 1)));
+        assert_eq!(steps_told("steps 3 to 19 (4 of them): "), Some((3, 4)));
+        assert_eq!(steps_told("contact `c`: "), None);
+        assert_eq!(steps_told("step 3"), None);
     }
 }

@@ -3,6 +3,7 @@ mod averaged;
 mod bad_input;
 mod blocks;
 mod convergence;
+mod edges;
 mod friction;
 mod invariance;
 mod overclosure;

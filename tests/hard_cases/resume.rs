@@ -24,11 +24,14 @@ enum Stop {
     Iteration(u32),
     /// At another start of a step, or before the step after next.
     Retried,
+    /// After the first step of a repetition of the run.
+    Repeated,
 }
 
 struct Stopper<'a> {
     stop: Stop,
     steps: u32,
+    repeated: bool,
     flag: &'a AtomicBool,
     notes: Vec<String>,
 }
@@ -42,10 +45,19 @@ impl Observer for Stopper<'_> {
             }
             (stop, Event::StepAccepted { .. }) => {
                 self.steps += 1;
-                stop == Stop::Accepted || stop == Stop::Retried && self.steps == 2
+                match stop {
+                    Stop::Accepted => true,
+                    Stop::Retried => self.steps == 2,
+                    Stop::Repeated => self.repeated,
+                    Stop::Never | Stop::Iteration(_) => false,
+                }
             }
             (Stop::Iteration(n), Event::Iteration { iteration, .. }) => {
                 self.steps > 0 && *iteration >= n
+            }
+            (Stop::Repeated, Event::Warning { text }) => {
+                self.repeated |= text.contains("it was repeated");
+                false
             }
             (Stop::Retried, Event::StepRetried { .. } | Event::StepCut { .. }) => self.steps > 0,
             _ => false,
@@ -66,6 +78,7 @@ fn part(
     let mut observer = Stopper {
         stop,
         steps: 0,
+        repeated: false,
         flag: &flag,
         notes: Vec::new(),
     };
@@ -441,4 +454,37 @@ fn small_displacements() {
     assert_eq!(found.status, RunStatus::Done);
     let factorizations: u64 = found.factorizations.values().sum();
     assert!(factorizations < found.newton_iterations, "{found:?}");
+}
+
+/// A run that is repeated with the edges of a master as slaves, broken off in its second attempt: it goes on with the edges.
+#[test]
+fn a_repetition_with_edges() {
+    let plate = json!({"plate": {"size": [50, 8], "thickness": 2, "elements": [25, 2]}});
+    let turned = json!({"axis": [0, 0, 1], "angle": 90, "translation": [44, -25, 2.2]});
+    let scene = json!({
+        "covact": 1,
+        "materials": {"m": {"neo_hooke": {"E": 2000, "nu": 0.35}}},
+        "bodies": {
+            "lower": {"mesh": plate, "material": "m"},
+            "upper": {"mesh": plate, "material": "m", "placement": turned}
+        },
+        "contacts": {"c": {"slave": "lower.top", "master": "upper.bottom"}},
+        "supports": {
+            "wall": {"on": "lower.x_min", "fixed": true},
+            "press": {"on": ["upper.x_min", "upper.x_max"], "displacement": {"x": 0, "y": 0, "z": "-4*t"}}
+        }
+    });
+    let scene = covact::scene::parse(&scene.to_string(), "scene.json").expect("a scene");
+    let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let (ended, _) = part(&scene, whole.path(), false, 1, Stop::Never).unwrap();
+    assert_eq!(ended.status, RunStatus::Done);
+    let repeated = |w: &String| w.contains("it was repeated with such edges");
+    assert!(ended.warnings.iter().any(repeated), "{:?}", ended.warnings);
+    let (broken, _) = part(&scene, parts.path(), false, 1, Stop::Repeated).unwrap();
+    assert_eq!(broken.status, RunStatus::Interrupted);
+    assert!(broken.steps > 0 && broken.warnings.iter().any(repeated));
+    let (resumed, _) = part(&scene, parts.path(), true, 1, Stop::Never).unwrap();
+    assert_eq!(resumed.status, RunStatus::Done);
+    let table = |folder: &Path| std::fs::read_to_string(folder.join("history.csv")).unwrap();
+    assert_eq!(table(whole.path()), table(parts.path()));
 }

@@ -121,6 +121,13 @@ pub struct SurfaceForce {
     pub moment: Vec3,
 }
 
+impl SurfaceForce {
+    fn join(&mut self, more: &SurfaceForce) {
+        self.force += more.force;
+        self.moment += more.moment;
+    }
+}
+
 /// What a contact pair does to its two bodies, summed over the nodes of each.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PairForce {

@@ -81,7 +81,7 @@ pub(super) fn of<T>(touch: &Result<Option<T>, PointFault>) -> Option<&T> {
 
 impl Totals {
     /// Ends pair `index`: what acts between its bodies, its deepest penetration, and whether it touches. Of two half passes
-    /// each tells the force on its own slave.
+    /// each tells the force on its own slave; what acts at the edges of a master acts on the sides of its contact.
     pub(super) fn end_pair(
         &mut self,
         (index, pair): (usize, &PairModel),
@@ -91,6 +91,11 @@ impl Totals {
     ) {
         self.penetration.push(deepest);
         self.touching.push(touching);
+        if let Some(of) = pair.edges_of {
+            self.pairs[of].slave.join(&force.master);
+            self.pairs[of].master.join(&force.slave);
+            return;
+        }
         match pair.half {
             Some(HalfPass { other, back: true }) => self.pairs[other].master = force.slave,
             Some(_) => self.pairs[index].slave = force.slave,

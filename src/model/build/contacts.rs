@@ -1,9 +1,10 @@
 //! Contact pairs: slave points, masters, penalties.
 use super::super::augmentation::AugmentationModel;
 use super::super::averaged::SlaveNodes;
+use super::super::edges;
 use super::super::error::{At, number, text};
 use super::super::friction::{self, FrictionModel, LawModel};
-use super::super::master::{BodyMaster, Master};
+use super::super::master::{BodyMaster, Master, moving_facets};
 use super::super::self_contact::OwnFacets;
 use super::super::slave::slave_points;
 use super::super::{HalfPass, ModelError, PairModel, SurfaceModel, penalty, segments, slave};
@@ -12,9 +13,9 @@ use crate::contact::points::SlavePoint;
 use crate::machine::memory;
 use crate::mesh::Face;
 use crate::scene::{Contact, Gap, MasterSurface, Passes, Penalty, Points};
-use covact_geometry::MovingFacets;
+use covact_geometry::{MovingError, MovingFacets};
 use penalty::{FaceSize, Suitable};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 impl Builder<'_> {
     /// All rigid surfaces with the names of their patches, as far as they can be read, and what is wrong with the others.
@@ -42,7 +43,10 @@ impl Builder<'_> {
         for (name, contact) in &self.scene.contacts {
             let rigid = surface_index.get(contact.master.as_str()).copied();
             let first = pairs.len();
-            pairs.push(self.pair(name, contact, rigid)?);
+            pairs.push(self.pair(name, contact, rigid, None)?);
+            if contact.passes == Passes::Edges {
+                pairs.extend(self.edge_pass(name, contact, first)?);
+            }
             if contact.passes == Passes::TwoHalf {
                 if contact.master_surface == Some(MasterSurface::Smooth) {
                     self.warnings.push(format!(
@@ -53,7 +57,7 @@ impl Builder<'_> {
                 }
                 let mut back = contact.clone();
                 std::mem::swap(&mut back.slave, &mut back.master);
-                pairs.push(self.pair(name, &back, None)?);
+                pairs.push(self.pair(name, &back, None, None)?);
                 for (index, pair) in pairs[first..].iter_mut().enumerate() {
                     pair.half = Some(HalfPass {
                         other: first + 1 - index,
@@ -73,11 +77,61 @@ impl Builder<'_> {
         Ok((pairs, surfaces))
     }
 
+    /// The sharp edges of the master of pair `of` as slaves; nothing where it has none, which is told.
+    fn edge_pass(
+        &mut self,
+        name: &str,
+        contact: &Contact,
+        of: usize,
+    ) -> Result<Option<PairModel>, ModelError> {
+        let pointer = |field: &str| format!("/contacts/{name}/{field}");
+        let (slave, slave_faces) = self.faces(&contact.slave, &pointer("slave"))?;
+        let (master, faces) = self.faces(&contact.master, &pointer("master"))?;
+        if slave == master {
+            let message = "self contact has no edges of another side".to_owned();
+            return Err(text(pointer("passes"), message).help("leave `passes` out"));
+        }
+        let facets = (self.moving_facets(slave, &slave_faces, false)).at(|| pointer("slave"))?;
+        let (size, _) = self.stiffness(slave, &slave_faces);
+        let model = &self.bodies[master];
+        let position = |node: u32| self.nodes[(node + model.first_node) as usize];
+        let nodes = edges::sharp_nodes(&model.mesh, &faces, position, &facets, size.edge);
+        self.notes.push(match nodes.len() {
+            0 => format!(
+                "contact `{name}`: `{}` has no sharp edges but those at the border of `{}`: none are slaves",
+                contact.master, contact.slave
+            ),
+            n => format!(
+                "contact `{name}`: {n} nodes on sharp edges of `{}` are slaves on `{}` as well",
+                contact.master, contact.slave
+            ),
+        });
+        if nodes.is_empty() {
+            return Ok(None);
+        }
+        let back = Contact {
+            slave: contact.master.clone(),
+            master: contact.slave.clone(),
+            points: Points::Nodes,
+            gap: Gap::Pointwise,
+            master_surface: None,
+            depth: None,
+            ..contact.clone()
+        };
+        let pair = self.pair(name, &back, None, Some(&nodes))?;
+        Ok(Some(PairModel {
+            edges_of: Some(of),
+            ..pair
+        }))
+    }
+
+    /// A contact pair; of its slave points only those at some nodes of the body where `only` names them.
     fn pair(
         &mut self,
         name: &str,
         contact: &Contact,
         rigid: Option<usize>,
+        only: Option<&BTreeSet<u32>>,
     ) -> Result<PairModel, ModelError> {
         let pointer = |field: &str| format!("/contacts/{name}/{field}");
         let (body, faces) = self.faces(&contact.slave, &pointer("slave"))?;
@@ -98,6 +152,9 @@ impl Builder<'_> {
         })?;
         let mut points = slave_points(&model.mesh, &faces, contact.points, first_node)
             .at(|| pointer("points"))?;
+        if let Some(only) = only {
+            points.retain(|p| only.contains(&(p.nodes[0] - first_node)));
+        }
         let (size, mut suits) = self.stiffness(body, &faces);
         let mut softer = "the slave's";
         let master = match rigid {
@@ -203,6 +260,7 @@ impl Builder<'_> {
                 _ => None,
             },
             half: None,
+            edges_of: None,
             eps_n,
             ruled,
             tangent: contact.tangent,
@@ -366,6 +424,19 @@ impl Builder<'_> {
         (size, Suitable::new(&model.material, &size))
     }
 
+    /// [`moving_facets`] of a body of the model, where they start.
+    fn moving_facets(
+        &self,
+        body: usize,
+        faces: &[Face],
+        smooth: bool,
+    ) -> Result<MovingFacets, MovingError> {
+        let body = &self.bodies[body];
+        moving_facets(&body.mesh, body.first_node, faces, smooth, |n| {
+            self.nodes[n as usize]
+        })
+    }
+
     /// Faces of a body as a master, and the penalties that suit them.
     fn body_master(
         &mut self,
@@ -375,21 +446,10 @@ impl Builder<'_> {
         let pointer = || format!("/contacts/{name}/master");
         let (body, faces) = self.faces(&contact.master, &pointer())?;
         let (size, suits) = self.stiffness(body, &faces);
-        let model = &self.bodies[body];
-        master_faces::check(&model.mesh, &faces, &contact.master)
+        master_faces::check(&self.bodies[body].mesh, &faces, &contact.master)
             .map_err(|(message, help)| text(pointer(), message).help(help))?;
-        let nodes: Vec<_> = (faces.iter())
-            .map(|&f| model.mesh.face_nodes(f).shifted(model.first_node))
-            .collect();
-        let facets: Vec<_> = nodes.iter().map(|f| (f.nodes(), f.count)).collect();
         let smooth = contact.master_surface == Some(MasterSurface::Smooth);
-        let position = |node: u32| self.nodes[node as usize];
-        let mut facets = match smooth {
-            false => MovingFacets::new(&facets),
-            true => MovingFacets::smooth(&facets, position),
-        }
-        .at(pointer)?;
-        facets.update(position);
+        let facets = self.moving_facets(body, &faces, smooth).at(pointer)?;
         let depth = contact.depth.unwrap_or(size.depth);
         self.notes.push(format!(
             "contact `{name}`: a point deeper than {} below `{}` is not in contact (`depth`)",

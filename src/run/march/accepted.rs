@@ -1,5 +1,5 @@
 //! What is told of an accepted step, and its line of the history.
-use super::{March, Outputs, RELIABLE, energy, is_back};
+use super::{March, Outputs, RELIABLE, energy};
 use crate::assembly::Drag;
 use crate::model::error::number;
 use crate::model::penalty;
@@ -23,7 +23,7 @@ impl March<'_, '_> {
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let deepest = converged.totals.penetration[i];
             self.touched[i] |= touching[i];
-            if self.either(&before, i) && !self.either(touching, i) && !is_back(pair) {
+            if self.either(&before, i) && !self.either(touching, i) && !pair.is_second() {
                 self.warn(format!(
                     "contact `{}` opened at step {step} (time {}): none of its points touches any more",
                     pair.name,
@@ -64,22 +64,20 @@ impl March<'_, '_> {
         if let Some(last) = converged.factorization {
             let negative = last.negative_pivots;
             if negative > 0 && last.method == Method::Lu {
-                self.warn(format!(
-                    "step {step}: the determinant of the step's last tangent is negative: the equilibrium may be \
-                     unstable"
-                ));
+                let text = "the determinant of the step's last tangent is negative: the equilibrium may be unstable";
+                self.warn_of_step(step, text);
             } else if negative > 0 {
-                self.warn(format!(
-                    "step {step}: the last tangent of the step has {negative} negative pivot(s): the equilibrium may be \
-                     unstable"
-                ));
+                let text = format!(
+                    "the last tangent of the step has {negative} negative pivot(s): the equilibrium may be unstable"
+                );
+                self.warn_of_step(step, &text);
             }
             if last.perturbed_pivots > 0 {
-                self.warn(format!(
-                    "step {step}: {} pivot(s) of the last tangent were too small and were replaced; the solution was \
-                     refined",
+                let text = format!(
+                    "{} pivot(s) of the last tangent were too small and were replaced; the solution was refined",
                     last.perturbed_pivots
-                ));
+                );
+                self.warn_of_step(step, &text);
             }
         }
         let spent = self.progress.iterations - self.progress.counted;

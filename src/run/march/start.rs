@@ -3,6 +3,7 @@ use super::{Caller, Course, Kept, KeptFiles, March, Outputs, StepControl};
 use crate::assembly::Assembler;
 use crate::machine::clock::Phases;
 use crate::model::Model;
+use crate::model::edges;
 use crate::model::error::number;
 use crate::model::state::State;
 use crate::plan::Plan;
@@ -55,6 +56,12 @@ pub(crate) struct RunState<'m> {
 }
 
 impl<'m> RunState<'m> {
+    /// Whether an edge of a master lies on its slave in the last accepted state, between slave points that do not see it.
+    pub(in crate::run) fn edges_on_slaves(&self) -> bool {
+        let (model, u) = (&self.problem.model, &self.course.committed.u);
+        (model.pairs.iter()).any(|pair| edges::on_slave(model, pair, u))
+    }
+
     /// A run at time 0, or as it was when its checkpoint was written.
     ///
     /// # Errors

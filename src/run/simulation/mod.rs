@@ -19,7 +19,7 @@ use crate::scene::{self, Element, LoadedScene};
 use crate::solve::event::{Event, Observer, Silent};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use variant::{Safe, names_element, safe_variant};
+use variant::{Safe, names_element, safe_variant, with_edges};
 
 /// Nobody interrupts.
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -344,7 +344,8 @@ impl<'o> Simulation<'o> {
         (self.running).with_dependent_mut(|_, run| run.march(caller).0.conclude());
     }
 
-    /// Begins again at time 0 where elements of the scene's choice may replace those that gave way.
+    /// Begins again at time 0 where other elements may replace those that gave way, or where the run stopped while an edge of a
+    /// master lay on its slave.
     fn begin_again(&mut self) -> Result<bool, RunError> {
         let Some(ending) = &self.ended else {
             return Ok(false);
@@ -352,7 +353,13 @@ impl<'o> Simulation<'o> {
         let bodies = &self.running.borrow_owner().model.bodies;
         let squeezed = (ending.squeezed.iter()).map(|&body| bodies[body].name.as_str());
         let before = self.safe.as_ref();
-        let Some(safe) = safe_variant(&self.scene, before, squeezed, self.time()) else {
+        let time = self.time();
+        let stopped = ending.status == RunStatus::NotConverged;
+        let safe = safe_variant(&self.scene, before, squeezed, time).or_else(|| {
+            let on_slave = stopped && self.running.borrow_dependent().edges_on_slaves();
+            (on_slave.then(|| with_edges(&self.scene, before, Some(time)))).flatten()
+        });
+        let Some(safe) = safe else {
             return Ok(false);
         };
         let observer = &mut *self.options.observer;

@@ -1,10 +1,11 @@
-//! Bodies that begin again with other elements, where their default ones give way in strong compression.
+//! What a run that stopped is repeated with: bodies with other elements, where their default ones give way in strong
+//! compression, and contacts with the edges of their masters, where such an edge lies on the slave.
 use crate::model::error::number;
 use crate::run::checkpoint::{self, Fingerprint};
-use crate::scene::{Element, LoadedScene, pointer};
+use crate::scene::{Element, LoadedScene, Passes, pointer};
 use std::path::Path;
 
-/// A scene with other elements than the default ones, and what is told of the change.
+/// A scene with other elements or passes than the default ones, and what is told of the change.
 #[derive(Debug, Clone)]
 pub(in crate::run) struct Safe {
     pub loaded: LoadedScene,
@@ -51,10 +52,49 @@ fn replaced(scene: &LoadedScene, before: Option<&Safe>, body: &str, when: &str) 
     Some(Safe { loaded, changed })
 }
 
+/// The scene with the edges of masters as slaves, in every contact with another body that leaves its passes to the default.
+pub(super) fn with_edges(
+    scene: &LoadedScene,
+    before: Option<&Safe>,
+    time: Option<f64>,
+) -> Option<Safe> {
+    let (mut loaded, mut changed) = match before {
+        Some(Safe { loaded, changed }) => (loaded.clone(), changed.clone()),
+        None => (scene.clone(), Vec::new()),
+    };
+    let mut found = Vec::new();
+    let of = |set: &str| set.split('.').next().map(str::to_owned);
+    for (name, contact) in &mut loaded.scene.contacts {
+        let bodies = [of(&contact.slave), of(&contact.master)];
+        let other = bodies[0] != bodies[1] && !scene.scene.surfaces.contains_key(&contact.master);
+        if other && contact.passes == Passes::One && !names_passes(scene, name) {
+            contact.passes = Passes::Edges;
+            found.push(format!("`{name}`"));
+        }
+    }
+    if found.is_empty() {
+        return None;
+    }
+    changed.push(format!(
+        "contact {}: the run stopped{} while a sharp edge of the master lay on the slave, between its points; it was repeated \
+         with such edges as slaves too (`\"passes\": \"edges\"`; `\"one\"` leaves them out, and the side with the edge as \
+         slave needs none)",
+        found.join(", "),
+        time.map_or(String::new(), |t| format!(" at time {}", number(t)))
+    ));
+    Some(Safe { loaded, changed })
+}
+
+/// Whether a scene names the passes of a contact, rather than leaving them to their default.
+fn names_passes(scene: &LoadedScene, contact: &str) -> bool {
+    scene.has(&pointer(&["contacts", contact, "passes"]))
+}
+
 /// Bodies of a scene up to which all choices of them are looked through.
 const MANY: usize = 6;
 
-/// The variant of the scene that a folder holds an unfinished run of, where it is one with other elements for some bodies.
+/// The variant of the scene that a folder holds an unfinished run of, where it is one with other elements for some bodies, or
+/// with the edges of masters.
 pub(in crate::run) fn variant_in(out: &Path, scene: &LoadedScene) -> Option<Safe> {
     let holds = |loaded: &LoadedScene| checkpoint::find(out, &Fingerprint::new(loaded)).is_ok();
     if holds(scene) {
@@ -70,13 +110,20 @@ pub(in crate::run) fn variant_in(out: &Path, scene: &LoadedScene) -> Option<Safe
             .map(|one| (0..n).map(|k| one == n || k == one).collect())
             .collect(),
     };
-    let variants = choices.iter().filter_map(|chosen| {
+    let elements = choices.iter().filter_map(|chosen| {
         let chosen = bodies.iter().zip(chosen).filter(|(_, chosen)| **chosen);
         chosen.fold(None, |safe: Option<Safe>, (body, _)| {
             replaced(scene, safe.as_ref(), body, "gave way").or(safe)
         })
     });
-    variants.into_iter().find(|safe| holds(&safe.loaded))
+    let elements: Vec<Safe> = elements.collect();
+    let edges = |before: Option<&Safe>| with_edges(scene, before, None);
+    let mut edged: Vec<Safe> = edges(None).into_iter().collect();
+    edged.extend(elements.iter().filter_map(|before| edges(Some(before))));
+    elements
+        .into_iter()
+        .chain(edged)
+        .find(|safe| holds(&safe.loaded))
 }
 
 /// Whether a scene names the element of a body, rather than leaving it to its default.

@@ -97,7 +97,7 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
                 "the master `{}` is a rigid surface, which has no pass of its own",
                 contact.master
             ),
-            Some("`two_half` is for masters that are faces of a body".into()),
+            Some("`two_half` and `edges` are for masters that are faces of a body".into()),
         );
     }
     if contact.gap == Gap::Averaged && contact.points == Points::Nodes {

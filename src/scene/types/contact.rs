@@ -154,6 +154,10 @@ pub enum Passes {
     /// Each side in turn, and the traction of a pass acts on its slave alone: no side is preferred, forces balance as far as
     /// both sides find the same gaps (`imbalance` in the history), and the system is unsymmetric.
     TwoHalf,
+    /// The slave, and with it the sharp convex edges of the master's faces: their nodes are slave points too, on the faces of
+    /// the slave, into which such an edge otherwise sinks between two points. Where nothing is said, a run that stops while
+    /// such an edge lies on the slave is repeated with it.
+    Edges,
 }
 
 /// What must not be negative.

@@ -1,0 +1,151 @@
+//! Sharp convex edges of a master body as slaves. Between two slave points such an edge sinks into the slave's faces unseen: no
+//! slave point lies on it, and those beside it pass by. Where a contact asks for it, the nodes on these edges are slave points
+//! once more, with the slave's faces as their master.
+use super::master::moving_facets;
+use super::{Model, PairModel};
+use crate::mesh::{Face, Mesh};
+use covact_geometry::{EdgeKind, MovingFacets, MovingFoot, MovingPlace, Vec3};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Angle between the normals of both faces from which on their edge is sharp (radians), as of rigid surfaces
+/// ([`super::sharp`]).
+const ANGLE: f64 = 0.5;
+/// An edge no farther from the border of the slave's faces than this part of their elements, measured along them, is flush with
+/// it: both sides end there together, and nothing sinks in.
+const FLUSH: f64 = 0.3;
+
+/// A node on such an edge lies on the slave where it is no farther from it than this part of the slave's elements.
+const NEAR: f64 = 0.5;
+
+/// An edge of faces: its nodes, and the outer faces that meet there.
+struct Edge {
+    nodes: Vec<u32>,
+    /// Whether one of the faces is among those of the master.
+    of_master: bool,
+    /// Unit normal and middle of each face.
+    faces: Vec<[Vec3; 2]>,
+}
+
+impl Edge {
+    /// Two outer faces that meet at an angle, with the body inside of it.
+    fn sharp(&self) -> bool {
+        match self.faces[..] {
+            [[n, at], [m, other]] => {
+                let turned = n.dot(&m).clamp(-1.0, 1.0).acos();
+                turned > ANGLE && (other - at).dot(&n) < 0.0
+            }
+            _ => false,
+        }
+    }
+}
+
+/// The lines of nodes around a face.
+fn sides(mesh: &Mesh, face: Face) -> [Vec<u32>; 4] {
+    let all = mesh.face_nodes(face);
+    let [nu, nv] = all.count.map(usize::from);
+    let at = |i: usize, j: usize| all.nodes[i + nu * j];
+    [
+        (0..nu).map(|i| at(i, 0)).collect(),
+        (0..nu).map(|i| at(i, nv - 1)).collect(),
+        (0..nv).map(|j| at(0, j)).collect(),
+        (0..nv).map(|j| at(nu - 1, j)).collect(),
+    ]
+}
+
+/// Whether a place is at the free border of the slave's faces, within [`FLUSH`] of their elements either way along them.
+fn flush_with(place: &Vec3, slave: &MovingFacets, size: f64) -> bool {
+    let foot = |q: &Vec3| slave.project(q, None, f64::INFINITY, |_| true);
+    let Some(at) = foot(place) else {
+        return false;
+    };
+    let rho_i = &at.jet.rho_i;
+    let n = rho_i[0].cross(&rho_i[1]);
+    let away = place - at.jet.rho;
+    let along = away - n * (away.dot(&n) / n.norm_squared());
+    if along.norm() > FLUSH * size {
+        return false;
+    }
+    let beyond = |foot: MovingFoot| match foot.place {
+        MovingPlace::Face => false,
+        MovingPlace::Edge { kind, .. } | MovingPlace::Corner { kind } => kind == EdgeKind::Free,
+    };
+    // An element is two long in its parameters.
+    let ways = rho_i
+        .iter()
+        .flat_map(|t| [2.0 * FLUSH, -2.0 * FLUSH].map(|by| t * by));
+    let mut places = ways.map(|way| place + way);
+    places.any(|q| foot(&q).is_some_and(beyond))
+}
+
+/// Nodes of the mesh on the sharp convex edges of some of its faces, without the edges that are flush with the border of the
+/// slave's faces. `position` gives the place of a node; `size` is that of the slave's elements (length).
+pub fn sharp_nodes(
+    mesh: &Mesh,
+    faces: &[Face],
+    position: impl Fn(u32) -> Vec3,
+    slave: &MovingFacets,
+    size: f64,
+) -> BTreeSet<u32> {
+    let own: BTreeSet<Face> = faces.iter().copied().collect();
+    let mut edges: BTreeMap<[u32; 2], Edge> = BTreeMap::new();
+    for face in mesh.outer_faces() {
+        let corners = mesh.face_corners(face).map(&position);
+        let middle = corners.iter().sum::<Vec3>() / 4.0;
+        let [a, b, c, d] = corners;
+        let Some(normal) = (d - a).cross(&(c - b)).try_normalize(0.0) else {
+            continue;
+        };
+        for nodes in sides(mesh, face) {
+            let ends = [nodes[0], nodes[nodes.len() - 1]];
+            let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            let edge = edges.entry(key).or_insert(Edge {
+                nodes,
+                of_master: false,
+                faces: Vec::new(),
+            });
+            edge.of_master |= own.contains(&face);
+            edge.faces.push([normal, middle]);
+        }
+    }
+    let beside = |edge: &&Edge| {
+        let ends = [edge.nodes[0], edge.nodes[edge.nodes.len() - 1]];
+        let middle = (position(ends[0]) + position(ends[1])) * 0.5;
+        !flush_with(&middle, slave, size)
+    };
+    (edges.values())
+        .filter(|edge| edge.of_master && edge.sharp())
+        .filter(beside)
+        .flat_map(|edge| edge.nodes.iter().copied())
+        .collect()
+}
+
+/// Whether a sharp edge of the master of a pair lies on the faces of its slave as they are now; `u` holds the displacements
+/// (length). Never so where the edges are slaves already, and for masters that are rigid or the slave's own body.
+pub fn on_slave(model: &Model, pair: &PairModel, u: &[f64]) -> bool {
+    let Some(master) = pair.body_master() else {
+        return false;
+    };
+    let index = |p: &PairModel| std::ptr::eq(p, pair);
+    let has = model.pairs.iter().position(index);
+    let asked = model
+        .pairs
+        .iter()
+        .any(|p| p.edges_of.is_some() && p.edges_of == has);
+    if asked || pair.half.is_some() || pair.edges_of.is_some() || master.body == pair.body {
+        return false;
+    }
+    let [body, slave] = [&model.bodies[master.body], &model.bodies[pair.body]];
+    let start = |n: u32| model.nodes[n as usize];
+    let now = |n: u32| model.position(n as usize, u);
+    let facets = moving_facets(&slave.mesh, slave.first_node, &pair.faces, false, start);
+    let Ok(mut facets) = facets else {
+        return false;
+    };
+    let first = body.first_node;
+    let position = |n: u32| start(n + first);
+    let size = pair.element_size;
+    let nodes = sharp_nodes(&body.mesh, &master.faces, position, &facets, size);
+    facets.update(now);
+    let near = |n: &u32| (facets.project(&now(n + first), None, NEAR * size, |_| true)).is_some();
+    nodes.iter().any(near)
+}
