@@ -62,6 +62,12 @@ impl<'m> RunState<'m> {
         (model.pairs.iter()).any(|pair| edges::on_slave(model, pair, u))
     }
 
+    /// Whether a contact with the faces of a body is closed.
+    pub(in crate::run) fn on_bodies(&self) -> bool {
+        let mut pairs = self.problem.model.pairs.iter().zip(&self.touching);
+        pairs.any(|(pair, touching)| *touching && pair.body_master().is_some())
+    }
+
     /// A run at time 0, or as it was when its checkpoint was written.
     ///
     /// # Errors

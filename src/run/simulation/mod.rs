@@ -19,7 +19,7 @@ use crate::scene::{self, Element, LoadedScene};
 use crate::solve::event::{Event, Observer, Silent};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use variant::{Safe, names_element, safe_variant, with_edges};
+use variant::{Safe, names_element, safe_variant, with_edges, with_smooth};
 
 /// Nobody interrupts.
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -344,8 +344,8 @@ impl<'o> Simulation<'o> {
         (self.running).with_dependent_mut(|_, run| run.march(caller).0.conclude());
     }
 
-    /// Begins again at time 0 where other elements may replace those that gave way, or where the run stopped while an edge of a
-    /// master lay on its slave.
+    /// Begins again at time 0 where other elements may replace those that gave way, where the run stopped while an edge of a
+    /// master lay on its slave, or in contact with flat faces of a body that may be smooth.
     fn begin_again(&mut self) -> Result<bool, RunError> {
         let Some(ending) = &self.ended else {
             return Ok(false);
@@ -355,15 +355,24 @@ impl<'o> Simulation<'o> {
         let before = self.safe.as_ref();
         let time = self.time();
         let stopped = ending.status == RunStatus::NotConverged;
-        let safe = safe_variant(&self.scene, before, squeezed, time).or_else(|| {
-            let on_slave = stopped && self.running.borrow_dependent().edges_on_slaves();
-            (on_slave.then(|| with_edges(&self.scene, before, Some(time)))).flatten()
-        });
-        let Some(safe) = safe else {
+        let run = self.running.borrow_dependent();
+        let edges = || {
+            let found = stopped && run.edges_on_slaves();
+            found.then(|| with_edges(&self.scene, before, Some(time)))?
+        };
+        let smooth = || {
+            let found = stopped && run.on_bodies();
+            found.then(|| with_smooth(&self.scene, before, Some(time)))?
+        };
+        let safe = safe_variant(&self.scene, before, squeezed, time);
+        let Some(safe) = safe.or_else(edges).or_else(smooth) else {
             return Ok(false);
         };
         let observer = &mut *self.options.observer;
-        let (running, fingerprint) = running(&self.scene, Some(&safe), None, observer)?;
+        // What cannot be built in another way stays as it ended.
+        let Ok((running, fingerprint)) = running(&self.scene, Some(&safe), None, observer) else {
+            return Ok(false);
+        };
         (self.running, self.fingerprint) = (running, fingerprint);
         self.safe = Some(safe);
         self.history.rows.clear();

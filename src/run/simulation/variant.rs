@@ -1,8 +1,8 @@
 //! What a run that stopped is repeated with: bodies with other elements, where their default ones give way in strong
-//! compression, and contacts with the edges of their masters, where such an edge lies on the slave.
+//! compression, and contacts with the edges of their masters, where such an edge lies on the slave, or with smooth masters.
 use crate::model::error::number;
 use crate::run::checkpoint::{self, Fingerprint};
-use crate::scene::{Element, LoadedScene, Passes, pointer};
+use crate::scene::{Contact, Element, LoadedScene, MasterSurface, Passes, Points, pointer};
 use std::path::Path;
 
 /// A scene with other elements or passes than the default ones, and what is told of the change.
@@ -58,43 +58,74 @@ pub(super) fn with_edges(
     before: Option<&Safe>,
     time: Option<f64>,
 ) -> Option<Safe> {
+    let change = |contact: &mut Contact| {
+        let default = contact.passes == Passes::One;
+        contact.passes = Passes::Edges;
+        default
+    };
+    let text = "while a sharp edge of the master lay on the slave, between its points; it was repeated with such edges as slaves \
+                too (`\"passes\": \"edges\"`; `\"one\"` leaves them out, and the side with the edge as slave needs none)";
+    with_contacts(scene, before, time, ("passes", change, text))
+}
+
+/// The scene with smooth masters, in every contact with another body that leaves the surface of its master to the default: a
+/// slave point that slides over flat faces meets edges, at which the force on it turns at once.
+pub(super) fn with_smooth(
+    scene: &LoadedScene,
+    before: Option<&Safe>,
+    time: Option<f64>,
+) -> Option<Safe> {
+    let change = |contact: &mut Contact| {
+        let default = contact.master_surface.is_none();
+        let cut = matches!(contact.points, Points::Segments(_));
+        contact.master_surface = Some(MasterSurface::Smooth);
+        default && !cut
+    };
+    let text = "; it was repeated with one smooth surface through the nodes of the master's faces \
+                (`\"master_surface\": \"smooth\"`; `\"faces\"` leaves them flat)";
+    with_contacts(scene, before, time, ("master_surface", change, text))
+}
+
+/// The scene with a change to every contact with another body that does not name a key; `change` tells whether it applies.
+fn with_contacts(
+    scene: &LoadedScene,
+    before: Option<&Safe>,
+    time: Option<f64>,
+    (key, change, text): (&str, impl Fn(&mut Contact) -> bool, &str),
+) -> Option<Safe> {
     let (mut loaded, mut changed) = match before {
         Some(Safe { loaded, changed }) => (loaded.clone(), changed.clone()),
         None => (scene.clone(), Vec::new()),
     };
     let mut found = Vec::new();
-    let of = |set: &str| set.split('.').next().map(str::to_owned);
+    let body = |set: &str| set.split('.').next().map(str::to_owned);
     for (name, contact) in &mut loaded.scene.contacts {
-        let bodies = [of(&contact.slave), of(&contact.master)];
-        let other = bodies[0] != bodies[1] && !scene.scene.surfaces.contains_key(&contact.master);
-        if other && contact.passes == Passes::One && !names_passes(scene, name) {
-            contact.passes = Passes::Edges;
+        let own = body(&contact.slave) == body(&contact.master);
+        let rigid = scene.scene.surfaces.contains_key(&contact.master);
+        let named = scene.has(&pointer(&["contacts", name, key]));
+        let mut other = contact.clone();
+        if !own && !rigid && !named && change(&mut other) {
+            *contact = other;
             found.push(format!("`{name}`"));
         }
     }
     if found.is_empty() {
         return None;
     }
+    let space = if text.starts_with(';') { "" } else { " " };
     changed.push(format!(
-        "contact {}: the run stopped{} while a sharp edge of the master lay on the slave, between its points; it was repeated \
-         with such edges as slaves too (`\"passes\": \"edges\"`; `\"one\"` leaves them out, and the side with the edge as \
-         slave needs none)",
+        "contact {}: the run stopped{}{space}{text}",
         found.join(", "),
         time.map_or(String::new(), |t| format!(" at time {}", number(t)))
     ));
     Some(Safe { loaded, changed })
 }
 
-/// Whether a scene names the passes of a contact, rather than leaving them to their default.
-fn names_passes(scene: &LoadedScene, contact: &str) -> bool {
-    scene.has(&pointer(&["contacts", contact, "passes"]))
-}
-
 /// Bodies of a scene up to which all choices of them are looked through.
 const MANY: usize = 6;
 
 /// The variant of the scene that a folder holds an unfinished run of, where it is one with other elements for some bodies, or
-/// with the edges of masters.
+/// with other contacts.
 pub(in crate::run) fn variant_in(out: &Path, scene: &LoadedScene) -> Option<Safe> {
     let holds = |loaded: &LoadedScene| checkpoint::find(out, &Fingerprint::new(loaded)).is_ok();
     if holds(scene) {
@@ -117,13 +148,15 @@ pub(in crate::run) fn variant_in(out: &Path, scene: &LoadedScene) -> Option<Safe
         })
     });
     let elements: Vec<Safe> = elements.collect();
-    let edges = |before: Option<&Safe>| with_edges(scene, before, None);
-    let mut edged: Vec<Safe> = edges(None).into_iter().collect();
-    edged.extend(elements.iter().filter_map(|before| edges(Some(before))));
-    elements
-        .into_iter()
-        .chain(edged)
-        .find(|safe| holds(&safe.loaded))
+    let mut all: Vec<Option<Safe>> = elements.into_iter().map(Some).chain([None]).collect();
+    for with in [with_edges, with_smooth] {
+        let more = all
+            .iter()
+            .filter_map(|before| with(scene, before.as_ref(), None));
+        let more: Vec<_> = more.map(Some).collect();
+        all.extend(more);
+    }
+    (all.into_iter().flatten()).find(|safe| holds(&safe.loaded))
 }
 
 /// Whether a scene names the element of a body, rather than leaving it to its default.
