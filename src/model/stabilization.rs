@@ -194,6 +194,25 @@ fn volumes(body: &BodyModel) -> Vec<f64> {
     out
 }
 
+/// What an element around a node resists with, `E V^(1/3)` for the volume V of the node (force / length), for every degree of
+/// freedom of the bodies; zero where none is unknown.
+pub fn local_stiffness(model: &Model) -> Vec<f64> {
+    let mut out = vec![0.0; 3 * model.body_nodes()];
+    for body in &model.bodies {
+        let e = penalty::modulus(&body.material);
+        let first = 3 * body.first_node as usize;
+        for (n, v) in volumes(body).into_iter().enumerate() {
+            out[first + 3 * n..first + 3 * n + 3].fill(e * v.cbrt());
+        }
+    }
+    for dof in model.dofs.removed() {
+        if let Some(weight) = out.get_mut(dof as usize) {
+            *weight = 0.0;
+        }
+    }
+    out
+}
+
 fn bending(body: &BodyModel, volumes: &[f64]) -> Bending {
     let mesh = &body.mesh;
     let total: f64 = volumes.iter().sum();

@@ -1,5 +1,6 @@
 //! The march through time: one accepted step after another, with cuts, retries and roll-back inside.
 mod accepted;
+pub(in crate::run) mod passing;
 mod released;
 mod replaced;
 mod restart;
@@ -31,6 +32,7 @@ use crate::solve::event::{Event, Observer};
 use crate::solve::newton::{StepFailure, Workspace};
 use crate::solve::stepping::Stepping;
 use crate::system::linear::LinearSolver;
+use passing::Jump;
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 
@@ -99,6 +101,10 @@ pub(super) struct StepControl {
     hold: bool,
     /// Bodies whose elements turned inside out in a step that was cut.
     turned: BTreeSet<usize>,
+    /// The jump that is being passed.
+    jump: Option<Jump>,
+    /// The last step in which passing it was given up.
+    given_up: Option<u32>,
 }
 
 /// What an accepted step tells.
@@ -171,6 +177,7 @@ impl March<'_, '_> {
                 dt,
             });
             (self.assembler).begin_step(&committed.u, self.progress.time, end);
+            (self.assembler).pass(&committed.u, walk.jump.map_or(0.0, |jump| jump.rate));
             self.workspace.unstable = None;
             let penalties = self.assembler.penalties.clone();
             let mut result = (self.attempts(committed, &mut walk.hold)).solve(
@@ -184,6 +191,13 @@ impl March<'_, '_> {
             if let Ok(converged) = &mut result
                 && let Err(failure) =
                     self.released((step, end), (&*committed, walk), trial, converged)
+            {
+                result = Err(failure);
+            }
+            let passing = walk.jump.is_some();
+            if let Ok(converged) = &mut result
+                && let Err(failure) =
+                    self.let_go((step, end), (&*committed, walk), trial, converged)
             {
                 result = Err(failure);
             }
@@ -248,8 +262,12 @@ impl March<'_, '_> {
                     converged.totals.plastic_work = flowed.done;
                     committed.stabilized += drag.work;
                     // Augmentations say nothing of how far a step may go.
-                    walk.stepping
-                        .accepted(converged.iterations - converged.augmenting);
+                    match passing {
+                        true => walk.stepping.set_size(dt),
+                        false => {
+                            (walk.stepping).accepted(converged.iterations - converged.augmenting)
+                        }
+                    }
                     if walk.stepping.at_kink(end) {
                         walk.before = None;
                     }
@@ -283,7 +301,10 @@ impl March<'_, '_> {
                         iterations: converged.iterations,
                         cuts,
                     };
-                    let ending = ending.or_else(|| done.then(|| self.ending()));
+                    let ending = ending.or_else(|| {
+                        let held = walk.jump.map(|jump| self.on_viscous_forces(&jump));
+                        done.then(|| held.unwrap_or_else(|| self.ending()))
+                    });
                     return Ok(Outcome::Accepted(accepted, ending));
                 }
                 Err(failure) => failure,
@@ -294,6 +315,9 @@ impl March<'_, '_> {
                     reason: Some("stopped by the user".to_owned()),
                     squeezed: Vec::new(),
                 }));
+            }
+            if self.passes((step, dt), &failure, committed, walk) {
+                continue;
             }
             cuts += 1;
             self.progress.cuts += 1;

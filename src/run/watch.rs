@@ -359,6 +359,11 @@ impl Watch {
         })
     }
 
+    /// Sum of the sizes of all works so far, whatever their signs (energy).
+    pub fn turned_over(&self) -> f64 {
+        self.turnover
+    }
+
     /// What is said of a run with friction whose energies are out of balance at its end. Without friction a state does not
     /// depend on the steps that led to it, only the sums of this watch do.
     pub fn drift(&self, model: &Model) -> Option<String> {

@@ -92,14 +92,18 @@ impl Stepping {
         }
     }
 
+    /// Whether a step of this size would not be cut.
+    pub fn smallest(&self, dt: f64) -> bool {
+        0.5 * dt < self.settings.min
+    }
+
     /// A step of size `dt` failed: the size to try next, or `None` where it would be below the smallest.
     pub fn failed(&mut self, dt: f64) -> Option<f64> {
-        let next = 0.5 * dt;
-        if next < self.settings.min {
+        if self.smallest(dt) {
             return None;
         }
-        self.dt = next;
-        Some(next)
+        self.dt = 0.5 * dt;
+        Some(self.dt)
     }
 }
 

@@ -136,6 +136,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             contact,
             borders,
             viscous,
+            passing,
             penalties,
             ratios,
             linearization: _,
@@ -174,6 +175,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             ("driven", driven[0]),
             ("driven friction", driven[1]),
             ("stabilization", viscous.as_ref().map_or(0, Viscous::bytes)),
+            ("jumps", passing.bytes()),
             ("linear", linear.as_ref().map_or(0, |l| l.bytes())),
             ("pairs", heap(penalties) + heap(ratios) + heap(ran)),
         ]

@@ -76,6 +76,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             linearization: _,
             // Written by the first evaluation of a step.
             viscous: _,
+            passing: _,
             // All else of it is given by the model.
             linear,
             // A type, no value.

@@ -13,6 +13,7 @@ mod loads;
 mod maps;
 mod memory;
 mod moving;
+mod passing;
 mod per_pair;
 mod pressed;
 mod rigid;
@@ -37,6 +38,7 @@ use couplings::Couplings;
 use covact_geometry::Vec3;
 use maps::{Maps, PointMaps};
 use moving::Meetings;
+use passing::Passing;
 use per_pair::PerPair;
 use sliding::Sliding;
 use small::Linear;
@@ -237,6 +239,7 @@ pub struct Assembler<'m, L = Penalty> {
     borders: Vec<DrivenBlock>,
     /// Where the scene asks for stabilisation.
     viscous: Option<Viscous>,
+    passing: Passing,
     /// Where displacements are small.
     linear: Option<Box<Linear>>,
     /// Penalty per pair; an automatic one may be raised in the course of a run.
@@ -317,6 +320,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
             contact: vector(!model.pairs.is_empty()),
             borders,
             viscous: Viscous::new(model),
+            passing: Passing::default(),
             linear,
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             ratios: (model.pairs.iter())
@@ -396,6 +400,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
         self.contacts::<true>(state, time, increments, residual, rhs, &mut totals)?;
         self.loads::<true>(state, time, increments, residual, rhs)?;
         self.stabilize::<true>(&state.u, residual);
+        self.resist::<true>(&state.u, residual);
         self.own_blocks(&state.u, time, residual, &mut totals)?;
         for (b, r) in rhs.iter_mut().zip(residual.iter()) {
             *b -= r;
@@ -423,6 +428,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
         self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
         self.loads::<false>(state, time, None, residual, &mut [])?;
         self.stabilize::<false>(&state.u, residual);
+        self.resist::<false>(&state.u, residual);
         Ok(totals)
     }
 

@@ -116,18 +116,34 @@ impl<L: PairLaw> Assembler<'_, L> {
 
     /// What the stabilisation did in the step whose last evaluation was at `u`; `residual` is that of all degrees of freedom.
     pub fn drag(&self, u: &[f64], residual: &[f64]) -> Drag {
-        let (Some(viscous), Some(model)) = (&self.viscous, &self.model.stabilization) else {
+        let of_scene = self.viscous.as_ref().zip(self.model.stabilization.as_ref());
+        if of_scene.is_none() && !self.passing.acts() {
             return Drag::default();
+        }
+        // Force of a degree of freedom, and its way.
+        let of = |dof: usize| {
+            let [force, _] = self.passing.force(dof, u[dof]);
+            let [drag, way] = of_scene.map_or([0.0, 0.0], |(viscous, model)| {
+                let drag = model.weights[dof] * viscous.rate * (u[dof] - viscous.medium()[dof]);
+                [drag, u[dof] - viscous.base[dof]]
+            });
+            let way = match self.passing.acts() {
+                true => self.passing.way(dof, u[dof]),
+                false => way,
+            };
+            (force + drag, way)
         };
-        let medium = viscous.medium();
         let mut out = Drag::default();
         let (mut own, mut forces, mut held) = (0.0, [0.0f64; 3], 0);
         let removed: Vec<u32> = self.dofs.removed().collect();
+        let bodies = 3 * self.model.body_nodes();
         for first in (0..u.len()).step_by(3) {
             let (mut drag, mut node) = (0.0, [0.0f64; 3]);
-            for dof in first..first + 3 {
-                let way = u[dof] - viscous.base[dof];
-                let force = model.weights[dof] * viscous.rate * (u[dof] - medium[dof]);
+            for (dof, reaction) in residual.iter().enumerate().skip(first).take(3) {
+                let (force, way) = match dof < bodies {
+                    true => of(dof),
+                    false => (0.0, 0.0),
+                };
                 out.work += force * way;
                 drag += force * force;
                 let squared = |of: &[f64]| of.get(dof).map_or(0.0, |f| f.powi(2));
@@ -135,7 +151,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 node[1] += squared(&self.contact);
                 if removed.get(held) == Some(&(dof as u32)) {
                     held += 1;
-                    node[2] += residual[dof].powi(2);
+                    node[2] += reaction.powi(2);
                 }
             }
             own += drag.sqrt();

@@ -2,6 +2,7 @@
 //!
 //! Everything that evolves is taken apart field by field: a new field does not compile until it is decided here whether it
 //! is kept. What is kept needs a line in `put` and one in `take`, and a new [format](crate::run::checkpoint).
+use super::passing::Jump;
 use super::{Course, Outputs, RunState, StepControl};
 use crate::assembly::{AssemblerMemory, CouplingMemory, Factored};
 use crate::model::Model;
@@ -26,6 +27,7 @@ pub struct Kept {
     pub(super) before: Option<(State, f64)>,
     pub(super) dt: f64,
     pub(super) hold: bool,
+    pub(super) jump: Option<Jump>,
     pub(super) progress: Progress,
     pub(super) touched: Vec<bool>,
     pub(super) touching: Vec<bool>,
@@ -64,10 +66,11 @@ impl Kept {
         let (progress, spent) = from.section("progress", |r| {
             Ok((take_progress(r)?, ResourceUse::take(r)?))
         })?;
-        let (dt, hold, touched, touching) = from.section("path", |r| {
+        let (dt, hold, jump, touched, touching) = from.section("path", |r| {
             let pairs = model.pairs.len();
-            let (dt, hold) = (r.f64()?, r.bool()?);
-            Ok((dt, hold, take_flags(pairs, r)?, take_flags(pairs, r)?))
+            let (dt, hold, jump) = (r.f64()?, r.bool()?, r.option(Jump::take)?);
+            let [touched, touching] = [take_flags(pairs, r)?, take_flags(pairs, r)?];
+            Ok((dt, hold, jump, touched, touching))
         })?;
         let watch = from.section("watch", |r| Watch::take(model, r))?;
         let (compliance, rule, peaks) = from.section("accuracy", |r| {
@@ -101,6 +104,7 @@ impl Kept {
             before,
             dt,
             hold,
+            jump,
             progress,
             touched,
             touching,
@@ -162,6 +166,8 @@ impl RunState<'_> {
             hold,
             // Of steps that were cut: a run that goes on finds them anew.
             turned: _,
+            given_up: _,
+            jump,
         } = walk;
         let Outputs {
             // Gathered anew from the accepted state.
@@ -180,6 +186,7 @@ impl RunState<'_> {
             out.section("path", |out| {
                 out.f64(stepping.size());
                 out.bool(*hold);
+                out.option(jump.as_ref(), |out, jump| jump.put(out));
                 put_flags(touched, out);
                 put_flags(touching, out);
             });

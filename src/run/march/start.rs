@@ -110,6 +110,8 @@ impl<'m> RunState<'m> {
             ),
             before: None,
             hold: false,
+            jump: None,
+            given_up: None,
             turned: BTreeSet::new(),
         };
         let outputs = Outputs {
@@ -177,6 +179,7 @@ impl<'m> RunState<'m> {
             before,
             dt,
             hold,
+            jump,
             progress,
             touched,
             touching,
@@ -201,6 +204,7 @@ impl<'m> RunState<'m> {
         let course = &mut self.course;
         course.walk.stepping.set_size(dt);
         (course.walk.before, course.walk.hold) = (before, hold);
+        course.walk.jump = jump;
         (course.trial, course.committed) = (committed.clone(), committed);
         let (step, time) = (self.progress.steps, self.progress.time);
         let never = AtomicBool::new(false);

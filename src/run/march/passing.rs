@@ -1,0 +1,213 @@
+//! Steps past a state from which no equilibrium goes on: a snap, or a block that sticks until it slips at once. Where a step
+//! fails, every unknown is held to where the step begins by a force along its way, as in a viscous medium, and the same load is
+//! solved for step by step; what the structure loses on its way the forces take up. They are let go as soon as there is an
+//! equilibrium without them.
+use super::{Ending, March, StepControl};
+use crate::model::edges;
+use crate::model::error::number;
+use crate::model::state::State;
+use crate::output::RunStatus;
+use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
+use crate::scene::Stabilization;
+use crate::solve::event::Event;
+use crate::solve::newton::{Converged, StepFailure};
+
+/// Part of the first step below which one that fails is passed: larger ones would have found a path by then.
+const BELOW: f64 = 1e-2;
+/// Part of what elements resist with that holds a step, at first and at most, and the factors by which it grows where that does not
+/// suffice and falls from one step to the next.
+const FIRST: f64 = 0.3;
+const MOST: f64 = 300.0;
+const STRONGER: f64 = 10.0;
+const WEAKER: f64 = 0.5;
+/// How much farther than the step itself what is let go may move: an equilibrium beyond is not the one that the path leads to.
+const FAR: f64 = 2.0;
+/// Steps in which a jump has to be over.
+const STEPS: u32 = 60;
+/// Part of the forces below which what is left may be let go: farther from an equilibrium a search for one may end in any.
+const SMALL: f64 = 0.02;
+/// Part of the work so far above which the energy that was taken is told.
+const TOLD: f64 = 1e-3;
+
+/// A jump that is being passed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::run) struct Jump {
+    /// Part of what elements resist with that holds the next step.
+    pub rate: f64,
+    /// The step at which it began, and its time.
+    pub step: u32,
+    pub time: f64,
+    /// What the viscous forces had taken when it began (energy).
+    pub taken: f64,
+}
+
+impl Jump {
+    pub fn put(&self, out: &mut Writer) {
+        let Jump {
+            rate,
+            step,
+            time,
+            taken,
+        } = *self;
+        out.f64(rate);
+        out.u32(step);
+        out.f64(time);
+        out.f64(taken);
+    }
+
+    pub fn take(from: &mut Reader) -> Result<Self, Malformed> {
+        Ok(Jump {
+            rate: from.f64()?,
+            step: from.u32()?,
+            time: from.f64()?,
+            taken: from.f64()?,
+        })
+    }
+}
+
+impl March<'_, '_> {
+    /// Whether a step that failed so often is tried with viscous forces, or with larger ones.
+    pub(super) fn passes(
+        &mut self,
+        (step, dt): (u32, f64),
+        failure: &StepFailure,
+        committed: &State,
+        walk: &mut StepControl,
+    ) -> bool {
+        let meant = self.scene.solution.stabilization == Stabilization::Auto
+            && self.scene.solution.step.adaptive
+            && self.model.small.is_none();
+        let given_up = walk.given_up == Some(step);
+        let initial = self.scene.solution.step.initial;
+        let small = dt < BELOW * initial || walk.stepping.smallest(dt);
+        if !meant || given_up || !small || matches!(failure, StepFailure::Interrupted) {
+            return false;
+        }
+        // What no slave point sees would sink in unseen.
+        let on_slave = |pair| edges::on_slave(self.model, pair, &committed.u);
+        if walk.jump.is_none() && self.model.pairs.iter().any(on_slave) {
+            return false;
+        }
+        let (begun, rate) = match walk.jump {
+            None => (step, FIRST),
+            Some(jump) => (jump.step, STRONGER * jump.rate),
+        };
+        if rate > MOST || step - begun > STEPS {
+            walk.jump = None;
+            walk.given_up = Some(step);
+            return false;
+        }
+        let time = self.progress.time;
+        walk.jump = Some(match walk.jump {
+            None => Jump {
+                rate,
+                step,
+                time,
+                taken: committed.stabilized,
+            },
+            Some(jump) => Jump { rate, ..jump },
+        });
+        self.observer.event(&Event::StepRetried {
+            step,
+            start: "the last accepted state, held by viscous forces".to_owned(),
+            reason: failure.to_string(),
+        });
+        true
+    }
+
+    /// Lets go of a step that viscous forces hold, where there is an equilibrium near without them.
+    ///
+    /// # Errors
+    /// Only where the user stops the run, or the step as it was is no longer found.
+    pub(super) fn let_go(
+        &mut self,
+        (step, end): (u32, f64),
+        (committed, walk): (&State, &mut StepControl),
+        trial: &mut State,
+        converged: &mut Converged,
+    ) -> Result<(), StepFailure> {
+        let Some(jump) = walk.jump else {
+            return Ok(());
+        };
+        let residual = self.workspace.residual();
+        let share = self.assembler.drag(&trial.u, residual).share;
+        walk.jump = Some(Jump {
+            rate: WEAKER * jump.rate,
+            ..jump
+        });
+        if share > SMALL {
+            return Ok(());
+        }
+        let held = trial.clone();
+        self.assembler.pass(&committed.u, 0.0);
+        let way = |from: &State, to: &State| {
+            let squares = from.u.iter().zip(&to.u).map(|(a, b)| (a - b).powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        let far = FAR * way(committed, &held);
+        match (self.attempts(committed, &mut walk.hold)).stiffened(step, end, trial) {
+            Ok(next) if way(&held, trial) <= far => {
+                converged.stiffened(next);
+                walk.jump = None;
+                self.tell_jump(&jump, committed);
+            }
+            Err(StepFailure::Interrupted) => return Err(StepFailure::Interrupted),
+            // Not found, or another one far away.
+            Ok(_) | Err(_) => {
+                self.assembler.pass(&committed.u, jump.rate);
+                trial.copy_from(&held);
+                let again = (self.attempts(committed, &mut walk.hold)).stiffened(step, end, trial);
+                converged.stiffened(again?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Tells of a jump that is over; of several in one warning, with all of their times.
+    fn tell_jump(&mut self, jump: &Jump, committed: &State) {
+        let work = self.watch.turned_over();
+        let taken = committed.stabilized - jump.taken;
+        if taken <= TOLD * work {
+            self.observer.event(&Event::Note {
+                text: format!(
+                    "near time {} viscous forces carried the path past a state from which none goes on; they took an energy of {}",
+                    number(jump.time),
+                    number(taken)
+                ),
+            });
+            return;
+        }
+        let head = "no equilibrium goes on from time ";
+        let mut told = self.progress.warnings.iter();
+        let earlier = told.position(|w| w.starts_with(head));
+        let times = earlier.and_then(|i| {
+            let (times, _) = self.progress.warnings[i][head.len()..].split_once(": the path")?;
+            Some(format!("{times}, "))
+        });
+        let text = format!(
+            "{head}{}{}: the path jumps there, and viscous forces carried it past, which took an energy of {} ({:.1} % of the \
+             work) in all; what follows is one of the states that it may have jumped to",
+            times.unwrap_or_default(),
+            number(jump.time),
+            number(committed.stabilized),
+            100.0 * committed.stabilized / work
+        );
+        if let Some(i) = earlier {
+            self.progress.warnings.remove(i);
+        }
+        self.warn(text);
+    }
+
+    /// How a run ends that has come to its end time on viscous forces.
+    pub(super) fn on_viscous_forces(&self, jump: &Jump) -> Ending {
+        Ending {
+            status: RunStatus::NotConverged,
+            reason: Some(format!(
+                "from time {} on no equilibrium goes on: the path jumps there, and at the end viscous forces still carry it; \
+                 give it more time, or smaller steps",
+                number(jump.time)
+            )),
+            squeezed: Vec::new(),
+        }
+    }
+}
