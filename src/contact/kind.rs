@@ -33,6 +33,8 @@ pub enum FrictionKind {
     Coulomb,
     /// Two coefficients.
     Orthotropic,
+    /// One coefficient, and a largest traction.
+    ShearLimited,
 }
 
 /// What closest points are looked for on.
@@ -96,12 +98,20 @@ impl TangentKind {
 }
 
 impl FrictionKind {
+    /// The laws.
+    pub const LAWS: [FrictionKind; 3] = [
+        FrictionKind::Coulomb,
+        FrictionKind::Orthotropic,
+        FrictionKind::ShearLimited,
+    ];
+
     /// The name in plans.
     pub const fn name(self) -> &'static str {
         match self {
             FrictionKind::None => "frictionless",
             FrictionKind::Coulomb => "coulomb",
             FrictionKind::Orthotropic => "orthotropic",
+            FrictionKind::ShearLimited => "shear_limited",
         }
     }
 }

@@ -88,6 +88,7 @@ effects! {
     Coulomb, "contact.friction.coulomb", listed: "friction: at most `mu` times the pressure (Coulomb)";
     Orthotropic, "contact.friction.orthotropic", listed:
         "friction with two coefficients, along a direction of the master and across it";
+    ShearLimited, "contact.friction.shear_limited", listed: "friction: at most `mu` times the pressure, and at most a limit";
     Augmentation, "contact.augmentation", listed: "multipliers beside the penalties, until gaps have vanished";
     Offset, "contact.offset", listed: "contact begins at a distance from the master";
     OverclosureStressFree, "contact.overclosure.stress_free", detail: "what overlaps at the start counts as touching";

@@ -1,7 +1,9 @@
 //! Friction of a contact pair: its law over time, and its penalty.
-use super::penalty;
+use super::{EffectKind, penalty};
 use crate::contact::friction::law::Coulomb;
 use crate::contact::friction::orthotropic::Orthotropic;
+use crate::contact::friction::shear_limited::ShearLimited;
+use crate::contact::kind::FrictionKind;
 use crate::scene::{Friction, Material, TIME, TimeFunction, ValueError};
 use nalgebra::{Unit, Vector3};
 
@@ -27,6 +29,10 @@ pub enum LawModel {
         mu: [TimeFunction; 2],
         direction: Unit<Vector3<f64>>,
     },
+    ShearLimited {
+        mu: TimeFunction,
+        limit: TimeFunction,
+    },
 }
 
 /// A law of friction at a time; `with_law` compiles what runs over points for each.
@@ -34,6 +40,30 @@ pub enum LawModel {
 pub enum LawNow {
     Coulomb(Coulomb),
     Orthotropic(Orthotropic),
+    ShearLimited(ShearLimited),
+}
+
+impl FrictionKind {
+    /// The effect of a law.
+    pub fn effect(self) -> Option<EffectKind> {
+        match self {
+            FrictionKind::None => None,
+            FrictionKind::Coulomb => Some(EffectKind::Coulomb),
+            FrictionKind::Orthotropic => Some(EffectKind::Orthotropic),
+            FrictionKind::ShearLimited => Some(EffectKind::ShearLimited),
+        }
+    }
+}
+
+impl LawNow {
+    /// Which law it is; `with_law` compiles loops for each.
+    pub fn kind(&self) -> FrictionKind {
+        match self {
+            LawNow::Coulomb(_) => FrictionKind::Coulomb,
+            LawNow::Orthotropic(_) => FrictionKind::Orthotropic,
+            LawNow::ShearLimited(_) => FrictionKind::ShearLimited,
+        }
+    }
 }
 
 /// Evaluates an expression with the law of a `LawNow`, compiled once for each kind.
@@ -42,6 +72,7 @@ macro_rules! with_law {
         match $now {
             $crate::model::friction::LawNow::Coulomb($law) => $then,
             $crate::model::friction::LawNow::Orthotropic($law) => $then,
+            $crate::model::friction::LawNow::ShearLimited($law) => $then,
         }
     };
 }
@@ -66,19 +97,37 @@ impl LawModel {
                     what: "the direction",
                 })?,
             }),
+            Friction::ShearLimited { mu, limit } => Ok(LawModel::ShearLimited {
+                mu: mu.compile(&TIME)?,
+                limit: limit.compile(&TIME)?,
+            }),
+        }
+    }
+
+    /// Which law it is.
+    pub fn kind(&self) -> FrictionKind {
+        match self {
+            LawModel::Coulomb { .. } => FrictionKind::Coulomb,
+            LawModel::Orthotropic { .. } => FrictionKind::Orthotropic,
+            LawModel::ShearLimited { .. } => FrictionKind::ShearLimited,
         }
     }
 
     /// Whether the coefficients are zero at all times.
     pub fn is_none(&self) -> bool {
         let zero = |f: &TimeFunction| !f.depends_on_time() && f.eval(0.0).is_ok_and(|v| v == 0.0);
-        self.functions().into_iter().all(zero)
+        match self {
+            // Without a coefficient or without a limit there is none.
+            LawModel::ShearLimited { mu, limit } => zero(mu) || zero(limit),
+            _ => self.functions().into_iter().all(zero),
+        }
     }
 
     fn functions(&self) -> Vec<&TimeFunction> {
         match self {
             LawModel::Coulomb { mu } => vec![mu],
             LawModel::Orthotropic { mu, .. } => mu.iter().collect(),
+            LawModel::ShearLimited { mu, limit } => vec![mu, limit],
         }
     }
 
@@ -87,17 +136,18 @@ impl LawModel {
     /// # Errors
     /// A coefficient without a value at that time, or a negative one.
     pub fn at(&self, t: f64) -> Result<LawNow, ValueError> {
-        let coefficient = |f: &TimeFunction| {
-            let mu = f.eval(t)?;
-            match mu >= 0.0 {
-                true => Ok(mu),
+        let positive = |f: &TimeFunction, what| {
+            let value = f.eval(t)?;
+            match value >= 0.0 {
+                true => Ok(value),
                 false => Err(ValueError::Negative {
-                    what: "the coefficient of friction",
-                    value: mu,
+                    what,
+                    value,
                     time: t,
                 }),
             }
         };
+        let coefficient = |f| positive(f, "the coefficient of friction");
         match self {
             LawModel::Coulomb { mu } => Ok(LawNow::Coulomb(Coulomb {
                 mu: coefficient(mu)?,
@@ -106,6 +156,10 @@ impl LawModel {
                 let mu = [coefficient(&mu[0])?, coefficient(&mu[1])?];
                 Ok(LawNow::Orthotropic(Orthotropic::new(mu, *direction)))
             }
+            LawModel::ShearLimited { mu, limit } => Ok(LawNow::ShearLimited(ShearLimited {
+                mu: coefficient(mu)?,
+                limit: positive(limit, "the largest traction of friction")?,
+            })),
         }
     }
 }
@@ -128,11 +182,12 @@ impl FrictionModel {
         element_size: f64,
         time: f64,
     ) -> Result<Option<f64>, ValueError> {
-        let mu = match self.law.at(time)? {
-            LawNow::Coulomb(law) => law.mu,
-            LawNow::Orthotropic(law) => law.mu[0].max(law.mu[1]),
+        let largest = match self.law.at(time)? {
+            LawNow::Coulomb(law) => law.mu * pressure,
+            LawNow::Orthotropic(law) => law.mu[0].max(law.mu[1]) * pressure,
+            LawNow::ShearLimited(law) => (law.mu * pressure).min(law.limit),
         };
-        let eps_t = mu * pressure / (SLIP * element_size);
+        let eps_t = largest / (SLIP * element_size);
         Ok((eps_t > 0.0).then(|| (eps_t / eps_n).min(self.ratio)))
     }
 

@@ -1,7 +1,6 @@
 //! Which of the compiled loops over slave points a pair runs in. Chosen once, from the model.
 use crate::contact::kind::{FrictionKind, LawKind, MasterKind, TangentKind};
 use crate::contact::published::Parts;
-use crate::model::friction::{LawModel, LawNow};
 use crate::model::master::Master;
 use crate::model::surface::{SurfaceModel, SurfaceSet};
 use crate::model::{Model, PairModel};
@@ -68,8 +67,7 @@ impl Kernel {
             },
             friction: match pair.friction.as_ref().map(|f| &f.law) {
                 None => FrictionKind::None,
-                Some(LawModel::Coulomb { .. }) => FrictionKind::Coulomb,
-                Some(LawModel::Orthotropic { .. }) => FrictionKind::Orthotropic,
+                Some(law) => law.kind(),
             },
             tangent: match pair.tangent {
                 Tangent::Exact => TangentKind::Exact,
@@ -124,16 +122,6 @@ impl SurfaceModel {
             SurfaceSet::Nurbs(_) => MasterKind::RigidNurbs,
             SurfaceSet::Bilinear(_) => MasterKind::RigidBilinear,
             SurfaceSet::Biquadratic(_) => MasterKind::RigidBiquadratic,
-        }
-    }
-}
-
-impl LawNow {
-    /// Which law it is; `with_law` compiles loops for each.
-    pub fn kind(&self) -> FrictionKind {
-        match self {
-            LawNow::Coulomb(_) => FrictionKind::Coulomb,
-            LawNow::Orthotropic(_) => FrictionKind::Orthotropic,
         }
     }
 }

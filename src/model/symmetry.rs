@@ -1,7 +1,6 @@
 //! Which effects make the tangent unsymmetric. Decided once, before anything is solved.
 use super::EffectKind;
 use super::Model;
-use super::friction::LawModel;
 use crate::fem::FaceNodes;
 use crate::system::Dof;
 use std::collections::{BTreeMap, BTreeSet};
@@ -51,12 +50,8 @@ pub fn unsymmetric_effects(model: &Model) -> Vec<Unsymmetric> {
     let friction = (model.pairs.iter())
         .filter(|p| !p.is_second())
         .filter_map(|p| {
-            let effect = match p.friction.as_ref()?.law {
-                LawModel::Coulomb { .. } => EffectKind::Coulomb,
-                LawModel::Orthotropic { .. } => EffectKind::Orthotropic,
-            };
             Some(Unsymmetric {
-                effect,
+                effect: p.friction.as_ref()?.law.kind().effect()?,
                 of: p.name.clone(),
                 why: format!(
                     "the friction of contact `{}` depends on its pressure",

@@ -7,7 +7,7 @@ use crate::contact::kind::FrictionKind;
 use crate::model::EffectKind;
 use crate::model::PairModel;
 use crate::model::error::number;
-use crate::scene::{Friction, InitialOverclosure, Penalty};
+use crate::scene::{InitialOverclosure, Penalty};
 
 impl Reporter<'_> {
     pub(super) fn friction(&self, told: &EffectContext) -> Vec<Effect> {
@@ -23,22 +23,16 @@ impl Reporter<'_> {
             Some(_) => format!("`friction` is not {word}"),
         };
         let moving = pair.body_master().is_some();
-        let kinds = [
-            (FrictionKind::Coulomb, EffectKind::Coulomb, "coulomb"),
-            (
-                FrictionKind::Orthotropic,
-                EffectKind::Orthotropic,
-                "orthotropic",
-            ),
-        ];
+        let asked = pair.friction.as_ref().map(|f| f.law.kind().name());
+        let key = asked.map_or(told.key("friction"), |law| {
+            told.key(&format!("friction/{law}"))
+        });
         let mut out = Vec::new();
-        for (kind, effect, word) in kinds {
-            let on = told.kernel.friction == kind;
-            let key = match &told.contact.friction {
-                Some(Friction::Coulomb { .. }) => told.key("friction/coulomb"),
-                Some(Friction::Orthotropic { .. }) => told.key("friction/orthotropic"),
-                None => told.key("friction"),
+        for kind in FrictionKind::LAWS {
+            let Some(effect) = kind.effect() else {
+                continue;
             };
+            let (on, word) = (told.kernel.friction == kind, kind.name());
             let ratio = pair.friction.as_ref().map_or(0.0, |f| f.ratio);
             let reason = why(
                 on,
@@ -60,7 +54,7 @@ impl Reporter<'_> {
                     "a law and a trial traction a point; the tangent stays 3 x 3, without symmetry"
                 }
             };
-            let friction = self.effect(effect, key, reason).costs(cost);
+            let friction = self.effect(effect, key.clone(), reason).costs(cost);
             let mut held = self.history(told);
             if moving {
                 held.push(Held::assembler("links", Per::Whole, 0, 1).growing());

@@ -12,7 +12,7 @@ pub struct Removable {
     pub name: &'static str,
     /// What is done without it, in words.
     pub instead: &'static str,
-    /// Effects of the plan of which one at least is on where the scene has it.
+    /// Effects of the plan, or what their names begin with, of which one at least is on where the scene has it.
     effects: &'static [&'static str],
     /// Takes it out of a scene; whether anything was changed.
     remove: fn(&mut Scene) -> bool,
@@ -46,7 +46,7 @@ pub const REMOVABLE: &[Removable] = &[
     Removable {
         name: "friction",
         instead: "points slide freely",
-        effects: &["contact.friction.coulomb", "contact.friction.orthotropic"],
+        effects: &["contact.friction"],
         remove: |scene| {
             contacts(scene, |c| {
                 c.tangential_penalty = Penalty::Auto;
@@ -248,12 +248,21 @@ fn published(scene: &mut Scene, leave_out: impl Fn(&mut bool, &mut bool)) -> boo
 }
 
 impl Removable {
+    /// Whether an effect of the plan is one of its own.
+    fn takes(&self, effect: &str) -> bool {
+        let own = |own: &str| {
+            let rest = effect.strip_prefix(own);
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        self.effects.iter().any(|name| own(name))
+    }
+
     /// The effect of this name, its own or that of one of its effects in the plan.
     ///
     /// # Errors
     /// [`WithoutError::Unknown`]
     pub fn named(name: &str) -> Result<&'static Removable, WithoutError> {
-        let found = (REMOVABLE.iter()).find(|r| r.name == name || r.effects.contains(&name));
+        let found = (REMOVABLE.iter()).find(|r| r.name == name || r.takes(name));
         let names: Vec<&str> = REMOVABLE.iter().map(|r| r.name).collect();
         found.ok_or_else(|| WithoutError::Unknown {
             name: name.to_owned(),
@@ -264,13 +273,13 @@ impl Removable {
 
     /// Whether an effect of the plan belongs to it.
     pub fn has(&self, effect: &str) -> bool {
-        self.effects.contains(&effect)
+        self.takes(effect)
     }
 
     /// Whether a scene has the effect, by its plan.
     pub fn is_on(&self, plan: &Plan) -> bool {
         let mut on = plan.effects().filter(|e| e.on);
-        on.any(|e| self.effects.contains(&e.name))
+        on.any(|e| self.takes(e.name))
     }
 
     /// The scene without the effect, which has this plan with it.

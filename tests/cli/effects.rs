@@ -158,6 +158,10 @@ fn scenes() -> Vec<Value> {
         trimmed(),
         blocks(&[("/contacts/press/gap", json!("averaged"))]),
         blocks(&[("/contacts/press/passes", json!("two_half"))]),
+        blocks(&[(
+            "/contacts/press/friction",
+            json!({"shear_limited": {"mu": 0.1, "limit": 1}}),
+        )]),
         blocks(&[
             ("/contacts/press/passes", json!("edges")),
             ("/bodies/lower/mesh/block/min", json!([0.4, 0, -1])),

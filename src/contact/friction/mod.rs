@@ -29,5 +29,6 @@ pub mod orthotropic;
 pub mod published;
 pub mod rigid;
 pub mod scatter;
+pub mod shear_limited;
 pub mod touch;
 pub mod trial;

@@ -22,6 +22,12 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
     );
     match friction {
         Friction::Coulomb { mu } => coefficient(c, &format!("{at}/friction/coulomb/mu"), mu),
+        Friction::ShearLimited { mu, limit } => {
+            let at = format!("{at}/friction/shear_limited");
+            coefficient(c, &format!("{at}/mu"), mu);
+            let what = "the largest traction of friction";
+            not_negative(c, &format!("{at}/limit"), what, limit);
+        }
         Friction::Orthotropic { mu, direction } => {
             let at = format!("{at}/friction/orthotropic");
             if contact.master.contains('.') {
@@ -65,13 +71,17 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
 }
 
 fn coefficient(c: &mut Checker, at: &str, mu: &Value) {
+    not_negative(c, at, "the coefficient of friction", mu);
+}
+
+fn not_negative(c: &mut Checker, at: &str, what: &str, mu: &Value) {
     c.value(at, mu, &TIME);
     if let Value::Number(mu) = mu
         && *mu < 0.0
     {
         c.add(
             at,
-            format!("the coefficient of friction is {mu}"),
+            format!("{what} is {mu}"),
             Some("it must not be negative".into()),
         );
     }

@@ -90,6 +90,14 @@ pub enum Friction {
         /// Direction of the first coefficient, of any length.
         direction: [f64; 3],
     },
+    /// Coulomb's law up to a largest traction, which the softer surface bears: at most `mu` times the pressure, and at most
+    /// `limit`. Both may vary in time.
+    ShearLimited {
+        /// Coefficient of friction.
+        mu: Value,
+        /// Largest traction (force / length^2).
+        limit: Value,
+    },
 }
 
 /// What becomes of slave points that start below the master.

@@ -1,5 +1,6 @@
 //! Friction on rigid surfaces in scenes: closed forms, and constructions whose answer is known.
 mod capstan;
 mod loop_;
+mod shear_limited;
 mod stick_limit;
 mod wedge;
