@@ -57,8 +57,8 @@ pub enum ElementKind {
 impl From<Element> for ElementKind {
     fn from(element: Element) -> ElementKind {
         match element {
-            Element::H8 | Element::H8Displacement => ElementKind::H8,
             Element::Q18 => ElementKind::Q18,
+            _ => ElementKind::H8,
         }
     }
 }

@@ -46,6 +46,7 @@ effects! {
         "linear elements, and contact linearised where it starts: for displacements that stay small";
     H8SolidShell, "element.h8_solid_shell", listed: "8-node solid-shell elements that do not lock when thin";
     H8Displacement, "element.h8_displacement", listed: "plain 8-node bricks, for solids (they lock when thin)";
+    H8Eas3, "element.h8_eas3", listed: "8-node solid-shell elements enhanced through their thickness only";
     Q18SolidShell, "element.q18_solid_shell", listed: "18-node quadratic solid-shells, for thin and curved sheets";
     AssumedStrains, "element.assumed_strains", detail: "strains interpolated so that thin elements do not lock";
     EnhancedStrains, "element.enhanced_strains", detail: "further strains inside an element, condensed";

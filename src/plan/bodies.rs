@@ -54,6 +54,7 @@ impl Reporter<'_> {
                 EffectKind::H8Displacement,
                 "h8_displacement",
             ),
+            (Element::H8Eas3, EffectKind::H8Eas3, "h8_eas3"),
             (Element::Q18, EffectKind::Q18SolidShell, "q18"),
         ];
         let effect = |(element, effect, word)| {

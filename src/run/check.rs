@@ -229,6 +229,7 @@ fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
     let described = &scene.bodies[&body.name];
     let element = match described.element {
         Element::H8 => "8-node solid-shell",
+        Element::H8Eas3 => "8-node solid-shell, enhanced through its thickness",
         Element::H8Displacement => "8-node brick without enhancement",
         Element::Q18 => "18-node quadratic solid-shell",
     };

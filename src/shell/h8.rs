@@ -63,6 +63,7 @@ impl Formulation {
         match element {
             Element::H8 if flows => Some(Formulation::Layered),
             Element::H8 => Some(Formulation::Eas7),
+            Element::H8Eas3 => Some(Formulation::Eas3),
             Element::H8Displacement => Some(Formulation::Displacement),
             Element::Q18 => None,
         }

@@ -158,6 +158,7 @@ fn scenes() -> Vec<Value> {
         trimmed(),
         blocks(&[("/contacts/press/gap", json!("averaged"))]),
         blocks(&[("/contacts/press/passes", json!("two_half"))]),
+        blocks(&[("/bodies/lower/element", json!("h8_eas3"))]),
         blocks(&[(
             "/contacts/press/friction",
             json!({"shear_limited": {"mu": 0.1, "limit": 1}}),

@@ -7,6 +7,7 @@ mod die;
 mod draw_bead;
 mod drawn_scenes;
 mod driven;
+mod eas3;
 mod extruded;
 mod facets;
 mod friction;

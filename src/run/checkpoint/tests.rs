@@ -295,6 +295,7 @@ fn what_laws_remember_is_committed_and_kept() {
     for element in [
         scene::Element::H8,
         scene::Element::H8Displacement,
+        scene::Element::H8Eas3,
         scene::Element::Q18,
     ] {
         let mut loaded = scene::parse(SCENE, "scene.json").unwrap();
@@ -321,7 +322,7 @@ fn what_laws_remember_is_committed_and_kept() {
         };
         let points = match element {
             scene::Element::H8 => 24,
-            scene::Element::H8Displacement => 8,
+            scene::Element::H8Displacement | scene::Element::H8Eas3 => 8,
             scene::Element::Q18 => 18,
         };
         assert_eq!(numbers(&start).len(), 14 * points);

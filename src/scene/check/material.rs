@@ -113,10 +113,15 @@ pub(super) fn check_body(c: &mut Checker, name: &str, body: &Body, scene: &Scene
         return;
     }
     let material = &body.material;
-    if body.element == Element::Q18 {
+    let two_points = match body.element {
+        Element::Q18 => Some("q18"),
+        Element::H8Eas3 => Some("h8_eas3"),
+        Element::H8 | Element::H8Displacement => None,
+    };
+    if let Some(element) = two_points {
         c.add(
             &path(&["bodies", name, "element"]),
-            format!("the material `{material}` flows, which `q18` with its two points over the thickness does not follow"),
+            format!("the material `{material}` flows, which `{element}` with its two points over the thickness does not follow"),
             Some("take `h8`, which has six for such materials".into()),
         );
     }

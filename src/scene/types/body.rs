@@ -36,6 +36,9 @@ pub enum Element {
     H8,
     /// 8-node brick without assumed or enhanced strains (locks when thin; for solids and comparisons).
     H8Displacement,
+    /// As `h8`, with the three of the enhanced strains that act through the thickness: stiff where a sheet bends in its own
+    /// plane, and for nu up to 0.45.
+    H8Eas3,
     /// 18-node solid-shell, quadratic in its plane and linear through the thickness: assumed membrane, transverse shear and
     /// thickness strains, four enhanced strains. Curved meshes follow cylinders and spheres closely.
     Q18,
