@@ -121,7 +121,7 @@ pub struct PairModel {
     pub segments: Option<u8>,
     /// One of the two passes of a contact whose sides are both slaves.
     pub half: Option<HalfPass>,
-    /// The points are the sharp edges of the master of this pair, and the master is its slave ([`edges`]).
+    /// The points are the sharp edges of the master of this pair, and the master is its slave.
     pub edges_of: Option<usize>,
     /// Penalty (force / length^3).
     pub eps_n: f64,
