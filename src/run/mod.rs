@@ -95,6 +95,36 @@ pub fn run(
     observer: &mut (dyn Observer + Send),
     interrupt: &AtomicBool,
 ) -> Result<Summary, RunError> {
+    let caller = Options {
+        threads: options.threads,
+        observer: Box::new(observer),
+        interrupt,
+    };
+    match open(scene, out, options, caller)? {
+        Opened::Finished(summary) => Ok(*summary),
+        Opened::Going(mut simulation, mut folder) => simulation.run(&mut [&mut *folder]),
+    }
+}
+
+/// What a folder holds for a run.
+pub enum Opened<'o> {
+    /// A run at its start, or where it was kept, with the folder that it goes on in.
+    Going(Box<Simulation<'o>>, Box<ResultsFolder>),
+    /// The run that was to be continued has reached its end already.
+    Finished(Box<Summary>),
+}
+
+/// Makes a scene ready to run into the folder `out`, from its start or, where `options` say so, from the checkpoint that is
+/// there. The threads are those of `caller` ([`RunOptions::threads`] is for [`run`]).
+///
+/// # Errors
+/// As [`run`].
+pub fn open<'o>(
+    scene: &LoadedScene,
+    out: &Path,
+    options: &RunOptions,
+    mut caller: Options<'o>,
+) -> Result<Opened<'o>, RunError> {
     let entry = options.entry();
     let safe = match entry {
         Entry::Resume => variant_in(out, scene),
@@ -108,26 +138,21 @@ pub fn run(
             Found::Unfinished(found) => sections = Some(found),
             Found::Finished(summary) => {
                 let text = format!("the run in {} has reached its end already", out.display());
-                observer.event(&Event::Note { text });
-                observer.event(&Event::Finished {
+                caller.observer.event(&Event::Note { text });
+                caller.observer.event(&Event::Finished {
                     status: summary.status.name().to_owned(),
                     wall_s: summary.wall_s,
                 });
-                return Ok(*summary);
+                return Ok(Opened::Finished(summary));
             }
         }
     }
-    let options = Options {
-        threads: options.threads,
-        observer: Box::new(observer),
-        interrupt,
-    };
-    let mut simulation = Simulation::start(scene.clone(), safe, sections.as_ref(), options)?;
+    let mut simulation = Simulation::start(scene.clone(), safe, sections.as_ref(), caller)?;
     folder.enter(&simulation)?;
     if sections.is_some() {
         simulation.set_earlier(folder.earlier());
     }
-    simulation.run(&mut [&mut folder])
+    Ok(Opened::Going(Box::new(simulation), Box::new(folder)))
 }
 
 /// Checksum of a scene and of the files that it names, as [`Summary::scene`] tells it.

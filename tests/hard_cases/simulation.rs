@@ -2,7 +2,10 @@
 //! that the run chooses, elements that are replaced, and interruptions.
 use crate::support::{Outcome, scene_json, set, solve};
 use covact::output::{RunStatus, Summary};
-use covact::run::{Options, ReadError, ResultsFolder, RunError, Simulation, Sink, StepError};
+use covact::run::{
+    Opened, Options, ReadError, ResultsFolder, RunError, RunOptions, Simulation, Sink, StepError,
+    open,
+};
 use covact::scene::{self, LoadedScene};
 use covact::solve::event::{Event, Observer};
 use serde_json::{Value, json};
@@ -230,6 +233,64 @@ fn sinks_are_called_in_order_and_end_a_run_that_they_cannot_take() {
     assert_eq!(sink.calls, ["begin", "keep", "step", "close", "summary"]);
     assert_eq!(sink.status, Some(RunStatus::Failed));
     assert_eq!(simulation.summary().reason.as_deref(), Some("no more"));
+}
+
+/// Sinks of a stepped run hear what those of a run as a whole hear, and are closed once.
+#[test]
+fn sinks_follow_a_stepped_run() {
+    let mut scene = coarse_plate();
+    scene["solution"]["end_time"] = json!(0.25);
+    let mut sink = Calls::default();
+    let mut simulation = simulation(&scene);
+    let mut steps = 0;
+    while let Some(step) = simulation.step_into(&mut [&mut sink]).expect("a step") {
+        steps += 1;
+        assert_eq!(step.number, steps);
+    }
+    assert_eq!(steps, 2);
+    let all = [
+        "begin", "keep", "step", "keep", "step", "keep", "close", "summary",
+    ];
+    assert_eq!(sink.calls, all);
+    let again = simulation.step_into(&mut [&mut sink]).expect("the end");
+    assert!(again.is_none() && sink.calls == all);
+}
+
+/// A run is opened where a folder keeps it, and goes on to the same end.
+#[test]
+fn an_open_run_goes_on_in_its_folder() {
+    let scene = loaded(&coarse_plate());
+    let outcome = solve(&coarse_plate());
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let start = RunOptions::default();
+    let resume = RunOptions {
+        resume: true,
+        ..start
+    };
+    let open = |options: &RunOptions| open(&scene, folder.path(), options, Options::default());
+    let Ok(Opened::Going(mut first, mut files)) = open(&start) else {
+        panic!("a run at its start");
+    };
+    for _ in 0..3 {
+        first.step_into(&mut [&mut *files]).expect("a step");
+    }
+    drop((first, files));
+    let Ok(Opened::Going(mut second, mut files)) = open(&resume) else {
+        panic!("a run under way");
+    };
+    let kept = second.steps();
+    assert!(kept > 0 && second.history().rows.len() == kept as usize);
+    while let Some(_step) = second.step_into(&mut [&mut *files]).expect("a step") {}
+    let (a, b) = (&second.history().rows, &outcome.history.rows);
+    assert_eq!(a.len(), b.len());
+    let column = |name: &str| second.history().columns.iter().position(|c| c == name);
+    let force = column("force.ball.z").expect("a column");
+    for (a, b) in a.iter().zip(b) {
+        assert!((a[force] - b[force]).abs() <= 1e-9 * b[force].abs());
+    }
+    drop(files);
+    assert!(matches!(open(&resume), Ok(Opened::Finished(_))));
+    assert!(open(&start).is_err());
 }
 
 /// A folder that comes late has the whole history, and one that holds a run is refused.

@@ -1,5 +1,6 @@
 //! A run in memory: stepped from outside or run through, with its results at hand and no file touched.
 mod read;
+mod stepping;
 pub(super) mod variant;
 
 pub use read::{Force, NodalField, ReadError};
@@ -7,9 +8,8 @@ pub use read::{Force, NodalField, ReadError};
 use super::RunError;
 use super::checkpoint::{self, Fingerprint, Sections};
 use super::cost::Cost;
-use super::march::{AcceptedStep, Caller, Ending, KeptFiles, Outcome, Problem, RunState};
+use super::march::{Caller, Ending, KeptFiles, Problem, RunState};
 use super::probes;
-use super::sink::Sink;
 use crate::machine;
 use crate::machine::clock::Phases;
 use crate::model::{self, Model};
@@ -105,6 +105,10 @@ pub struct Simulation<'o> {
     ended: Option<Ending>,
     /// What there is to say at the end has been said.
     concluded: bool,
+    /// The sinks have been told where the run begins.
+    begun: bool,
+    /// The account that the sinks were closed with.
+    closed: Option<Summary>,
     attempt: u32,
 }
 
@@ -166,110 +170,10 @@ impl<'o> Simulation<'o> {
             history,
             ended: None,
             concluded: false,
+            begun: false,
+            closed: None,
             attempt: 1,
         })
-    }
-
-    /// Goes on to the next accepted step, with as many cuts and retries as it takes; `None` once the run has reached its
-    /// end time. Where the default elements of a body give way in strong compression, the run begins again at time 0 with
-    /// others for it, and what is returned is its first step ([`Step::attempt`]).
-    ///
-    /// # Errors
-    /// [`StepError`]; the simulation stays at the last accepted step.
-    pub fn step(&mut self) -> Result<Option<Step>, StepError> {
-        let pool = Arc::clone(&self.pool);
-        pool.install(|| {
-            loop {
-                let step = self.advance()?;
-                let reached = self.done();
-                if step.is_none() && !reached && self.begin_again()? {
-                    continue;
-                }
-                if reached || step.is_none() {
-                    self.conclude();
-                }
-                return match (step, &self.ended) {
-                    (Some(step), _) => Ok(Some(step)),
-                    (None, Some(ending)) if ending.status == RunStatus::Interrupted => {
-                        Err(StepError::Interrupted)
-                    }
-                    (None, Some(ending)) if !reached => {
-                        let reason = ending.reason.clone().unwrap_or_default();
-                        Err(StepError::NotConverged { reason })
-                    }
-                    (None, _) => Ok(None),
-                };
-            }
-        })
-    }
-
-    /// Goes on to the end, or as far as it gets, and hands every accepted step to the sinks. A run that does not reach its
-    /// end returns its summary with a status that says so.
-    ///
-    /// # Errors
-    /// [`RunError`]: what a sink could not write, or a fault of the program.
-    pub fn run(&mut self, sinks: &mut [&mut dyn Sink]) -> Result<Summary, RunError> {
-        let pool = Arc::clone(&self.pool);
-        pool.install(|| {
-            loop {
-                let mut failure = self.follow(sinks).err();
-                if let Some(error) = &failure {
-                    self.fail(error);
-                }
-                self.conclude();
-                for sink in sinks.iter_mut() {
-                    if let Err(error) = self.timed("output", |run| sink.close(run))
-                        && failure.is_none()
-                    {
-                        self.fail(&error);
-                        failure = Some(error);
-                    }
-                }
-                let summary = self.summary();
-                for sink in sinks.iter_mut() {
-                    let written = sink.summary(self, &summary);
-                    failure = failure.or(written.err());
-                }
-                if let Some(error) = failure {
-                    return Err(error);
-                }
-                self.options.observer.event(&Event::Finished {
-                    status: summary.status.name().to_owned(),
-                    wall_s: summary.wall_s,
-                });
-                if !self.begin_again()? {
-                    return Ok(summary);
-                }
-            }
-        })
-    }
-
-    /// From where it is to the end of the run, or as far as it gets.
-    fn follow(&mut self, sinks: &mut [&mut dyn Sink]) -> Result<(), RunError> {
-        for sink in sinks.iter_mut() {
-            self.timed("output", |run| sink.begin(run))?;
-            for text in sink.notes() {
-                self.options.observer.event(&Event::Note { text });
-            }
-        }
-        self.keep(sinks)?;
-        while self.advance()?.is_some() {
-            for sink in sinks.iter_mut() {
-                self.timed("output", |run| sink.step(run))?;
-            }
-            // A run that ends before its time can be continued before the step that ended it.
-            if self.ended.is_none() || self.done() {
-                self.keep(sinks)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn keep(&mut self, sinks: &mut [&mut dyn Sink]) -> Result<(), RunError> {
-        for sink in sinks.iter_mut() {
-            self.timed("checkpoint", |run| sink.keep(run))?;
-        }
-        Ok(())
     }
 
     /// Does some work as a phase of the run.
@@ -278,50 +182,6 @@ impl<'o> Simulation<'o> {
         let done = work(self);
         (self.running).with_dependent_mut(|_, run| run.phases.stop(phase));
         done
-    }
-
-    /// The next accepted step, or none where the run has ended.
-    fn advance(&mut self) -> Result<Option<Step>, RunError> {
-        if (self.ended.as_ref()).is_some_and(|e| e.status != RunStatus::Interrupted) {
-            return Ok(None);
-        }
-        (self.ended, self.concluded) = (None, false);
-        let caller = Caller {
-            observer: &mut *self.options.observer,
-            interrupt: self.options.interrupt,
-        };
-        let outcome = (self.running).with_dependent_mut(|_, run| {
-            let (mut march, course) = run.march(caller);
-            march.step(course)
-        });
-        match outcome {
-            Ok(Outcome::Accepted(accepted, ending)) => {
-                self.ended = ending;
-                let run = self.running.borrow_dependent();
-                self.history.rows.push(run.course.outputs.row.clone());
-                let AcceptedStep {
-                    dt,
-                    iterations,
-                    cuts,
-                } = accepted;
-                Ok(Some(Step {
-                    number: run.progress.steps,
-                    time: run.progress.time,
-                    dt,
-                    iterations,
-                    cuts,
-                    attempt: self.attempt,
-                }))
-            }
-            Ok(Outcome::Stopped(ending)) => {
-                self.ended = Some(ending);
-                Ok(None)
-            }
-            Err(error) => {
-                self.fail(&error);
-                Err(error)
-            }
-        }
     }
 
     fn fail(&mut self, error: &RunError) {
@@ -377,6 +237,7 @@ impl<'o> Simulation<'o> {
         self.safe = Some(safe);
         self.history.rows.clear();
         (self.whole, self.ended, self.concluded) = (true, None, false);
+        (self.begun, self.closed) = (false, None);
         self.attempt += 1;
         Ok(true)
     }
