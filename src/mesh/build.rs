@@ -1,6 +1,6 @@
 //! From the scene's description to a mesh.
 use super::extrude::Extrusion;
-use super::raw::{ThicknessRule, report};
+use super::raw::{RawMesh, ThicknessRule, report};
 use super::{
     ElementKind, Face, Mesh, MeshError, MeshReport, block, cylinder_panel, plate, sphere_panel,
 };
@@ -23,6 +23,10 @@ pub fn build(
         MeshSource::SpherePanel(p) => sphere_panel(p, kind)?,
         MeshSource::Block(p) => block(p, kind)?,
         MeshSource::File(file) => return read_file(file, kind, scene_dir),
+        MeshSource::Cells(cells) => {
+            let raw = super::vtk::from_cells(cells)?;
+            return finish(raw, &cells.file.path, &cells.file, kind);
+        }
         MeshSource::Arrays(arrays) => Mesh::of(arrays, kind)?,
     };
     mesh.check()?;
@@ -152,7 +156,7 @@ pub fn read(
     file: &MeshFile,
     kind: ElementKind,
 ) -> Result<(Mesh, MeshReport), MeshError> {
-    let mut raw = match format {
+    let raw = match format {
         Format::Gmsh => super::gmsh::parse(bytes, path)?,
         Format::Inp => super::inp::parse(bytes, path)?,
         Format::Nastran => super::nastran::parse(bytes, path)?,
@@ -160,6 +164,16 @@ pub fn read(
         Format::Vtu => super::vtk::parse_xml(bytes, path)?,
         Format::Stl => super::stl::parse(bytes, path)?,
     };
+    finish(raw, path, file, kind)
+}
+
+/// Makes the mesh that `file` asks for of what was read.
+fn finish(
+    mut raw: RawMesh,
+    path: &Path,
+    file: &MeshFile,
+    kind: ElementKind,
+) -> Result<(Mesh, MeshReport), MeshError> {
     if let Some(set) = &file.only {
         raw.select(set)?;
     }

@@ -51,6 +51,8 @@ pub enum Position {
     Text { line: usize, column: usize },
     /// Binary file: byte offset from 0.
     Byte(usize),
+    /// Arrays that a program gave.
+    Memory,
 }
 
 impl fmt::Display for Position {
@@ -58,6 +60,7 @@ impl fmt::Display for Position {
         match self {
             Position::Text { line, column } => write!(f, "{line}:{column}"),
             Position::Byte(offset) => write!(f, "byte {offset}"),
+            Position::Memory => f.write_str("in memory"),
         }
     }
 }

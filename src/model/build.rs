@@ -273,7 +273,7 @@ fn room(name: &str, body: &scene::Body, flows: bool) -> Result<(), ModelError> {
         MeshSource::CylinderPanel(p) => [p.elements[0], p.elements[1], p.layers],
         MeshSource::SpherePanel(p) => [p.elements[0], p.elements[1], p.layers],
         MeshSource::Block(b) => b.elements,
-        MeshSource::File(_) | MeshSource::Arrays(_) => return Ok(()),
+        MeshSource::File(_) | MeshSource::Arrays(_) | MeshSource::Cells(_) => return Ok(()),
     };
     let element = body.element;
     let grid = grid::Grid {
@@ -299,6 +299,7 @@ pub(crate) fn elements_key(body: &str, source: &MeshSource) -> String {
         MeshSource::Block(_) => "block/elements",
         MeshSource::File(_) => "file/path",
         MeshSource::Arrays(_) => "arrays",
+        MeshSource::Cells(_) => "cells",
     };
     format!("/bodies/{body}/mesh/{field}")
 }

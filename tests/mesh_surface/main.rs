@@ -1,4 +1,5 @@
 //! Surface meshes that become bodies: formats, thickness, sense, sets, and what is refused.
+mod cells;
 mod formats;
 mod inp;
 mod large;

@@ -3,6 +3,7 @@ use crate::mesh::error::shorten;
 use crate::mesh::quadratic::{PLACES, tensor_27};
 use crate::mesh::raw::{NONE, RawMesh};
 use crate::mesh::{MeshError, Position};
+use crate::scene::MeshCells;
 use covact_geometry::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -26,6 +27,46 @@ pub(super) struct Grid {
     pub types: Vec<i64>,
     pub point_arrays: Vec<(String, Vec<i64>)>,
     pub cell_arrays: Vec<(String, Vec<i64>)>,
+    /// Cells of named sets.
+    pub cell_sets: Vec<(String, Vec<u32>)>,
+}
+
+/// The mesh of points and cells that a program gives.
+pub(in crate::mesh) fn from_cells(mesh: &MeshCells) -> Result<RawMesh, MeshError> {
+    let path = &mesh.file.path;
+    let at = Position::Memory;
+    let within = |set: &str, kind: &'static str, members: &[u32], count: usize| {
+        let wrong = members.iter().find(|&&n| n as usize >= count);
+        wrong.map_or(Ok(()), |&number| {
+            Err(MeshError::OutOfRange {
+                what: format!("the set `{}`", shorten(set)),
+                kind,
+                number: number.into(),
+                count,
+            })
+        })
+    };
+    for (name, set) in &mesh.cell_sets {
+        within(name, "cell", set, mesh.types.len())?;
+    }
+    for (name, set) in &mesh.point_sets {
+        within(name, "point", set, mesh.points.len())?;
+    }
+    let grid = Grid {
+        points: mesh.points.iter().map(|x| Vec3::from(*x)).collect(),
+        connectivity: mesh.connectivity.clone(),
+        ends: mesh.ends.clone(),
+        types: mesh.types.clone(),
+        cell_sets: (mesh.cell_sets.iter())
+            .map(|(name, set)| (name.clone(), set.clone()))
+            .collect(),
+        ..Grid::default()
+    };
+    let mut raw = grid.into_raw(path, at)?;
+    for (name, set) in &mesh.point_sets {
+        (raw.node_sets.entry(name.clone()).or_default()).extend_from_slice(set);
+    }
+    Ok(raw)
 }
 
 /// What became of a cell.
@@ -129,6 +170,9 @@ impl Grid {
             .map(|(name, n)| format!("{n} {name}"))
             .collect();
         raw.sets_of_cells(&self.cell_arrays, &cells);
+        for (name, members) in self.cell_sets {
+            raw.set_of_cells(&name, members, &cells);
+        }
         for (name, values) in &self.point_arrays {
             for (value, points) in groups(values).into_iter().flatten() {
                 raw.node_sets.insert(format!("{name}_{value}"), points);
@@ -239,21 +283,25 @@ impl RawMesh {
             };
             for (value, members) in groups {
                 let set = format!("{name}_{value}");
-                for member in members {
-                    match cells.get(member as usize) {
-                        Some(Cell::Solid(e)) => {
-                            self.solid_sets.entry(set.clone()).or_default().push(*e);
-                        }
-                        Some(Cell::Facet(f)) => {
-                            self.facets.sets.entry(set.clone()).or_default().push(*f);
-                        }
-                        Some(Cell::Line(line)) => {
-                            self.node_sets.entry(set.clone()).or_default().extend(line);
-                            self.lines.entry(set.clone()).or_default().push(*line);
-                        }
-                        _ => {}
-                    }
+                self.set_of_cells(&set, members, cells);
+            }
+        }
+    }
+
+    fn set_of_cells(&mut self, set: &str, members: Vec<u32>, cells: &[Cell]) {
+        for member in members {
+            match cells.get(member as usize) {
+                Some(Cell::Solid(e)) => {
+                    self.solid_sets.entry(set.to_owned()).or_default().push(*e);
                 }
+                Some(Cell::Facet(f)) => {
+                    self.facets.sets.entry(set.to_owned()).or_default().push(*f);
+                }
+                Some(Cell::Line(line)) => {
+                    (self.node_sets.entry(set.to_owned()).or_default()).extend(line);
+                    self.lines.entry(set.to_owned()).or_default().push(*line);
+                }
+                _ => {}
             }
         }
     }

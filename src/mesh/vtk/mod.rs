@@ -7,5 +7,6 @@ mod legacy;
 mod values;
 mod xml;
 
+pub(super) use grid::from_cells;
 pub(super) use legacy::parse as parse_legacy;
 pub(super) use xml::parse as parse_xml;

@@ -119,7 +119,7 @@ fn generated_sets(mesh: &MeshSource) -> (Vec<&'static str>, &'static str) {
             (sets, false, "block")
         }
         MeshSource::File(_) => (Vec::new(), false, "file"),
-        MeshSource::Arrays(_) => (Vec::new(), false, "mesh"),
+        MeshSource::Arrays(_) | MeshSource::Cells(_) => (Vec::new(), false, "mesh"),
     };
     if closed {
         sets.retain(|s| !s.starts_with("phi") && !s.starts_with("longitude"));
@@ -162,7 +162,7 @@ impl<'a> Sets<'a> {
                     *sets.entry(set).or_insert(faces) |= faces;
                 }
             }
-            let open = matches!(body.mesh, MeshSource::File(_));
+            let open = matches!(body.mesh, MeshSource::File(_) | MeshSource::Cells(_));
             (name.as_str(), BodySets { sets, open })
         });
         Sets {

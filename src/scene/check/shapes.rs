@@ -71,14 +71,16 @@ pub(super) fn check_mesh(c: &mut Checker, at: &str, mesh: &MeshSource) {
         }
         // Their numbers are checked where the mesh is made.
         MeshSource::Arrays(_) => {}
+        MeshSource::Cells(mesh) => check_mesh_file(c, &format!("{at}/cells"), &mesh.file),
         MeshSource::File(f) => {
-            check_mesh_file(c, &format!("{at}/file"), f);
+            let at = format!("{at}/file");
+            c.file(&format!("{at}/path"), &f.path, MESH_FILES);
+            check_mesh_file(c, &at, f);
         }
     }
 }
 
 fn check_mesh_file(c: &mut Checker, at: &str, file: &MeshFile) {
-    c.file(&format!("{at}/path"), &file.path, MESH_FILES);
     c.positive(&format!("{at}/scale"), "the scale", file.scale);
     match &file.thickness {
         Some(Thickness::Uniform(t)) => c.positive(&format!("{at}/thickness"), "the thickness", *t),

@@ -1,6 +1,6 @@
 //! Deformable bodies: elements, where meshes come from, sets.
 use super::boxes::Corners;
-use super::given::{Given, MeshArrays};
+use super::given::{Given, MeshArrays, MeshCells};
 use super::mesh::*;
 use super::mesh_file::MeshFile;
 use super::surface::Placement;
@@ -63,6 +63,10 @@ pub enum MeshSource {
     #[serde(skip_deserializing)]
     #[schemars(skip)]
     Arrays(Given<MeshArrays>),
+    /// Points and cells that a program gives; a scene file names a file in their place.
+    #[serde(skip_deserializing)]
+    #[schemars(skip)]
+    Cells(Given<MeshCells>),
 }
 
 /// Set selected by geometry, on the undeformed mesh.

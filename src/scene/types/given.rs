@@ -1,4 +1,5 @@
 //! Meshes and surfaces that a program gives as values. Scene files name files in their place.
+use super::mesh_file::MeshFile;
 use covact_geometry::NurbsPatch;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -21,6 +22,26 @@ pub struct MeshArrays {
     /// Element numbers and local faces of named sets. Local faces: 0 is r = -1, 1 is r = +1, 2 is s = -1, 3 is s = +1, 4 is
     /// t = -1 (bottom), 5 is t = +1 (top).
     pub face_sets: BTreeMap<String, Vec<(u32, u8)>>,
+}
+
+/// A mesh as points and cells, as mesh files and most mesh libraries have it: hexahedra, or a surface that a thickness makes
+/// a body of. It is taken as a file of the same content is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshCells {
+    /// Positions of the points.
+    pub points: Vec<[f64; 3]>,
+    /// Points of the cells, one cell after the other, in VTK's order.
+    pub connectivity: Vec<i64>,
+    /// Where each cell ends in `connectivity`.
+    pub ends: Vec<i64>,
+    /// VTK's number of the type of each cell: 5 triangle, 9 quadrilateral, 12 hexahedron, 29 hexahedron of 27 nodes, ...
+    pub types: Vec<i64>,
+    /// Cells of named sets.
+    pub cell_sets: BTreeMap<String, Vec<u32>>,
+    /// Points of named sets.
+    pub point_sets: BTreeMap<String, Vec<u32>>,
+    /// Thickness, layers and all else that a scene may say of a mesh file. The path stands for the mesh in messages.
+    pub file: MeshFile,
 }
 
 /// A value shared by the scenes that hold it. Where a scene is written as text, a checksum stands in its place.
@@ -87,6 +108,34 @@ impl Digest for MeshArrays {
                 hasher.write_u8(*face);
             }
         }
+    }
+}
+
+impl Digest for MeshCells {
+    fn add(&self, hasher: &mut DefaultHasher) {
+        let MeshCells {
+            points,
+            connectivity,
+            ends,
+            types,
+            cell_sets,
+            point_sets,
+            file,
+        } = self;
+        add_numbers(points.as_flattened(), hasher);
+        for numbers in [connectivity, ends, types] {
+            hasher.write_usize(numbers.len());
+            numbers.iter().for_each(|n| hasher.write_i64(*n));
+        }
+        for sets in [cell_sets, point_sets] {
+            hasher.write_usize(sets.len());
+            for (name, set) in sets {
+                hasher.write(name.as_bytes());
+                hasher.write_usize(set.len());
+                set.iter().for_each(|n| hasher.write_u32(*n));
+            }
+        }
+        hasher.write(format!("{file:?}").as_bytes());
     }
 }
 

@@ -66,6 +66,12 @@ impl From<MeshArrays> for MeshSource {
     }
 }
 
+impl From<MeshCells> for MeshSource {
+    fn from(mesh: MeshCells) -> Self {
+        MeshSource::Cells(mesh.into())
+    }
+}
+
 impl From<SphereShape> for Surface {
     fn from(sphere: SphereShape) -> Self {
         Surface {

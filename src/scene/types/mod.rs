@@ -20,7 +20,7 @@ pub use body::*;
 pub use boxes::*;
 pub use conditions::*;
 pub use contact::*;
-pub use given::{Given, MeshArrays};
+pub use given::{Given, MeshArrays, MeshCells};
 pub use material::*;
 pub use mesh::*;
 pub use mesh_file::*;
