@@ -19,9 +19,11 @@ mod view;
 mod without;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
+use std::ffi::OsString;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Exit codes of the program; 0 is success.
@@ -312,19 +314,40 @@ fn completions(args: &CompletionsArgs) -> u8 {
     print(&String::from_utf8_lossy(&text))
 }
 
+/// The program that runs of a study or a soak are started with.
+static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+
+/// The program that this one calls for parts of its work: itself.
+fn program() -> std::io::Result<PathBuf> {
+    match PROGRAM.get() {
+        Some(program) => Ok(program.clone()),
+        None => std::env::current_exe(),
+    }
+}
+
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
+    ExitCode::from(main_of(std::env::args_os(), None))
+}
+
+/// Runs the program with these arguments, of which the first is its name. `called` is the program that does the same with
+/// its own arguments, where that is not the one that runs. Returns the exit code.
+pub fn main_of(arguments: impl Iterator<Item = OsString>, called: Option<PathBuf>) -> u8 {
+    if let Some(called) = called {
+        // Set once: another call has the same.
+        let _ = PROGRAM.set(called);
+    }
     std::panic::set_hook(Box::new(report::panic));
     if !interrupt::survive_large_files() {
         report::warning("a file that outgrows the limit on its size will end the program");
     }
-    let cli = match Cli::try_parse() {
+    let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(e) => {
             // Prints help and version to standard output, everything else to standard error.
             let written = e.print();
             let code = if e.use_stderr() { exit::USAGE } else { 0 };
-            return ExitCode::from(if written.is_ok() { code } else { exit::IO });
+            return if written.is_ok() { code } else { exit::IO };
         }
     };
     let result = std::panic::catch_unwind(move || match cli.command {
@@ -349,10 +372,10 @@ pub fn main() -> ExitCode {
     });
     // The hook has told about the panic.
     let code = result.unwrap_or(exit::BUG);
-    ExitCode::from(match code {
+    match code {
         0 if PRINTING_FAILED.load(Ordering::Relaxed) => exit::IO,
         code => code,
-    })
+    }
 }
 
 /// Whether something could not be printed, which has been told then.

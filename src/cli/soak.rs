@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use std::time::Duration;
 
 pub(super) fn soak(args: &SoakArgs) -> u8 {
-    let program = match std::env::current_exe() {
+    let program = match super::program() {
         Ok(program) => program,
         Err(e) => {
             report::error(&format!("cannot tell where this program is: {e}"));

@@ -61,21 +61,11 @@ fn run(args: &StudyArgs) -> Result<u8, StudyError> {
 }
 
 fn settings(loaded: &LoadedStudy) -> Result<Settings, StudyError> {
-    let program = std::env::current_exe().map_err(|e| StudyError::Start {
+    let program = super::program().map_err(|e| StudyError::Start {
         program: PathBuf::from("covact"),
         reason: format!("cannot tell where this program is: {e}"),
     })?;
-    let timing = &loaded.study.timing;
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    Ok(Settings {
-        program,
-        together: match timing.one_at_a_time {
-            true => 1,
-            false => (cores / timing.threads.max(1) as usize).max(1),
-        },
-        // Longer than any run.
-        limit: Duration::try_from_secs_f64(timing.limit).unwrap_or(Duration::MAX),
-    })
+    Ok(Settings::of(&loaded.study.timing, program))
 }
 
 /// Time for the processes of runs to be stopped and waited for.

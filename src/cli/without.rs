@@ -136,7 +136,7 @@ pub(super) fn what_ifs(
 }
 
 fn run_without(args: &RunArgs, name: &str, out: &Path) -> std::io::Result<u8> {
-    let mut command = Command::new(std::env::current_exe()?);
+    let mut command = Command::new(super::program()?);
     command.arg("run").arg(&args.scene).arg("-o").arg(out);
     command.args(["--off", name]);
     command.arg("--threads").arg(args.threads.to_string());

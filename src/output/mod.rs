@@ -50,6 +50,6 @@ pub use results::{PartNames, Results, SurfaceState, file_stem};
 pub const RUN_LOG: &str = "run.log";
 
 pub use summary::{ProbeSummary, RunStatus, SUMMARY_FORMAT, Summary, Versions};
-pub use surface::{SurfaceOutput, flat_bytes};
+pub use surface::{SurfaceOutput, Tessellation, flat_bytes};
 pub(crate) use vtu::escaped;
 pub use vtu::{Field, Place};

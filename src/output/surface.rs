@@ -38,6 +38,20 @@ struct Exact {
     entity: Vec<u32>,
 }
 
+/// The quadrilaterals of a surface, for who draws it.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Tessellation {
+    /// Corners, those of each quadrilateral in steps around it; pieces share none.
+    pub points: Vec<Point3<f64>>,
+    /// Outward unit normals at the corners.
+    pub normals: Vec<Vector3<f64>>,
+    /// Numbers of the corners, four a quadrilateral.
+    pub corners: Vec<u64>,
+    /// Patch of each quadrilateral.
+    pub patch: Vec<u32>,
+}
+
 /// Flat quadrilaterals.
 #[derive(Debug, Clone, Default)]
 struct Flat {
@@ -88,6 +102,23 @@ impl SurfaceOutput {
     /// Name of the surface in the scene.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The flat copy.
+    pub fn into_tessellation(self) -> Tessellation {
+        let Flat {
+            points,
+            normals,
+            connectivity,
+            patch,
+            ..
+        } = self.flat;
+        Tessellation {
+            points,
+            normals,
+            corners: connectivity,
+            patch,
+        }
     }
 
     /// Numbers of the pieces whose degree is above [`MAX_DEGREE`]: VTK has no cell for them, so they are in the

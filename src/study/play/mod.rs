@@ -4,6 +4,7 @@ mod process;
 pub use process::{Account, running};
 
 use super::error::StudyError;
+use super::file::Timing;
 use super::folder::Folder;
 use super::gather::{State, state};
 use super::record::Ending;
@@ -22,6 +23,22 @@ pub struct Settings {
     pub together: usize,
     /// A run that takes longer is stopped.
     pub limit: Duration,
+}
+
+impl Settings {
+    /// What a study asks for.
+    pub fn of(timing: &Timing, program: PathBuf) -> Self {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        Settings {
+            program,
+            together: match timing.one_at_a_time {
+                true => 1,
+                false => (cores / timing.threads.max(1) as usize).max(1),
+            },
+            // Longer than any run.
+            limit: Duration::try_from_secs_f64(timing.limit).unwrap_or(Duration::MAX),
+        }
+    }
 }
 
 /// A repeat of a run that has ended, or was done before.
