@@ -1,0 +1,52 @@
+"""The programs of the guide and of the notebooks run."""
+
+import json
+import re
+
+import pytest
+
+from conftest import ROOT
+
+matplotlib = pytest.importorskip("matplotlib")
+matplotlib.use("Agg")
+
+
+def test_the_programs_of_the_guide(tmp_path, monkeypatch, capsys):
+    guide = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    programs = re.findall(r"```python\n(.*?)```", guide, re.S)
+    assert len(programs) >= 4
+    for name in ("assets", "examples"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for program in programs:
+        exec(compile(program, "docs/python.md", "exec"), names)
+    assert names["result"].done and (tmp_path / "press.png").stat().st_size > 10_000
+    assert names["stress"].shape[1] == 6 and names["simulation"].value("pressure.max") > 200
+    assert abs(names["feet"].distance).max() > 0
+    assert "done" in capsys.readouterr().out
+
+
+def test_the_first_program_is_as_short_as_it_says():
+    guide = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    first = re.search(r"```python\n(.*?)```", guide, re.S).group(1)
+    # From nothing to a picture; closing brackets and the line that prints are no statements of their own.
+    lines = [line for line in first.splitlines() if line.strip() not in ("", "})")]
+    assert len(lines) <= 11
+
+
+@pytest.mark.parametrize("name", ["first_press", "punch_radius", "convergence"])
+def test_notebooks(name, monkeypatch):
+    if name == "punch_radius":
+        pytest.importorskip("scipy")
+    folder = ROOT / "python" / "notebooks"
+    monkeypatch.chdir(folder)
+    book = json.loads((folder / f"{name}.ipynb").read_text(encoding="utf-8"))
+    names = {}
+    pictures = 0
+    for cell in book["cells"]:
+        if cell["cell_type"] == "code":
+            # Each ends in checks of its own.
+            exec(compile("".join(cell["source"]), f"{name}.ipynb", "exec"), names)
+            pictures += sum("image/png" in output.get("data", {}) for output in cell["outputs"])
+    assert pictures >= 1

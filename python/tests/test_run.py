@@ -1,0 +1,218 @@
+"""Runs: in memory, stepped, stopped, into folders."""
+
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import covact
+from conftest import cube, grid, press
+
+
+def test_results_come_without_files(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = covact.run(press())
+    assert result.done and result.status == "done"
+    force = result.history["force.ball.z"]
+    # The ball goes down and is held up ever more.
+    assert result.history["time"][-1] == 1.0 and np.all(np.diff(force) < 0)
+    assert len(force) == len(result.history.rows) == result.summary["steps"]
+    plate = result.bodies["plate"]
+    assert plate.nodes.shape == (162, 3) and plate.elements.shape == (64, 8)
+    assert plate.fields["cauchy_stress"].shape == (162, 6)
+    assert plate.displacement[:, 2].min() < -0.8
+    # What the ball exerts, the rim holds.
+    rim = ((plate.nodes[:, :2] == 0) | (plate.nodes[:, :2] == 10)).any(axis=1)
+    reaction = plate.fields["reaction"][rim].sum(axis=0)
+    assert reaction[2] == pytest.approx(-force[-1], rel=1e-6)
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_cube_of_arrays_under_a_patch_has_its_closed_form():
+    """Uniaxial stress of a St. Venant-Kirchhoff material: P = E/2 (l^2 - 1) l on any mesh of plain bricks."""
+    points, hexahedra = cube(4)
+    mesh = covact.Mesh(points, {"hexahedron": hexahedra})
+    knots = [0, 0, 0, 1, 1, 1]
+    x, y = np.meshgrid([-0.5, 0.7, 1.5], [-0.5, 0.2, 1.5], indexing="ij")
+    # Rational, so that its parameters run unevenly over the plane; the normal looks down.
+    weights = np.array([[1.0, 0.6, 1.0], [0.8, 2.0, 0.8], [1.0, 1.3, 1.0]])
+    tool = covact.geometry.patch([2, 2], [knots, knots], np.stack([x, y, np.ones_like(x)], axis=-1), weights)
+    symmetric = lambda side, axis: {"on": f"cube.{side}", "symmetry": axis}  # noqa: E731
+    facing = lambda normal: {"faces_facing": {"normal": normal, "angle": 10}}  # noqa: E731
+    scene = {
+        "materials": {"elastic": {"st_venant_kirchhoff": {"E": 100.0, "nu": 0.3}}},
+        "bodies": {
+            "cube": {
+                "mesh": mesh,
+                "material": "elastic",
+                "element": "h8_displacement",
+                "sets": {
+                    "left": facing([-1, 0, 0]),
+                    "front": facing([0, -1, 0]),
+                    "below": facing([0, 0, -1]),
+                    "above": facing([0, 0, 1]),
+                },
+            }
+        },
+        "surfaces": {"tool": {"patches": tool, "motion": {"translation": [0, 0, "-0.1*t"]}}},
+        "contacts": {"press": {"slave": "cube.above", "master": "tool", "accuracy": 2e-4}},
+        "supports": {"x": symmetric("left", "x"), "y": symmetric("front", "y"), "z": symmetric("below", "z")},
+    }
+    result = covact.run(scene)
+    assert result.done
+    stretch = 0.9
+    expected = 100.0 * 0.5 * (stretch**2 - 1) * stretch
+    assert result.history["force.tool.z"][-1] == pytest.approx(expected, rel=1e-3)
+    above = points[:, 2] == 1.0
+    pressure = result.bodies["cube"].fields["contact_pressure"]
+    # The same nodes in the same order.
+    assert np.abs(result.bodies["cube"].nodes - points).max() < 1e-12
+    assert np.abs(pressure[above] / -expected - 1).max() < 1e-3
+
+
+def test_a_surface_of_arrays_is_the_plate_of_the_generator():
+    points, quads = grid(8)
+    points[:, :2] *= 10
+    mesh = covact.Mesh(points, {"quad": quads}, thickness=0.5, point_sets={"middle": [40]})
+    scene = press()
+    expected = covact.run(scene).history["force.ball.z"]
+    scene["bodies"] = {"plate": {"mesh": mesh, "material": "rubber"}}
+    scene["supports"] = {"rim": {"on": "plate.border", "fixed": True}}
+    scene["probes"] = {"middle": {"on": "plate.middle", "quantity": "displacement"}}
+    result = covact.run(scene)
+    assert result.history["force.ball.z"] == pytest.approx(expected, rel=1e-9)
+    assert result.history["probe.middle.z"][-1] < -0.8
+
+
+def test_steps_are_taken_one_by_one_and_a_callback_ends_a_run():
+    simulation = covact.Simulation(press())
+    first = simulation.step()
+    assert (first.number, simulation.steps, simulation.time) == (1, 1, first.time)
+    assert simulation.force("ball")[2] < 0
+    assert simulation.value("force.ball.z") == simulation.force("ball")[2]
+    seen = []
+
+    def enough(run, step):
+        seen.append(step.number)
+        return run.force("ball")[2] > -0.03
+
+    result = simulation.run(enough)
+    assert seen == list(range(2, 2 + len(seen))) and not simulation.done
+    force = result.history["force.ball.z"]
+    assert force[-1] <= -0.03 and np.all(force[:-1] > -0.03)
+    # It can go on from there.
+    assert [step.number for step in simulation][0] == seen[-1] + 1
+    assert simulation.done and simulation.step() is None
+
+
+def test_an_observer_hears_of_iterations_and_may_end_a_run():
+    events = []
+    covact.run(press(), observer=events.append)
+    kinds = [event["event"] for event in events]
+    assert kinds[0] == "model" and kinds[-1] == "finished" and kinds.count("iteration") > 10
+
+    def fault(event):
+        if event["event"] == "step_accepted":
+            raise ZeroDivisionError("enough")
+
+    with pytest.raises(ZeroDivisionError, match="enough"):
+        covact.run(press(), observer=fault)
+
+
+def slow():
+    """Some seconds of work, most of them in one step."""
+    scene = press()
+    scene["bodies"]["plate"]["mesh"]["plate"]["elements"] = [60, 60]
+    return scene
+
+
+def test_other_threads_go_on_while_a_run_is_solved():
+    simulation = covact.Simulation(slow())
+    ticks = 0
+    ended = threading.Event()
+
+    def count():
+        nonlocal ticks
+        while not ended.wait(0.005):
+            ticks += 1
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    start = time.perf_counter()
+    simulation.step()
+    took = time.perf_counter() - start
+    ended.set()
+    thread.join()
+    # A tenth of what would be counted alone, on a busy machine.
+    assert ticks > max(2, 0.1 * took / 0.005)
+
+
+def test_ctrl_c_ends_a_step_and_the_next_goes_on():
+    simulation = covact.Simulation(slow())
+    simulation.step()
+    timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        for _ in simulation:
+            pass
+    before = simulation.steps
+    assert not simulation.done
+    assert simulation.step().number == before + 1
+
+
+def test_a_folder_holds_what_memory_holds(tmp_path):
+    result = covact.run(press(), tmp_path / "out")
+    assert (tmp_path / "out" / "results.pvd").is_file()
+    read = covact.read(tmp_path / "out")
+    assert read.history.columns == result.history.columns
+    assert np.array_equal(read.history.rows, result.history.rows)
+    assert read.status == "done"
+    # Nobody asked to replace it.
+    with pytest.raises(covact.Error, match="out"):
+        covact.run(press(), tmp_path / "out")
+    again = covact.run(press(), tmp_path / "out", replace=True)
+    assert np.array_equal(again.history.rows, result.history.rows)
+    with pytest.raises(covact.Error, match="reached its end"):
+        covact.run(press(), tmp_path / "out", resume=True)
+
+
+def test_a_run_is_taken_up_where_it_was_left(tmp_path):
+    out = tmp_path / "out"
+    whole = covact.run(press())
+    first = covact.Simulation(press(), out)
+    first.step()
+    first.step()
+    del first
+    second = covact.Simulation(press(), out, resume=True)
+    result = second.run()
+    assert result.done
+    assert np.allclose(result.history.rows, whole.history.rows, rtol=1e-9, atol=1e-12)
+
+
+def test_what_does_not_converge_says_so():
+    scene = press(solution={"step": {"initial": 1.0, "min": 1.0, "max": 1.0}, "newton": {"max_iterations": 1}})
+    simulation = covact.Simulation(scene)
+    with pytest.raises(covact.NotConverged):
+        simulation.step()
+    result = covact.run(scene)
+    assert not result.done and result.status == "not_converged"
+
+
+def test_meshes_of_meshio(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    points, quads = grid(4)
+    sets = {"half": [np.arange(8)], "rest": [np.arange(8, 16)]}
+    mesh = covact.Mesh.from_meshio(meshio.Mesh(10 * points, [("quad", quads)], cell_sets=sets), thickness=0.5)
+    scene = press(supports={"rim": {"on": "plate.border", "fixed": True}})
+    scene["bodies"]["plate"]["mesh"] = mesh
+    report = covact.check(scene)
+    assert report["bodies"][0]["elements"] == 16
+    scene["contacts"]["press"]["slave"] = "plate.half_top"
+    body = covact.run(scene | {"solution": {"end_time": 0.1}}).bodies["plate"]
+    body.to_meshio().write(tmp_path / "plate.vtu")
+    again = meshio.read(tmp_path / "plate.vtu")
+    assert np.array_equal(again.point_data["displacement"], body.displacement)
+    assert len(again.cells[0].data) == 16
