@@ -89,7 +89,7 @@ pub enum StepError {
 }
 
 /// A run of a scene: it starts at time 0 and goes on a step at a time ([`Self::step`]) or to its end ([`Self::run`]).
-/// Whatever it computes is read in memory; files are written by [sinks](Sink) alone. `'o` is the life of its observer.
+/// Whatever it computes is read in memory; files are written by [sinks](super::Sink) alone. `'o` is the life of its observer.
 pub struct Simulation<'o> {
     /// The scene as it was given.
     scene: LoadedScene,
