@@ -3,7 +3,7 @@
 //! - [`kernel`]: face points in nine slots, [`corner`]: edges and vertices, [`published`]: the published tangent;
 //! - [`point`]: one response for all of them, [`law`]: what the traction is;
 //! - [`rigid`], [`moving`]: closest points on masters that do not move or whose nodes do, [`meeting`]: what both give,
-//!   [`placed`]: many points on a rigid one;
+//!   [`placed`]: many points on a rigid one, [`clearance`]: those that are open without a search;
 //! - [`kind`]: what a batch of points is compiled for;
 //! - [`friction`]: slip, its laws and its history;
 //! - [`spin`]: a rigid body's translation and spin in the slots, [`averaged`]: the gap in the mean of slave nodes.
@@ -31,6 +31,7 @@
 //! | sticking, sliding, exact | at every `xi3` | [`friction::trial::Attraction::traction_towards`], [`friction::moving::respond_with_friction`] |
 pub mod averaged;
 pub mod carried;
+pub mod clearance;
 pub mod clip;
 pub mod closest;
 pub mod corner;

@@ -1,4 +1,5 @@
 //! Evaluation of many slave points on a rigid surface at one place.
+use super::clearance::Clearance;
 use super::closest::ClosestPoint;
 use super::keep;
 use super::kernel::Normal;
@@ -68,16 +69,23 @@ impl<P: ClosestPoint> Placed<'_, P> {
         tangent: &T,
     ) -> Result<Option<Touch>, PointFault> {
         let mut out = Ok(None);
-        self.touch_into(x, hint, law, tangent, &mut out);
+        self.touch_into(x, (hint, &mut Clearance::default()), law, tangent, &mut out);
         out
     }
 
-    /// [`Self::touch`] for loops over points: the result is written where it stays.
+    /// Whether a slave point at `x` is open by what is known of it.
+    #[cfg(test)]
+    pub(super) fn proves_open<L: NormalLaw>(&self, x: &Vec3, clear: &Clearance, law: &L) -> bool {
+        clear.proves_open(&self.local(x), law, self.master.depth)
+    }
+
+    /// [`Self::touch`] for loops over points: the result is written where it stays. A point that is open by its clearance is
+    /// not searched for, and keeps its hint; else the clearance is set to what the search says.
     #[inline(always)]
     pub fn touch_into<L: NormalLaw, T: RigidTangent>(
         &self,
         x: &Vec3,
-        hint: &mut Option<Hint>,
+        (hint, clear): (&mut Option<Hint>, &mut Clearance),
         law: &L,
         tangent: &T,
         out: &mut Result<Option<Touch>, PointFault>,
@@ -87,6 +95,11 @@ impl<P: ClosestPoint> Placed<'_, P> {
             return;
         }
         let local = self.local(x);
+        if clear.proves_open(&local, law, self.master.depth) {
+            *out = Ok(None);
+            return;
+        }
+        *clear = Clearance::default();
         let before = *hint;
         let mut found = self.search(&local, before, law);
         let Some(foot) = &mut found else {
@@ -98,6 +111,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
         match self.closes(foot, law) {
             Ok(true) => {}
             Ok(false) => {
+                *clear = Clearance::of(&local, foot);
                 *out = Ok(None);
                 return;
             }
@@ -224,12 +238,12 @@ impl<P: ClosestPoint> Placed<'_, P> {
     }
 
     /// Searches for the foot of a slave point at `x`, and gives the point in the surface's own coordinates and its foot to
-    /// `then` where the point is closed; `None` where it is open. `hint` as for [`Self::touch`].
+    /// `then` where the point is closed; `None` where it is open. Hint and clearance as for [`Self::touch_into`].
     #[inline(always)]
     pub(super) fn at_foot<L: NormalLaw, R>(
         &self,
         x: &Vec3,
-        hint: &mut Option<Hint>,
+        (hint, clear): (&mut Option<Hint>, &mut Clearance),
         law: &L,
         then: impl FnOnce(&Vec3, &Foot) -> Result<R, PointFault>,
     ) -> Result<Option<R>, PointFault> {
@@ -237,6 +251,10 @@ impl<P: ClosestPoint> Placed<'_, P> {
             return Err(PointFault::NotFinite);
         }
         let local = self.local(x);
+        if clear.proves_open(&local, law, self.master.depth) {
+            return Ok(None);
+        }
+        *clear = Clearance::default();
         let before = *hint;
         let mut found = self.search(&local, before, law);
         let Some(foot) = &mut found else {
@@ -245,6 +263,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
         };
         *hint = Some(foot.hint());
         if !self.closes(foot, law)? {
+            *clear = Clearance::of(&local, foot);
             return Ok(None);
         }
         if let Some(on) = before.filter(|on| self.master.keep && leaves(foot, on)) {

@@ -105,6 +105,13 @@ impl Reporter<'_> {
             }
             let n = if is_first { largest } else { 0 };
             held.push(Held::assembler("rigid points", Per::Point, sizes::TOUCH, n));
+            let n = if most(pair) > 0 { pair.points.len() } else { 0 };
+            held.push(Held::assembler(
+                "clearances",
+                Per::Point,
+                sizes::CLEARANCE,
+                n,
+            ));
             held.push(Held::assembler("points kept", Per::Point, 1, 0).growing());
         }
         let rigid = self

@@ -287,7 +287,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             keep_facets: false,
         };
         self.workspace.base.points.clone_from(&trial.points);
-        self.assembler.forget_slips();
+        self.assembler.begin_solution();
         let totals = self.linearize(trial, time, pending)?;
         self.opened = totals.opened > 0;
         if !self.first.hold || !self.opened {

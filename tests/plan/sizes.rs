@@ -106,6 +106,7 @@ fn eight_combinations_hold_what_their_effects_need_and_nothing_else() {
             ("transposed matrix", friction),
             ("rigid maps", !deformable),
             ("rigid points", !deformable),
+            ("clearances", !deformable),
             ("masters", deformable),
             ("couplings", deformable),
             ("points on bodies", deformable && !friction),

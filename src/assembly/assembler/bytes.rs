@@ -20,6 +20,7 @@ pub(crate) mod sizes {
     use super::super::per_pair::PerPair;
     use super::super::sliding::Sliding;
     use super::super::small::Linear;
+    use crate::contact::clearance::Clearance;
     use crate::contact::points::SlavePoint;
     use crate::contact::rigid::{PointFault, Touch};
     use crate::model::kernel::Kernel;
@@ -34,6 +35,8 @@ pub(crate) mod sizes {
     /// The list of where the points of a pair with a rigid master go.
     pub const RIGID_MAP: usize = PerPair::<PointMaps>::HEAD;
 
+    /// What is known of the distance of a point from a rigid master.
+    pub const CLEARANCE: usize = size_of::<Clearance>();
     /// A point of a pair with a rigid master at the last state.
     pub const TOUCH: usize = size_of::<Result<Option<Touch>, PointFault>>();
     /// The surface of a body, but for what it holds.
@@ -119,6 +122,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             follower_maps,
             systems,
             touches,
+            clearances,
             held,
             answers,
             slips,
@@ -160,6 +164,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             ("scatter work", work.bytes()),
             ("rigid maps", point_maps.bytes(PointMaps::bytes)),
             ("rigid points", heap(touches)),
+            ("clearances", heap(clearances)),
             ("points kept", heap(held)),
             ("follower maps", heap(follower_maps) + followers),
             ("answers", heap(answers)),

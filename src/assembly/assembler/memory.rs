@@ -56,6 +56,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             follower_maps: _,
             systems: _,
             touches: _,
+            clearances: _,
             held: _,
             answers: _,
             slips: _,

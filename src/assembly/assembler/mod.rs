@@ -24,6 +24,7 @@ mod viscous;
 
 use crate::system::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
+use crate::contact::clearance::Clearance;
 use crate::contact::law::{PairLaw, Penalty};
 use crate::contact::rigid::{PointFault, Touch};
 use crate::model::driven::press::PressFault;
@@ -210,11 +211,13 @@ pub struct Assembler<'m, L = Penalty> {
     systems: Systems,
     /// Room for the points of a pair with a rigid master.
     touches: Vec<Result<Option<Touch>, PointFault>>,
+    /// Per point of pairs with rigid masters: what the last search has proved since [`Assembler::begin_solution`].
+    clearances: Vec<Clearance>,
     /// Points of a pair that [`Linearization::keep_active`] keeps closed.
     held: Vec<bool>,
     /// Per point with history, of pairs with friction or augmentation; nothing where it is open. Empty without augmentation.
     answers: Vec<Option<PointAnswer>>,
-    /// Tangential traction of every point with history at the last linearisation since [`Assembler::forget_slips`].
+    /// Tangential traction of every point with history at the last linearisation since [`Assembler::begin_solution`].
     slips: Vec<Vec3>,
     /// The surfaces of masters that are bodies, at the last state evaluated.
     pub masters: Masters,
@@ -304,6 +307,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
                 false => Systems::default(),
             },
             touches: vec![Ok(None); rigid::most(model)],
+            clearances: vec![Clearance::default(); rigid::cleared(model)],
             held: Vec::new(),
             answers: vec![None; answer::count(model)],
             slips: vec![Vec3::zeros(); sliding::slips(model)],

@@ -4,6 +4,7 @@ use super::maps::PointMaps;
 use super::pressed::{Pressed, PressedSums};
 use super::sliding::Secants;
 use super::{Assembler, Fault, Linearization, PairForce, SurfaceForce, Totals, touched};
+use crate::contact::clearance::Clearance;
 use crate::contact::closest::ClosestPoint;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::FrictionLaw;
@@ -32,6 +33,15 @@ pub(super) fn most(model: &Model) -> usize {
     rigid.map(|p| p.points.len()).max().unwrap_or(0)
 }
 
+/// Points of all pairs that are evaluated here, whose clearances are known.
+pub(super) fn cleared(model: &Model) -> usize {
+    if model.small.is_some() {
+        return 0;
+    }
+    let rigid = (model.pairs.iter()).filter(|p| p.rigid_master().is_some() && p.averaged.is_none());
+    rigid.map(|p| p.points.len()).sum()
+}
+
 impl<L: PairLaw> Assembler<'_, L> {
     pub(super) fn contacts<const TANGENT: bool>(
         &mut self,
@@ -46,7 +56,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         totals.pairs = vec![PairForce::default(); self.model.pairs.len()];
         self.contact.fill(0.0);
         self.clear_borders();
-        let mut first = 0;
+        let (mut first, mut known) = (0, 0);
         for (index, pair) in self.model.pairs.iter().enumerate() {
             let kernel = self.model.kernel(index);
             if kernel.gap == GapKind::Averaged {
@@ -83,6 +93,8 @@ impl<L: PairLaw> Assembler<'_, L> {
                 self.held.extend(points.iter().map(|p| p.closed));
             }
             let touches = &mut self.touches[..n];
+            let clear = &mut self.clearances[known..known + n];
+            known += n;
             let u = &state.u;
             let law = L::of(self.penalties[index]);
             let friction = match (&pair.friction, pair.history()) {
@@ -113,12 +125,12 @@ impl<L: PairLaw> Assembler<'_, L> {
                         let augmented = pair.history().filter(|_| pair.augmentation.is_some());
                         let histories = &state.histories[augmented.unwrap_or(0..0)];
                         let held = Held { held: &self.held, histories, offsets };
-                        (FrictionKind::None, batch.choose(points, touches, &held))
+                        (FrictionKind::None, batch.choose(points, clear, touches, &held))
                     }
                     (LawKind::Multipliers, None) => {
                         let histories = &state.histories[pair.history().unwrap_or(0..0)];
                         let multipliers = Multipliers { histories, offsets };
-                        let ran = batch.choose(points, touches, &multipliers);
+                        let ran = batch.choose(points, clear, touches, &multipliers);
                         let answers = &mut self.answers[pair.history().unwrap_or(0..0)];
                         for (answer, touch) in answers.iter_mut().zip(touches.iter()) {
                             *answer = touched::of(touch)
@@ -128,10 +140,10 @@ impl<L: PairLaw> Assembler<'_, L> {
                     }
                     (LawKind::Offset, None) => {
                         let offsets = offsets.unwrap_or_default();
-                        (FrictionKind::None, batch.choose(points, touches, &offsets))
+                        (FrictionKind::None, batch.choose(points, clear, touches, &offsets))
                     }
                     (LawKind::Penalty | LawKind::Held, None) => {
-                        (FrictionKind::None, batch.choose(points, touches, &NoOffset))
+                        (FrictionKind::None, batch.choose(points, clear, touches, &NoOffset))
                     }
                     (planned, Some((now, eps_t, histories))) => with_law!(*now, law => {
                         let friction = Friction { law, eps_t: *eps_t };
@@ -143,13 +155,13 @@ impl<L: PairLaw> Assembler<'_, L> {
                         let ran = match planned {
                             LawKind::Multipliers => {
                                 let told = &mut self.answers[pair.history().unwrap_or(0..0)];
-                                let (s, t) = (&mut *points, &mut *touches);
-                                batch.slide(s, t, told, slips, &friction, histories, offsets, hold)
+                                let (s, c, t) = (&mut *points, &mut *clear, &mut *touches);
+                                batch.slide(s, c, t, told, slips, &friction, histories, offsets, hold)
                             }
                             _ => {
                                 let told = &mut vec![(); n][..];
-                                let (s, t) = (&mut *points, &mut *touches);
-                                batch.slide(s, t, told, slips, &friction, histories, offsets, hold)
+                                let (s, c, t) = (&mut *points, &mut *clear, &mut *touches);
+                                batch.slide(s, c, t, told, slips, &friction, histories, offsets, hold)
                             }
                         };
                         (now.kind(), ran)
@@ -252,6 +264,7 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
     fn slide<F: FrictionLaw, A: Told>(
         &self,
         states: &mut [PointState],
+        clear: &mut [Clearance],
         touches: &mut [Result<Option<Touch>, PointFault>],
         answers: &mut [A],
         (slips, secants): (&mut [Vec3], Secants),
@@ -263,20 +276,22 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
         let placed = self.master.placed();
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
+            .zip(clear.par_iter_mut())
             .zip(touches.par_iter_mut())
             .zip(answers.par_iter_mut())
             .zip(slips.par_iter_mut())
             .zip(histories)
             .enumerate()
             .with_min_len(64)
-            .for_each(|(i, (((((p, s), out), answer), slip), history))| {
+            .for_each(|(i, ((((((p, s), clear), out), answer), slip), history))| {
                 let x = self.model.position_of(p, self.u);
                 let law = Augmented {
                     held: hold && s.closed,
                     ..history.law(*self.law, offsets.map_or(0.0, |o| o.at(i)))
                 };
                 let secant = friction.secant(secants.all, slip);
-                let touch = placed.touch_with_friction(&x, &mut s.hint, &law, &secant, history);
+                let touch =
+                    placed.touch_with_friction(&x, (&mut s.hint, clear), &law, &secant, history);
                 if secants.keep {
                     *slip = touched::of(&touch).map_or_else(Vec3::zeros, |t| t.traction.slip.t);
                 }
@@ -298,12 +313,13 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
     fn choose<O: PointLaw>(
         &self,
         states: &mut [PointState],
+        clear: &mut [Clearance],
         touches: &mut [Result<Option<Touch>, PointFault>],
         offset: &O,
     ) -> (LawKind, TangentKind) {
         match self.kernel.tangent {
-            TangentKind::Exact => self.evaluate(states, touches, &Exact, offset),
-            TangentKind::Published(parts) => self.evaluate(states, touches, &parts, offset),
+            TangentKind::Exact => self.evaluate(states, clear, touches, &Exact, offset),
+            TangentKind::Published(parts) => self.evaluate(states, clear, touches, &parts, offset),
         }
     }
 
@@ -311,6 +327,7 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
     fn evaluate<T: RigidTangent, O: PointLaw>(
         &self,
         states: &mut [PointState],
+        clear: &mut [Clearance],
         touches: &mut [Result<Option<Touch>, PointFault>],
         tangent: &T,
         offset: &O,
@@ -319,12 +336,13 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
         (self.pair.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
+            .zip(clear.par_iter_mut())
             .enumerate()
             .with_min_len(64)
-            .for_each(|(i, ((p, s), out))| {
+            .for_each(|(i, (((p, s), out), clear))| {
                 let x = self.model.position_of(p, self.u);
                 let law = offset.law(i, self.law);
-                placed.touch_into(&x, &mut s.hint, &law, tangent, out);
+                placed.touch_into(&x, (&mut s.hint, clear), &law, tangent, out);
             });
         (O::KIND, tangent.kind())
     }

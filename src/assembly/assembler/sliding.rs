@@ -5,6 +5,7 @@ use super::per_pair::PerPair;
 use super::rigid::rounding;
 use super::touched::{self, Touched};
 use super::{Assembler, Fault, Linearization, PairForce, SurfaceForce, Totals, put};
+use crate::contact::clearance::Clearance;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::moving::{Form, Full, Reduced};
@@ -174,9 +175,11 @@ impl Sliding {
 }
 
 impl<L: PairLaw> Assembler<'_, L> {
-    /// Begins a solution: no point has a traction to turn from.
-    pub fn forget_slips(&mut self) {
+    /// Begins a solution: no point has a traction to turn from, or is known to be open. What was known before would change
+    /// the last bits of where searches end, and a run that is continued does not know it.
+    pub fn begin_solution(&mut self) {
         self.slips.fill(Vec3::zeros());
+        self.clearances.fill(Clearance::default());
     }
 
     /// Sums up a pair with friction that [`Assembler::meet`] has evaluated.

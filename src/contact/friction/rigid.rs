@@ -2,6 +2,7 @@
 use super::history::PointHistory;
 use super::law::{FrictionLaw, Secant};
 use super::trial::{Attraction, Traction};
+use crate::contact::clearance::Clearance;
 use crate::contact::closest::ClosestPoint;
 use crate::contact::corner::Steady;
 use crate::contact::fault::PointFault;
@@ -75,12 +76,18 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Result<Option<FrictionTouch>, PointFault> {
-        (self.placed()).touch_with_friction(x, hint, law, friction, history)
+        (self.placed()).touch_with_friction(
+            x,
+            (hint, &mut Clearance::default()),
+            law,
+            friction,
+            history,
+        )
     }
 }
 
 impl<P: ClosestPoint> Placed<'_, P> {
-    /// Evaluates a slave point with friction; `None` where it is open. `hint` as for [`Placed::touch`].
+    /// Evaluates a slave point with friction; `None` where it is open. Hint and clearance as for [`Placed::touch_into`].
     ///
     /// # Errors
     /// [`PointFault`] as there.
@@ -88,12 +95,12 @@ impl<P: ClosestPoint> Placed<'_, P> {
     pub fn touch_with_friction<L: PairLaw, F: FrictionLaw>(
         &self,
         x: &Vec3,
-        hint: &mut Option<Hint>,
+        known: (&mut Option<Hint>, &mut Clearance),
         law: &Augmented<L>,
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Result<Option<FrictionTouch>, PointFault> {
-        self.at_foot(x, hint, law, |local, foot| {
+        self.at_foot(x, known, law, |local, foot| {
             let geometry = self.geometry(local, foot)?;
             let xi3 = geometry.xi3();
             let normal = law.response(xi3);
