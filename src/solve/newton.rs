@@ -4,6 +4,7 @@
 //! before it falls, and a search that forbids the jump would crawl. The line search (on the slope of the energy along
 //! the increment, which also covers steps an element cannot take) comes in where full steps fail to make headway.
 mod advance;
+mod line_search;
 mod rigid_limit;
 mod small;
 mod workspace;

@@ -68,6 +68,11 @@ impl LawState for J2State {
     }
 }
 
+/// Part of the yield stress by which it may be exceeded without flow. A step starts where the one before has ended: on the
+/// yield surface, but for rounding, wherever the material flowed. Its first tangent is the elastic one there, which holds for
+/// unloading; that of flow would let a body that unloads give way without end, and rounding would choose between them.
+const AT_YIELD: f64 = 1e-9;
+
 /// The end of a step.
 struct Returned<D> {
     energy: D,
@@ -136,7 +141,7 @@ impl J2 {
     /// instead of left.
     fn flow<D: DualNum<f64> + Copy>(&self, trial: D, old: f64) -> D {
         let q = trial.re();
-        if q <= self.hardening.at(old).0 {
+        if q <= self.hardening.at(old).0 * (1.0 + AT_YIELD) {
             return D::zero();
         }
         let mut dp = 0.0;

@@ -1,13 +1,11 @@
 //! The step along an increment, and the search for how far it goes.
+use super::line_search::{self, SMALLEST};
 use super::{Newton, StepFailure, dot};
 use crate::assembly::{Fault, Totals};
 use crate::model::state::State;
 use crate::shell::{ElementBlock, with_block};
 use crate::system::linear::LinearSolver;
 use rayon::prelude::*;
-
-/// Smallest factor of the line search.
-const SMALLEST: f64 = 1.0 / 64.0;
 
 impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
     /// Moves `trial` along the increment and linearises there; halves the step where an element or a contact point
@@ -26,7 +24,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let stabilization = self.model.stabilization.as_ref();
         let mut s = stabilization.map_or(1.0, |m| m.stride(&self.workspace.du).0);
         if search && s == 1.0 {
-            s = self.line_search(trial, time, slope)?;
+            s = self.line_search(trial, time, slope);
         }
         s = s.min(largest);
         let smallest = s * SMALLEST;
@@ -47,46 +45,12 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         }
     }
 
-    /// Factor that brings the slope of the energy along the increment below half of its start, by bisection and
-    /// false position on residuals alone.
-    fn line_search(
-        &mut self,
-        trial: &mut State,
-        time: f64,
-        slope: f64,
-    ) -> Result<f64, StepFailure> {
-        let mut low = (0.0, slope);
-        let mut high: Option<(f64, f64)> = None;
-        let mut s = 1.0;
-        let mut best = (1.0, f64::INFINITY);
-        for _ in 0..6 {
+    /// [`line_search::factor`], on residuals alone.
+    fn line_search(&mut self, trial: &mut State, time: f64, slope: f64) -> f64 {
+        line_search::factor(slope, |s| {
             self.apply(trial, s);
-            let g = match self.slope(trial, time) {
-                Ok(g) if g.is_finite() => g,
-                _ => f64::NEG_INFINITY,
-            };
-            if g.abs() < best.1 {
-                best = (s, g.abs());
-            }
-            if g.abs() <= 0.5 * slope.abs() {
-                break;
-            }
-            // The slope falls from its start through zero at the minimum.
-            if g * slope > 0.0 {
-                low = (s, g);
-            } else {
-                high = Some((s, g));
-            }
-            s = match high {
-                None => break,
-                Some((b, gb)) if gb.is_finite() => {
-                    let (a, ga) = low;
-                    (a - ga * (b - a) / (gb - ga)).clamp(a + 0.1 * (b - a), b - 0.1 * (b - a))
-                }
-                Some((b, _)) => 0.5 * (low.0 + b),
-            };
-        }
-        Ok(best.0.max(SMALLEST))
+            self.slope(trial, time).ok()
+        })
     }
 
     /// `-du . residual` at the present trial state.
