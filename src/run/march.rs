@@ -16,6 +16,7 @@ use super::RunError;
 use super::commit::FrictionTotals;
 use super::compliance::Compliance;
 use super::fields::Fields;
+use super::habit::Habit;
 use super::hold;
 use super::peaks::Peaks;
 use super::penalty_rule::PenaltyRule;
@@ -97,8 +98,7 @@ pub(super) struct StepControl {
     pub(super) stepping: Stepping,
     /// The state before the last accepted step and that step's size, while the path is smooth.
     before: Option<(State, f64)>,
-    /// Whether the last step needed its points kept.
-    hold: bool,
+    habit: Habit,
     /// Bodies whose elements turned inside out in a step that was cut.
     turned: BTreeSet<usize>,
     /// The jump that is being passed.
@@ -180,7 +180,7 @@ impl March<'_, '_> {
             (self.assembler).pass(&committed.u, walk.jump.map_or(0.0, |jump| jump.rate));
             self.workspace.unstable = None;
             let penalties = self.assembler.penalties.clone();
-            let mut result = (self.attempts(committed, &mut walk.hold)).solve(
+            let mut result = (self.attempts(committed, &mut walk.habit, cuts > 0)).solve(
                 step,
                 end,
                 dt,

@@ -13,6 +13,7 @@ mod estimate;
 mod fields;
 mod flow_fields;
 mod friction_fields;
+mod habit;
 mod history;
 mod hold;
 mod linearity_check;

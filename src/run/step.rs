@@ -8,10 +8,16 @@
 //! 3. The last accepted state under a soft penalty that is stiffened in stages. A flat tool on a flat sheet touches at
 //!    hundreds of points of which a handful stay: under a stiff penalty the points chatter, under a soft one the few
 //!    come out, and each stage starts from nearly the right ones.
+//! 4. The last accepted state, searching along every increment: a strip that snaps from one support to the next is thrown far by
+//!    a full step. It is tried where a step has been cut, before the softened penalty where that has cost more
+//!    ([`super::habit`]), and goes on in the steps after one that it has solved, until one fails.
 //!
 //! Where the last stages fail and the run may choose the penalties, the last stage that was solved is what the step gets:
-//! whether its penalties serve is measured by [`super::penalty_rule`]. What fails all three is cut.
-use super::augment::{self, Left};
+//! whether its penalties serve is measured by [`super::penalty_rule`]. What fails all four is cut.
+mod augmenting;
+
+use super::augment;
+use super::habit::Habit;
 use super::penalty_rule::{self, PenaltyRule};
 use super::progress::Progress;
 use super::tunneling;
@@ -35,12 +41,31 @@ use std::sync::atomic::AtomicBool;
 const STAGES: [f64; 3] = [1e-3, 1e-2, 1e-1];
 /// First linearisations from the last accepted state, which knows nothing of where points slide to. Softened stages do without:
 /// their own tangents serve them better.
-const SECANTS: Option<First> = Some(First {
+const SECANTS: First = First {
     hold: false,
     secants: true,
-});
+    search: false,
+};
 /// Times a penalty that lets points fall through their master may be raised within a step, and the factor.
 const DEEPER: (usize, f64) = (4, 10.0);
+
+/// Starts that know nothing of the path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Start {
+    Accepted,
+    Searched,
+    Softened,
+}
+
+impl Start {
+    fn words(self) -> &'static str {
+        match self {
+            Start::Accepted => "the last accepted state",
+            Start::Searched => "the last accepted state, searching along every increment",
+            Start::Softened => "a softened penalty",
+        }
+    }
+}
 
 /// The attempts at one step.
 pub(super) struct Attempts<'a, 'm> {
@@ -58,8 +83,9 @@ pub(super) struct Attempts<'a, 'm> {
     pub rule: &'a mut PenaltyRule,
     /// For the first Newton iterations of a start.
     pub first: Option<First>,
-    /// Whether the last step needed its points kept.
-    pub hold: &'a mut bool,
+    pub habit: &'a mut Habit,
+    /// Whether the step has been cut.
+    pub cut: bool,
     /// Whether the last start opened points that were in contact.
     pub opened: bool,
 }
@@ -147,9 +173,8 @@ impl Attempts<'_, '_> {
                 StepFailure::Interrupted | StepFailure::NotAugmented { .. }
             )
         };
-        let touching = !self.model.pairs.is_empty();
         if let Some((state, size)) = before {
-            for hold in [*self.hold, true] {
+            for hold in [self.habit.hold, true] {
                 (self.committed).extrapolate(self.model, state, dt / size, trial);
                 // The path of a body that nothing holds yet may lead through what it is to meet.
                 let stabilization = self.model.stabilization.as_ref();
@@ -159,11 +184,12 @@ impl Attempts<'_, '_> {
                 self.first = Some(First {
                     hold,
                     secants: false,
+                    search: self.habit.search,
                 });
                 let failure = match self.converge(step, end, trial, Patience::Short) {
                     Err(failure) if another(&failure) => failure,
                     other => {
-                        *self.hold = hold && self.opened;
+                        self.habit.hold = hold && self.opened;
                         return other;
                     }
                 };
@@ -175,21 +201,68 @@ impl Attempts<'_, '_> {
                 self.again(step, start, &failure, penalties);
             }
         }
-        *self.hold = false;
-        self.restart(end, trial)?;
-        self.first = SECANTS;
-        let patience = if touching {
-            Patience::Short
+        self.habit.hold = false;
+        let touching = !self.model.pairs.is_empty();
+        let searched = self.habit.search;
+        let mut starts = vec![if searched {
+            Start::Searched
         } else {
-            Patience::Long
-        };
-        match self.converge(step, end, trial, patience) {
-            Err(failure) if touching && another(&failure) => {
-                self.again(step, "a softened penalty", &failure, penalties);
-            }
-            other => return other,
+            Start::Accepted
+        }];
+        if touching {
+            starts.push(Start::Softened);
         }
-        self.softened(step, end, trial, penalties)
+        // A step that was cut is near enough to the path that a search is unlikely to leave it for another equilibrium.
+        if self.cut && !searched && self.settings.line_search && self.habit.may_search() {
+            let first = self.habit.search_first();
+            starts.insert(if first { 1 } else { starts.len() }, Start::Searched);
+        }
+        // Where nothing comes after it, a start of what cannot be softened may take all iterations.
+        let patience = |i: usize| match touching || i + 1 < starts.len() {
+            true => Patience::Short,
+            false => Patience::Long,
+        };
+        let mut result = self.started(starts[0], (step, end, patience(0)), trial, penalties);
+        for (i, start) in starts.iter().enumerate().skip(1) {
+            match &result {
+                Err(failure) if another(failure) => {
+                    self.again(step, start.words(), failure, penalties);
+                }
+                _ => return result,
+            }
+            result = self.started(*start, (step, end, patience(i)), trial, penalties);
+        }
+        result
+    }
+
+    /// Solves from a start, and takes down what it has cost.
+    fn started(
+        &mut self,
+        start: Start,
+        (step, end, patience): (u32, f64, Patience),
+        trial: &mut State,
+        penalties: &[f64],
+    ) -> Result<Converged, StepFailure> {
+        let before = self.progress.iterations;
+        let result = match start {
+            Start::Accepted | Start::Searched => {
+                self.restart(end, trial)?;
+                let search = start == Start::Searched;
+                self.first = Some(First { search, ..SECANTS });
+                self.converge(step, end, trial, patience)
+            }
+            Start::Softened => self.softened(step, end, trial, penalties),
+        };
+        let iterations = (self.progress.iterations - before) as u32;
+        match start {
+            Start::Accepted => {}
+            Start::Searched => {
+                self.habit.search = result.is_ok();
+                self.habit.searched.tried(iterations, result.is_ok());
+            }
+            Start::Softened => self.habit.softened.tried(iterations, result.is_ok()),
+        }
+        result
     }
 
     fn softened(
@@ -320,95 +393,6 @@ impl Attempts<'_, '_> {
             true => self.augment(step, end, trial, patience, converged),
             false => Ok(converged),
         }
-    }
-
-    /// Makes multipliers of the tractions and solves again, until every pair is within its tolerances. Attraction points stay
-    /// where they were when the step began.
-    fn augment(
-        &mut self,
-        step: u32,
-        end: f64,
-        trial: &mut State,
-        patience: Patience,
-        mut converged: Converged,
-    ) -> Result<Converged, StepFailure> {
-        let (mut all, mut before) = (Vec::new(), Vec::<Left>::new());
-        let mut raising = true;
-        loop {
-            Left::all(self.model, self.assembler.answers(), &mut all);
-            let Some(worst) = (all.iter()).max_by(|a, b| a.relative.total_cmp(&b.relative)) else {
-                return Ok(converged);
-            };
-            self.observer.event(&Event::Augmented {
-                step,
-                augmentation: converged.augmentations,
-                contact: self.model.pairs[worst.pair].name.clone(),
-                gap: worst.gap,
-                slip: worst.slip,
-            });
-            let exhausted = |left: &&Left| {
-                let augmentation = &self.model.pairs[left.pair].augmentation;
-                let max = augmentation.map_or(0, |a| a.max);
-                left.relative > 1.0 && converged.augmentations >= max
-            };
-            if let Some(left) = all.iter().find(exhausted) {
-                return Err(left.failure(self.model, converged.augmentations));
-            }
-            if worst.relative <= 1.0 {
-                return Ok(converged);
-            }
-            augment::take(self.model, self.assembler.answers(), &mut trial.histories);
-            let penalties = self.assembler.penalties.clone();
-            if raising && self.raise(step, &all, &before) {
-                // A penalty that Newton's method cannot follow is taken back.
-                let kept = trial.clone();
-                let stiff = self.newton(step, end, trial, patience);
-                match stiff.and_then(|c| self.none_sunk(end, trial).map(|()| c)) {
-                    Ok(next) => converged.augmented(next),
-                    Err(StepFailure::Interrupted) => return Err(StepFailure::Interrupted),
-                    Err(failure) => {
-                        raising = false;
-                        self.again(
-                            step,
-                            "the penalty before it was raised",
-                            &failure,
-                            &penalties,
-                        );
-                        trial.copy_from(&kept);
-                    }
-                }
-            }
-            if self.assembler.penalties == penalties {
-                let next = self.newton(step, end, trial, patience)?;
-                self.none_sunk(end, trial)?;
-                converged.augmented(next);
-            }
-            std::mem::swap(&mut all, &mut before);
-        }
-    }
-
-    /// Raises the penalties of pairs whose last augmentation left too much, and tells; whether there were any.
-    fn raise(&mut self, step: u32, now: &[Left], before: &[Left]) -> bool {
-        let mut raised = false;
-        for (now, before) in now.iter().zip(before) {
-            let (pair, left) = (&self.model.pairs[now.pair], now.relative / before.relative);
-            let eps = self.assembler.penalties[now.pair];
-            if now.relative <= 1.0 {
-                continue;
-            }
-            let Some(penalty) = augment::stiffer(pair, eps, left) else {
-                continue;
-            };
-            self.assembler.penalties[now.pair] = penalty;
-            raised = true;
-            self.observer.event(&Event::PenaltyRaised {
-                step,
-                contact: pair.name.clone(),
-                penalty,
-                left,
-            });
-        }
-        raised
     }
 
     /// Newton's method. A state in which a point fell through the surface is none, however well in equilibrium: contact was

@@ -84,6 +84,8 @@ pub struct First {
     pub hold: bool,
     /// The first linearisations take secants of friction: the start knows nothing of where points slide to.
     pub secants: bool,
+    /// Every increment is searched along, not only where full steps fail to make headway.
+    pub search: bool,
 }
 
 /// One step of Newton's method.
@@ -262,7 +264,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 secant_slip: iteration + 1 < secants,
                 keep_facets: keep,
             };
-            let search = self.settings.line_search && !pending && since_best >= UNTIL_SEARCH;
+            let search = self.settings.line_search
+                && !pending
+                && (self.first.search || since_best >= UNTIL_SEARCH);
             let largest = if damped > 0 { 0.5 } else { 1.0 };
             damped = damped.saturating_sub(1);
             (totals, factor, pending) = self.advance(trial, time, search, pending, largest)?;

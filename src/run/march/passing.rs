@@ -145,7 +145,7 @@ impl March<'_, '_> {
             squares.sum::<f64>().sqrt()
         };
         let far = FAR * way(committed, &held);
-        match (self.attempts(committed, &mut walk.hold)).stiffened(step, end, trial) {
+        match (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial) {
             Ok(next) if way(&held, trial) <= far => {
                 converged.stiffened(next);
                 walk.jump = None;
@@ -156,7 +156,8 @@ impl March<'_, '_> {
             Ok(_) | Err(_) => {
                 self.assembler.pass(&committed.u, jump.rate);
                 trial.copy_from(&held);
-                let again = (self.attempts(committed, &mut walk.hold)).stiffened(step, end, trial);
+                let again =
+                    (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial);
                 converged.stiffened(again?);
             }
         }

@@ -29,7 +29,7 @@ impl March<'_, '_> {
         }
         let held = trial.clone();
         self.assembler.scale_drag(RELEASED);
-        match (self.attempts(committed, &mut walk.hold)).stiffened(step, end, trial) {
+        match (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial) {
             Ok(next) => converged.stiffened(next),
             Err(StepFailure::Interrupted) => return Err(StepFailure::Interrupted),
             Err(failure) => {
@@ -40,7 +40,8 @@ impl March<'_, '_> {
                     reason: failure.to_string(),
                 });
                 trial.copy_from(&held);
-                let again = (self.attempts(committed, &mut walk.hold)).stiffened(step, end, trial);
+                let again =
+                    (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial);
                 converged.stiffened(again?);
             }
         }

@@ -12,6 +12,7 @@ use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::run::checkpoint::{CheckpointError, Keeper, Sections, Slot, state};
 use crate::run::compliance::Compliance;
 use crate::run::cost::ResourceUse;
+use crate::run::habit::Habit;
 use crate::run::peaks::Peaks;
 use crate::run::penalty_rule::PenaltyRule;
 use crate::run::progress::Progress;
@@ -26,7 +27,7 @@ pub struct Kept {
     pub(super) committed: State,
     pub(super) before: Option<(State, f64)>,
     pub(super) dt: f64,
-    pub(super) hold: bool,
+    pub(super) habit: Habit,
     pub(super) jump: Option<Jump>,
     pub(super) progress: Progress,
     pub(super) touched: Vec<bool>,
@@ -66,11 +67,11 @@ impl Kept {
         let (progress, spent) = from.section("progress", |r| {
             Ok((take_progress(r)?, ResourceUse::take(r)?))
         })?;
-        let (dt, hold, jump, touched, touching) = from.section("path", |r| {
+        let (dt, habit, jump, touched, touching) = from.section("path", |r| {
             let pairs = model.pairs.len();
-            let (dt, hold, jump) = (r.f64()?, r.bool()?, r.option(Jump::take)?);
+            let (dt, habit, jump) = (r.f64()?, Habit::take(r)?, r.option(Jump::take)?);
             let [touched, touching] = [take_flags(pairs, r)?, take_flags(pairs, r)?];
-            Ok((dt, hold, jump, touched, touching))
+            Ok((dt, habit, jump, touched, touching))
         })?;
         let watch = from.section("watch", |r| Watch::take(model, r))?;
         let (compliance, rule, peaks) = from.section("accuracy", |r| {
@@ -103,7 +104,7 @@ impl Kept {
             committed,
             before,
             dt,
-            hold,
+            habit,
             jump,
             progress,
             touched,
@@ -163,7 +164,7 @@ impl RunState<'_> {
         let StepControl {
             stepping,
             before,
-            hold,
+            habit,
             // Of steps that were cut: a run that goes on finds them anew.
             turned: _,
             given_up: _,
@@ -185,7 +186,7 @@ impl RunState<'_> {
             });
             out.section("path", |out| {
                 out.f64(stepping.size());
-                out.bool(*hold);
+                habit.put(out);
                 out.option(jump.as_ref(), |out, jump| jump.put(out));
                 put_flags(touched, out);
                 put_flags(touching, out);

@@ -7,6 +7,7 @@ use crate::run::RunError;
 use crate::run::bearing::{Bearing, Bearings};
 use crate::run::commit::{self, FrictionTotals};
 use crate::run::compliance::{Compliance, Errors, StepEnd};
+use crate::run::habit::Habit;
 use crate::run::penalty_rule::{self, PenaltyRule};
 use crate::run::step::Attempts;
 use crate::scene::ValueError;
@@ -45,7 +46,8 @@ impl<'m> March<'_, 'm> {
     pub(super) fn attempts<'b>(
         &'b mut self,
         committed: &'b State,
-        hold: &'b mut bool,
+        habit: &'b mut Habit,
+        cut: bool,
     ) -> Attempts<'b, 'm> {
         Attempts {
             model: self.model,
@@ -60,7 +62,8 @@ impl<'m> March<'_, 'm> {
             progress: self.progress,
             rule: self.rule,
             first: None,
-            hold,
+            habit,
+            cut,
             opened: false,
         }
     }
@@ -150,7 +153,7 @@ impl<'m> March<'_, 'm> {
                 penalties: softer,
                 errors: ruling,
             };
-            match (self.attempts(committed, &mut walk.hold)).stiffened(step, end, trial) {
+            match (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial) {
                 Ok(next) => {
                     converged.stiffened(next);
                     tried = Some(from);
@@ -185,7 +188,7 @@ impl<'m> March<'_, 'm> {
             start: "the penalty before it was raised".to_owned(),
             reason: why.to_owned(),
         });
-        (self.attempts(committed, &mut walk.hold)).stiffened(step, end, trial)
+        (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial)
     }
 
     /// What rigid contact would change; nothing where contact cannot be evaluated beside the state.

@@ -12,6 +12,7 @@ use crate::run::commit;
 use crate::run::compliance::Compliance;
 use crate::run::cost::Cost;
 use crate::run::fields::Fields;
+use crate::run::habit::Habit;
 use crate::run::peaks::Peaks;
 use crate::run::penalty_rule::PenaltyRule;
 use crate::run::progress::Progress;
@@ -109,7 +110,7 @@ impl<'m> RunState<'m> {
                 &settings.stops,
             ),
             before: None,
-            hold: false,
+            habit: Habit::default(),
             jump: None,
             given_up: None,
             turned: BTreeSet::new(),
@@ -178,7 +179,7 @@ impl<'m> RunState<'m> {
             committed,
             before,
             dt,
-            hold,
+            habit,
             jump,
             progress,
             touched,
@@ -203,7 +204,7 @@ impl<'m> RunState<'m> {
         self.cost.earlier.resumed += 1;
         let course = &mut self.course;
         course.walk.stepping.set_size(dt);
-        (course.walk.before, course.walk.hold) = (before, hold);
+        (course.walk.before, course.walk.habit) = (before, habit);
         course.walk.jump = jump;
         (course.trial, course.committed) = (committed.clone(), committed);
         let (step, time) = (self.progress.steps, self.progress.time);
