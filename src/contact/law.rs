@@ -76,8 +76,8 @@ impl PointLaw for NoOffset {
     }
 }
 
-/// The gap of point `i` is `xi3 - base - factor z0[i]`: the surface is thicker than it is modelled, or an overclosure `z0 <= 0`
-/// is not to be resolved.
+/// The gap of point `i` is `xi3 - base - factor z0[i] - bow[i]`: the surface is thicker than it is modelled, an overclosure
+/// `z0 <= 0` is not to be resolved, or flat facets stand for a curved surface that lies `bow` off them.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Offsets<'a> {
     /// Distance from the surface at which contact begins (length, `>= 0`).
@@ -85,13 +85,16 @@ pub struct Offsets<'a> {
     /// Per point of the pair, zero or negative (length); empty where all are zero.
     pub z0: &'a [f64],
     pub factor: f64,
+    /// Per point of the pair (length); empty where all are zero.
+    pub bow: &'a [f64],
 }
 
 impl Offsets<'_> {
     /// What the gap of a point is measured from (length).
     #[inline]
     pub fn at(&self, index: usize) -> f64 {
-        self.base + self.z0.get(index).map_or(0.0, |z0| self.factor * z0)
+        let over = self.z0.get(index).map_or(0.0, |z0| self.factor * z0);
+        self.base + over + self.bow.get(index).copied().unwrap_or(0.0)
     }
 }
 

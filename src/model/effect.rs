@@ -94,6 +94,7 @@ effects! {
     Offset, "contact.offset", listed: "contact begins at a distance from the master";
     OverclosureStressFree, "contact.overclosure.stress_free", detail: "what overlaps at the start counts as touching";
     OverclosureShrink, "contact.overclosure.shrink", detail: "what overlaps at the start is resolved over a time";
+    OverclosureCurved, "contact.overclosure.curved", detail: "gaps are those between the curved surfaces that flat facets stand for";
 }
 
 impl EffectKind {

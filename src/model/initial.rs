@@ -3,8 +3,9 @@ use super::error::{number, text};
 use super::friction::LawNow;
 use super::master::{Master, Masters};
 use super::overclosure::{Deepest, treat};
+use super::sagitta::Sides;
 use super::sharp::SharpEdges;
-use super::{Model, ModelError, PairModel, SurfaceModel, sagitta, sharp};
+use super::{Model, ModelError, PairModel, SurfaceModel, sharp};
 use crate::contact::points::SlavePoint;
 use crate::scene::{InitialOverclosure, Scene};
 use covact_geometry::Vec3;
@@ -40,13 +41,14 @@ pub fn initial_gap(model: &Model, index: usize) -> Result<InitialGap, ModelError
     initial_gaps(model, index, &mut Vec::new())
 }
 
-/// The same with the overclosure of every point, zero or negative, in `overclosures`.
+/// The same with the gap of every point in `gaps`; not-a-number for those that nothing of the master lies in front of.
 fn initial_gaps(
     model: &Model,
     index: usize,
-    overclosures: &mut Vec<f64>,
+    gaps: &mut Vec<f64>,
 ) -> Result<InitialGap, ModelError> {
     let pair = &model.pairs[index];
+    let offsets = pair.offsets(0.0);
     let zero = vec![0.0; 3 * model.nodes.len()];
     let masters = Masters::new(model);
     let master = (masters.at(model, index, &zero, 0.0))
@@ -69,11 +71,12 @@ fn initial_gaps(
     for (i, p) in pair.points.iter().enumerate() {
         let x = model.point_position(p, &zero);
         let Some(seen) = master.see(i, &x, hint) else {
-            overclosures.push(0.0);
+            gaps.push(f64::NAN);
             continue;
         };
         hint = Some(seen.hint);
-        let distance = seen.gap(pair.offset);
+        let z0 = offsets.map_or(0.0, |o| o.at(i));
+        let distance = seen.gap(z0);
         if distance < gap.smallest {
             gap.smallest = distance;
             gap.place = x;
@@ -93,9 +96,8 @@ fn initial_gaps(
             }
         }
         gap.largest = gap.largest.max(distance);
-        let closed = seen.closed(pair.offset);
-        gap.touching += usize::from(closed);
-        overclosures.push(if closed { distance } else { 0.0 });
+        gap.touching += usize::from(seen.closed(z0));
+        gaps.push(if seen.counts() { distance } else { f64::NAN });
         gap.behind += usize::from(seen.behind);
     }
     let least = facing.iter().fold(f64::INFINITY, |a, f| a.min(f.0));
@@ -151,8 +153,29 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
     let mut warnings = Vec::new();
     let mut notes = Vec::new();
     for index in 0..model.pairs.len() {
-        let mut overclosures = Vec::new();
-        let gap = initial_gaps(model, index, &mut overclosures)?;
+        let mut gaps = Vec::new();
+        let mut gap = initial_gaps(model, index, &mut gaps)?;
+        if let Some(found) =
+            Sides::new(model, index).and_then(|sides| sides.correction(model, index, &gaps))
+            && resolved(scene, &model.pairs[index])
+        {
+            match found.refused {
+                Some(why) => warnings.push(format!(
+                    "{}. Pressures are wrong by that, since {why}: use finer faces, element `q18`, or the same nodes on both \
+                     sides",
+                    found.told
+                )),
+                None => {
+                    notes.push(format!(
+                        "{}; gaps are measured between these, as the points lie at the start",
+                        found.told
+                    ));
+                    model.pairs[index].bow = found.bow;
+                    gaps.clear();
+                    gap = initial_gaps(model, index, &mut gaps)?;
+                }
+            }
+        }
         let pair = &model.pairs[index];
         let master = pair.master_words(model);
         if let Some(master) = pair.body_master()
@@ -240,15 +263,12 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
             }
         }
         if gap.smallest < -1e-9 * pair.element_size {
-            let choice = (scene.contacts.get(&pair.name))
-                .map_or(InitialOverclosure::Strain, |c| c.initial_overclosure);
+            let choice = choice(scene, pair);
             let deepest = Deepest {
                 gap: gap.smallest,
                 at: gap.place,
             };
-            if choice.is_resolved() {
-                warnings.extend(sagitta::beside(model, index, &overclosures));
-            }
+            let overclosures = gaps.iter().map(|gap| gap.min(0.0)).collect();
             let told = treat(model, index, choice, overclosures, deepest)?;
             match choice {
                 InitialOverclosure::Strain => warnings.push(told),
@@ -259,6 +279,16 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
     model.warnings.extend(warnings);
     model.notes.extend(notes);
     Ok(())
+}
+
+/// What becomes of overclosures of a pair.
+fn choice(scene: &Scene, pair: &PairModel) -> InitialOverclosure {
+    (scene.contacts.get(&pair.name)).map_or(InitialOverclosure::Strain, |c| c.initial_overclosure)
+}
+
+/// Whether overclosures of a pair become strains, at once or over a time.
+fn resolved(scene: &Scene, pair: &PairModel) -> bool {
+    choice(scene, pair).is_resolved()
 }
 
 /// A warning of slave points that are too far apart for a rigid surface.

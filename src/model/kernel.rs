@@ -129,6 +129,6 @@ impl SurfaceModel {
 impl PairModel {
     /// Whether gaps are measured from elsewhere than the master: always or never over a run.
     pub fn shifts(&self) -> bool {
-        self.overclosure.is_some() || self.offset != 0.0
+        self.overclosure.is_some() || self.offset != 0.0 || !self.bow.is_empty()
     }
 }

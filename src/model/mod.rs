@@ -132,6 +132,9 @@ pub struct PairModel {
     pub element_size: f64,
     /// Offsets of the gaps where the scene asks for them.
     pub overclosure: Option<Overclosure>,
+    /// Per slave point, its normal coordinate at the start less the gap between the curved surfaces that flat facets stand for
+    /// (length); empty where that changes nothing.
+    pub bow: Vec<f64>,
     /// Distance from the master at which contact begins (length, `>= 0`).
     pub offset: f64,
     /// Multipliers where the scene asks for them.

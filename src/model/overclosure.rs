@@ -40,7 +40,7 @@ impl PairModel {
 
     /// What the gaps of the points are measured from at time `t`; none where they are normal coordinates.
     pub fn offsets(&self, t: f64) -> Option<Offsets<'_>> {
-        if self.overclosure.is_none() && self.offset == 0.0 {
+        if !self.shifts() {
             return None;
         }
         let over = self.overclosure.as_ref();
@@ -48,6 +48,7 @@ impl PairModel {
             base: self.offset,
             z0: over.map_or(&[], |o| &o.z0),
             factor: over.map_or(0.0, |o| o.factor(t)),
+            bow: &self.bow,
         })
     }
 }

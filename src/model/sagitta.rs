@@ -1,23 +1,62 @@
 //! Overclosures beside the sagitta of facets. A flat face of a curved body lies a sagitta off the surface that its nodes are
 //! on, most in its middle. Where two such surfaces do not match node by node, overclosures are wrong by that, and with them
-//! the pressures of an interference fit.
+//! the pressures of an interference fit. So the gaps of a pair that starts with an overclosure are measured between the curved
+//! surfaces: what facets change of the gap of each point at the start is taken out of it for the whole run.
 use super::error::number;
-use super::master::Masters;
+use super::master::{MasterNow, Masters};
 use super::{Model, PairModel};
+use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
+use crate::scene::Tangent;
 use covact_geometry::Vec3;
 use std::collections::HashMap;
 
-/// Part of the overclosure above which what facets add to it is warned of.
-const WARNED: f64 = 0.01;
+/// Part of the overclosure above which what facets add to it counts.
+const COUNTS: f64 = 0.01;
 /// Faces whose normals differ by more than this (radians) meet at an edge of the body, not of its facets.
 const EDGE: f64 = 0.8;
 
-/// How far flat faces lie below the surface that their nodes are on, in the middle and along u and v (length): positive where
-/// the surface bulges outwards, negative where it is hollow.
-struct Sagittas {
+/// A flat face and the curved surface that its corners are on: an arc of a circle along either of its directions.
+#[derive(Debug, Clone, Copy)]
+struct Curved {
+    /// Outward unit normal of the face.
+    normal: Vec3,
+    /// Unit vectors along u and v.
+    along: [Vec3; 2],
+    /// Half of the lengths along u and v.
+    half: [f64; 2],
+    /// Curvatures along u and v (1 / length): positive where the surface bulges outwards, negative where it is hollow.
+    curvature: [f64; 2],
+}
+
+impl Curved {
+    /// How far the surface lies outside a point of the face, along its own normal there (length), and that normal.
+    fn outside(&self, xi: [f64; 2]) -> (f64, Vec3) {
+        let (mut height, mut normal) = (0.0, self.normal);
+        for k in 0..2 {
+            let (a, kappa) = (self.half[k], self.curvature[k]);
+            let turn = kappa * a;
+            // R - sqrt(R^2 - a^2 (1 - xi^2)), without its cancellation.
+            let left = turn * turn * (1.0 - xi[k] * xi[k]);
+            height += kappa * a * a * (1.0 - xi[k] * xi[k]) / (1.0 + (1.0 - left).sqrt());
+            normal += self.along[k] * (turn * xi[k] / (1.0 - turn * turn).sqrt());
+        }
+        (height, normal.normalize())
+    }
+
+    /// Where the normal of the surface through a point meets the face, from the foot of the point and its signed distance.
+    fn below(&self, foot: [f64; 2], distance: f64) -> [f64; 2] {
+        [0, 1].map(|k| {
+            let turn = self.curvature[k] * self.half[k];
+            foot[k] / (1.0 + self.curvature[k] * distance / (1.0 - turn * turn).sqrt())
+        })
+    }
+}
+
+/// The faces of one side of a pair as parts of curved surfaces.
+struct Surface {
     /// Per face.
-    of: Vec<[f64; 2]>,
+    faces: Vec<Curved>,
     /// Number of a face by its corners, sorted.
     numbers: HashMap<[u32; 4], usize>,
 }
@@ -27,9 +66,9 @@ fn key(mut corners: [u32; 4]) -> [u32; 4] {
     corners
 }
 
-impl Sagittas {
-    /// From the angles between neighbouring faces; none for quadratic faces, which follow the surface.
-    fn new(mesh: &Mesh, faces: &[Face]) -> Option<Sagittas> {
+impl Surface {
+    /// From the angles between neighbouring faces; none where all are flat, and for quadratic faces, which follow the surface.
+    fn new(mesh: &Mesh, faces: &[Face]) -> Option<Surface> {
         let corners: Vec<[u32; 4]> = faces.iter().map(|&f| mesh.face_corners(f)).collect();
         if faces.iter().any(|&f| mesh.face_nodes(f).count != [2, 2]) {
             return None;
@@ -52,118 +91,168 @@ impl Sagittas {
             }
         }
         let middle = |[a, b]: [u32; 2]| (at(a) + at(b)) * 0.5;
-        let of = corners.iter().enumerate().map(|(number, c)| {
+        let curved = |(number, c): (usize, &[u32; 4])| {
             let sides = sides(c);
-            [0, 1].map(|k| {
+            let mut out = Curved {
+                normal: plane[number].1,
+                along: [Vec3::zeros(); 2],
+                half: [0.0; 2],
+                curvature: [0.0; 2],
+            };
+            for k in 0..2 {
+                let across = middle(sides[2 * k + 1]) - middle(sides[2 * k]);
+                let length = across.norm();
+                (out.along[k], out.half[k]) = (across / length, 0.5 * length);
                 let (mut curvature, mut count) = (0.0, 0.0);
                 for side in &sides[2 * k..2 * k + 2] {
                     for &other in beside[side].iter().filter(|o| **o != number) {
                         let ((a, n), (b, m)) = (&plane[number], &plane[other]);
-                        let angle = n.cross(m).norm().atan2(n.dot(m));
-                        if angle < EDGE {
+                        let sine = n.cross(m).norm();
+                        if sine.atan2(n.dot(m)) < EDGE {
+                            // Chords of a circle of radius R that turn by an angle have their middles R sin(angle) apart.
                             let apart = b - a;
-                            let turn = 2.0 * (0.5 * angle).sin() / apart.norm();
-                            curvature += turn.copysign((m - n).dot(&apart));
+                            curvature += (sine / apart.norm()).copysign((m - n).dot(&apart));
                             count += 1.0;
                         }
                     }
                 }
-                let length = (middle(sides[2 * k + 1]) - middle(sides[2 * k])).norm();
-                match count > 0.0 {
-                    true => curvature / count * length * length / 8.0,
-                    false => 0.0,
+                if count > 0.0 {
+                    // A face cannot span more than half of its circle.
+                    let most = 0.9 / out.half[k];
+                    out.curvature[k] = (curvature / count).clamp(-most, most);
                 }
-            })
-        });
-        Some(Sagittas {
-            of: of.collect(),
+            }
+            out
+        };
+        let faces: Vec<Curved> = corners.iter().enumerate().map(curved).collect();
+        // What rounding leaves of flat faces is no curvature.
+        let bends = |f: &Curved| (0..2).any(|k| (f.curvature[k] * f.half[k]).abs() > 1e-6);
+        faces.iter().any(bends).then(|| Surface {
+            faces,
             numbers: (corners.iter().enumerate())
                 .map(|(i, c)| (key(*c), i))
                 .collect(),
         })
     }
-
-    /// How far a point of a face lies below the surface.
-    fn at(&self, face: usize, xi: [f64; 2]) -> f64 {
-        let bow = self.of.get(face).copied().unwrap_or_default();
-        [0, 1].map(|k| bow[k] * (1.0 - xi[k] * xi[k])).iter().sum()
-    }
 }
 
-/// A warning of overclosures that the facets of a pair change by more than one per cent; `overclosures` are the gaps of its
-/// points at the start, zero or negative.
-pub(super) fn beside(model: &Model, index: usize, overclosures: &[f64]) -> Option<String> {
-    let pair = &model.pairs[index];
-    if pair.body_master().is_some_and(|m| m.own.is_some()) {
-        return None;
-    }
-    let found = Sums::new(model, index, pair, overclosures)?;
-    let truly = found.overclosed - found.added;
-    let share = found.added / truly;
-    if share.abs() <= WARNED && truly > 0.0 {
-        return None;
-    }
-    let mean = |sum: f64| number(sum / found.area);
-    let off = match truly > 0.0 && share < 1.0 {
-        true => format!("that is wrong by about {:+.1} %", 100.0 * share),
-        false => "that is most of it, or all".to_owned(),
-    };
-    Some(format!(
-        "contact `{}`: flat facets stand for curved faces, up to {} off them, and change the overclosure at the start by {} on \
-         the mean, which is {}: {off}, and pressures with it. Use finer faces, element `q18`, or the same nodes on both sides",
-        pair.name,
-        number(found.largest),
-        mean(found.added),
-        mean(found.overclosed),
-    ))
+/// Both sides of a pair, as far as they are curved and made of flat faces.
+pub(super) struct Sides {
+    slave: Option<Surface>,
+    master: Option<Surface>,
 }
 
-/// Sums over the points that start with an overclosure.
-#[derive(Default)]
-struct Sums {
-    /// Overclosure by area (volume).
-    overclosed: f64,
-    /// The part of it that facets add, negative where they take away (volume).
-    added: f64,
-    area: f64,
-    /// Largest distance of a facet from its surface at such a point (length).
-    largest: f64,
+/// What facets change of the overclosure of a pair at the start.
+#[derive(Debug, Clone)]
+pub(super) struct Correction {
+    /// Per slave point: its normal coordinate less the gap between the curved surfaces (length).
+    pub bow: Vec<f64>,
+    /// What was found, in words.
+    pub told: String,
+    /// Why the gaps of the pair cannot be corrected, if so.
+    pub refused: Option<&'static str>,
 }
 
-impl Sums {
-    fn new(model: &Model, index: usize, pair: &PairModel, overclosures: &[f64]) -> Option<Sums> {
-        let body = &model.bodies[pair.body];
-        let slave = Sagittas::new(&body.mesh, &pair.faces);
-        let master = (pair.body_master())
-            .filter(|m| !m.smooth)
-            .and_then(|m| Sagittas::new(&model.bodies[m.body].mesh, &m.faces));
-        if slave.is_none() && master.is_none() {
+impl Sides {
+    /// None where no side is curved and faceted, and for self contact.
+    pub fn new(model: &Model, index: usize) -> Option<Sides> {
+        let pair = &model.pairs[index];
+        if pair.edges_of.is_some() || pair.body_master().is_some_and(|m| m.own.is_some()) {
             return None;
         }
+        let slave = Surface::new(&model.bodies[pair.body].mesh, &pair.faces);
+        let master = (pair.body_master())
+            .filter(|m| !m.smooth)
+            .and_then(|m| Surface::new(&model.bodies[m.body].mesh, &m.faces));
+        (slave.is_some() || master.is_some()).then_some(Sides { slave, master })
+    }
+
+    /// The gap between the curved surfaces at a slave point, which lies at `x`; none where the master is not found. And the
+    /// larger of the distances of the facets from their surfaces there.
+    fn gap(
+        &self,
+        (model, pair): (&Model, &PairModel),
+        master: &MasterNow<'_>,
+        (i, p, x): (usize, &SlavePoint, &Vec3),
+    ) -> Option<[f64; 2]> {
+        let (mut at, mut off) = (*x, 0.0f64);
+        if let (Some(slave), 4) = (&self.slave, p.count) {
+            let first = model.bodies[pair.body].first_node;
+            let corners = [0, 1, 2, 3].map(|k| p.nodes[k] - first);
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| p.shape[k]);
+            let xi = [b + d - a - c, c + d - a - b];
+            if let Some(&face) = slave.numbers.get(&key(corners)) {
+                let (height, normal) = slave.faces[face].outside(xi);
+                at += normal * height;
+                off = height.abs();
+            }
+        }
+        let seen = master.see(i, &at, None)?;
+        let mut gap = seen.gap(pair.offset);
+        if let (Some(surface), Some(body)) = (&self.master, pair.body_master())
+            && seen.counts()
+        {
+            let face = body.facets.source(seen.hint.patch) as usize;
+            let face = &surface.faces[face];
+            let (height, normal) = face.outside(face.below(seen.hint.xi, seen.signed_distance));
+            gap = seen.signed_distance / normal.dot(&seen.normal) - height - pair.offset;
+            off = off.max(height.abs());
+        }
+        Some([gap, off])
+    }
+
+    /// What facets change of the overclosure of pair `index`, whose points have these normal coordinates at the start
+    /// (not-a-number: none); nothing where it is less than one per cent, or nothing overlaps either way.
+    pub fn correction(&self, model: &Model, index: usize, gaps: &[f64]) -> Option<Correction> {
+        let pair = &model.pairs[index];
         let zero = vec![0.0; 3 * model.nodes.len()];
         let masters = Masters::new(model);
-        let at_start = masters.at(model, index, &zero, 0.0).ok()?;
-        let mut sums = Sums::default();
-        let points = pair.points.iter().zip(overclosures).enumerate();
-        for (i, (p, gap)) in points.filter(|(_, (_, gap))| **gap < 0.0) {
-            let mut below = 0.0;
-            if let (Some(slave), 4) = (&slave, p.count) {
-                let corners = [0, 1, 2, 3].map(|k| p.nodes[k] - body.first_node);
-                let [a, b, c, d] = [0, 1, 2, 3].map(|k| p.shape[k]);
-                let xi = [b + d - a - c, c + d - a - b];
-                below += (slave.numbers.get(&key(corners))).map_or(0.0, |f| slave.at(*f, xi));
+        let master = masters.at(model, index, &zero, 0.0).ok()?;
+        let mut bow = Vec::with_capacity(gaps.len());
+        let (mut faceted, mut true_ones, mut area, mut largest) = (0.0, 0.0, 0.0, 0.0f64);
+        let mut deepest = 0.0f64;
+        for (i, (p, &gap)) in pair.points.iter().zip(gaps).enumerate() {
+            let x = model.point_position(p, &zero);
+            // Beyond an element nothing of the start is left when the point arrives.
+            let near = gap.is_finite() && gap.abs() < pair.element_size;
+            let found = match near {
+                true => self.gap((model, pair), &master, (i, p, &x)),
+                false => None,
+            };
+            let Some([curved, off]) = found else {
+                bow.push(0.0);
+                continue;
+            };
+            bow.push(gap - curved);
+            deepest = deepest.min(curved).min(gap);
+            faceted -= gap.min(0.0) * p.area;
+            true_ones -= curved.min(0.0) * p.area;
+            if gap < 0.0 || curved < 0.0 {
+                (area, largest) = (area + p.area, largest.max(off));
             }
-            if let (Some(facets), Some(master)) = (&master, pair.body_master()) {
-                let x = model.point_position(p, &zero);
-                let seen = at_start.see(i, &x, None)?;
-                let face = master.facets.source(seen.hint.patch);
-                below += facets.at(face as usize, seen.hint.xi);
-            }
-            sums.overclosed -= gap * p.area;
-            sums.added -= below * p.area;
-            sums.area += p.area;
-            sums.largest = sums.largest.max(below.abs());
         }
-        (sums.area > 0.0).then_some(sums)
+        let added = faceted - true_ones;
+        if deepest >= -1e-9 * pair.element_size || added.abs() <= COUNTS * true_ones {
+            return None;
+        }
+        let refused = match (pair.tangent, pair.segments) {
+            (_, Some(_)) => Some("points of segments are others with every step"),
+            (Tangent::Published { .. }, _) => {
+                Some("the published tangent holds for gaps from the master itself")
+            }
+            _ => None,
+        };
+        Some(Correction {
+            bow,
+            told: format!(
+                "contact `{}`: flat facets stand for curved faces, up to {} off them: they make an overclosure of {} at the \
+                 start, on the mean of the points that overlap, which is {} between the curved surfaces",
+                pair.name,
+                number(largest),
+                number(faceted / area),
+                number(true_ones / area),
+            ),
+            refused,
+        })
     }
 }

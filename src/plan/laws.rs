@@ -177,6 +177,24 @@ impl Reporter<'_> {
             )]);
             out.push(effect);
         }
+        let n = pair.bow.len();
+        out.push(
+            self.effect(
+                EffectKind::OverclosureCurved,
+                told.key("initial_overclosure"),
+                why(
+                    n > 0,
+                    "flat facets change the overclosure at the start by more than 1 %".to_owned(),
+                    "flat facets change no overclosure at the start by more than 1 %",
+                ),
+            )
+            .holds(vec![Held::model(
+                "bows of facets",
+                Per::Point,
+                size_of::<f64>(),
+                n,
+            )]),
+        );
         out
     }
 }

@@ -91,3 +91,65 @@ fn bodies_part_and_meet_again() {
     assert_eq!(outcome.at("points.active", 0.5), 0.0);
     assert!((force(1.0) / force(0.25) - 1.0).abs() < 1e-9);
 }
+
+/// A quarter of a tube shrunk on another whose mesh does not match, with an interference of a fifth of the sagitta of the facets:
+/// mean and spread of the pressure.
+fn shrunk(more: Value, slave: [u32; 2], master: [u32; 2]) -> [f64; 3] {
+    let tube = |radius: f64, thickness: f64, [around, through]: [u32; 2]| {
+        json!({
+            "mesh": { "cylinder_panel": {
+                "radius": radius, "thickness": thickness, "angles": [0, 90], "y": [0, 3],
+                "elements": [around, 1], "layers": through
+            } },
+            "material": "steel"
+        })
+    };
+    let mut scene = json!({
+        "covact": 1,
+        "materials": { "steel": { "st_venant_kirchhoff": { "E": 210000, "nu": 0.3 } } },
+        "bodies": { "outer": tube(20.0, 5.0, master), "inner": tube(15.0, 5.02, slave) },
+        "contacts": { "fit": { "slave": "inner.outer", "master": "outer.inner", "accuracy": 1e-4 } },
+        "supports": {
+            "x": { "on": ["outer.phi_min", "inner.phi_min"], "symmetry": "x" },
+            "z": { "on": ["outer.phi_max", "inner.phi_max"], "symmetry": "z" },
+            "y": { "on": ["outer.y_min", "outer.y_max", "inner.y_min", "inner.y_max"], "symmetry": "y" }
+        },
+        "output": { "every": 0 }
+    });
+    for (key, value) in more.as_object().unwrap() {
+        scene["contacts"]["fit"][key] = value.clone();
+    }
+    let outcome = solve(&scene);
+    assert_eq!(outcome.summary.status, covact::output::RunStatus::Done);
+    let warned = |w: &String| w.contains("flat facets");
+    assert!(!outcome.summary.warnings.iter().any(warned));
+    // Force along x on a quarter: pressure times its projection.
+    let force = outcome.at("slave.force.fit.x", 1.0).abs();
+    let mean = force / (17.505 * 3.0);
+    let largest = outcome.at("pressure.max", 1.0);
+    [mean, largest, outcome.summary.accuracy.force_error]
+}
+
+/// G. Lame's pressure between two tubes of one material in plane strain, `p = delta E' / (2 R) (b^2 - R^2) (R^2 - a^2) / (R^2 (b^2 -
+/// a^2))` with `E' = E / (1 - nu^2)` (S. P. Timoshenko and J. N. Goodier, Theory of Elasticity, section 28): within 1 to
+/// 1.5 % on the mean at 12 elements a quarter on 8, .5 % on twice as many. Without the sagitta taken out it is five times as large.
+#[test]
+fn a_shrink_fit_of_facets_has_the_pressure_of_the_curved_surfaces() {
+    let (delta, r, a, b) = (0.01, 17.505, 12.49, 22.5);
+    let e = 210_000.0 / (1.0 - 0.09);
+    let sq = |x: f64| x * x;
+    let p = delta * e / (2.0 * r) * (sq(b) - sq(r)) * (sq(r) - sq(a)) / (sq(r) * (sq(b) - sq(a)));
+    let gauss = json!({ "points": { "gauss": 2 } });
+    let averaged = json!({ "gap": "averaged", "points": { "gauss": 2 } });
+    for (name, tolerance, more, fine) in [
+        ("nodes", 0.01, json!({}), 1),
+        ("Gauss points", 0.015, gauss.clone(), 1),
+        ("averaged gaps", 0.015, averaged.clone(), 1),
+        ("Gauss points, finer", 0.005, gauss, 2),
+        ("averaged gaps, finer", 0.005, averaged, 2),
+    ] {
+        let [mean, largest, error] = shrunk(more, [12 * fine, 4 * fine], [8 * fine, 4 * fine]);
+        println!("{name}: mean {mean:.4}, largest {largest:.4}, Lame {p:.4}; told {error:.1e}");
+        assert!((mean / p - 1.0).abs() < tolerance, "{name}");
+    }
+}

@@ -266,6 +266,7 @@ impl Builder<'_> {
             tangent: contact.tangent,
             element_size: size.edge,
             overclosure: None,
+            bow: Vec::new(),
             offset: contact.offset,
             augmentation,
             averaged,
