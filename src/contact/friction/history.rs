@@ -191,12 +191,14 @@ impl PointHistory {
 
 /// Part of a step that a point touches in the mean which goes `way` along the surface while a gap closes or opens (lengths).
 ///
-/// Where surfaces slide into each other, what bends out of the way keeps the gap closed from the first touch on, and of many
-/// points some touch early and some late: the mean of the forces at both ends of the step, which the works of tools and supports
-/// count, is then right for their sum. Where they meet head on a way along the surface counts for little.
+/// Where surfaces slide into each other, at any slope that a tool's curvature makes, other points bear before and after: the mean
+/// of the forces at both ends of the step, which the works of tools and supports count, is then right for the sum over the points,
+/// each with all of its way. Where they meet head on a way along the surface counts for little. So the part is the squared cosine of
+/// the angle at which the point comes or goes.
 fn grazing(way: f64, gap: f64) -> f64 {
+    let slope = gap.max(0.0) / way;
     match way > 0.0 {
-        true => way / (way + gap.max(0.0)),
+        true => 1.0 / (1.0 + slope * slope),
         false => 0.0,
     }
 }
