@@ -195,6 +195,31 @@ impl Model {
         self.nodes.len() - 2 * self.driven().count()
     }
 
+    /// By how much of their distance displacements `u` move neighbouring nodes of bodies against each other, at most.
+    pub fn largest_stretch(&self, u: &[f64]) -> f64 {
+        let at = |n: u32| {
+            Vec3::new(
+                u[3 * n as usize],
+                u[3 * n as usize + 1],
+                u[3 * n as usize + 2],
+            )
+        };
+        let mut most = 0.0f64;
+        for body in &self.bodies {
+            let first = body.first_node;
+            for e in 0..body.mesh.elements() {
+                let nodes = body.mesh.element(e);
+                for pair in nodes.windows(2) {
+                    let [a, b] = [pair[0], pair[1]];
+                    let apart = body.mesh.nodes[a as usize] - body.mesh.nodes[b as usize];
+                    let moved = at(a + first) - at(b + first);
+                    most = most.max(moved.norm_squared() / apart.norm_squared());
+                }
+            }
+        }
+        most.sqrt()
+    }
+
     /// Surfaces driven by force, with their numbers.
     pub fn driven(&self) -> impl Iterator<Item = (usize, &SurfaceModel, &Driven)> {
         (self.surfaces.iter().enumerate()).filter_map(|(i, s)| Some((i, s, s.driven.as_ref()?)))

@@ -329,10 +329,18 @@ impl March<'_, '_> {
                 true => self.may_be_replaced(&hold::lost(self.model, committed)),
                 false => Vec::new(),
             };
-            let hopeless = !lost.is_empty()
-                || cuts >= hold::HOPELESS
-                    && turned.is_some_and(|b| self.replaceable.contains(&b.name));
-            let next = walk.stepping.failed(dt).filter(|_| !hopeless);
+            // What is bent far in a step that is too large turns inside out as well, and is not squeezed when it begins.
+            let squeezed = |b: &BodyModel| {
+                self.replaceable.contains(&b.name) && hold::compressed(b, &committed.u)
+            };
+            let hopeless =
+                !lost.is_empty() || cuts >= hold::HOPELESS && turned.is_some_and(squeezed);
+            // From rest the first increment is proportional to the step.
+            let bend = match walk.before {
+                None => self.workspace.bend,
+                Some(_) => 0.0,
+            };
+            let next = walk.stepping.failed(dt, bend).filter(|_| !hopeless);
             let Some(next_dt) = next else {
                 let unstable = self.workspace.unstable.map_or_else(String::new, |u| {
                     format!("; {}", u.words(self.model, self.assembler.stabilizes()))

@@ -53,6 +53,8 @@ const DEEPER: (usize, f64) = (4, 10.0);
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Start {
     Accepted,
+    /// Without mixed integration points.
+    Plain,
     Searched,
     Softened,
 }
@@ -61,6 +63,7 @@ impl Start {
     fn words(self) -> &'static str {
         match self {
             Start::Accepted => "the last accepted state",
+            Start::Plain => "the last accepted state, without mixed integration points",
             Start::Searched => "the last accepted state, searching along every increment",
             Start::Softened => "a softened penalty",
         }
@@ -88,6 +91,10 @@ pub(super) struct Attempts<'a, 'm> {
     pub cut: bool,
     /// Whether the last start opened points that were in contact.
     pub opened: bool,
+    /// Whether the next Newton iterations may have mixed integration points.
+    pub mixed: bool,
+    /// Whether most of the last ones had them.
+    pub was_mixed: bool,
 }
 
 impl Attempts<'_, '_> {
@@ -222,7 +229,14 @@ impl Attempts<'_, '_> {
             true => Patience::Short,
             false => Patience::Long,
         };
+        self.was_mixed = false;
         let mut result = self.started(starts[0], (step, end, patience(0)), trial, penalties);
+        if let (true, Err(failure)) = (self.was_mixed, &result)
+            && another(failure)
+        {
+            self.again(step, Start::Plain.words(), failure, penalties);
+            result = self.started(Start::Plain, (step, end, patience(0)), trial, penalties);
+        }
         for (i, start) in starts.iter().enumerate().skip(1) {
             match &result {
                 Err(failure) if another(failure) => {
@@ -245,17 +259,20 @@ impl Attempts<'_, '_> {
     ) -> Result<Converged, StepFailure> {
         let before = self.progress.iterations;
         let result = match start {
-            Start::Accepted | Start::Searched => {
+            Start::Accepted | Start::Plain | Start::Searched => {
                 self.restart(end, trial)?;
                 let search = start == Start::Searched;
                 self.first = Some(First { search, ..SECANTS });
-                self.converge(step, end, trial, patience)
+                self.mixed = start == Start::Accepted;
+                let result = self.converge(step, end, trial, patience);
+                self.mixed = true;
+                result
             }
             Start::Softened => self.softened(step, end, trial, penalties),
         };
         let iterations = (self.progress.iterations - before) as u32;
         match start {
-            Start::Accepted => {}
+            Start::Accepted | Start::Plain => {}
             Start::Searched => {
                 self.habit.search = result.is_ok();
                 self.habit.searched.tried(iterations, result.is_ok());
@@ -464,6 +481,8 @@ impl Attempts<'_, '_> {
             settings: self.settings,
             patience,
             first: first.unwrap_or_default(),
+            mixed: self.mixed && self.settings.mixed,
+            mixed_iterations: 0,
             opened: false,
             ping_pongs: 0,
             phases: self.phases,
@@ -477,6 +496,7 @@ impl Attempts<'_, '_> {
         if first.is_some() {
             self.opened = newton.opened;
         }
+        self.was_mixed = 2 * newton.mixed_iterations > newton.iterations;
         self.progress.ping_pongs += newton.ping_pongs;
         self.progress.iterations += u64::from(newton.iterations);
         if result.is_ok() && self.model.small.is_none() {

@@ -63,6 +63,15 @@ pub trait ElementBlock<const N: usize>: Sync {
         state: &mut [f64],
         out: &mut Self::System,
     ) -> Result<(), ElementFault>;
+    /// [`Self::evaluate`] at an iterate that a correction led to; see [`H8Block::evaluate_mixed`].
+    fn evaluate_mixed(
+        &self,
+        e: usize,
+        u: &[Vec3; N],
+        correction: Option<&[Vec3; N]>,
+        state: &mut [f64],
+        out: &mut Self::System,
+    ) -> Result<(), ElementFault>;
     /// Forces without tangent, with the condensation cached by the last evaluation; returns the energy. See
     /// [`H8Block::residual`].
     fn residual(
@@ -156,6 +165,17 @@ macro_rules! delegate {
             out: &mut Self::System,
         ) -> Result<(), ElementFault> {
             self.evaluate(e, u, state, out)
+        }
+        #[inline]
+        fn evaluate_mixed(
+            &self,
+            e: usize,
+            u: &[Vec3; $n],
+            correction: Option<&[Vec3; $n]>,
+            state: &mut [f64],
+            out: &mut Self::System,
+        ) -> Result<(), ElementFault> {
+            self.evaluate_mixed(e, u, correction, state, out)
         }
         #[inline]
         fn residual(

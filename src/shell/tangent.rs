@@ -43,6 +43,8 @@ struct Sums {
     /// Stiffness among parameters; the last column are the forces on them.
     c: [[f64; PARAMETERS]; PARAMETERS],
     energy: f64,
+    /// Forces on the tying points by the stresses of the geometric part; nothing where these are the true ones.
+    carried: [f64; PARAMETERS],
 }
 
 #[inline(always)]
@@ -51,11 +53,13 @@ const fn used<const NE: usize>(parameter: usize) -> bool {
 }
 
 /// Evaluates one element at displacements `u`: `out` receives condensed forces and tangent, `state` (its alpha and
-/// the states of the law being read) the condensation cache.
+/// the states of the law being read) the condensation cache. With `correction`, the last change of the displacements, the
+/// geometric part of the tangent has the stresses of mixed integration points ([`quadratic`]).
 pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
     law: &L,
     re: &Reference,
     u: &[V<f64>; 8],
+    correction: Option<&[V<f64>; 8]>,
     state: &mut [f64],
     out: &mut H8System,
 ) -> Result<(), FaultCause> {
@@ -65,7 +69,9 @@ pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
     let mut alpha = [0.0; NE];
     alpha.copy_from_slice(&state[..NE]);
     let strain = strains(re, &big, &du, &alpha);
-    let sums = gauss_loop::<L, NE>(law, re, &now, &strain, &state[state_len(NE)..])?;
+    let bent = correction.map(|du| quadratic(re, du));
+    let states = &state[state_len(NE)..];
+    let sums = gauss_loop::<L, NE>(law, re, &now, (&strain, bent.as_ref()), states)?;
     let membrane = membrane_blocks(&sums.membrane);
     let b = tying_rows(&now);
 
@@ -85,7 +91,10 @@ pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
     let mut f = times_rows(&sums.z[PARAMETERS - 1], &force, &b, 1.0);
 
     // Half of the coupling plus half of the initial-stress part of the transverse strains; its transpose is the rest.
-    let geometric = transverse_geometric(&force);
+    let geometric = transverse_geometric(match bent {
+        Some(_) => &sums.carried,
+        None => &force,
+    });
     let mut half = [[0.0; 24]; 24];
     for (column, half) in half.iter_mut().enumerate() {
         let node = column & 7;
@@ -150,12 +159,24 @@ pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
     Ok(())
 }
 
+/// The part of the strains that is quadratic in a change of the displacements, at the Gauss points.
+///
+/// The stress of a mixed integration point is continued along the correction that led to an iterate with the tangent of the law,
+/// `s_hat = s_old + D : (linear part of the change of strain)` (D. Magisano, L. Leonetti and G. Garcea, CMAME 313 (2017)). With
+/// D taken where the iterate is, that is the stress there less `D : (quadratic part)`. A correction that rotates a thin shell
+/// stretches it in second order: these strains are none of the equilibrium that is sought, and their stresses, orders of
+/// magnitude above it, would spoil the geometric part of the tangent.
+fn quadratic(re: &Reference, du: &[V<f64>; 8]) -> [[f64; 6]; 8] {
+    let none = Fields::new(&[[0.0; 3]; 8]);
+    strains(re, &none, &Fields::new(du), &[])
+}
+
 #[inline(always)]
 fn gauss_loop<L: MaterialLaw, const NE: usize>(
     law: &L,
     re: &Reference,
     now: &Fields<f64>,
-    strain: &[[f64; 6]; 8],
+    (strain, bent): (&[[f64; 6]; 8], Option<&[[f64; 6]; 8]>),
     states: &[f64],
 ) -> Result<Sums, FaultCause> {
     let mut sums = Sums {
@@ -163,6 +184,7 @@ fn gauss_loop<L: MaterialLaw, const NE: usize>(
         z: [[0.0; 24]; PARAMETERS],
         c: [[0.0; PARAMETERS]; PARAMETERS],
         energy: 0.0,
+        carried: [0.0; PARAMETERS],
     };
     for q in 0..4 {
         let (i, j) = (q & 1, q >> 1);
@@ -182,7 +204,20 @@ fn gauss_loop<L: MaterialLaw, const NE: usize>(
             let s = response.stress.map(|s| s * dv);
             let c = response.tangent.map(|row| row.map(|c| c * dv));
             let (g1, g2) = (&now.r[k][j], &now.s[k][i]);
-            add_membrane(&mut sums.membrane[q], &c, &s, g1, g2, &LINE[k]);
+            let mut carried = s;
+            if let Some(bent) = bent {
+                for (s, row) in carried.iter_mut().zip(&c) {
+                    for (c, e) in row.iter().zip(&bent[g]) {
+                        *s -= c * e;
+                    }
+                }
+                let w = &WEIGHT[q];
+                for p in 0..TYING {
+                    let component = [2, 4, 5][BASE[p]];
+                    sums.carried[p] += w[p] * carried[component];
+                }
+            }
+            add_membrane(&mut sums.membrane[q], &c, &carried, g1, g2, &LINE[k]);
 
             // Stress per base strain: C A, and A^T C A among enhanced strains.
             let mut ca = [[0.0; 4]; 6];

@@ -259,7 +259,7 @@ fn check_element<L: MaterialLaw, const NE: usize>(law: &L, formulation: Formulat
     } else if NE == layered::MODES {
         layered::evaluate(law, &re.nodes, &ua, &mut state, &mut out).unwrap();
     } else {
-        tangent::evaluate::<_, NE>(law, &re, &ua, &mut state, &mut out).unwrap();
+        tangent::evaluate::<_, NE>(law, &re, &ua, None, &mut state, &mut out).unwrap();
     }
     let exact = dual_tangent(law, &re, &ua, &alpha, displacement);
 

@@ -97,6 +97,10 @@ pub struct Newton<'a, 'm, S: LinearSolver + ?Sized> {
     pub settings: &'a scene::Newton,
     pub patience: Patience,
     pub first: First,
+    /// Whether corrections that rotate far are followed by mixed integration points.
+    pub mixed: bool,
+    /// Linearisations that had them.
+    pub mixed_iterations: u32,
     pub phases: &'a mut Phases,
     pub interrupt: &'a AtomicBool,
     /// Iterations done, also by a solve that failed.
@@ -114,6 +118,11 @@ const UNTIL_SEARCH: u32 = 6;
 /// Iterations without headway after which a start is given up where another is at hand. A thin shell may take six to
 /// come down from the jump of its first iterate.
 const UNTIL_GIVEN_UP: u32 = 9;
+/// Part of their distance by which an increment has to move neighbouring nodes against each other for mixed integration points to take
+/// part from there on: what turns less is not stretched enough to spoil the tangent.
+const BENDS: f64 = 0.5;
+/// Iterations after which mixed integration points have not helped, and may go round.
+const MIXED: u32 = 12;
 /// Part of an increment, by its square, that has to be a rigid motion for a body to run away.
 const MOSTLY: f64 = 0.5;
 /// Multiple of the allowed iterations up to which an attempt goes on that is nearly done.
@@ -154,7 +163,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let mut factor = 1.0;
         let mut energy = 0.0;
         let (mut totals, secants) = self.begin(trial, time, pending)?;
-        let (mut touched, mut keep) = (false, false);
+        let (mut touched, mut keep, mut bends) = (false, false, false);
         let (mut cycle, mut round, mut damped) = (Cycle::default(), None::<PingPong>, 0u32);
         for iteration in 0.. {
             if self.interrupt.load(Ordering::Relaxed) {
@@ -259,6 +268,13 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             }
             factorization = Some(self.solve_linear(pending)?);
             self.iterations += 1;
+            if iteration < MIXED {
+                let bend = self.model.largest_stretch(&self.workspace.du);
+                bends |= bend > BENDS;
+                if iteration == 0 {
+                    self.workspace.bend = bend;
+                }
+            }
             self.assembler.linearization = Linearization {
                 keep_active: false,
                 secant_slip: iteration + 1 < secants,
@@ -269,7 +285,11 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 && (self.first.search || since_best >= UNTIL_SEARCH);
             let largest = if damped > 0 { 0.5 } else { 1.0 };
             damped = damped.saturating_sub(1);
-            (totals, factor, pending) = self.advance(trial, time, search, pending, largest)?;
+            let mixed = self.mixed && !held && iteration < MIXED && bends;
+            // Residuals then rise before they fall, more than others do.
+            let search = search && (!mixed || self.first.search);
+            (totals, factor, pending) =
+                self.advance(trial, time, (search, mixed), pending, largest)?;
             energy = dot(&self.workspace.du, &self.workspace.rhs).abs();
             if iteration == 0 {
                 first_energy = energy;
@@ -293,7 +313,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         };
         self.workspace.base.points.clone_from(&trial.points);
         self.assembler.begin_solution();
-        let totals = self.linearize(trial, time, pending)?;
+        let totals = self.linearize(trial, time, (pending, false))?;
         self.opened = totals.opened > 0;
         if !self.first.hold || !self.opened {
             return Ok((totals, secants));
@@ -304,7 +324,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             secant_slip: true,
             keep_facets: false,
         };
-        Ok((self.linearize(trial, time, pending)?, SECANTS))
+        Ok((self.linearize(trial, time, (pending, false))?, SECANTS))
     }
 
     /// Linearises with the points that switched in the last iteration kept in contact; whether that could be done, on rigid
@@ -323,24 +343,37 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             secant_slip: true,
             keep_facets: false,
         };
-        match self.linearize(trial, time, false) {
+        match self.linearize(trial, time, (false, false)) {
             Ok(_) => Ok(true),
             // A point that cannot be kept: all as it was.
             Err(_) => {
                 trial.points = now;
                 self.assembler.linearization = linearization;
-                self.linearize(trial, time, false)?;
+                self.linearize(trial, time, (false, false))?;
                 Ok(false)
             }
         }
     }
 
-    fn linearize(&mut self, trial: &mut State, time: f64, pending: bool) -> Result<Totals, Fault> {
+    /// `pending`: prescribed displacements are still to come; `mixed`: with mixed integration points.
+    fn linearize(
+        &mut self,
+        trial: &mut State,
+        time: f64,
+        (pending, mixed): (bool, bool),
+    ) -> Result<Totals, Fault> {
         let w = &mut *self.workspace;
+        self.mixed_iterations += u32::from(mixed);
         self.phases.start("assembly");
         let increments = pending.then_some(&w.increments[..]);
-        let totals =
-            (self.assembler).linearize(trial, time, increments, &mut w.residual, &mut w.rhs);
+        let from = mixed.then_some(&w.base.u[..]);
+        let totals = (self.assembler).linearize_mixed(
+            trial,
+            time,
+            (increments, from),
+            &mut w.residual,
+            &mut w.rhs,
+        );
         self.phases.stop("assembly");
         totals
     }

@@ -20,6 +20,8 @@ const FEW: u32 = 10;
 /// By how much.
 const LARGER: f64 = 1.6;
 const SMALLER: f64 = 0.7;
+/// Least part that is left of a step that is cut.
+const MOST_CUT: f64 = 1.0 / 64.0;
 
 impl Stepping {
     /// Steps from 0 to `end` that end on every kink and on every time of `stops`.
@@ -97,12 +99,15 @@ impl Stepping {
         0.5 * dt < self.settings.min
     }
 
-    /// A step of size `dt` failed: the size to try next, or `None` where it would be below the smallest.
-    pub fn failed(&mut self, dt: f64) -> Option<f64> {
+    /// A step of size `dt` failed: the size to try next, or `None` where it would be below the smallest. Where its first increment
+    /// moved neighbouring nodes by `bend` of their distance it was that much too large, and it is cut to a size that bends by
+    /// their distance or so at once.
+    pub fn failed(&mut self, dt: f64, bend: f64) -> Option<f64> {
         if self.smallest(dt) {
             return None;
         }
-        self.dt = 0.5 * dt;
+        let part = (1.0 / bend).clamp(MOST_CUT, 0.5);
+        self.dt = (part * dt).max(self.settings.min).min(0.5 * dt);
         Some(self.dt)
     }
 }
@@ -137,11 +142,16 @@ mod tests {
         let mut s = stepping(&[]);
         let mut dt = 0.3;
         let mut cuts = 0;
-        while let Some(next) = s.failed(dt) {
+        while let Some(next) = s.failed(dt, 0.3) {
             assert_eq!(next, 0.5 * dt);
             dt = next;
             cuts += 1;
         }
         assert_eq!(cuts, 4);
+        // A step that bent far too much is cut at once, though never below the smallest.
+        let mut s = stepping(&[]);
+        assert_eq!(s.failed(0.3, 10.0), Some(0.03));
+        assert_eq!(s.failed(0.3, 1e9), Some(0.01));
+        assert_eq!(s.failed(0.01, 10.0), None);
     }
 }

@@ -5,6 +5,7 @@ mod hencky;
 mod hinged_roof;
 mod incompressible;
 mod large_rotation;
+mod mixed;
 mod nonlinear;
 mod obstacle;
 mod patch;

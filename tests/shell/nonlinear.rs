@@ -2,6 +2,7 @@
 use super::support::{Grid, Model, Ties, close, grid_of, st_venant, zeros};
 use covact::mesh::ElementKind;
 use covact::shell::Formulation;
+use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn model(grid: &Grid, e: f64, nu: f64) -> Model {
@@ -12,7 +13,7 @@ fn model(grid: &Grid, e: f64, nu: f64) -> Model {
 }
 
 /// Hemisphere with an 18 degree hole, section 3.4: two pairs of radial forces on its edge; a quarter.
-struct Hemisphere {
+pub(super) struct Hemisphere {
     grid: Grid,
     model: Model,
     u: Vec<f64>,
@@ -20,8 +21,12 @@ struct Hemisphere {
 
 impl Hemisphere {
     fn new(n: usize) -> Hemisphere {
+        Hemisphere::of(ElementKind::Q18, n)
+    }
+
+    pub(super) fn of(kind: ElementKind, n: usize) -> Hemisphere {
         let (radius, t) = (10.0, 0.04);
-        let grid = grid_of(ElementKind::Q18, n, n, |a, b, c| {
+        let grid = grid_of(kind, n, n, |a, b, c| {
             let (theta, phi, r) = (FRAC_PI_2 * a, 72f64.to_radians() * b, radius + 0.5 * c * t);
             [
                 r * theta.cos() * phi.cos(),
@@ -36,6 +41,14 @@ impl Hemisphere {
 
     /// Equilibrium at `force`, half on each face of the mid-surface point; returns outward and inward displacement.
     fn solve(&mut self, force: f64) -> (f64, f64, usize) {
+        self.solve_with(force, Model::newton)
+    }
+
+    pub(super) fn solve_with(
+        &mut self,
+        force: f64,
+        newton: fn(&mut Model, &mut [f64], &[f64], &BTreeMap<usize, f64>) -> usize,
+    ) -> (f64, f64, usize) {
         let grid = &self.grid;
         let nx = grid.nx;
         let mut load = vec![0.0; self.u.len()];
@@ -46,7 +59,7 @@ impl Hemisphere {
         let mut fixed = grid.dofs(&[1], |i, _| i == 0);
         fixed.extend(grid.dofs(&[0], |i, _| i == nx));
         fixed.push(3 * grid.node(0, 0, 0) + 2);
-        let iterations = self.model.newton(&mut self.u, &load, &zeros(fixed));
+        let iterations = newton(&mut self.model, &mut self.u, &load, &zeros(fixed));
         (
             grid.mean(&self.u, 0, 0, 0),
             -grid.mean(&self.u, nx, 0, 1),

@@ -116,6 +116,8 @@ pub struct Model {
     pub block: Block,
     pub state: Vec<f64>,
     pub dofs: usize,
+    /// The last correction, where integration points are mixed.
+    pub last: Option<Vec<f64>>,
 }
 
 impl Block {
@@ -133,7 +135,7 @@ impl Block {
         }
     }
 
-    fn alpha_len(&self) -> usize {
+    pub fn alpha_len(&self) -> usize {
         match self {
             Block::H8(b) => b.alpha_len(),
             Block::Q18(_) => Q18Block::ALPHA_LEN,
@@ -147,18 +149,26 @@ impl Block {
         }
     }
 
-    /// Forces and tangent by columns.
-    fn evaluate(&self, e: usize, u: &[Vec3], state: &mut [f64]) -> (Vec<f64>, Vec<f64>) {
+    /// Forces and tangent by columns, with mixed integration points where there is a last correction.
+    pub fn evaluate(
+        &self,
+        e: usize,
+        u: &[Vec3],
+        last: Option<&[Vec3]>,
+        state: &mut [f64],
+    ) -> (Vec<f64>, Vec<f64>) {
         match self {
             Block::H8(b) => {
                 let mut out = H8System::default();
-                b.evaluate(e, u.try_into().unwrap(), state, &mut out)
+                let last = last.map(|du| du.try_into().unwrap());
+                b.evaluate_mixed(e, u.try_into().unwrap(), last, state, &mut out)
                     .unwrap();
                 (out.f.to_vec(), out.k.to_vec())
             }
             Block::Q18(b) => {
                 let mut out = Q18System::default();
-                b.evaluate(e, u.try_into().unwrap(), state, &mut out)
+                let last = last.map(|du| du.try_into().unwrap());
+                b.evaluate_mixed(e, u.try_into().unwrap(), last, state, &mut out)
                     .unwrap();
                 (out.f.to_vec(), out.k.to_vec())
             }
@@ -189,6 +199,7 @@ impl Model {
             block,
             state,
             dofs: 3 * mesh.nodes.len(),
+            last: None,
         }
     }
 
@@ -204,8 +215,9 @@ impl Model {
         let n = self.block.state_len();
         for e in 0..self.block.elements() {
             let local = self.local(e, u);
+            let last = self.last.as_ref().map(|du| self.local(e, du));
             let state = &mut self.state[n * e..n * (e + 1)];
-            let (fe, ke) = self.block.evaluate(e, &local, state);
+            let (fe, ke) = self.block.evaluate(e, &local, last.as_deref(), state);
             let nodes = self.block.nodes_of(e);
             let dof = |r: usize| 3 * nodes[r / 3] as usize + r % 3;
             for (c, fc) in fe.iter().enumerate() {
@@ -217,7 +229,7 @@ impl Model {
         (f, k)
     }
 
-    fn update_alpha(&mut self, du: &[f64]) {
+    pub fn update_alpha(&mut self, du: &[f64]) {
         let n = self.block.state_len();
         for e in 0..self.block.elements() {
             let local = self.local(e, du);
@@ -252,6 +264,27 @@ impl Model {
     /// Plain Newton at one load level from `u`; returns the iterations. The criterion is the energy of the correction,
     /// which thin shells can meet where a residual norm cannot.
     pub fn newton(&mut self, u: &mut [f64], load: &[f64], fixed: &BTreeMap<usize, f64>) -> usize {
+        self.iterate(u, load, fixed, false)
+    }
+
+    /// [`Model::newton`] with mixed integration points.
+    pub fn newton_mixed(
+        &mut self,
+        u: &mut [f64],
+        load: &[f64],
+        fixed: &BTreeMap<usize, f64>,
+    ) -> usize {
+        self.iterate(u, load, fixed, true)
+    }
+
+    fn iterate(
+        &mut self,
+        u: &mut [f64],
+        load: &[f64],
+        fixed: &BTreeMap<usize, f64>,
+        mixed: bool,
+    ) -> usize {
+        self.last = None;
         let mut largest: f64 = 0.0;
         for iteration in 0..40 {
             let (f, k) = self.assemble(u);
@@ -266,7 +299,9 @@ impl Model {
             largest = largest.max(energy);
             self.update_alpha(&du);
             u.iter_mut().zip(&du).for_each(|(u, d)| *u += d);
+            self.last = mixed.then_some(du);
             if energy < 1e-14 * largest {
+                self.last = None;
                 return iteration + 1;
             }
         }

@@ -56,6 +56,8 @@ struct Sums<'a> {
     kinds: &'a [Kind],
     maps: &'a [u32],
     increments: Option<&'a [f64]>,
+    /// Displacements before the last correction, for mixed integration points.
+    from: Option<&'a [f64]>,
     residual: &'a mut [f64],
     rhs: &'a mut [f64],
     energy: &'a mut f64,
@@ -65,7 +67,7 @@ impl<L: PairLaw> Assembler<'_, L> {
     pub(super) fn elements(
         &mut self,
         state: &mut State,
-        increments: Option<&[f64]>,
+        (increments, from): (Option<&[f64]>, Option<&[f64]>),
         residual: &mut [f64],
         rhs: &mut [f64],
         totals: &mut Totals,
@@ -82,6 +84,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 kinds: &self.kinds[first_element..first_element + count],
                 maps: &self.element_maps[first_map..first_map + map],
                 increments,
+                from,
                 residual,
                 rhs,
                 energy: &mut totals.internal_energy,
@@ -142,6 +145,7 @@ pub(super) fn undeformed(
             kinds: &kinds[first_element..first_element + count],
             maps: &maps[first_map..first_map + map],
             increments: None,
+            from: None,
             residual: &mut forces,
             rhs: &mut rhs,
             energy: &mut 0.0,
@@ -253,11 +257,16 @@ impl Sums<'_> {
         u: &[f64],
     ) -> Result<(), Fault> {
         let (len, count) = (block.state_len(), block.elements());
+        let from = self.from;
         for start in (0..count).step_by(CHUNK) {
             let n = CHUNK.min(count - start);
             let evaluate = |i: usize, out: &mut B::System, s: &mut [f64]| {
                 let x = body.displacements(block, start + i, u);
-                block.evaluate(start + i, &x, s, out)
+                let correction = from.map(|from| {
+                    let before = body.displacements(block, start + i, from);
+                    std::array::from_fn(|k| x[k] - before[k])
+                });
+                block.evaluate_mixed(start + i, &x, correction.as_ref(), s, out)
             };
             let outputs = (systems[..n].par_iter_mut()).with_min_len(8);
             let done = if len == 0 {

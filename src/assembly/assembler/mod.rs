@@ -393,6 +393,24 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
         residual: &mut [f64],
         rhs: &mut [f64],
     ) -> Result<Totals, Fault> {
+        self.linearize_mixed(state, time, (increments, None), residual, rhs)
+    }
+
+    /// [`Self::linearize`] with mixed integration points where there are displacements that the last correction started `from`: the
+    /// tangent of the elements is then the one that [`H8Block::evaluate_mixed`] tells of.
+    ///
+    /// # Errors
+    /// As [`Self::linearize`].
+    ///
+    /// [`H8Block::evaluate_mixed`]: crate::shell::H8Block::evaluate_mixed
+    pub fn linearize_mixed(
+        &mut self,
+        state: &mut State,
+        time: f64,
+        (increments, from): (Option<&[f64]>, Option<&[f64]>),
+        residual: &mut [f64],
+        rhs: &mut [f64],
+    ) -> Result<Totals, Fault> {
         self.large()?;
         // First, because it may change the pattern.
         self.meet::<true>(state, time)?;
@@ -400,7 +418,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
         residual.fill(0.0);
         rhs.fill(0.0);
         let mut totals = Totals::default();
-        self.elements(state, increments, residual, rhs, &mut totals)?;
+        self.elements(state, (increments, from), residual, rhs, &mut totals)?;
         self.contacts::<true>(state, time, increments, residual, rhs, &mut totals)?;
         self.loads::<true>(state, time, increments, residual, rhs)?;
         self.stabilize::<true>(&state.u, residual);

@@ -79,7 +79,9 @@ impl March<'_, '_> {
             && self.model.small.is_none();
         let given_up = walk.given_up == Some(step);
         let initial = self.scene.solution.step.initial;
-        let small = dt < BELOW * initial || walk.stepping.smallest(dt);
+        // From rest a path begins that is merely steep: how small its first step has to be says nothing of a jump.
+        let rest = step == 1;
+        let small = dt < BELOW * initial && !rest || walk.stepping.smallest(dt);
         if !meant || given_up || !small || matches!(failure, StepFailure::Interrupted) {
             return false;
         }

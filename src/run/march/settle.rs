@@ -65,6 +65,8 @@ impl<'m> March<'_, 'm> {
             habit,
             cut,
             opened: false,
+            mixed: true,
+            was_mixed: false,
         }
     }
 

@@ -57,6 +57,9 @@ pub struct Newton {
     pub tolerance: f64,
     /// Shorten steps of Newton's method that do not lower the residual.
     pub line_search: bool,
+    /// Mixed integration points: stresses in the tangent of solid-shells are continued along the last correction, which lets a
+    /// step rotate a thin shell much farther. The equilibrium is the same. Tried first, and left out where it does not help.
+    pub mixed: bool,
 }
 
 /// Factorization.
@@ -149,6 +152,7 @@ impl Default for Newton {
             max_iterations: 25,
             tolerance: 1e-8,
             line_search: true,
+            mixed: true,
         }
     }
 }

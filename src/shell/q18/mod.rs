@@ -169,13 +169,28 @@ impl Q18Block {
         state: &mut [f64],
         out: &mut Q18System,
     ) -> Result<(), ElementFault> {
+        self.evaluate_mixed(e, u, None, state, out)
+    }
+
+    /// [`Q18Block::evaluate`] for mixed integration points; see [`H8Block::evaluate_mixed`](super::H8Block::evaluate_mixed).
+    ///
+    /// # Errors
+    /// As [`Q18Block::evaluate`].
+    pub fn evaluate_mixed(
+        &self,
+        e: usize,
+        u: &[Vec3; 18],
+        correction: Option<&[Vec3; 18]>,
+        state: &mut [f64],
+        out: &mut Q18System,
+    ) -> Result<(), ElementFault> {
         let (u, re) = (arrays(u), &self.reference[e]);
-        with_law!(&self.law, law => tangent::evaluate(law, re, &u, state, out)).map_err(|cause| {
-            ElementFault {
+        let du = correction.map(arrays);
+        with_law!(&self.law, law => tangent::evaluate(law, re, &u, du.as_ref(), state, out))
+            .map_err(|cause| ElementFault {
                 element: e as u32,
                 cause,
-            }
-        })
+            })
     }
 
     /// Forces without tangent, with L and D of the last [`Q18Block::evaluate`]; returns the strain energy. See

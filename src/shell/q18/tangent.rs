@@ -6,7 +6,7 @@ use super::super::error::FaultCause;
 use super::super::kinematics::V;
 use super::super::material::{MaterialLaw, state_of};
 use super::reference::{MODES, Reference, split};
-use super::strain::{Compatible, along, assumed, strains, transposed};
+use super::strain::{Compatible, along, assumed, compatible, strains, transposed};
 use super::tables::{POINTS, SAMPLES, TABLES};
 use super::{DOFS, Q18System};
 
@@ -100,12 +100,23 @@ fn geometric(force: &Compatible<f64>) -> [[f64; 18]; 18] {
     k
 }
 
+/// The part of the strains that is quadratic in a change of the displacements, at the Gauss points: what mixed integration points
+/// leave out of the geometric part, see [`H8Block::evaluate_mixed`](super::super::H8Block::evaluate_mixed).
+fn quadratic(re: &Reference, du: &[V<f64>; 18]) -> [[f64; 6]; POINTS] {
+    let there = split(du);
+    let back = there.map(|v| v.map(|x| -x));
+    let [a, b] = [&there, &back].map(|du| assumed(re, &compatible(re, du)));
+    std::array::from_fn(|g| std::array::from_fn(|v| 0.5 * (a[g][v] + b[g][v])))
+}
+
 /// Evaluates one element at displacements `u` of its nodes: `out` receives condensed forces and tangent, `state` (its
-/// alpha and the states of the law being read) the condensation cache.
+/// alpha and the states of the law being read) the condensation cache. With `correction`, the last change of the displacements,
+/// the geometric part of the tangent has the stresses of mixed integration points ([`quadratic`]).
 pub(super) fn evaluate<L: MaterialLaw>(
     law: &L,
     re: &Reference,
     u: &[V<f64>; 18],
+    correction: Option<&[V<f64>; 18]>,
     state: &mut [f64],
     out: &mut Q18System,
 ) -> Result<(), FaultCause> {
@@ -124,7 +135,9 @@ pub(super) fn evaluate<L: MaterialLaw>(
     let mut l = [[0.0; DOFS]; MODES];
     let mut d = [[0.0; MODES]; MODES];
     let mut h = [0.0; MODES];
+    let bent = correction.map(|du| quadratic(re, du));
     let mut stress = [[0.0; 6]; POINTS];
+    let mut carried = [[0.0; 6]; POINTS];
     for g in 0..POINTS {
         let response = law
             .response(
@@ -140,6 +153,14 @@ pub(super) fn evaluate<L: MaterialLaw>(
         out.energy += response.energy * dv;
         stress[g] = response.stress.map(|s| s * dv);
         let c = response.tangent.map(|row| row.map(|c| c * dv));
+        carried[g] = stress[g];
+        if let Some(bent) = &bent {
+            for (s, row) in carried[g].iter_mut().zip(&c) {
+                for (c, e) in row.iter().zip(&bent[g]) {
+                    *s -= c * e;
+                }
+            }
+        }
         let b = &b[g];
         // C B, the upper triangle of B^T (C B), and what couples to the enhanced strains.
         let mut cb = [[0.0; DOFS]; 6];
@@ -180,8 +201,7 @@ pub(super) fn evaluate<L: MaterialLaw>(
             }
         }
     }
-    let force = transposed(re, stress);
-    let geometric = geometric(&force);
+    let geometric = geometric(&transposed(re, carried));
     for x in 0..3 {
         for c in 0..18 {
             for r in 0..=c {

@@ -9,13 +9,13 @@ use rayon::prelude::*;
 
 impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
     /// Moves `trial` along the increment and linearises there; halves the step where an element or a contact point
-    /// cannot follow, and searches along it where asked to. A body that nothing holds yet goes a part of the way only.
+    /// cannot follow, and searches along it where asked to, with mixed integration points where asked for. A body that nothing holds yet goes a part of the way only.
     /// Returns the factor and whether prescribed displacements are still to come.
     pub(super) fn advance(
         &mut self,
         trial: &mut State,
         time: f64,
-        search: bool,
+        (search, mixed): (bool, bool),
         pending: bool,
         largest: f64,
     ) -> Result<(Totals, f64, bool), StepFailure> {
@@ -37,7 +37,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             }
             // Changes of status count from where the iteration began, whatever was tried in between.
             trial.points.copy_from_slice(&self.workspace.base.points);
-            match self.linearize(trial, time, left) {
+            match self.linearize(trial, time, (left, mixed)) {
                 Ok(totals) => return Ok((totals, s, left)),
                 Err(_) if s > smallest => s *= 0.5,
                 Err(fault) => return Err(fault.into()),

@@ -16,6 +16,8 @@ pub struct Workspace {
     pub(super) base: State,
     /// The solver has the factors of an iterate of the last solution.
     pub(super) factored: bool,
+    /// By how much of their distance the first increment of the last solution moved neighbouring nodes against each other, at most.
+    pub bend: f64,
     /// The last tangent with negative pivots, since this was last reset.
     pub unstable: Option<Unstable>,
     /// Factorizations made so far, of failed attempts too.
@@ -34,6 +36,7 @@ impl Workspace {
             absolute: vec![0.0; n],
             base: State::new(model),
             factored: false,
+            bend: 0.0,
             unstable: None,
             factorizations: BTreeMap::new(),
         }
@@ -50,6 +53,7 @@ impl Workspace {
             absolute,
             base,
             factored: _,
+            bend: _,
             unstable: _,
             // A few counts.
             factorizations: _,
@@ -71,6 +75,7 @@ impl Workspace {
             absolute: _,
             base: _,
             factored: _,
+            bend: _,
             unstable: _,
             factorizations,
         } = self;
