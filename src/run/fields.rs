@@ -59,6 +59,8 @@ pub struct Fields {
     /// Gaps at the start where they are negative, between the first two times of gathering; empty where none are.
     start: Vec<f64>,
     gathered: bool,
+    /// Of bodies with inertia: velocities, and forces of inertia and damping, 3 per node of the model.
+    pub motion: Option<[Vec<f64>; 2]>,
 }
 
 impl Fields {
@@ -110,6 +112,7 @@ impl Fields {
             },
             start: Vec::new(),
             gathered: false,
+            motion: None,
         })
     }
 
@@ -424,7 +427,8 @@ impl Fields {
             })
             .collect();
         let flow = FlowFields::of(model, state);
-        let reactions = reactions(model, state, &self.status, time);
+        let forces = self.motion.as_ref().map(|[_, forces]| &forces[..]);
+        let reactions = reactions(model, state, (&self.status, forces), time);
         let bodies: Vec<BodyFields> = (model.bodies.iter().enumerate())
             .map(|(i, body)| {
                 let first = body.first_node as usize;
@@ -444,6 +448,14 @@ impl Fields {
                         .chain(self.traction.of(model, i, body))
                         .chain(strains[i].fields())
                         .chain(flow[i].fields())
+                        .chain(self.motion.as_ref().map(|[v, _]| Field {
+                            name: "velocity",
+                            components: 3,
+                            component_names: &[],
+                            data: &v[3 * range.start..3 * range.end],
+                            place: Place::Point,
+                            derived: false,
+                        }))
                         .chain(resultants[i].iter().flat_map(Resultants::fields))
                         .chain(reactions.as_ref().map(|all| Field {
                             name: "reaction",

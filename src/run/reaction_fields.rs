@@ -9,12 +9,12 @@ use covact_geometry::Vec3;
 use rayon::prelude::*;
 
 /// Forces that supports and contacts exert on the nodes, three numbers a node: internal minus external forces of an accepted
-/// state at the degrees of freedom that supports hold and at the nodes of slaves (those with a `status`) and of bodies as
+/// state, with those of inertia where there is any, at the degrees of freedom that supports hold and at the nodes of slaves (those with a `status`) and of bodies as
 /// masters, zero elsewhere. None where a load has no value at `time`.
 pub(super) fn reactions(
     model: &Model,
     state: &State,
-    status: &[u8],
+    (status, inertia): (&[u8], Option<&[f64]>),
     time: f64,
 ) -> Option<Vec<f64>> {
     let mut forces = vec![0.0; 3 * model.nodes.len()];
@@ -27,6 +27,9 @@ pub(super) fn reactions(
             None => internal(body, block, states, &state.u, &mut forces),
             Some(_) => linear(body, block, &state.u, &mut forces),
         });
+    }
+    for (force, inertia) in forces.iter_mut().zip(inertia.into_iter().flatten()) {
+        *force += inertia;
     }
     let mut external = vec![0.0; forces.len()];
     add_loads(model, &state.u, time, &mut external).ok()?;

@@ -173,9 +173,9 @@ impl Attempts<'_, '_> {
                 StepFailure::Interrupted | StepFailure::NotAugmented { .. }
             )
         };
-        if let Some((state, size)) = before {
+        if self.continues(before, dt, trial) {
             for hold in [self.habit.hold, true] {
-                (self.committed).extrapolate(self.model, state, dt / size, trial);
+                self.continues(before, dt, trial);
                 // The path of a body that nothing holds yet may lead through what it is to meet.
                 let stabilization = self.model.stabilization.as_ref();
                 if stabilization.is_some_and(|s| s.leaps(&self.committed.u, &trial.u)) {
@@ -233,6 +233,21 @@ impl Attempts<'_, '_> {
             result = self.started(*start, (step, end, patience(i)), trial, penalties);
         }
         result
+    }
+
+    /// Continues the path into `trial`: by the last step, or by the motion of bodies with inertia. Whether there is a path.
+    fn continues(&self, before: Option<&(State, f64)>, dt: f64, trial: &mut State) -> bool {
+        match (before, &self.assembler.inertia) {
+            (None, None) => return false,
+            (None, Some(_)) => trial.copy_from(self.committed),
+            (Some((state, size)), _) => {
+                (self.committed).extrapolate(self.model, state, dt / size, trial);
+            }
+        }
+        if let Some(inertia) = &self.assembler.inertia {
+            inertia.predict(&mut trial.u);
+        }
+        true
     }
 
     /// Solves from a start, and takes down what it has cost.

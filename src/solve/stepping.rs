@@ -92,6 +92,19 @@ impl Stepping {
         }
     }
 
+    /// A step of size `dt` was accepted after `iterations`, by whose error the next one may be `factor` times as large.
+    pub fn paced(&mut self, dt: f64, factor: f64, iterations: u32) {
+        if !self.settings.adaptive {
+            return self.accepted(iterations);
+        }
+        let factor = if iterations > MANY {
+            factor.min(SMALLER)
+        } else {
+            factor
+        };
+        self.dt = (factor * dt).max(self.settings.min).min(self.settings.max);
+    }
+
     /// Whether a step of this size would not be cut.
     pub fn smallest(&self, dt: f64) -> bool {
         0.5 * dt < self.settings.min

@@ -5,6 +5,7 @@ use super::maps::PointMaps;
 use super::moving::Meetings;
 use super::sliding::Sliding;
 use super::viscous::Viscous;
+use crate::effects::Contribution;
 use crate::contact::law::PairLaw;
 use crate::model::state::heap;
 
@@ -21,6 +22,7 @@ pub(crate) mod sizes {
     use super::super::sliding::Sliding;
     use super::super::small::Linear;
     use crate::contact::clearance::Clearance;
+    pub use crate::effects::inertia::{Inertia, Mass};
     use crate::contact::points::SlavePoint;
     use crate::contact::rigid::{PointFault, Touch};
     use crate::model::kernel::Kernel;
@@ -141,6 +143,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             borders,
             viscous,
             passing,
+            inertia,
             penalties,
             ratios,
             linearization: _,
@@ -181,6 +184,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             ("driven friction", driven[1]),
             ("stabilization", viscous.as_ref().map_or(0, Viscous::bytes)),
             ("jumps", passing.bytes()),
+            ("inertia", inertia.as_ref().map_or(0, |i| i.bytes())),
             ("linear", linear.as_ref().map_or(0, |l| l.bytes())),
             ("pairs", heap(penalties) + heap(ratios) + heap(ran)),
         ]

@@ -10,6 +10,7 @@ mod driven;
 mod elements;
 mod links;
 mod loads;
+mod inertia;
 mod maps;
 mod memory;
 mod moving;
@@ -27,6 +28,7 @@ use crate::system::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMat
 use crate::contact::clearance::Clearance;
 use crate::contact::law::{PairLaw, Penalty};
 use crate::contact::rigid::{PointFault, Touch};
+use crate::effects::inertia::{Inertia, MotionEnergy};
 use crate::model::driven::press::PressFault;
 use crate::model::kernel::Kernel;
 use crate::model::master::Masters;
@@ -53,6 +55,7 @@ use std::sync::Arc;
 pub use answer::PointAnswer;
 pub(crate) use bytes::sizes;
 pub use driven::UnresistedMotion;
+pub use inertia::StartError;
 pub use elements::Quadratic;
 pub use memory::{AssemblerMemory, CouplingMemory, MemoryError};
 pub use small::{Factored, Line, Needed};
@@ -151,6 +154,8 @@ pub struct Totals {
     pub internal_energy: f64,
     /// Work that plastic flow has taken up to the last accepted step.
     pub plastic_work: f64,
+    /// What motion has taken, of an accepted step.
+    pub motion: MotionEnergy,
     /// Energy stored in the penalty.
     pub contact_energy: f64,
     /// Per surface of the model.
@@ -169,6 +174,8 @@ pub struct Totals {
     pub touching: Vec<bool>,
     /// Norm of the contact forces on nodes.
     pub contact_norm: f64,
+    /// Norm of the larger of the forces of inertia and of those that it balances; zero without inertia.
+    pub inertia_norm: f64,
     /// What rounding of the positions leaves of them: the norm of penalty times area times the rounding of a position, over
     /// the points in contact.
     pub contact_rounding: f64,
@@ -243,6 +250,8 @@ pub struct Assembler<'m, L = Penalty> {
     /// Where the scene asks for stabilisation.
     viscous: Option<Viscous>,
     passing: Passing,
+    /// In dynamics.
+    pub inertia: Option<Box<Inertia>>,
     /// Where displacements are small.
     linear: Option<Box<Linear>>,
     /// Penalty per pair; an automatic one may be raised in the course of a run.
@@ -325,6 +334,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
             borders,
             viscous: Viscous::new(model),
             passing: Passing::default(),
+            inertia: Inertia::new(model).map(Box::new),
             linear,
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             ratios: (model.pairs.iter())
@@ -401,8 +411,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
         rhs.fill(0.0);
         let mut totals = Totals::default();
         self.elements(state, increments, residual, rhs, &mut totals)?;
-        self.contacts::<true>(state, time, increments, residual, rhs, &mut totals)?;
-        self.loads::<true>(state, time, increments, residual, rhs)?;
+        self.acting::<true>(state, time, increments, residual, rhs, &mut totals)?;
         self.stabilize::<true>(&state.u, residual);
         self.resist::<true>(&state.u, residual);
         self.own_blocks(&state.u, time, residual, &mut totals)?;
@@ -429,8 +438,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
         residual.fill(0.0);
         let mut totals = Totals::default();
         self.element_forces(state, residual, &mut totals)?;
-        self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
-        self.loads::<false>(state, time, None, residual, &mut [])?;
+        self.acting::<false>(state, time, None, residual, &mut [], &mut totals)?;
         self.stabilize::<false>(&state.u, residual);
         self.resist::<false>(&state.u, residual);
         Ok(totals)

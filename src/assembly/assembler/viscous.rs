@@ -3,6 +3,7 @@
 //! not ask for it.
 use super::Assembler;
 use crate::contact::law::PairLaw;
+use crate::effects::Contribution;
 use crate::model::Model;
 use crate::model::state::heap;
 use covact_geometry::Vec3;
@@ -53,6 +54,9 @@ impl Viscous {
 impl<L: PairLaw> Assembler<'_, L> {
     /// Tells that a step from `start` to `end` begins at the displacements `u`.
     pub fn begin_step(&mut self, u: &[f64], start: f64, end: f64) {
+        if let Some(inertia) = &mut self.inertia {
+            inertia.begin(self.model, u, [start, end]);
+        }
         if let (Some(viscous), Some(model)) = (&mut self.viscous, &self.model.stabilization) {
             viscous.base.copy_from_slice(u);
             if !viscous.medium.is_empty() {
