@@ -1,6 +1,7 @@
 //! Motion with inertia: what bodies weigh, and how they move at the start.
 use super::error::{At, number, text};
 use super::{Model, ModelError, penalty};
+use crate::contact::points::SlavePoint;
 use crate::scene::{self, Scene, ValueError};
 use covact_geometry::Vec3;
 
@@ -20,6 +21,8 @@ pub struct DynamicsModel {
     pub motions: Vec<StartMotion>,
     /// Time that a wave takes along an element of the slave, per pair.
     pub waves: Vec<f64>,
+    /// Largest area that a node of the slave stands for over its mass, per pair (length^2 / mass).
+    pub lightest: Vec<f64>,
     /// Diagonal of the box around all bodies (length).
     pub size: f64,
     /// Time in which velocities of supports at the start are measured.
@@ -79,6 +82,7 @@ pub(super) fn dynamics(scene: &Scene, model: &Model) -> Result<Option<DynamicsMo
     let own = DynamicsModel {
         settings,
         waves: waves.collect(),
+        lightest: lightest(model, &densities),
         densities,
         motions,
         size: (high - low).norm(),
@@ -100,6 +104,28 @@ pub(super) fn dynamics(scene: &Scene, model: &Model) -> Result<Option<DynamicsMo
         }
     }
     Ok(Some(own))
+}
+
+/// For every pair, the largest area of a slave node over its mass: times the penalty, the square of the fastest frequency of
+/// contact.
+fn lightest(model: &Model, densities: &[f64]) -> Vec<f64> {
+    let mut masses = vec![0.0; model.nodes.len()];
+    for (body, density) in model.bodies.iter().zip(densities) {
+        let own = &mut masses[body.first_node as usize..];
+        for (mass, volume) in own.iter_mut().zip(body.mesh.nodal_volumes()) {
+            *mass = density * volume;
+        }
+    }
+    let mut areas = vec![0.0; model.nodes.len()];
+    let of = |points: &[SlavePoint]| {
+        areas.fill(0.0);
+        for p in points {
+            p.terms().for_each(|(n, w)| areas[n] += w * p.area);
+        }
+        let ratios = areas.iter().zip(&masses).filter(|(a, _)| **a > 0.0);
+        ratios.map(|(a, m)| a / m).fold(0.0, f64::max)
+    };
+    model.pairs.iter().map(|p| &p.points[..]).map(of).collect()
 }
 
 /// Centre of mass of a mesh.

@@ -310,6 +310,7 @@ impl March<'_, '_> {
                         self.beyond_linear(committed, internal);
                     }
                     let done = walk.stepping.done(end);
+                    self.tell_weighted(step, dt);
                     self.tell_energy(step, done);
                     let mut ending = self.stabilized(committed, &drag, &converged, done);
                     if ending.is_none() {
@@ -447,7 +448,7 @@ impl March<'_, '_> {
     /// Gathers the fields of a state.
     fn gather(&mut self, outputs: &mut Outputs, state: &State, time: f64) -> Result<(), RunError> {
         let assembler = &mut *self.assembler;
-        outputs.fields.motion = (assembler.inertia.as_ref())
+        outputs.fields.motion = (assembler.effects.inertia.as_ref())
             .map(|i| [i.velocities(&state.u), i.forces(self.model, &state.u)]);
         let masters = &mut assembler.masters;
         (outputs.fields).gather::<Penalty>(self.model, &assembler.penalties, masters, state, time)

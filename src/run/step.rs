@@ -237,14 +237,14 @@ impl Attempts<'_, '_> {
 
     /// Continues the path into `trial`: by the last step, or by the motion of bodies with inertia. Whether there is a path.
     fn continues(&self, before: Option<&(State, f64)>, dt: f64, trial: &mut State) -> bool {
-        match (before, &self.assembler.inertia) {
+        match (before, &self.assembler.effects.inertia) {
             (None, None) => return false,
             (None, Some(_)) => trial.copy_from(self.committed),
             (Some((state, size)), _) => {
                 (self.committed).extrapolate(self.model, state, dt / size, trial);
             }
         }
-        if let Some(inertia) = &self.assembler.inertia {
+        if let Some(inertia) = &self.assembler.effects.inertia {
             inertia.predict(&mut trial.u);
         }
         true

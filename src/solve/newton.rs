@@ -444,7 +444,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             residual,
             force: (reactions.sqrt().max(external))
                 .max(totals.contact_norm)
-                .max(totals.inertia_norm),
+                .max(totals.effects_norm),
             floor,
         }
     }

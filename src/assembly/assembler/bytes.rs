@@ -4,8 +4,6 @@ use super::couplings::Couplings;
 use super::maps::PointMaps;
 use super::moving::Meetings;
 use super::sliding::Sliding;
-use super::viscous::Viscous;
-use crate::effects::Contribution;
 use crate::contact::law::PairLaw;
 use crate::model::state::heap;
 
@@ -141,9 +139,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             external,
             contact,
             borders,
-            viscous,
-            passing,
-            inertia,
+            effects,
             penalties,
             ratios,
             linearization: _,
@@ -158,7 +154,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             driven = [driven[0] + own, driven[1] + friction];
         }
         let links = couplings.inner(|c: &Couplings| c.links.bytes());
-        vec![
+        let mut parts = vec![
             ("matrix", values),
             ("transposed matrix", transposed),
             ("pattern", matrix.pattern().bytes()),
@@ -182,11 +178,10 @@ impl<L: PairLaw> Assembler<'_, L> {
             ("contact forces", heap(contact)),
             ("driven", driven[0]),
             ("driven friction", driven[1]),
-            ("stabilization", viscous.as_ref().map_or(0, Viscous::bytes)),
-            ("jumps", passing.bytes()),
-            ("inertia", inertia.as_ref().map_or(0, |i| i.bytes())),
             ("linear", linear.as_ref().map_or(0, |l| l.bytes())),
             ("pairs", heap(penalties) + heap(ratios) + heap(ran)),
-        ]
+        ];
+        parts.extend(effects.parts());
+        parts
     }
 }

@@ -78,10 +78,8 @@ impl<L: PairLaw> Assembler<'_, L> {
             penalties,
             ratios,
             linearization: _,
-            // Written by the first evaluation of a step.
-            viscous: _,
-            passing: _,
-            inertia,
+            // All else of them is written by the first evaluation of a step.
+            effects,
             // All else of it is given by the model.
             linear,
             // A type, no value.
@@ -96,7 +94,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             rebuilds: *rebuilds,
             factored: linear.as_ref().and_then(|l| l.factored().cloned()),
             farthest: linear.as_ref().map_or(0.0, |l| l.farthest()),
-            motion: inertia.as_ref().map(|i| i.motion().clone()),
+            motion: (effects.inertia.as_ref()).map(|i| i.motion().clone()),
             new_pattern: new_pattern.is_some(),
         }
     }

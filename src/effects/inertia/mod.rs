@@ -13,7 +13,7 @@ mod scheme;
 pub use mass::Mass;
 pub use scheme::Scheme;
 
-use super::{Contribution, Tangent};
+use super::{Contribution, Tangent, Turn};
 use crate::model::Model;
 use crate::model::dynamics::DynamicsModel;
 use crate::model::state::heap;
@@ -103,16 +103,6 @@ impl Inertia {
             room: [zero.clone(), zero],
             norm: 0.0,
         })
-    }
-
-    /// When contact acts.
-    pub fn timing(&self) -> ContactTiming {
-        self.timing
-    }
-
-    /// Norm of the larger of the forces of inertia and of all others that are weighted, at the state evaluated last.
-    pub fn norm(&self) -> f64 {
-        self.norm
     }
 
     /// What a checkpoint keeps.
@@ -258,7 +248,7 @@ impl Inertia {
         }
     }
 
-    /// Linear momentum at the last accepted step, and angular momentum about the origin, of all bodies at the displacements `u`.
+    /// Linear momentum, and angular momentum about the origin, of all bodies at the displacements `u`.
     pub fn momentum(&self, model: &Model, u: &[f64]) -> [Vec3; 2] {
         let v = self.velocities(u);
         let mut p = vec![0.0; v.len()];
@@ -298,7 +288,7 @@ impl Contribution for Inertia {
     }
 
     /// Weights what is in the residual and in the tangent, and adds inertia and damping.
-    fn add(&mut self, model: &Model, u: &[f64], residual: &mut [f64], to: Option<Tangent<'_>>) {
+    fn add(&mut self, model: &Model, u: &[f64], residual: &mut [f64], to: Option<&mut Tangent>) {
         let mut room = std::mem::take(&mut self.room);
         let [a, forces] = &mut room;
         if self.damping > 0.0 {
@@ -323,15 +313,26 @@ impl Contribution for Inertia {
             for ((r, inertia), before) in sums {
                 *r = (1.0 - alpha_f) * *r + alpha_f * before + inertia;
             }
-            if let Some(mut to) = to {
+            if let Some(to) = to {
                 to.matrix.scale(1.0 - alpha_f);
                 to.rhs.iter_mut().for_each(|b| *b *= 1.0 - alpha_f);
                 let [inertia, damping] = self.scheme.tangent(self.dt);
                 let factor = inertia + damping * self.damping;
-                self.mass.add_tangent(model, factor, &mut to);
+                self.mass.add_tangent(model, factor, to);
             }
         }
         self.room = room;
+    }
+
+    fn turn(&self) -> Turn {
+        match self.timing {
+            ContactTiming::Implicit => Turn::BeforeContact,
+            ContactTiming::Weighted => Turn::AfterContact,
+        }
+    }
+
+    fn norm(&self) -> f64 {
+        self.norm
     }
 
     fn bytes(&self) -> usize {

@@ -3,6 +3,7 @@ use super::March;
 use crate::effects::inertia::MotionEnergy;
 use crate::model::error::number;
 use crate::model::state::State;
+use crate::scene::ContactTiming;
 use crate::solve::newton::StepFailure;
 use crate::solve::stepping::Stepping;
 
@@ -13,11 +14,17 @@ const SAFETY: f64 = 0.9;
 const NEXT: [f64; 2] = [0.3, 2.0];
 /// Part of the points of a pair that have to open or close for the step to be an event: accelerations jump in it.
 const EVENT: f64 = 0.05;
-/// Part of the size of the model that the largest displacement counts as at least.
-const SMALL: f64 = 1e-4;
+/// Part of the size of the model that the largest displacement counts as at least: below it rounding is all there is.
+const SMALL: f64 = 1e-8;
+/// Part of the time of a run below which no step is too long in which the largest displacement more than doubles: at the start of
+/// a motion from rest all errors are as large as what they are compared with, however short the step.
+const BEGINS: f64 = 1e-4;
 /// Part of the greatest energy that the integration may gain without a word, and that it may take.
 const GAINS: f64 = 0.01;
 const TAKES: f64 = 0.1;
+
+/// Steps, times the circular frequency of a penalty on the lightest node, above which contact must not be weighted.
+const WEIGHTED: f64 = 0.3;
 
 /// What is known of the motion in a step that is solved.
 #[derive(Debug, Clone, Copy, Default)]
@@ -28,13 +35,15 @@ pub(super) struct Moved {
     event: f64,
     /// Error of the step over the one that it is to make.
     error: f64,
+    /// The largest displacement has more than doubled.
+    begins: bool,
 }
 
 impl March<'_, '_> {
     /// Looks at the motion of a step; nothing without inertia.
     pub(super) fn moved(&self, committed: &State, trial: &State) -> Option<Moved> {
         let (inertia, own) = (
-            self.assembler.inertia.as_ref()?,
+            self.assembler.effects.inertia.as_ref()?,
             self.model.dynamics.as_ref()?,
         );
         let mut event = f64::INFINITY;
@@ -55,6 +64,7 @@ impl March<'_, '_> {
             energy: inertia.energy(self.model, &trial.u),
             event,
             error: error / allowed,
+            begins: farthest > 2.0 * inertia.motion().farthest,
         })
     }
 
@@ -68,7 +78,8 @@ impl March<'_, '_> {
     ) -> Option<StepFailure> {
         let adaptive = self.scene.solution.step.adaptive;
         let short = dt <= moved.event && moved.event.is_finite();
-        let fine = moved.error <= TOO_LARGE || short || stepping.smallest(dt);
+        let begins = moved.begins && dt <= BEGINS * self.scene.solution.end_time;
+        let fine = moved.error <= TOO_LARGE || short || begins || stepping.smallest(dt);
         let tolerance = self.model.dynamics.as_ref()?.settings.tolerance;
         (adaptive && !fine).then_some(StepFailure::TooLong {
             error: moved.error * tolerance,
@@ -93,14 +104,37 @@ impl March<'_, '_> {
             factor = 1.0;
         }
         stepping.paced(dt, factor, iterations);
-        if let Some(inertia) = &mut self.assembler.inertia {
+        if let Some(inertia) = &mut self.assembler.effects.inertia {
             inertia.commit(u, moved.energy, internal, event);
+        }
+    }
+
+    /// Tells where contact that is weighted between the ends of a step of size `dt` is too stiff for it.
+    pub(super) fn tell_weighted(&mut self, step: u32, dt: f64) {
+        let Some(own) = self.model.dynamics.as_ref() else {
+            return;
+        };
+        if own.settings.contact != ContactTiming::Weighted {
+            return;
+        }
+        for (index, pair) in self.model.pairs.iter().enumerate() {
+            let square = self.assembler.penalties[index] * own.lightest[index];
+            if self.touching[index] && square.sqrt() * dt > WEIGHTED {
+                let text = format!(
+                    "contact `{}` is weighted between the ends of the step (`solution.dynamics.contact`), which is more than \
+                     {WEIGHTED} over the frequency of its penalty: it may vibrate and gain energy; take steps below {}, a softer \
+                     `penalty`, or `implicit` contact",
+                    pair.name,
+                    number(WEIGHTED / square.sqrt())
+                );
+                self.warn_of_step(step, &text);
+            }
         }
     }
 
     /// Tells of energy that came from nowhere, and at the end of what the integration has taken.
     pub(super) fn tell_energy(&mut self, step: u32, last: bool) {
-        let Some(inertia) = &self.assembler.inertia else {
+        let Some(inertia) = &self.assembler.effects.inertia else {
             return;
         };
         let (greatest, lost) = (inertia.motion().greatest, self.watch.imbalance);

@@ -39,7 +39,7 @@ pub(crate) struct Problem {
 /// Everything of a run that lasts from one step to the next.
 pub(crate) struct RunState<'m> {
     pub(super) problem: &'m Problem,
-    pub(super) assembler: Assembler<'m>,
+    pub(in crate::run) assembler: Assembler<'m>,
     pub(super) solver: Box<dyn LinearSolver + Send>,
     pub(super) workspace: Workspace,
     pub(in crate::run) phases: Phases,

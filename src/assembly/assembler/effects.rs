@@ -1,14 +1,13 @@
-//! Loads, contact and inertia, in the order in which they are summed.
+//! Loads, contact and effects, in the order in which they are summed.
 use super::{Assembler, Fault, Totals};
 use crate::contact::law::PairLaw;
 use crate::effects::inertia::Motion;
-use crate::effects::{Contribution, Tangent};
+use crate::effects::{Tangent, Turn, Viscous};
 use crate::model::state::State;
-use crate::scene::ContactTiming;
 use crate::system::linear::{LinearError, LinearSolver};
 
 impl<L: PairLaw> Assembler<'_, L> {
-    /// What acts beside elements. In dynamics contact comes last: everything else is weighted between the ends of the step.
+    /// What acts beside elements, in the order of [`Turn`].
     pub(super) fn acting<const TANGENT: bool>(
         &mut self,
         state: &mut State,
@@ -18,41 +17,63 @@ impl<L: PairLaw> Assembler<'_, L> {
         rhs: &mut [f64],
         totals: &mut Totals,
     ) -> Result<(), Fault> {
-        let timing = self.inertia.as_ref().map(|i| i.timing());
-        if timing != Some(ContactTiming::Implicit) {
+        // Sums keep the order that they have without effects.
+        let last = self.effects.all().any(|e| e.turn() == Turn::BeforeContact);
+        if !last {
             self.contacts::<TANGENT>(state, time, increments, residual, rhs, totals)?;
         }
         self.loads::<TANGENT>(state, time, increments, residual, rhs)?;
-        if timing.is_some() {
-            self.inertia::<TANGENT>(&state.u, increments, residual, rhs, totals);
-        }
-        if timing == Some(ContactTiming::Implicit) {
+        if last {
+            let u = &state.u;
+            self.add_effects::<TANGENT>(Turn::BeforeContact, u, increments, residual, rhs, totals);
             self.contacts::<TANGENT>(state, time, increments, residual, rhs, totals)?;
+        }
+        for turn in [Turn::AfterContact, Turn::Last] {
+            self.add_effects::<TANGENT>(turn, &state.u, increments, residual, rhs, totals);
         }
         Ok(())
     }
 
-    fn inertia<const TANGENT: bool>(
+    fn add_effects<const TANGENT: bool>(
         &mut self,
+        turn: Turn,
         u: &[f64],
         increments: Option<&[f64]>,
         residual: &mut [f64],
         rhs: &mut [f64],
         totals: &mut Totals,
     ) {
-        let Some(inertia) = &mut self.inertia else {
-            return;
-        };
-        let to = TANGENT.then_some(Tangent {
+        let mut tangent = Tangent {
             matrix: &mut self.matrix,
             dofs: self.dofs,
             work: &mut self.work,
             maps: &self.element_maps,
             increments,
             rhs,
-        });
-        inertia.add(self.model, u, residual, to);
-        totals.inertia_norm = inertia.norm();
+        };
+        for effect in self.effects.all().filter(|e| e.turn() == turn) {
+            let to = TANGENT.then_some(&mut tangent);
+            effect.add(self.model, u, residual, to);
+            totals.effects_norm = totals.effects_norm.max(effect.norm());
+        }
+    }
+
+    /// Tells that a step from `start` to `end` begins at the displacements `u`.
+    pub fn begin_step(&mut self, u: &[f64], start: f64, end: f64) {
+        for effect in self.effects.all() {
+            effect.begin(self.model, u, [start, end]);
+        }
+    }
+
+    /// From here on every unknown is held to the displacements `u` with this part of what an element around it resists with;
+    /// with none, nothing is.
+    pub fn pass(&mut self, u: &[f64], rate: f64) {
+        self.effects.passing.hold(self.model, u, rate);
+    }
+
+    /// Whether the present step is stabilised.
+    pub fn stabilizes(&self) -> bool {
+        self.effects.viscous.as_ref().is_some_and(Viscous::acts)
     }
 
     /// Sets bodies in motion at time 0, from the state there: velocities as the scene has them, and the accelerations that the
@@ -65,7 +86,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         solver: &mut S,
         state: &State,
     ) -> Result<(), StartError> {
-        let (Some(inertia), Some(own)) = (&mut self.inertia, &self.model.dynamics) else {
+        let (Some(inertia), Some(own)) = (&mut self.effects.inertia, &self.model.dynamics) else {
             return Ok(());
         };
         inertia
@@ -74,7 +95,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         let n = state.u.len();
         let (mut residual, mut rhs) = (vec![0.0; n], vec![0.0; n]);
         self.linearize(&mut state.clone(), 0.0, None, &mut residual, &mut rhs)?;
-        let Some(inertia) = &mut self.inertia else {
+        let Some(inertia) = &mut self.effects.inertia else {
             return Ok(());
         };
         self.matrix.clear();
@@ -106,7 +127,7 @@ impl<L: PairLaw> Assembler<'_, L> {
 
     /// Goes on from where the motion was when a checkpoint was written, at the displacements `u`.
     pub fn go_on(&mut self, motion: Option<Motion>, u: &[f64]) {
-        if let (Some(inertia), Some(motion)) = (&mut self.inertia, motion) {
+        if let (Some(inertia), Some(motion)) = (&mut self.effects.inertia, motion) {
             inertia.go_on(motion, u);
         }
     }
@@ -114,7 +135,7 @@ impl<L: PairLaw> Assembler<'_, L> {
     /// Makes of the residual of the step that is solved the balance of forces at its end, in dynamics: reactions where supports
     /// are, and nothing where all is free.
     pub fn balance(&self, u: &[f64], residual: &mut [f64]) {
-        let Some(inertia) = &self.inertia else {
+        let Some(inertia) = &self.effects.inertia else {
             return;
         };
         inertia.balance(self.model, u, &self.contact, residual);
