@@ -88,7 +88,9 @@ impl Effects {
         } = self;
         let inertia = inertia.as_deref_mut().map(|e| e as &mut dyn Contribution);
         let viscous = viscous.as_mut().map(|e| e as &mut dyn Contribution);
-        (inertia.into_iter()).chain(viscous).chain([passing as &mut dyn Contribution])
+        (inertia.into_iter())
+            .chain(viscous)
+            .chain([passing as &mut dyn Contribution])
     }
 
     /// Bytes of heap by part, also of those that there are not.

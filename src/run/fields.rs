@@ -4,6 +4,7 @@ use super::averaged::{NodeNow, nodes_now};
 use super::bearing::{Bearings, Carrier, Place as BearingPlace};
 use super::flow_fields::FlowFields;
 use super::friction_fields::{self, FrictionFields};
+use super::motion_fields::MotionFields;
 use super::reaction_fields::reactions;
 use super::resultants::Resultants;
 use super::strain_fields::StrainFields;
@@ -59,8 +60,7 @@ pub struct Fields {
     /// Gaps at the start where they are negative, between the first two times of gathering; empty where none are.
     start: Vec<f64>,
     gathered: bool,
-    /// Of bodies with inertia: velocities, and forces of inertia and damping, 3 per node of the model.
-    pub motion: Option<[Vec<f64>; 2]>,
+    pub motion: Option<MotionFields>,
 }
 
 impl Fields {
@@ -427,8 +427,8 @@ impl Fields {
             })
             .collect();
         let flow = FlowFields::of(model, state);
-        let forces = self.motion.as_ref().map(|[_, forces]| &forces[..]);
-        let reactions = reactions(model, state, (&self.status, forces), time);
+        let acting = (&self.status[..], self.motion.as_ref());
+        let reactions = reactions(model, state, acting, time);
         let bodies: Vec<BodyFields> = (model.bodies.iter().enumerate())
             .map(|(i, body)| {
                 let first = body.first_node as usize;
@@ -448,14 +448,7 @@ impl Fields {
                         .chain(self.traction.of(model, i, body))
                         .chain(strains[i].fields())
                         .chain(flow[i].fields())
-                        .chain(self.motion.as_ref().map(|[v, _]| Field {
-                            name: "velocity",
-                            components: 3,
-                            component_names: &[],
-                            data: &v[3 * range.start..3 * range.end],
-                            place: Place::Point,
-                            derived: false,
-                        }))
+                        .chain(self.motion.as_ref().map(|m| m.field(&range)))
                         .chain(resultants[i].iter().flat_map(Resultants::fields))
                         .chain(reactions.as_ref().map(|all| Field {
                             name: "reaction",

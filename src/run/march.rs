@@ -19,6 +19,7 @@ use super::compliance::Compliance;
 use super::fields::Fields;
 use super::habit::Habit;
 use super::hold;
+use super::motion_fields::MotionFields;
 use super::peaks::Peaks;
 use super::penalty_rule::PenaltyRule;
 use super::progress::Progress;
@@ -207,7 +208,7 @@ impl March<'_, '_> {
                 false => None,
             };
             if let Some(moved) = &moved
-                && let Some(failure) = self.too_long(moved, dt, &walk.stepping)
+                && let Some(failure) = self.too_long(moved, (dt, cuts), &walk.stepping)
             {
                 result = Err(failure);
             }
@@ -353,7 +354,11 @@ impl March<'_, '_> {
             let hopeless = !lost.is_empty()
                 || cuts >= hold::HOPELESS
                     && turned.is_some_and(|b| self.replaceable.contains(&b.name));
-            let next = walk.stepping.failed(dt).filter(|_| !hopeless);
+            let part = match &failure {
+                StepFailure::TooLong { part, .. } => *part,
+                _ => 0.5,
+            };
+            let next = walk.stepping.failed(dt, part).filter(|_| !hopeless);
             let Some(next_dt) = next else {
                 let unstable = self.workspace.unstable.map_or_else(String::new, |u| {
                     format!("; {}", u.words(self.model, self.assembler.stabilizes()))
@@ -448,8 +453,7 @@ impl March<'_, '_> {
     /// Gathers the fields of a state.
     fn gather(&mut self, outputs: &mut Outputs, state: &State, time: f64) -> Result<(), RunError> {
         let assembler = &mut *self.assembler;
-        outputs.fields.motion = (assembler.effects.inertia.as_ref())
-            .map(|i| [i.velocities(&state.u), i.forces(self.model, &state.u)]);
+        outputs.fields.motion = MotionFields::new(self.model, assembler, &state.u);
         let masters = &mut assembler.masters;
         (outputs.fields).gather::<Penalty>(self.model, &assembler.penalties, masters, state, time)
     }

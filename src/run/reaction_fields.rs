@@ -1,4 +1,5 @@
 //! Nodal reactions, worked out for the output only.
+use super::motion_fields::MotionFields;
 use crate::model::loads::follower_force;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
@@ -14,7 +15,7 @@ use rayon::prelude::*;
 pub(super) fn reactions(
     model: &Model,
     state: &State,
-    (status, inertia): (&[u8], Option<&[f64]>),
+    (status, motion): (&[u8], Option<&MotionFields>),
     time: f64,
 ) -> Option<Vec<f64>> {
     let mut forces = vec![0.0; 3 * model.nodes.len()];
@@ -28,7 +29,8 @@ pub(super) fn reactions(
             Some(_) => linear(body, block, &state.u, &mut forces),
         });
     }
-    for (force, inertia) in forces.iter_mut().zip(inertia.into_iter().flatten()) {
+    let inertia = motion.into_iter().flat_map(|m| &m.forces);
+    for (force, inertia) in forces.iter_mut().zip(inertia) {
         *force += inertia;
     }
     let mut external = vec![0.0; forces.len()];

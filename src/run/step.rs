@@ -15,6 +15,7 @@
 //! Where the last stages fail and the run may choose the penalties, the last stage that was solved is what the step gets:
 //! whether its penalties serve is measured by [`super::penalty_rule`]. What fails all four is cut.
 mod augmenting;
+mod continuing;
 
 use super::augment;
 use super::habit::Habit;
@@ -233,21 +234,6 @@ impl Attempts<'_, '_> {
             result = self.started(*start, (step, end, patience(i)), trial, penalties);
         }
         result
-    }
-
-    /// Continues the path into `trial`: by the last step, or by the motion of bodies with inertia. Whether there is a path.
-    fn continues(&self, before: Option<&(State, f64)>, dt: f64, trial: &mut State) -> bool {
-        match (before, &self.assembler.effects.inertia) {
-            (None, None) => return false,
-            (None, Some(_)) => trial.copy_from(self.committed),
-            (Some((state, size)), _) => {
-                (self.committed).extrapolate(self.model, state, dt / size, trial);
-            }
-        }
-        if let Some(inertia) = &self.assembler.effects.inertia {
-            inertia.predict(&mut trial.u);
-        }
-        true
     }
 
     /// Solves from a start, and takes down what it has cost.

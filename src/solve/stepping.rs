@@ -110,12 +110,13 @@ impl Stepping {
         0.5 * dt < self.settings.min
     }
 
-    /// A step of size `dt` failed: the size to try next, or `None` where it would be below the smallest.
-    pub fn failed(&mut self, dt: f64) -> Option<f64> {
+    /// A step of size `dt` failed, of which a `part` may do: the size to try next, at most half, or `None` where it would be below
+    /// the smallest.
+    pub fn failed(&mut self, dt: f64, part: f64) -> Option<f64> {
         if self.smallest(dt) {
             return None;
         }
-        self.dt = 0.5 * dt;
+        self.dt = (part.min(0.5) * dt).max(self.settings.min);
         Some(self.dt)
     }
 }
@@ -150,7 +151,7 @@ mod tests {
         let mut s = stepping(&[]);
         let mut dt = 0.3;
         let mut cuts = 0;
-        while let Some(next) = s.failed(dt) {
+        while let Some(next) = s.failed(dt, 0.5) {
             assert_eq!(next, 0.5 * dt);
             dt = next;
             cuts += 1;

@@ -47,7 +47,9 @@ mod tests {
             let pattern = Arc::new(Pattern::new(3, [group].into_iter()).expect("a pattern"));
             let mut map = Vec::new();
             pattern.element_map(&nodes, &mut map).expect("all coupled");
-            let scalars: Vec<f64> = (0..map.len()).map(|i| 1.0 + (1.7 * i as f64).sin()).collect();
+            let scalars: Vec<f64> = (0..map.len())
+                .map(|i| 1.0 + (1.7 * i as f64).sin())
+                .collect();
             let mut dense = vec![0.0; 144];
             let mut at = scalars.iter();
             for b in 0..4 {

@@ -31,7 +31,10 @@ fn a_bar_on_a_wall_at_every_penalty() {
             "output": { "every": 0 }
         });
         let simulation = run(&scene, |_| {});
-        let (time, force) = (column(&simulation, "time"), column(&simulation, "force.wall.x"));
+        let (time, force) = (
+            column(&simulation, "time"),
+            column(&simulation, "force.wall.x"),
+        );
         let middle: Vec<f64> = (time.iter().zip(&force))
             .filter(|(t, _)| (0.3..1.7).contains(*t))
             .map(|(_, f)| f / V)
@@ -47,7 +50,8 @@ fn a_bar_on_a_wall_at_every_penalty() {
         let [p, _] = simulation.momentum().expect("inertia");
         println!(
             "penalty {penalty}: force {mean:.5}, noise {noise:.5}, end {end:.3}, energy at most {highest:.6}, left {left:.4}, \
-             exit {:.4}", p.x / V
+             exit {:.4}",
+            p.x / V
         );
         assert!((mean - 1.0).abs() < 5e-4, "penalty {penalty}: force {mean}");
         assert!(noise < 2e-3, "penalty {penalty}: noise {noise}");

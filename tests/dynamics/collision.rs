@@ -42,12 +42,21 @@ fn equal_bars_exchange_their_velocities() {
         let index = if body == "a" { 0 } else { 1 };
         let mesh = &found.model().bodies[index].mesh;
         let volumes = mesh.nodal_volumes();
-        let sum: f64 = volumes.iter().enumerate().map(|(n, w)| w * v.at(n, 0)).sum();
+        let sum: f64 = volumes
+            .iter()
+            .enumerate()
+            .map(|(n, w)| w * v.at(n, 0))
+            .sum();
         sum / volumes.iter().sum::<f64>()
     };
     let [a, b] = ["a", "b"].map(mean);
     let energy = energies(&found, 0.5 * v * v);
-    println!("drift {drift:.1e}, a {:.4}, b {:.4}, parted at {contact}, energy at most {:.6}", a / v, b / v, largest(&energy) / energy[0]);
+    println!(
+        "drift {drift:.1e}, a {:.4}, b {:.4}, parted at {contact}, energy at most {:.6}",
+        a / v,
+        b / v,
+        largest(&energy) / energy[0]
+    );
     assert!(drift < 1e-11, "{drift}");
     assert!((contact - 2.0).abs() < 0.16, "{contact}");
     assert!(a.abs() < 0.05 * v && (b / v - 1.0).abs() < 0.05, "{a} {b}");

@@ -41,10 +41,21 @@ fn a_tilted_strip_never_gains_energy() {
         let (highest, last) = (largest(&energy) / start, energy[energy.len() - 1] / start);
         let [p, _] = simulation.momentum().expect("inertia");
         let speed = p.z / (MASS * 2.0);
-        println!("penalty {penalty} E/h, dt {step} h/c: at most {highest:.6}, left {last:.4} ({left}), rebound {speed:.4} ({rebound})");
-        assert!(highest < 1.0 + 1e-6, "penalty {penalty}, step {step}: {highest}");
-        assert!((last - left).abs() < 0.01, "penalty {penalty}, step {step}: {last}");
-        assert!((speed - rebound).abs() < 0.01, "penalty {penalty}, step {step}: {speed}");
+        println!(
+            "penalty {penalty} E/h, dt {step} h/c: at most {highest:.6}, left {last:.4} ({left}), rebound {speed:.4} ({rebound})"
+        );
+        assert!(
+            highest < 1.0 + 1e-6,
+            "penalty {penalty}, step {step}: {highest}"
+        );
+        assert!(
+            (last - left).abs() < 0.01,
+            "penalty {penalty}, step {step}: {last}"
+        );
+        assert!(
+            (speed - rebound).abs() < 0.01,
+            "penalty {penalty}, step {step}: {speed}"
+        );
         assert!(simulation.warnings().iter().all(|w| !w.contains("gained")));
     }
 }

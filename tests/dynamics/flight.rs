@@ -34,13 +34,16 @@ fn a_spinning_strip_keeps_its_momentum() {
         });
         let energy = energies(&simulation, 0.0);
         let first = energy[1];
-        let spread = energy[1..].iter().fold(0.0f64, |a, e| a.max((e / first - 1.0).abs()));
+        let spread = energy[1..]
+            .iter()
+            .fold(0.0f64, |a, e| a.max((e / first - 1.0).abs()));
         println!("dt {dt}: linear {linear:.1e}, angular {angular:.2e}, energy {spread:.2e}");
         // The centre of mass goes where the velocity says.
         let u = simulation.displacements("s").expect("the body");
         let mesh = &simulation.model().bodies[0].mesh;
         let volumes = mesh.nodal_volumes();
-        let way = u.iter().zip(&volumes).map(|(u, v)| u * *v).sum::<Vec3>() / volumes.iter().sum::<f64>();
+        let way =
+            u.iter().zip(&volumes).map(|(u, v)| u * *v).sum::<Vec3>() / volumes.iter().sum::<f64>();
         let straight = Vec3::new(0.3, 0.2, 0.1) * 2.4;
         assert!((way - straight).norm() < 1e-11 * straight.norm(), "{way}");
         assert!(linear < 1e-12, "{linear}");

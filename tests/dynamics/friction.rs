@@ -44,12 +44,16 @@ fn a_sliding_block_comes_to_rest() {
     let taken = taken[taken.len() - 1] / energy;
     println!(
         "{} steps; way {:.5} of {way:.5}, stopped at {stopped:.4} of {time:.4}, friction took {taken:.4}",
-        simulation.steps(), x
+        simulation.steps(),
+        x
     );
     assert!((x / way - 1.0).abs() < 0.01, "{x} {way}");
     assert!((stopped / time - 1.0).abs() < 0.03, "{stopped} {time}");
     assert!((taken - 1.0).abs() < 0.01, "{taken}");
     // That it starts pressed in, and nothing else.
     let told = simulation.warnings();
-    assert!(told.len() == 1 && told[0].contains("overclosure"), "{told:?}");
+    assert!(
+        told.len() == 1 && told[0].contains("overclosure"),
+        "{told:?}"
+    );
 }

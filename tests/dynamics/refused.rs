@@ -26,28 +26,78 @@ fn problems(text: &str) -> Vec<String> {
 fn by_key_with_place() {
     assert_eq!(problems(SCENE), Vec::<String>::new());
     for (from, to, place, what) in [
-        (r#""dynamics": {}"#, r#""dynamics": {}, "kinematics": "small""#, "10:", "`dynamics` does not go with small displacements"),
+        (
+            r#""dynamics": {}"#,
+            r#""dynamics": {}, "kinematics": "small""#,
+            "10:",
+            "`dynamics` does not go with small displacements",
+        ),
         (
             r#""dynamics": {}"#,
             r#""dynamics": {}, "stabilization": {"viscous": {}}"#,
             "10:",
             "`dynamics` does not go with viscous stabilisation",
         ),
-        (r#""master": "ball""#, r#""master": "ball", "augmentation": {}"#, "9:", "`dynamics` does not go with augmentation"),
-        (r#""master": "ball""#, r#""master": "ball", "accuracy": 1e-3"#, "9:", "a penalty that is ruled by its accuracy"),
+        (
+            r#""master": "ball""#,
+            r#""master": "ball", "augmentation": {}"#,
+            "9:",
+            "`dynamics` does not go with augmentation",
+        ),
+        (
+            r#""master": "ball""#,
+            r#""master": "ball", "accuracy": 1e-3"#,
+            "9:",
+            "a penalty that is ruled by its accuracy",
+        ),
         (
             r#""center": [5, 5, 6]}"#,
             r#""center": [5, 5, 6]}, "motion": {"free": {"force": {"z": -1}}}"#,
             "8:",
             "a surface driven by force",
         ),
-        (r#", "density": 1"#, "", "5:", "the material `m` of body `a` has no density, which `dynamics` needs"),
-        (r#""dynamics": {}"#, r#""dynamics": {"rho_inf": 1.5}"#, "10:", "`rho_inf` is 1.5"),
-        (r#""dynamics": {}"#, r#""dynamics": {"damping": {"mass": -1}}"#, "10:", "the damping is -1"),
-        (r#""dynamics": {}"#, r#""dynamics": {"damping": {"stiffness": 1}}"#, "10:", "`mass`"),
-        (r#""dynamics": {}"#, r#""dynamics": {"tolerance": 1}"#, "10:", "the tolerance is 1"),
-        (r#""dynamics": {}"#, r#""end_time": 1"#, "6:", "a `velocity` needs inertia"),
-        (r#""dynamics": {}"#, r#""dynamics": {}, "end_time": 1e-3, "step": {"initial": 1}, "newton": {"max_iterations": 0}"#, "10:", "`max_iterations` is 0"),
+        (
+            r#", "density": 1"#,
+            "",
+            "5:",
+            "the material `m` of body `a` has no density, which `dynamics` needs",
+        ),
+        (
+            r#""dynamics": {}"#,
+            r#""dynamics": {"rho_inf": 1.5}"#,
+            "10:",
+            "`rho_inf` is 1.5",
+        ),
+        (
+            r#""dynamics": {}"#,
+            r#""dynamics": {"damping": {"mass": -1}}"#,
+            "10:",
+            "the damping is -1",
+        ),
+        (
+            r#""dynamics": {}"#,
+            r#""dynamics": {"damping": {"stiffness": 1}}"#,
+            "10:",
+            "`mass`",
+        ),
+        (
+            r#""dynamics": {}"#,
+            r#""dynamics": {"tolerance": 1}"#,
+            "10:",
+            "the tolerance is 1",
+        ),
+        (
+            r#""dynamics": {}"#,
+            r#""end_time": 1"#,
+            "6:",
+            "a `velocity` needs inertia",
+        ),
+        (
+            r#""dynamics": {}"#,
+            r#""dynamics": {}, "end_time": 1e-3, "step": {"initial": 1}, "newton": {"max_iterations": 0}"#,
+            "10:",
+            "`max_iterations` is 0",
+        ),
     ] {
         assert!(SCENE.contains(from), "{from}");
         let found = problems(&SCENE.replacen(from, to, 1));
@@ -66,6 +116,8 @@ fn supports_start_where_the_body_is() {
         1,
     );
     let loaded = parse(&text, "scene.json").unwrap_or_else(|e| panic!("{e}"));
-    let error = covact::model::build::build(&loaded).expect_err("refused").to_string();
+    let error = covact::model::build::build(&loaded)
+        .expect_err("refused")
+        .to_string();
     assert!(error.contains("no inertia follows a jump"), "{error}");
 }

@@ -69,7 +69,10 @@ fn a_run_goes_on_with_the_same_bits() {
         let name = path.file_name().unwrap();
         let other = pieces.path().join(name);
         if name == "history.csv" || path.extension().is_some_and(|e| e == "vtu") {
-            assert!(std::fs::read(&path).unwrap() == std::fs::read(&other).unwrap(), "{name:?} differs");
+            assert!(
+                std::fs::read(&path).unwrap() == std::fs::read(&other).unwrap(),
+                "{name:?} differs"
+            );
             compared += 1;
         }
     }

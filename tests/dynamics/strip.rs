@@ -58,7 +58,9 @@ fn the_first_frequency_of_a_clamped_strip() {
         solver.analyze(stiffness.pattern()).expect("an analysis");
         solver.factorize(&stiffness).expect("factors");
         // Inverse iteration, in the direction in which the strip is thin.
-        let mut x: Vec<f64> = (0..n).map(|dof| if dof % 3 == 2 { 1.0 } else { 0.0 }).collect();
+        let mut x: Vec<f64> = (0..n)
+            .map(|dof| if dof % 3 == 2 { 1.0 } else { 0.0 })
+            .collect();
         let mut square = 0.0;
         for _ in 0..12 {
             let force = mass(&x);
@@ -71,10 +73,14 @@ fn the_first_frequency_of_a_clamped_strip() {
             x = y.iter().map(|y| y / size).collect();
         }
         let (height, length) = (0.1f64, 10.0f64);
-        let beam = 1.875_104_068_711_961f64.powi(2) * (height * height / 12.0).sqrt() / length.powi(2);
+        let beam =
+            1.875_104_068_711_961f64.powi(2) * (height * height / 12.0).sqrt() / length.powi(2);
         let ratio = square.sqrt() / beam;
         println!("{element} {count}: {ratio:.5}");
-        assert!((ratio - 1.0).abs() < tolerance, "{element} {count}: {ratio}");
+        assert!(
+            (ratio - 1.0).abs() < tolerance,
+            "{element} {count}: {ratio}"
+        );
     }
 }
 

@@ -67,7 +67,10 @@ fn weight_that_acts_at_once_makes_it_swing() {
         let order = (errors[0] / errors[1]).log2();
         println!("rho_inf {rho_inf}: errors {errors:?}, order {order:.3}");
         assert!(errors[1] > 1e-5 && errors[1] < 2e-2, "{errors:?}");
-        assert!((order - 2.0).abs() < 0.12, "rho_inf {rho_inf}: order {order}");
+        assert!(
+            (order - 2.0).abs() < 0.12,
+            "rho_inf {rho_inf}: order {order}"
+        );
     }
     let solution = fixed(period / 400.0, period);
     let mut scene = bar(solution);
@@ -108,7 +111,10 @@ fn damping_takes_its_part() {
     // At rest in the end: of the work of the weight one half is stored, the other taken.
     let last = |name: &str| column(&simulation, name).last().copied().expect("a step");
     let (work, taken) = (last("energy.external"), last("energy.damping"));
-    println!("error {error:.1e}, damping took {:.5} of the work", taken / work);
+    println!(
+        "error {error:.1e}, damping took {:.5} of the work",
+        taken / work
+    );
     assert!((taken / work - 0.5).abs() < 2e-3, "{taken} {work}");
     assert!(last("energy.integrator").abs() < 2e-3 * work);
 }
@@ -157,5 +163,8 @@ fn steps_follow_the_tolerance() {
     let ratio = f64::from(many) / f64::from(few);
     assert!((3.2..4.8).contains(&ratio), "{ratio}");
     // Over all steps, second order in their size.
-    assert!(coarse < 0.4 && (10.0..20.0).contains(&(coarse / fine)), "{coarse} {fine}");
+    assert!(
+        coarse < 0.4 && (10.0..20.0).contains(&(coarse / fine)),
+        "{coarse} {fine}"
+    );
 }

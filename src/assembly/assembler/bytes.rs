@@ -20,9 +20,9 @@ pub(crate) mod sizes {
     use super::super::sliding::Sliding;
     use super::super::small::Linear;
     use crate::contact::clearance::Clearance;
-    pub use crate::effects::inertia::{Inertia, Mass};
     use crate::contact::points::SlavePoint;
     use crate::contact::rigid::{PointFault, Touch};
+    pub use crate::effects::inertia::{Inertia, Mass};
     use crate::model::kernel::Kernel;
     use crate::model::master::BodySurface;
     use crate::model::{Model, PairModel};

@@ -15,7 +15,11 @@ impl<L: PairLaw> Assembler<'_, L> {
     /// What the stabilisation did in the step whose last evaluation was at `u`; `residual` is that of all degrees of freedom.
     pub fn drag(&self, u: &[f64], residual: &[f64]) -> Drag {
         let passing = &self.effects.passing;
-        let of_scene = self.effects.viscous.as_ref().zip(self.model.stabilization.as_ref());
+        let of_scene = self
+            .effects
+            .viscous
+            .as_ref()
+            .zip(self.model.stabilization.as_ref());
         if of_scene.is_none() && !passing.acts() {
             return Drag::default();
         }

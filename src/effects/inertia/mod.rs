@@ -199,7 +199,11 @@ impl Inertia {
     /// Moves `u` on to where the present step would end if nothing acted anew.
     pub fn predict(&self, u: &mut [f64]) {
         let dt = self.dt;
-        let curved = if self.motion.event { 0.0 } else { 0.5 * dt * dt };
+        let curved = if self.motion.event {
+            0.0
+        } else {
+            0.5 * dt * dt
+        };
         for (dof, u) in u.iter_mut().enumerate() {
             *u = self.base[dof] + dt * self.motion.v[dof] + curved * self.motion.a[dof];
         }
@@ -309,7 +313,10 @@ impl Contribution for Inertia {
             self.mass.add_product(model, a, forces);
             let norm = |f: &[f64]| f.iter().map(|f| f * f).sum::<f64>().sqrt();
             self.norm = norm(forces).max(norm(residual));
-            let sums = residual.iter_mut().zip(forces.iter()).zip(&self.motion.forces);
+            let sums = residual
+                .iter_mut()
+                .zip(forces.iter())
+                .zip(&self.motion.forces);
             for ((r, inertia), before) in sums {
                 *r = (1.0 - alpha_f) * *r + alpha_f * before + inertia;
             }

@@ -24,10 +24,7 @@ impl March<'_, '_> {
             let deepest = converged.totals.penetration[i];
             self.touched[i] |= touching[i];
             let lasting = self.model.dynamics.is_none();
-            if lasting
-                && self.either(&before, i)
-                && !self.either(touching, i)
-                && !pair.is_second()
+            if lasting && self.either(&before, i) && !self.either(touching, i) && !pair.is_second()
             {
                 self.warn(format!(
                     "contact `{}` opened at step {step} (time {}): none of its points touches any more",

@@ -14,6 +14,8 @@ const SAFETY: f64 = 0.9;
 const NEXT: [f64; 2] = [0.3, 2.0];
 /// Part of the points of a pair that have to open or close for the step to be an event: accelerations jump in it.
 const EVENT: f64 = 0.05;
+/// Times that a step in which contact opens or closes is shortened for its error: in contact that lasts, and at a first touch.
+const CUTS: [u32; 2] = [1, 6];
 /// Part of the size of the model that the largest displacement counts as at least: below it rounding is all there is.
 const SMALL: f64 = 1e-8;
 /// Part of the time of a run below which no step is too long in which the largest displacement more than doubles: at the start of
@@ -33,10 +35,22 @@ pub(super) struct Moved {
     pub energy: MotionEnergy,
     /// The shortest time that a wave takes along an element of a pair many of whose points open or close; infinite without.
     event: f64,
+    /// Such a pair touches for the first time, or again.
+    touches: bool,
     /// Error of the step over the one that it is to make.
     error: f64,
     /// The largest displacement has more than doubled.
     begins: bool,
+}
+
+impl Moved {
+    /// Size of the next step, or of this one once more, over its own.
+    fn next(&self) -> f64 {
+        match self.error > 0.0 {
+            true => (SAFETY / self.error.cbrt()).clamp(NEXT[0], NEXT[1]),
+            false => NEXT[1],
+        }
+    }
 }
 
 impl March<'_, '_> {
@@ -46,7 +60,7 @@ impl March<'_, '_> {
             self.assembler.effects.inertia.as_ref()?,
             self.model.dynamics.as_ref()?,
         );
-        let mut event = f64::INFINITY;
+        let (mut event, mut touches) = (f64::INFINITY, false);
         let mut first = 0;
         for (index, wave) in own.waves.iter().enumerate() {
             let points = first..first + trial.slaves(self.model, index).len();
@@ -56,6 +70,7 @@ impl March<'_, '_> {
             let switched = before.iter().zip(now).filter(|(a, b)| a.closed != b.closed);
             if switched.count() as f64 > EVENT * count {
                 event = event.min(*wave);
+                touches |= before.iter().all(|p| !p.closed);
             }
         }
         let [error, farthest] = inertia.local_error(&trial.u);
@@ -63,27 +78,31 @@ impl March<'_, '_> {
         Some(Moved {
             energy: inertia.energy(self.model, &trial.u),
             event,
+            touches,
             error: error / allowed,
             begins: farthest > 2.0 * inertia.motion().farthest,
         })
     }
 
-    /// Why a step of size `dt` that is solved is too long for its motion. Where contact opens or closes the accelerations jump,
-    /// and with them the error that is told: such a step need not be shorter than a wave takes along an element.
+    /// Why a step of size `dt` that is solved, after so many `cuts`, is too long for its motion. Where contact opens or closes the
+    /// accelerations jump, and with them the error that is told: such a step is shortened a few times where it is the first touch,
+    /// else once, and never below the time that a wave takes along an element.
     pub(super) fn too_long(
         &self,
         moved: &Moved,
-        dt: f64,
+        (dt, cuts): (f64, u32),
         stepping: &Stepping,
     ) -> Option<StepFailure> {
         let adaptive = self.scene.solution.step.adaptive;
-        let short = dt <= moved.event && moved.event.is_finite();
+        let most = CUTS[usize::from(moved.touches)];
+        let short = moved.event.is_finite() && (dt <= moved.event || cuts >= most);
         let begins = moved.begins && dt <= BEGINS * self.scene.solution.end_time;
         let fine = moved.error <= TOO_LARGE || short || begins || stepping.smallest(dt);
         let tolerance = self.model.dynamics.as_ref()?.settings.tolerance;
         (adaptive && !fine).then_some(StepFailure::TooLong {
             error: moved.error * tolerance,
             allowed: TOO_LARGE * tolerance,
+            part: moved.next(),
         })
     }
 
@@ -96,13 +115,11 @@ impl March<'_, '_> {
         stepping: &mut Stepping,
     ) {
         let event = moved.event.is_finite();
-        let mut factor = NEXT[1];
-        if moved.error > 0.0 {
-            factor = (SAFETY / moved.error.cbrt()).clamp(NEXT[0], NEXT[1]);
-        }
-        if event && dt <= moved.event {
-            factor = 1.0;
-        }
+        let factor = match event {
+            // Its error says nothing of the next one.
+            true => moved.next().max(1.0),
+            false => moved.next(),
+        };
         stepping.paced(dt, factor, iterations);
         if let Some(inertia) = &mut self.assembler.effects.inertia {
             inertia.commit(u, moved.energy, internal, event);

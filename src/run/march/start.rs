@@ -168,8 +168,15 @@ impl<'m> RunState<'m> {
         let masters = &mut march.assembler.masters;
         commit::start(march.model, masters, &mut course.committed)
             .map_err(|e| RunError::internal(&e))?;
-        (march.assembler.set_in_motion(march.solver, &course.committed))
-            .map_err(|e| RunError::internal(&e))?;
+        (march
+            .assembler
+            .set_in_motion(march.solver, &course.committed))
+        .map_err(|e| RunError::internal(&e))?;
+        if march.model.dynamics.is_some() {
+            let mut balance = vec![0.0; course.committed.u.len()];
+            (march.assembler).balance(&course.committed.u, &mut balance);
+            march.watch.start(march.assembler, &balance);
+        }
         course.trial = course.committed.clone();
         march.gather(&mut course.outputs, &course.committed, 0.0)
     }

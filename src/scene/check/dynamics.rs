@@ -16,7 +16,10 @@ pub(super) fn check(c: &mut Checker, scene: &Scene) {
                 c.add(&format!("{at}/{key}"), message, Some(help.into()));
             }
         }
-        c.finite(&format!("{at}/velocity"), &body.velocity.unwrap_or_default());
+        c.finite(
+            &format!("{at}/velocity"),
+            &body.velocity.unwrap_or_default(),
+        );
         if let Some(spin) = &body.spin {
             c.finite(&format!("{at}/spin/rate"), &spin.rate);
             c.finite(&format!("{at}/spin/about"), &spin.about.unwrap_or_default());
@@ -41,7 +44,11 @@ fn check_numbers(c: &mut Checker, dynamics: &Dynamics) {
     let rho = dynamics.rho_inf;
     if !(0.0..=1.0).contains(&rho) {
         let help = "from 0, which damps most, to 1, which damps nothing; usually 0.8";
-        c.add(&at("rho_inf"), format!("`rho_inf` is {rho}"), Some(help.into()));
+        c.add(
+            &at("rho_inf"),
+            format!("`rho_inf` is {rho}"),
+            Some(help.into()),
+        );
     }
     let mass = dynamics.damping.mass;
     if !(mass >= 0.0 && mass.is_finite()) {
