@@ -198,7 +198,9 @@ pub const COLUMNS: &[ColumnDoc] = &[
     doc(
         "energy.integrator",
         "energy",
-        "in place of `energy.imbalance` with inertia: external and adjusted less stored, dissipated, damping and what the kinetic          energy has grown by; what the time integration has taken of vibrations that steps do not resolve and at impacts, and          the error of the trapezoidal rule",
+        "in place of `energy.imbalance` with inertia: external and adjusted less stored, dissipated, damping and what the kinetic \
+         energy has grown by; what the time integration has taken of vibrations that steps do not resolve and at impacts, and \
+         the error of the trapezoidal rule",
     ),
     doc(
         "way.<name>.<axis>",

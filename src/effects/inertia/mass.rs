@@ -40,7 +40,7 @@ impl Mass {
         Mass { pairs: all }
     }
 
-    /// Bytes of heap that it holds, and of those that an element of a body holds.
+    /// Bytes of heap that it holds.
     pub fn bytes(&self) -> usize {
         heap(&self.pairs)
     }

@@ -3,7 +3,7 @@
 //! `M [(1 - alpha_m) a_1 + alpha_m a_0] + (1 - alpha_f) R(u_1, v_1) + alpha_f R_0 + f_c(u_1) = 0`,
 //!
 //! with `R = f_int + C v - f_ext`, and `a_1`, `v_1` by Newmark's formulas from the displacements `u_1`, the only unknowns
-//! ([`scheme`]). Forces are weighted, and nothing is evaluated between the ends of a step, so that what depends on history sees
+//! ([`Scheme`]). Forces are weighted, and nothing is evaluated between the ends of a step, so that what depends on history sees
 //! these alone. Contact forces `f_c` are not weighted but act at the end: weighted ones vibrate between two steps under a stiff
 //! penalty and gain energy without bound, while these never gained more than half a hundredth of it in any case that was tried.
 //! Where the scene asks for it, they are a part of `R`.
