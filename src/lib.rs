@@ -81,6 +81,7 @@
 
 pub mod assembly;
 pub mod contact;
+pub mod effects;
 pub mod fem;
 pub mod gauntlet;
 pub mod machine;

@@ -4,5 +4,5 @@ mod assembler;
 pub(crate) use assembler::sizes;
 pub use assembler::{
     Assembler, AssemblerMemory, CouplingMemory, Drag, Factored, Fault, Line, Linearization,
-    MemoryError, Needed, PairForce, PointAnswer, Quadratic, SurfaceForce, Totals,
+    MemoryError, Needed, PairForce, PointAnswer, Quadratic, StartError, SurfaceForce, Totals,
 };

@@ -171,34 +171,45 @@ impl Mesh {
         volume
     }
 
-    /// Integral of the shape function of every node over the mesh: the volume that it stands for under a force per volume.
-    pub fn nodal_volumes(&self) -> Vec<f64> {
-        let mut volumes = vec![0.0; self.nodes.len()];
+    /// Hands over every quadrature point of element `e`, as many a direction as there are nodes: the shape functions of its
+    /// nodes, and the volume that it stands for.
+    pub fn for_volume_points(&self, e: usize, mut point: impl FnMut(&[f64], f64)) {
         let rule = match self.kind {
             ElementKind::H8 => GAUSS_2,
             ElementKind::Q18 => GAUSS_3,
         };
-        for e in 0..self.elements() {
-            let sides = self.bottom_and_top(e);
-            let count = sides[0].count;
-            let half = self.element(e).len() / 2;
-            for (s, ws) in rule.iter() {
-                for (r, wr) in rule.iter() {
-                    let [low, high] =
-                        [0, 1].map(|i| (sides[i].point(r, s), sides[i].tangents(r, s)));
-                    let along_t = (high.0 - low.0) * 0.5;
-                    let shapes = shape_functions(count, r, s);
-                    for (t, wt) in GAUSS_2.iter() {
-                        let parts = [0.5 - 0.5 * t, 0.5 + 0.5 * t];
-                        let along = |i: usize| low.1[i] * parts[0] + high.1[i] * parts[1];
-                        let volume = wr * ws * wt * along(0).cross(&along(1)).dot(&along_t);
-                        for (k, node) in self.element(e).iter().enumerate() {
-                            let weight = shapes[k % half] * parts[k / half];
-                            volumes[*node as usize] += weight * volume;
-                        }
+        let sides = self.bottom_and_top(e);
+        let count = sides[0].count;
+        let nodes = self.element(e).len();
+        let half = nodes / 2;
+        let mut weights = [0.0; 18];
+        for (s, ws) in rule.iter() {
+            for (r, wr) in rule.iter() {
+                let [low, high] = [0, 1].map(|i| (sides[i].point(r, s), sides[i].tangents(r, s)));
+                let along_t = (high.0 - low.0) * 0.5;
+                let shapes = shape_functions(count, r, s);
+                for (t, wt) in GAUSS_2.iter() {
+                    let parts = [0.5 - 0.5 * t, 0.5 + 0.5 * t];
+                    let along = |i: usize| low.1[i] * parts[0] + high.1[i] * parts[1];
+                    let volume = wr * ws * wt * along(0).cross(&along(1)).dot(&along_t);
+                    for (k, weight) in weights[..nodes].iter_mut().enumerate() {
+                        *weight = shapes[k % half] * parts[k / half];
                     }
+                    point(&weights[..nodes], volume);
                 }
             }
+        }
+    }
+
+    /// Integral of the shape function of every node over the mesh: the volume that it stands for under a force per volume.
+    pub fn nodal_volumes(&self) -> Vec<f64> {
+        let mut volumes = vec![0.0; self.nodes.len()];
+        for e in 0..self.elements() {
+            self.for_volume_points(e, |weights, volume| {
+                for (node, weight) in self.element(e).iter().zip(weights) {
+                    volumes[*node as usize] += weight * volume;
+                }
+            });
         }
         volumes
     }

@@ -82,6 +82,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         dofs: supports.dofs,
         probes,
         stabilization: None,
+        dynamics: None,
         small: None,
         symmetric: true,
         unsymmetric: Vec::new(),
@@ -93,6 +94,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     model.unsymmetric = symmetry(scene, &mut model)?;
     model.kinks = kinks(scene, &model);
     values::check(scene, &model)?;
+    model.dynamics = super::dynamics::dynamics(scene, &model)?;
     stabilize(scene, &mut model)?;
     super::initial::check(&mut model, scene)?;
     super::driven::start::approach(&mut model, scene)?;
@@ -136,8 +138,11 @@ impl<'s> Builder<'s> {
     }
 }
 
-/// Bodies have to be held by supports, or by contact with the help of a stabilisation.
+/// Bodies have to be held by supports, or by contact with the help of a stabilisation, or by their inertia.
 fn stabilize(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
+    if model.dynamics.is_some() {
+        return Ok(());
+    }
     let free = super::free_motion::free_motions(model);
     // At small displacements nothing comes into contact that is not held.
     let refused = match scene.solution.stabilization {

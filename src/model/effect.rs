@@ -60,6 +60,8 @@ effects! {
     DeadLoad, "load.dead", listed: "loads of constant direction";
     FollowerPressure, "load.follower_pressure", listed: "pressures that follow the deformed faces";
     Viscous, "stabilization.viscous", listed: "a small viscous force holds bodies until contact does";
+    Inertia, "dynamics.inertia", listed: "bodies have inertia: they move, vibrate and rebound";
+    MassDamping, "dynamics.damping", listed: "forces against the velocity, in proportion to the mass";
     UnsymmetricSystem, "system.unsymmetric", listed: "unsymmetric tangent matrix, factorized by LU";
     EnergyWatch, "energy.watch", detail: "work and energies are balanced at every step";
     OutputFields, "output.fields", detail: "displacements, stresses and contact fields are written";

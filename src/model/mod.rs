@@ -4,6 +4,7 @@ pub(crate) mod averaged;
 pub mod build;
 pub(crate) mod constraints;
 pub(crate) mod driven;
+pub mod dynamics;
 pub(crate) mod edges;
 mod effect;
 pub(crate) mod error;
@@ -40,6 +41,7 @@ use averaged::SlaveNodes;
 use constraints::{MeanPrescribed, Prescribed};
 use covact_geometry::Vec3;
 use driven::Driven;
+use dynamics::DynamicsModel;
 use friction::FrictionModel;
 use loads::{DeadLoad, FollowerPressure};
 use master::Master;
@@ -72,6 +74,8 @@ pub struct Model {
     pub dofs: DofMap,
     /// Viscous stabilisation where the scene asks for it.
     pub stabilization: Option<StabilizationModel>,
+    /// Inertia where the scene asks for it.
+    pub dynamics: Option<DynamicsModel>,
     /// Contact as it is linearised at the start, where the scene declares displacements small.
     pub small: Option<SmallModel>,
     /// Whether the tangent is symmetric (`symmetry::unsymmetric_effects`).

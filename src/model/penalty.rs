@@ -154,6 +154,12 @@ impl Suitable {
         }
     }
 
+    /// What suits impacts: two of Young's moduli over the size of an element, which a wave meets as a wall and which stays
+    /// what it is.
+    pub fn impact(&self) -> f64 {
+        START[1] * self.stiffest * FACTOR / WARNED
+    }
+
     /// Of a contact between two sides: the softer one counts.
     pub fn both(&self, other: &Self) -> Self {
         Suitable {

@@ -186,6 +186,23 @@ pub const COLUMNS: &[ColumnDoc] = &[
          second order in the step, or a jump of the path",
     ),
     doc(
+        "energy.kinetic",
+        "energy",
+        "kinetic energy of all bodies; only with inertia (`solution.dynamics`)",
+    ),
+    doc(
+        "energy.damping",
+        "energy",
+        "energy that damping has taken since the start; only with inertia",
+    ),
+    doc(
+        "energy.integrator",
+        "energy",
+        "in place of `energy.imbalance` with inertia: external and adjusted less stored, dissipated, damping and what the kinetic \
+         energy has grown by; what the time integration has taken of vibrations that steps do not resolve and at impacts, and \
+         the error of the trapezoidal rule",
+    ),
+    doc(
         "way.<name>.<axis>",
         "length",
         "translation of a surface that moves: the prescribed one, and what forces drive",

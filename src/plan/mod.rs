@@ -1,6 +1,7 @@
 //! The plan of a run: every effect that the program has, on or off, why, and what it costs; and the loop over slave points
 //! that each contact pair runs in. Made of a complete model, before anything is solved; the assembly does what it says.
 mod bodies;
+mod dynamics;
 mod held;
 mod laws;
 mod pairs;

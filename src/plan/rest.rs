@@ -188,6 +188,9 @@ impl Reporter<'_> {
                     Stabilization::Auto if self.model.stabilization.is_some() => {
                         Ok("supports do not hold every body: contact has to".to_owned())
                     }
+                    Stabilization::Auto if self.model.dynamics.is_some() => {
+                        Err("bodies have inertia, which holds them".to_owned())
+                    }
                     Stabilization::Auto | Stabilization::None => {
                         Err("no `stabilization`: supports hold every body".to_owned())
                     }
@@ -224,7 +227,8 @@ impl Reporter<'_> {
                 24,
                 model.body_nodes(),
             )]);
-        vec![viscous, unsymmetric, watch]
+        let [inertia, damping] = self.dynamics();
+        vec![viscous, inertia, damping, unsymmetric, watch]
     }
 
     pub(super) fn output(&self) -> Vec<Effect> {

@@ -203,6 +203,26 @@ pub const REMOVABLE: &[Removable] = &[
         },
     },
     Removable {
+        name: "dynamics",
+        instead: "a run is a sequence of equilibria",
+        effects: &["dynamics"],
+        remove: |scene| {
+            for body in scene.bodies.values_mut() {
+                (body.velocity, body.spin) = (None, None);
+            }
+            scene.solution.dynamics.take().is_some()
+        },
+    },
+    Removable {
+        name: "damping",
+        instead: "nothing but the time integration damps",
+        effects: &["dynamics.damping"],
+        remove: |scene| {
+            let dynamics = scene.solution.dynamics.as_mut();
+            dynamics.is_some_and(|d| std::mem::take(&mut d.damping) != Default::default())
+        },
+    },
+    Removable {
         name: "fields",
         instead: "no fields are written",
         effects: &["output.fields"],

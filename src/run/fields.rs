@@ -4,6 +4,7 @@ use super::averaged::{NodeNow, nodes_now};
 use super::bearing::{Bearings, Carrier, Place as BearingPlace};
 use super::flow_fields::FlowFields;
 use super::friction_fields::{self, FrictionFields};
+use super::motion_fields::MotionFields;
 use super::reaction_fields::reactions;
 use super::resultants::Resultants;
 use super::strain_fields::StrainFields;
@@ -59,6 +60,7 @@ pub struct Fields {
     /// Gaps at the start where they are negative, between the first two times of gathering; empty where none are.
     start: Vec<f64>,
     gathered: bool,
+    pub motion: Option<MotionFields>,
 }
 
 impl Fields {
@@ -110,6 +112,7 @@ impl Fields {
             },
             start: Vec::new(),
             gathered: false,
+            motion: None,
         })
     }
 
@@ -424,7 +427,8 @@ impl Fields {
             })
             .collect();
         let flow = FlowFields::of(model, state);
-        let reactions = reactions(model, state, &self.status, time);
+        let acting = (&self.status[..], self.motion.as_ref());
+        let reactions = reactions(model, state, acting, time);
         let bodies: Vec<BodyFields> = (model.bodies.iter().enumerate())
             .map(|(i, body)| {
                 let first = body.first_node as usize;
@@ -444,6 +448,7 @@ impl Fields {
                         .chain(self.traction.of(model, i, body))
                         .chain(strains[i].fields())
                         .chain(flow[i].fields())
+                        .chain(self.motion.as_ref().map(|m| m.field(&range)))
                         .chain(resultants[i].iter().flat_map(Resultants::fields))
                         .chain(reactions.as_ref().map(|all| Field {
                             name: "reaction",

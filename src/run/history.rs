@@ -102,7 +102,14 @@ pub fn columns(model: &Model) -> Vec<String> {
     if model.stabilization.is_some() {
         names.extend(["energy.stabilization", "stabilization.share"].map(String::from));
     }
-    names.extend(["energy.external", "energy.adjusted", "energy.imbalance"].map(String::from));
+    if model.dynamics.is_some() {
+        names.extend(["energy.kinetic", "energy.damping"].map(String::from));
+    }
+    names.extend(["energy.external", "energy.adjusted"].map(String::from));
+    names.push(match model.dynamics {
+        Some(_) => "energy.integrator".into(),
+        None => "energy.imbalance".into(),
+    });
     names.extend(probes::columns(model));
     names
 }
@@ -174,6 +181,9 @@ pub fn row(r: &Record) -> Vec<f64> {
     }
     if r.model.stabilization.is_some() {
         out.extend([r.stabilized.0, r.stabilized.1]);
+    }
+    if r.model.dynamics.is_some() {
+        out.extend([totals.motion.kinetic, totals.motion.damped]);
     }
     out.extend([r.watch.external, r.watch.adjusted, r.watch.imbalance]);
     out.extend(probes::values(r.model, r.time, r.u, r.residual, r.fields));

@@ -1,5 +1,6 @@
 //! The march through time: one accepted step after another, with cuts, retries and roll-back inside.
 mod accepted;
+mod motion;
 pub(in crate::run) mod passing;
 mod released;
 mod replaced;
@@ -18,6 +19,7 @@ use super::compliance::Compliance;
 use super::fields::Fields;
 use super::habit::Habit;
 use super::hold;
+use super::motion_fields::MotionFields;
 use super::peaks::Peaks;
 use super::penalty_rule::PenaltyRule;
 use super::progress::Progress;
@@ -138,10 +140,10 @@ pub(super) struct AcceptedStep {
     pub cuts: u32,
 }
 
-/// What is stored, and what friction and plastic flow have taken since the start.
+/// What is stored, and what friction, plastic flow and motion have taken since the start.
 fn energy(totals: &Totals, sliding: &FrictionTotals) -> f64 {
     let stored = totals.internal_energy + totals.contact_energy + sliding.stored;
-    stored + sliding.dissipated + totals.plastic_work
+    stored + sliding.dissipated + totals.plastic_work + totals.motion.taken()
 }
 
 impl March<'_, '_> {
@@ -201,6 +203,15 @@ impl March<'_, '_> {
             {
                 result = Err(failure);
             }
+            let moved = match result.is_ok() {
+                true => self.moved(committed, trial),
+                false => None,
+            };
+            if let Some(moved) = &moved
+                && let Some(failure) = self.too_long(moved, (dt, cuts), &walk.stepping)
+            {
+                result = Err(failure);
+            }
             if let Ok(converged) = &mut result {
                 let at = (step, end, cuts);
                 match self.settle(at, (&*committed, walk), trial, converged, outputs)? {
@@ -219,6 +230,7 @@ impl March<'_, '_> {
                         errors,
                         limit,
                     } = settled.unwrap_or_default();
+                    (self.assembler).balance(&trial.u, self.workspace.residual_mut());
                     let residual = self.workspace.residual();
                     let span = Span {
                         from: (committed, start),
@@ -234,12 +246,16 @@ impl March<'_, '_> {
                             &span,
                         )
                         .map_err(|e| RunError::internal(&e))?;
+                    if let Some(moved) = &moved {
+                        converged.totals.motion = moved.energy;
+                    }
                     let flowed = committed.plastic_work(self.model);
                     let energy = energy(&converged.totals, &sliding) + flowed.done
                         - flowed.in_energy
                         + committed.stabilized
                         + drag.work;
                     if cuts < GIVES_IN
+                        && moved.is_none()
                         && let Some(part) = self.watch.gained(self.model, step, &work, energy)
                     {
                         self.take_back(&penalties);
@@ -262,10 +278,14 @@ impl March<'_, '_> {
                     converged.totals.plastic_work = flowed.done;
                     committed.stabilized += drag.work;
                     // Augmentations say nothing of how far a step may go.
-                    match passing {
-                        true => walk.stepping.set_size(dt),
-                        false => {
-                            (walk.stepping).accepted(converged.iterations - converged.augmenting)
+                    let iterations = converged.iterations - converged.augmenting;
+                    match (passing, &moved) {
+                        (true, _) => walk.stepping.set_size(dt),
+                        (false, None) => walk.stepping.accepted(iterations),
+                        (false, Some(moved)) => {
+                            let internal = converged.totals.internal_energy;
+                            let (end, work) = ((&committed.u[..], dt), (internal, iterations));
+                            self.move_on(moved, end, work, &mut walk.stepping);
                         }
                     }
                     if walk.stepping.at_kink(end) {
@@ -291,6 +311,8 @@ impl March<'_, '_> {
                         self.beyond_linear(committed, internal);
                     }
                     let done = walk.stepping.done(end);
+                    self.tell_weighted(step, dt);
+                    self.tell_energy(step, done);
                     let mut ending = self.stabilized(committed, &drag, &converged, done);
                     if ending.is_none() {
                         let before = walk.before.as_ref().map(|(state, _)| state);
@@ -335,12 +357,14 @@ impl March<'_, '_> {
             };
             let hopeless =
                 !lost.is_empty() || cuts >= hold::HOPELESS && turned.is_some_and(squeezed);
-            // From rest the first increment is proportional to the step.
-            let bend = match walk.before {
-                None => self.workspace.bend,
-                Some(_) => 0.0,
+            let part = match (&failure, &walk.before) {
+                (StepFailure::TooLong { part, .. }, _) => *part,
+                // From rest the first increment is proportional to the step: one that moves neighbouring nodes by as much as
+                // their distance is what may be followed.
+                (_, None) => 1.0 / self.workspace.bend,
+                _ => 0.5,
             };
-            let next = walk.stepping.failed(dt, bend).filter(|_| !hopeless);
+            let next = walk.stepping.failed(dt, part).filter(|_| !hopeless);
             let Some(next_dt) = next else {
                 let unstable = self.workspace.unstable.map_or_else(String::new, |u| {
                     format!("; {}", u.words(self.model, self.assembler.stabilizes()))
@@ -384,7 +408,9 @@ impl March<'_, '_> {
 
     /// Tells what is known once a run has ended, however it did.
     pub fn conclude(&mut self) {
-        if let Some(text) = self.watch.drift(self.model) {
+        if self.model.dynamics.is_none()
+            && let Some(text) = self.watch.drift(self.model)
+        {
             self.warn(text);
         }
         let soft = (self.compliance).warning(self.model, &self.assembler.penalties);
@@ -433,6 +459,7 @@ impl March<'_, '_> {
     /// Gathers the fields of a state.
     fn gather(&mut self, outputs: &mut Outputs, state: &State, time: f64) -> Result<(), RunError> {
         let assembler = &mut *self.assembler;
+        outputs.fields.motion = MotionFields::new(self.model, assembler, &state.u);
         let masters = &mut assembler.masters;
         (outputs.fields).gather::<Penalty>(self.model, &assembler.penalties, masters, state, time)
     }

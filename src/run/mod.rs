@@ -19,6 +19,7 @@ mod hold;
 mod linearity_check;
 mod march;
 mod memory;
+mod motion_fields;
 #[cfg(test)]
 mod other_law;
 mod peaks;

@@ -1,4 +1,5 @@
 //! Nodal reactions, worked out for the output only.
+use super::motion_fields::MotionFields;
 use crate::model::loads::follower_force;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
@@ -9,12 +10,12 @@ use covact_geometry::Vec3;
 use rayon::prelude::*;
 
 /// Forces that supports and contacts exert on the nodes, three numbers a node: internal minus external forces of an accepted
-/// state at the degrees of freedom that supports hold and at the nodes of slaves (those with a `status`) and of bodies as
+/// state, with those of inertia where there is any, at the degrees of freedom that supports hold and at the nodes of slaves (those with a `status`) and of bodies as
 /// masters, zero elsewhere. None where a load has no value at `time`.
 pub(super) fn reactions(
     model: &Model,
     state: &State,
-    status: &[u8],
+    (status, motion): (&[u8], Option<&MotionFields>),
     time: f64,
 ) -> Option<Vec<f64>> {
     let mut forces = vec![0.0; 3 * model.nodes.len()];
@@ -27,6 +28,10 @@ pub(super) fn reactions(
             None => internal(body, block, states, &state.u, &mut forces),
             Some(_) => linear(body, block, &state.u, &mut forces),
         });
+    }
+    let inertia = motion.into_iter().flat_map(|m| &m.forces);
+    for (force, inertia) in forces.iter_mut().zip(inertia) {
+        *force += inertia;
     }
     let mut external = vec![0.0; forces.len()];
     add_loads(model, &state.u, time, &mut external).ok()?;

@@ -58,7 +58,8 @@ impl March<'_, '_> {
             ));
         }
         let moving = model.free.iter().find_map(|piece| {
-            let velocity = self.assembler.velocity(&state.u, &piece.motion.nodes);
+            let viscous = self.assembler.effects.viscous.as_ref()?;
+            let velocity = viscous.velocity(&state.u, &piece.motion.nodes);
             let way = velocity * self.scene.solution.end_time;
             let slides = way.norm() > MOVES * model.size && drag.share > MOVES * RESTS;
             slides.then_some((piece, velocity))

@@ -15,6 +15,7 @@
 //! Where the last stages fail and the run may choose the penalties, the last stage that was solved is what the step gets:
 //! whether its penalties serve is measured by [`super::penalty_rule`]. What fails all four is cut.
 mod augmenting;
+mod continuing;
 
 use super::augment;
 use super::habit::Habit;
@@ -180,9 +181,9 @@ impl Attempts<'_, '_> {
                 StepFailure::Interrupted | StepFailure::NotAugmented { .. }
             )
         };
-        if let Some((state, size)) = before {
+        if self.continues(before, dt, trial) {
             for hold in [self.habit.hold, true] {
-                (self.committed).extrapolate(self.model, state, dt / size, trial);
+                self.continues(before, dt, trial);
                 // The path of a body that nothing holds yet may lead through what it is to meet.
                 let stabilization = self.model.stabilization.as_ref();
                 if stabilization.is_some_and(|s| s.leaps(&self.committed.u, &trial.u)) {

@@ -152,6 +152,14 @@ impl Watch {
         }
     }
 
+    /// Takes what acts on bodies with inertia from the start on: `balance` as [`Assembler::balance`] has it.
+    pub(super) fn start<L: PairLaw>(&mut self, assembler: &Assembler<L>, balance: &[f64]) {
+        let n = self.reactions.len();
+        self.reactions.copy_from_slice(&balance[..n]);
+        let loads = self.loads.len();
+        (self.loads).copy_from_slice(&assembler.external()[..loads]);
+    }
+
     /// Into a checkpoint.
     pub(super) fn put(&self, out: &mut Writer) {
         let Watch {

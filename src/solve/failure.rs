@@ -65,6 +65,15 @@ pub enum StepFailure {
     )]
     GainedEnergy { part: f64 },
     #[error(
+        "the time integration errs by {error:.1e} of the largest displacement within the step, more than {allowed:.1e}"
+    )]
+    TooLong {
+        error: f64,
+        allowed: f64,
+        /// Part of the step that would err by what is asked for.
+        part: f64,
+    },
+    #[error(
         "contact `{pair}`: {points} point(s) that were in contact sank deeper than the `depth` {depth:.6e} of \
          {master}: the penalty is too soft for it, or the step too large"
     )]

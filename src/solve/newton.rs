@@ -475,7 +475,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             0.5 * f64::EPSILON * dot(&w.absolute, &w.absolute).sqrt() + totals.contact_rounding;
         Norms {
             residual,
-            force: reactions.sqrt().max(external).max(totals.contact_norm),
+            force: (reactions.sqrt().max(external))
+                .max(totals.contact_norm)
+                .max(totals.effects_norm),
             floor,
         }
     }

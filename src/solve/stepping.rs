@@ -94,20 +94,31 @@ impl Stepping {
         }
     }
 
+    /// A step of size `dt` was accepted after `iterations`, by whose error the next one may be `factor` times as large.
+    pub fn paced(&mut self, dt: f64, factor: f64, iterations: u32) {
+        if !self.settings.adaptive {
+            return self.accepted(iterations);
+        }
+        let factor = if iterations > MANY {
+            factor.min(SMALLER)
+        } else {
+            factor
+        };
+        self.dt = (factor * dt).max(self.settings.min).min(self.settings.max);
+    }
+
     /// Whether a step of this size would not be cut.
     pub fn smallest(&self, dt: f64) -> bool {
         0.5 * dt < self.settings.min
     }
 
-    /// A step of size `dt` failed: the size to try next, or `None` where it would be below the smallest. Where its first increment
-    /// moved neighbouring nodes by `bend` of their distance it was that much too large, and it is cut to a size that bends by
-    /// their distance or so at once.
-    pub fn failed(&mut self, dt: f64, bend: f64) -> Option<f64> {
+    /// A step of size `dt` failed, of which a `part` may do: the size to try next, at most half, or `None` where it would be below
+    /// the smallest.
+    pub fn failed(&mut self, dt: f64, part: f64) -> Option<f64> {
         if self.smallest(dt) {
             return None;
         }
-        let part = (1.0 / bend).clamp(MOST_CUT, 0.5);
-        self.dt = (part * dt).max(self.settings.min).min(0.5 * dt);
+        self.dt = (part.clamp(MOST_CUT, 0.5) * dt).max(self.settings.min);
         Some(self.dt)
     }
 }
@@ -142,7 +153,7 @@ mod tests {
         let mut s = stepping(&[]);
         let mut dt = 0.3;
         let mut cuts = 0;
-        while let Some(next) = s.failed(dt, 0.3) {
+        while let Some(next) = s.failed(dt, 0.5) {
             assert_eq!(next, 0.5 * dt);
             dt = next;
             cuts += 1;
@@ -150,8 +161,8 @@ mod tests {
         assert_eq!(cuts, 4);
         // A step that bent far too much is cut at once, though never below the smallest.
         let mut s = stepping(&[]);
-        assert_eq!(s.failed(0.3, 10.0), Some(0.03));
-        assert_eq!(s.failed(0.3, 1e9), Some(0.01));
-        assert_eq!(s.failed(0.01, 10.0), None);
+        assert_eq!(s.failed(0.3, 0.1), Some(0.03));
+        assert_eq!(s.failed(0.3, 1e-9), Some(0.01));
+        assert_eq!(s.failed(0.01, 0.1), None);
     }
 }

@@ -12,6 +12,7 @@ mod constraints;
 pub mod linear;
 mod matrix;
 mod pattern;
+mod scalars;
 
 pub use constraints::{ConstraintError, Dof, DofMap, DofMapBuilder, Link};
 pub use matrix::{ConstrainedScatter, SystemMatrix};

@@ -168,6 +168,10 @@ fn scenes() -> Vec<Value> {
             ("/bodies/lower/mesh/block/min", json!([0.4, 0, -1])),
         ]),
         blocks(&[("/contacts/press/points", json!({"segments": 2}))]),
+        blocks(&[
+            ("/materials/m/st_venant_kirchhoff/density", json!(1)),
+            ("/solution", json!({"dynamics": {"damping": {"mass": 1}}})),
+        ]),
         blocks(&[("/contacts/press/master_surface", json!("smooth"))]),
         tube(),
     ]

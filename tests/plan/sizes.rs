@@ -121,6 +121,7 @@ fn eight_combinations_hold_what_their_effects_need_and_nothing_else() {
             ("follower maps", false),
             ("stabilization", false),
             ("linear", false),
+            ("inertia", false),
         ] {
             assert_eq!(parts[part] > 0, on, "{part}: {} ({which})", parts[part]);
         }
@@ -137,7 +138,13 @@ fn further_effects_one_by_one() {
     let free = json!({"force": {"z": "-10*t"}});
     let motion = json!({"free": free});
     let push = |follower: bool| json!({"p": {"on": "plate.bottom", "pressure": 1e-3, "follower": follower}});
-    let cases: [(Value, &[&str]); 9] = [
+    let dense = |mut scene: Value| {
+        for material in scene["materials"].as_object_mut().into_iter().flatten() {
+            material.1["st_venant_kirchhoff"]["density"] = json!(1.0);
+        }
+        with(scene, &[("/solution/dynamics", json!({}))])
+    };
+    let cases: [(Value, &[&str]); 11] = [
         (
             with(plate(), &[("/solution/stabilization", viscous)]),
             &["stabilization"],
@@ -189,6 +196,8 @@ fn further_effects_one_by_one() {
             with(plate(), &[("/solution/kinematics", json!("small"))]),
             &["linear"],
         ),
+        (dense(plate()), &["inertia"]),
+        (dense(blocks()), &["inertia"]),
     ];
     for (scene, on) in &cases {
         let (model, parts) = held(scene, 0.5);
@@ -205,6 +214,7 @@ fn further_effects_one_by_one() {
             "answers",
             "transposed matrix",
             "linear",
+            "inertia",
         ] {
             // A follower pressure may keep the symmetry.
             if part == "transposed matrix" {

@@ -4,7 +4,6 @@ use super::couplings::Couplings;
 use super::maps::PointMaps;
 use super::moving::Meetings;
 use super::sliding::Sliding;
-use super::viscous::Viscous;
 use crate::contact::law::PairLaw;
 use crate::model::state::heap;
 
@@ -23,6 +22,7 @@ pub(crate) mod sizes {
     use crate::contact::clearance::Clearance;
     use crate::contact::points::SlavePoint;
     use crate::contact::rigid::{PointFault, Touch};
+    pub use crate::effects::inertia::{Inertia, Mass};
     use crate::model::kernel::Kernel;
     use crate::model::master::BodySurface;
     use crate::model::{Model, PairModel};
@@ -139,8 +139,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             external,
             contact,
             borders,
-            viscous,
-            passing,
+            effects,
             penalties,
             ratios,
             linearization: _,
@@ -155,7 +154,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             driven = [driven[0] + own, driven[1] + friction];
         }
         let links = couplings.inner(|c: &Couplings| c.links.bytes());
-        vec![
+        let mut parts = vec![
             ("matrix", values),
             ("transposed matrix", transposed),
             ("pattern", matrix.pattern().bytes()),
@@ -179,10 +178,10 @@ impl<L: PairLaw> Assembler<'_, L> {
             ("contact forces", heap(contact)),
             ("driven", driven[0]),
             ("driven friction", driven[1]),
-            ("stabilization", viscous.as_ref().map_or(0, Viscous::bytes)),
-            ("jumps", passing.bytes()),
             ("linear", linear.as_ref().map_or(0, |l| l.bytes())),
             ("pairs", heap(penalties) + heap(ratios) + heap(ran)),
-        ]
+        ];
+        parts.extend(effects.parts());
+        parts
     }
 }

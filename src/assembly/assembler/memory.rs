@@ -2,6 +2,7 @@
 use super::couplings::Couplings;
 use super::{Assembler, Factored, PatternError};
 use crate::contact::law::PairLaw;
+use crate::effects::inertia::Motion;
 
 /// What the next evaluation depends on, beside the state.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +19,8 @@ pub struct AssemblerMemory {
     pub factored: Option<Factored>,
     /// Largest displacement of all equilibria so far, where displacements are small (length); else 0.
     pub farthest: f64,
+    /// Where the motion is, in dynamics.
+    pub motion: Option<Motion>,
     /// The solver has not taken the pattern yet.
     pub new_pattern: bool,
 }
@@ -75,9 +78,8 @@ impl<L: PairLaw> Assembler<'_, L> {
             penalties,
             ratios,
             linearization: _,
-            // Written by the first evaluation of a step.
-            viscous: _,
-            passing: _,
+            // All else of them is written by the first evaluation of a step.
+            effects,
             // All else of it is given by the model.
             linear,
             // A type, no value.
@@ -92,6 +94,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             rebuilds: *rebuilds,
             factored: linear.as_ref().and_then(|l| l.factored().cloned()),
             farthest: linear.as_ref().map_or(0.0, |l| l.farthest()),
+            motion: (effects.inertia.as_ref()).map(|i| i.motion().clone()),
             new_pattern: new_pattern.is_some(),
         }
     }
@@ -108,6 +111,8 @@ impl<L: PairLaw> Assembler<'_, L> {
             rebuilds,
             factored,
             farthest,
+            // With the displacements that it is of: [`Assembler::go_on`].
+            motion: _,
             new_pattern: _,
         } = memory;
         if penalties.len() != self.penalties.len() || couplings.len() != self.model.pairs.len() {

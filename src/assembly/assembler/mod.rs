@@ -6,27 +6,29 @@ mod answer;
 mod averaged;
 mod bytes;
 mod couplings;
+mod drag;
 mod driven;
+mod effects;
 mod elements;
 mod links;
 mod loads;
 mod maps;
 mod memory;
 mod moving;
-mod passing;
 mod per_pair;
 mod pressed;
 mod rigid;
 mod sliding;
 mod small;
 mod touched;
-mod viscous;
 
 use crate::system::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
 use crate::contact::clearance::Clearance;
 use crate::contact::law::{PairLaw, Penalty};
 use crate::contact::rigid::{PointFault, Touch};
+use crate::effects::Effects;
+use crate::effects::inertia::MotionEnergy;
 use crate::model::driven::press::PressFault;
 use crate::model::kernel::Kernel;
 use crate::model::master::Masters;
@@ -39,11 +41,9 @@ use couplings::Couplings;
 use covact_geometry::Vec3;
 use maps::{Maps, PointMaps};
 use moving::Meetings;
-use passing::Passing;
 use per_pair::PerPair;
 use sliding::Sliding;
 use small::Linear;
-use viscous::Viscous;
 
 use driven::DrivenBlock;
 use elements::Systems;
@@ -52,11 +52,12 @@ use std::sync::Arc;
 
 pub use answer::PointAnswer;
 pub(crate) use bytes::sizes;
+pub use drag::Drag;
 pub use driven::UnresistedMotion;
+pub use effects::StartError;
 pub use elements::Quadratic;
 pub use memory::{AssemblerMemory, CouplingMemory, MemoryError};
 pub use small::{Factored, Line, Needed};
-pub use viscous::Drag;
 
 /// What kept the model from being evaluated at a trial state. The step is cut.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -151,6 +152,8 @@ pub struct Totals {
     pub internal_energy: f64,
     /// Work that plastic flow has taken up to the last accepted step.
     pub plastic_work: f64,
+    /// What motion has taken, of an accepted step.
+    pub motion: MotionEnergy,
     /// Energy stored in the penalty.
     pub contact_energy: f64,
     /// Per surface of the model.
@@ -169,6 +172,8 @@ pub struct Totals {
     pub touching: Vec<bool>,
     /// Norm of the contact forces on nodes.
     pub contact_norm: f64,
+    /// Largest norm of the forces of effects that the residual has to be small beside; zero without them.
+    pub effects_norm: f64,
     /// What rounding of the positions leaves of them: the norm of penalty times area times the rounding of a position, over
     /// the points in contact.
     pub contact_rounding: f64,
@@ -240,9 +245,8 @@ pub struct Assembler<'m, L = Penalty> {
     /// Empty where the scene has no contacts.
     contact: Vec<f64>,
     borders: Vec<DrivenBlock>,
-    /// Where the scene asks for stabilisation.
-    viscous: Option<Viscous>,
-    passing: Passing,
+    /// What acts beside elements, loads and contact.
+    pub effects: Effects,
     /// Where displacements are small.
     linear: Option<Box<Linear>>,
     /// Penalty per pair; an automatic one may be raised in the course of a run.
@@ -323,8 +327,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
             external: vector(model.loaded()),
             contact: vector(!model.pairs.is_empty()),
             borders,
-            viscous: Viscous::new(model),
-            passing: Passing::default(),
+            effects: Effects::new(model),
             linear,
             penalties: model.pairs.iter().map(|p| p.eps_n).collect(),
             ratios: (model.pairs.iter())
@@ -419,10 +422,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
         rhs.fill(0.0);
         let mut totals = Totals::default();
         self.elements(state, (increments, from), residual, rhs, &mut totals)?;
-        self.contacts::<true>(state, time, increments, residual, rhs, &mut totals)?;
-        self.loads::<true>(state, time, increments, residual, rhs)?;
-        self.stabilize::<true>(&state.u, residual);
-        self.resist::<true>(&state.u, residual);
+        self.acting::<true>(state, time, increments, residual, rhs, &mut totals)?;
         self.own_blocks(&state.u, time, residual, &mut totals)?;
         for (b, r) in rhs.iter_mut().zip(residual.iter()) {
             *b -= r;
@@ -447,10 +447,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
         residual.fill(0.0);
         let mut totals = Totals::default();
         self.element_forces(state, residual, &mut totals)?;
-        self.contacts::<false>(state, time, None, residual, &mut [], &mut totals)?;
-        self.loads::<false>(state, time, None, residual, &mut [])?;
-        self.stabilize::<false>(&state.u, residual);
-        self.resist::<false>(&state.u, residual);
+        self.acting::<false>(state, time, None, residual, &mut [], &mut totals)?;
         Ok(totals)
     }
 

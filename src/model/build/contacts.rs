@@ -183,6 +183,9 @@ impl Builder<'_> {
         };
         let automatic = suits.automatic;
         let (eps_n, ruled) = match (contact.penalty, &contact.augmentation) {
+            (Penalty::Auto, None) if self.scene.solution.dynamics.is_some() => {
+                (suits.impact(), None)
+            }
             (Penalty::Auto, None) => {
                 let ruled = penalty::Ruled {
                     accuracy: contact.accuracy.unwrap_or(penalty::ACCURACY),

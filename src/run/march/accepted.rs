@@ -23,7 +23,9 @@ impl March<'_, '_> {
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let deepest = converged.totals.penetration[i];
             self.touched[i] |= touching[i];
-            if self.either(&before, i) && !self.either(touching, i) && !pair.is_second() {
+            let lasting = self.model.dynamics.is_none();
+            if lasting && self.either(&before, i) && !self.either(touching, i) && !pair.is_second()
+            {
                 self.warn(format!(
                     "contact `{}` opened at step {step} (time {}): none of its points touches any more",
                     pair.name,
@@ -33,8 +35,9 @@ impl March<'_, '_> {
             let allowed = penalty::TOLERATED * pair.element_size;
             if pair.ruled.is_none() && pair.augmentation.is_none() && deepest > allowed {
                 self.warn(format!(
-                    "contact `{}`: penetration above 1 % of an element ({allowed:.3e}) under the given penalty",
-                    pair.name
+                    "contact `{}`: penetration above 1 % of an element ({allowed:.3e}) under the {} penalty",
+                    pair.name,
+                    if lasting { "given" } else { "present" }
                 ));
             }
         }
@@ -126,6 +129,7 @@ impl March<'_, '_> {
         let pressed = &outputs.fields.pressed;
         let softened = converged.softened;
         let told = (self.watch).close(self.model, (step, span), work, pressed, energy, softened);
+        let told = told.filter(|_| self.model.dynamics.is_none());
         let jumped = told.is_some();
         if let Some(text) = told {
             self.warn(text);
@@ -140,8 +144,11 @@ impl March<'_, '_> {
             penalties: &self.assembler.penalties,
             limit: limit.as_ref(),
         };
-        let growth =
-            (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?;
+        let growth = match self.model.dynamics {
+            // Strain energy comes and goes with the motion.
+            Some(_) => 0.0,
+            None => (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?,
+        };
         self.adapt(errors, growth, converged);
         (self.adapt_slip(outputs, time, converged)).map_err(|e| RunError::internal(&e))?;
         let bearings = &outputs.fields.bearings;

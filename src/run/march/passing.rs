@@ -76,7 +76,8 @@ impl March<'_, '_> {
     ) -> bool {
         let meant = self.scene.solution.stabilization == Stabilization::Auto
             && self.scene.solution.step.adaptive
-            && self.model.small.is_none();
+            && self.model.small.is_none()
+            && self.model.dynamics.is_none();
         let given_up = walk.given_up == Some(step);
         let initial = self.scene.solution.step.initial;
         // From rest a path begins that is merely steep: how small its first step has to be says nothing of a jump.

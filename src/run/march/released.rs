@@ -28,12 +28,16 @@ impl March<'_, '_> {
             return Ok(());
         }
         let held = trial.clone();
-        self.assembler.scale_drag(RELEASED);
+        let scale = |march: &mut Self, factor: f64| {
+            let viscous = march.assembler.effects.viscous.iter_mut();
+            viscous.for_each(|v| v.scale(factor));
+        };
+        scale(self, RELEASED);
         match (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial) {
             Ok(next) => converged.stiffened(next),
             Err(StepFailure::Interrupted) => return Err(StepFailure::Interrupted),
             Err(failure) => {
-                self.assembler.scale_drag(1.0 / RELEASED);
+                scale(self, 1.0 / RELEASED);
                 self.observer.event(&Event::StepRetried {
                     step,
                     start: "the stabilization before it was released".to_owned(),

@@ -5,6 +5,7 @@
 use super::passing::Jump;
 use super::{Course, Outputs, RunState, StepControl};
 use crate::assembly::{AssemblerMemory, CouplingMemory, Factored};
+use crate::effects::inertia::{Motion, MotionEnergy};
 use crate::model::Model;
 use crate::model::state::State;
 use crate::output::{HistoryMark, OutputError};
@@ -282,6 +283,7 @@ fn put_assembler(memory: &AssemblerMemory, out: &mut Writer) {
         rebuilds,
         factored,
         farthest,
+        motion,
         // The pattern is built, and analysed, anew in any case.
         new_pattern: _,
     } = memory;
@@ -306,6 +308,51 @@ fn put_assembler(memory: &AssemblerMemory, out: &mut Writer) {
         out.f64s(&factored.penalties);
     });
     out.f64(*farthest);
+    out.option(motion.as_ref(), |out, motion| {
+        let Motion {
+            v,
+            a,
+            forces,
+            energy:
+                MotionEnergy {
+                    kinetic,
+                    start,
+                    damped,
+                },
+            farthest,
+            greatest,
+            event,
+        } = motion;
+        out.count(v.len());
+        [v, a, forces].into_iter().for_each(|x| out.f64s(x));
+        out.f64s(&[*kinetic, *start, *damped, *farthest, *greatest]);
+        out.bool(*event);
+    });
+}
+
+fn take_motion(model: &Model, from: &mut Reader) -> Result<Motion, Malformed> {
+    let count = 3 * model.nodes.len();
+    from.exactly(count, "velocities")?;
+    let [mut v, mut a, mut forces] = [(); 3].map(|()| vec![0.0; count]);
+    for x in [&mut v, &mut a, &mut forces] {
+        from.f64s(x)?;
+    }
+    let mut sums = [0.0; 5];
+    from.f64s(&mut sums)?;
+    let [kinetic, start, damped, farthest, greatest] = sums;
+    Ok(Motion {
+        v,
+        a,
+        forces,
+        energy: MotionEnergy {
+            kinetic,
+            start,
+            damped,
+        },
+        farthest,
+        greatest,
+        event: from.bool()?,
+    })
 }
 
 fn take_assembler(model: &Model, from: &mut Reader) -> Result<AssemblerMemory, Malformed> {
@@ -332,6 +379,7 @@ fn take_assembler(model: &Model, from: &mut Reader) -> Result<AssemblerMemory, M
         Ok(Factored { closed, penalties })
     })?;
     let farthest = from.f64()?;
+    let motion = from.option(|from| take_motion(model, from))?;
     Ok(AssemblerMemory {
         penalties,
         ratios,
@@ -339,6 +387,7 @@ fn take_assembler(model: &Model, from: &mut Reader) -> Result<AssemblerMemory, M
         rebuilds,
         factored,
         farthest,
+        motion,
         new_pattern: true,
     })
 }

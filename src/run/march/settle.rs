@@ -201,7 +201,8 @@ impl<'m> March<'_, 'm> {
         bearings: &Bearings,
         time: f64,
     ) -> Option<RigidLimit> {
-        if self.model.pairs.is_empty() {
+        // A force of inertia is no load that it could be measured by.
+        if self.model.pairs.is_empty() || self.model.dynamics.is_some() {
             return None;
         }
         self.phases.start("accuracy");

@@ -1,6 +1,6 @@
 //! What a run is made of, at time 0 or where it was kept.
 use super::{Caller, Course, Kept, KeptFiles, March, Outputs, StepControl};
-use crate::assembly::Assembler;
+use crate::assembly::{Assembler, AssemblerMemory};
 use crate::machine::clock::Phases;
 use crate::model::Model;
 use crate::model::edges;
@@ -39,7 +39,7 @@ pub(crate) struct Problem {
 /// Everything of a run that lasts from one step to the next.
 pub(crate) struct RunState<'m> {
     pub(super) problem: &'m Problem,
-    pub(super) assembler: Assembler<'m>,
+    pub(in crate::run) assembler: Assembler<'m>,
     pub(super) solver: Box<dyn LinearSolver + Send>,
     pub(super) workspace: Workspace,
     pub(in crate::run) phases: Phases,
@@ -104,7 +104,7 @@ impl<'m> RunState<'m> {
         let settings = &loaded.scene.solution;
         let walk = StepControl {
             stepping: Stepping::new(
-                settings.step,
+                settings.steps(|key| loaded.has(&format!("/solution/step/{key}"))),
                 settings.end_time,
                 &model.kinks,
                 &settings.stops,
@@ -168,6 +168,15 @@ impl<'m> RunState<'m> {
         let masters = &mut march.assembler.masters;
         commit::start(march.model, masters, &mut course.committed)
             .map_err(|e| RunError::internal(&e))?;
+        (march
+            .assembler
+            .set_in_motion(march.solver, &course.committed))
+        .map_err(|e| RunError::internal(&e))?;
+        if march.model.dynamics.is_some() {
+            let mut balance = vec![0.0; course.committed.u.len()];
+            (march.assembler).balance(&course.committed.u, &mut balance);
+            march.watch.start(march.assembler, &balance);
+        }
         course.trial = course.committed.clone();
         march.gather(&mut course.outputs, &course.committed, 0.0)
     }
@@ -189,8 +198,8 @@ impl<'m> RunState<'m> {
             rule,
             peaks,
             factorizations,
-            // Given back where the pattern is analysed.
-            assembler: _,
+            // The rest was given back where the pattern is analysed.
+            assembler: AssemblerMemory { motion, .. },
             expects_indefinite: _,
             spent,
             files,
@@ -206,6 +215,7 @@ impl<'m> RunState<'m> {
         course.walk.stepping.set_size(dt);
         (course.walk.before, course.walk.habit) = (before, habit);
         course.walk.jump = jump;
+        self.assembler.go_on(motion, &committed.u);
         (course.trial, course.committed) = (committed.clone(), committed);
         let (step, time) = (self.progress.steps, self.progress.time);
         let never = AtomicBool::new(false);

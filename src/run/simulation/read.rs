@@ -145,6 +145,12 @@ impl Simulation<'_> {
         })
     }
 
+    /// Linear momentum of all bodies and angular momentum about the origin at the last accepted step; nothing without inertia.
+    pub fn momentum(&self) -> Option<[Vec3; 2]> {
+        let inertia = self.run_state().assembler.effects.inertia.as_ref()?;
+        Some(inertia.momentum(self.model(), &self.state().u))
+    }
+
     /// Number of a body.
     fn body(&self, name: &str) -> Result<usize, ReadError> {
         let names = self.model().bodies.iter().map(|b| b.name.as_str());

@@ -1,6 +1,7 @@
 //! Everything that can be wrong with a scene that has been read, without its mesh and CAD files being read.
 mod augmentation;
 mod checker;
+mod dynamics;
 mod friction;
 mod material;
 mod names;
@@ -68,6 +69,7 @@ pub(super) fn problems(scene: &Scene, document: &Document) -> Vec<Problem> {
     }
     check_solution(&mut c, &scene.solution);
     small::check(&mut c, scene);
+    dynamics::check(&mut c, scene);
     c.whole("/output/tessellation", scene.output.tessellation, 1, 200);
     if scene.output.contact_points && scene.contacts.values().all(|c| c.friction.is_none()) {
         c.add(
@@ -394,7 +396,7 @@ fn check_probe(c: &mut Checker, at: &str, probe: &Probe, scene: &Scene, sets: &S
 
 fn check_solution(c: &mut Checker, solution: &Solution) {
     c.positive("/solution/end_time", "the end time", solution.end_time);
-    let step = &solution.step;
+    let step = &solution.steps(|key| c.has(&format!("/solution/step/{key}")));
     for (key, value) in [
         ("initial", step.initial),
         ("min", step.min),

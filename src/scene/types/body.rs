@@ -1,5 +1,6 @@
 //! Deformable bodies: elements, where meshes come from, sets.
 use super::boxes::Corners;
+use super::dynamics::Spin;
 use super::given::{Given, MeshArrays, MeshCells};
 use super::mesh::*;
 use super::mesh_file::MeshFile;
@@ -25,6 +26,12 @@ pub struct Body {
     /// Further node and face sets, selected by geometry, where the mesh is put.
     #[serde(default)]
     pub sets: BTreeMap<String, Selection>,
+    /// Velocity at the start (length / time); only with `solution.dynamics`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<[f64; 3]>,
+    /// Rotation at the start, on top of `velocity`; only with `solution.dynamics`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spin: Option<Spin>,
 }
 
 /// Element formulation.

@@ -32,6 +32,8 @@ impl Body {
             element: Element::default(),
             placement: Placement::default(),
             sets: Default::default(),
+            velocity: None,
+            spin: None,
         }
     }
 

@@ -1,4 +1,5 @@
 //! How the problem is solved, and what is written.
+use super::dynamics::Dynamics;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +13,9 @@ pub struct Solution {
     pub stops: Vec<f64>,
     /// How far displacements may go.
     pub kinematics: Kinematics,
+    /// Motion with inertia; without it a run is a sequence of equilibria.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dynamics: Option<Dynamics>,
     pub step: Step,
     pub newton: Newton,
     pub linear_solver: LinearSolver,
@@ -126,6 +130,7 @@ impl Default for Solution {
             end_time: 1.0,
             stops: Vec::new(),
             kinematics: Kinematics::Large,
+            dynamics: None,
             step: Step::default(),
             newton: Newton::default(),
             linear_solver: LinearSolver::Auto,

@@ -82,6 +82,11 @@ impl Workspace {
         factorizations
     }
 
+    /// [`Self::residual`], to write to.
+    pub fn residual_mut(&mut self) -> &mut [f64] {
+        &mut self.residual
+    }
+
     /// Residual at all degrees of freedom of the last evaluation: reactions at the constrained ones.
     pub fn residual(&self) -> &[f64] {
         &self.residual

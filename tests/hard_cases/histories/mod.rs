@@ -78,6 +78,7 @@ histories!(
     ball_on_plate,
     crossed_tubes,
     draw_bead,
+    drop,
     hat_pressed,
     hertz_block,
     ironing,

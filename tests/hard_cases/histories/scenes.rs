@@ -38,6 +38,12 @@ pub fn draw_bead(scene: &mut Value) {
     end(scene, 1.2);
 }
 
+/// The ring dents and slides.
+pub fn drop(scene: &mut Value) {
+    elements(scene, "ring", "cylinder_panel", json!([24, 2]));
+    end(scene, 0.004);
+}
+
 pub fn hat_pressed(_: &mut Value) {}
 
 pub fn hertz_block(scene: &mut Value) {

@@ -1,14 +1,13 @@
 //! Viscous forces that take bodies past a state from which no equilibrium goes on. They are brought in where a step fails, and
 //! nothing of them is there before.
-use super::Assembler;
-use crate::contact::law::PairLaw;
+use super::{Contribution, Tangent};
 use crate::model::Model;
 use crate::model::stabilization::local_stiffness;
 use crate::model::state::heap;
 
 /// A force on every unknown of a body along its way since the start of the step.
 #[derive(Debug, Default)]
-pub(super) struct Passing {
+pub struct Passing {
     /// What an element around a node resists with (force / length), zero where nothing is unknown; empty as long as nothing was
     /// passed.
     weights: Vec<f64>,
@@ -19,12 +18,9 @@ pub(super) struct Passing {
 }
 
 impl Passing {
-    /// Bytes of heap that it holds.
-    pub fn bytes(&self) -> usize {
-        heap(&self.weights) + heap(&self.base)
-    }
-
-    fn begin(&mut self, model: &Model, u: &[f64], rate: f64) {
+    /// From here on every unknown is held to the displacements `u` with this part of what an element around it resists with;
+    /// with none, nothing is.
+    pub fn hold(&mut self, model: &Model, u: &[f64], rate: f64) {
         self.rate = rate;
         if rate > 0.0 {
             if self.weights.is_empty() {
@@ -60,23 +56,23 @@ impl Passing {
     }
 }
 
-impl<L: PairLaw> Assembler<'_, L> {
-    /// From here on every unknown is held to the displacements `u` with this part of what an element around it resists with;
-    /// with none, nothing is.
-    pub fn pass(&mut self, u: &[f64], rate: f64) {
-        self.passing.begin(self.model, u, rate);
-    }
+impl Contribution for Passing {
+    fn begin(&mut self, _: &Model, _: &[f64], _: [f64; 2]) {}
 
-    pub(super) fn resist<const TANGENT: bool>(&mut self, u: &[f64], residual: &mut [f64]) {
-        if !self.passing.acts() {
+    fn add(&mut self, _: &Model, u: &[f64], residual: &mut [f64], mut to: Option<&mut Tangent>) {
+        if !self.acts() {
             return;
         }
-        for dof in 0..self.passing.weights.len() {
-            let [force, stiffness] = self.passing.force(dof, u[dof]);
+        for dof in 0..self.weights.len() {
+            let [force, stiffness] = self.force(dof, u[dof]);
             residual[dof] += force;
-            if TANGENT && stiffness > 0.0 {
-                self.matrix.add_diagonal(dof, stiffness);
+            if let Some(to) = to.as_mut().filter(|_| stiffness > 0.0) {
+                to.matrix.add_diagonal(dof, stiffness);
             }
         }
+    }
+
+    fn bytes(&self) -> usize {
+        heap(&self.weights) + heap(&self.base)
     }
 }
