@@ -131,6 +131,9 @@ fn row(name: &str, mut file: CadFile, truth: &Value, (seconds, notes, faces): (f
             println!("  note: {note}");
         }
         println!("  {:?}", file.trims);
+        if let Ok(surface) = file.surface() {
+            println!("  sides {:?}", surface.set().sides());
+        }
     }
     if faces {
         println!("  volumes {volumes:?}");

@@ -64,6 +64,8 @@ pub mod patch;
 pub mod primitives;
 pub mod project;
 pub mod surface;
+#[cfg(feature = "tessellate")]
+pub mod tessellate;
 pub mod trim;
 
 pub use bezier::{BezierPiece, bezier_pieces};

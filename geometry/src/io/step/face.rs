@@ -6,9 +6,11 @@ use super::place::Frame;
 use super::scope::Scope;
 use super::surface::{Shape, Surface};
 use super::surface_read;
-use crate::io::brep::{BasePatch, Boundary, Face, GAP, Grant, Host, Tally, add, grown, loops};
+use crate::io::brep::{
+    BasePatch, Boundary, Face, GAP, Grant, Host, Tally, add, bounds_outside, grown, loops,
+};
 use crate::io::report::{FaceBorder, SkipKind, TrimReport};
-use crate::{NurbsPatch, TrimLoop, Vec3};
+use crate::{NurbsPatch, Vec3};
 use std::f64::consts::{PI, TAU};
 
 /// A face that was read.
@@ -204,8 +206,7 @@ fn bounded(
                 values: 0,
                 fault: None,
             };
-            let round = matches!(surface.shape, Shape::Sphere(_) | Shape::Torus(..));
-            let trimmed = trimmed(scope, entity, (&patch, round), &face, account);
+            let trimmed = trimmed(scope, entity, &patch, &face, account);
             trimmed.map_err(|e| boundary_fault(on(e)))?
         }
     };
@@ -253,11 +254,11 @@ fn control_points(boundary: &Boundary) -> impl Iterator<Item = Vec3> + '_ {
         .map(|p| Vec3::new(p[0], p[1], p[2]) / p[3])
 }
 
-/// A patch trimmed by the boundaries of a face. `round` says that the surface is closed by itself.
+/// A patch trimmed by the boundaries of a face.
 fn trimmed(
     scope: &Scope,
     entity: &Entity,
-    (base, round): (&BasePatch, bool),
+    base: &BasePatch,
     face: &Face,
     account: &mut Account,
 ) -> Result<(NurbsPatch, FaceBorder), String> {
@@ -273,12 +274,8 @@ fn trimmed(
     account.grant.boundary(curves, points)?;
     let made = loops(&host, &face.boundaries, true, &mut tally, &mut said);
     let trimmed = made.and_then(|loops| {
-        // A loop on a closed surface bounds the part to its left, be it the larger one. (One along the seams bounds all of it
-        // whichever way it runs.)
-        let whole = host.extent(0) * host.extent(1);
-        let outside = |l: &TrimLoop| (-0.999 * whole..0.0).contains(&signed_area(l));
-        let around = round && loops.first().is_some_and(outside);
-        let trimmed = patch.trimmed_by(loops, face.outer && !around, GAP);
+        let outer = face.outer && !bounds_outside(&host, &loops);
+        let trimmed = patch.trimmed_by(loops, outer, GAP);
         trimmed.map_err(|e| e.to_string())
     });
     for text in said {
@@ -298,26 +295,6 @@ fn trimmed(
         None => FaceBorder::Rectangle,
     };
     Ok((trimmed.patch, border))
-}
-
-/// Area that a loop bounds in the parameter plane, negative where it runs clockwise, by a polygon.
-fn signed_area(a_loop: &TrimLoop) -> f64 {
-    let mut corners = Vec::new();
-    for curve in &a_loop.curves {
-        let basis = curve.parameter.basis();
-        let n = 4 * basis.degree();
-        for span in 0..basis.span_count() {
-            let [a, b] = basis.span_range(span);
-            let at = |k: usize| curve.parameter.point(a + (b - a) * (k as f64 / n as f64));
-            corners.extend((0..n).map(at));
-        }
-    }
-    let next = corners.iter().skip(1).chain(corners.first());
-    let origin = corners.first().copied().unwrap_or_default();
-    let pairs = corners.iter().zip(next);
-    pairs
-        .map(|(p, q)| 0.5 * (p - origin).perp(&(q - origin)))
-        .sum()
 }
 
 /// Boundary curves of a face and their control points, in both planes.
