@@ -93,7 +93,7 @@ fn change(name: &str, from: &str, to: &str) -> Result<CadFile, String> {
 #[test]
 fn boundaries_that_give_no_trim_are_named() {
     let kratos = "two_faces.cad.json";
-    // The triangle's diagonal starts elsewhere: its loop is open.
+    // The triangle's diagonal starts elsewhere: its loop is open, and outside of the surface.
     let file = change(
         kratos,
         "[0, [2.0, -1.0, 0.0, 1.0]]",
@@ -106,7 +106,7 @@ fn boundaries_that_give_no_trim_are_named() {
     assert!(
         skipped
             .reason
-            .starts_with("its boundary gives no trim: trim loop 0 is open: curve 0 ends"),
+            .starts_with("its boundary gives no trim: trim loop 0: they leave the domain"),
         "{}",
         skipped.reason
     );

@@ -261,6 +261,22 @@ impl<S: Surface, T: Surface> Search<'_, S, T> {
         (nearer && left(one.trim(), p) && left(other.trim(), q)).then_some(x)
     }
 
+    /// Whether the first cell is the one to be cut: the one that is deeper along the line between both, by which the bound on
+    /// their distance falls short of it. (A cell across that line is not, however large it is.)
+    fn first_is_deeper(&self, a: &Cell, b: &Cell) -> bool {
+        let n = (a.centre() - b.centre()).try_normalize(0.0);
+        let best = self.best.map(|(_, feet)| feet[0].jet.rho - feet[1].jet.rho);
+        let n = best.and_then(|d| d.try_normalize(0.0)).or(n);
+        let depth = |cell: &Cell| {
+            let along = n.map_or(0.0, |n| {
+                let [low, high] = cell.extent(&n);
+                high - low
+            });
+            along + 1e-3 * cell.size()
+        };
+        depth(a) >= depth(b)
+    }
+
     /// A bound on the distance of any two points of two cells.
     fn bound(&self, a: &Cell, b: &Cell) -> f64 {
         let mut bound = box_distance(&a.bounds, &b.bounds);
@@ -327,7 +343,7 @@ impl<S: Surface, T: Surface> Search<'_, S, T> {
             if let Some(x) = self.nearer(&a, &b) {
                 self.improve_from(&x)?;
             }
-            let (kept, parts, first) = match a.size() >= b.size() {
+            let (kept, parts, first) = match self.first_is_deeper(&a, &b) {
                 true => {
                     let surface = &self.one.patches[a.patch as usize];
                     (b, a.halves(surface), true)

@@ -1,8 +1,9 @@
 //! Surfaces that are closed by themselves (spheres, tori), cones with their tip, and conics that are turned, in files whose
 //! boundaries are curves in space. Written by Open CASCADE 8.0.1 (`tests/data/cad_parts.py`).
 
-use covact_geometry::PatchSet;
 use covact_geometry::io::{CadFile, LengthUnit, read_path};
+use covact_geometry::project::Joining;
+use covact_geometry::{NurbsPatch, PatchSet, Vec3};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -15,9 +16,25 @@ fn read(name: &str) -> CadFile {
     file
 }
 
+/// The faces with more knots in curved directions, over which integrals are more accurate.
 fn set(file: &CadFile) -> PatchSet {
-    let patches = file.patches.iter().map(|p| p.patch.clone()).collect();
-    PatchSet::join(patches, file.joining()).unwrap()
+    let fine = |patch: &NurbsPatch| {
+        let mut out = patch.clone();
+        for dir in (0..2).filter(|&d| patch.degree()[d] > 1) {
+            let spans = patch.spans(dir).into_iter();
+            let cut = |[a, b]: [f64; 2]| (1..8).map(move |k| a + (b - a) * f64::from(k) / 8.0);
+            out = out
+                .insert_knots(dir, &spans.flat_map(cut).collect::<Vec<_>>())
+                .unwrap();
+        }
+        out
+    };
+    let patches = file.patches.iter().map(|p| fine(&p.patch)).collect();
+    let joining = Joining {
+        tolerance: Some(1e-2),
+        ..file.joining()
+    };
+    PatchSet::join(patches, joining).unwrap()
 }
 
 fn near(found: f64, expected: f64, tolerance: f64) {
@@ -80,4 +97,37 @@ fn a_parabola_without_ends_is_turned() {
     let (r, h) = (4.0f64, 4.0f64);
     let expected = PI * r / (6.0 * h * h) * ((r * r + 4.0 * h * h).powf(1.5) - r.powi(3));
     near(set.areas()[0], expected, 1e-9);
+}
+
+/// Beyond the tip of half a cone, and in the cavity of a block, points are outside: the tip's normal is that of all that meets
+/// there, and a cavity's points into it.
+#[test]
+fn points_beyond_a_tip_and_in_a_cavity_are_outside() {
+    let half = read("cone_halved.step").into_surface().unwrap();
+    // Half angle atan(1/2), axis z, tip at z = 12, y > 0.
+    for (q, inside) in [
+        (Vec3::new(-1.35032, -1.11474, 12.7601), false),
+        (Vec3::new(0.0, -0.01, 12.001), false),
+        (Vec3::new(0.3, 0.2, 12.5), false),
+        (Vec3::new(0.0, 0.1, 11.0), true),
+        (Vec3::new(0.0, -0.1, 11.0), false),
+    ] {
+        let foot = half.closest(&q).unwrap();
+        assert_eq!(foot.signed_distance < 0.0, inside, "{q:?} {foot:?}");
+    }
+    // A block 40 x 30 x 20 with a cavity of radius 6 in its middle.
+    let block = read("cavity.step").into_surface().unwrap();
+    for (q, distance) in [
+        (Vec3::new(20.0, 15.0, 10.0), 6.0),
+        (Vec3::new(21.0, 15.0, 10.0), 5.0),
+        (Vec3::new(20.0, 15.0, 18.0), -2.0),
+        (Vec3::new(20.0, 15.0, 23.0), 3.0),
+        (Vec3::new(2.0, 15.0, 10.0), -2.0),
+    ] {
+        let foot = block.closest(&q).unwrap();
+        assert!(
+            (foot.signed_distance - distance).abs() < 1e-9,
+            "{q:?} {foot:?}"
+        );
+    }
 }
