@@ -113,5 +113,26 @@ pub(super) fn signed_area(curves: &[TrimCurve]) -> f64 {
 pub fn bounds_outside(host: &Host, loops: &[TrimLoop]) -> bool {
     let whole = host.extent(0) * host.extent(1);
     let outside = |l: &TrimLoop| (-0.999 * whole..0.0).contains(&signed_area(&l.curves));
-    host.is_round() && loops.first().is_some_and(outside)
+    host.is_round()
+        && loops
+            .first()
+            .is_some_and(|l| outside(l) && !has_seam(host, &l.curves))
+}
+
+/// Whether two curves of a loop are the two sides of a seam: a period apart, and run through in opposite directions.
+fn has_seam(host: &Host, curves: &[TrimCurve]) -> bool {
+    let ends = |c: &TrimCurve| c.parameter.ends();
+    let opposed = |a: [Xi; 2], b: [Xi; 2]| {
+        (0..2).filter(|&d| host.closed[d]).any(|d| {
+            let near = |x: Xi, y: Xi| {
+                (0..2).all(|k| {
+                    let period = if k == d { host.extent(k) } else { 0.0 };
+                    ((x[k] - y[k]).abs() - period).abs() <= GAP * host.extent(k)
+                })
+            };
+            near(a[0], b[1]) && near(a[1], b[0])
+        })
+    };
+    let rest = |k: usize| curves[k + 1..].iter();
+    (0..curves.len()).any(|k| rest(k).any(|other| opposed(ends(&curves[k]), ends(other))))
 }

@@ -8,10 +8,15 @@ use super::surface::{Shape, Surface};
 use super::surface_read;
 use crate::io::brep::{
     BasePatch, Boundary, Face, GAP, Grant, Host, Tally, add, bounds_outside, grown, loops,
+    widest_gap,
 };
 use crate::io::report::{FaceBorder, SkipKind, TrimReport};
+use crate::trim::Trimmed;
 use crate::{NurbsPatch, Vec3};
 use std::f64::consts::{PI, TAU};
+
+/// Gaps between edges that follow each other are closed up to this share of the size of their surface.
+const BRIDGE: f64 = 1e-3;
 
 /// A face that was read.
 pub struct FacePatch {
@@ -265,23 +270,32 @@ fn trimmed(
     let grown = grown(base, face, scope.near, account.grant);
     let patch = grown.as_ref().map_or(&base.patch, |g| &g.patch);
     let host = Host::new(patch, &base.parameters, scope.near, account.grant);
-    let mut tally = Tally {
-        tolerance: host.agree,
-        ..Tally::default()
-    };
-    let mut said = Vec::new();
     let [curves, points] = extent(face);
     account.grant.boundary(curves, points)?;
-    let made = loops(&host, &face.boundaries, true, &mut tally, &mut said);
-    let trimmed = made.and_then(|loops| {
-        let outer = face.outer && !bounds_outside(&host, &loops);
-        let trimmed = patch.trimmed_by(loops, outer, GAP);
-        trimmed.map_err(|e| e.to_string())
-    });
+    let (mut said, mut tally) = (Vec::new(), Tally::default());
+    let mut trimmed = by_loops(&host, face, &mut tally, &mut said);
+    let mut bridged = None;
+    if trimmed.is_err() {
+        // Edges of a loop share their vertices: what is between their ends is a gap of the file's making, if it is small.
+        let wide = Host::new(patch, &base.parameters, scope.near, account.grant);
+        let wide = wide.bridging(BRIDGE * host.size);
+        let (mut again, mut closed) = (Vec::new(), Tally::default());
+        if let Ok(made) = by_loops(&wide, face, &mut closed, &mut again)
+            && closed.bridged > 0
+        {
+            bridged = Some((closed.bridged, closed.largest_bridge));
+            (trimmed, tally, said) = (Ok(made), closed, again);
+        }
+    }
     for text in said {
         account.note(entity, &text);
     }
     let trimmed = trimmed?;
+    if let Some((n, widest)) = bridged {
+        let text =
+            format!("{n} gap(s) of up to {widest:.1e} between its boundary curves were closed");
+        account.note(entity, &text);
+    }
     if let Some(grown) = grown.filter(|g| g.continued > 0.0) {
         let share = grown.continued;
         let text = format!(
@@ -295,6 +309,25 @@ fn trimmed(
         None => FaceBorder::Rectangle,
     };
     Ok((trimmed.patch, border))
+}
+
+/// The surface of a host trimmed by the loops of a face.
+fn by_loops(
+    host: &Host,
+    face: &Face,
+    tally: &mut Tally,
+    said: &mut Vec<String>,
+) -> Result<Trimmed, String> {
+    tally.tolerance = host.agree;
+    let loops = loops(host, &face.boundaries, true, tally, said)?;
+    // A loop on a closed surface bounds the part to its left, be it the larger one.
+    let outer = face.outer && !bounds_outside(host, &loops);
+    let gap = match tally.bridged {
+        0 => GAP,
+        _ => GAP.max(1.001 * widest_gap(host, &loops)),
+    };
+    let trimmed = host.patch.trimmed_by(loops, outer, gap);
+    trimmed.map_err(|e| e.to_string())
 }
 
 /// Boundary curves of a face and their control points, in both planes.
