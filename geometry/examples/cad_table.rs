@@ -131,6 +131,9 @@ fn row(name: &str, mut file: CadFile, truth: &Value, (seconds, notes, faces): (f
             println!("  note: {note}");
         }
         println!("  {:?}", file.trims);
+        if let Ok(surface) = file.surface() {
+            println!("  sides {:?}", surface.set().sides());
+        }
     }
     if faces {
         println!("  volumes {volumes:?}");
@@ -240,7 +243,8 @@ fn points_off(file: &CadFile, points: &Value, listed: bool) -> String {
 fn solid(file: &CadFile, body: Option<usize>) -> Option<PatchSet> {
     let own = file.patches.iter().filter(|p| p.tags.body == body);
     let patches = own.map(|p| p.patch.clone()).collect();
-    let set = PatchSet::join(patches, file.joining()).ok()?;
+    let mut set = PatchSet::join(patches, file.joining()).ok()?;
+    set.turn_cavities(|_| ());
     set.volumes().iter().any(Option::is_some).then_some(set)
 }
 

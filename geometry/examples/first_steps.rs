@@ -52,5 +52,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     // No answer, and why.
     let far = surface.closest_within(&Vec3::new(100., 0., 0.), 1.0);
     assert_eq!(far, Err(QueryError::BeyondReach { reach: 1.0 }));
+
+    // A ray from the axis meets the wall at its radius; another such wall, turned to face it, is a length of 1 away.
+    let hit = (surface.set()).first_hit(&Vec3::new(0., 0., 1.), &Vec3::new(1., 2., 0.), 10.0)?;
+    assert!((hit.ok_or("a wall")?.distance - 2.0).abs() < 1e-12);
+    let facing = Isometry3::new(
+        Vector3::new(0., 5., 0.),
+        Vector3::z() * std::f64::consts::PI,
+    );
+    let apart = (surface.set()).separation(surface.set(), &facing, 1e-6)?;
+    assert!((apart.distance - 1.0).abs() < 1e-9 && apart.at_least > 1.0 - 2e-6);
+
+    // Triangles within a thousandth of the radius.
+    let triangles = surface.set().tessellate(2e-3)?;
+    let area = 2.0 * std::f64::consts::PI * 3.0;
+    assert!(triangles.deviation() <= 2e-3 && (triangles.area() / area - 1.0).abs() < 2e-3);
+    println!("{} triangles", triangles.triangles().len());
     Ok(())
 }

@@ -7,6 +7,9 @@
 //!   curvature and Christoffel symbols in a [`Frame`]. No allocation.
 //! - **Project** ([`PatchSet`]): the closest point over all patches, found by a global search, not from a guess. A
 //!   [`Foot`] says where it lies (face, edge, corner, crease, pole), how sure it is, and on which side the point is.
+//! - **Rays and distances** ([`PatchSet::first_hit`], [`PatchSet::separation`]): where a line meets the trimmed surfaces, and
+//!   how far two sets are apart.
+//! - **Triangles** (`PatchSet::tessellate`): to a tolerance, with trims, closed where the surface is.
 //! - **Facets** ([`Bilinear`], [`Biquadratic`]): cut from patches, read from STL, or the faces of finite elements. They are
 //!   surfaces as well, so all of the above holds for them.
 //! - **Moving facets** ([`MovingFacets`]): facets whose nodes move from step to step, as they are or as one smooth surface,
@@ -64,6 +67,8 @@ pub mod patch;
 pub mod primitives;
 pub mod project;
 pub mod surface;
+#[cfg(feature = "tessellate")]
+pub mod tessellate;
 pub mod trim;
 
 pub use bezier::{BezierPiece, bezier_pieces};

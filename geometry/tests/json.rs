@@ -93,7 +93,7 @@ fn change(name: &str, from: &str, to: &str) -> Result<CadFile, String> {
 #[test]
 fn boundaries_that_give_no_trim_are_named() {
     let kratos = "two_faces.cad.json";
-    // The triangle's diagonal starts elsewhere: its loop is open.
+    // The triangle's diagonal starts elsewhere: its loop is open, and outside of the surface.
     let file = change(
         kratos,
         "[0, [2.0, -1.0, 0.0, 1.0]]",
@@ -106,7 +106,7 @@ fn boundaries_that_give_no_trim_are_named() {
     assert!(
         skipped
             .reason
-            .starts_with("its boundary gives no trim: trim loop 0 is open: curve 0 ends"),
+            .starts_with("its boundary gives no trim: trim loop 0: they leave the domain"),
         "{}",
         skipped.reason
     );
@@ -432,4 +432,109 @@ fn own_format_is_explained_where_it_is_wrong() {
             "{message}"
         );
     }
+}
+
+/// A cylinder of radius 1 over [0, 4] x [0, 2] as Kratos writes it, with one loop; the lines of its edges in space with it.
+fn cylinder(curves: &str, edges: &str, swapped: bool) -> String {
+    let h = 0.5f64.sqrt();
+    let circle = [
+        [1.0, 0.0, 1.0],
+        [1.0, 1.0, h],
+        [0.0, 1.0, 1.0],
+        [-1.0, 1.0, h],
+        [-1.0, 0.0, 1.0],
+        [-1.0, -1.0, h],
+        [0.0, -1.0, 1.0],
+        [1.0, -1.0, h],
+        [1.0, 0.0, 1.0],
+    ];
+    let points: Vec<String> = [0.0, 2.0]
+        .iter()
+        .flat_map(|z| circle.map(|[x, y, w]| format!("[0, [{x:?}, {y:?}, {z:?}, {w:?}]]")))
+        .collect();
+    format!(
+        r#"{{"breps": [{{"faces": [{{"brep_id": 1, "swapped_surface_normal": {swapped}, "surface": {{
+        "is_trimmed": true, "is_rational": true, "degrees": [2, 1],
+        "knot_vectors": [[0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4], [0, 0, 2, 2]], "control_points": [{}]}},
+        "boundary_loops": [{{"loop_type": "outer", "trimming_curves": [{curves}]}}]}}], "edges": [{edges}]}}]}}"#,
+        points.join(", ")
+    )
+}
+
+fn line(index: u32, from: [f64; 2], to: [f64; 2]) -> String {
+    let point = |x: [f64; 2]| format!("[0, [{:?}, {:?}, 0.0, 1.0]]", x[0], x[1]);
+    format!(
+        r#"{{"trim_index": {index}, "curve_direction": true, "parameter_curve": {{"is_rational": false, "degree": 1,
+        "knot_vector": [0, 0, 1, 1], "active_range": [0, 1], "control_points": [{}, {}]}}}}"#,
+        point(from),
+        point(to)
+    )
+}
+
+/// A window from 3.5 to 4.5: it lies across the seam at 4 = 0, as STEP and IGES have such faces. Its edge in space, which
+/// runs the other way, comes with it.
+#[test]
+fn boundaries_pass_the_seam_and_bring_their_edges_in_space() {
+    let corners = [[3.5, 0.5], [4.5, 0.5], [4.5, 1.5], [3.5, 1.5]];
+    let sides = (0..4).map(|k| line(k as u32 + 1, corners[k], corners[(k + 1) % 4]));
+    let curves = sides.collect::<Vec<_>>().join(", ");
+    // At 4.5 = .5 the circle is at (h, h).
+    let h = 0.5f64.sqrt();
+    let edge = format!(
+        r#"{{"brep_id": 9, "3d_curve": {{"is_rational": false, "degree": 1, "knot_vector": [0, 0, 1, 1],
+        "control_points": [[0, [{h:?}, {h:?}, 1.5, 1.0]], [0, [{h:?}, {h:?}, 0.5, 1.0]]]}},
+        "topology": [{{"brep_id": 1, "trim_index": 2}}]}}"#
+    );
+    let read = |swapped| {
+        let text = cylinder(&curves, &edge, swapped);
+        let file = read_json(text.as_bytes(), "c.json").unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(file.skipped, []);
+        file
+    };
+    let file = read(false);
+    let set = covact_geometry::PatchSet::new(vec![file.patches[0].patch.clone()], None).unwrap();
+    // A quarter of the turn, one high.
+    let area: f64 = set.areas().iter().sum();
+    assert!((area - std::f64::consts::FRAC_PI_2).abs() < 1e-4, "{area}");
+    assert_eq!(file.trims.curves, 4);
+    let normal = |file: &CadFile| {
+        let patch = &file.patches[0].patch;
+        let [u, v] = patch.domain().map(|[a, b]| 0.5 * (a + b));
+        let jet = patch.jet([u, v]);
+        (jet.rho_i[0].cross(&jet.rho_i[1]))
+            .dot(&Vector3::new(jet.rho.x, jet.rho.y, 0.0))
+            .signum()
+    };
+    assert_eq!([normal(&file), normal(&read(true))], [1.0, -1.0]);
+    // A loop of three sides of a rectangle is open, and what is said names it.
+    let three = (0..3).map(|k| line(k as u32 + 1, corners[k], corners[k + 1]));
+    let text = cylinder(&three.collect::<Vec<_>>().join(", "), "", false);
+    let file = read_json(text.as_bytes(), "c.json").unwrap();
+    assert!(
+        file.skipped[0].reason.contains("trim loop 0: is open"),
+        "{}",
+        file.skipped[0].reason
+    );
+}
+
+/// Bodies, layers and colours of a STEP file come back from our own format.
+#[test]
+fn own_format_keeps_bodies_and_names() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/round");
+    let mut file = read_path(&folder.join("cavity.step")).unwrap();
+    assert_eq!(file.bodies.len(), 1);
+    file.patches[0].tags.layer = Some("tool".to_owned());
+    file.patches[1].tags.colour = Some("#ff0000".to_owned());
+    let back = read_json(write_json(&file).unwrap().as_bytes(), "back.json").unwrap();
+    assert_eq!(back.bodies, file.bodies);
+    for (a, b) in back.patches.iter().zip(&file.patches) {
+        assert_eq!(a.tags, b.tags);
+    }
+    let text = write_json(&file)
+        .unwrap()
+        .replace("\"body\":0", "\"body\":7");
+    let message = read_json(text.as_bytes(), "back.json")
+        .unwrap_err()
+        .to_string();
+    assert!(message.contains("a patch of body 7"), "{message}");
 }

@@ -192,12 +192,15 @@ struct ProjectArgs {
 struct ConvertArgs {
     /// STEP or IGES file, or JSON of Kratos or geomdl
     file: PathBuf,
-    /// File to write: IGES faces if it ends in .igs or .iges, else JSON; - is the standard output
+    /// File to write: IGES faces if it ends in .igs or .iges, triangles if in .stl, else JSON; - is the standard output
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// Length unit to convert to (mm, m, in, ...); else that of the CAD file, and every number stays as it is
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
+    /// Largest distance of triangles from the surface; a two-thousandth of its size by default
+    #[arg(long, value_name = "LENGTH")]
+    tolerance: Option<f64>,
 }
 
 #[derive(Debug, Args)]

@@ -90,13 +90,15 @@ fn run(args: &ProjectArgs) -> Result<Account, Stop> {
         .map_err(|e| Stop(format!("cannot start the threads: {e}"), exit::IO))?;
     let file = cad::read(&args.file, args.unit.as_deref())?;
     let entities: Vec<u32> = file.patches.iter().map(|p| p.entity).collect();
+    let bodies: Vec<Option<usize>> = file.patches.iter().map(|p| p.tags.body).collect();
     let patches = file.patches.into_iter().map(|p| p.patch).collect();
     let joining = Joining {
         tolerance: None,
         resolution: file.resolution,
     };
-    let set = PatchSet::join(patches, joining)
+    let mut set = PatchSet::join(patches, joining)
         .map_err(|e| Stop(format!("{}: {e}", file.path), exit::SCENE))?;
+    set.turn_cavities(|patch| bodies[patch]);
     if let Err(e) = set.two_sided() {
         report::warning(&format!(
             "{}: {e}; distances from it carry no sign",

@@ -1,4 +1,5 @@
 //! What must not change a result, and what an effect must not cost: invariances on a small plate under a ball.
+mod assembly;
 mod built;
 mod common;
 mod convergence;

@@ -137,7 +137,8 @@ impl CadFile {
         }
     }
 
-    /// The faces that were read as one surface, in the unit of the file; [`skipped`](Self::skipped) are missing in it.
+    /// The faces that were read as one surface, in the unit of the file; [`skipped`](Self::skipped) are missing in it. Closed
+    /// parts have their volume inside, cavities of a body outside.
     ///
     /// # Errors
     /// No faces, with the reason; faces of no usable size.
@@ -155,10 +156,13 @@ impl CadFile {
             return Err(self.missing());
         }
         let joining = self.joining();
-        let faces = self.patches.iter().map(CadFace::from).collect();
+        let faces: Vec<CadFace> = self.patches.iter().map(CadFace::from).collect();
         let patches = self.patches.into_iter().map(|p| p.patch).collect();
         match PatchSet::join(patches, joining) {
-            Ok(set) => Ok(CadSurface { set, faces }),
+            Ok(mut set) => {
+                set.turn_cavities(|patch| faces[patch].tags.body);
+                Ok(CadSurface { set, faces })
+            }
             Err(source) => Err(SurfaceError::Set { path, source }),
         }
     }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::Location;
 use super::local::Local;
 use super::set::PatchSet;
-use super::topology::{Edge, EdgePoint, edge_point, edges_at};
+use super::topology::{Edge, EdgeCurve, EdgePoint, corner_at, edge_point, edges_at};
 use crate::frame::DEGENERATE;
 use crate::surface::{Jet, Surface, Vec3};
 
@@ -34,7 +34,7 @@ impl<S: Surface> PatchSet<S> {
 
     /// Outward pseudo-normal off the faces: at edges and creases the mean of the faces' normals, at corners weighted with
     /// the faces' angles (J. A. Baerentzen and H. Aanaes, "Signed distance computation using the angle weighted
-    /// pseudonormal", IEEE TVCG 11, 2005), at poles the mean around the point.
+    /// pseudonormal", IEEE TVCG 11, 2005), at poles by the angle around the point.
     #[cold]
     #[inline(never)]
     pub(super) fn pseudo_normal(&self, s: &Local, location: Location) -> Vec3 {
@@ -76,15 +76,14 @@ impl<S: Surface> PatchSet<S> {
                 }
             }
             Location::Pole { edge } => {
-                if let Some(index) = self.topology.index(patch, edge) {
-                    let edge = &self.topology.edges[index];
-                    let [a, b] = edge.interval;
-                    let count = (4 * edge.samples.len()).min(32);
-                    for k in 0..count {
-                        let t = (k as f64 + 0.5) / count as f64;
-                        let at = edge_point(self, edge, a + (b - a) * t);
-                        sum += self.normal_near(patch, at.span, at.xi) * side;
-                    }
+                // What else meets there counts as well: the other half of a cone, or the plane that halves it.
+                let corner = self.topology.index(patch, edge).map(|index| {
+                    let first = self.topology.first[patch as usize];
+                    let edges = self.topology.of(patch);
+                    first + corner_at(edges, index - first, 0)
+                });
+                if let Some(corner) = corner {
+                    sum = self.group_normal(self.topology.corners[corner]);
                 }
             }
         }
@@ -97,13 +96,58 @@ impl<S: Surface> PatchSet<S> {
         let mut sum = Vec3::zeros();
         let group = &self.topology.groups[group as usize];
         for &(patch, corner) in &group.corners {
-            sum += self.corner_normal(patch, corner as usize) * self.sides[patch as usize];
+            let edges = self.topology.of(patch);
+            let ends = edges_at(edges, corner as usize);
+            let side = self.sides[patch as usize];
+            if ends.iter().all(|e| edges[e.0].kind.is_some()) {
+                sum += self.corner_normal(patch, corner as usize) * side;
+            }
+            // A pole has two corners, of which one is where it starts.
+            for (edge, _) in ends
+                .into_iter()
+                .filter(|e| edges[e.0].kind.is_none() && e.1 == 0)
+            {
+                sum += self.pole_normal(&edges[edge]) * side;
+            }
         }
         for &(index, t) in &group.through {
             let edge = &self.topology.edges[index];
             let at = edge_point(self, edge, t);
             let n = self.normal_near(edge.patch, at.span, at.xi);
             sum += n * (self.sides[edge.patch as usize] * PI);
+        }
+        sum
+    }
+
+    /// The normals of a patch around its pole, times the angles between the directions in which it leaves it.
+    fn pole_normal(&self, edge: &Edge) -> Vec3 {
+        let surface = &self.patches[edge.patch as usize];
+        let grid = &self.grids[edge.patch as usize];
+        let [a, b] = edge.interval;
+        let count = (4 * edge.samples.len()).min(32);
+        let at = |s: f64| edge_point(self, edge, a + (b - a) * s);
+        let leaves = |s: f64| {
+            let at = at(s);
+            let inside = [0, 1].map(|k| {
+                let [from, to] = [0, 1].map(|end| grid.breaks[k][at.span[k] + end]);
+                let middle = 0.5 * (from + to);
+                // Along the pole the direction is that of `s`.
+                match edge.curve {
+                    EdgeCurve::Side { dir, .. } if k != dir => at.xi[k],
+                    _ => at.xi[k] + 1e-4 * (middle - at.xi[k]),
+                }
+            });
+            let x = surface.jet_in_span(at.span, inside).rho;
+            (x - at.jet.rho).try_normalize(0.0).unwrap_or_default()
+        };
+        let mut sum = Vec3::zeros();
+        let mut before = leaves(0.0);
+        for k in 0..count {
+            let after = leaves((k + 1) as f64 / count as f64);
+            let angle = before.cross(&after).norm().atan2(before.dot(&after));
+            let middle = at((k as f64 + 0.5) / count as f64);
+            sum += self.normal_near(edge.patch, middle.span, middle.xi) * angle;
+            before = after;
         }
         sum
     }

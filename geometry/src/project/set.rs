@@ -171,7 +171,7 @@ pub struct PatchSet<S: Surface = NurbsPatch> {
     pub(super) trimmed: Trimmed,
     pub(super) size: f64,
     pub(super) tolerance: f64,
-    pub(super) topology: Topology,
+    pub(crate) topology: Topology,
     pub(super) sides: Vec<f64>,
 }
 

@@ -93,7 +93,7 @@ impl<S: Surface> PatchSet<S> {
 
     /// Volume that every connected component encloses, by quadrature; `None` for one with free edges (or folded onto
     /// itself, without volume). Closed components start with their normals out of that volume; a cavity inside another
-    /// component is turned over with [`set_component_side`](Self::set_component_side).
+    /// component is turned over with [`turn_cavities`](Self::turn_cavities).
     pub fn volumes(&self) -> &[Option<f64>] {
         &self.topology.volumes
     }
@@ -117,6 +117,56 @@ impl<S: Surface> PatchSet<S> {
         for &patch in members {
             self.sides[patch] *= factor;
         }
+    }
+
+    /// Turns closed components that lie within an odd number of others over, so that the normals of a cavity point into it;
+    /// how many. Only components whose first patches have the same `body` are held against each other.
+    pub fn turn_cavities<B: PartialEq>(&mut self, body: impl Fn(usize) -> B) -> usize {
+        let closed: Vec<usize> = (0..self.topology.components.len())
+            .filter(|&c| self.topology.volumes[c].is_some())
+            .collect();
+        let first = |c: usize| self.topology.components[c][0];
+        let turned: Vec<usize> = closed
+            .iter()
+            .copied()
+            .filter(|&own| {
+                let alike = |c: usize| c != own && body(first(c)) == body(first(own));
+                let others: Vec<usize> = closed.iter().copied().filter(|&c| alike(c)).collect();
+                !others.is_empty() && self.depth(own, &others) % 2 == 1
+            })
+            .collect();
+        for &component in &turned {
+            let side = -self.sides[self.topology.components[component][0]];
+            self.set_component_side(component, side);
+        }
+        turned.len()
+    }
+
+    /// How many of the `others` enclose a component, by where rays from points of it leave them; 0 where no ray tells.
+    fn depth(&self, component: usize, others: &[usize]) -> usize {
+        let of = |patch: u32| self.topology.component_of[patch as usize];
+        let members = &self.topology.components[component];
+        for (k, &patch) in members.iter().cycle().take(16).enumerate() {
+            let edges = self.topology.of(patch as u32);
+            let Some(sample) = edges.iter().flat_map(|e| &e.samples).nth(k / members.len()) else {
+                continue;
+            };
+            let t = k as f64;
+            let direction = Vec3::new(
+                (1.3 * t + 0.3).cos(),
+                (2.1 * t + 0.7).sin(),
+                0.377 + 0.1 * t,
+            );
+            let Ok(hits) = self.hits(&sample.point, &direction, f64::INFINITY) else {
+                continue;
+            };
+            if hits.iter().any(|h| h.grazing) {
+                continue;
+            }
+            let crossed = |c: usize| hits.iter().filter(|h| of(h.patch) == c).count();
+            return others.iter().filter(|&&c| crossed(c) % 2 == 1).count();
+        }
+        0
     }
 
     /// Points every component away from what it encloses or, where it has free edges, curves around (`inward`: towards it).

@@ -25,7 +25,7 @@ fn kratos_runs_through_the_first_direction_first() {
     assert!(
         file.skipped[0]
             .reason
-            .starts_with("its boundary gives no trim: trim loop 0 has no curves")
+            .starts_with("its boundary gives no trim: trim loop 0: has no curves")
     );
 }
 
@@ -121,7 +121,7 @@ fn what_is_no_surface_is_named() {
     assert!(
         file.skipped[0]
             .reason
-            .starts_with("its trim curves give no trim: trim loop 0 has no curves")
+            .starts_with("its trim curves give no trim: trim loop 0: has no curves")
     );
     let error = change("cad/ruled.geomdl.json", "\"shape\"", "\"shape\"")
         .unwrap()

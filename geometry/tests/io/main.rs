@@ -11,6 +11,7 @@ mod json;
 mod mutate;
 mod offsets;
 mod punch;
+mod round;
 mod samples;
 mod step;
 mod step_builder;

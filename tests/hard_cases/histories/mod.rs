@@ -83,6 +83,7 @@ histories!(
     hertz_block,
     ironing,
     pinched_tube,
+    press_pads,
     punch_sheet,
     q18_on_h8,
     sandwiched_shell,

@@ -60,6 +60,10 @@ pub fn pinched_tube(scene: &mut Value) {
     elements(scene, "tube", "cylinder_panel", json!([16, 12]));
 }
 
+pub fn press_pads(scene: &mut Value) {
+    elements(scene, "sheet", "plate", json!([32, 13]));
+}
+
 pub fn punch_sheet(scene: &mut Value) {
     elements(scene, "sheet", "plate", json!([20, 16]));
 }

@@ -178,6 +178,20 @@ impl<'a> Host<'a> {
         Ok((xi, foot.distance))
     }
 
+    /// Whether the surface has no border: it is closed in both directions, or in one between two poles.
+    pub fn is_round(&self) -> bool {
+        let pole = |dir: usize, end: usize| {
+            (0..4).all(|k| {
+                let mut xi = Xi::zeros();
+                xi[dir] = self.domain[dir][end];
+                xi[1 - dir] = self.domain[1 - dir][0] + self.extent(1 - dir) * (f64::from(k) / 4.0);
+                self.stuck(xi)[1 - dir]
+            })
+        };
+        let ends = |dir: usize| self.closed[dir] || (pole(dir, 0) && pole(dir, 1));
+        (self.closed[0] || self.closed[1]) && ends(0) && ends(1)
+    }
+
     /// Directions in which the parameter does not move the point at `xi` (at a pole).
     pub fn stuck(&self, xi: Xi) -> [bool; 2] {
         let jet = self.patch.jet(self.wrap(xi));

@@ -2,6 +2,7 @@
 //! bridged, loops that go round a closed surface joined to one another or to its border.
 
 use super::curves::{Tally, curves};
+use super::enclosed::{runs_back, signed_area, without_spikes};
 use super::face::Boundary;
 use super::host::{Host, Xi};
 use crate::NurbsCurve;
@@ -41,7 +42,11 @@ pub fn loops(
         tally.bridged += chain.gaps.len();
         tally.largest_bridge = (chain.gaps.iter()).fold(tally.largest_bridge, |a, &b| a.max(b));
         if chain.turns == [0, 0] {
-            closed.push(chain.curves);
+            let curves = without_spikes(host, chain.curves).map_err(named)?;
+            // What was a seam and nothing else leaves the whole surface.
+            if !curves.is_empty() {
+                closed.push(curves);
+            }
         } else {
             winding.push(chain);
         }
@@ -50,7 +55,7 @@ pub fn loops(
         closed.insert(0, joined(host, winding)?);
     }
     if outer_first {
-        let area = |curves: &Vec<TrimCurve>| area(curves);
+        let area = |curves: &Vec<TrimCurve>| signed_area(curves).abs();
         if let Some(first) =
             (0..closed.len()).max_by(|&a, &b| area(&closed[a]).total_cmp(&area(&closed[b])))
         {
@@ -89,7 +94,7 @@ fn shifted(curve: TrimCurve, by: Xi) -> Result<TrimCurve, CurveError> {
     })
 }
 
-fn reversed(curve: &TrimCurve) -> Result<TrimCurve, CurveError> {
+pub(super) fn reversed(curve: &TrimCurve) -> Result<TrimCurve, CurveError> {
     Ok(TrimCurve {
         parameter: curve.parameter.reversed()?,
         space: curve.space.as_ref().map(NurbsCurve::reversed).transpose()?,
@@ -148,22 +153,35 @@ fn directed(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Vec<Vec<TrimC
 /// One chain of all stretches. At a pole the turning parameter of the next curve is any: of the chains that go on a period
 /// apart from each other there, the one that closes in the parameter plane and bounds an area is meant. (A boundary is a
 /// closed curve of that plane. Space curves alone do not say which way round a pole they go on, and a chain that took the
-/// shorter way may go round the closed surface, or back along the same side of a seam.)
+/// shorter way may go round the closed surface, or back along the same side of a seam.) A chain that runs back along one of
+/// its own curves is meant only if no other bounds an area: a seam is two lines of that plane.
 fn chain_of_area(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Result<Chain, String> {
     let stretches = directed(host, stretches)?;
     let whole = host.extent(0) * host.extent(1);
-    let bounds = |chain: &Chain| chain.turns == [0, 0] && area(&chain.curves) > 1e-9 * whole;
-    let first = chain(host, &stretches, 0.0)?;
-    if bounds(&first) {
-        return Ok(first);
-    }
-    for turns in [1.0, -1.0] {
-        let other = chain(host, &stretches, turns)?;
-        if bounds(&other) {
-            return Ok(other);
+    let bounds =
+        |chain: &Chain| chain.turns == [0, 0] && signed_area(&chain.curves).abs() > 1e-9 * whole;
+    let plain = |chain: &Chain| !runs_back(host, &chain.curves) && within_period(host, chain);
+    let mut chains = Vec::with_capacity(5);
+    for turns in [0.0, 1.0, -1.0, 2.0, -2.0] {
+        let made = chain(host, &stretches, turns)?;
+        if bounds(&made) && plain(&made) {
+            return Ok(made);
         }
+        chains.push(made);
     }
-    Ok(first)
+    let best = chains.iter().position(bounds).unwrap_or(0);
+    Ok(chains.swap_remove(best))
+}
+
+/// Whether a chain spans no more than one period of a closed surface.
+fn within_period(host: &Host, chain: &Chain) -> bool {
+    (0..2).filter(|&d| host.closed[d]).all(|d| {
+        let ends = chain.curves.iter().flat_map(|c| c.parameter.ends());
+        let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), xi| {
+            (a.min(xi[d]), b.max(xi[d]))
+        });
+        high - low <= (1.0 + GAP) * host.extent(d)
+    })
 }
 
 /// The chain that goes on `turns` periods away after the first pole.
@@ -252,30 +270,6 @@ pub fn widest_gap(host: &Host, loops: &[TrimLoop]) -> f64 {
     });
     gaps.map(|(a, b)| share(end(a), start(b)))
         .fold(0.0, f64::max)
-}
-
-/// Area that a loop bounds in the parameter plane, by a polygon.
-fn area(curves: &[TrimCurve]) -> f64 {
-    let mut polygon = Vec::new();
-    for curve in curves {
-        let basis = curve.parameter.basis();
-        let n = 4 * basis.degree();
-        for span in 0..basis.span_count() {
-            let [a, b] = basis.span_range(span);
-            polygon
-                .extend((0..n).map(|k| curve.parameter.point(a + (b - a) * (k as f64 / n as f64))));
-        }
-    }
-    let Some(&origin) = polygon.first() else {
-        return 0.0;
-    };
-    let next = polygon.iter().skip(1).chain(polygon.first());
-    let twice: f64 = polygon
-        .iter()
-        .zip(next)
-        .map(|(p, q)| (p - origin).perp(&(q - origin)))
-        .sum();
-    0.5 * twice.abs()
 }
 
 /// Loops that go round a closed surface bound it together: two are joined by two lines across, one is joined to the border

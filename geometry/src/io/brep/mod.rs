@@ -9,6 +9,7 @@
 mod areas;
 mod base;
 mod curves;
+mod enclosed;
 mod extent;
 mod face;
 mod fit;
@@ -25,6 +26,7 @@ mod sides;
 pub use areas::{by_parameters, disagreement};
 pub use base::BasePatch;
 pub use curves::{Tally, add};
+pub use enclosed::bounds_outside;
 pub use extent::grown;
 pub use face::{Boundary, Face, Part, Stretch, reversed};
 pub use grant::{Grant, evaluations};

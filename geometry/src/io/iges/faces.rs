@@ -12,8 +12,8 @@ use super::transform::{Affine, matrix_of};
 use super::trimmed::{self, describe};
 use super::{Model, params::Params};
 use crate::io::brep::{
-    Boundary, Face, GAP, Grant, Host, Stretch, Tally, add, by_parameters, disagreement, grown,
-    loops, widest_gap,
+    Boundary, Face, GAP, Grant, Host, Stretch, Tally, add, bounds_outside, by_parameters,
+    disagreement, grown, loops, widest_gap,
 };
 use crate::{NurbsPatch, Vec3};
 
@@ -369,7 +369,16 @@ impl<'a> Reader<'a, '_> {
                 0 => GAP,
                 _ => GAP.max(1.001 * widest_gap(&host, &loops)),
             };
-            let trimmed = patch.trimmed_by(loops, face.outer, gap);
+            // Curves in the parameter plane bound what they enclose there, whichever way they run.
+            let mut first = face.boundaries.iter().take(1).flat_map(|b| &b.stretches);
+            let in_space = first.all(|s| s.parameter.is_empty());
+            let outer = face.outer && !(in_space && bounds_outside(&host, &loops));
+            let trimmed = match outer && in_space && host.is_round() {
+                // A trimmed surface (144) may be bounded by loops of either direction.
+                true => (patch.trimmed_by(loops.clone(), true, gap))
+                    .or_else(|e| patch.trimmed_by(loops, false, gap).map_err(|_| e)),
+                false => patch.trimmed_by(loops, outer, gap),
+            };
             trimmed.map_err(|e| e.to_string())
         });
         let note = |text: &str| format!("{}: {text}", describe(entry));

@@ -2,10 +2,11 @@
 //! multiplied by their weights.
 
 use super::super::error::Fail;
-use super::super::report::{CadPatch, CadTags, SkipKind, Skipped};
-use super::trims::{Part, trimmed};
+use super::super::report::{CadPatch, CadTags, FaceBorder, SkipKind, Skipped};
+use super::trims::{Side, trimmed};
 use super::{Content, counts, parse};
 use crate::curve::NurbsCurve;
+use crate::io::brep::Grant;
 use crate::{NurbsPatch, Vec3};
 use nalgebra::Vector2;
 use serde::Deserialize;
@@ -228,22 +229,29 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
         entities: counts(&[("surface", file.shape.data.len())]),
         ..Content::default()
     };
+    let grant = Grant::of_length(bytes.len());
     for (i, surface) in file.shape.data.into_iter().enumerate() {
         let entity = u32::try_from(i + 1).unwrap_or(u32::MAX);
         let loops = |outer: bool| {
             let trims = surface.trims.iter().filter(move |t| t.outer == outer);
             trims.map(|trim| {
-                let part = |curve: &NurbsCurve<2>| Part {
+                let side = |curve: &NurbsCurve<2>| Side {
                     curve: curve.clone(),
+                    space: None,
                     backwards: false,
                     entity: 0,
                 };
-                trim.curves.iter().map(part).collect::<Vec<_>>()
+                trim.curves.iter().map(side).collect::<Vec<_>>()
             })
         };
         let has_outer = surface.trims.iter().any(|t| t.outer);
-        let all = loops(true).chain(loops(false)).collect();
-        let (patch, border, notes) = match trimmed(&surface.patch, all, has_outer) {
+        let all: Vec<_> = loops(true).chain(loops(false)).collect();
+        let name = format!("surface {entity}");
+        let read = match all.is_empty() {
+            true => Ok((surface.patch, FaceBorder::Natural)),
+            false => trimmed(&mut content, &grant, &name, surface.patch, all, has_outer),
+        };
+        let (patch, border) = match read {
             Ok(read) => read,
             Err(reason) => {
                 content.skipped.push(Skipped {
@@ -256,8 +264,6 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
                 continue;
             }
         };
-        let notes = notes.into_iter().map(|n| format!("surface {entity}: {n}"));
-        content.notes.extend(notes);
         content.patches.push(CadPatch {
             patch,
             entity,

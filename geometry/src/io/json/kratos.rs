@@ -3,11 +3,12 @@
 
 use super::super::error::Fail;
 use super::super::report::{CadPatch, CadTags, FaceBorder, SkipKind, Skipped};
-use super::trims::{Part, trimmed};
+use super::trims::{Side as Border, trimmed};
 use super::{Content, counts, parse};
 use crate::curve::NurbsCurve;
+use crate::io::brep::Grant;
 use crate::{NurbsPatch, Vec3};
-use nalgebra::Vector2;
+use nalgebra::SVector;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
@@ -48,6 +49,8 @@ struct Face {
 #[derive(Deserialize)]
 struct Edge {
     brep_id: Option<u32>,
+    #[serde(rename = "3d_curve")]
+    space: Option<SpaceCurve>,
     #[serde(default)]
     topology: Vec<Side>,
 }
@@ -78,6 +81,10 @@ struct TrimmingCurve {
 struct ParameterCurve(NurbsCurve<2>);
 
 #[derive(Deserialize)]
+#[serde(try_from = "RawCurve")]
+struct SpaceCurve(NurbsCurve<3>);
+
+#[derive(Deserialize)]
 struct RawCurve {
     is_rational: Option<bool>,
     degree: usize,
@@ -86,16 +93,16 @@ struct RawCurve {
     control_points: Vec<(IgnoredAny, Vec<f64>)>,
 }
 
-impl TryFrom<RawCurve> for ParameterCurve {
-    type Error = String;
-
-    fn try_from(raw: RawCurve) -> Result<Self, String> {
-        let mut points = Vec::with_capacity(raw.control_points.len());
-        let mut weights = Vec::with_capacity(raw.control_points.len());
-        for (i, (_, x)) in raw.control_points.iter().enumerate() {
+impl RawCurve {
+    /// The curve in `D` dimensions, which are the first numbers of its control points.
+    fn curve<const D: usize>(self) -> Result<NurbsCurve<D>, String> {
+        let mut points = Vec::with_capacity(self.control_points.len());
+        let mut weights = Vec::with_capacity(self.control_points.len());
+        for (i, (_, x)) in self.control_points.iter().enumerate() {
             let weight = match x[..] {
-                [_, _] | [_, _, _] => 1.0,
-                [_, _, _, w] if raw.is_rational != Some(false) || w == 1.0 => w,
+                [_, _] if D == 2 => 1.0,
+                [_, _, _] => 1.0,
+                [_, _, _, w] if self.is_rational != Some(false) || w == 1.0 => w,
                 [_, _, _, w] => {
                     return Err(format!(
                         "control point {} with weight {w}, expected 1 as is_rational is false",
@@ -110,19 +117,32 @@ impl TryFrom<RawCurve> for ParameterCurve {
                     ));
                 }
             };
-            points.push(Vector2::new(x[0], x[1]));
+            points.push(SVector::from_fn(|k, _| x[k]));
             weights.push(weight);
         }
         let expected = |e| format!("{e}, expected a NURBS curve");
-        let curve = NurbsCurve::new(raw.degree, raw.knot_vector, &points, Some(&weights))
+        let curve = NurbsCurve::new(self.degree, self.knot_vector, &points, Some(&weights))
             .map_err(expected)?;
-        match raw.active_range {
-            None => Ok(Self(curve)),
-            Some([a, b]) => curve
-                .with_domain([a.min(b), a.max(b)])
-                .map(Self)
-                .map_err(expected),
+        match self.active_range {
+            None => Ok(curve),
+            Some([a, b]) => curve.with_domain([a.min(b), a.max(b)]).map_err(expected),
         }
+    }
+}
+
+impl TryFrom<RawCurve> for ParameterCurve {
+    type Error = String;
+
+    fn try_from(raw: RawCurve) -> Result<Self, String> {
+        raw.curve().map(Self)
+    }
+}
+
+impl TryFrom<RawCurve> for SpaceCurve {
+    type Error = String;
+
+    fn try_from(raw: RawCurve) -> Result<Self, String> {
+        raw.curve().map(Self)
     }
 }
 
@@ -216,25 +236,42 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
     for edge in file.breps.iter().flat_map(|b| &b.edges) {
         for side in &edge.topology {
             if let (Some(id), Some(trim)) = (edge.brep_id, side.trim_index) {
-                edges.insert((side.brep_id, trim), id);
+                let space = edge.space.as_ref().map(|c| c.0.clone());
+                edges.insert((side.brep_id, trim), (id, space));
             }
         }
     }
+    let grant = Grant::of_length(bytes.len());
     let mut position = 0;
     for face in file.breps.into_iter().flat_map(|b| b.faces) {
         position += 1;
         let entity = face.brep_id.unwrap_or(position);
         // Untrimmed faces carry a loop along their own border.
         let read = match face.surface.is_trimmed {
-            Some(false) => Ok((face.surface.patch, FaceBorder::Natural, Vec::new())),
+            Some(false) => Ok((face.surface.patch, FaceBorder::Natural)),
             Some(true) if face.boundary_loops.is_empty() => {
                 Err("is_trimmed is true, but there are no boundary loops".to_owned())
             }
-            _ => trim(&face.surface.patch, face.boundary_loops, |index| {
-                edges.get(&(entity, index)).copied().unwrap_or(0)
+            _ => sorted(face.boundary_loops, |index| {
+                edges.get(&(entity, index)).cloned().unwrap_or_default()
+            })
+            .and_then(|(sides, outer)| {
+                let name = format!("face {entity}");
+                trimmed(
+                    &mut content,
+                    &grant,
+                    &name,
+                    face.surface.patch,
+                    sides,
+                    outer,
+                )
             }),
         };
-        let (patch, border, notes) = match read {
+        let read = read.and_then(|(patch, border)| match face.swapped_surface_normal {
+            true => Ok((patch.reversed(0).map_err(|e| e.to_string())?, border)),
+            false => Ok((patch, border)),
+        });
+        let (patch, border) = match read {
             Ok(read) => read,
             Err(reason) => {
                 content.skipped.push(Skipped {
@@ -247,13 +284,6 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
                 continue;
             }
         };
-        let notes = notes.into_iter().map(|n| format!("face {entity}: {n}"));
-        content.notes.extend(notes);
-        if face.swapped_surface_normal {
-            content.notes.push(format!(
-                "face {entity}: swapped_surface_normal is true; the patch has the normal of its parameters"
-            ));
-        }
         content.patches.push(CadPatch {
             patch,
             entity,
@@ -268,12 +298,12 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
     Ok(content)
 }
 
-/// The patch with its boundary loops, the outer ones first; `edge` gives the edge of a trim curve.
-fn trim(
-    patch: &NurbsPatch,
+/// The boundary loops of a face, the outer ones first, and whether there are any of these; `edge` gives the number of the edge
+/// of a trim curve and the curve of the edge in space.
+fn sorted(
     loops: Vec<Loop>,
-    edge: impl Fn(u32) -> u32,
-) -> Result<(NurbsPatch, FaceBorder, Vec<String>), String> {
+    edge: impl Fn(u32) -> (u32, Option<NurbsCurve<3>>),
+) -> Result<(Vec<Vec<Border>>, bool), String> {
     let mut sorted = [Vec::new(), Vec::new()];
     for (number, a_loop) in loops.into_iter().enumerate() {
         let inner = match a_loop.loop_type.as_deref() {
@@ -287,15 +317,19 @@ fn trim(
                 ));
             }
         };
-        let parts = a_loop.trimming_curves.into_iter().map(|c| Part {
-            curve: c.parameter_curve.0,
-            backwards: c.curve_direction == Some(false),
-            entity: c.trim_index.map_or(0, &edge),
+        let sides = a_loop.trimming_curves.into_iter().map(|c| {
+            let (entity, space) = c.trim_index.map_or((0, None), &edge);
+            Border {
+                curve: c.parameter_curve.0,
+                space,
+                backwards: c.curve_direction == Some(false),
+                entity,
+            }
         });
-        sorted[inner].push(parts.collect::<Vec<_>>());
+        sorted[inner].push(sides.collect::<Vec<_>>());
     }
     let [mut outer, inner] = sorted;
     let has_outer = !outer.is_empty();
     outer.extend(inner);
-    trimmed(patch, outer, has_outer)
+    Ok((outer, has_outer))
 }

@@ -10,7 +10,7 @@ pub use native::write_json;
 
 use super::error::Fail;
 use super::healing::Healing;
-use super::report::{CadFile, CadFormat, CadPatch, EntityCount, Skipped, TrimReport};
+use super::report::{CadBody, CadFile, CadFormat, CadPatch, EntityCount, Skipped, TrimReport};
 use super::{CadError, LengthUnit};
 use serde::de::{DeserializeOwned, IgnoredAny};
 use std::collections::BTreeMap;
@@ -24,10 +24,9 @@ struct Content {
     notes: Vec<String>,
     resolution: Option<f64>,
     unit: Option<LengthUnit>,
+    bodies: Vec<CadBody>,
+    trims: TrimReport,
 }
-
-/// Gaps between the curves of a loop up to this share of the parameter domain are closed, and told.
-const GAP: f64 = 1e-4;
 
 /// Reads a JSON file of Kratos (key `breps`), geomdl (key `shape`) or of [`write_json`] (key `covact_geometry`). `name`
 /// stands for the file in messages.
@@ -68,10 +67,10 @@ pub fn read_json(bytes: &[u8], name: &str) -> Result<CadFile, CadError> {
         unit: content.unit.unwrap_or_else(LengthUnit::unspecified),
         resolution: content.resolution,
         patches: content.patches,
-        bodies: Vec::new(),
+        bodies: content.bodies,
         entities: content.entities,
         skipped: content.skipped,
-        trims: TrimReport::default(),
+        trims: content.trims,
         healing: Healing::default(),
         notes: content.notes,
     })

@@ -1,7 +1,7 @@
 //! Our own JSON format: whatever a [`CadFile`] holds of its patches, bit for bit.
 //!
 //! ```json
-//! {"covact_geometry": 1, "unit": "mm", "resolution": null, "patches": [
+//! {"covact_geometry": 1, "unit": "mm", "resolution": null, "bodies": [], "patches": [
 //! {"entity": 1, "degree": [1, 1], "knots": [[0.0, 0.0, 1.0, 1.0], [0.0, 0.0, 1.0, 1.0]],
 //!  "domain": [[0.0, 1.0], [0.0, 1.0]], "points": [[0.0, 0.0, 0.0, 1.0], ...],
 //!  "trim": [[{"degree": 1, "knots": [...], "domain": [0.0, 1.0], "points": [[0.0, 0.0, 1.0], ...]}, ...]]}
@@ -13,7 +13,7 @@
 //! what they allow.
 
 use super::super::error::Fail;
-use super::super::report::{CadFile, CadPatch, CadTags, FaceBorder};
+use super::super::report::{CadBody, CadFile, CadPatch, CadTags, FaceBorder};
 use super::{Content, LengthUnit, counts, parse};
 use crate::basis::Basis;
 use crate::curve::{CurveError, NurbsCurve};
@@ -41,7 +41,23 @@ struct File {
     _version: IgnoredAny,
     unit: Option<String>,
     resolution: Option<f64>,
+    #[serde(default)]
+    bodies: Vec<RawBody>,
     patches: Vec<Patch>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawBody {
+    name: Option<String>,
+    #[serde(default)]
+    path: Vec<String>,
+    entity: u32,
+    #[serde(default)]
+    instance: u32,
+    solid: bool,
+    #[serde(default)]
+    skipped: usize,
 }
 
 #[derive(Deserialize)]
@@ -58,6 +74,13 @@ struct RawPatch {
     #[serde(default)]
     instance: u32,
     name: Option<String>,
+    /// Index in the list of bodies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    body: Option<usize>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    layer: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    colour: Option<String>,
     /// The border was a rectangle of parameters in the file that the patch came from.
     #[serde(default)]
     rectangle: bool,
@@ -169,7 +192,11 @@ impl TryFrom<RawPatch> for Patch {
                 (None, false) => FaceBorder::Natural,
             },
             name: raw.name,
-            tags: CadTags::default(),
+            tags: CadTags {
+                body: raw.body,
+                layer: raw.layer,
+                colour: raw.colour,
+            },
             patch: patch.with_trim(trim),
         }))
     }
@@ -196,9 +223,32 @@ pub fn read(bytes: &[u8]) -> Result<Content, Fail> {
             )
         })?),
     };
+    let patches: Vec<CadPatch> = file.patches.into_iter().map(|p| p.0).collect();
+    let count = file.bodies.len();
+    if let Some(k) = patches
+        .iter()
+        .filter_map(|p| p.tags.body)
+        .find(|&k| k >= count)
+    {
+        return Err(Fail::new(
+            (1, 1),
+            format!("the number of one of {count} bodies"),
+            format!("a patch of body {k}"),
+        ));
+    }
+    let bodies = file.bodies.into_iter().enumerate().map(|(k, b)| CadBody {
+        name: b.name,
+        path: b.path,
+        entity: b.entity,
+        instance: b.instance,
+        solid: b.solid,
+        faces: patches.iter().filter(|p| p.tags.body == Some(k)).count(),
+        skipped: b.skipped,
+    });
     Ok(Content {
-        entities: counts(&[("patch", file.patches.len())]),
-        patches: file.patches.into_iter().map(|p| p.0).collect(),
+        entities: counts(&[("patch", patches.len())]),
+        bodies: bodies.collect(),
+        patches,
         resolution: file.resolution.filter(|r| *r > 0.0),
         unit,
         ..Content::default()
@@ -232,6 +282,9 @@ fn raw(patch: &CadPatch) -> RawPatch {
         base: Some(patch.base),
         instance: patch.instance,
         name: patch.name.clone(),
+        body: patch.tags.body,
+        layer: patch.tags.layer.clone(),
+        colour: patch.tags.colour.clone(),
         rectangle: patch.border == FaceBorder::Rectangle,
         degree: p.degree(),
         knots: [p.knots(0).to_vec(), p.knots(1).to_vec()],
@@ -247,17 +300,27 @@ fn raw(patch: &CadPatch) -> RawPatch {
 }
 
 /// The patches of a file as JSON in our own format, one line per patch: [`read_json`](super::read_json) gives back the same
-/// patches, trims, unit and resolution, every number bit for bit. The account of what the file held besides (entities,
+/// patches, trims, bodies, names, layers, colours, unit and resolution, every number bit for bit. The account of what the file held besides (entities,
 /// skipped surfaces, notes) is not written.
 ///
 /// # Errors
 /// Those of the JSON library; none is known to occur.
 pub fn write_json(file: &CadFile) -> Result<String, serde_json::Error> {
     let unit = file.unit.to_metre.map(|_| file.unit.name.as_str());
+    let bodies = file.bodies.iter().map(|b| RawBody {
+        name: b.name.clone(),
+        path: b.path.clone(),
+        entity: b.entity,
+        instance: b.instance,
+        solid: b.solid,
+        skipped: b.skipped,
+    });
+    let bodies: Vec<RawBody> = bodies.collect();
     let mut out = format!(
-        "{{\"{KEY}\": {VERSION}, \"unit\": {}, \"resolution\": {}, \"patches\": [",
+        "{{\"{KEY}\": {VERSION}, \"unit\": {}, \"resolution\": {}, \"bodies\": {}, \"patches\": [",
         serde_json::to_string(&unit)?,
-        serde_json::to_string(&file.resolution)?
+        serde_json::to_string(&file.resolution)?,
+        serde_json::to_string(&bodies)?
     );
     for (k, patch) in file.patches.iter().enumerate() {
         out += if k == 0 { "\n" } else { ",\n" };

@@ -6,10 +6,17 @@ use super::place::Frame;
 use super::scope::Scope;
 use super::surface::{Shape, Surface};
 use super::surface_read;
-use crate::io::brep::{BasePatch, Boundary, Face, GAP, Grant, Host, Tally, add, grown, loops};
+use crate::io::brep::{
+    BasePatch, Boundary, Face, GAP, Grant, Host, Tally, add, bounds_outside, grown, loops,
+    widest_gap,
+};
 use crate::io::report::{FaceBorder, SkipKind, TrimReport};
-use crate::{NurbsPatch, TrimLoop, Vec3};
+use crate::trim::Trimmed;
+use crate::{NurbsPatch, Vec3};
 use std::f64::consts::{PI, TAU};
+
+/// Gaps between edges that follow each other are closed up to this share of the size of their surface.
+const BRIDGE: f64 = 1e-3;
 
 /// A face that was read.
 pub struct FacePatch {
@@ -204,8 +211,7 @@ fn bounded(
                 values: 0,
                 fault: None,
             };
-            let round = matches!(surface.shape, Shape::Sphere(_) | Shape::Torus(..));
-            let trimmed = trimmed(scope, entity, (&patch, round), &face, account);
+            let trimmed = trimmed(scope, entity, &patch, &face, account);
             trimmed.map_err(|e| boundary_fault(on(e)))?
         }
     };
@@ -253,38 +259,43 @@ fn control_points(boundary: &Boundary) -> impl Iterator<Item = Vec3> + '_ {
         .map(|p| Vec3::new(p[0], p[1], p[2]) / p[3])
 }
 
-/// A patch trimmed by the boundaries of a face. `round` says that the surface is closed by itself.
+/// A patch trimmed by the boundaries of a face.
 fn trimmed(
     scope: &Scope,
     entity: &Entity,
-    (base, round): (&BasePatch, bool),
+    base: &BasePatch,
     face: &Face,
     account: &mut Account,
 ) -> Result<(NurbsPatch, FaceBorder), String> {
     let grown = grown(base, face, scope.near, account.grant);
     let patch = grown.as_ref().map_or(&base.patch, |g| &g.patch);
     let host = Host::new(patch, &base.parameters, scope.near, account.grant);
-    let mut tally = Tally {
-        tolerance: host.agree,
-        ..Tally::default()
-    };
-    let mut said = Vec::new();
     let [curves, points] = extent(face);
     account.grant.boundary(curves, points)?;
-    let made = loops(&host, &face.boundaries, true, &mut tally, &mut said);
-    let trimmed = made.and_then(|loops| {
-        // A loop on a closed surface bounds the part to its left, be it the larger one. (One along the seams bounds all of it
-        // whichever way it runs.)
-        let whole = host.extent(0) * host.extent(1);
-        let outside = |l: &TrimLoop| (-0.999 * whole..0.0).contains(&signed_area(l));
-        let around = round && loops.first().is_some_and(outside);
-        let trimmed = patch.trimmed_by(loops, face.outer && !around, GAP);
-        trimmed.map_err(|e| e.to_string())
-    });
+    let (mut said, mut tally) = (Vec::new(), Tally::default());
+    let mut trimmed = by_loops(&host, face, &mut tally, &mut said);
+    let mut bridged = None;
+    if trimmed.is_err() {
+        // Edges of a loop share their vertices: what is between their ends is a gap of the file's making, if it is small.
+        let wide = Host::new(patch, &base.parameters, scope.near, account.grant);
+        let wide = wide.bridging(BRIDGE * host.size);
+        let (mut again, mut closed) = (Vec::new(), Tally::default());
+        if let Ok(made) = by_loops(&wide, face, &mut closed, &mut again)
+            && closed.bridged > 0
+        {
+            bridged = Some((closed.bridged, closed.largest_bridge));
+            (trimmed, tally, said) = (Ok(made), closed, again);
+        }
+    }
     for text in said {
         account.note(entity, &text);
     }
     let trimmed = trimmed?;
+    if let Some((n, widest)) = bridged {
+        let text =
+            format!("{n} gap(s) of up to {widest:.1e} between its boundary curves were closed");
+        account.note(entity, &text);
+    }
     if let Some(grown) = grown.filter(|g| g.continued > 0.0) {
         let share = grown.continued;
         let text = format!(
@@ -300,24 +311,23 @@ fn trimmed(
     Ok((trimmed.patch, border))
 }
 
-/// Area that a loop bounds in the parameter plane, negative where it runs clockwise, by a polygon.
-fn signed_area(a_loop: &TrimLoop) -> f64 {
-    let mut corners = Vec::new();
-    for curve in &a_loop.curves {
-        let basis = curve.parameter.basis();
-        let n = 4 * basis.degree();
-        for span in 0..basis.span_count() {
-            let [a, b] = basis.span_range(span);
-            let at = |k: usize| curve.parameter.point(a + (b - a) * (k as f64 / n as f64));
-            corners.extend((0..n).map(at));
-        }
-    }
-    let next = corners.iter().skip(1).chain(corners.first());
-    let origin = corners.first().copied().unwrap_or_default();
-    let pairs = corners.iter().zip(next);
-    pairs
-        .map(|(p, q)| 0.5 * (p - origin).perp(&(q - origin)))
-        .sum()
+/// The surface of a host trimmed by the loops of a face.
+fn by_loops(
+    host: &Host,
+    face: &Face,
+    tally: &mut Tally,
+    said: &mut Vec<String>,
+) -> Result<Trimmed, String> {
+    tally.tolerance = host.agree;
+    let loops = loops(host, &face.boundaries, true, tally, said)?;
+    // A loop on a closed surface bounds the part to its left, be it the larger one.
+    let outer = face.outer && !bounds_outside(host, &loops);
+    let gap = match tally.bridged {
+        0 => GAP,
+        _ => GAP.max(1.001 * widest_gap(host, &loops)),
+    };
+    let trimmed = host.patch.trimmed_by(loops, outer, gap);
+    trimmed.map_err(|e| e.to_string())
 }
 
 /// Boundary curves of a face and their control points, in both planes.

@@ -1,6 +1,7 @@
 //! Curves that are moved or turned to surfaces: their ranges and NURBS forms, and where points lie on what they sweep.
 
 use super::curve::{Course, Kind, Run};
+use super::place::Frame;
 use crate::curve::conic::arc_knots;
 use crate::io::brep::ParameterMap;
 use crate::{NurbsCurve, Vec3};
@@ -25,6 +26,70 @@ pub fn line(course: &Course<3>) -> Option<(Vec3, Vec3)> {
         },
         Course::Runs(_) => None,
     }
+}
+
+/// A course that is a parabola or hyperbola without ends.
+pub fn conic(course: &Course<3>) -> Option<&Kind<3>> {
+    match course {
+        Course::Whole(kind, _) => match **kind {
+            Kind::Parabola { .. } | Kind::Hyperbola { .. } => Some(kind),
+            _ => None,
+        },
+        Course::Runs(_) => None,
+    }
+}
+
+/// The parameter of such a conic, turned about the third axis of `frame`, at the height of `x`: of two, the one whose
+/// distance from the axis is nearer to that of `x`.
+pub fn conic_parameter(course: &Course<3>, frame: &Frame, x: &Vec3) -> Result<f64, String> {
+    let axis = frame.axes[2];
+    let kind = conic(course).ok_or("turns a curve without ends, which is read for conics only")?;
+    let height = |y: &Vec3| axis.dot(&(y - frame.origin));
+    let distance = |y: &Vec3| (y - frame.origin).cross(&axis).norm();
+    let z = height(x);
+    let candidates = match kind {
+        Kind::Parabola { center, e1, e2 } => {
+            roots(e2.dot(&axis), e1.dot(&axis), height(center) - z)
+        }
+        Kind::Hyperbola { center, e1, e2 } => {
+            // Of y = exp t.
+            let (a, b) = (e1.dot(&axis), e2.dot(&axis));
+            let found = roots(0.5 * (a + b), height(center) - z, 0.5 * (a - b));
+            found.map(|y| y.filter(|&y| y > 0.0).map(f64::ln))
+        }
+        _ => [None; 2],
+    };
+    let off = |t: &f64| (distance(&kind.point(*t)) - distance(x)).abs();
+    let found = candidates.into_iter().flatten();
+    let nearest = found.min_by(|a, b| off(a).total_cmp(&off(b)));
+    nearest.ok_or_else(|| "turns a conic that no point of a boundary lies on".to_owned())
+}
+
+/// Real roots of `a t^2 + b t + c`; the extremum where there are none.
+fn roots(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
+    let finite = |t: f64| t.is_finite().then_some(t);
+    if a.abs() <= 1e-14 * (b.abs() + c.abs()) {
+        return [finite(-c / b), None];
+    }
+    let root = (b * b - 4.0 * a * c).max(0.0).sqrt();
+    // No difference of like numbers.
+    let q = -0.5 * (b + root.copysign(b));
+    match q == 0.0 {
+        true => [Some(0.0), None],
+        false => [finite(q / a), finite(c / q)],
+    }
+}
+
+/// The parameter at which such a conic has its vertex on the axis, if it has.
+pub fn conic_on_axis(course: &Course<3>, frame: &Frame) -> Option<f64> {
+    let axis = frame.axes[2];
+    let kind = conic(course)?;
+    let off = |y: Vec3| (y - frame.origin).cross(&axis).norm();
+    let size = match kind {
+        Kind::Parabola { e1, e2, .. } | Kind::Hyperbola { e1, e2, .. } => e1.norm() + e2.norm(),
+        _ => return None,
+    };
+    (off(kind.point(0.0)) <= 1e-9 * size).then_some(0.0)
 }
 
 /// The parameters of a profile as a whole.

@@ -2,7 +2,10 @@
 
 use super::curve::Course;
 use super::place::{Frame, Placement};
-use super::profile::{angles, extrusion_parameters, line, profile, profile_range};
+use super::profile::{
+    angles, conic, conic_on_axis, conic_parameter, extrusion_parameters, line, profile,
+    profile_range,
+};
 use crate::basis::Basis;
 use crate::curve::conic::elliptic_arc;
 use crate::io::brep::{BasePatch, ParameterMap, Reparametrise, offset, revolved};
@@ -139,7 +142,7 @@ impl Surface {
             Shape::Cone(radius, slope) => Some(-radius / slope),
             Shape::Revolution(course) => match line(course) {
                 Some((origin, along)) => self.meets_axis(origin, along, range),
-                None => None,
+                None => conic_on_axis(course, &self.frame),
             },
             _ => None,
         };
@@ -172,7 +175,10 @@ impl Surface {
                 Some(self.frame.origin - self.frame.axes[2] * (radius / slope))
             }
             Shape::Revolution(course) => {
-                let (origin, along) = line(course)?;
+                let Some((origin, along)) = line(course) else {
+                    let t = conic_on_axis(course, &self.frame)?;
+                    return Some(conic(course)?.point(t));
+                };
                 let t = self.meets_axis(origin, along, [-1.0, 1.0])?;
                 let slanted = along.dot(&self.frame.axes[2]) != 0.0;
                 slanted.then(|| origin + along * t)
@@ -209,9 +215,8 @@ impl Surface {
             Shape::Extrusion(course, along) => extrusion_parameters(course, *along, x),
             Shape::Revolution(course) => {
                 let Some((origin, along)) = line(course) else {
-                    return Err(
-                        "turns a curve without ends, which is read for lines only".to_owned()
-                    );
+                    let v = conic_parameter(course, &self.frame, x)?;
+                    return exact(0.0, v);
                 };
                 let (from, slope) = ((origin - self.frame.origin).dot(&e3), along.dot(&e3));
                 if slope.abs() > 1e-9 * along.norm() {

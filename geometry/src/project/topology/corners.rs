@@ -12,7 +12,7 @@ use crate::surface::{Surface, Vec3};
 
 /// What meets at a point.
 #[derive(Debug, Clone, Default)]
-pub(in crate::project) struct CornerGroup {
+pub(crate) struct CornerGroup {
     /// Patches with a corner there: patch and corner, counted from zero on its patch.
     pub corners: Vec<(u32, u32)>,
     /// Edges that pass through: index and parameter.
@@ -20,7 +20,7 @@ pub(in crate::project) struct CornerGroup {
 }
 
 /// Corner (counted from zero on its patch) at an end of an edge. `edges` are those of the patch.
-pub(in crate::project) fn corner_at(edges: &[Edge], local: usize, end: usize) -> usize {
+pub(crate) fn corner_at(edges: &[Edge], local: usize, end: usize) -> usize {
     match edges[local].curve {
         EdgeCurve::Side { dir, end: side } => (side << dir) | (end << (1 - dir)),
         EdgeCurve::Trim { .. } if end == 0 => local,
@@ -41,7 +41,7 @@ fn loop_end(edges: &[Edge], a_loop: usize) -> usize {
 
 /// The two edges of a corner, counted from zero on the patch, each with the end that lies at the corner: on a trimmed patch
 /// the curve that begins there, then the one that ends there.
-pub(in crate::project) fn edges_at(edges: &[Edge], corner: usize) -> [(usize, usize); 2] {
+pub(crate) fn edges_at(edges: &[Edge], corner: usize) -> [(usize, usize); 2] {
     match edges[corner].curve {
         EdgeCurve::Side { .. } => {
             let end = [corner & 1, corner >> 1];

@@ -14,7 +14,7 @@ const BULGE: f64 = 0.15;
 
 /// Which curve an edge is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::project) enum EdgeCurve {
+pub(crate) enum EdgeCurve {
     /// Parameter `dir` fixed at the start (0) or end (1) of the domain; the other one is the parameter of the edge.
     Side { dir: usize, end: usize },
     /// A curve of a trim loop, with the curve's own parameter.
@@ -23,7 +23,7 @@ pub(in crate::project) enum EdgeCurve {
 
 /// A point of the polyline that stands for an edge.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::project) struct Sample {
+pub(crate) struct Sample {
     pub t: f64,
     pub xi: [f64; 2],
     pub point: Vec3,
@@ -31,7 +31,7 @@ pub(in crate::project) struct Sample {
 
 /// The other side of a part of an edge.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::project) struct Link {
+pub(crate) struct Link {
     /// Index of the other edge.
     pub edge: usize,
     /// Part of this edge that lies on the other one.
@@ -46,7 +46,7 @@ pub(in crate::project) struct Link {
 
 /// An edge with its polyline and, when matching is done, with what lies behind it.
 #[derive(Debug, Clone)]
-pub(in crate::project) struct Edge {
+pub(crate) struct Edge {
     pub patch: u32,
     /// Its number in [`Location`](crate::Location).
     pub number: u32,
@@ -76,7 +76,7 @@ pub(in crate::project) struct Edge {
 
 /// A point of an edge.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::project) struct EdgePoint {
+pub(crate) struct EdgePoint {
     pub t: f64,
     pub xi: [f64; 2],
     /// Span of the surface on the material's side.
@@ -310,11 +310,7 @@ fn within(polygon: &[[f64; 2]], p: [f64; 2]) -> bool {
 }
 
 /// Evaluates an edge.
-pub(in crate::project) fn edge_point<S: Surface>(
-    set: &PatchSet<S>,
-    edge: &Edge,
-    t: f64,
-) -> EdgePoint {
+pub(crate) fn edge_point<S: Surface>(set: &PatchSet<S>, edge: &Edge, t: f64) -> EdgePoint {
     let surface = &set.patches[edge.patch as usize];
     let grid = &set.grids[edge.patch as usize];
     match edge.curve {

@@ -15,9 +15,9 @@ mod orient;
 mod overlap;
 mod report;
 
-pub(super) use corners::{CornerGroup, corner_at, edges_at};
-pub(super) use edge::{Edge, EdgeCurve, EdgePoint, Link, edge_point};
-pub(super) use nearest::nearest_on_edge;
+pub(crate) use corners::{CornerGroup, corner_at, edges_at};
+pub(crate) use edge::{Edge, EdgeCurve, EdgePoint, Link, edge_point};
+pub(crate) use nearest::nearest_on_edge;
 pub use report::{Border, EdgeReport, Gap, Joint, Overlap, PartialJoint};
 
 use super::set::{Joining, PatchSet};
@@ -33,7 +33,7 @@ const TOLERANCE: f64 = 1e-5;
 
 /// What was found about the edges of a set.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Topology {
+pub(crate) struct Topology {
     /// Edges of all patches, one patch after the other, those of a patch by number.
     pub edges: Vec<Edge>,
     /// Index of the first edge of every patch, and one past the last.

@@ -13,11 +13,7 @@ const SHORT: f64 = 1e-9;
 
 /// Nearest point of an edge to `q`: the nearest chord of the polyline gives the start of a safeguarded Newton iteration
 /// along the edge.
-pub(in crate::project) fn nearest_on_edge<S: Surface>(
-    set: &PatchSet<S>,
-    q: &Vec3,
-    edge: &Edge,
-) -> EdgePoint {
+pub(crate) fn nearest_on_edge<S: Surface>(set: &PatchSet<S>, q: &Vec3, edge: &Edge) -> EdgePoint {
     let mut best = (f64::INFINITY, edge.interval[0]);
     if edge.blocks.is_empty() {
         nearest_chord(q, &edge.samples, &mut best);

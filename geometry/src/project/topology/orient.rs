@@ -7,7 +7,7 @@ use crate::surface::{Surface, Vec3};
 
 /// Patches that hang together.
 #[derive(Debug, Clone)]
-pub(in crate::project) struct Components {
+pub(crate) struct Components {
     /// Patches of every component, in order.
     pub members: Vec<Vec<usize>>,
     /// Number of the component of every patch.

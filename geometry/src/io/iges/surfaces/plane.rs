@@ -138,25 +138,30 @@ impl Unbounded {
         }
         let back = self.map.inverse().ok_or("the matrix is singular")?;
         let to = back.linear * indicator;
-        let [_, _, e3] = self.triad;
         let mut moved = self.clone();
-        // On a cylinder or cone the indicator stands somewhere around the axis: no more than in or out could be said, and
-        // not even that without the point at which it stands.
-        match &mut moved.kind {
-            Kind::Plane => {
-                let cosine = to.dot(&e3) / to.norm();
-                if cosine.is_nan() || cosine.abs() < 0.1 {
-                    let reason = "the offset indicator does not say on which side it lies";
-                    return Err(reason.to_owned());
-                }
-                moved.origin += e3 * (distance * cosine.signum());
-                Ok(moved)
-            }
-            _ => Err(
-                "the offset indicator of a surface without an end does not say on which side it lies"
-                    .to_owned(),
-            ),
+        // The normal in the middle of the range of parameters: on a cylinder or cone half a turn from the reference direction.
+        let [e1, _, e3] = self.triad;
+        let outward = match self.kind {
+            Kind::Plane => e3,
+            Kind::Cylinder(_) => -e1,
+            Kind::Cone(_, slope) => -(e1 + e3 * slope).normalize(),
+        };
+        let cosine = to.dot(&outward) / to.norm();
+        if cosine.is_nan() || cosine.abs() < 0.1 {
+            return Err("the offset indicator does not say on which side it lies".to_owned());
         }
+        let distance = distance * cosine.signum();
+        match &mut moved.kind {
+            Kind::Plane => moved.origin += e3 * distance,
+            Kind::Cylinder(radius) => *radius += distance,
+            Kind::Cone(radius, slope) => *radius += distance * slope.hypot(1.0),
+        }
+        if let Kind::Cylinder(radius) = moved.kind
+            && radius <= 0.0
+        {
+            return Err("no radius is left".to_owned());
+        }
+        Ok(moved)
     }
 
     fn flat(&self, [u, v]: [[f64; 2]; 2]) -> Result<NurbsPatch, Stop> {
