@@ -8,6 +8,7 @@ use super::super::master::{BodyMaster, Master, moving_facets};
 use super::super::self_contact::OwnFacets;
 use super::super::slave::slave_points;
 use super::super::{HalfPass, ModelError, PairModel, SurfaceModel, penalty, segments, slave};
+use super::nurbs_bodies::sheet_size;
 use super::{Builder, master_faces};
 use crate::contact::points::SlavePoint;
 use crate::machine::memory;
@@ -85,6 +86,7 @@ impl Builder<'_> {
         of: usize,
     ) -> Result<Option<PairModel>, ModelError> {
         let pointer = |field: &str| format!("/contacts/{name}/{field}");
+        self.sheet_contact(name, contact, None)?;
         let (slave, slave_faces) = self.faces(&contact.slave, &pointer("slave"))?;
         let (master, faces) = self.faces(&contact.master, &pointer("master"))?;
         if slave == master {
@@ -135,6 +137,7 @@ impl Builder<'_> {
     ) -> Result<PairModel, ModelError> {
         let pointer = |field: &str| format!("/contacts/{name}/{field}");
         let (body, faces) = self.faces(&contact.slave, &pointer("slave"))?;
+        self.sheet_contact(name, contact, rigid)?;
         let model = &self.bodies[body];
         let first_node = model.first_node;
         let per_face = match contact.points {
@@ -150,8 +153,12 @@ impl Builder<'_> {
             );
             text(pointer("points"), message).help("take fewer points per face, or fewer elements")
         })?;
-        let mut points = slave_points(&model.mesh, &faces, contact.points, first_node)
-            .at(|| pointer("points"))?;
+        let of_sheet = model.block.sheet().is_some();
+        let mut points = match of_sheet {
+            true => self.sheet_points(body, &faces, contact.points),
+            false => slave_points(&model.mesh, &faces, contact.points, first_node),
+        }
+        .at(|| pointer("points"))?;
         if let Some(only) = only {
             points.retain(|p| only.contains(&(p.nodes[0] - first_node)));
         }
@@ -420,7 +427,10 @@ impl Builder<'_> {
     /// Size of the elements under some faces of a body, and the penalties that suit them.
     fn stiffness(&self, body: usize, faces: &[Face]) -> (FaceSize, Suitable) {
         let model = &self.bodies[body];
-        let size = penalty::face_size(&model.mesh, faces);
+        let size = match model.block.sheet() {
+            Some(sheet) => sheet_size(sheet),
+            None => penalty::face_size(&model.mesh, faces),
+        };
         (size, Suitable::new(&model.material, &size))
     }
 

@@ -81,6 +81,7 @@ histories!(
     hat_pressed,
     hertz_block,
     ironing,
+    panel_pressed,
     pinched_tube,
     punch_sheet,
     q18_on_h8,
