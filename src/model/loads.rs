@@ -88,10 +88,11 @@ pub fn sheet_load_points(sheet: &NurbsSheet, faces: &[Face], offset: u32) -> Vec
                     count: [4, 2],
                 };
                 let mut shape = [0.0; 9];
-                for k in 0..8 {
-                    face.nodes[k] = p.nodes[half + k] + offset;
-                    shape[k] = p.n[half + k];
+                let nodes = p.nodes[half..half + 8].iter();
+                for (node, own) in face.nodes.iter_mut().zip(nodes) {
+                    *node = own + offset;
                 }
+                shape[..8].copy_from_slice(&p.n[half..half + 8]);
                 out.push(LoadPoint {
                     face,
                     shape,

@@ -135,7 +135,7 @@ impl Sums {
         let body = &model.bodies[pair.body];
         let slave = Sagittas::new(&body.mesh, &pair.faces);
         let master = (pair.body_master())
-            .filter(|m| !m.smooth)
+            .filter(|m| !m.smooth && model.bodies[m.body].block.sheet().is_none())
             .and_then(|m| Sagittas::new(&model.bodies[m.body].mesh, &m.faces));
         if slave.is_none() && master.is_none() {
             return None;

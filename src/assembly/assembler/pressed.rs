@@ -148,10 +148,10 @@ impl<L: NormalLaw> Pressed<'_, L> {
             Some(map) => self.matrix.scatter(map, &ke),
             None => {
                 if let Some(g) = self.increments {
-                    (self.dofs).subtract_prescribed(&lever.nodes, &mut ke, g, self.rhs);
+                    (self.dofs).subtract_prescribed(&lever.nodes, &ke, g, self.rhs);
                 }
                 self.matrix
-                    .scatter_constrained(&lever.nodes, &mut ke, self.dofs, self.work)
+                    .scatter_constrained(&lever.nodes, &ke, self.dofs, self.work)
                     .expect("the pattern holds the element whose face the point is on");
             }
         }

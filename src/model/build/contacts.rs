@@ -188,6 +188,10 @@ impl Builder<'_> {
                 Master::Body(Box::new(master))
             }
         };
+        let height = match &master {
+            Master::Body(body) => body.height,
+            Master::Rigid(_) => 0.0,
+        };
         let automatic = suits.automatic;
         let (eps_n, ruled) = match (contact.penalty, &contact.augmentation) {
             (Penalty::Auto, None) => {
@@ -273,7 +277,7 @@ impl Builder<'_> {
             tangent: contact.tangent,
             element_size: size.edge,
             overclosure: None,
-            offset: contact.offset,
+            offset: contact.offset + height,
             augmentation,
             averaged,
             friction,
@@ -456,10 +460,15 @@ impl Builder<'_> {
         let pointer = || format!("/contacts/{name}/master");
         let (body, faces) = self.faces(&contact.master, &pointer())?;
         let (size, suits) = self.stiffness(body, &faces);
-        master_faces::check(&self.bodies[body].mesh, &faces, &contact.master)
-            .map_err(|(message, help)| text(pointer(), message).help(help))?;
         let smooth = contact.master_surface == Some(MasterSurface::Smooth);
-        let facets = self.moving_facets(body, &faces, smooth).at(pointer)?;
+        let (facets, height) = match self.sheet_facets(body, &faces) {
+            Some(facets) => facets.at(pointer)?,
+            None => {
+                master_faces::check(&self.bodies[body].mesh, &faces, &contact.master)
+                    .map_err(|(message, help)| text(pointer(), message).help(help))?;
+                (self.moving_facets(body, &faces, smooth).at(pointer)?, 0.0)
+            }
+        };
         let depth = contact.depth.unwrap_or(size.depth);
         self.notes.push(format!(
             "contact `{name}`: a point deeper than {} below `{}` is not in contact (`depth`)",
@@ -475,6 +484,7 @@ impl Builder<'_> {
             depth,
             element_size: size.edge,
             own: None,
+            height,
         };
         Ok((master, suits))
     }

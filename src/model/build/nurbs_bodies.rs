@@ -12,9 +12,9 @@ use crate::fem::{gauss, lobatto};
 use crate::machine::memory;
 use crate::mesh::nurbs::{Fineness, side};
 use crate::mesh::{Edge, Face, Mesh, NurbsError, NurbsSheet};
-use crate::scene::{self, Contact, Gap, NurbsSurface, Passes, Points, SetNames};
+use crate::scene::{self, Contact, Gap, NurbsSurface, Passes, Points, SetNames, Tangent};
 use crate::shell::{Block, Law, NurbsBlock, bytes_per_element};
-use covact_geometry::{NurbsPatch, Vec3, io};
+use covact_geometry::{MovingError, MovingFacets, NurbsPatch, Vec3, io};
 
 /// Points along each direction of a face where the scene asks for none: as many as its polynomials have numbers.
 const POINTS: usize = 4;
@@ -146,12 +146,7 @@ impl Builder<'_> {
             index.is_some_and(|i| self.bodies[*i].block.sheet().is_some())
         };
         if rigid.is_none() && of(&contact.master) {
-            let message = format!(
-                "`{}` belongs to a body of kind `nurbs`, which cannot be a master yet",
-                contact.master
-            );
-            let help = "take a rigid surface as master, or a face of a mesh";
-            return Err(text(at("master"), message).help(help));
+            self.sheet_master(contact, &at)?;
         }
         if !of(&contact.slave) {
             return Ok(());
@@ -221,6 +216,76 @@ impl Builder<'_> {
             }
         }
         Ok(spans)
+    }
+
+    /// What a contact asks for that a face of a sheet as a master cannot do, or that nothing was tried of.
+    fn sheet_master(
+        &self,
+        contact: &Contact,
+        at: &impl Fn(&str) -> String,
+    ) -> Result<(), ModelError> {
+        let refuse = |field: &str, what: &str, help: &str| {
+            let message = format!(
+                "{what} do not go with the master `{}`, a face of a body of kind `nurbs`, yet",
+                contact.master
+            );
+            Err(text(at(field), message).help(help.to_owned()))
+        };
+        if contact.passes != Passes::One {
+            return refuse("passes", "two passes", "leave `passes` out");
+        }
+        if matches!(contact.points, Points::Segments(_)) {
+            return refuse("points", "integration segments", "take `{\"gauss\": 3}`");
+        }
+        if contact.gap == Gap::Averaged {
+            return refuse("gap", "averaged gaps", "leave `gap` out");
+        }
+        if contact.master_surface.is_some() {
+            return refuse(
+                "master_surface",
+                "kinds of surfaces",
+                "leave it out: the face is the exact surface",
+            );
+        }
+        if let Tangent::Published { .. } = contact.tangent {
+            return refuse("tangent", "published tangents", "take `exact`");
+        }
+        let (name, _) = contact
+            .master
+            .split_once('.')
+            .unwrap_or((&contact.master, ""));
+        let body = self.body_index.get(name).map(|i| &self.bodies[*i]);
+        let rational = body
+            .and_then(|b| b.block.sheet())
+            .is_some_and(|s| s.patch.is_rational());
+        if rational {
+            let message = format!(
+                "`{}` is a face of a rational surface (a cylinder, a sphere, an arc), which cannot be a master yet",
+                contact.master
+            );
+            let help = "exchange slave and master, or take a face without weights";
+            return Err(text(at("master"), message).help(help));
+        }
+        Ok(())
+    }
+
+    /// Faces of a sheet as a master: its mid-surface, from which contact begins half of the thickness away. The faces are of one
+    /// side.
+    pub(super) fn sheet_facets(
+        &self,
+        body: usize,
+        faces: &[Face],
+    ) -> Option<Result<(MovingFacets, f64), MovingError>> {
+        let model = &self.bodies[body];
+        let sheet = model.block.sheet()?;
+        let spans: Vec<usize> = faces.iter().map(|f| f.element as usize).collect();
+        let bottom = faces.first().and_then(|f| side(*f)) == Some(-1.0);
+        let number = |n: u32| n + model.first_node;
+        let facets = MovingFacets::of_patch(&sheet.patch, &spans, bottom, number);
+        Some(facets.map(|mut facets| {
+            facets.update(|n| self.nodes[n as usize]);
+            (facets, 0.5 * sheet.thickness)
+        }))
     }
 
     /// Slave points on faces of a sheet: at its Gauss points, half of the thickness from the mid-surface.

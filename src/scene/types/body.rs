@@ -38,7 +38,7 @@ struct BodyForm {
     nurbs: Option<NurbsSurface>,
     /// Name of the material.
     material: String,
-    /// Element formulation; not of a body of kind `nurbs`, which has its own.
+    /// Element formulation, by default `h8`; not of a body of kind `nurbs`, which has its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     element: Option<Element>,
     /// Where the mesh is put: first scaled, then rotated about the origin, then moved.

@@ -27,7 +27,7 @@ pub struct NurbsSurface {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elements: Option<[u32; 2]>,
     /// Membrane strains are assumed, which keeps thin curved shells from locking; `false` for the plain cubic element.
-    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    #[serde(default = "yes")]
     pub assumed_membrane: bool,
     /// Use what the CAD system hides as well.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -36,8 +36,4 @@ pub struct NurbsSurface {
 
 fn yes() -> bool {
     true
-}
-
-fn is_yes(value: &bool) -> bool {
-    *value
 }

@@ -71,6 +71,73 @@ fn balance(outcome: &Outcome, supports: &[&str]) {
     }
 }
 
+/// A block pressed on a clamped plate, a quarter of both, down by 1: the plate is the master.
+fn block_on_plate(plate: Value, edges: [&str; 4], friction: Option<f64>) -> Outcome {
+    let on = |k: usize| format!("sheet.{}", edges[k]);
+    let mut scene = json!({
+        "covact": 1,
+        "materials": {
+            "m": {"st_venant_kirchhoff": {"E": 12000, "nu": 0.3}},
+            "soft": {"neo_hooke": {"E": 1200, "nu": 0.3}}
+        },
+        "bodies": {
+            "sheet": plate,
+            "block": {
+                "mesh": {"block": {"min": [0, 0, 1], "max": [12, 12, 7], "elements": [6, 6, 3]}},
+                "material": "soft"
+            }
+        },
+        "contacts": {"press": {"slave": "block.bottom", "master": "sheet.top", "points": {"gauss": 2}}},
+        "supports": {
+            "symmetry_x": {"on": [on(0), "block.x_min".to_owned()], "symmetry": "x"},
+            "symmetry_y": {"on": [on(2), "block.y_min".to_owned()], "symmetry": "y"},
+            "clamped": {"on": [on(1), on(3)]},
+            "push": {"on": "block.top", "displacement": {"x": 0, "y": 0, "z": "-1*t"}}
+        },
+        "solution": {"step": {"initial": 0.1}},
+        "output": {"every": 0}
+    });
+    let clamp = if edges[0] == "edge.1" {
+        "clamped"
+    } else {
+        "fixed"
+    };
+    scene["supports"]["clamped"][clamp] = json!(true);
+    if let Some(mu) = friction {
+        scene["contacts"]["press"]["friction"] = json!({"coulomb": {"mu": mu}});
+    }
+    solve_sheet(&Patch::plate([50.0, 50.0], 0.0), &scene)
+}
+
+/// A sheet as master, whose face lies half of its thickness before its mid-surface: the force is that of a plate of quadratic
+/// solid-shells within what transverse shear is worth there, and both sides balance, also with friction, which acts on the face.
+#[test]
+fn a_block_pressed_on_a_sheet() {
+    const EDGES: [&str; 4] = ["edge.1", "edge.2", "edge.3", "edge.4"];
+    let solid = json!({
+        "mesh": {"plate": {"size": [50, 50], "thickness": 2, "elements": [12, 12]}}, "material": "m", "element": "q18"
+    });
+    let reference = block_on_plate(solid, ["x_min", "x_max", "y_min", "y_max"], None);
+    let reference = reference.at("force.push.z", 1.0);
+    for friction in [None, Some(0.3)] {
+        let outcome = block_on_plate(sheet(2.0, [12, 12]), EDGES, friction);
+        let force = outcome.at("force.push.z", 1.0);
+        println!(
+            "{force} {reference}, {} iterations",
+            outcome.summary.newton_iterations
+        );
+        assert!(off(force, reference) < 3e-2, "{force} {reference}");
+        for c in ["x", "y", "z"] {
+            let all = ["symmetry_x", "symmetry_y", "clamped", "push"];
+            let sum: f64 = all
+                .iter()
+                .map(|s| outcome.at(&format!("force.{s}.{c}"), 1.0))
+                .sum();
+            assert!(sum.abs() < 1e-6 * force.abs(), "{c}: {sum} of {force}");
+        }
+    }
+}
+
 /// A strip wrapped over a cylinder (`strip_over_cylinder` has the closed form and the solid-shells): the elastica at t = .75, whose
 /// end has gone down by 99.619, bears 32.739 on its width of 2. The independent program is .40, .09 and .02 % above on these meshes.
 #[test]

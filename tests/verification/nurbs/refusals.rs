@@ -261,8 +261,8 @@ fn contacts_that_are_not_there_yet() {
             ["/contacts/c/master", "masters that are bodies"],
         ),
         (
-            contact(json!({"slave": "block.top", "master": "sheet.bottom"})),
-            ["/contacts/c/master", "cannot be a master yet"],
+            contact(json!({"slave": "block.top", "master": "sheet.bottom", "passes": "edges"})),
+            ["/contacts/c/passes", "two passes"],
         ),
         (
             contact(
@@ -273,6 +273,13 @@ fn contacts_that_are_not_there_yet() {
     ] {
         only(&scene, &plate(), &words);
     }
+    let round = contact(json!({"slave": "block.top", "master": "sheet.bottom"}));
+    let cylinder = Patch::cylinder(1.0, [0.0, 1.0], 1.0).json();
+    only(
+        &round,
+        &cylinder,
+        &["/contacts/c/master", "rational surface"],
+    );
     let mut driven = contact(good.clone());
     driven["surfaces"]["ball"]["motion"] = json!({"free": {"force": {"z": "-t"}}});
     only(&driven, &plate(), &["driven by force"]);
