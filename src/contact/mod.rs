@@ -41,6 +41,7 @@ mod keep;
 pub mod kernel;
 pub mod kind;
 pub mod law;
+pub mod lever;
 pub mod meeting;
 pub mod moving;
 pub mod placed;

@@ -1,6 +1,8 @@
 //! Slave points: where contact is sampled on the slave surface.
 
-/// A slave point: a fixed combination of at most nine nodes, standing for a piece of the undeformed slave area.
+/// A slave point: a fixed combination of at most nine nodes, standing for a piece of the undeformed slave area. Where it has
+/// none it is at a height above a surface: the model holds its [`Lever`](super::lever::Lever), whose number is in the place of the
+/// first node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlavePoint {
     /// Nodes of the point; only the first `count` are used.
@@ -23,7 +25,21 @@ impl SlavePoint {
         }
     }
 
-    /// Nodes with their shape functions.
+    /// A point at a height above a surface, by the number of its lever.
+    pub fn lever(number: u32, area: f64) -> Self {
+        SlavePoint {
+            count: 0,
+            ..SlavePoint::at_node(number, area)
+        }
+    }
+
+    /// The number of its lever, of a point at a height above a surface.
+    #[inline]
+    pub fn lever_number(&self) -> Option<usize> {
+        (self.count == 0).then_some(self.nodes[0] as usize)
+    }
+
+    /// Nodes with their shape functions; none of a point at a height above a surface.
     pub fn terms(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let n = self.count as usize;
         (self.nodes[..n].iter().zip(&self.shape[..n])).map(|(&node, &w)| (node as usize, w))

@@ -28,6 +28,14 @@ pub fn build(
             return finish(raw, &cells.file.path, &cells.file, kind);
         }
         MeshSource::Arrays(arrays) => Mesh::of(arrays, kind)?,
+        MeshSource::Nurbs(_) => {
+            return Err(MeshError::Invalid {
+                what: "mesh",
+                field: "nurbs".to_owned(),
+                value: "a CAD surface".to_owned(),
+                expected: "a mesh of elements".to_owned(),
+            });
+        }
     };
     mesh.check()?;
     let report = report(&mesh, Vec::new(), ThicknessRule::Generated)?;
@@ -202,6 +210,11 @@ fn finish(
             "`q18` needs 27 nodes an element (or 20)",
             "mesh with full second-order elements (gmsh: `Mesh.ElementOrder = 2`, `Mesh.SecondOrderIncomplete = 0`), or \
              say `\"element\": \"h8\"`",
+        ),
+        ElementKind::Nurbs => (
+            "a mesh",
+            "a CAD surface is asked for",
+            "leave `element` out",
         ),
     };
     Err(MeshError::OtherElements {

@@ -45,13 +45,16 @@ const fn local_faces(n: usize) -> LocalFaces {
 
 impl Mesh {
     /// Nodes of a face, u fastest, so that `u x v` points outward. The face must be one of the mesh's (see
-    /// [`Mesh::has_face`]).
+    /// [`Mesh::has_face`]). Of a knot span they are the corners of its control net, beside the surface itself.
     #[inline]
     pub fn face_nodes(&self, face: Face) -> FaceNodes {
+        if self.kind == ElementKind::Nurbs {
+            return FaceNodes::bilinear(self.face_corners(face));
+        }
         let element = self.element(face.element as usize);
         let faces = match self.kind {
-            ElementKind::H8 => &H8,
             ElementKind::Q18 => &Q18,
+            ElementKind::H8 | ElementKind::Nurbs => &H8,
         };
         let count = faces.count[face.face as usize];
         let n = count[0] as usize * count[1] as usize;

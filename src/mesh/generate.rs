@@ -299,7 +299,7 @@ impl Grid {
 const fn order(kind: ElementKind) -> [usize; 3] {
     match kind {
         ElementKind::H8 => [1, 1, 1],
-        ElementKind::Q18 => [2, 2, 1],
+        ElementKind::Q18 | ElementKind::Nurbs => [2, 2, 1],
     }
 }
 

@@ -85,6 +85,10 @@ impl Mesh {
     pub fn element_center(&self, e: usize) -> Vec3 {
         match self.kind {
             ElementKind::H8 => self.element_positions(e).iter().sum::<Vec3>() / 8.0,
+            ElementKind::Nurbs => {
+                let nodes = self.element(e).iter();
+                nodes.map(|&n| self.nodes[n as usize]).sum::<Vec3>() / 16.0
+            }
             ElementKind::Q18 => {
                 let nodes = self.element(e);
                 (self.nodes[nodes[4] as usize] + self.nodes[nodes[13] as usize]) * 0.5
@@ -96,6 +100,8 @@ impl Mesh {
     /// tangent has no length) at every node of element `e`.
     pub(super) fn node_shapes(&self, e: usize, mut found: impl FnMut(f64, f64)) {
         match self.kind {
+            // Its surface is looked at where it is made.
+            ElementKind::Nurbs => found(1.0, 1.0),
             ElementKind::H8 => {
                 let x = self.element_positions(e);
                 for a in 0..8 {
@@ -149,13 +155,16 @@ impl Mesh {
         (area, normal.unwrap_or_else(Vec3::zeros))
     }
 
-    /// Volume of element `e`: exact, by as many Gauss points a direction as there are nodes (the Jacobian has the degrees
+    /// Volume of element `e`; of a knot span none, because its thickness is not the mesh's: exact, by as many Gauss points a direction as there are nodes (the Jacobian has the degrees
     /// 2 of H8, 5 and 2 of Q18).
     pub fn element_volume(&self, e: usize) -> f64 {
+        if self.kind == ElementKind::Nurbs {
+            return 0.0;
+        }
         let [bottom, top] = self.bottom_and_top(e);
         let rule = match self.kind {
             ElementKind::H8 => GAUSS_2,
-            ElementKind::Q18 => GAUSS_3,
+            ElementKind::Q18 | ElementKind::Nurbs => GAUSS_3,
         };
         let mut volume = 0.0;
         for (s, ws) in rule.iter() {
@@ -176,7 +185,7 @@ impl Mesh {
     pub fn for_volume_points(&self, e: usize, mut point: impl FnMut(&[f64], f64)) {
         let rule = match self.kind {
             ElementKind::H8 => GAUSS_2,
-            ElementKind::Q18 => GAUSS_3,
+            ElementKind::Q18 | ElementKind::Nurbs => GAUSS_3,
         };
         let sides = self.bottom_and_top(e);
         let count = sides[0].count;
@@ -204,6 +213,9 @@ impl Mesh {
     /// Integral of the shape function of every node over the mesh: the volume that it stands for under a force per volume.
     pub fn nodal_volumes(&self) -> Vec<f64> {
         let mut volumes = vec![0.0; self.nodes.len()];
+        if self.kind == ElementKind::Nurbs {
+            return volumes;
+        }
         for e in 0..self.elements() {
             self.for_volume_points(e, |weights, volume| {
                 for (node, weight) in self.element(e).iter().zip(weights) {

@@ -15,6 +15,7 @@ mod gmsh;
 mod inp;
 mod measure;
 mod nastran;
+pub mod nurbs;
 mod orient;
 mod quadratic;
 mod raw;
@@ -35,6 +36,7 @@ pub use generate::{block, cylinder_panel, plate, sphere_panel};
 pub use gmsh::read_gmsh;
 pub use inp::read_inp;
 pub use measure::{ElementSize, H8_EDGES, Range};
+pub use nurbs::{Edge, NurbsError, NurbsSheet};
 pub use raw::{MeshReport, ThicknessRule};
 pub use sets::Selected;
 pub use spacing::positions;
@@ -52,12 +54,15 @@ pub enum ElementKind {
     /// 18-node solid-shell, biquadratic in the plane and linear through the thickness. Nodes are numbered
     /// `i + 3 j + 9 k`, i along r, j along s, k along t.
     Q18,
+    /// A knot span of a bicubic NURBS patch that stands for a shell of some thickness: its sixteen control points, xi1 fastest.
+    Nurbs,
 }
 
 impl From<Element> for ElementKind {
     fn from(element: Element) -> ElementKind {
         match element {
             Element::Q18 => ElementKind::Q18,
+            Element::Nurbs => ElementKind::Nurbs,
             _ => ElementKind::H8,
         }
     }
@@ -69,6 +74,7 @@ impl ElementKind {
         match self {
             ElementKind::H8 => 8,
             ElementKind::Q18 => 18,
+            ElementKind::Nurbs => 16,
         }
     }
 
@@ -77,6 +83,8 @@ impl ElementKind {
         match self {
             ElementKind::H8 => [0, 1, 2, 3, 4, 5, 6, 7],
             ElementKind::Q18 => [0, 2, 6, 8, 9, 11, 15, 17],
+            // Of the control net, once for the bottom and once for the top.
+            ElementKind::Nurbs => [0, 3, 12, 15, 0, 3, 12, 15],
         }
     }
 }

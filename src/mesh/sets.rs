@@ -57,8 +57,7 @@ impl Mesh {
     /// Fails with [`MeshError::Invalid`] for selections that make no sense and with [`MeshError::EmptySelection`] when
     /// nothing is found.
     pub fn select(&self, selection: &Selection) -> Result<Selected, MeshError> {
-        let [low, high] = self.bounds();
-        let slack = SLACK * (high - low).norm();
+        let slack = slack(&self.nodes);
         match selection {
             Selection::NodesInBox(Corners { min, max }) => {
                 let [min, max] = corners("nodes_in_box", *min, *max)?;
@@ -177,6 +176,16 @@ impl Mesh {
     }
 }
 
+/// [`SLACK`] of nodes, as a length.
+pub(super) fn slack(nodes: &[Vec3]) -> f64 {
+    let Some(first) = nodes.first() else {
+        return 0.0;
+    };
+    let bounds = |[low, high]: [Vec3; 2], x: &Vec3| [low.inf(x), high.sup(x)];
+    let [low, high] = nodes.iter().fold([*first; 2], bounds);
+    SLACK * (high - low).norm()
+}
+
 pub(super) fn unknown<'a>(
     kind: SetKind,
     name: &str,
@@ -203,15 +212,15 @@ pub(super) fn unknown<'a>(
 }
 
 /// Distance of a point from a box, 0 inside.
-fn outside_box(x: &Vec3, min: Vec3, max: Vec3) -> f64 {
+pub(super) fn outside_box(x: &Vec3, min: Vec3, max: Vec3) -> f64 {
     (min - x).sup(&(x - max)).sup(&Vec3::zeros()).norm()
 }
 
-fn words(v: Vec3) -> String {
+pub(super) fn words(v: Vec3) -> String {
     format!("({}, {}, {})", v.x, v.y, v.z)
 }
 
-fn boxed(what: &str, min: Vec3, max: Vec3) -> String {
+pub(super) fn boxed(what: &str, min: Vec3, max: Vec3) -> String {
     format!("{what} (min {}, max {})", words(min), words(max))
 }
 
@@ -224,7 +233,7 @@ fn invalid(what: &'static str, field: &str, value: String, expected: &str) -> Me
     }
 }
 
-fn vector(what: &'static str, field: &str, v: [f64; 3]) -> Result<Vec3, MeshError> {
+pub(super) fn vector(what: &'static str, field: &str, v: [f64; 3]) -> Result<Vec3, MeshError> {
     let v = Vec3::from(v);
     if v.iter().all(|c| c.is_finite()) {
         Ok(v)
@@ -233,7 +242,7 @@ fn vector(what: &'static str, field: &str, v: [f64; 3]) -> Result<Vec3, MeshErro
     }
 }
 
-fn unit(what: &'static str, v: [f64; 3]) -> Result<Vec3, MeshError> {
+pub(super) fn unit(what: &'static str, v: [f64; 3]) -> Result<Vec3, MeshError> {
     let v = vector(what, "normal", v)?;
     let scaled = v / v.amax();
     match scaled.try_normalize(0.0) {
@@ -242,7 +251,7 @@ fn unit(what: &'static str, v: [f64; 3]) -> Result<Vec3, MeshError> {
     }
 }
 
-fn not_negative(what: &'static str, field: &str, value: f64) -> Result<f64, MeshError> {
+pub(super) fn not_negative(what: &'static str, field: &str, value: f64) -> Result<f64, MeshError> {
     if value.is_finite() && value >= 0.0 {
         Ok(value)
     } else {
@@ -256,7 +265,11 @@ fn not_negative(what: &'static str, field: &str, value: f64) -> Result<f64, Mesh
 }
 
 /// Corners of a box; infinite ones are allowed, a minimum above its maximum is not.
-fn corners(what: &'static str, min: [f64; 3], max: [f64; 3]) -> Result<[Vec3; 2], MeshError> {
+pub(super) fn corners(
+    what: &'static str,
+    min: [f64; 3],
+    max: [f64; 3],
+) -> Result<[Vec3; 2], MeshError> {
     for a in 0..3 {
         if min[a].is_nan() || max[a].is_nan() || min[a] > max[a] {
             let value = format!("{} > {}", min[a], max[a]);

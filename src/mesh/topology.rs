@@ -1,5 +1,5 @@
 //! How elements hang together: shared faces, outer faces, connected parts, columns through the thickness.
-use super::{Face, H8_FACES, Mesh};
+use super::{ElementKind, Face, H8_FACES, Mesh};
 
 /// All faces of a mesh sorted by their nodes, so that the faces that two elements share are neighbours in the table.
 pub(super) struct FaceTable {
@@ -45,6 +45,11 @@ fn sorted(mut nodes: [u32; 4]) -> [u32; 4] {
 impl Mesh {
     /// Faces that belong to one element only, sorted.
     pub fn outer_faces(&self) -> Vec<Face> {
+        if self.kind == ElementKind::Nurbs {
+            let elements = 0..self.elements() as u32;
+            let both = |element| [4, 5].map(|face| Face { element, face });
+            return elements.flat_map(both).collect();
+        }
         let table = FaceTable::new(self);
         let mut faces: Vec<Face> = table
             .groups()
@@ -59,7 +64,10 @@ impl Mesh {
     pub fn nodes_of(&self, faces: &[Face]) -> Vec<u32> {
         let mut nodes = Vec::new();
         for &face in faces {
-            nodes.extend_from_slice(self.face_nodes(face).nodes());
+            match self.kind {
+                ElementKind::Nurbs => nodes.extend_from_slice(self.element(face.element as usize)),
+                _ => nodes.extend_from_slice(self.face_nodes(face).nodes()),
+            }
         }
         nodes.sort_unstable();
         nodes.dedup();

@@ -4,9 +4,11 @@ mod contacts;
 mod facets;
 mod fibres;
 mod master_faces;
+mod nurbs_bodies;
 mod probes;
 mod seams;
 mod sets;
+mod sheet_supports;
 mod sides;
 mod supports;
 mod surfaces;
@@ -14,19 +16,22 @@ mod values;
 
 use super::driven::Driven;
 use super::error::{At, number, text};
-use super::loads::{DeadLoad, FollowerPressure, LoadPoint, load_points};
+use super::loads::{DeadLoad, FollowerPressure, LoadPoint, load_points, sheet_load_points};
 use super::motion::pose;
+use super::sheet_pressure::{FollowingSpan, PressedSpan};
 use super::symmetry::Unsymmetric;
 use super::{BodyModel, Metal, Model, ModelError, SurfaceModel, grid};
+use crate::contact::lever::Lever;
 use crate::machine::memory;
-use crate::mesh::{self, Face, Mesh};
+use crate::mesh::{self, Edge, Face, Mesh};
 use crate::scene::{
     self, InitialOverclosure, LoadedScene, Material, MeshSource, POSITION_AND_TIME, Scene,
     Stabilization, TIME, Value,
 };
-use crate::shell::{Block, Law, bytes_per_element};
+use crate::shell::{Block, HeldNormal, Law, bytes_per_element};
 use covact_geometry::{PatchSet, Vec3};
 use nalgebra::Point3;
+use nurbs_bodies::sheet_rims;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -46,6 +51,8 @@ struct Builder<'s> {
     averaged: usize,
     /// Slave points with history so far.
     histories: usize,
+    /// Of slave points at a height above a mid-surface so far.
+    levers: Vec<Lever>,
 }
 
 /// Reads every mesh and CAD file of the scene and resolves all names.
@@ -65,6 +72,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     let (pairs, mut surfaces) = builder.contacts(surfaces)?;
     let held = builder.drive(&mut surfaces)?;
     let supports = builder.supports(&held)?;
+    builder.hold_normals(&supports.held_normals)?;
     builder.held_fibres()?;
     let (dead_loads, follower_loads) = builder.loads()?;
     let probes = builder.probes()?;
@@ -77,10 +85,12 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         supports: supports.names,
         prescribed: supports.prescribed,
         means: supports.means,
+        tied: supports.tied,
         dead_loads,
         follower_loads,
         dofs: supports.dofs,
         probes,
+        levers: builder.levers,
         stabilization: None,
         dynamics: None,
         small: None,
@@ -134,6 +144,7 @@ impl<'s> Builder<'s> {
             warnings: Vec::new(),
             averaged: 0,
             histories: 0,
+            levers: Vec::new(),
         }
     }
 }
@@ -278,7 +289,10 @@ fn room(name: &str, body: &scene::Body, flows: bool) -> Result<(), ModelError> {
         MeshSource::CylinderPanel(p) => [p.elements[0], p.elements[1], p.layers],
         MeshSource::SpherePanel(p) => [p.elements[0], p.elements[1], p.layers],
         MeshSource::Block(b) => b.elements,
-        MeshSource::File(_) | MeshSource::Arrays(_) | MeshSource::Cells(_) => return Ok(()),
+        MeshSource::File(_)
+        | MeshSource::Arrays(_)
+        | MeshSource::Cells(_)
+        | MeshSource::Nurbs(_) => return Ok(()),
     };
     let element = body.element;
     let grid = grid::Grid {
@@ -305,6 +319,14 @@ pub(crate) fn elements_key(body: &str, source: &MeshSource) -> String {
         MeshSource::File(_) => "file/path",
         MeshSource::Arrays(_) => "arrays",
         MeshSource::Cells(_) => "cells",
+        MeshSource::Nurbs(nurbs) => {
+            let field = if nurbs.size.is_some() {
+                "size"
+            } else {
+                "elements"
+            };
+            return format!("/bodies/{body}/nurbs/{field}");
+        }
     };
     format!("/bodies/{body}/mesh/{field}")
 }
@@ -341,6 +363,11 @@ impl<'s> Builder<'s> {
     fn add_body(&mut self, name: &'s str, body: &'s scene::Body) -> Result<(), ModelError> {
         let at = || format!("/bodies/{name}/mesh");
         let (material, metal) = self.material(name, &body.material)?;
+        if let MeshSource::Nurbs(nurbs) = &body.mesh {
+            let law = Law::new(&material).at(|| format!("/bodies/{name}/material"))?;
+            let (mesh, block) = self.sheet(name, nurbs, body, law)?;
+            return self.push_body(name, mesh, block, (material, metal));
+        }
         room(name, body, material.flows())?;
         let (mut mesh, report) = mesh::build(&body.mesh, body.element.into(), self.dir)
             .map_err(|e| mesh_error(name, &body.mesh, e))?;
@@ -362,8 +389,21 @@ impl<'s> Builder<'s> {
             text(elements_key(name, &body.mesh), message).help(FEWER)
         })?;
         let block = Block::new(&mesh, body.element, law).at(at)?;
-        let first_node = u32::try_from(self.nodes.len())
-            .map_err(|_| text(at(), "too many nodes: more than 2^32"))?;
+        self.push_body(name, mesh, block, (material, metal))
+    }
+
+    /// Adds a body with its nodes.
+    fn push_body(
+        &mut self,
+        name: &'s str,
+        mesh: Mesh,
+        block: Block,
+        (material, metal): (Material, Option<Metal>),
+    ) -> Result<(), ModelError> {
+        let first_node = u32::try_from(self.nodes.len()).map_err(|_| {
+            let at = format!("/bodies/{name}/mesh");
+            text(at, "too many nodes: more than 2^32")
+        })?;
         self.nodes.extend_from_slice(&mesh.nodes);
         self.body_index.insert(name, self.bodies.len());
         self.bodies.push(BodyModel {
@@ -374,6 +414,21 @@ impl<'s> Builder<'s> {
             metal,
             first_node,
         });
+        Ok(())
+    }
+
+    /// Holds the normals of sheets along edges.
+    fn hold_normals(&mut self, held: &[(usize, Edge, HeldNormal)]) -> Result<(), ModelError> {
+        for (index, body) in self.bodies.iter_mut().enumerate() {
+            let own = held.iter().filter(|(of, ..)| *of == index);
+            let own: Vec<(Edge, HeldNormal)> = own.map(|(_, edge, to)| (*edge, *to)).collect();
+            if let (Block::Nurbs(block), false) = (&mut body.block, own.is_empty()) {
+                let name = &body.name;
+                block
+                    .hold(&own)
+                    .at(|| format!("/bodies/{name}/nurbs/file"))?;
+            }
+        }
         Ok(())
     }
 
@@ -449,6 +504,18 @@ impl<'s> Builder<'s> {
                 dead.push((name.clone(), DeadLoad::Force { shares, value }));
                 continue;
             }
+            if let Some(couple) = &load.couple {
+                let value = couple.compile(&TIME).at(|| pointer("couple"))?;
+                let spans = self.couples(&load.on, &pointer("on"))?;
+                let load = FollowerPressure {
+                    faces: Vec::new(),
+                    spans,
+                    rims: None,
+                    value,
+                };
+                follower.push((name.clone(), load));
+                continue;
+            }
             if let Some(gravity) = &load.gravity {
                 let shares = self.masses(&load.on, &pointer("on"))?;
                 let value = vector(gravity, "gravity", &TIME)?;
@@ -456,15 +523,18 @@ impl<'s> Builder<'s> {
                 continue;
             }
             let parts = self.faces_of(&load.on, &pointer("on"))?;
-            let parts: Vec<(&Mesh, u32, Vec<Face>)> = (parts.into_iter())
+            let parts: Vec<(&BodyModel, u32, Vec<Face>)> = (parts.into_iter())
                 .map(|(body, faces)| {
                     let body = &self.bodies[body];
-                    (&body.mesh, body.first_node, faces)
+                    (body, body.first_node, faces)
                 })
                 .collect();
             let points = || -> Vec<LoadPoint> {
                 (parts.iter())
-                    .flat_map(|(mesh, first, faces)| load_points(mesh, faces, *first))
+                    .flat_map(|(body, first, faces)| match body.block.sheet() {
+                        Some(sheet) => sheet_load_points(sheet, faces, *first),
+                        None => load_points(&body.mesh, faces, *first),
+                    })
                     .collect()
             };
             if let Some(traction) = &load.traction {
@@ -474,12 +544,35 @@ impl<'s> Builder<'s> {
             } else if let Some(pressure) = &load.pressure {
                 if load.follower {
                     let value = pressure.compile(&TIME).at(|| pointer("pressure"))?;
+                    let spans = (parts.iter())
+                        .filter_map(|(body, first, faces)| {
+                            Some(PressedSpan::all(body.block.sheet()?, faces, *first))
+                        })
+                        .flatten()
+                        .map(FollowingSpan::Pressure)
+                        .collect();
+                    let rims = (parts.iter())
+                        .filter_map(|(body, first, faces)| {
+                            body.block
+                                .sheet()
+                                .map(|sheet| sheet_rims(sheet, faces, *first))
+                        })
+                        .collect::<Option<Vec<_>>>()
+                        .map(|rims| rims.concat());
                     let faces = (parts.iter())
-                        .flat_map(|(mesh, first, faces)| {
-                            faces.iter().map(|&f| mesh.face_nodes(f).shifted(*first))
+                        .filter(|(body, ..)| body.block.sheet().is_none())
+                        .flat_map(|(body, first, faces)| {
+                            let nodes = |f: &Face| body.mesh.face_nodes(*f).shifted(*first);
+                            faces.iter().map(nodes)
                         })
                         .collect();
-                    follower.push((name.clone(), FollowerPressure { faces, value }));
+                    let load = FollowerPressure {
+                        faces,
+                        spans,
+                        rims,
+                        value,
+                    };
+                    follower.push((name.clone(), load));
                 } else {
                     let value = pressure
                         .compile(&POSITION_AND_TIME)

@@ -11,6 +11,16 @@ pub struct Prescribed {
     pub value: Option<TimeFunction>,
 }
 
+/// A degree of freedom that goes with others, one of which it is tied to: what the tie exerts on it belongs to a support.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tied {
+    pub dof: u32,
+    /// What it is tied to; itself, where the others are tied to it.
+    pub to: u32,
+    /// Index of the support in the model.
+    pub support: u32,
+}
+
 /// A mid-surface support: the mean of two degrees of freedom is prescribed, `u_tied = 2 mean - u_free`. Both feel half
 /// of its reaction.
 #[derive(Debug, Clone)]

@@ -48,6 +48,7 @@ effects! {
     H8Displacement, "element.h8_displacement", listed: "plain 8-node bricks, for solids (they lock when thin)";
     H8Eas3, "element.h8_eas3", listed: "8-node solid-shell elements enhanced through their thickness only";
     Q18SolidShell, "element.q18_solid_shell", listed: "18-node quadratic solid-shells, for thin and curved sheets";
+    NurbsShell, "element.nurbs_shell", listed: "a CAD surface as a thin shell: its control points are the unknowns";
     AssumedStrains, "element.assumed_strains", detail: "strains interpolated so that thin elements do not lock";
     EnhancedStrains, "element.enhanced_strains", detail: "further strains inside an element, condensed";
     StVenantKirchhoff, "material.st_venant_kirchhoff", listed: "linear stress-strain law for small strains";

@@ -4,9 +4,9 @@ use crate::mesh::MeshError;
 use crate::scene::ValueError;
 use crate::shell::ShellError;
 use crate::system::{ConstraintError, PatternError};
-use covact_geometry::MovingError;
 use covact_geometry::io::{CadError, StlError};
 use covact_geometry::project::{PatchSetError, SideError};
+use covact_geometry::{MovingError, PatchError};
 
 /// Why a model could not be built, with the JSON pointer of the field at fault.
 #[derive(Debug, thiserror::Error)]
@@ -59,6 +59,8 @@ pub enum Cause {
     Stl(#[from] StlError),
     #[error(transparent)]
     Patches(#[from] PatchSetError),
+    #[error(transparent)]
+    Patch(#[from] PatchError),
     #[error(transparent)]
     Facets(#[from] MovingError),
     #[error(transparent)]

@@ -1,6 +1,7 @@
 //! Can a body move without being strained? Six rigid motions against its supports.
 use super::{Model, Support};
 use crate::scene::ValueError;
+use crate::shell::Block;
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 
@@ -134,7 +135,7 @@ pub fn free_motions(model: &Model) -> Vec<FreeMotion> {
     let mut out = Vec::new();
     for body in &model.bodies {
         for piece in pieces(body.mesh.nodes.len(), body) {
-            if let Some(free) = free_motion(model, body.first_node, &piece) {
+            if let Some(free) = free_motion(model, body, &piece) {
                 out.push(FreeMotion {
                     body: body.name.clone(),
                     ..free
@@ -170,7 +171,8 @@ fn pieces(nodes: usize, body: &super::BodyModel) -> Vec<Vec<u32>> {
     groups.into_values().collect()
 }
 
-fn free_motion(model: &Model, first: u32, piece: &[u32]) -> Option<FreeMotion> {
+fn free_motion(model: &Model, body: &super::BodyModel, piece: &[u32]) -> Option<FreeMotion> {
+    let first = body.first_node;
     let nodes = piece.iter().map(|n| model.nodes[(first + n) as usize]);
     let frame = Frame::new(nodes);
     let own = |dof: u32| dof / 3 >= first && piece.binary_search(&(dof / 3 - first)).is_ok();
@@ -178,6 +180,19 @@ fn free_motion(model: &Model, first: u32, piece: &[u32]) -> Option<FreeMotion> {
     for support in model.supports().filter(|s| own(s.dofs[0])) {
         let row = frame.held(&support, |n| model.nodes[n as usize]);
         gram += row * row.transpose();
+    }
+    // What a sheet's control points follow moves with them, and normals that are held do not turn.
+    for tied in model.tied.iter().filter(|t| own(t.dof) && t.to != t.dof) {
+        let [a, b] =
+            [tied.dof, tied.to].map(|d| frame.row(model.nodes[d as usize / 3], d as usize % 3));
+        gram += (a - b) * (a - b).transpose();
+    }
+    if let Block::Nurbs(block) = &body.block {
+        for axis in block.held_turns() {
+            let mut row = Vector6::zeros();
+            row.fixed_rows_mut::<3>(3).copy_from(&axis);
+            gram += row * row.transpose();
+        }
     }
     let eigen = SymmetricEigen::new(gram);
     let largest = eigen.eigenvalues.max();

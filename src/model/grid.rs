@@ -34,7 +34,7 @@ impl Grid {
     fn along(&self) -> [u64; 3] {
         let order = match self.kind() {
             ElementKind::H8 => [1, 1, 1],
-            ElementKind::Q18 => [2, 2, 1],
+            ElementKind::Q18 | ElementKind::Nurbs => [2, 2, 1],
         };
         std::array::from_fn(|d| u64::from(self.counts[d]) * order[d] + 1)
     }

@@ -80,7 +80,7 @@ fn initial_gaps(
         if distance < gap.smallest {
             gap.smallest = distance;
             gap.place = x;
-            nearest = Some((p.nodes[0], x, seen.normal));
+            nearest = (model.terms(p).next()).map(|(n, _)| (n as u32, x, seen.normal));
         }
         if let Some(normals) = &normals {
             facing.push((seen.distance, normals[i].dot(&seen.normal)));

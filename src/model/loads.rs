@@ -1,7 +1,9 @@
 //! Loads: nodal forces, dead tractions, dead and follower pressure.
+use super::sheet_pressure::FollowingSpan;
 use crate::fem::face::{FaceNodes, Quad, shape, shape_derivatives};
 use crate::fem::quadrature::{GAUSS_2, GAUSS_3, Rule};
-use crate::mesh::{Face, Mesh};
+use crate::mesh::nurbs::side;
+use crate::mesh::{Face, Mesh, NurbsSheet};
 use crate::scene::{TimeFunction, ValueError};
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, Vector3};
@@ -38,10 +40,14 @@ pub struct LoadPoint {
     position: Vec3,
 }
 
-/// Pressure that follows the deformed faces.
+/// Pressure that follows the deformed faces, or a couple that follows edges of sheets.
 #[derive(Debug, Clone)]
 pub struct FollowerPressure {
     pub faces: Vec<FaceNodes>,
+    /// Faces of sheets under the pressure, or edges under a couple per length in its place.
+    pub spans: Vec<FollowingSpan>,
+    /// Lines of nodes around those faces; none where that is not known.
+    pub rims: Option<Vec<Vec<u32>>>,
     pub value: TimeFunction,
 }
 
@@ -62,6 +68,37 @@ pub fn load_points(mesh: &Mesh, faces: &[Face], offset: u32) -> Vec<LoadPoint> {
                     area: wu * wv * area.norm(),
                     normal: area.normalize(),
                     position: quad.point(u, v),
+                });
+            }
+        }
+    }
+    out
+}
+
+/// As [`load_points`] on faces of a sheet, whose first node has the number `offset`. A point of sixteen nodes is two of eight.
+pub fn sheet_load_points(sheet: &NurbsSheet, faces: &[Face], offset: u32) -> Vec<LoadPoint> {
+    let rule = crate::fem::gauss(4).expect("a rule of four points exists");
+    let mut out = Vec::with_capacity(32 * faces.len());
+    for face in faces {
+        let Some(sign) = side(*face) else { continue };
+        for p in sheet.sampled(std::iter::once(face.element as usize), &rule) {
+            for half in [0, 8] {
+                let mut face = FaceNodes {
+                    nodes: [0; 9],
+                    count: [4, 2],
+                };
+                let mut shape = [0.0; 9];
+                let nodes = p.nodes[half..half + 8].iter();
+                for (node, own) in face.nodes.iter_mut().zip(nodes) {
+                    *node = own + offset;
+                }
+                shape[..8].copy_from_slice(&p.n[half..half + 8]);
+                out.push(LoadPoint {
+                    face,
+                    shape,
+                    area: p.area,
+                    normal: p.normal * sign,
+                    position: p.position,
                 });
             }
         }

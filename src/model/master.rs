@@ -37,6 +37,9 @@ pub struct BodyMaster {
     pub element_size: f64,
     /// What the slave points do not touch, where they belong to the same body.
     pub own: Option<OwnFacets>,
+    /// Distance of the face from the surface that the facets are, half of the thickness of a sheet; else 0. The offset of the
+    /// pair has it.
+    pub height: f64,
 }
 
 /// Faces of a body whose first node has this number in the model, as facets that move with it, or one smooth surface through

@@ -5,6 +5,7 @@ pub mod build;
 pub(crate) mod constraints;
 pub(crate) mod driven;
 pub mod dynamics;
+pub(crate) mod edge_couple;
 pub(crate) mod edges;
 mod effect;
 pub(crate) mod error;
@@ -24,6 +25,7 @@ mod sagitta;
 pub mod segments;
 pub(crate) mod self_contact;
 pub(crate) mod sharp;
+pub(crate) mod sheet_pressure;
 pub(crate) mod slave;
 pub(crate) mod small;
 pub(crate) mod stabilization;
@@ -31,6 +33,7 @@ pub mod state;
 pub mod surface;
 pub(crate) mod symmetry;
 
+use crate::contact::lever::Lever;
 use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
 use crate::scene::{Material, Tangent, TimeFunction, ValueError};
@@ -38,7 +41,7 @@ use crate::shell::{Block, ElementBlock};
 use crate::system::DofMap;
 use augmentation::AugmentationModel;
 use averaged::SlaveNodes;
-use constraints::{MeanPrescribed, Prescribed};
+use constraints::{MeanPrescribed, Prescribed, Tied};
 use covact_geometry::Vec3;
 use driven::Driven;
 use dynamics::DynamicsModel;
@@ -68,6 +71,8 @@ pub struct Model {
     pub supports: Vec<String>,
     pub prescribed: Vec<Prescribed>,
     pub means: Vec<MeanPrescribed>,
+    /// Degrees of freedom that supports of sheets tie to others, with those that nothing prescribes.
+    pub tied: Vec<Tied>,
     pub dead_loads: Vec<(String, DeadLoad)>,
     pub follower_loads: Vec<(String, FollowerPressure)>,
     /// Which degrees of freedom are unknown.
@@ -90,6 +95,8 @@ pub struct Model {
     pub kinks: Vec<f64>,
     /// Curves that the scene asks for.
     pub probes: Vec<probe::ProbeModel>,
+    /// Slave points at a height above a mid-surface, by the numbers in them; none where no shell is a CAD surface.
+    pub levers: Vec<Lever>,
 }
 
 /// A deformable body.
@@ -183,8 +190,34 @@ impl Model {
             1 => self.combined(p, 1, u),
             4 => self.combined(p, 4, u),
             9 => self.combined(p, 9, u),
+            0 => self.above(p, u),
             n => self.combined(p, n as usize, u),
         }
+    }
+
+    /// [`Self::position_of`] a point at a height above a mid-surface.
+    #[cold]
+    #[inline(never)]
+    fn above(&self, p: &SlavePoint, u: &[f64]) -> Vec3 {
+        self.levers[p.nodes[0] as usize].position(|n| self.position(n as usize, u))
+    }
+
+    /// Nodes with the shape functions by which values at a slave point are shared among them.
+    pub fn terms<'a>(&'a self, p: &'a SlavePoint) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let (nodes, shape) = match p.lever_number() {
+            Some(number) => {
+                let lever = &self.levers[number];
+                (&lever.nodes[..], &lever.n[..])
+            }
+            None => {
+                let n = p.count as usize;
+                (&p.nodes[..n], &p.shape[..n])
+            }
+        };
+        nodes
+            .iter()
+            .zip(shape)
+            .map(|(&node, &w)| (node as usize, w))
     }
 
     #[inline(always)]

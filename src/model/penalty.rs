@@ -80,6 +80,7 @@ pub fn face_size(mesh: &Mesh, faces: &[Face]) -> FaceSize {
     let spans = match mesh.kind {
         ElementKind::H8 => 1.0,
         ElementKind::Q18 => 2.0,
+        ElementKind::Nurbs => 1.0,
     };
     FaceSize {
         edge: (area / faces.len().max(1) as f64).sqrt() / spans,

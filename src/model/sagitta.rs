@@ -160,9 +160,13 @@ impl Sides {
         if pair.edges_of.is_some() || pair.body_master().is_some_and(|m| m.own.is_some()) {
             return None;
         }
-        let slave = Surface::new(&model.bodies[pair.body].mesh, &pair.faces);
+        // What bends as a CAD surface is that surface.
+        let faceted = |body: usize| model.bodies[body].block.sheet().is_none();
+        let slave = (faceted(pair.body))
+            .then(|| Surface::new(&model.bodies[pair.body].mesh, &pair.faces))
+            .flatten();
         let master = (pair.body_master())
-            .filter(|m| !m.smooth)
+            .filter(|m| !m.smooth && faceted(m.body))
             .and_then(|m| Surface::new(&model.bodies[m.body].mesh, &m.faces));
         (slave.is_some() || master.is_some()).then_some(Sides { slave, master })
     }

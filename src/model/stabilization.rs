@@ -177,12 +177,16 @@ fn piece(model: &Model, motion: FreeMotion) -> Result<FreePiece, ModelError> {
 /// plane for eighteen.
 fn volumes(body: &BodyModel) -> Vec<f64> {
     let mesh = &body.mesh;
+    if let Some(sheet) = body.block.sheet() {
+        let areas = sheet.tributary_areas();
+        return areas.into_iter().map(|a| a * sheet.thickness).collect();
+    }
     let mut out = vec![0.0; mesh.nodes.len()];
     for e in 0..mesh.elements() {
         let volume = mesh.element_volume(e);
         for (i, &n) in mesh.element(e).iter().enumerate() {
             let share = match mesh.kind {
-                ElementKind::H8 => 0.125,
+                ElementKind::H8 | ElementKind::Nurbs => 0.125,
                 ElementKind::Q18 => {
                     let simpson = |k: usize| if k == 1 { 4.0 } else { 1.0 };
                     simpson(i % 3) * simpson(i % 9 / 3) / 72.0
@@ -226,7 +230,10 @@ fn bending(body: &BodyModel, volumes: &[f64]) -> Bending {
         .sum();
     Bending {
         length: (12.0 * SymmetricEigen::new(moment).eigenvalues.max()).sqrt(),
-        thickness: 2.0 * total / surface,
+        thickness: match body.block.sheet() {
+            Some(sheet) => sheet.thickness,
+            None => 2.0 * total / surface,
+        },
     }
 }
 

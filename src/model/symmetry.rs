@@ -1,6 +1,7 @@
 //! Which effects make the tangent unsymmetric. Decided once, before anything is solved.
 use super::EffectKind;
 use super::Model;
+use super::sheet_pressure::FollowingSpan;
 use crate::fem::FaceNodes;
 use crate::system::Dof;
 use std::collections::{BTreeMap, BTreeSet};
@@ -38,13 +39,25 @@ pub fn unsymmetric_effects(model: &Model) -> Vec<Unsymmetric> {
             ),
         });
     let follower = (model.follower_loads.iter())
-        .filter(|(_, load)| border(&load.faces).any(|edge| !quiet(model, &still, edge)))
-        .map(|(name, _)| Unsymmetric {
+        .filter(|(_, load)| {
+            border(&load.faces).any(|edge| !quiet(model, &still, &edge))
+                || !load.spans.is_empty()
+                    && load
+                        .rims
+                        .as_ref()
+                        .is_none_or(|rims| rims.iter().any(|rim| !quiet(model, &still, rim)))
+        })
+        .map(|(name, load)| Unsymmetric {
             effect: EffectKind::FollowerPressure,
             of: name.clone(),
-            why: format!(
-                "the follower pressure `{name}` acts on faces whose border is free to move"
-            ),
+            why: match (&load.spans.first(), &load.rims) {
+                (Some(FollowingSpan::Couple(_)), _) => {
+                    format!("the couple `{name}` follows an edge")
+                }
+                _ => format!(
+                    "the follower pressure `{name}` acts on faces whose border is free to move"
+                ),
+            },
         });
     // Another pair of the same contact has its friction.
     let friction = (model.pairs.iter())
@@ -100,14 +113,17 @@ fn still(model: &Model) -> BTreeSet<u32> {
 }
 
 /// Whether the terms of an edge vanish: it is held, or lies in a plane across which its nodes do not move.
-fn quiet(model: &Model, still: &BTreeSet<u32>, nodes: [u32; 3]) -> bool {
+fn quiet(model: &Model, still: &BTreeSet<u32>, nodes: &[u32]) -> bool {
     let held = |node: u32, c: u32| model.dofs.dof((3 * node + c) as usize) == Dof::Prescribed;
     if (0..3).all(|c| nodes.iter().all(|&n| held(n, c))) {
         return true;
     }
     let still = |node: u32, c: usize| still.contains(&(3 * node + c as u32));
-    let [a, b, middle] = nodes.map(|n| model.nodes[n as usize]);
-    let (edge, half) = (b - a, middle - a);
-    let flat = |c: usize| edge[c].abs().max(half[c].abs()) <= 1e-9 * edge.norm();
+    let first = model.nodes[nodes[0] as usize];
+    let off: Vec<_> = (nodes.iter())
+        .map(|n| model.nodes[*n as usize] - first)
+        .collect();
+    let size = off.iter().map(|x| x.norm()).fold(0.0, f64::max);
+    let flat = |c: usize| off.iter().all(|x| x[c].abs() <= 1e-9 * size);
     (0..3).any(|c| flat(c) && nodes.iter().all(|&n| still(n, c)))
 }

@@ -27,6 +27,8 @@ const Q18_TO_VTK: [usize; 18] = [0, 2, 8, 6, 9, 11, 17, 15, 1, 5, 7, 3, 10, 14, 
 /// Node order and type of the cell that an element is written as.
 pub(crate) fn vtk_cell(kind: ElementKind) -> (&'static [usize], CellType) {
     match kind {
+        // A sheet is written on a mesh of quadratic bricks.
+        ElementKind::Nurbs => (&[], CellType::LagrangeHexahedron),
         ElementKind::H8 => (&H8_TO_VTK, CellType::Hexahedron),
         ElementKind::Q18 => (&Q18_TO_VTK, CellType::LagrangeHexahedron),
     }

@@ -1,5 +1,6 @@
 //! Bodies and rigid surfaces read back from their files of results.
 use super::body::vtk_cell;
+use super::mid_surface::SHEET;
 use super::vtu::escaped;
 use crate::mesh::{ElementKind, Mesh};
 use crate::scene::nearest;
@@ -100,7 +101,7 @@ pub(crate) fn last(folder: &Path, body: &str) -> Result<(f64, PathBuf), String> 
 pub(crate) enum Part {
     Body(BodyFile),
     Surface(SurfaceFile),
-    /// Slave points.
+    /// Slave points, or the mid-surface of a body, which is written as bricks as well.
     Cloud,
 }
 
@@ -111,7 +112,8 @@ pub(crate) enum Part {
 pub(crate) fn part(path: &Path) -> Result<Part, String> {
     let grid = grid(path)?;
     let all = |cell: CellType| grid.types.iter().all(|t| *t == cell);
-    if all(CellType::Vertex) {
+    let is_sheet = grid.fields.iter().any(|f| f.name == SHEET);
+    if all(CellType::Vertex) || is_sheet {
         return Ok(Part::Cloud);
     }
     let of_surface = |t: &CellType| matches!(t, CellType::Quad | CellType::BezierQuadrilateral);

@@ -1,7 +1,7 @@
 //! A folder of results: one `.vtu` per part and step, listed with their times in `.pvd` collections.
 use super::atomic::{make_folder, remove_file, sync_files, write_soon};
 use super::vtu::escaped;
-use super::{BodyFields, OutputError, PointCloud, SurfaceOutput};
+use super::{BodyFields, MidSurface, OutputError, PointCloud, SurfaceOutput};
 use nalgebra::Isometry3;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -43,6 +43,8 @@ pub struct PartNames {
     /// Those of them that never move.
     pub still: Vec<String>,
     pub clouds: Vec<String>,
+    /// Mid-surfaces of sheets.
+    pub sheets: Vec<String>,
 }
 
 /// A file of a collection.
@@ -133,6 +135,9 @@ impl Results {
     /// Writes every part at an accepted step, surfaces that never move with the first one only, then the collections. The part numbers and file names are those of the
     /// first call that brought the part, so parts may come and go. When a file cannot be written, the collections stay
     /// as they were. Files are whole at once, and on the disk after [`Results::sync`].
+    ///
+    /// # Errors
+    /// Fields that do not fit together, and those of the operating system.
     pub fn write(
         &mut self,
         step: u32,
@@ -141,6 +146,21 @@ impl Results {
         surfaces: &[SurfaceState],
         clouds: &[PointCloud],
     ) -> Result<(), OutputError> {
+        self.write_all(step, time, bodies, surfaces, (clouds, &[]))
+    }
+
+    /// [`Results::write`] with the mid-surfaces of sheets.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn write_all(
+        &mut self,
+        step: u32,
+        time: f64,
+        bodies: &[BodyFields],
+        surfaces: &[SurfaceState],
+        (clouds, sheets): (&[PointCloud], &[MidSurface]),
+    ) -> Result<(), OutputError> {
         let parts: Vec<(Kind, &str)> = (bodies.iter().map(|b| (Kind::Body, b.name)))
             .chain(
                 surfaces
@@ -148,6 +168,7 @@ impl Results {
                     .map(|s| (Kind::surface(s.still), s.surface.name())),
             )
             .chain(clouds.iter().map(|c| (Kind::Cloud, c.name.as_str())))
+            .chain(sheets.iter().map(|s| (Kind::Sheet, s.name.as_str())))
             .collect();
         let entries = self.entries(step, time, &parts);
         let first = self.written.is_empty();
@@ -159,7 +180,8 @@ impl Results {
             Ok(())
         };
         let (of_bodies, rest) = entries.split_at(bodies.len());
-        let (of_surfaces, of_clouds) = rest.split_at(surfaces.len());
+        let (of_surfaces, rest) = rest.split_at(surfaces.len());
+        let (of_clouds, of_sheets) = rest.split_at(clouds.len());
         for (body, [entry, _]) in bodies.iter().zip(of_bodies) {
             put(entry, body.to_vtu(entry.part as u32)?)?;
         }
@@ -173,6 +195,9 @@ impl Results {
         }
         for (cloud, [entry, _]) in clouds.iter().zip(of_clouds) {
             put(entry, cloud.to_vtu()?)?;
+        }
+        for (sheet, [entry, _]) in sheets.iter().zip(of_sheets) {
+            put(entry, sheet.to_vtu()?)?;
         }
         let mut exact = self.exact.clone();
         let mut tessellated = self.tessellated.clone();
@@ -209,7 +234,7 @@ impl Results {
                     Kind::Surface | Kind::Still => {
                         [exact, entry(format!("{stem}_tessellated_{step:04}.vtu"))]
                     }
-                    Kind::Body | Kind::Cloud => [exact.clone(), exact],
+                    Kind::Body | Kind::Cloud | Kind::Sheet => [exact.clone(), exact],
                 }
             })
             .collect()
@@ -270,6 +295,7 @@ impl PartNames {
                 (self.surfaces.iter()).map(|n| (Kind::surface(self.still.contains(n)), n.as_str())),
             )
             .chain(self.clouds.iter().map(|n| (Kind::Cloud, n.as_str())))
+            .chain(self.sheets.iter().map(|n| (Kind::Sheet, n.as_str())))
             .collect()
     }
 }
@@ -300,6 +326,8 @@ enum Kind {
     /// A surface that never moves.
     Still,
     Cloud,
+    /// The mid-surface of a body.
+    Sheet,
 }
 
 impl Kind {

@@ -25,12 +25,12 @@ pub(super) fn skin(mesh: &Mesh) -> Skin {
     // Per set of corners: the place of its only face, or none where there are two.
     let mut seen: HashMap<[u32; 4], Option<usize>> = HashMap::new();
     let cells: &[[usize; 2]] = match mesh.kind {
-        ElementKind::H8 => &[[0, 0]],
+        ElementKind::H8 | ElementKind::Nurbs => &[[0, 0]],
         ElementKind::Q18 => &[[0, 0], [1, 0], [0, 1], [1, 1]],
     };
     // Nodes along a side of the element.
     let row = match mesh.kind {
-        ElementKind::H8 => 2,
+        ElementKind::H8 | ElementKind::Nurbs => 2,
         ElementKind::Q18 => 3,
     };
     for e in 0..mesh.elements() {

@@ -3,7 +3,7 @@ use super::{Effect, Held, Per, Reporter, why};
 use crate::assembly::sizes;
 use crate::model::BodyModel;
 use crate::model::EffectKind;
-use crate::scene::{Body, Element, pointer};
+use crate::scene::{Body, Element, MeshSource, pointer};
 
 /// Names of bodies as a message lists them.
 fn listed<'n>(names: impl Iterator<Item = &'n str>) -> String {
@@ -56,6 +56,7 @@ impl Reporter<'_> {
             ),
             (Element::H8Eas3, EffectKind::H8Eas3, "h8_eas3"),
             (Element::Q18, EffectKind::Q18SolidShell, "q18"),
+            (Element::Nurbs, EffectKind::NurbsShell, "nurbs"),
         ];
         let effect = |(element, effect, word)| {
             let own: Vec<_> = (self.described())
@@ -67,11 +68,14 @@ impl Reporter<'_> {
                 (self.loaded.has(&at)).then_some(at)
             };
             let at = own.iter().find_map(given);
+            let of_sheet = element == Element::Nurbs;
             let how = match at {
+                _ if of_sheet => "the body is a face of a CAD file (`nurbs`)".to_owned(),
                 Some(_) => format!("`element` is `{word}`"),
                 None => "no `element`: the default".to_owned(),
             };
             let at = at.unwrap_or_else(|| match own.first() {
+                Some(body) if of_sheet => pointer(&["bodies", &body.name, "nurbs"]),
                 Some(body) => pointer(&["bodies", &body.name]),
                 None => "/bodies".to_owned(),
             });
@@ -79,12 +83,16 @@ impl Reporter<'_> {
             let count: usize = own.iter().map(|b| b.block.elements()).sum();
             let (nodes, points) = match element {
                 Element::Q18 => (18, 18),
+                Element::Nurbs => (16, 9),
                 _ => (8, 8),
             };
             let reason = why(
                 !own.is_empty(),
                 format!("{how} (body {names}, {count} elements)"),
-                format!("no body has `element` `{word}`"),
+                match of_sheet {
+                    true => "no body is a face of a CAD file (`nurbs`)".to_owned(),
+                    false => format!("no body has `element` `{word}`"),
+                },
             );
             let size = 3 * nodes;
             self.effect(effect, at, reason).costs(format!(
@@ -96,7 +104,10 @@ impl Reporter<'_> {
 
     /// Strains that elements do not take from their displacements alone.
     fn strains(&self) -> Vec<Effect> {
-        let assumed = |b: &Body| b.element != Element::H8Displacement;
+        let assumed = |b: &Body| match &b.mesh {
+            MeshSource::Nurbs(nurbs) => nurbs.assumed_membrane,
+            _ => b.element != Element::H8Displacement,
+        };
         let with: Vec<_> = self.described().filter(|(_, b)| assumed(b)).collect();
         let names =
             |list: &[(&BodyModel, &Body)]| listed(list.iter().map(|(b, _)| b.name.as_str()));
@@ -118,7 +129,10 @@ impl Reporter<'_> {
             ),
         );
         let (mut held, mut numbers) = (Vec::new(), Vec::new());
-        for (body, _) in &with {
+        // Sheets have assumed strains alone.
+        let solid = |(_, b): &&(&BodyModel, &Body)| b.element != Element::Nurbs;
+        let enhanced: Vec<_> = with.iter().filter(solid).copied().collect();
+        for (body, _) in &enhanced {
             let len = self.model.state_len(body);
             let n = body.block.elements();
             held.push(Held::state("element states", Per::Element, 8 * len, n));
@@ -129,13 +143,13 @@ impl Reporter<'_> {
         let enhanced = self
             .effect(
                 EffectKind::EnhancedStrains,
-                at(&with),
+                at(&enhanced),
                 why(
-                    !with.is_empty(),
+                    !enhanced.is_empty(),
                     format!(
                         "{} an element, condensed (body {})",
                         numbers.join(" or "),
-                        names(&with)
+                        names(&enhanced)
                     ),
                     none,
                 ),

@@ -132,7 +132,14 @@ impl Reporter<'_> {
             told.key("offset"),
             why(
                 pair.offset > 0.0,
-                format!("`offset`: contact begins {} in front", number(pair.offset)),
+                match pair.body_master().map_or(0.0, |m| m.height) {
+                    0.0 => format!("`offset`: contact begins {} in front", number(pair.offset)),
+                    height => format!(
+                        "contact begins {} in front of the mid-surface, with half of the thickness {}",
+                        number(pair.offset),
+                        number(height)
+                    ),
+                },
                 match self.loaded.has(&told.key("offset")) {
                     true => "`offset` is zero",
                     false => "no `offset`: contact begins on the master",

@@ -1,6 +1,7 @@
 //! The effects of a contact pair: slave points, and what they meet.
 use super::{Effect, Held, Per, Reporter, why};
 use crate::assembly::sizes;
+use crate::contact::lever::{self, Lever};
 use crate::contact::points::SlavePoint;
 use crate::model::EffectKind;
 use crate::model::PairModel;
@@ -69,10 +70,21 @@ impl Reporter<'_> {
                 number(told.pair.eps_n)
             ),
         };
+        let levers = told
+            .pair
+            .points
+            .first()
+            .is_some_and(|p| p.lever_number().is_some());
+        let lever = if levers { size_of::<Lever>() } else { 0 };
         let (n, first) = (told.points(), told.index == 0);
         let nodes = if first { self.model.nodes.len() } else { 0 };
         let held = vec![
-            Held::model("slave points", Per::Point, size_of::<SlavePoint>(), n),
+            Held::model(
+                "slave points",
+                Per::Point,
+                size_of::<SlavePoint>() + lever,
+                n,
+            ),
             Held::state("points", Per::Point, size_of::<PointState>(), n),
             Held::assembler("contact forces", Per::Node, 24, nodes),
             Held::assembler("pairs", Per::Whole, sizes::PAIR, 1),
@@ -84,7 +96,11 @@ impl Reporter<'_> {
     fn masters(&self, told: &EffectContext) -> Vec<Effect> {
         let (pair, key) = (told.pair, told.key("master"));
         let name = pair.master_name(self.model);
-        let slave = 3 * pair.points.iter().map(|p| p.count).max().unwrap_or(0) as usize;
+        let nodes = |p: &SlavePoint| match p.lever_number() {
+            Some(_) => lever::NODES,
+            None => p.count as usize,
+        };
+        let slave = 3 * pair.points.iter().map(nodes).max().unwrap_or(0);
         let rigid = pair.body_master().is_none();
         let of_body = pair.body_master();
         let own = of_body.and_then(|m| m.own.as_ref());
@@ -251,7 +267,16 @@ impl Reporter<'_> {
     }
 
     fn sampling(&self, told: &EffectContext) -> Vec<Effect> {
-        let points = told.contact.points;
+        // Of sheets, whose control points do not lie on them.
+        let levers = told
+            .pair
+            .points
+            .first()
+            .is_some_and(|p| p.lever_number().is_some());
+        let points = match told.contact.points {
+            Points::Nodes if levers => Points::Gauss(4),
+            points => points,
+        };
         let [n, faces] = [told.points(), told.pair.faces.len()];
         let words = match points {
             Points::Nodes => "nodes".to_owned(),
@@ -262,6 +287,9 @@ impl Reporter<'_> {
         let given = match points {
             Points::Nodes if !self.loaded.has(&told.key("points")) => {
                 format!("no `points`: {n} nodes of {faces} faces")
+            }
+            _ if levers => {
+                format!("{words}: {n} on {faces} faces, half of the thickness from the mid-surface")
             }
             _ => format!("`points` are {words}: {n} on {faces} faces"),
         };

@@ -180,7 +180,9 @@ impl Bearings {
 fn is_prescribed(prescribed: &[u8], point: &SlavePoint, along: &Vec3) -> bool {
     let needed = (0..3).filter(|&c| along[c].abs() > NO_COMPONENT);
     let needed = needed.fold(0, |bits, c| bits | 1 << c);
-    (point.terms()).all(|(node, w)| w == 0.0 || prescribed[node] & needed == needed)
+    // Along a height above a mid-surface nothing prescribes a point.
+    point.lever_number().is_none()
+        && (point.terms()).all(|(node, w)| w == 0.0 || prescribed[node] & needed == needed)
 }
 
 #[cfg(test)]

@@ -232,6 +232,7 @@ fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
         Element::H8Eas3 => "8-node solid-shell, enhanced through its thickness",
         Element::H8Displacement => "8-node brick without enhancement",
         Element::Q18 => "18-node quadratic solid-shell",
+        Element::Nurbs => "bicubic Kirchhoff-Love shell on a NURBS patch",
     };
     let (law, e) = (body.material.title(), body.material.elastic());
     let known = scene
@@ -248,8 +249,14 @@ fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
         element,
         material,
         bounds: body.mesh.bounds().map(Into::into),
-        edge: range(size.map(|s| s.edge)),
-        thickness: range(size.map(|s| s.thickness)),
+        edge: match body.block.sheet() {
+            Some(sheet) => sheet.span_lengths(),
+            None => range(size.map(|s| s.edge)),
+        },
+        thickness: match body.block.sheet() {
+            Some(sheet) => [sheet.thickness; 2],
+            None => range(size.map(|s| s.thickness)),
+        },
         worst_shape: size.map_or(0.0, |s| s.shape.min),
         distortion: most_distorted(&body.mesh).map(|d| DistortionReport {
             share: d.share,
@@ -311,6 +318,9 @@ fn pair_report(
         master: contact.master.clone(),
         points: pair.points.len(),
         sampling: match contact.points {
+            Points::Nodes if model.bodies[pair.body].block.sheet().is_some() => {
+                "4 x 4 Gauss points a face".to_owned()
+            }
             Points::Nodes => "at the nodes of the faces".to_owned(),
             Points::Gauss(n) => format!("{n} x {n} Gauss points a face"),
             Points::Lobatto(n) => format!("{n} x {n} Lobatto points a face"),

@@ -1,13 +1,12 @@
 //! Fields of an accepted state, gathered on nodes for the output.
+mod bodies;
+
 use super::RunError;
 use super::averaged::{NodeNow, nodes_now};
 use super::bearing::{Bearings, Carrier, Place as BearingPlace};
-use super::flow_fields::FlowFields;
 use super::friction_fields::{self, FrictionFields};
 use super::motion_fields::MotionFields;
-use super::reaction_fields::reactions;
-use super::resultants::Resultants;
-use super::strain_fields::StrainFields;
+use super::sheet_fields::{mid_surface, sheet_name};
 use super::stresses::{follows_stress, nodal_stresses};
 use super::surface_cells::pieces;
 use super::traction_fields::TractionFields;
@@ -17,8 +16,8 @@ use crate::model::master::{MasterNow, Masters};
 use crate::model::state::State;
 use crate::model::{BodyModel, Model, SurfaceModel};
 use crate::output::{
-    BodyFields, CLOSED, ContactFields, Field, NOT_A_SLAVE, OPEN, OutputError, PartNames, Place,
-    Results, SurfaceOutput, SurfaceState, von_mises,
+    CLOSED, MidSurface, NOT_A_SLAVE, OPEN, OutputError, PartNames, Results, SurfaceOutput,
+    SurfaceState, von_mises,
 };
 use crate::scene::Output;
 use covact_geometry::Vec3;
@@ -133,6 +132,9 @@ impl Fields {
                 true => Vec::new(),
                 false => friction_fields::cloud_names(model),
             },
+            sheets: (model.bodies.iter().filter(|b| b.block.sheet().is_some()))
+                .map(sheet_name)
+                .collect(),
         }
     }
 
@@ -262,7 +264,7 @@ impl Fields {
                 let normal = place.filter(|_| closed).map(|(_, _, normal)| normal);
                 let normal = normal.unwrap_or_default();
                 let friction = history.filter(|_| closed).map_or(Vec3::zeros(), |h| -h.t);
-                self.traction.add(p, pressure * normal + friction);
+                self.traction.add(model, p, pressure * normal + friction);
                 if closed && let Some((x, hint, normal)) = place {
                     let carrier = Carrier {
                         pressure,
@@ -291,7 +293,7 @@ impl Fields {
                     self.start.resize(state.points.len(), 0.0);
                     self.start[first + i] = gap;
                 }
-                for (node, n) in p.terms() {
+                for (node, n) in model.terms(p) {
                     let w = n * p.area;
                     self.weight[node] += w;
                     self.sums[node][0] += w * pressure;
@@ -299,12 +301,12 @@ impl Fields {
                     self.status[node] = self.status[node].max(status);
                 }
             }
-            self.traction.end(points);
+            self.traction.end(model, points);
             if let (Some(_), Some(histories)) = (&pair.friction, histories) {
-                self.friction.gather(points, histories);
+                self.friction.gather(model, points, histories);
             }
             // Pressures of several surfaces on the same face add up; the nearest surface gives the gap.
-            for (node, _) in points.iter().flat_map(|p| p.terms()) {
+            for (node, _) in points.iter().flat_map(|p| model.terms(p)) {
                 let weight = std::mem::take(&mut self.weight[node]);
                 let [pressure, gap] = std::mem::take(&mut self.sums[node]);
                 if weight > 0.0 {
@@ -396,75 +398,6 @@ impl Fields {
         Ok(())
     }
 
-    /// All fields of all bodies at an accepted step, for `read`.
-    pub fn with_bodies<T>(
-        &self,
-        model: &Model,
-        time: f64,
-        state: &State,
-        read: impl FnOnce(&[BodyFields]) -> T,
-    ) -> T {
-        let displacements: Vec<Vec<Vec3>> = (model.bodies.iter())
-            .map(|b| {
-                let first = 3 * b.first_node as usize;
-                (state.u[first..first + 3 * b.mesh.nodes.len()].chunks_exact(3))
-                    .map(Vec3::from_column_slice)
-                    .collect()
-            })
-            .collect();
-        let stresses = nodal_stresses(model, state, |_| true);
-        let strains: Vec<StrainFields> = (model.bodies.iter().enumerate())
-            .map(|(i, b)| StrainFields::new(&b.mesh, &displacements[i], &stresses[i]))
-            .collect();
-        let resultants: Vec<Option<Resultants>> = (model.bodies.iter().enumerate())
-            .map(|(i, b)| {
-                let u = displacements[i].iter();
-                let now: Vec<Vec3> = match model.small {
-                    None => b.mesh.nodes.iter().zip(u).map(|(x, u)| x + u).collect(),
-                    Some(_) => b.mesh.nodes.clone(),
-                };
-                (strains[i].of_shell()).then(|| Resultants::new(&b.mesh, &now, &stresses[i]))
-            })
-            .collect();
-        let flow = FlowFields::of(model, state);
-        let acting = (&self.status[..], self.motion.as_ref());
-        let reactions = reactions(model, state, acting, time);
-        let bodies: Vec<BodyFields> = (model.bodies.iter().enumerate())
-            .map(|(i, body)| {
-                let first = body.first_node as usize;
-                let range = first..first + body.mesh.nodes.len();
-                let slave = model.pairs.iter().any(|p| p.body == i);
-                BodyFields {
-                    name: &body.name,
-                    mesh: &body.mesh,
-                    displacement: &displacements[i],
-                    stress: Some(&stresses[i]),
-                    contact: slave.then(|| ContactFields {
-                        pressure: &self.pressure[range.clone()],
-                        gap: &self.gap[range.clone()],
-                        status: &self.status[range.clone()],
-                    }),
-                    fields: (self.friction.of(model, i, body).into_iter())
-                        .chain(self.traction.of(model, i, body))
-                        .chain(strains[i].fields())
-                        .chain(flow[i].fields())
-                        .chain(self.motion.as_ref().map(|m| m.field(&range)))
-                        .chain(resultants[i].iter().flat_map(Resultants::fields))
-                        .chain(reactions.as_ref().map(|all| Field {
-                            name: "reaction",
-                            components: 3,
-                            component_names: &[],
-                            data: &all[3 * range.start..3 * range.end],
-                            place: Place::Point,
-                            derived: false,
-                        }))
-                        .collect(),
-                }
-            })
-            .collect();
-        read(&bodies)
-    }
-
     /// Writes all bodies and surfaces of an accepted step.
     pub fn write(
         &self,
@@ -489,8 +422,14 @@ impl Fields {
             true => Vec::new(),
             false => friction_fields::clouds(model, state, &self.gaps),
         };
+        let sheets: Vec<MidSurface> = (model.bodies.iter().enumerate())
+            .filter_map(|(i, body)| {
+                let slave = model.pairs.iter().any(|p| p.body == i);
+                mid_surface(body, &state.u, slave.then_some(&self.pressure[..]))
+            })
+            .collect();
         self.with_bodies(model, time, state, |bodies| {
-            results.write(step, time, bodies, &surfaces, &clouds)
+            results.write_all(step, time, bodies, &surfaces, (&clouds, &sheets))
         })
     }
 }

@@ -45,9 +45,9 @@ impl FrictionFields {
 
     /// Takes over the points of a pair with friction, by shape functions and areas. Tractions and energies of several
     /// surfaces on the same face add up; the path is the longest.
-    pub fn gather(&mut self, points: &[SlavePoint], histories: &[PointHistory]) {
+    pub fn gather(&mut self, model: &Model, points: &[SlavePoint], histories: &[PointHistory]) {
         for (p, h) in points.iter().zip(histories) {
-            for (node, n) in p.terms() {
+            for (node, n) in model.terms(p) {
                 let w = n * p.area;
                 self.weight[node] += w;
                 let values = [-h.t.x, -h.t.y, -h.t.z, h.slip, h.dissipated];
@@ -56,7 +56,7 @@ impl FrictionFields {
                 }
             }
         }
-        for (node, _) in points.iter().flat_map(|p| p.terms()) {
+        for (node, _) in points.iter().flat_map(|p| model.terms(p)) {
             let weight = std::mem::take(&mut self.weight[node]);
             let [x, y, z, slip, dissipated] = std::mem::take(&mut self.sums[node]);
             if weight > 0.0 {

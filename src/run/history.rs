@@ -229,6 +229,9 @@ fn reactions(model: &Model, residual: &[f64], u: &[f64]) -> Vec<(Vec3, Vec3)> {
     for p in &model.prescribed {
         add(p.support, p.dof, residual[p.dof as usize]);
     }
+    for t in &model.tied {
+        add(t.support, t.dof, residual[t.dof as usize]);
+    }
     for m in &model.means {
         let half = residual[m.tied as usize];
         add(m.support, m.tied, half);

@@ -114,13 +114,13 @@ fn analysis_short(loaded: &LoadedScene, shortage: memory::Shortage) -> Result<Es
 
 /// The field of the body with most elements that says how many they are; of a file where there is one.
 fn largest(loaded: &LoadedScene) -> String {
-    use scene::MeshSource::{Arrays, Block, Cells, CylinderPanel, File, Plate, SpherePanel};
+    use scene::MeshSource::{Arrays, Block, Cells, CylinderPanel, File, Nurbs, Plate, SpherePanel};
     let count = |body: &scene::Body| match &body.mesh {
         Plate(p) => p.elements.iter().map(|n| f64::from(*n)).product::<f64>() * f64::from(p.layers),
         CylinderPanel(p) => p.elements.iter().map(|n| f64::from(*n)).product(),
         SpherePanel(p) => p.elements.iter().map(|n| f64::from(*n)).product(),
         Block(b) => b.elements.iter().map(|n| f64::from(*n)).product(),
-        File(_) | Arrays(_) | Cells(_) => f64::INFINITY,
+        File(_) | Arrays(_) | Cells(_) | Nurbs(_) => f64::INFINITY,
     };
     (loaded.scene.bodies.iter())
         .max_by(|a, b| count(a.1).total_cmp(&count(b.1)))

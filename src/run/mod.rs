@@ -30,6 +30,7 @@ mod progress;
 mod reaction_fields;
 mod remedy;
 mod resultants;
+mod sheet_fields;
 mod simulation;
 mod sink;
 mod stabilized;

@@ -1,6 +1,7 @@
 //! Nodal reactions, worked out for the output only.
 use super::motion_fields::MotionFields;
 use crate::model::loads::follower_force;
+use crate::model::sheet_pressure::DOFS;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::output::NOT_A_SLAVE;
@@ -144,6 +145,15 @@ fn add_loads(model: &Model, u: &[f64], time: f64, external: &mut [f64]) -> Resul
             for (&node, own) in face.nodes().iter().zip(f.chunks_exact(3)) {
                 add(external, [node], own);
             }
+        }
+        let mut own = [0.0; DOFS];
+        for span in &load.spans {
+            let x = span.nodes().map(|n| match model.small {
+                None => model.position(n as usize, u),
+                Some(_) => model.nodes[n as usize],
+            });
+            span.force(&x, pressure, &mut own, None);
+            add(external, *span.nodes(), &own);
         }
     }
     Ok(())

@@ -118,7 +118,7 @@ fn local_axes(normal: Vec3) -> Option<[Vec3; 3]> {
 fn layer_normals(mesh: &Mesh, positions: &[Vec3]) -> Vec<Vec3> {
     let side = match mesh.kind {
         ElementKind::H8 => 2u8,
-        ElementKind::Q18 => 3,
+        ElementKind::Q18 | ElementKind::Nurbs => 3,
     };
     let per_layer = usize::from(side * side);
     let place = |k: usize| 2.0 * k as f64 / f64::from(side - 1) - 1.0;

@@ -87,6 +87,8 @@ fn hencky(mesh: &Mesh, displacement: &[Vec3]) -> Vec<Matrix3<f64>> {
     let places: &[&[f64]] = match mesh.kind {
         ElementKind::H8 => &[&[0.0], &[0.0]],
         ElementKind::Q18 => &[&[-gauss], &[-gauss, gauss], &[gauss]],
+        // Its output is on a mesh of its own.
+        ElementKind::Nurbs => return vec![Matrix3::repeat(f64::NAN); n],
     };
     let side = places.len();
     for e in 0..mesh.elements() {
@@ -137,7 +139,7 @@ fn strain_at(
 fn shape_gradients(kind: ElementKind, [r, s, t]: [f64; 3]) -> impl Iterator<Item = Vec3> {
     let side = match kind {
         ElementKind::H8 => 2,
-        ElementKind::Q18 => 3,
+        ElementKind::Q18 | ElementKind::Nurbs => 3,
     };
     let n = shape([side; 2], r, s);
     let [along_r, along_s] = shape_derivatives([side; 2], r, s);

@@ -13,7 +13,8 @@ pub fn follows_stress(model: &Model, body: usize) -> bool {
     let probed = |p: &ProbeModel| {
         p.quantity == ProbeQuantity::VonMises && p.nodes.iter().any(|n| own.contains(n))
     };
-    body.metal.is_some() || model.probes.iter().any(probed)
+    // Control points of a sheet have none.
+    body.block.sheet().is_none() && (body.metal.is_some() || model.probes.iter().any(probed))
 }
 
 /// Cauchy stress at the nodes of each body that is `wanted`, else nothing: extrapolated within the elements, averaged

@@ -28,11 +28,11 @@ impl TractionFields {
     }
 
     /// Takes over the traction at a point, by shape functions and area.
-    pub fn add(&mut self, point: &SlavePoint, traction: Vec3) {
+    pub fn add(&mut self, model: &Model, point: &SlavePoint, traction: Vec3) {
         if self.sums.is_empty() {
             return;
         }
-        for (node, n) in point.terms() {
+        for (node, n) in model.terms(point) {
             let (sum, weight) = &mut self.sums[node];
             *sum += n * point.area * traction;
             *weight += n * point.area;
@@ -40,11 +40,11 @@ impl TractionFields {
     }
 
     /// Ends a pair: tractions of several surfaces on the same face add up.
-    pub fn end(&mut self, points: &[SlavePoint]) {
+    pub fn end(&mut self, model: &Model, points: &[SlavePoint]) {
         if self.sums.is_empty() {
             return;
         }
-        for (node, _) in points.iter().flat_map(|p| p.terms()) {
+        for (node, _) in points.iter().flat_map(|p| model.terms(p)) {
             let (sum, weight) = std::mem::take(&mut self.sums[node]);
             if weight > 0.0 {
                 for (k, t) in (sum / weight).iter().enumerate() {

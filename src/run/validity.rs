@@ -109,7 +109,8 @@ const CORNERS_H8: [usize; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
 /// Fails where an element is turned inside out at its middle. Strains are the same for a position and its mirror image, so
 /// that the energy of a mirrored element is that of a sound one, and Newton's method can jump there.
 pub(super) fn inside_out(model: &Model, state: &State) -> Result<(), StepFailure> {
-    for body in &model.bodies {
+    // A sheet has no volume to be turned inside out.
+    for body in model.bodies.iter().filter(|b| b.block.sheet().is_none()) {
         let position = |node: u32| {
             let n = (body.first_node + node) as usize;
             let u = &state.u[3 * n..3 * n + 3];

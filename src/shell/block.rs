@@ -3,6 +3,7 @@ use super::error::{ElementFault, ShellError};
 use super::h8::{Formulation, H8Block, H8System};
 use super::history::PlasticWork;
 use super::material::{J2State, Law, LawState};
+use super::nurbs::{self, NurbsBlock, NurbsSystem};
 use super::q18::{DOFS, Q18Block, Q18System};
 use super::stress::{extrapolate, extrapolate_quadratic};
 use crate::mesh::Mesh;
@@ -18,6 +19,7 @@ pub const STATES: usize = 5;
 pub const fn bytes_per_element(element: Element, flows: bool) -> [usize; 2] {
     let memory = if flows { J2State::LEN } else { 0 };
     let (shape, state) = match Formulation::of(element, flows) {
+        None if matches!(element, Element::Nurbs) => return [NurbsBlock::BYTES, 0],
         Some(formulation) => (
             H8Block::BYTES,
             formulation.state_len() + formulation.points() * memory,
@@ -115,6 +117,13 @@ impl ElementSystem for H8System {
 }
 
 impl ElementSystem for Q18System {
+    #[inline]
+    fn parts(&mut self) -> (&[f64], &mut [f64], f64) {
+        (&self.f, &mut self.k[..], self.energy)
+    }
+}
+
+impl ElementSystem for NurbsSystem {
     #[inline]
     fn parts(&mut self) -> (&[f64], &mut [f64], f64) {
         (&self.f, &mut self.k[..], self.energy)
@@ -264,6 +273,92 @@ impl ElementBlock<18> for Q18Block {
     }
 }
 
+/// No enhanced strains and no memory: such elements have no state.
+impl ElementBlock<{ nurbs::NODES }> for NurbsBlock {
+    type System = NurbsSystem;
+    type Forces = [f64; nurbs::DOFS];
+    const NO_FORCES: [f64; nurbs::DOFS] = [0.0; nurbs::DOFS];
+
+    #[inline]
+    fn elements(&self) -> usize {
+        self.elements()
+    }
+    #[inline]
+    fn nodes_of(&self, e: usize) -> [u32; nurbs::NODES] {
+        self.nodes_of(e)
+    }
+    #[inline]
+    fn state_len(&self) -> usize {
+        0
+    }
+    #[inline]
+    fn alpha_len(&self) -> usize {
+        0
+    }
+    fn history_len(&self) -> usize {
+        0
+    }
+    fn remember(
+        &self,
+        _: usize,
+        _: &[Vec3; nurbs::NODES],
+        _: &mut [f64],
+    ) -> Result<(), ElementFault> {
+        Ok(())
+    }
+    fn flow_measures(&self, _: usize, _: &[f64]) -> [[f64; 2]; nurbs::NODES] {
+        [[0.0; 2]; nurbs::NODES]
+    }
+    fn plastic_work(&self, _: usize, _: &[f64]) -> PlasticWork {
+        PlasticWork::default()
+    }
+    fn volume(&self, e: usize) -> f64 {
+        self.volume(e)
+    }
+    #[inline]
+    fn evaluate(
+        &self,
+        e: usize,
+        u: &[Vec3; nurbs::NODES],
+        _: &mut [f64],
+        out: &mut NurbsSystem,
+    ) -> Result<(), ElementFault> {
+        self.evaluate(e, u, out)
+    }
+    #[inline]
+    fn residual(
+        &self,
+        e: usize,
+        u: &[Vec3; nurbs::NODES],
+        _: &[f64],
+        f: &mut [f64; nurbs::DOFS],
+    ) -> Result<f64, ElementFault> {
+        self.residual(e, u, f)
+    }
+    #[inline]
+    fn update_alpha(&self, _: &mut [f64], _: &[Vec3; nurbs::NODES], _: f64, _: &[f64]) {}
+    /// Of the mid-surface; nodes of the net do not lie on it, and take the mean over the points of the element.
+    fn nodal_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; nurbs::NODES],
+        _: &[f64],
+        out: &mut [[f64; 6]; nurbs::NODES],
+    ) -> Result<(), ElementFault> {
+        *out = [self.mean_stress(e, u)?; nurbs::NODES];
+        Ok(())
+    }
+    fn linear_nodal_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; nurbs::NODES],
+        state: &[f64],
+        out: &mut [[f64; 6]; nurbs::NODES],
+    ) -> Result<(), ElementFault> {
+        ElementBlock::nodal_stresses(self, e, u, state, out)
+    }
+}
+
 /// The elements of one body.
 #[derive(Debug, Clone)]
 pub enum Block {
@@ -271,6 +366,8 @@ pub enum Block {
     H8(H8Block),
     /// Quadratic elements of 18 nodes.
     Q18(Q18Block),
+    /// Knot spans of a NURBS patch.
+    Nurbs(Box<NurbsBlock>),
 }
 
 /// Runs a block of code with `$block` bound to the concrete elements of a [`Block`].
@@ -279,6 +376,10 @@ macro_rules! with_block {
         match $enum {
             $crate::shell::Block::H8($block) => $body,
             $crate::shell::Block::Q18($block) => $body,
+            $crate::shell::Block::Nurbs($block) => {
+                let $block: &$crate::shell::NurbsBlock = $block;
+                $body
+            }
         }
     };
 }
@@ -288,9 +389,10 @@ impl Block {
     /// Sets up the elements that a scene asks for.
     ///
     /// # Errors
-    /// Those of [`H8Block::new`] and [`Q18Block::new`].
+    /// Those of [`H8Block::new`] and [`Q18Block::new`]; [`ShellError::Sheet`] for elements of a NURBS patch.
     pub fn new(mesh: &Mesh, element: Element, law: Law) -> Result<Block, ShellError> {
         Ok(match Formulation::of(element, law.state_len() > 0) {
+            None if matches!(element, Element::Nurbs) => return Err(ShellError::Sheet),
             Some(formulation) => Block::H8(H8Block::new(mesh, formulation, law)?),
             None => Block::Q18(Q18Block::new(mesh, law)?),
         })
@@ -319,5 +421,13 @@ impl Block {
     /// The law of all elements.
     pub fn law(&self) -> Law {
         with_block!(self, b => b.law())
+    }
+
+    /// The CAD surface that the elements are knot spans of.
+    pub fn sheet(&self) -> Option<&crate::mesh::NurbsSheet> {
+        match self {
+            Block::Nurbs(block) => Some(block.sheet()),
+            Block::H8(_) | Block::Q18(_) => None,
+        }
     }
 }

@@ -45,6 +45,12 @@ pub const fn limits(kind: ElementKind) -> Distortion {
             midside: f64::INFINITY,
             tilt: 0.08,
         },
+        // What the shape of a knot span costs was not measured.
+        ElementKind::Nurbs => Distortion {
+            plane: f64::INFINITY,
+            midside: f64::INFINITY,
+            tilt: f64::INFINITY,
+        },
         ElementKind::Q18 => Distortion {
             plane: 0.95,
             midside: 0.18,
@@ -90,12 +96,12 @@ pub struct MostDistorted {
 
 /// Distortion of an element from its nodes in the order of [`ElementKind`] (8 or 18). `None`: another number of nodes.
 pub fn distortion(kind: ElementKind, nodes: &[Vec3]) -> Option<Distortion> {
-    if nodes.len() != kind.nodes() {
+    if nodes.len() != kind.nodes() || kind == ElementKind::Nurbs {
         return None;
     }
     let lines = match kind {
         ElementKind::H8 => 2,
-        ElementKind::Q18 => 3,
+        ElementKind::Q18 | ElementKind::Nurbs => 3,
     };
     let layer = lines * lines;
     let middle = |a: usize| (nodes[a] + nodes[a + layer]) * 0.5;
@@ -109,7 +115,7 @@ pub fn distortion(kind: ElementKind, nodes: &[Vec3]) -> Option<Distortion> {
             midside: 0.0,
             tilt: tilt_linear(&std::array::from_fn(middle), &std::array::from_fn(director)),
         },
-        ElementKind::Q18 => {
+        ElementKind::Q18 | ElementKind::Nurbs => {
             let y: [Vec3; 9] = std::array::from_fn(middle);
             Distortion {
                 plane,

@@ -39,6 +39,17 @@ pub enum ShellError {
     /// Three enhanced strains lock when the material is nearly incompressible.
     #[error("three enhanced strains lock at nu = {nu} (limit 0.45); use seven")]
     TooFewEnhanced { nu: f64 },
+    /// The law of a shell on a NURBS patch has to be elastic, with a form in plane stress.
+    #[error(
+        "a body of kind `nurbs` has the law `st_venant_kirchhoff` or `neo_hooke`: others have no form in plane stress here"
+    )]
+    PlaneStress,
+    /// The tangents of a surface are parallel at a point of an element.
+    #[error("element {element}: the surface has no normal there")]
+    NoNormal { element: u32 },
+    /// The elements of a sheet are set up from its patch, not from a mesh.
+    #[error("elements of a NURBS patch are set up from its sheet")]
+    Sheet,
 }
 
 /// An element that cannot be evaluated at the given displacements.

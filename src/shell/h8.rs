@@ -65,7 +65,7 @@ impl Formulation {
             Element::H8 => Some(Formulation::Eas7),
             Element::H8Eas3 => Some(Formulation::Eas3),
             Element::H8Displacement => Some(Formulation::Displacement),
-            Element::Q18 => None,
+            Element::Q18 | Element::Nurbs => None,
         }
     }
 }

@@ -24,6 +24,7 @@ mod hold;
 mod kinematics;
 mod layered;
 pub mod material;
+mod nurbs;
 mod q18;
 mod reference;
 mod stress;
@@ -37,6 +38,7 @@ pub use error::{ElementFault, FaultCause, ShellError};
 pub use h8::{Formulation, H8Block, H8System};
 pub use history::PlasticWork;
 pub use material::{Law, MaterialLaw, Metric, NeoHooke, Response, StVenantKirchhoff};
+pub use nurbs::{HeldNormal, NurbsBlock, NurbsSystem, SheetResultants};
 pub use q18::{Q18Block, Q18System};
 pub use stress::{extrapolate, extrapolate_quadratic};
 

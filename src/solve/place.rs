@@ -1,6 +1,7 @@
 //! Where in the model something went wrong, in words.
 use crate::assembly::Assembler;
 use crate::model::Model;
+use crate::model::sheet_pressure::FollowingSpan;
 use crate::model::state::State;
 use crate::scene::ValueError;
 use crate::system::linear::LinearError;
@@ -68,7 +69,7 @@ pub(super) fn not_finite(
     if wrong(assembler.contact_forces()) {
         for (index, pair) in model.pairs.iter().enumerate() {
             let mut points = state.slaves(model, index).iter().enumerate();
-            if let Some((point, p)) = points.find(|(_, p)| p.terms().any(|(n, _)| n == at)) {
+            if let Some((point, p)) = points.find(|(_, p)| model.terms(p).any(|(n, _)| n == at)) {
                 let x = model.point_position(p, &state.u);
                 return format!(
                     "the contact force of contact `{}`, slave point {point} {}",
@@ -111,7 +112,9 @@ pub fn without_value(
     }
     for (name, load) in &model.follower_loads {
         if load.value.eval(time).is_err_and(|e| is(&e)) {
-            return Some(format!("/loads/{name}/pressure"));
+            let couple = matches!(load.spans.first(), Some(FollowingSpan::Couple(_)));
+            let key = if couple { "couple" } else { "pressure" };
+            return Some(format!("/loads/{name}/{key}"));
         }
     }
     for surface in &model.surfaces {

@@ -25,6 +25,7 @@ fn line(kind: ElementKind, x: f64) -> Vec<[f64; 2]> {
             [1.0 - x * x, -2.0 * x],
             [0.5 * x * (x + 1.0), x + 0.5],
         ],
+        ElementKind::Nurbs => unreachable!("these are meshes of solid-shells"),
     }
 }
 
@@ -46,6 +47,7 @@ fn model(grid: &Grid, e: f64, nu: f64) -> Model {
     match grid.mesh.kind {
         ElementKind::H8 => Model::new(&grid.mesh, Formulation::Eas7, st_venant(e, nu)),
         ElementKind::Q18 => Model::q18(&grid.mesh, st_venant(e, nu)),
+        ElementKind::Nurbs => unreachable!("these are meshes of solid-shells"),
     }
 }
 

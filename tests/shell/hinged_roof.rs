@@ -25,6 +25,7 @@ fn loads(kind: ElementKind, n: usize, deflections: &[f64]) -> (Vec<f64>, usize) 
     let mut model = match kind {
         ElementKind::H8 => Model::new(&grid.mesh, Formulation::Eas7, law),
         ElementKind::Q18 => Model::q18(&grid.mesh, law),
+        ElementKind::Nurbs => unreachable!("these are meshes of solid-shells"),
     };
     let mut u = vec![0.0; 3 * grid.mesh.nodes.len()];
     let pair = |i: usize, j: usize, axis: usize| [0, 1].map(|k| 3 * grid.node(i, j, k) + axis);

@@ -9,6 +9,7 @@ fn model(grid: &Grid, e: f64, nu: f64) -> Model {
     match grid.mesh.kind {
         ElementKind::H8 => Model::new(&grid.mesh, Formulation::Eas7, st_venant(e, nu)),
         ElementKind::Q18 => Model::q18(&grid.mesh, st_venant(e, nu)),
+        ElementKind::Nurbs => unreachable!("these are meshes of solid-shells"),
     }
 }
 

@@ -29,6 +29,7 @@ pub fn grid_of(
     let p = match kind {
         ElementKind::H8 => 1,
         ElementKind::Q18 => 2,
+        ElementKind::Nurbs => unreachable!("these are meshes of solid-shells"),
     };
     let (lines_x, lines_y) = (p * nx, p * ny);
     let mut nodes = vec![];

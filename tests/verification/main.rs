@@ -20,6 +20,7 @@ mod hinged_roof;
 mod ironing;
 mod loads;
 mod metal;
+mod nurbs;
 mod offset;
 mod overclosure;
 mod placed;

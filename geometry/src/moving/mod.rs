@@ -8,6 +8,7 @@
 //! - [`MovingFacets::new`]: the facets as they are, degree 1 where all have 2 x 2 nodes, else degree 2 (a direction with
 //!   two nodes is raised).
 //! - [`MovingFacets::smooth`]: one bicubic surface over the mesh.
+//! - [`MovingFacets::of_patch`]: the spans of a bicubic B-spline patch whose control points move.
 //!
 //! [`update`](MovingFacets::update) moves the control points and refits the search tree, [`project`](MovingFacets::project)
 //! gives the closest point, proved to be the closest as for [`PatchSet`](crate::PatchSet). Neither allocates once the
@@ -18,6 +19,7 @@ mod extraction;
 mod keep;
 mod local;
 mod net;
+mod patch;
 mod place;
 mod prove;
 mod search;
@@ -200,6 +202,9 @@ pub enum MovingError {
     /// A reference position that is infinite or not a number.
     #[error("node {0} is not at a finite position")]
     Position(u32),
+    /// A patch whose spans are no polynomial bicubic facets.
+    #[error("the patch is not bicubic with equal weights, or has no such span")]
+    Patch,
     /// Too many elements meet around a facet.
     #[error(
         "the smooth surface on facet {facet} depends on {count} nodes, more than {MAX}: too many elements meet at one of \

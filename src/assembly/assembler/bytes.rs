@@ -58,7 +58,7 @@ pub(crate) mod sizes {
 
     /// The list of where the points of a pair with a rigid master go, beside [`RIGID_MAP`].
     pub fn rigid_map(model: &Model, pair: &PairModel) -> usize {
-        PointMaps::size(&pair.points, &model.dofs)
+        PointMaps::size(model, &pair.points, &model.dofs)
     }
 
     /// For each point of a pair without friction on a body, and for all of the pair.
@@ -88,7 +88,7 @@ pub(crate) mod sizes {
             .flat_map(|p| {
                 p.points
                     .iter()
-                    .flat_map(|p| p.terms().map(|(node, _)| node))
+                    .flat_map(|p| model.terms(p).map(|(node, _)| node))
             })
             .collect();
         nodes.len()
@@ -104,7 +104,10 @@ pub(crate) mod sizes {
             .follower_loads
             .iter()
             .filter(|_| model.small.is_none());
-        loads.map(|(_, load)| of(&load.faces)).sum()
+        let spans = |load: &crate::model::loads::FollowerPressure| {
+            size_of::<u32>() * pairs(16) * load.spans.len()
+        };
+        loads.map(|(_, load)| of(&load.faces) + spans(load)).sum()
     }
 }
 

@@ -5,7 +5,7 @@ use crate::contact::law::PairLaw;
 use crate::model::state::{State, heap};
 use crate::model::{BodyModel, Model};
 use crate::shell::{
-    Block, ElementBlock, ElementFault, ElementSystem, H8System, Q18System, with_block,
+    Block, ElementBlock, ElementFault, ElementSystem, H8System, NurbsSystem, Q18System, with_block,
 };
 use crate::system::{ConstrainedScatter, DofMap, SystemMatrix};
 use covact_geometry::Vec3;
@@ -19,6 +19,7 @@ const CHUNK: usize = 128;
 pub(super) struct Systems {
     h8: Vec<H8System>,
     q18: Vec<Q18System>,
+    nurbs: Vec<NurbsSystem>,
 }
 
 impl Systems {
@@ -31,6 +32,7 @@ impl Systems {
         Systems {
             h8: vec![H8System::default(); most(|b| matches!(b, Block::H8(_)))],
             q18: vec![Q18System::default(); most(|b| matches!(b, Block::Q18(_)))],
+            nurbs: vec![NurbsSystem::default(); most(|b| matches!(b, Block::Nurbs(_)))],
         }
     }
 }
@@ -38,7 +40,7 @@ impl Systems {
 impl Systems {
     /// Bytes of heap that it holds.
     pub fn bytes(&self) -> usize {
-        heap(&self.h8) + heap(&self.q18)
+        heap(&self.h8) + heap(&self.q18) + heap(&self.nurbs)
     }
 }
 
@@ -99,6 +101,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             match &body.block {
                 Block::H8(b) => sums.add(body, b, &mut self.systems.h8, states, u),
                 Block::Q18(b) => sums.add(body, b, &mut self.systems.q18, states, u),
+                Block::Nurbs(b) => sums.add(body, &**b, &mut self.systems.nurbs, states, u),
             }?;
         }
         Ok(())
@@ -156,6 +159,7 @@ pub(super) fn undeformed(
         match &body.block {
             Block::H8(b) => sums.add(body, b, &mut systems.h8, &mut states, &zero),
             Block::Q18(b) => sums.add(body, b, &mut systems.q18, &mut states, &zero),
+            Block::Nurbs(b) => sums.add(body, &**b, &mut systems.nurbs, &mut states, &zero),
         }?;
     }
     Ok(())

@@ -1,7 +1,9 @@
 //! Dead loads and follower pressure.
+use super::elements::pairs;
 use super::{Assembler, Fault, put};
 use crate::contact::law::PairLaw;
 use crate::model::loads::{follower_force, follower_stiffness};
+use crate::model::sheet_pressure::DOFS;
 use crate::model::state::State;
 use covact_geometry::Vec3;
 
@@ -57,11 +59,62 @@ impl<L: PairLaw> Assembler<'_, L> {
                 }
             }
         }
+        for (index, (_, load)) in self.model.follower_loads.iter().enumerate() {
+            if !load.spans.is_empty() {
+                let pressure = load.value.eval(time)?;
+                let at = load.faces.iter().map(|f| pairs(f.nodes().len())).sum();
+                self.press_spans::<TANGENT>(index, (pressure, at), &state.u, increments, rhs);
+            }
+        }
         self.driving(state, time)?;
         for (r, f) in residual.iter_mut().zip(&self.external) {
             *r -= f;
         }
         Ok(())
+    }
+}
+
+impl<L: PairLaw> Assembler<'_, L> {
+    /// Pressure that follows faces of sheets; their blocks begin at place `at` of the load's map.
+    #[cold]
+    fn press_spans<const TANGENT: bool>(
+        &mut self,
+        index: usize,
+        (pressure, mut at): (f64, usize),
+        u: &[f64],
+        increments: Option<&[f64]>,
+        rhs: &mut [f64],
+    ) {
+        let model = self.model;
+        let (mut f, mut k) = ([0.0; DOFS], Box::new([0.0; DOFS * DOFS]));
+        for span in &model.follower_loads[index].1.spans {
+            let nodes = span.nodes();
+            let x = nodes.map(|n| model.position(n as usize, u));
+            span.force(&x, pressure, &mut f, TANGENT.then_some(&mut *k));
+            for (f, &n) in f.chunks_exact(3).zip(nodes) {
+                (0..3).for_each(|c| self.external[3 * n as usize + c] += f[c]);
+            }
+            if !TANGENT {
+                continue;
+            }
+            match self.matrix.is_symmetric() {
+                true => negative_symmetric(&mut k[..], DOFS),
+                false => k.iter_mut().for_each(|k| *k = -*k),
+            }
+            let count = pairs(nodes.len());
+            let map = &self.follower_maps[index][at..at + count];
+            at += count;
+            put(
+                &mut self.matrix,
+                self.dofs,
+                &mut self.work,
+                nodes,
+                map,
+                &mut k[..],
+                increments,
+                rhs,
+            );
+        }
     }
 }
 

@@ -28,9 +28,31 @@ pub(super) struct PointMaps {
 }
 
 impl PointMaps {
-    fn new(points: &[SlavePoint], dofs: &DofMap, pattern: &Pattern) -> Result<Self, PatternError> {
+    fn new(
+        model: &Model,
+        points: &[SlavePoint],
+        dofs: &DofMap,
+        pattern: &Pattern,
+    ) -> Result<Self, PatternError> {
         let mut out = PointMaps::default();
+        let mut before: Option<([u32; 16], u32)> = None;
         for p in points {
+            if let Some(number) = p.lever_number() {
+                // Points of one element follow each other, and share its places.
+                let nodes = model.levers[number].nodes;
+                let start = match before {
+                    Some((own, start)) if own == nodes => start,
+                    _ if dofs.constrains(&nodes) => u32::MAX,
+                    _ => {
+                        let start = u32::try_from(out.places.len()).unwrap_or(u32::MAX);
+                        pattern.element_map(&nodes, &mut out.places)?;
+                        start
+                    }
+                };
+                before = Some((nodes, start));
+                out.starts.push(start);
+                continue;
+            }
             let nodes = &p.nodes[..p.count as usize];
             let start = match u32::try_from(out.places.len()) {
                 Ok(start) if is_plain(nodes, dofs) => {
@@ -47,13 +69,20 @@ impl PointMaps {
     }
 
     /// Bytes of heap that the maps of such points hold, whatever the pattern.
-    pub fn size(points: &[SlavePoint], dofs: &DofMap) -> usize {
+    pub fn size(model: &Model, points: &[SlavePoint], dofs: &DofMap) -> usize {
+        let mut levers: Vec<[u32; 16]> = (points.iter())
+            .filter_map(|p| Some(model.levers[p.lever_number()?].nodes))
+            .collect();
+        levers.dedup();
+        let whole = levers.iter().filter(|nodes| !dofs.constrains(&nodes[..]));
+        let whole = whole.count() * pairs(16);
         let plain = points
             .iter()
+            .filter(|p| p.count > 0)
             .map(|p| &p.nodes[..p.count as usize])
             .filter(|nodes| is_plain(nodes, dofs));
         let places: usize = plain.map(|nodes| pairs(nodes.len())).sum();
-        size_of::<u32>() * (places + points.len())
+        size_of::<u32>() * (whole + places + points.len())
     }
 
     /// Bytes of heap that they hold.
@@ -145,7 +174,7 @@ impl Maps {
         // At small displacements points have a loop of their own.
         let rigid = |p: &PairModel| p.rigid_master().is_some() && model.small.is_none();
         for (index, pair) in model.pairs.iter().enumerate().filter(|(_, p)| rigid(p)) {
-            points.push((index, PointMaps::new(&pair.points, dofs, pattern)?));
+            points.push((index, PointMaps::new(model, &pair.points, dofs, pattern)?));
         }
         let mut followers = Vec::new();
         // At small displacements pressures do not follow.
@@ -157,6 +186,9 @@ impl Maps {
             let mut maps = Vec::new();
             for nodes in &load.faces {
                 pattern.element_map(nodes.nodes(), &mut maps)?;
+            }
+            for span in &load.spans {
+                pattern.element_map(span.nodes(), &mut maps)?;
             }
             maps.shrink_to_fit();
             followers.push(maps);

@@ -2,10 +2,16 @@
 use super::maps::PointMaps;
 use super::{Assembler, SurfaceForce, Totals};
 use crate::contact::law::{NormalLaw, PairLaw};
+use crate::contact::lever;
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::Touch;
+use crate::model::Model;
 use crate::system::{ConstrainedScatter, DofMap, SystemMatrix};
+use covact_geometry::Vec3;
 use nalgebra::Matrix3;
+
+/// Degrees of freedom of a point at a height above a mid-surface.
+const LEVER: usize = 3 * lever::NODES;
 
 /// Where the points of a pair go.
 pub(super) struct Pressed<'a, L> {
@@ -21,6 +27,9 @@ pub(super) struct Pressed<'a, L> {
     pub increments: Option<&'a [f64]>,
     pub rhs: &'a mut [f64],
     pub sums: PressedSums,
+    pub model: &'a Model,
+    /// Displacements.
+    pub u: &'a [f64],
 }
 
 /// What the points of a pair sum up to.
@@ -55,6 +64,7 @@ impl<L: NormalLaw> Pressed<'_, L> {
             1 => self.add_nodes::<TANGENT>(index, p, 1, touch),
             4 => self.add_nodes::<TANGENT>(index, p, 4, touch),
             9 => self.add_nodes::<TANGENT>(index, p, 9, touch),
+            0 => self.add_lever::<TANGENT>(index, p, touch),
             n => self.add_nodes::<TANGENT>(index, p, n as usize, touch),
         }
     }
@@ -68,13 +78,7 @@ impl<L: NormalLaw> Pressed<'_, L> {
         touch: &Touch,
     ) {
         let (nodes, shape) = (&p.nodes[..count], &p.shape[..count]);
-        let force = touch.residual * p.area;
-        let sums = &mut self.sums;
-        sums.active += 1;
-        sums.deepest = sums.deepest.max(-touch.gap);
-        sums.energy += self.law.energy(touch.gap) * p.area;
-        sums.on.force -= force;
-        sums.on.moment -= touch.x.cross(&force);
+        let force = self.count(p, touch);
         for (node, w) in nodes.iter().zip(shape) {
             let at = 3 * *node as usize;
             let f = force * *w;
@@ -101,6 +105,55 @@ impl<L: NormalLaw> Pressed<'_, L> {
                 self.increments,
                 self.rhs,
             ),
+        }
+    }
+}
+
+impl<L: NormalLaw> Pressed<'_, L> {
+    /// Takes a point into the sums; returns its force.
+    #[inline(always)]
+    fn count(&mut self, p: &SlavePoint, touch: &Touch) -> Vec3 {
+        let force = touch.residual * p.area;
+        let sums = &mut self.sums;
+        sums.active += 1;
+        sums.deepest = sums.deepest.max(-touch.gap);
+        sums.energy += self.law.energy(touch.gap) * p.area;
+        sums.on.force -= force;
+        sums.on.moment -= touch.x.cross(&force);
+        force
+    }
+
+    /// Adds a point at a height above a mid-surface.
+    #[cold]
+    #[inline(never)]
+    fn add_lever<const TANGENT: bool>(&mut self, index: usize, p: &SlavePoint, touch: &Touch) {
+        let force = self.count(p, touch);
+        let lever = &self.model.levers[p.nodes[0] as usize];
+        let position = |n: u32| self.model.position(n as usize, self.u);
+        let k = touch.tangent * p.area;
+        let mut ke = [0.0; LEVER * LEVER];
+        let tangent = TANGENT.then_some((&k, &mut ke[..]));
+        let forces = lever.spread(position, &force, tangent);
+        for (node, f) in lever.nodes.iter().zip(&forces) {
+            let at = 3 * *node as usize;
+            for (c, f) in f.iter().enumerate() {
+                self.residual[at + c] += f;
+                self.contact[at + c] += f;
+            }
+        }
+        if !TANGENT {
+            return;
+        }
+        match self.maps.plain(index, lever.nodes.len()) {
+            Some(map) => self.matrix.scatter(map, &ke),
+            None => {
+                if let Some(g) = self.increments {
+                    (self.dofs).subtract_prescribed(&lever.nodes, &ke, g, self.rhs);
+                }
+                self.matrix
+                    .scatter_constrained(&lever.nodes, &ke, self.dofs, self.work)
+                    .expect("the pattern holds the element whose face the point is on");
+            }
         }
     }
 }

@@ -190,6 +190,8 @@ impl<L: PairLaw> Assembler<'_, L> {
                 increments,
                 rhs,
                 sums: PressedSums::default(),
+                model: self.model,
+                u,
             };
             let may_open = surface.driven.is_none();
             let each = pair.points.iter().zip(touches.iter()).zip(points);

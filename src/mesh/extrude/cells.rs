@@ -27,7 +27,7 @@ impl Cells {
         for (f, &[a, b, c, d]) in surface.facets.iter().enumerate() {
             match kind {
                 ElementKind::H8 => nodes.extend([a, b, d, c]),
-                ElementKind::Q18 => {
+                ElementKind::Q18 | ElementKind::Nurbs => {
                     let [ab, bc, cd, da, center] = surface.middles[f];
                     nodes.extend([a, ab, b, da, center, bc, d, cd, c]);
                 }
@@ -46,7 +46,7 @@ impl Cells {
     pub fn side(&self) -> usize {
         match self.kind {
             ElementKind::H8 => 2,
-            ElementKind::Q18 => 3,
+            ElementKind::Q18 | ElementKind::Nurbs => 3,
         }
     }
 

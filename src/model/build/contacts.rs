@@ -8,6 +8,7 @@ use super::super::master::{BodyMaster, Master, moving_facets};
 use super::super::self_contact::OwnFacets;
 use super::super::slave::slave_points;
 use super::super::{HalfPass, ModelError, PairModel, SurfaceModel, penalty, segments, slave};
+use super::nurbs_bodies::sheet_size;
 use super::{Builder, master_faces};
 use crate::contact::points::SlavePoint;
 use crate::machine::memory;
@@ -85,6 +86,7 @@ impl Builder<'_> {
         of: usize,
     ) -> Result<Option<PairModel>, ModelError> {
         let pointer = |field: &str| format!("/contacts/{name}/{field}");
+        self.sheet_contact(name, contact, None)?;
         let (slave, slave_faces) = self.faces(&contact.slave, &pointer("slave"))?;
         let (master, faces) = self.faces(&contact.master, &pointer("master"))?;
         if slave == master {
@@ -135,6 +137,7 @@ impl Builder<'_> {
     ) -> Result<PairModel, ModelError> {
         let pointer = |field: &str| format!("/contacts/{name}/{field}");
         let (body, faces) = self.faces(&contact.slave, &pointer("slave"))?;
+        self.sheet_contact(name, contact, rigid)?;
         let model = &self.bodies[body];
         let first_node = model.first_node;
         let per_face = match contact.points {
@@ -150,8 +153,12 @@ impl Builder<'_> {
             );
             text(pointer("points"), message).help("take fewer points per face, or fewer elements")
         })?;
-        let mut points = slave_points(&model.mesh, &faces, contact.points, first_node)
-            .at(|| pointer("points"))?;
+        let of_sheet = model.block.sheet().is_some();
+        let mut points = match of_sheet {
+            true => self.sheet_points(body, &faces, contact.points),
+            false => slave_points(&model.mesh, &faces, contact.points, first_node),
+        }
+        .at(|| pointer("points"))?;
         if let Some(only) = only {
             points.retain(|p| only.contains(&(p.nodes[0] - first_node)));
         }
@@ -180,6 +187,10 @@ impl Builder<'_> {
                 suits = suits.both(&of_master);
                 Master::Body(Box::new(master))
             }
+        };
+        let height = match &master {
+            Master::Body(body) => body.height,
+            Master::Rigid(_) => 0.0,
         };
         let automatic = suits.automatic;
         let (eps_n, ruled) = match (contact.penalty, &contact.augmentation) {
@@ -270,7 +281,7 @@ impl Builder<'_> {
             element_size: size.edge,
             overclosure: None,
             bow: Vec::new(),
-            offset: contact.offset,
+            offset: contact.offset + height,
             augmentation,
             averaged,
             friction,
@@ -424,7 +435,10 @@ impl Builder<'_> {
     /// Size of the elements under some faces of a body, and the penalties that suit them.
     fn stiffness(&self, body: usize, faces: &[Face]) -> (FaceSize, Suitable) {
         let model = &self.bodies[body];
-        let size = penalty::face_size(&model.mesh, faces);
+        let size = match model.block.sheet() {
+            Some(sheet) => sheet_size(sheet),
+            None => penalty::face_size(&model.mesh, faces),
+        };
         (size, Suitable::new(&model.material, &size))
     }
 
@@ -450,10 +464,15 @@ impl Builder<'_> {
         let pointer = || format!("/contacts/{name}/master");
         let (body, faces) = self.faces(&contact.master, &pointer())?;
         let (size, suits) = self.stiffness(body, &faces);
-        master_faces::check(&self.bodies[body].mesh, &faces, &contact.master)
-            .map_err(|(message, help)| text(pointer(), message).help(help))?;
         let smooth = contact.master_surface == Some(MasterSurface::Smooth);
-        let facets = self.moving_facets(body, &faces, smooth).at(pointer)?;
+        let (facets, height) = match self.sheet_facets(body, &faces) {
+            Some(facets) => facets.at(pointer)?,
+            None => {
+                master_faces::check(&self.bodies[body].mesh, &faces, &contact.master)
+                    .map_err(|(message, help)| text(pointer(), message).help(help))?;
+                (self.moving_facets(body, &faces, smooth).at(pointer)?, 0.0)
+            }
+        };
         let depth = contact.depth.unwrap_or(size.depth);
         self.notes.push(format!(
             "contact `{name}`: a point deeper than {} below `{}` is not in contact (`depth`)",
@@ -469,6 +488,7 @@ impl Builder<'_> {
             depth,
             element_size: size.edge,
             own: None,
+            height,
         };
         Ok((master, suits))
     }

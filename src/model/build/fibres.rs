@@ -46,6 +46,10 @@ impl Builder<'_> {
             }
             for (body, set) in sets {
                 let body = &self.bodies[body];
+                // A sheet has none: `fixed` is a hinge there and `clamped` a clamp.
+                if body.block.sheet().is_some() {
+                    continue;
+                }
                 let fibres = border_fibres(body, &set, &values, scene.solution.end_time);
                 if fibres == 0 {
                     continue;

@@ -1,8 +1,9 @@
 //! Probes of a scene: their nodes.
+use super::super::BodyModel;
 use super::super::error::text;
 use super::super::probe::{ProbeModel, nearest_node};
 use super::{Builder, ModelError};
-use crate::scene::Probe;
+use crate::scene::{Probe, ProbeQuantity};
 
 impl Builder<'_> {
     /// Finds the nodes of all probes.
@@ -27,6 +28,20 @@ impl Builder<'_> {
     }
 
     fn probed(&self, probe: &Probe, at: &str) -> Result<Vec<u32>, ModelError> {
+        let nodes = self.named_nodes(probe, at)?;
+        let of_sheet = |b: &BodyModel| {
+            let own = b.first_node..b.first_node + b.mesh.nodes.len() as u32;
+            b.block.sheet().is_some() && nodes.iter().any(|n| own.contains(n))
+        };
+        if probe.quantity == ProbeQuantity::VonMises && self.bodies.iter().any(of_sheet) {
+            let message = "a body of kind `nurbs` has no stress at its control points";
+            let help = "read it from the fields of the output (`von_mises` on both faces)";
+            return Err(text(format!("{at}/quantity"), message).help(help));
+        }
+        Ok(nodes)
+    }
+
+    fn named_nodes(&self, probe: &Probe, at: &str) -> Result<Vec<u32>, ModelError> {
         if let Some(on) = &probe.on {
             let mut nodes = Vec::new();
             for (at, reference) in on.places(&format!("{at}/on")) {

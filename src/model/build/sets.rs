@@ -2,6 +2,7 @@
 use super::super::error::{At, text};
 use super::super::slave::slave_points;
 use super::{Builder, ModelError};
+use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
 use crate::scene::{self, SetNames};
 use std::collections::HashSet;
@@ -27,6 +28,9 @@ impl Builder<'_> {
                 match (&load.force, &load.gravity) {
                     (_, Some(_)) => errors.extend(self.body(reference, &at).err()),
                     (Some(_), _) => errors.extend(self.set_nodes(reference, &at).err()),
+                    _ if load.couple.is_some() => {
+                        errors.extend(self.set_nodes(reference, &at).err());
+                    }
                     _ => errors.extend(self.faces(reference, &at).err()),
                 }
             }
@@ -116,13 +120,37 @@ impl Builder<'_> {
                     format!("the material of body `{name}` has no density"),
                 )
             })?;
-            let volumes = mesh.nodal_volumes().into_iter().zip(first..);
+            let volumes = match self.bodies[index].block.sheet() {
+                Some(sheet) => {
+                    let areas = sheet.tributary_areas().into_iter();
+                    areas.map(|area| area * sheet.thickness).collect()
+                }
+                None => mesh.nodal_volumes(),
+            };
+            let volumes = volumes.into_iter().zip(first..);
             masses.extend(volumes.map(|(volume, node)| (node, density * volume)));
         }
         Ok(masses)
     }
 
-    /// Share of each node in a total force: by tributary area on face sets, equal on node sets.
+    /// Shares in a total force by the length of edges of sheets; none where a set is not made of edges.
+    fn edge_shares(&self, on: &SetNames) -> Option<Vec<(u32, f64)>> {
+        let mut shares: Vec<(u32, f64)> = Vec::new();
+        for (_, reference) in on.places("") {
+            let (name, set) = split(reference);
+            let body = &self.bodies[*self.body_index.get(name)?];
+            let sheet = body.block.sheet()?;
+            for edge in sheet.edge_sets.get(set)? {
+                let own = sheet.edge_lengths(*edge).into_iter();
+                shares.extend(own.map(|(node, length)| (node + body.first_node, length)));
+            }
+        }
+        let total: f64 = shares.iter().map(|(_, length)| length).sum();
+        shares.iter_mut().for_each(|(_, share)| *share /= total);
+        Some(shares)
+    }
+
+    /// Share of each node in a total force: by length on edges of sheets, by tributary area on face sets, equal on node sets.
     pub(super) fn shares(&self, on: &SetNames, at: &str) -> Result<Vec<(u32, f64)>, ModelError> {
         let mut all_faces = true;
         for (pointer, reference) in on.places(at) {
@@ -132,6 +160,16 @@ impl Builder<'_> {
             let mut points = Vec::new();
             for (body, faces) in self.faces_of(on, at)? {
                 let body = &self.bodies[body];
+                if let Some(sheet) = body.block.sheet() {
+                    let elements = faces.iter().map(|f| f.element as usize);
+                    for p in sheet.points(elements, 4).at(|| at.to_owned())? {
+                        let nodes = p.nodes.iter().zip(p.n);
+                        points.extend(nodes.map(|(node, n)| {
+                            SlavePoint::at_node(node + body.first_node, n * p.area)
+                        }));
+                    }
+                    continue;
+                }
                 let own = slave_points(&body.mesh, &faces, scene::Points::Nodes, body.first_node);
                 points.extend(own.at(|| at.to_owned())?);
             }
@@ -140,6 +178,9 @@ impl Builder<'_> {
                 .iter()
                 .map(|p| (p.nodes[0], p.area / total))
                 .collect());
+        }
+        if let Some(shares) = self.edge_shares(on) {
+            return Ok(shares);
         }
         let mut nodes = Vec::new();
         for (pointer, reference) in on.places(at) {

@@ -1,9 +1,12 @@
 //! Supports as constraints: which degrees of freedom they prescribe or tie, and whether they contradict each other.
+use super::super::Tied;
 use super::super::constraints::{MeanPrescribed, Prescribed};
 use super::super::error::{At, number, text};
+use super::sheet_supports::SheetSupports;
 use super::{BodyModel, Builder, ModelError};
-use crate::mesh::ThicknessColumns;
+use crate::mesh::{Edge, ThicknessColumns};
 use crate::scene::{Axis, POSITION_AND_TIME, Support, TimeFunction, Value};
+use crate::shell::HeldNormal;
 use crate::system::{DofMap, DofMapBuilder};
 use covact_geometry::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,7 +17,10 @@ pub(super) struct Supports {
     pub names: Vec<String>,
     pub prescribed: Vec<Prescribed>,
     pub means: Vec<MeanPrescribed>,
+    pub tied: Vec<Tied>,
     pub dofs: DofMap,
+    /// Edges of sheets, by body, whose normal is held.
+    pub held_normals: Vec<(usize, Edge, HeldNormal)>,
 }
 
 /// Displacement over time, `None` standing for zero.
@@ -51,12 +57,14 @@ impl Builder<'_> {
             mean_owners: BTreeMap::new(),
         };
         let mut columns: BTreeMap<usize, ThicknessColumns> = BTreeMap::new();
+        let mut sheets = SheetSupports::default();
         // Supports of single nodes first: where one of a column is held, the mean moves the other.
         for mid_surface in [false, true] {
             for (index, (name, support)) in scene.supports.iter().enumerate() {
                 if support.mid_surface != mid_surface {
                     continue;
                 }
+                self.sheet_support((index as u32, name, support), &mut sheets)?;
                 let pointer = |field: &str| format!("/supports/{name}/{field}");
                 let (mut nodes, mut pairs) = (Vec::new(), BTreeSet::new());
                 for (at, reference) in support.on.places(&pointer("on")) {
@@ -93,12 +101,16 @@ impl Builder<'_> {
         for &dof in held {
             (all.dofs.prescribe(dof)).at(|| "/surfaces".to_owned())?;
         }
+        let owner = |dof: u32| all.owners.get(&dof).map(|(support, _)| *support);
+        let tied = (sheets.tie(&mut all.dofs, owner)).at(|| "/supports".to_owned())?;
         let dofs = all.dofs.build().at(|| "/supports".to_owned())?;
         Ok(Supports {
             names: all.names,
             prescribed: all.prescribed,
             means: all.means,
+            tied,
             dofs,
+            held_normals: sheets.held,
         })
     }
 }
@@ -227,10 +239,10 @@ fn agree(others: &[(&Prescription, Vec3)], value: &Prescription, x: Vec3, end: f
 
 /// Constrained components of a support, `None` standing for zero.
 pub(super) fn components(support: &Support) -> Vec<(u32, Option<Value>)> {
-    if support.fixed {
+    if support.fixed || support.clamped {
         return (0..3).map(|c| (c, None)).collect();
     }
-    if let Some(axis) = support.symmetry {
+    if let Some(axis) = support.symmetry.or(support.plane_strain) {
         let c = match axis {
             Axis::X => 0,
             Axis::Y => 1,

@@ -338,7 +338,7 @@ impl Builder<'_> {
         let chord = (model.facets.as_ref()).and_then(|f| f.chord).unwrap_or(0.0);
         let clear = |x: &Vec3| chord == 0.0 || model.set.project(x, None, 2.0 * chord).is_none();
         let points: Vec<Vec3> = (pairs.iter().flat_map(|pair| pair.points.iter()))
-            .map(|p| local((p.terms()).fold(Vec3::zeros(), |x, (n, w)| x + self.nodes[n] * w)))
+            .map(|p| local(self.start(p)))
             .filter(clear)
             .collect();
         // The elements below the faces tell where the faces themselves do not: faces that lie on the surface have no

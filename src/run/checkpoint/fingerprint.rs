@@ -43,6 +43,7 @@ impl Fingerprint {
         }
         let meshes = (loaded.scene.bodies.values()).filter_map(|body| match &body.mesh {
             MeshSource::File(file) => Some(&file.path),
+            MeshSource::Nurbs(nurbs) => Some(&nurbs.file),
             _ => None,
         });
         let surfaces = loaded.scene.surfaces.values();

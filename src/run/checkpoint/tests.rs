@@ -324,6 +324,7 @@ fn what_laws_remember_is_committed_and_kept() {
             scene::Element::H8 => 24,
             scene::Element::H8Displacement | scene::Element::H8Eas3 => 8,
             scene::Element::Q18 => 18,
+            scene::Element::Nurbs => 0,
         };
         assert_eq!(numbers(&start).len(), 14 * points);
 

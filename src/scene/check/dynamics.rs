@@ -1,6 +1,6 @@
 //! Motion with inertia: its numbers, and what does not go with it.
 use super::checker::{Checker, path};
-use super::{Dynamics, Kinematics, Scene, Stabilization};
+use super::{Dynamics, Kinematics, MeshSource, Scene, Stabilization};
 
 /// Problems of a scene with inertia, and of one without it whose bodies have velocities.
 pub(super) fn check(c: &mut Checker, scene: &Scene) {
@@ -98,6 +98,15 @@ fn refused(scene: &Scene) -> Vec<(String, &'static str, &'static str)> {
             "viscous stabilisation: inertia holds what nothing else does",
             "leave it out; `damping` slows what moves",
         ));
+    }
+    for (name, body) in &scene.bodies {
+        if matches!(body.mesh, MeshSource::Nurbs(_)) {
+            out.push((
+                format!("{}/nurbs", path(&["bodies", name])),
+                "a CAD surface that bends, whose mass is not integrated",
+                "take a `mesh` of solid-shells for the body",
+            ));
+        }
     }
     for (name, contact) in &scene.contacts {
         if contact.augmentation.is_some() {

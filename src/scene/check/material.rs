@@ -109,6 +109,21 @@ fn check_table(c: &mut Checker, at: &str, rows: &[[f64; 2]]) {
 /// Problems of a body with its material.
 pub(super) fn check_body(c: &mut Checker, name: &str, body: &Body, scene: &Scene) {
     let law = (scene.materials.get(&body.material)).and_then(|m| m.law(&scene.units));
+    if body.element == Element::Nurbs
+        && let Some(law) = &law
+        && !matches!(law, Material::StVenantKirchhoff(_) | Material::NeoHooke(_))
+    {
+        c.add(
+            &path(&["bodies", name, "material"]),
+            format!(
+                "the material `{}` has the law {}, which has no form in plane stress here",
+                body.material,
+                law.title()
+            ),
+            Some("a body of kind `nurbs` takes `st_venant_kirchhoff` or `neo_hooke`".into()),
+        );
+        return;
+    }
     if !law.is_some_and(|law| law.flows()) {
         return;
     }
@@ -116,7 +131,8 @@ pub(super) fn check_body(c: &mut Checker, name: &str, body: &Body, scene: &Scene
     let two_points = match body.element {
         Element::Q18 => Some("q18"),
         Element::H8Eas3 => Some("h8_eas3"),
-        Element::H8 | Element::H8Displacement => None,
+        // Its law is looked at below.
+        Element::H8 | Element::H8Displacement | Element::Nurbs => None,
     };
     if let Some(element) = two_points {
         c.add(

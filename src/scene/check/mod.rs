@@ -269,7 +269,9 @@ fn check_support(c: &mut Checker, at: &str, support: &Support, sets: &Sets) {
         "support",
         &[
             ("fixed", support.fixed),
+            ("clamped", support.clamped),
             ("symmetry", support.symmetry.is_some()),
+            ("plane_strain", support.plane_strain.is_some()),
             ("displacement", support.displacement.is_some()),
         ],
     );
@@ -322,13 +324,17 @@ fn check_weight(c: &mut Checker, at: &str, load: &Load, sets: &Sets, scene: &Sce
 }
 
 fn check_load(c: &mut Checker, at: &str, load: &Load, sets: &Sets, scene: &Scene) {
-    let on_faces = load.force.is_none();
+    let on_faces = load.force.is_none() && load.couple.is_none();
     let what = if load.pressure.is_some() {
         "a pressure"
     } else {
         "a traction"
     };
-    let user = if on_faces { what } else { "a force" };
+    let user = match on_faces {
+        true => what,
+        false if load.couple.is_some() => "a couple",
+        false => "a force",
+    };
     match load.gravity {
         None => check_sets(c, at, &load.on, sets, (on_faces, user)),
         Some(_) => check_weight(c, at, load, sets, scene),
@@ -340,6 +346,7 @@ fn check_load(c: &mut Checker, at: &str, load: &Load, sets: &Sets, scene: &Scene
             ("force", load.force.is_some()),
             ("traction", load.traction.is_some()),
             ("pressure", load.pressure.is_some()),
+            ("couple", load.couple.is_some()),
             ("gravity", load.gravity.is_some()),
         ],
     );
@@ -352,6 +359,9 @@ fn check_load(c: &mut Checker, at: &str, load: &Load, sets: &Sets, scene: &Scene
         for (i, value) in values.iter().flatten().enumerate() {
             c.value(&format!("{at}/{key}/{i}"), value, variables);
         }
+    }
+    if let Some(value) = &load.couple {
+        c.value(&format!("{at}/couple"), value, &TIME);
     }
     if let Some(value) = &load.pressure {
         // The position that a follower would depend on moves with the body.

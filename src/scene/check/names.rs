@@ -88,6 +88,11 @@ fn check_name(c: &mut Checker, at: &str, name: &str, dotless: bool) {
     }
 }
 
+/// Sets of nodes of a CAD surface that bends.
+const SHEET_SETS: [&str; 8] = [
+    "edge.1", "edge.2", "edge.3", "edge.4", "corner.1", "corner.2", "corner.3", "corner.4",
+];
+
 /// Sets that a generator makes, and its name; none for files.
 fn generated_sets(mesh: &MeshSource) -> (Vec<&'static str>, &'static str) {
     let turn = |range: [f64; 2]| (range[1] - range[0] - 360.0).abs() < 1e-9;
@@ -120,6 +125,11 @@ fn generated_sets(mesh: &MeshSource) -> (Vec<&'static str>, &'static str) {
         }
         MeshSource::File(_) => (Vec::new(), false, "file"),
         MeshSource::Arrays(_) | MeshSource::Cells(_) => (Vec::new(), false, "mesh"),
+        MeshSource::Nurbs(_) => {
+            let mut sets = vec!["bottom", "top"];
+            sets.extend(SHEET_SETS);
+            (sets, false, "CAD surface")
+        }
     };
     if closed {
         sets.retain(|s| !s.starts_with("phi") && !s.starts_with("longitude"));
@@ -145,7 +155,7 @@ impl<'a> Sets<'a> {
             let mut sets: BTreeMap<&str, bool> = generated_sets(&body.mesh)
                 .0
                 .into_iter()
-                .map(|s| (s, true))
+                .map(|s| (s, !SHEET_SETS.contains(&s)))
                 .collect();
             for (set, selection) in &body.sets {
                 let faces = matches!(

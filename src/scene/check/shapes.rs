@@ -6,6 +6,9 @@ use crate::scene::value::{TIME, Value};
 /// Extensions of mesh files.
 const MESH_FILES: &[&str] = &["msh", "inp", "bdf", "nas", "vtk", "vtu", "stl"];
 
+/// Extensions of CAD files.
+const SURFACE_FILES: &[&str] = &["step", "stp", "iges", "igs", "json"];
+
 /// More elements than this are taken for a mistake.
 const MAX_ELEMENTS: f64 = 5e7;
 
@@ -71,12 +74,34 @@ pub(super) fn check_mesh(c: &mut Checker, at: &str, mesh: &MeshSource) {
         }
         // Their numbers are checked where the mesh is made.
         MeshSource::Arrays(_) => {}
+        MeshSource::Nurbs(nurbs) => check_nurbs(c, at, nurbs),
         MeshSource::Cells(mesh) => check_mesh_file(c, &format!("{at}/cells"), &mesh.file),
         MeshSource::File(f) => {
             let at = format!("{at}/file");
             c.file(&format!("{at}/path"), &f.path, MESH_FILES);
             check_mesh_file(c, &at, f);
         }
+    }
+}
+
+/// A CAD surface that bends; `at` is the place of `mesh`, beside which it stands.
+fn check_nurbs(c: &mut Checker, at: &str, nurbs: &NurbsSurface) {
+    let at = at.replace("/mesh", "/nurbs");
+    c.file(&format!("{at}/file"), &nurbs.file, SURFACE_FILES);
+    c.positive(&format!("{at}/thickness"), "the thickness", nurbs.thickness);
+    c.exactly_one(
+        &at,
+        "size of elements",
+        &[
+            ("size", nurbs.size.is_some()),
+            ("elements", nurbs.elements.is_some()),
+        ],
+    );
+    if let Some(size) = nurbs.size {
+        c.positive(&format!("{at}/size"), "the size of elements", size);
+    }
+    for (i, n) in nurbs.elements.into_iter().flatten().enumerate() {
+        c.whole(&format!("{at}/elements/{i}"), n, 1, 2000);
     }
 }
 

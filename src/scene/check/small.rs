@@ -1,11 +1,17 @@
 //! What does not go with small displacements, where normals and feet are those of the start.
 use super::checker::{Checker, path};
-use super::{Contact, Gap, Kinematics, Passes, Points, Scene, Stabilization, Tangent};
+use super::{Contact, Element, Gap, Kinematics, Passes, Points, Scene, Stabilization, Tangent};
 
 /// Problems of a scene that asks for small displacements; none of any other.
 pub(super) fn check(c: &mut Checker, scene: &Scene) {
     if scene.solution.kinematics != Kinematics::Small {
         return;
+    }
+    for (name, body) in &scene.bodies {
+        if body.element == Element::Nurbs {
+            let at = path(&["bodies", name, "nurbs"]);
+            refuse(c, &at, "a body of kind `nurbs`", "take a `mesh`");
+        }
     }
     for (name, contact) in &scene.contacts {
         check_contact(c, &path(&["contacts", name]), contact);

@@ -4,6 +4,7 @@ use super::dynamics::Spin;
 use super::given::{Given, MeshArrays, MeshCells};
 use super::mesh::*;
 use super::mesh_file::MeshFile;
+use super::nurbs::NurbsSurface;
 use super::surface::Placement;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,20 +12,17 @@ use std::collections::BTreeMap;
 
 /// A deformable body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(try_from = "BodyForm", into = "BodyForm")]
 pub struct Body {
     /// Where the mesh comes from.
     pub mesh: MeshSource,
     /// Name of the material.
     pub material: String,
     /// Element formulation.
-    #[serde(default)]
     pub element: Element,
     /// Where the mesh is put: first scaled, then rotated about the origin, then moved.
-    #[serde(default)]
     pub placement: Placement,
     /// Further node and face sets, selected by geometry, where the mesh is put.
-    #[serde(default)]
     pub sets: BTreeMap<String, Selection>,
     /// Velocity at the start (length / time); only with `solution.dynamics`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -32,6 +30,79 @@ pub struct Body {
     /// Rotation at the start, on top of `velocity`; only with `solution.dynamics`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spin: Option<Spin>,
+}
+
+/// A deformable body: elements of a `mesh`, or a CAD surface that bends (`nurbs`).
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Body", extend("oneOf" = [{"required": ["mesh"]}, {"required": ["nurbs"]}]))]
+struct BodyForm {
+    /// Where the mesh comes from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    mesh: Option<MeshSource>,
+    /// A CAD surface as a thin shell, in place of a mesh.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    nurbs: Option<NurbsSurface>,
+    /// Name of the material.
+    material: String,
+    /// Element formulation, by default `h8`; not of a body of kind `nurbs`, which has its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    element: Option<Element>,
+    /// Where the mesh is put: first scaled, then rotated about the origin, then moved.
+    #[serde(default)]
+    placement: Placement,
+    /// Further node and face sets, selected by geometry, where the mesh is put.
+    #[serde(default)]
+    sets: BTreeMap<String, Selection>,
+    /// Velocity at the start (length / time); only with `solution.dynamics`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    velocity: Option<[f64; 3]>,
+    /// Rotation at the start, on top of `velocity`; only with `solution.dynamics`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    spin: Option<Spin>,
+}
+
+impl TryFrom<BodyForm> for Body {
+    type Error = &'static str;
+    fn try_from(form: BodyForm) -> Result<Body, &'static str> {
+        let (mesh, element) = match (form.mesh, form.nurbs) {
+            (Some(mesh), None) => (mesh, form.element.unwrap_or_default()),
+            (None, Some(_)) if form.element.is_some() => {
+                return Err("a body of kind `nurbs` has elements of its own: leave `element` out");
+            }
+            (None, Some(nurbs)) => (MeshSource::Nurbs(nurbs), Element::Nurbs),
+            (None, None) => return Err("a body needs a `mesh`, or a CAD surface `nurbs`"),
+            (Some(_), Some(_)) => return Err("a body has a `mesh` or `nurbs`, not both"),
+        };
+        Ok(Body {
+            mesh,
+            material: form.material,
+            element,
+            placement: form.placement,
+            sets: form.sets,
+            velocity: form.velocity,
+            spin: form.spin,
+        })
+    }
+}
+
+impl From<Body> for BodyForm {
+    fn from(body: Body) -> BodyForm {
+        let (mesh, nurbs, element) = match body.mesh {
+            MeshSource::Nurbs(nurbs) => (None, Some(nurbs), None),
+            mesh => (Some(mesh), None, Some(body.element)),
+        };
+        BodyForm {
+            mesh,
+            nurbs,
+            material: body.material,
+            element,
+            placement: body.placement,
+            sets: body.sets,
+            velocity: body.velocity,
+            spin: body.spin,
+        }
+    }
 }
 
 /// Element formulation.
@@ -49,6 +120,10 @@ pub enum Element {
     /// 18-node solid-shell, quadratic in its plane and linear through the thickness: assumed membrane, transverse shear and
     /// thickness strains, four enhanced strains. Curved meshes follow cylinders and spheres closely.
     Q18,
+    /// Kirchhoff-Love shell on a NURBS patch, which a body of kind `nurbs` has.
+    #[serde(skip)]
+    #[schemars(skip)]
+    Nurbs,
 }
 
 /// Where a body's mesh comes from.
@@ -74,6 +149,10 @@ pub enum MeshSource {
     #[serde(skip_deserializing)]
     #[schemars(skip)]
     Cells(Given<MeshCells>),
+    /// A CAD surface that bends; a scene file writes `nurbs` in the place of `mesh`.
+    #[serde(skip_deserializing)]
+    #[schemars(skip)]
+    Nurbs(NurbsSurface),
 }
 
 /// Set selected by geometry, on the undeformed mesh.

@@ -4,7 +4,7 @@ use crate::scene::value::Value;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A support: exactly one of `fixed`, `symmetry`, `displacement`.
+/// A support: exactly one of `fixed`, `clamped`, `symmetry`, `plane_strain`, `displacement`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
@@ -13,9 +13,18 @@ pub struct Support {
     /// All three components are zero.
     #[serde(default)]
     pub fixed: bool,
-    /// The displacement along this axis is zero.
+    /// All three components are zero, and the sheet does not turn about the edge; only for whole edges of a body of kind `nurbs`,
+    /// which `fixed` leaves hinged.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub clamped: bool,
+    /// The displacement along this axis is zero; at an edge of a body of kind `nurbs` the sheet also stays at right angles to the
+    /// plane.
     #[serde(default)]
     pub symmetry: Option<Axis>,
+    /// The displacement along this axis is zero, and the others do not change along it; only for bodies of kind `nurbs` whose
+    /// face is extruded along the axis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plane_strain: Option<Axis>,
     /// Prescribed components.
     #[serde(default)]
     pub displacement: Option<Components>,
@@ -46,10 +55,10 @@ pub struct Components {
     pub z: Option<Value>,
 }
 
-/// A load: exactly one of `force`, `traction`, `pressure`, `gravity`.
+/// A load: exactly one of `force`, `traction`, `pressure`, `couple`, `gravity`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(extend("oneOf" = [{"required": ["force"]}, {"required": ["traction"]}, {"required": ["pressure"]}, {"required": ["gravity"]}]))]
+#[schemars(extend("oneOf" = [{"required": ["force"]}, {"required": ["traction"]}, {"required": ["pressure"]}, {"required": ["couple"]}, {"required": ["gravity"]}]))]
 pub struct Load {
     /// Node or face set, `body.set`, or a list of them (traction and pressure need faces); for gravity a body, or a list.
     pub on: SetNames,
@@ -62,6 +71,10 @@ pub struct Load {
     /// Pressure against the outward normal (force / area). Expressions may use x, y, z and t; those of a follower t.
     #[serde(default)]
     pub pressure: Option<Value>,
+    /// Couple per undeformed length along edges of a body of kind `nurbs`, which turns with them (force); positive where it lifts
+    /// what would lie beyond the edge towards the top. Expressions may use t.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub couple: Option<Value>,
     /// Acceleration that acts on the mass of whole bodies (length / time^2): `[0, 0, -9810]` in mm and s. Their materials need a
     /// `density`.
     #[serde(default)]

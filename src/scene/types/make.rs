@@ -173,7 +173,9 @@ impl Support {
         Support {
             on: on.into(),
             fixed: false,
+            clamped: false,
             symmetry: None,
+            plane_strain: None,
             displacement: None,
             mid_surface: false,
         }
@@ -213,6 +215,7 @@ impl Load {
             force: None,
             traction: None,
             pressure: None,
+            couple: None,
             gravity: None,
             follower: false,
         }

@@ -82,6 +82,7 @@ histories!(
     hat_pressed,
     hertz_block,
     ironing,
+    panel_pressed,
     pinched_tube,
     press_pads,
     punch_sheet,

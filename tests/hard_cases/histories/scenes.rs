@@ -56,6 +56,12 @@ pub fn hertz_block(scene: &mut Value) {
 
 pub fn ironing(_: &mut Value) {}
 
+/// Coarser, and down to where the punch sits on its rim.
+pub fn panel_pressed(scene: &mut Value) {
+    set(scene, "/bodies/panel/nurbs/size", 9);
+    scene["solution"]["end_time"] = json!(0.6);
+}
+
 pub fn pinched_tube(scene: &mut Value) {
     elements(scene, "tube", "cylinder_panel", json!([16, 12]));
 }

@@ -77,7 +77,7 @@ impl Cell {
     pub fn brick(kind: ElementKind, element: &[u32]) -> Cell {
         let plane = match kind {
             ElementKind::H8 => [2, 2],
-            ElementKind::Q18 => [3, 3],
+            ElementKind::Q18 | ElementKind::Nurbs => [3, 3],
         };
         Cell::new(Kind { plane, layers: 2 }, element)
     }

@@ -1,0 +1,198 @@
+//! The knot spans of a B-spline patch whose control points move.
+
+use super::build::Parts;
+use super::extraction::Operator;
+use super::net::bernstein;
+use super::topology::{Outline, Topology};
+use super::{MovingError, MovingFacets};
+use crate::basis::WIDTH;
+use crate::{NurbsPatch, PatchShape};
+use nalgebra::Matrix4;
+
+/// Functions of a cubic that act on a span.
+const M: usize = 4;
+
+impl MovingFacets {
+    /// Some spans of a bicubic patch, numbered with xi1 fastest, each as the facet that it is, exactly. Nodes are the control
+    /// points, by the numbers that `number` gives them. With `reversed` the outside is against `rho_1 x rho_2`: the parameters of
+    /// the facets are then exchanged. [`source`](Self::source) is the place in `spans`.
+    ///
+    /// # Errors
+    /// [`MovingError::Empty`], [`MovingError::TooMany`]; [`MovingError::Patch`] for degrees other than 3, weights that differ, and
+    /// spans that there are not.
+    pub fn of_patch(
+        patch: &NurbsPatch,
+        spans: &[usize],
+        reversed: bool,
+        number: impl Fn(u32) -> u32,
+    ) -> Result<Self, MovingError> {
+        if spans.is_empty() {
+            return Err(MovingError::Empty);
+        }
+        if spans.len() > (u32::MAX / 64) as usize {
+            return Err(MovingError::TooMany(spans.len()));
+        }
+        let counts = [0, 1].map(|dir| patch.basis(dir).span_count());
+        let fits = spans.iter().all(|span| *span < counts[0] * counts[1]);
+        if patch.degree() != [M - 1; 2] || patch.is_rational() || !fits {
+            return Err(MovingError::Patch);
+        }
+        let extractions = [0, 1].map(|dir| -> Vec<Matrix4<f64>> {
+            (0..counts[dir])
+                .map(|span| extraction(patch, dir, span))
+                .collect()
+        });
+        let mut outlines = Vec::with_capacity(spans.len());
+        let mut set = Parts::default();
+        let mut room = PatchShape::default();
+        for (k, span) in spans.iter().enumerate() {
+            let at = [span % counts[0], span / counts[0]];
+            let vertex = |i: usize, j: usize| (at[0] + i + (counts[0] + 1) * (at[1] + j)) as u32;
+            let middle = [0, 1].map(|dir| {
+                let [a, b] = patch.basis(dir).span_range(at[dir]);
+                0.5 * (a + b)
+            });
+            patch.shape_in_span(at, middle, &mut room);
+            let nodes: Vec<u32> = room.indices.iter().map(|n| number(*n)).collect();
+            let [first, second] = [0, 1].map(|dir| &extractions[dir][at[dir]]);
+            let row = |i: usize, j: usize| -> Vec<(u16, f64)> {
+                let entry = |a: usize| (a as u16, first[(i, a % M)] * second[(j, a / M)]);
+                (0..M * M).map(entry).collect()
+            };
+            // Exchanged parameters: row (i, j) of the facet is (j, i) of the span.
+            let rows = (0..M * M).map(|c| match reversed {
+                false => row(c % M, c / M),
+                true => row(c / M, c % M),
+            });
+            set.push(k, &nodes, Operator::new(rows))?;
+            let corner = |c: usize| match reversed {
+                false => vertex(c % 2, c / 2),
+                true => vertex(c / 2, c % 2),
+            };
+            outlines.push(Outline {
+                corners: std::array::from_fn(corner),
+                middles: [None; 4],
+            });
+        }
+        Ok(set.finish(M - 1, Topology::new(&outlines)?))
+    }
+}
+
+/// Bezier points of a span as combinations of its control points: by what both say at four points of the span.
+fn extraction(patch: &NurbsPatch, dir: usize, span: usize) -> Matrix4<f64> {
+    let basis = patch.basis(dir);
+    let [a, b] = basis.span_range(span);
+    let (mut bezier, mut spline) = (Matrix4::zeros(), Matrix4::zeros());
+    for k in 0..M {
+        let xi = 2.0 * k as f64 / (M - 1) as f64 - 1.0;
+        let own = bernstein::<f64, M>(xi)[0];
+        let mut n = [[0.0; WIDTH]];
+        basis.evaluate(span, 0.5 * (a + b) + 0.5 * xi * (b - a), &mut n);
+        for c in 0..M {
+            bezier[(k, c)] = own[c];
+            spline[(k, c)] = n[0][c];
+        }
+    }
+    let inverse = bezier.try_inverse().unwrap_or_else(Matrix4::zeros);
+    // Round-off in the place of a zero would make every operator its own.
+    (inverse * spline).map(|x| if x.abs() < 1e-14 { 0.0 } else { x })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::moving::ShapeRows;
+    use crate::surface::Vec3;
+
+    fn patch() -> NurbsPatch {
+        let knots = |inner: &[f64]| [&[0.0; 4][..], inner, &[1.0; 4]].concat();
+        let counts = [6, 5];
+        let points: Vec<Vec3> = (0..30)
+            .map(|k| {
+                let (i, j) = ((k % 6) as f64, (k / 6) as f64);
+                let bump = (1.7 * k as f64).sin();
+                Vec3::new(i + 0.2 * bump, j - 0.1 * bump, 0.3 * bump + 0.05 * i * i)
+            })
+            .collect();
+        NurbsPatch::new(
+            [3, 3],
+            [knots(&[0.3, 0.7]), knots(&[0.6])],
+            counts,
+            &points,
+            None,
+        )
+        .unwrap()
+    }
+
+    /// Facets are the spans: points and derivatives of the patch, shape functions that move with the control points, a normal
+    /// that is turned round on the other side, and no edges inside.
+    #[test]
+    fn facets_are_the_spans() {
+        let patch = patch();
+        let points = patch.points();
+        let spans: Vec<usize> = (0..6).collect();
+        for reversed in [false, true] {
+            let mut facets = MovingFacets::of_patch(&patch, &spans, reversed, |n| n + 100).unwrap();
+            facets.update(|n| points[n as usize - 100]);
+            assert_eq!((facets.len(), facets.degree()), (6, 3));
+            let mut rows = ShapeRows::default();
+            for (facet, span) in spans.iter().enumerate() {
+                let ranges = [span % 3, span / 3];
+                let ranges = [0, 1].map(|dir| patch.spans(dir)[ranges[dir]]);
+                for at in [[-0.6, 0.9], [0.2, -0.3], [1.0, -1.0]] {
+                    let own = if reversed { [at[1], at[0]] } else { at };
+                    let xi = [0, 1].map(|dir| {
+                        let [a, b] = ranges[dir];
+                        0.5 * (a + b) + 0.5 * own[dir] * (b - a)
+                    });
+                    let jet = facets.jet(facet as u32, at);
+                    let exact = patch.jet(xi);
+                    assert!((jet.rho - exact.rho).norm() < 1e-13);
+                    let [n, m] = [&jet, &exact].map(|j| {
+                        let n = j.rho_i[0].cross(&j.rho_i[1]);
+                        n.normalize()
+                    });
+                    let sign = if reversed { -1.0 } else { 1.0 };
+                    assert!((n - m * sign).norm() < 1e-12);
+                    facets.shape(facet as u32, at, &mut rows);
+                    assert_eq!(rows.count, 16);
+                    let sum = |w: &[f64]| -> Vec3 {
+                        let nodes = facets.nodes(facet as u32).iter();
+                        nodes
+                            .zip(w)
+                            .map(|(n, w)| points[*n as usize - 100] * *w)
+                            .sum()
+                    };
+                    assert!((sum(&rows.n) - jet.rho).norm() < 1e-13);
+                    assert!((sum(&rows.n_1) - jet.rho_i[0]).norm() < 1e-12);
+                    assert!((sum(&rows.n_2) - jet.rho_i[1]).norm() < 1e-12);
+                }
+            }
+            // A point above the border of two spans has its foot on a face.
+            let exact = patch.jet([0.3, 0.4]);
+            let n = exact.rho_i[0].cross(&exact.rho_i[1]).normalize();
+            let foot = facets
+                .project(&(exact.rho + n * 0.05), None, f64::INFINITY, |_| true)
+                .unwrap();
+            assert_eq!(foot.place, crate::MovingPlace::Face);
+            let sign = if reversed { -1.0 } else { 1.0 };
+            assert!((foot.signed_distance - 0.05 * sign).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn what_is_no_polynomial_bicubic_is_refused() {
+        let of = |patch: &NurbsPatch, spans: &[usize]| {
+            MovingFacets::of_patch(patch, spans, false, |n| n).map(|_| ())
+        };
+        assert_eq!(of(&patch(), &[6]), Err(MovingError::Patch));
+        assert_eq!(of(&patch(), &[]), Err(MovingError::Empty));
+        let high = patch().elevated(0, 1).unwrap();
+        assert_eq!(of(&high, &[0]), Err(MovingError::Patch));
+        let points = patch().points();
+        let weights: Vec<f64> = (0..30).map(|k| 1.0 + 0.1 * f64::from(k % 2)).collect();
+        let knots = [0, 1].map(|dir| patch().knots(dir).to_vec());
+        let rational = NurbsPatch::new([3, 3], knots, [6, 5], &points, Some(&weights)).unwrap();
+        assert_eq!(of(&rational, &[0]), Err(MovingError::Patch));
+    }
+}

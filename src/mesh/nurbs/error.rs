@@ -1,0 +1,35 @@
+//! Why a CAD surface cannot be a shell.
+use covact_geometry::patch::PatchError;
+
+/// Why a patch cannot be made a sheet.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NurbsError {
+    /// Part of the patch is cut away.
+    #[error("the face is trimmed: only whole patches can be shells")]
+    Trimmed,
+    /// The elements are cubic, and a degree cannot be lowered without another shape.
+    #[error("the face has degree {degree} along xi{}, above {}", direction + 1, super::DEGREE)]
+    Degree { direction: usize, degree: usize },
+    /// The tangents may jump inside the patch.
+    #[error("the face has a crease inside: at xi{} = {value} its knots allow the tangents to jump", direction + 1)]
+    Crease { direction: usize, value: f64 },
+    /// An edge is one point in space, where there is no normal.
+    #[error("edge {} of the face is one point (a pole), where the surface has no normal", edge + 1)]
+    Pole { edge: usize },
+    /// Two edges are the same curve.
+    #[error("edges {} and {} of the face are the same curve: a closed surface has to be cut in two", edges[0] + 1, edges[1] + 1)]
+    Closed { edges: [usize; 2] },
+    /// No tangent plane somewhere inside.
+    #[error("the face has no normal at ({}, {}, {})", at[0], at[1], at[2])]
+    NoNormal { at: [f64; 3] },
+    /// The surface moved under refinement.
+    #[error("refinement moved the surface by {moved:e} of its size (limit {limit:e})")]
+    Moved { moved: f64, limit: f64 },
+    /// More elements than make sense.
+    #[error("{elements} knot spans are more than the limit of {limit}")]
+    TooMany { elements: u64, limit: u64 },
+    /// An operation on knots or degree failed.
+    #[error(transparent)]
+    Patch(#[from] PatchError),
+}

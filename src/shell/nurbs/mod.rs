@@ -1,0 +1,280 @@
+//! Kirchhoff-Love shells on bicubic NURBS patches: an element is a knot span, its nodes are the sixteen control points that
+//! act on it, three displacements each. No rotations, no fibres: the mid-surface carries membrane and bending strains.
+//!
+//! Strains and their variations: J. Kiendl, K.-U. Bletzinger, J. Linhard and R. Wüchner, CMAME 198 (2009), equations 5 to 17.
+//! `eps_ij = (a_ij - A_ij) / 2`, `kap_ij = H_ij - h_ij`. With `omega_k = n . drho_k` and the covariant second derivatives
+//! `W_ij = drho_ij - Gamma^k_ij drho_k` of a variation, `dkap_ij = -n . W_ij` and `dn = -rho^k omega_k`; the second variation of
+//! the curvature is then three products ([`tangent`]), so that the stiffness needs no derivative of a normal.
+//!
+//! Membrane strains are assumed (option): in the axes of the element they are interpolated biquadratically between nine points,
+//! at the knots and half-way, and keep the element's mean. Nine points integrate such an element, sixteen one without.
+mod borders;
+mod frame;
+mod plane_stress;
+mod point;
+mod strain;
+mod stress;
+mod tangent;
+#[cfg(test)]
+mod tests;
+
+use super::error::{ElementFault, FaultCause, ShellError};
+use super::kinematics::V;
+use super::material::Law;
+use crate::fem::gauss;
+use crate::mesh::NurbsSheet;
+pub use borders::HeldNormal;
+use covact_geometry::{PatchShape, Vec3};
+pub use frame::{DOFS, NODES};
+use num_dual::DualNum;
+use plane_stress::Sheet;
+use point::{ASSUMED, BorderPoint, GaussPoint, PLAIN, TyingPoint, biquadratic, shapes};
+use strain::Strains;
+pub use stress::SheetResultants;
+
+/// Runs a block of code with `$law` bound to the concrete law of a [`Sheet`].
+macro_rules! with_sheet {
+    ($enum:expr, $law:ident => $body:expr) => {
+        match $enum {
+            $crate::shell::nurbs::plane_stress::Sheet::Linear($law) => $body,
+            $crate::shell::nurbs::plane_stress::Sheet::Rubber($law) => $body,
+        }
+    };
+}
+use with_sheet;
+
+/// Forces and tangent of one element, dofs numbered `3 node + axis`, nodes xi1 fastest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NurbsSystem {
+    /// Internal forces.
+    pub f: [f64; DOFS],
+    /// Tangent, full and exactly symmetric, by columns.
+    pub k: Box<[f64; DOFS * DOFS]>,
+    /// Strain energy.
+    pub energy: f64,
+    work: Box<tangent::Work>,
+}
+
+impl Default for NurbsSystem {
+    fn default() -> NurbsSystem {
+        NurbsSystem {
+            f: [0.0; DOFS],
+            k: Box::new([0.0; DOFS * DOFS]),
+            energy: 0.0,
+            work: Box::new(tangent::Work::new()),
+        }
+    }
+}
+
+/// All elements of a sheet, with one law. They keep no state.
+#[derive(Debug, Clone)]
+pub struct NurbsBlock {
+    law: Law,
+    sheet: NurbsSheet,
+    plane: Sheet,
+    nodes: Vec<[u32; NODES]>,
+    /// Undeformed positions of the elements' control points.
+    reference: Vec<[V<f64>; NODES]>,
+    /// Gauss points of an element.
+    per: usize,
+    points: Vec<GaussPoint>,
+    /// Nine per element; none where membrane strains are not assumed.
+    ties: Vec<TyingPoint>,
+    /// The biquadratic functions at the Gauss points of any element.
+    functions: [[f64; ASSUMED]; ASSUMED],
+    borders: Vec<BorderPoint>,
+    /// Where the border points of each element begin, and the end; empty where nothing is held.
+    starts: Vec<u32>,
+}
+
+impl NurbsBlock {
+    /// Bytes of an element here, border points aside.
+    pub(super) const BYTES: usize = size_of::<[u32; NODES]>()
+        + size_of::<[V<f64>; NODES]>()
+        + PLAIN * size_of::<GaussPoint>()
+        + ASSUMED * size_of::<TyingPoint>();
+
+    /// Sets up the knot spans of a sheet.
+    ///
+    /// # Errors
+    /// A law without a form in plane stress; a span where the surface has no normal.
+    pub fn new(sheet: &NurbsSheet, law: Law) -> Result<NurbsBlock, ShellError> {
+        let plane = Sheet::new(&law, sheet.thickness).ok_or(ShellError::PlaneStress)?;
+        let patch = &sheet.patch;
+        let spans = [patch.spans(0), patch.spans(1)];
+        let [nu, nv] = [spans[0].len(), spans[1].len()];
+        let per_side = if sheet.assumed_membrane { 3 } else { 4 };
+        let rule = gauss(per_side).expect("a rule of three or four points exists");
+        let per = per_side * per_side;
+        let positions = patch.points();
+        let mut block = NurbsBlock {
+            law,
+            sheet: sheet.clone(),
+            plane,
+            nodes: Vec::with_capacity(nu * nv),
+            reference: Vec::with_capacity(nu * nv),
+            per,
+            points: Vec::with_capacity(nu * nv * per),
+            ties: Vec::new(),
+            functions: [[0.0; ASSUMED]; ASSUMED],
+            borders: Vec::new(),
+            starts: Vec::new(),
+        };
+        let places: Vec<(f64, f64)> = (rule.iter())
+            .map(|(s, w)| (0.5 * (1.0 + s), 0.5 * w))
+            .collect();
+        if sheet.assumed_membrane {
+            for g in 0..per {
+                block.functions[g] = biquadratic(places[g % 3].0, places[g / 3].0);
+            }
+            block.ties.reserve_exact(nu * nv * ASSUMED);
+        }
+        let mut room = PatchShape::default();
+        for (e, span) in (0..nv)
+            .flat_map(|j| (0..nu).map(move |i| [i, j]))
+            .enumerate()
+        {
+            let [u, v] = [spans[0][span[0]], spans[1][span[1]]];
+            let at = |s: f64, t: f64| [u[0] + s * (u[1] - u[0]), v[0] + t * (v[1] - v[0])];
+            let size = (u[1] - u[0]) * (v[1] - v[0]);
+            let centre = shapes(patch, span, at(0.5, 0.5), &mut room);
+            let x = centre.nodes.map(|a| positions[a as usize].into());
+            let first = frame::combine(&centre.second[0], &x);
+            block.nodes.push(centre.nodes);
+            block.reference.push(x);
+            for (t, wt) in &places {
+                for (s, ws) in &places {
+                    let shape = shapes(patch, span, at(*s, *t), &mut room);
+                    let point = GaussPoint::new(&shape, &x, &first, ws * wt * size);
+                    if !(point.weight > 0.0 && point.weight.is_finite()) {
+                        return Err(ShellError::NoNormal { element: e as u32 });
+                    }
+                    block.points.push(point);
+                }
+            }
+            if sheet.assumed_membrane {
+                for c in 0..ASSUMED {
+                    let place = at(0.5 * (c % 3) as f64, 0.5 * (c / 3) as f64);
+                    let shape = shapes(patch, span, place, &mut room);
+                    let tie = TyingPoint::new(&shape, &x, &first);
+                    if !tie.turn.iter().flatten().all(|t| t.is_finite()) {
+                        return Err(ShellError::NoNormal { element: e as u32 });
+                    }
+                    block.ties.push(tie);
+                }
+            }
+        }
+        Ok(block)
+    }
+
+    /// The surface with its thickness.
+    pub fn sheet(&self) -> &NurbsSheet {
+        &self.sheet
+    }
+
+    /// The law of all elements.
+    pub fn law(&self) -> Law {
+        self.law
+    }
+
+    /// Number of elements.
+    pub fn elements(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Control points of element `e`.
+    pub fn nodes_of(&self, e: usize) -> [u32; NODES] {
+        self.nodes[e]
+    }
+
+    /// Undeformed volume of element `e`.
+    pub fn volume(&self, e: usize) -> f64 {
+        self.sheet.thickness * self.gauss(e).iter().map(|p| p.weight).sum::<f64>()
+    }
+
+    /// Bytes of heap that the points on borders take.
+    pub fn border_bytes(&self) -> usize {
+        size_of_val(&self.borders[..]) + size_of_val(&self.starts[..])
+    }
+
+    /// Gauss points of an element.
+    fn gauss(&self, e: usize) -> &[GaussPoint] {
+        &self.points[self.per * e..self.per * (e + 1)]
+    }
+
+    /// Tying points of an element; none where membrane strains are not assumed.
+    fn tying(&self, e: usize) -> &[TyingPoint] {
+        match self.ties.is_empty() {
+            true => &[],
+            false => &self.ties[ASSUMED * e..ASSUMED * (e + 1)],
+        }
+    }
+
+    /// Points of an element's borders where the normal is held.
+    fn held(&self, e: usize) -> &[BorderPoint] {
+        match self.starts.is_empty() {
+            true => &[],
+            false => &self.borders[self.starts[e] as usize..self.starts[e + 1] as usize],
+        }
+    }
+
+    /// Deformed control points of element `e`.
+    fn positions<D: DualNum<f64> + Copy>(&self, e: usize, u: &[V<D>; NODES]) -> [V<D>; NODES] {
+        std::array::from_fn(|a| [0, 1, 2].map(|c| u[a][c] + self.reference[e][a][c]))
+    }
+
+    /// Energy and forces at displacements `u`, for any scalar.
+    ///
+    /// # Errors
+    /// [`ElementFault`] where the strain is one that no deformation has.
+    pub fn forces<D: DualNum<f64> + Copy>(
+        &self,
+        e: usize,
+        u: &[V<D>; NODES],
+    ) -> Result<(D, [V<D>; NODES]), ElementFault> {
+        let strains = Strains::new(self, e, &self.positions(e, u));
+        with_sheet!(&self.plane, law => strains.forces(self, e, law))
+            .map_err(|cause| fault(e, cause))
+    }
+
+    /// Forces, tangent and energy at displacements `u`.
+    ///
+    /// # Errors
+    /// As [`Self::forces`].
+    pub fn evaluate(
+        &self,
+        e: usize,
+        u: &[Vec3; NODES],
+        out: &mut NurbsSystem,
+    ) -> Result<(), ElementFault> {
+        let u: [V<f64>; NODES] = u.map(Into::into);
+        let strains = Strains::new(self, e, &self.positions(e, &u));
+        with_sheet!(&self.plane, law => tangent::linearize(&strains, self, e, law, out))
+            .map_err(|cause| fault(e, cause))
+    }
+
+    /// Forces at displacements `u`; returns the energy.
+    ///
+    /// # Errors
+    /// As [`Self::forces`].
+    pub fn residual(
+        &self,
+        e: usize,
+        u: &[Vec3; NODES],
+        f: &mut [f64; DOFS],
+    ) -> Result<f64, ElementFault> {
+        let u: [V<f64>; NODES] = u.map(Into::into);
+        let (energy, forces) = self.forces(e, &u)?;
+        for (f, force) in f.iter_mut().zip(forces.as_flattened()) {
+            *f = *force;
+        }
+        Ok(energy)
+    }
+}
+
+fn fault(e: usize, cause: FaultCause) -> ElementFault {
+    ElementFault {
+        element: e as u32,
+        cause,
+    }
+}

@@ -1,0 +1,213 @@
+//! Strains of an element, assumed or compatible, and the forces of their resultants.
+use super::super::error::FaultCause;
+use super::super::kinematics::V;
+use super::frame::{Components, Frame, NODES, Normal, combine, metric};
+use super::plane_stress::{PlaneStress, Resultants};
+use super::point::{ASSUMED, PLAIN, Turn};
+use super::{NurbsBlock, borders};
+use num_dual::DualNum;
+
+/// What the displacements of an element give at its points. Only the first points of each array are used.
+pub(super) struct Strains<D> {
+    /// At the Gauss points.
+    pub frames: [Frame<D>; PLAIN],
+    /// Tangents at the tying points.
+    pub tangents: [[V<D>; 2]; ASSUMED],
+    /// Membrane strains, assumed where they are, and curvatures at the Gauss points.
+    pub strains: [[D; 6]; PLAIN],
+    /// At the points of borders.
+    pub x: [V<D>; NODES],
+}
+
+/// How an assumed strain mixes those of the points: `back_g (sum_c (L_c(g) - mean L_c) T_c eps_c + sum_h part_h T_h eps_h)`.
+pub(super) struct Mix {
+    /// Share of each Gauss point in the area.
+    pub part: [f64; ASSUMED],
+    /// `L_c(g)` less its mean, `[g][c]`.
+    pub functions: [[f64; ASSUMED]; ASSUMED],
+}
+
+impl Mix {
+    #[inline(always)]
+    pub fn new(block: &NurbsBlock, e: usize) -> Mix {
+        let points = block.gauss(e);
+        let area: f64 = points.iter().map(|p| p.weight).sum();
+        let mut part = [0.0; ASSUMED];
+        let mut mean = [0.0; ASSUMED];
+        for (g, p) in points.iter().enumerate() {
+            part[g] = p.weight / area;
+            for c in 0..ASSUMED {
+                mean[c] += part[g] * block.functions[g][c];
+            }
+        }
+        let functions = block
+            .functions
+            .map(|l| std::array::from_fn(|c| l[c] - mean[c]));
+        Mix { part, functions }
+    }
+}
+
+#[inline(always)]
+pub(super) fn apply<D: DualNum<f64> + Copy>(m: &Turn, e: &Components<D>) -> Components<D> {
+    m.map(|row| e[0] * row[0] + e[1] * row[1] + e[2] * row[2])
+}
+
+#[inline(always)]
+fn transposed<D: DualNum<f64> + Copy>(m: &Turn, e: &Components<D>) -> Components<D> {
+    [0, 1, 2].map(|j| e[0] * m[0][j] + e[1] * m[1][j] + e[2] * m[2][j])
+}
+
+/// `eps_ij = (a_ij - A_ij) / 2`, the shear twice.
+#[inline(always)]
+fn membrane<D: DualNum<f64> + Copy>(r: &[V<D>; 2], big: &Components<f64>) -> Components<D> {
+    let a = metric(r);
+    [(a[0] - big[0]) * 0.5, (a[1] - big[1]) * 0.5, a[2] - big[2]]
+}
+
+impl<D: DualNum<f64> + Copy> Strains<D> {
+    #[inline(always)]
+    pub fn new(block: &NurbsBlock, e: usize, x: &[V<D>; NODES]) -> Self {
+        let zero = [D::zero(); 3];
+        let still = Frame {
+            at: Normal {
+                r: [zero; 2],
+                n: zero,
+                up: [zero; 2],
+                area: D::zero(),
+            },
+            h: zero,
+            gamma: [zero; 2],
+        };
+        let mut out = Strains {
+            frames: [still; PLAIN],
+            tangents: [[zero; 2]; ASSUMED],
+            strains: [[D::zero(); 6]; PLAIN],
+            x: *x,
+        };
+        for (g, p) in block.gauss(e).iter().enumerate() {
+            let frame = Frame::new(&p.n, x);
+            let eps = membrane(&frame.at.r, &p.place.metric);
+            for i in 0..3 {
+                let bend = if i == 2 { 2.0 } else { 1.0 };
+                out.strains[g][i] = eps[i];
+                out.strains[g][3 + i] = (-frame.h[i] + p.place.curvature[i]) * bend;
+            }
+            out.frames[g] = frame;
+        }
+        out.assume(block, e);
+        out
+    }
+
+    /// Puts the assumed membrane strains in the place of the compatible ones.
+    fn assume(&mut self, block: &NurbsBlock, e: usize) {
+        let ties = block.tying(e);
+        if ties.is_empty() {
+            return;
+        }
+        let mix = Mix::new(block, e);
+        let points = block.gauss(e);
+        let mut tied = [[D::zero(); 3]; ASSUMED];
+        for (c, tie) in ties.iter().enumerate() {
+            self.tangents[c] = tie.n.each_ref().map(|n| combine(n, &self.x));
+            tied[c] = apply(&tie.turn, &membrane(&self.tangents[c], &tie.metric));
+        }
+        let mut mean = [D::zero(); 3];
+        for (g, p) in points.iter().enumerate() {
+            let [e1, e2, e3, ..] = self.strains[g];
+            let turned = apply(&p.turn, &[e1, e2, e3]);
+            (0..3).for_each(|i| mean[i] += turned[i] * mix.part[g]);
+        }
+        for (g, p) in points.iter().enumerate() {
+            let mut sum = mean;
+            for c in 0..ASSUMED {
+                (0..3).for_each(|i| sum[i] += tied[c][i] * mix.functions[g][c]);
+            }
+            let eps = apply(&p.back, &sum);
+            self.strains[g][..3].copy_from_slice(&eps);
+        }
+    }
+
+    /// Membrane forces that work on the compatible strains of the Gauss points and of the tying points, with weights, in
+    /// place of those on the assumed ones.
+    #[inline(always)]
+    #[allow(clippy::type_complexity)]
+    pub fn spread(
+        block: &NurbsBlock,
+        e: usize,
+        resultants: &[Resultants<D>; PLAIN],
+    ) -> ([Components<D>; PLAIN], [Components<D>; ASSUMED]) {
+        let points = block.gauss(e);
+        let (mut own, mut tied) = ([[D::zero(); 3]; PLAIN], [[D::zero(); 3]; ASSUMED]);
+        for (g, p) in points.iter().enumerate() {
+            (0..3).for_each(|i| own[g][i] = resultants[g][i] * p.weight);
+        }
+        let ties = block.tying(e);
+        if ties.is_empty() {
+            return (own, tied);
+        }
+        let mix = Mix::new(block, e);
+        let mut total = [D::zero(); 3];
+        for (g, p) in points.iter().enumerate() {
+            let s = transposed(&p.back, &own[g]);
+            for i in 0..3 {
+                total[i] += s[i];
+                for c in 0..ASSUMED {
+                    tied[c][i] += s[i] * mix.functions[g][c];
+                }
+            }
+        }
+        for (g, p) in points.iter().enumerate() {
+            own[g] = transposed(&p.turn, &total.map(|t| t * mix.part[g]));
+        }
+        for (tied, tie) in tied.iter_mut().zip(ties) {
+            *tied = transposed(&tie.turn, tied);
+        }
+        (own, tied)
+    }
+
+    /// Energy and forces.
+    pub fn forces<L: PlaneStress>(
+        &self,
+        block: &NurbsBlock,
+        e: usize,
+        law: &L,
+    ) -> Result<(D, [V<D>; NODES]), FaultCause> {
+        let points = block.gauss(e);
+        let mut energy = D::zero();
+        let mut f = [[D::zero(); 3]; NODES];
+        let mut resultants = [[D::zero(); 6]; PLAIN];
+        for (g, p) in points.iter().enumerate() {
+            let (w, r) = law.resultants(g, &p.place, &self.strains[g])?;
+            energy += w * p.weight;
+            resultants[g] = r;
+            let frame = &self.frames[g];
+            for (a, f) in f.iter_mut().enumerate() {
+                let w = frame.covariant(&p.n, a);
+                // dkap_ij = -n . W_ij, the shear twice.
+                let moment = r[3] * w[0] + r[4] * w[1] + r[5] * w[2] * 2.0;
+                (0..3).for_each(|c| f[c] -= frame.at.n[c] * moment * p.weight);
+            }
+        }
+        let (own, tied) = Self::spread(block, e, &resultants);
+        let mut press = |n: [&[f64; NODES]; 2], r: &[V<D>; 2], s: &Components<D>| {
+            let along = |i: usize, c: usize| match i {
+                0 => s[0] * r[0][c] + s[2] * r[1][c],
+                _ => s[1] * r[1][c] + s[2] * r[0][c],
+            };
+            let t = [0, 1].map(|i| [0, 1, 2].map(|c| along(i, c)));
+            for (a, f) in f.iter_mut().enumerate() {
+                (0..3).for_each(|c| f[c] += t[0][c] * n[0][a] + t[1][c] * n[1][a]);
+            }
+        };
+        for (g, p) in points.iter().enumerate() {
+            press([&p.n[0], &p.n[1]], &self.frames[g].at.r, &own[g]);
+        }
+        for (c, tie) in block.tying(e).iter().enumerate() {
+            press([&tie.n[0], &tie.n[1]], &self.tangents[c], &tied[c]);
+        }
+        for held in block.held(e) {
+            energy += borders::forces(held, &self.x, &mut f);
+        }
+        Ok((energy, f))
+    }
+}

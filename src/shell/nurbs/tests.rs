@@ -1,0 +1,289 @@
+//! Derivatives of the sheet's elements against dual numbers; rigid motions, patch tests, and the law in plane stress.
+use super::plane_stress::{Place, PlaneStress, Sheet};
+use super::*;
+use crate::mesh::nurbs::Fineness;
+use crate::mesh::{Edge, Mesh};
+use crate::scene::{Elastic, Material};
+use crate::shell::material::{MaterialLaw, Metric};
+use covact_geometry::NurbsPatch;
+use nalgebra::{DMatrix, Rotation3, SymmetricEigen};
+use num_dual::Dual64;
+
+/// Values without a pattern between -1 and 1.
+fn noise(k: usize) -> f64 {
+    let x = (12.9898 * k as f64 + 4.1).sin() * 43758.5453;
+    2.0 * (x - x.floor()) - 1.0
+}
+
+fn laws() -> [Law; 2] {
+    let elastic = Elastic::new(1000.0, 0.3);
+    [
+        Material::StVenantKirchhoff(elastic),
+        Material::NeoHooke(elastic),
+    ]
+    .map(|m| Law::new(&m).unwrap())
+}
+
+/// A patch with a distorted net, `height` high: flat and polynomial where that is zero, else rational.
+fn patch(height: f64) -> NurbsPatch {
+    let knots = || vec![0.0, 0.0, 0.0, 0.0, 0.4, 1.0, 1.0, 1.0, 1.0];
+    let points: Vec<Vec3> = (0..25)
+        .map(|k| {
+            let (i, j) = ((k % 5) as f64 / 4.0, (k / 5) as f64 / 4.0);
+            let off = |n: usize| 0.05 * noise(4 * k + n);
+            let z = height * (0.8 * i * i - 0.5 * j * j + 0.3 * i * j + off(2));
+            Vec3::new(i + off(0), 0.9 * j + 0.2 * i + off(1), z)
+        })
+        .collect();
+    let uneven = if height > 0.0 { 0.2 } else { 0.0 };
+    let weights: Vec<f64> = (0..25).map(|k| 1.0 + uneven * noise(4 * k + 3)).collect();
+    NurbsPatch::new([3, 3], [knots(), knots()], [5, 5], &points, Some(&weights)).unwrap()
+}
+
+fn sheet(height: f64, assumed: bool) -> NurbsSheet {
+    NurbsSheet::new(&patch(height), 0.08, Fineness::Elements([2, 2]), assumed).unwrap()
+}
+
+fn held(block: &mut NurbsBlock) {
+    let plane = Vec3::new(0.6, 0.0, 0.8);
+    let both = [
+        (Edge::ALL[0], HeldNormal::Clamped),
+        (Edge::ALL[3], HeldNormal::InPlane(plane)),
+    ];
+    block.hold(&both).unwrap();
+    assert_eq!(block.borders.len(), 16);
+}
+
+/// Displacements without a pattern of an element's control points.
+fn moved(size: f64) -> [V<f64>; NODES] {
+    std::array::from_fn(|a| std::array::from_fn(|c| size * noise(100 + 3 * a + c)))
+}
+
+fn dual(u: &[V<f64>; NODES], dof: usize) -> [V<Dual64>; NODES] {
+    std::array::from_fn(|a| {
+        std::array::from_fn(|c| Dual64::new(u[a][c], if 3 * a + c == dof { 1.0 } else { 0.0 }))
+    })
+}
+
+/// The tangent is the derivative of the forces, and those the gradient of the energy: both laws, assumed strains and plain ones,
+/// clamped edges and planes of symmetry, at large displacements.
+#[test]
+fn derivatives_against_dual_numbers() {
+    for law in laws() {
+        for assumed in [true, false] {
+            let mut block = NurbsBlock::new(&sheet(1.0, assumed), law).unwrap();
+            held(&mut block);
+            let u = moved(0.06);
+            let vectors = u.map(Vec3::from);
+            let mut system = NurbsSystem::default();
+            for e in 0..block.elements() {
+                block.evaluate(e, &vectors, &mut system).unwrap();
+                let norm = system.k.iter().map(|k| k * k).sum::<f64>().sqrt();
+                let size = system.f.iter().map(|f| f * f).sum::<f64>().sqrt();
+                assert!(norm > 10.0 && size > 1.0, "{norm} {size}");
+                let mut plain = [0.0; DOFS];
+                let energy = block.residual(e, &vectors, &mut plain).unwrap();
+                assert!((energy - system.energy).abs() < 1e-13 * energy);
+                for dof in 0..DOFS {
+                    let (energy, f) = block.forces(e, &dual(&u, dof)).unwrap();
+                    assert!((energy.eps - system.f[dof]).abs() < 1e-12 * size);
+                    for row in 0..DOFS {
+                        let [exact, k] = [f[row / 3][row % 3].eps, system.k[DOFS * dof + row]];
+                        assert!(
+                            (exact - k).abs() < 1e-12 * norm,
+                            "{e} {dof} {row}: {exact} {k}"
+                        );
+                        assert!((f[row / 3][row % 3].re - system.f[row]).abs() < 1e-12 * size);
+                        assert_eq!(k, system.k[DOFS * row + dof]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Stiffness of a whole sheet at rest.
+fn stiffness(block: &NurbsBlock, mesh: &Mesh) -> DMatrix<f64> {
+    let n = 3 * mesh.nodes.len();
+    let mut k = DMatrix::zeros(n, n);
+    let mut system = NurbsSystem::default();
+    for e in 0..block.elements() {
+        let still = [Vec3::zeros(); NODES];
+        block.evaluate(e, &still, &mut system).unwrap();
+        let nodes = block.nodes_of(e);
+        for column in 0..DOFS {
+            for row in 0..DOFS {
+                let at = |d: usize| 3 * nodes[d / 3] as usize + d % 3;
+                k[(at(row), at(column))] += system.k[DOFS * column + row];
+            }
+        }
+    }
+    k
+}
+
+/// Six motions cost nothing and no other does, also of a flat sheet, whose membrane bending does not hold; three by three points
+/// integrate enough.
+#[test]
+fn six_rigid_motions_and_no_more() {
+    for height in [0.0, 1.0] {
+        for assumed in [true, false] {
+            let mut sheet = sheet(height, assumed);
+            let mesh = sheet.mesh();
+            for law in laws() {
+                let block = NurbsBlock::new(&sheet, law).unwrap();
+                let eigen = SymmetricEigen::new(stiffness(&block, &mesh)).eigenvalues;
+                let largest = eigen.amax();
+                let mut values: Vec<f64> = eigen.iter().map(|v| v.abs() / largest).collect();
+                values.sort_by(f64::total_cmp);
+                assert!(values[5] < 1e-13, "{height} {assumed}: {:?}", &values[..8]);
+                assert!(values[6] > 1e-8, "{height} {assumed}: {:?}", &values[..8]);
+            }
+        }
+    }
+}
+
+/// A rotation by 52 degrees and a shift stress nothing.
+#[test]
+fn a_rotation_is_free_of_force() {
+    let turn = Rotation3::new(Vec3::new(0.3, -0.7, 0.5).normalize() * 52f64.to_radians());
+    for law in laws() {
+        let block = NurbsBlock::new(&sheet(1.0, true), law).unwrap();
+        for e in 0..block.elements() {
+            let u = block.reference[e].map(|x| {
+                let x = Vec3::from(x);
+                turn * x - x + Vec3::new(3.0, 1.0, -2.0)
+            });
+            let mut f = [0.0; DOFS];
+            let energy = block.residual(e, &u, &mut f).unwrap();
+            assert!(f.iter().all(|f| f.abs() < 1e-11), "{f:?}");
+            assert!(energy.abs() < 1e-20, "{energy}");
+            // Stretched by as little as a millionth it has forces.
+            let more = block.reference[e].map(|x| Vec3::from(x) * 1e-6);
+            block.residual(e, &more, &mut f).unwrap();
+            assert!(f.iter().any(|f| f.abs() > 1e-6));
+        }
+    }
+}
+
+/// A flat sheet with a distorted net, stretched and sheared evenly: the forces inside of it vanish, because assumed strains keep
+/// the element's mean. (Of rational patches up to the error of integration.)
+#[test]
+fn patch_test_on_a_distorted_net() {
+    let mut sheet = sheet(0.0, true);
+    let mesh = sheet.mesh();
+    let [nu, nv] = sheet.patch.counts();
+    for law in laws() {
+        let block = NurbsBlock::new(&sheet, law).unwrap();
+        let mut forces = vec![Vec3::zeros(); mesh.nodes.len()];
+        for e in 0..block.elements() {
+            let u = block.reference[e]
+                .map(|x| 1e-3 * Vec3::new(2.0 * x[0] + 0.7 * x[1], -0.4 * x[0] + 1.1 * x[1], 0.0));
+            let mut f = [0.0; DOFS];
+            block.residual(e, &u, &mut f).unwrap();
+            for (node, f) in block.nodes_of(e).iter().zip(f.chunks_exact(3)) {
+                forces[*node as usize] += Vec3::from_column_slice(f);
+            }
+        }
+        let largest = forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
+        assert!(largest > 1e-2);
+        for (n, f) in forces.iter().enumerate() {
+            let (i, j) = (n % nu, n / nu);
+            let inside = i > 0 && i < nu - 1 && j > 0 && j < nv - 1;
+            assert!(
+                !inside || f.norm() < 1e-12 * largest,
+                "{n}: {}",
+                f.norm() / largest
+            );
+        }
+    }
+}
+
+/// A flat sheet bent to an even curvature by its control points has the moment of the closed form and no membrane force.
+#[test]
+fn constant_curvature() {
+    let knots = || vec![0.0, 0.0, 1.0, 1.0];
+    let flat = |i: usize| Vec3::new((i % 2) as f64, (i / 2) as f64, 0.0);
+    let plate: Vec<Vec3> = (0..4).map(flat).collect();
+    let plate = NurbsPatch::new([1, 1], [knots(), knots()], [2, 2], &plate, None).unwrap();
+    let sheet = NurbsSheet::new(&plate, 0.1, Fineness::Elements([2, 2]), true).unwrap();
+    let block = NurbsBlock::new(&sheet, laws()[0]).unwrap();
+    // w = k x^2 / 2: its control points along x are those of the square.
+    let k = 1e-6;
+    let square: Vec<Vec3> = [0.0, 0.0, 0.5].map(|w| Vec3::new(k * w, 0.0, 0.0)).to_vec();
+    let curve: Vec<Vec3> = square.iter().chain(&square).copied().collect();
+    let quadratic = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+    let w = NurbsPatch::new([2, 1], [quadratic, knots()], [3, 2], &curve, None).unwrap();
+    // In the sheet's own space, so that the control points go with each other.
+    let w = w.elevated(0, 1).unwrap().elevated(1, 2).unwrap();
+    let w = w
+        .insert_knots(0, &[0.5])
+        .unwrap()
+        .insert_knots(1, &[0.5])
+        .unwrap();
+    assert_eq!(w.counts(), sheet.patch.counts());
+    let w = w.points();
+    for e in 0..block.elements() {
+        let u = block
+            .nodes_of(e)
+            .map(|n| Vec3::new(0.0, 0.0, w[n as usize].x));
+        let mean = block.mean_resultants(e, &u).unwrap();
+        let bending = 1000.0 * 0.1f64.powi(3) / (12.0 * (1.0 - 0.09));
+        // kap_11 = -w_,11.
+        assert!(
+            (mean.moment[0] / (-bending * k) - 1.0).abs() < 1e-9,
+            "{mean:?}"
+        );
+        assert!((mean.moment[1] / (-0.3 * bending * k) - 1.0).abs() < 1e-9);
+        assert!(mean.membrane.iter().all(|n| n.abs() < 1e-9 * bending));
+    }
+}
+
+/// Neo-Hooke in plane stress is the law in three dimensions with the thickness strain that leaves no stress across: the same
+/// stress, and the condensed moduli by differences of it.
+#[test]
+fn plane_stress_is_the_condensed_law() {
+    let law = laws()[1];
+    let Law::NeoHooke(solid) = law else { panic!() };
+    let Some(Sheet::Rubber(rubber)) = Sheet::new(&law, 1e-4) else {
+        panic!()
+    };
+    let place = Place {
+        metric: [1.3, 0.8, 0.2],
+        curvature: [0.0; 3],
+    };
+    let e = [0.3, -0.12, 0.25, 0.0, 0.0, 0.0];
+    let answer = rubber.answer(0, &place, &e).unwrap();
+    // E_33 by Newton's method on the law in three dimensions.
+    let metric = Metric::new([1.3, 0.8, 1.0, 0.2, 0.0, 0.0]);
+    let mut across = 0.0;
+    let mut response = solid.response(&metric, &[0.0; 6], &()).unwrap();
+    for _ in 0..30 {
+        let strain = [e[0], e[1], across, e[2], 0.0, 0.0];
+        response = solid.response(&metric, &strain, &()).unwrap();
+        across -= response.stress[2] / response.tangent[2][2];
+    }
+    let scale = answer.resultants[0].abs();
+    assert!(scale > 1e-3);
+    for (plane, full) in [(0, 0), (1, 1), (2, 3)] {
+        let expected = 1e-4 * response.stress[full];
+        assert!((answer.resultants[plane] - expected).abs() < 1e-12 * scale);
+        for (other, column) in [(0, 0), (1, 1), (2, 3)] {
+            let c = &response.tangent;
+            let condensed = c[full][column] - c[full][2] * c[2][column] / c[2][2];
+            let found = answer.tangent[plane][other];
+            assert!((found - 1e-4 * condensed).abs() < 1e-12 * 1e-4 * c[0][0]);
+        }
+    }
+    assert!((answer.energy - 1e-4 * response.energy).abs() < 1e-12 * answer.energy);
+    assert!((rubber.thinning(&place, &e) - (1.0 + 2.0 * across).sqrt()).abs() < 1e-12);
+}
+
+/// Laws without a form in plane stress are refused.
+#[test]
+fn hencky_is_refused() {
+    let hencky = Law::new(&Material::Hencky(Elastic::new(1.0, 0.3))).unwrap();
+    assert_eq!(
+        NurbsBlock::new(&sheet(1.0, true), hencky).unwrap_err(),
+        ShellError::PlaneStress
+    );
+}

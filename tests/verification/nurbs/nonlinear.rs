@@ -1,0 +1,147 @@
+//! Benchmarks of large displacements of K. Y. Sze, X. H. Liu and S. H. Lo, Finite Elem. Anal. Des. 40 (2004) 1551.
+use super::{Patch, off, sheet, solve_sheet};
+use serde_json::json;
+use std::f64::consts::PI;
+
+/// Cantilever under an end shear force (section 3.1): the elastica has the deflections 3.2894 and 6.6996 of the end; the
+/// independent program prints 3.28944 and 6.69974.
+#[test]
+fn cantilever_under_end_shear() {
+    let scene = json!({
+        "covact": 1,
+        "materials": {"m": {"st_venant_kirchhoff": {"E": 1.2e6, "nu": 0.0}}},
+        "bodies": {"sheet": sheet(0.1, [16, 1])},
+        "supports": {"clamp": {"on": "sheet.edge.1", "clamped": true}},
+        "loads": {"shear": {"on": "sheet.edge.2", "force": [0, 0, "4*t"]}},
+        "probes": {"tip": {"on": "sheet.corner.2", "quantity": "displacement"}},
+        "solution": {"step": {"initial": 0.1}},
+        "output": {"every": 0}
+    });
+    let outcome = solve_sheet(&Patch::plate([10.0, 1.0], 0.0), &scene);
+    let [u, w] = ["x", "z"].map(|c| outcome.at(&format!("probe.tip.{c}"), 1.0));
+    println!("{u} {w}, {} iterations", outcome.summary.newton_iterations);
+    assert!(off(-u, 3.2894) < 1e-3 && off(w, 6.6996) < 1e-3, "{u} {w}");
+    assert!(off(-u, 3.28944) < 1e-4 && off(w, 6.69974) < 1e-4, "{u} {w}");
+    // The clamp bears the force and its moment about the origin: F (L - u).
+    assert!(off(outcome.at("force.clamp.z", 1.0), -4.0) < 1e-6);
+}
+
+/// The same against the direction of the patch: the clamp at another edge, turned about z, and the normal downwards.
+#[test]
+fn cantilever_turned_round() {
+    let scene = json!({
+        "covact": 1,
+        "materials": {"m": {"st_venant_kirchhoff": {"E": 1.2e6, "nu": 0.0}}},
+        "bodies": {"sheet": {
+            "nurbs": {"file": "face.json", "thickness": 0.1, "elements": [1, 16]},
+            "material": "m",
+            "placement": {"axis": [1, 1, 0], "angle": 180, "translation": [2, 3, 4]},
+            "sets": {"end": {"nodes_near_plane": {"point": [2, 0, 0], "normal": [1, 0, 0], "tolerance": 1e-6}}}
+        }},
+        "supports": {"clamp": {"on": "sheet.end", "clamped": true}},
+        "loads": {"shear": {"on": "sheet.edge.4", "force": [0, 0, "4*t"]}},
+        "probes": {"tip": {"on": "sheet.corner.4", "quantity": "displacement"}},
+        "solution": {"step": {"initial": 0.1}},
+        "output": {"every": 0}
+    });
+    let outcome = solve_sheet(&Patch::plate([1.0, 10.0], 0.0), &scene);
+    let [u, w] = ["x", "z"].map(|c| outcome.at(&format!("probe.tip.{c}"), 1.0));
+    assert!(off(-u, 3.28944) < 1e-4 && off(w, 6.69974) < 1e-4, "{u} {w}");
+}
+
+/// Cantilever under an end couple (section 3.2): `2 pi E I / L` rolls it up to a full circle, whose end is its start.
+#[test]
+fn cantilever_rolled_up() {
+    let couple = 50.0 / 3.0 * PI;
+    let scene = json!({
+        "covact": 1,
+        "materials": {"m": {"st_venant_kirchhoff": {"E": 1.2e6, "nu": 0.0}}},
+        "bodies": {"sheet": sheet(0.1, [16, 1])},
+        "supports": {"clamp": {"on": "sheet.edge.1", "clamped": true}},
+        "loads": {"roll": {"on": "sheet.edge.2", "couple": format!("{couple}*t")}},
+        "probes": {"tip": {"on": "sheet.corner.2", "quantity": "displacement"}},
+        "solution": {"step": {"initial": 0.1}, "stops": [0.5]},
+        "output": {"every": 0}
+    });
+    let outcome = solve_sheet(&Patch::plate([12.0, 1.0], 0.0), &scene);
+    let tip = |t: f64| ["x", "z"].map(|c| outcome.at(&format!("probe.tip.{c}"), t));
+    println!(
+        "{:?}, {} iterations",
+        tip(1.0),
+        outcome.summary.newton_iterations
+    );
+    // Half a circle of radius L / pi, to the top; then the whole.
+    let [u, w] = tip(0.5);
+    assert!(
+        (u + 12.0).abs() < 3e-3 * 12.0 && (w - 24.0 / PI).abs() < 3e-3 * 12.0,
+        "{u} {w}"
+    );
+    let [u, w] = tip(1.0);
+    assert!(
+        (u + 12.0).abs() < 1e-3 * 12.0 && w.abs() < 1e-3 * 12.0,
+        "{u} {w}"
+    );
+}
+
+/// Pinched hemisphere (section 3.4) on 8 x 8 elements at the whole load: the independent program prints 3.811 and 7.474 (from
+/// 16 x 16 on 4.05 and 8.10, its limit 4.07 and 8.14).
+#[test]
+fn hemisphere() {
+    let scene = json!({
+        "covact": 1,
+        "materials": {"m": {"st_venant_kirchhoff": {"E": 6.825e7, "nu": 0.3}}},
+        "bodies": {"sheet": sheet(0.04, [8, 8])},
+        "supports": {
+            "plane_y": {"on": "sheet.edge.1", "symmetry": "y"},
+            "plane_x": {"on": "sheet.edge.2", "symmetry": "x"},
+            "height": {"on": "sheet.corner.1", "displacement": {"z": 0}}
+        },
+        "loads": {
+            "out": {"on": "sheet.corner.1", "force": ["200*t", 0, 0]},
+            "in": {"on": "sheet.corner.2", "force": [0, "-200*t", 0]}
+        },
+        "probes": {
+            "a": {"on": "sheet.corner.1", "quantity": "displacement"},
+            "b": {"on": "sheet.corner.2", "quantity": "displacement"}
+        },
+        "solution": {"step": {"initial": 0.1}},
+        "output": {"every": 0}
+    });
+    let outcome = solve_sheet(&Patch::sphere(10.0, 72.0 * PI / 180.0), &scene);
+    let (a, b) = (outcome.at("probe.a.x", 1.0), -outcome.at("probe.b.y", 1.0));
+    println!("{a} {b}, {} iterations", outcome.summary.newton_iterations);
+    assert!(off(a, 3.811) < 1e-3 && off(b, 7.474) < 1e-3, "{a} {b}");
+}
+
+/// A tube of rubber of constant length under pressure from inside, which follows it. Of an incompressible neo-Hooke membrane
+/// whose circumference is stretched by s the hoop stress is `mu (s^2 - 1/s^2)` and the thickness t/s, so that the pressure is
+/// `mu t / R (1 - s^-4)` (as for A. E. Green and J. E. Adkins, "Large Elastic Deformations", 1960, chapter IV). The material here
+/// is nearly incompressible (nu = .4999) and the sheet thin (t/R = .001).
+#[test]
+fn a_tube_of_rubber_under_pressure() {
+    let (mu, t, radius, nu) = (1.0, 0.01, 10.0, 0.4999);
+    let s: f64 = 1.3;
+    let pressure = mu * t / radius * (1.0 - s.powi(-4));
+    let scene = json!({
+        "covact": 1,
+        "materials": {"m": {"neo_hooke": {"E": 2.0 * mu * (1.0 + nu), "nu": nu}}},
+        "bodies": {"sheet": sheet(t, [4, 2])},
+        "supports": {
+            "plane_x": {"on": "sheet.edge.1", "symmetry": "x"},
+            "plane_z": {"on": "sheet.edge.2", "symmetry": "z"},
+            "ends": {"on": ["sheet.edge.3", "sheet.edge.4"], "symmetry": "y"}
+        },
+        // The normal of the patch points outside.
+        "loads": {"blow": {"on": "sheet.bottom", "pressure": format!("{pressure}*t"), "follower": true}},
+        "probes": {"side": {"on": "sheet.corner.2", "quantity": "displacement"}},
+        "solution": {"step": {"initial": 0.1}},
+        "output": {"every": 0}
+    });
+    let outcome = solve_sheet(&Patch::cylinder(radius, [0.0, 0.5 * PI], 5.0), &scene);
+    let found = 1.0 + outcome.at("probe.side.x", 1.0) / radius;
+    println!(
+        "stretch {found}, {} iterations",
+        outcome.summary.newton_iterations
+    );
+    assert!(off(found, s) < 1e-3, "{found}");
+}
