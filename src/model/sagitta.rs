@@ -33,13 +33,13 @@ impl Curved {
     /// How far the surface lies outside a point of the face, along its own normal there (length), and that normal.
     fn outside(&self, xi: [f64; 2]) -> (f64, Vec3) {
         let (mut height, mut normal) = (0.0, self.normal);
-        for k in 0..2 {
+        for (k, x) in xi.into_iter().enumerate() {
             let (a, kappa) = (self.half[k], self.curvature[k]);
             let turn = kappa * a;
             // R - sqrt(R^2 - a^2 (1 - xi^2)), without its cancellation.
-            let left = turn * turn * (1.0 - xi[k] * xi[k]);
-            height += kappa * a * a * (1.0 - xi[k] * xi[k]) / (1.0 + (1.0 - left).sqrt());
-            normal += self.along[k] * (turn * xi[k] / (1.0 - turn * turn).sqrt());
+            let inner = 1.0 - x * x;
+            height += kappa * a * a * inner / (1.0 + (1.0 - turn * turn * inner).sqrt());
+            normal += self.along[k] * (turn * x / (1.0 - turn * turn).sqrt());
         }
         (height, normal.normalize())
     }

@@ -325,6 +325,18 @@ impl ElementBlock<{ nurbs::NODES }> for NurbsBlock {
     ) -> Result<(), ElementFault> {
         self.evaluate(e, u, out)
     }
+    /// As [`Self::evaluate`]: mixed integration points are those of the solid-shells.
+    #[inline]
+    fn evaluate_mixed(
+        &self,
+        e: usize,
+        u: &[Vec3; nurbs::NODES],
+        _: Option<&[Vec3; nurbs::NODES]>,
+        _: &mut [f64],
+        out: &mut NurbsSystem,
+    ) -> Result<(), ElementFault> {
+        self.evaluate(e, u, out)
+    }
     #[inline]
     fn residual(
         &self,

@@ -48,6 +48,7 @@ fn left_out(kind: ElementKind) {
     let model = match kind {
         ElementKind::H8 => Model::new(&grid.mesh, Formulation::Eas7, law),
         ElementKind::Q18 => Model::q18(&grid.mesh, law),
+        ElementKind::Nurbs => unreachable!("these are meshes of solid-shells"),
     };
     let order = match &model.block {
         Block::H8(b) => b.nodes_of(0).to_vec(),

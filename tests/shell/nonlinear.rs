@@ -48,7 +48,7 @@ impl Hemisphere {
     pub(super) fn solve_with(
         &mut self,
         force: f64,
-        newton: fn(&mut Model, &mut [f64], &[f64], &BTreeMap<usize, f64>) -> usize,
+        newton: impl FnOnce(&mut Model, &mut [f64], &[f64], &BTreeMap<usize, f64>) -> usize,
     ) -> (f64, f64, usize) {
         let grid = &self.grid;
         let nx = grid.nx;

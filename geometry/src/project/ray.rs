@@ -263,8 +263,8 @@ impl<'a, S: Surface> Ray<'a, S> {
         let [u, v] = part.domain;
         let extent = [u[1] - u[0], v[1] - v[0]];
         let mut xi = [u[0] + extent[0] * start.x, v[0] + extent[1] * start.y];
-        for d in 0..2 {
-            xi[d] = xi[d].clamp(part.domain[d][0], part.domain[d][1]);
+        for (x, [a, b]) in xi.iter_mut().zip(part.domain) {
+            *x = x.clamp(a, b);
         }
         let mut grazing = false;
         for _ in 0..ITERATIONS {
@@ -284,13 +284,13 @@ impl<'a, S: Surface> Ray<'a, S> {
         }
         // Beyond the part another one has it, but for gaps at borders.
         let jet = surface.jet_in_span(piece.span, xi);
-        for d in 0..2 {
+        for (d, x) in xi.iter_mut().enumerate() {
             let [a, b] = part.domain[d];
             let room = 1e-9 * (b - a) + self.slack / jet.rho_i[d].norm();
-            if !(a - room..=b + room).contains(&xi[d]) {
+            if !(a - room..=b + room).contains(x) {
                 return None;
             }
-            xi[d] = xi[d].clamp(piece.domain[d][0], piece.domain[d][1]);
+            *x = x.clamp(piece.domain[d][0], piece.domain[d][1]);
         }
         Some((xi, grazing))
     }
