@@ -64,6 +64,40 @@ fn tube() -> Value {
     })
 }
 
+/// Two tubes that are shrunk one on the other, by less than their facets lie off a circle.
+fn tubes() -> Value {
+    let tube = |radius: f64, thickness: f64, n: u32| {
+        json!({"mesh": {"cylinder_panel": {
+            "radius": radius, "thickness": thickness, "angles": [0, 90], "y": [0, 3], "elements": [n, 1]
+        }}, "material": "m"})
+    };
+    json!({
+        "covact": 1,
+        "materials": {"m": {"st_venant_kirchhoff": {"E": 1000, "nu": 0}}},
+        "bodies": {"outer": tube(20.0, 5.0, 8), "inner": tube(15.0, 5.02, 12)},
+        "contacts": {"fit": {"slave": "inner.outer", "master": "outer.inner"}},
+        "supports": {
+            "x": {"on": ["outer.phi_min", "inner.phi_min"], "symmetry": "x"},
+            "z": {"on": ["outer.phi_max", "inner.phi_max"], "symmetry": "z"},
+            "y": {"on": ["outer.y_min", "inner.y_min"], "symmetry": "y"}
+        }
+    })
+}
+
+/// A CAD surface as a thin shell, clamped along an edge.
+fn panel() -> Value {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/cad/panel.igs");
+    json!({
+        "covact": 1,
+        "units": {"length": "mm"},
+        "materials": {"m": {"st_venant_kirchhoff": {"E": 70000, "nu": 0.33}}},
+        "bodies": {"panel": {
+            "nurbs": {"file": file, "thickness": 1, "size": 12}, "material": "m"
+        }},
+        "supports": {"clamped": {"on": "panel.edge.1", "clamped": true}}
+    })
+}
+
 /// A plate on the face of a die that a trimming curve bounds.
 fn trimmed() -> Value {
     let die = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/die.igs");
@@ -174,6 +208,8 @@ fn scenes() -> Vec<Value> {
         ]),
         blocks(&[("/contacts/press/master_surface", json!("smooth"))]),
         tube(),
+        panel(),
+        tubes(),
     ]
 }
 

@@ -325,7 +325,7 @@ fn troubled() -> [(&'static str, Value); 4] {
             "/bodies/plate/mesh/plate",
             json!({"size": [40, 40], "thickness": 0.5, "elements": [8, 8], "origin": [0, 0, 0.75]}),
         ),
-        ("/surfaces/ball/motion/translation", json!([0, 0, "-10*t"])),
+        ("/surfaces/ball/motion/translation", json!([0, 0, "-4.7*t"])),
         ("/contacts/press/penalty", json!({"scaled": 100})),
         ("/solution", json!({"step": {"initial": 1, "max": 1}})),
     ]

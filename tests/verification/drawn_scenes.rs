@@ -51,7 +51,8 @@ fn borders_of_patches_are_not_felt() {
         let summary = &outcome.summary;
         assert_eq!(summary.status.name(), "done", "{:?}", summary.reason);
         let (cuts, iterations) = effort(outcome);
-        assert!(cuts == 0.0 && iterations <= 8.0, "{cuts} {iterations}");
+        // A limit of what it costs: a step that turns with the motion takes most.
+        assert!(cuts == 0.0 && iterations <= 8.5, "{cuts} {iterations}");
     }
     let slip = one.column("points.slip");
     let most = slip.iter().fold(0.0f64, |a, b| a.max(*b));

@@ -96,7 +96,16 @@ impl March<'_, '_> {
             Some(jump) => (jump.step, STRONGER * jump.rate),
         };
         if rate > MOST || step - begun > STEPS {
-            walk.jump = None;
+            if let Some(jump) = walk.jump.take()
+                && step > jump.step
+            {
+                self.warn(format!(
+                    "from time {} to {} viscous forces carried the path, since no equilibrium goes on there, and it came to none: \
+                     the states in between are not in equilibrium, and their forces do not balance",
+                    number(jump.time),
+                    number(self.progress.time)
+                ));
+            }
             walk.given_up = Some(step);
             return false;
         }

@@ -7,7 +7,7 @@ use super::mesh_file::MeshFile;
 use super::nurbs::NurbsSurface;
 use super::surface::Placement;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 
 /// A deformable body.
@@ -39,9 +39,11 @@ pub struct Body {
 struct BodyForm {
     /// Where the mesh comes from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(deserialize_with = "given")]
     mesh: Option<MeshSource>,
     /// A CAD surface as a thin shell, in place of a mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(deserialize_with = "given")]
     nurbs: Option<NurbsSurface>,
     /// Name of the material.
     material: String,
@@ -60,6 +62,11 @@ struct BodyForm {
     /// Rotation at the start, on top of `velocity`; only with `solution.dynamics`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     spin: Option<Spin>,
+}
+
+/// A value that is there, be it a faulty one that is told of by itself: not none.
+fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(from: D) -> Result<Option<T>, D::Error> {
+    T::deserialize(from).map(Some)
 }
 
 impl TryFrom<BodyForm> for Body {
