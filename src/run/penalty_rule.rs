@@ -39,8 +39,10 @@ const DEEPER: f64 = 10.0;
 /// energy of contact grows with it at first; a penetration that is prescribed does not change at all.
 const HELPS: f64 = 0.9;
 const HELPS_DEPTH: f64 = 0.98;
-/// Steps after which a penalty that did not serve is forgotten.
+/// Steps after which a penalty that did not serve is forgotten, and those after which one is where the error is untenable: what a
+/// first touch cannot follow, the steps after it may.
 const FORGOTTEN: u32 = 20;
+const SOON: u32 = 3;
 /// Steps until another raise is tried after one that did not serve, twice as many after the next one.
 const WAIT: u32 = 2;
 
@@ -155,7 +157,10 @@ impl PenaltyRule {
                 false => 1.0,
             };
             // Between what serves and what does not.
-            let between = (penalties[index] * rule.bad).sqrt();
+            let untenable = total > UNTENABLE * ruled.accuracy;
+            let known = again || !untenable || rule.remembered + SOON > FORGOTTEN;
+            let bad = if known { rule.bad } else { f64::INFINITY };
+            let between = (penalties[index] * bad).sqrt();
             let bound = ruled.stiffest.min(between);
             let eps = (penalties[index] * by_error.max(by_depth.min(most))).min(bound);
             // A little more would not be worth another solution.
@@ -343,7 +348,14 @@ mod tests {
         assert_eq!(of(&rule, false, 0.02), 1.0);
         assert_eq!(of(&rule, false, 0.2), 10.0);
         let mut penalties = vec![1.0, 1.0];
-        for _ in 0..FORGOTTEN {
+        let none = errors([0.0; 2], [0.0; 2]);
+        for _ in 0..SOON {
+            rule.lower(&model, &none, 0, &mut penalties);
+        }
+        // A large error is not borne for long, a small one is.
+        assert_eq!(of(&rule, false, 0.2), 50.0);
+        assert_eq!(of(&rule, true, 0.02), 5.0);
+        for _ in SOON..FORGOTTEN {
             rule.lower(&model, &errors([0.0; 2], [0.0; 2]), 0, &mut penalties);
         }
         assert_eq!(of(&rule, false, 0.2), 50.0);

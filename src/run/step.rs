@@ -46,6 +46,7 @@ const SECANTS: First = First {
     hold: false,
     secants: true,
     search: false,
+    keep: false,
 };
 /// Times a penalty that lets points fall through their master may be raised within a step, and the factor.
 const DEEPER: (usize, f64) = (4, 10.0);
@@ -193,6 +194,7 @@ impl Attempts<'_, '_> {
                     hold,
                     secants: false,
                     search: self.habit.search,
+                    keep: false,
                 });
                 let failure = match self.converge(step, end, trial, Patience::Short) {
                     Err(failure) if another(&failure) => failure,
@@ -263,7 +265,11 @@ impl Attempts<'_, '_> {
             Start::Accepted | Start::Plain | Start::Searched => {
                 self.restart(end, trial)?;
                 let search = start == Start::Searched;
-                self.first = Some(First { search, ..SECANTS });
+                self.first = Some(First {
+                    search,
+                    keep: true,
+                    ..SECANTS
+                });
                 self.mixed = start == Start::Accepted;
                 let result = self.converge(step, end, trial, patience);
                 self.mixed = true;
@@ -336,7 +342,12 @@ impl Attempts<'_, '_> {
         };
         self.again(step, "the penalty of the last stage", &failure, &penalties);
         trial.copy_from(&state);
-        let mut converged = self.converge(step, end, trial, Patience::Long)?;
+        let mut converged = match self.converge(step, end, trial, Patience::Long) {
+            Ok(converged) => converged,
+            Err(StepFailure::Interrupted) => return Err(StepFailure::Interrupted),
+            // What falls through under so soft a penalty says nothing of the full one.
+            Err(_) => return Err(failure),
+        };
         converged.softened = true;
         converged.eased = true;
         self.rule.reject(&penalties, full);

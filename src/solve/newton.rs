@@ -86,6 +86,9 @@ pub struct First {
     pub secants: bool,
     /// Every increment is searched along, not only where full steps fail to make headway.
     pub search: bool,
+    /// Points in contact stay so for the first iterations: along the tangent planes of a curved surface a large way leads off it
+    /// by more than a stiff penalty lets points sink in, and what opens by that alone is not open.
+    pub keep: bool,
 }
 
 /// One step of Newton's method.
@@ -113,6 +116,9 @@ pub struct Newton<'a, 'm, S: LinearSolver + ?Sized> {
 
 /// Linearisations that take secants of friction.
 const SECANTS: u32 = 2;
+/// Iterations at most for which points are kept in contact, and the residual from which on they are not.
+const KEPT: u32 = 4;
+const NEAR: f64 = 0.05;
 /// Iterations without headway after which the line search is switched on.
 const UNTIL_SEARCH: u32 = 6;
 /// Iterations without headway after which a start is given up where another is at hand. A thin shell may take six to
@@ -276,7 +282,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 }
             }
             self.assembler.linearization = Linearization {
-                keep_active: false,
+                keep_active: self.first.keep
+                    && iteration < KEPT
+                    && (iteration == 0 || held && norms.relative() > NEAR),
                 secant_slip: iteration + 1 < secants,
                 keep_facets: keep,
             };

@@ -11,7 +11,7 @@ use super::{Assembler, Fault, PairForce, PatternError, SurfaceForce, Totals, map
 use crate::contact::friction::history::PointHistory;
 use crate::contact::kernel::assemble_force;
 use crate::contact::kind::{FrictionKind, LawKind, MasterKind, TangentKind};
-use crate::contact::law::{Multipliers, NoOffset, Offsets, PairLaw, PointLaw};
+use crate::contact::law::{Held, Multipliers, NoOffset, Offsets, PairLaw, PointLaw};
 use crate::contact::moving::{MovingMaster, MovingTouch};
 use crate::contact::point::FaceTangent;
 use crate::contact::points::SlavePoint;
@@ -286,17 +286,28 @@ impl<L: PairLaw> Assembler<'_, L> {
                 _ => None,
             };
             let known = histories.unwrap_or(&[]);
+            let hold = self.linearization.keep_active;
+            self.held.clear();
+            if hold {
+                self.held.extend(states.iter().map(|p| p.closed));
+            }
+            let offsets = Measured {
+                histories: known,
+                offsets,
+                held: hold.then_some(&self.held[..]),
+            };
             let ran = match &master.own {
-                None => batch.offset(states, touches, offsets, known, &All),
+                None => batch.offset(states, touches, offsets, &All),
                 Some(own) => {
                     let accept = Opposing {
                         own,
                         normals: &surface.normals,
                         position: |n: u32| self.model.position(n as usize, &state.u),
                     };
-                    batch.offset(states, touches, offsets, known, &accept)
+                    batch.offset(states, touches, offsets, &accept)
                 }
             };
+            let Measured { offsets, .. } = offsets;
             self.ran[index] = Some(ran);
             if let (Some(_), Some(range)) = (histories, pair.history()) {
                 let answers = self.answers[range].iter_mut().zip(touches.iter());
@@ -522,6 +533,16 @@ struct Batch<'a, L> {
     u: &'a [f64],
 }
 
+/// What the gaps of the points of a pair are measured from.
+#[derive(Clone, Copy)]
+struct Measured<'a> {
+    /// Empty without multipliers.
+    histories: &'a [PointHistory],
+    offsets: Option<Offsets<'a>>,
+    /// Points that stay in contact wherever they are.
+    held: Option<&'a [bool]>,
+}
+
 impl<L: PairLaw> Batch<'_, L> {
     /// Evaluates every point under the law that the plan names: with gaps measured from where the pair says, and with
     /// multipliers where it has any. Returns what was run.
@@ -529,10 +550,21 @@ impl<L: PairLaw> Batch<'_, L> {
         &self,
         states: &mut [PointState],
         touches: &mut [Result<Option<MovingTouch>, PointFault>],
-        offsets: Option<Offsets>,
-        histories: &[PointHistory],
+        Measured {
+            histories,
+            offsets,
+            held,
+        }: Measured,
         accept: &A,
     ) -> Kernel {
+        if let Some(held) = held {
+            let held = Held {
+                held,
+                histories,
+                offsets,
+            };
+            return self.choose(states, touches, &held, accept);
+        }
         match self.kernel.law {
             LawKind::Penalty | LawKind::Held => self.choose(states, touches, &NoOffset, accept),
             LawKind::Offset => self.choose(states, touches, &offsets.unwrap_or_default(), accept),

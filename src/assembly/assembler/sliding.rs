@@ -13,7 +13,7 @@ use crate::contact::friction::rigid::Friction;
 use crate::contact::friction::scatter::PointNodes;
 use crate::contact::friction::touch::MovingFrictionTouch;
 use crate::contact::kind::{LawKind, TangentKind};
-use crate::contact::law::{Offsets, PairLaw};
+use crate::contact::law::{Augmented, Offsets, PairLaw};
 use crate::contact::moving::MovingMaster;
 use crate::contact::rigid::PointFault;
 use crate::model::friction::FrictionModel;
@@ -147,6 +147,7 @@ impl Sliding {
                 all: linearization.secant_slip,
                 keep: tangent && kernel.law != LawKind::Multipliers,
             },
+            hold: linearization.keep_active,
             offsets: pair.offsets(time),
         };
         let eps_t = ratio * penalty;
@@ -355,6 +356,8 @@ struct Batch<'a, L> {
     u: &'a [f64],
     histories: &'a [PointHistory],
     secants: Secants,
+    /// Points that are closed stay so.
+    hold: bool,
     offsets: Option<Offsets<'a>>,
 }
 
@@ -393,7 +396,10 @@ impl<L: PairLaw> Batch<'_, L> {
             .with_min_len(32)
             .for_each(|(i, ((((p, s), out), slip), history))| {
                 let x = self.model.point_position(p, self.u);
-                let law = history.law(self.law, self.offsets.map_or(0.0, |o| o.at(i)));
+                let law = Augmented {
+                    held: self.hold && s.closed,
+                    ..history.law(self.law, self.offsets.map_or(0.0, |o| o.at(i)))
+                };
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
                 let hint = &mut s.hint;
@@ -409,6 +415,7 @@ impl<L: PairLaw> Batch<'_, L> {
             master: A::KIND,
             // With a history every law has room for a multiplier, which without augmentation is zero.
             law: match self.offsets {
+                _ if self.hold => LawKind::Held,
                 _ if self.kernel.law == LawKind::Multipliers => LawKind::Multipliers,
                 Some(_) => LawKind::Offset,
                 None => LawKind::Penalty,

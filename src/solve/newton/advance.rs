@@ -39,6 +39,10 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             trial.points.copy_from_slice(&self.workspace.base.points);
             match self.linearize(trial, time, (left, mixed)) {
                 Ok(totals) => return Ok((totals, s, left)),
+                // A point that cannot be kept in contact where it is now.
+                Err(_) if self.assembler.linearization.keep_active => {
+                    self.assembler.linearization.keep_active = false;
+                }
                 Err(_) if s > smallest => s *= 0.5,
                 Err(fault) => return Err(fault.into()),
             }
