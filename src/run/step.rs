@@ -265,9 +265,11 @@ impl Attempts<'_, '_> {
             Start::Accepted | Start::Plain | Start::Searched => {
                 self.restart(end, trial)?;
                 let search = start == Start::Searched;
+                // Before the first step nothing is pressed that could be kept.
+                let keep = step > 1;
                 self.first = Some(First {
                     search,
-                    keep: true,
+                    keep,
                     ..SECANTS
                 });
                 self.mixed = start == Start::Accepted;

@@ -86,8 +86,8 @@ pub struct First {
     pub secants: bool,
     /// Every increment is searched along, not only where full steps fail to make headway.
     pub search: bool,
-    /// Points in contact stay so for the first iterations: along the tangent planes of a curved surface a large way leads off it
-    /// by more than a stiff penalty lets points sink in, and what opens by that alone is not open.
+    /// Points in contact stay so for the first iterations where the first correction opens most of them: along the tangent planes
+    /// of a curved surface a large way leads off it by more than a stiff penalty lets points sink in.
     pub keep: bool,
 }
 
@@ -119,6 +119,8 @@ const SECANTS: u32 = 2;
 /// Iterations at most for which points are kept in contact, and the residual from which on they are not.
 const KEPT: u32 = 4;
 const NEAR: f64 = 0.05;
+/// Times as many points as are left in contact have to be in contact before for that.
+const MOST_OPEN: usize = 2;
 /// Iterations without headway after which the line search is switched on.
 const UNTIL_SEARCH: u32 = 6;
 /// Iterations without headway after which a start is given up where another is at hand. A thin shell may take six to
@@ -264,7 +266,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                     PingPong::find(self.model, &self.workspace.base.points, trial, period)
             {
                 // Kept in contact for once, then approached by half of the way.
-                let hold = self.ping_pongs.is_multiple_of(2) && self.keep(trial, time)?;
+                let hold = self.ping_pongs.is_multiple_of(2) && self.keep(trial, time)?.is_some();
                 damped = if hold { 0 } else { period as u32 };
                 observer.event(&found.event(step, iteration, hold));
                 self.ping_pongs += 1;
@@ -282,9 +284,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 }
             }
             self.assembler.linearization = Linearization {
-                keep_active: self.first.keep
-                    && iteration < KEPT
-                    && (iteration == 0 || held && norms.relative() > NEAR),
+                keep_active: self.first.keep && held && iteration < KEPT && norms.relative() > NEAR,
                 secant_slip: iteration + 1 < secants,
                 keep_facets: keep,
             };
@@ -296,8 +296,17 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             let mixed = self.mixed && !held && iteration < MIXED && bends;
             // Residuals then rise before they fall, more than others do.
             let search = search && (!mixed || self.first.search);
+            let pressed = totals.active;
             (totals, factor, pending) =
                 self.advance(trial, time, (search, mixed), pending, largest)?;
+            if iteration == 0
+                && self.first.keep
+                && !pending
+                && MOST_OPEN * totals.active < pressed
+                && let Some(kept) = self.keep(trial, time)?
+            {
+                totals = kept;
+            }
             energy = dot(&self.workspace.du, &self.workspace.rhs).abs();
             if iteration == 0 {
                 first_energy = energy;
@@ -323,7 +332,10 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         self.assembler.begin_solution();
         let totals = self.linearize(trial, time, (pending, false))?;
         self.opened = totals.opened > 0;
-        if !self.first.hold || !self.opened {
+        let before = self.workspace.base.points.iter();
+        let pressed = before.filter(|point| point.closed).count();
+        let most_open = self.first.keep && MOST_OPEN * totals.active < pressed;
+        if !(self.first.hold && self.opened || most_open) {
             return Ok((totals, secants));
         }
         trial.points.copy_from_slice(&self.workspace.base.points);
@@ -335,15 +347,14 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         Ok((self.linearize(trial, time, (pending, false))?, SECANTS))
     }
 
-    /// Linearises with the points that switched in the last iteration kept in contact; whether that could be done, on rigid
-    /// surfaces.
-    fn keep(&mut self, trial: &mut State, time: f64) -> Result<bool, Fault> {
+    /// Linearises with the points that switched in the last iteration kept in contact, where that can be done.
+    fn keep(&mut self, trial: &mut State, time: f64) -> Result<Option<Totals>, Fault> {
         let now: Vec<PointState> = trial.points.clone();
         for (point, before) in trial.points.iter_mut().zip(&self.workspace.base.points) {
             point.closed |= before.closed;
         }
         if trial.points == now {
-            return Ok(false);
+            return Ok(None);
         }
         let linearization = self.assembler.linearization;
         self.assembler.linearization = Linearization {
@@ -352,13 +363,13 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             keep_facets: false,
         };
         match self.linearize(trial, time, (false, false)) {
-            Ok(_) => Ok(true),
+            Ok(totals) => Ok(Some(totals)),
             // A point that cannot be kept: all as it was.
             Err(_) => {
                 trial.points = now;
                 self.assembler.linearization = linearization;
                 self.linearize(trial, time, (false, false))?;
-                Ok(false)
+                Ok(None)
             }
         }
     }
