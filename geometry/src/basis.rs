@@ -23,6 +23,7 @@ pub const WIDTH: usize = MAX_DEGREE + 1;
 
 /// Why a knot vector cannot be used. Indices count from zero.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum KnotError {
     /// The degree is 0 or above [`MAX_DEGREE`].
     #[error("degree {degree} is not supported (1 to {MAX_DEGREE})")]

@@ -32,8 +32,9 @@
 //! ```
 //!
 //! From a file it is `io::read_path(path)?` and the `patch` of each of its `patches`;
-//! `examples/project_points.rs` projects a million points so. Queries take `&self` and lock nothing: share a set
-//! between threads.
+//! `examples/project_points.rs` projects a million points so. Queries take `&self`: share a
+//! set between threads. Only the first query that ends in a part of a surface allocates and may wait for another one that is
+//! the first there, too.
 //!
 //! Points above a bumpy patch and their closest points, coloured by where these lie (`examples/picture.rs`):
 #![doc = include_str!("../assets/projection.svg")]

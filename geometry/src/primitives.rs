@@ -11,6 +11,7 @@ use crate::surface::Vec3;
 
 /// Why a primitive surface could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PrimitiveError {
     /// A length that must be positive and finite is not.
     #[error("{name} = {value} is not a positive length")]

@@ -2,8 +2,7 @@
 //! trims are known, `trimmed.geomdl.json` written by geomdl 5.3.1 itself.
 
 use covact_geometry::io::{
-    CadFile, CadFormat, CadPatch, CadTags, FaceBorder, Healing, LengthUnit, TrimReport, read_json,
-    read_path, write_json,
+    CadFile, CadFormat, FaceBorder, LengthUnit, read_json, read_path, write_json,
 };
 use covact_geometry::{NurbsCurve, NurbsPatch, Trim, TrimCurve, TrimLoop};
 use nalgebra::{Vector2, Vector3};
@@ -206,38 +205,24 @@ fn awkward() -> CadFile {
     };
     let curves = (0..3).map(side).collect();
     let trim = Trim::new(vec![TrimLoop { curves }], patch.domain(), 1e-12).unwrap();
-    let part = |patch, entity, border, name: Option<&str>| CadPatch {
-        patch,
-        entity,
-        type_number: 144,
-        base: entity + 2,
-        instance: 3,
-        border,
-        name: name.map(str::to_owned),
-        tags: CadTags::default(),
-    };
     let plain = patch.clone();
-    CadFile {
-        path: "awkward".into(),
-        format: CadFormat::Covact,
-        unit: LengthUnit::from_name("in").unwrap(),
-        resolution: Some(1e-7 / 3.0),
-        patches: vec![
-            part(
-                patch.with_trim(Some(trim)),
-                5,
-                FaceBorder::Trimmed,
-                Some("na\"me\n\u{e9}"),
-            ),
-            part(plain, 9, FaceBorder::Rectangle, None),
-        ],
-        bodies: Vec::new(),
-        entities: Vec::new(),
-        skipped: Vec::new(),
-        trims: TrimReport::default(),
-        healing: Healing::default(),
-        notes: Vec::new(),
+    let inch = LengthUnit::from_name("in").unwrap();
+    let mut file = CadFile::of(vec![patch.with_trim(Some(trim)), plain], inch);
+    file.path = "awkward".into();
+    file.resolution = Some(1e-7 / 3.0);
+    for (part, (entity, name)) in file
+        .patches
+        .iter_mut()
+        .zip([(5, Some("na\"me\n\u{e9}")), (9, None)])
+    {
+        part.entity = entity;
+        part.type_number = 144;
+        part.base = entity + 2;
+        part.instance = 3;
+        part.name = name.map(str::to_owned);
     }
+    file.patches[1].border = FaceBorder::Rectangle;
+    file
 }
 
 /// Every number of a file by its bits; equality of floats would take -0.0 for 0.0.
@@ -352,25 +337,14 @@ fn random_numbers_keep_every_bit() {
     };
     let knots = [vec![0.0, 0.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]];
     let [k1, k2] = knots.map(|k| covact_geometry::basis::Basis::new(1, k, 2).unwrap());
-    let patches = (0..500).map(|k| {
+    let patches = (0..500).map(|_| {
         let points = (0..4)
             .map(|_| [random(), random(), random(), 1.0])
             .collect();
-        CadPatch {
-            patch: NurbsPatch::from_homogeneous([k1.clone(), k2.clone()], points).unwrap(),
-            entity: k,
-            type_number: 0,
-            base: k,
-            instance: 0,
-            border: FaceBorder::Natural,
-            name: None,
-            tags: CadTags::default(),
-        }
+        NurbsPatch::from_homogeneous([k1.clone(), k2.clone()], points).unwrap()
     });
-    assert_lossless(&CadFile {
-        patches: patches.collect(),
-        ..awkward()
-    });
+    let unit = LengthUnit::from_name("in").unwrap();
+    assert_lossless(&CadFile::of(patches.collect(), unit));
 }
 
 #[test]

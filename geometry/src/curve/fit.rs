@@ -6,6 +6,7 @@ use super::{CurveError, CurveJet, NurbsCurve};
 
 /// Why a curve could not be fitted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FitError {
     /// More spans than allowed are needed, or spans shorter than rounding.
     #[error("{spans} spans do not reach the tolerance {tolerance:.1e}; {deviation:.1e} is left")]

@@ -14,6 +14,7 @@ use crate::basis::{Basis, KnotError};
 
 /// Why a curve could not be made. Indices count from zero.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CurveError {
     /// Degree, knots or domain.
     #[error(transparent)]

@@ -24,6 +24,7 @@ pub enum CadFormat {
 
 /// A surface that was read.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct CadPatch {
     /// The patch, in the unit of the file.
     pub patch: NurbsPatch,
@@ -47,6 +48,7 @@ pub struct CadPatch {
 
 /// Which body of a file a surface belongs to, and how the file sorts and shows it. Only STEP files say so.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+#[non_exhaustive]
 pub struct CadTags {
     /// Index of its body in [`CadFile::bodies`].
     pub body: Option<usize>,
@@ -58,6 +60,7 @@ pub struct CadTags {
 
 /// A solid or a sheet of a file, where it stands in the assembly.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct CadBody {
     /// Its own name, or else that of its product.
     pub name: Option<String>,
@@ -96,6 +99,7 @@ pub enum FaceBorder {
 
 /// How often an entity type occurs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct EntityCount {
     /// IGES entity type; 0 for JSON.
     pub type_number: u32,
@@ -109,6 +113,7 @@ pub struct EntityCount {
 
 /// A surface that was not read, and why.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Skipped {
     /// As in [`CadPatch::entity`].
     pub entity: u32,
@@ -146,6 +151,7 @@ pub enum SkipKind {
 /// How the boundary curves of all faces of a file became curves in the parameter planes of their patches. Lengths are in
 /// the file's unit.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[non_exhaustive]
 pub struct TrimReport {
     /// Boundary curves (members of composite curves counted one by one).
     pub curves: usize,
@@ -173,6 +179,7 @@ pub struct TrimReport {
 
 /// Numbers of a file at a glance.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+#[non_exhaustive]
 pub struct Summary {
     /// Surfaces and faces that became patches.
     pub patches: usize,
@@ -188,6 +195,7 @@ pub struct Summary {
 
 /// Content of a CAD file.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct CadFile {
     /// Path or name, as messages show it.
     pub path: String,

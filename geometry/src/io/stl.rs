@@ -73,6 +73,7 @@ pub enum StlError {
 
 /// What an STL file holds and what was made of it.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct StlReport {
     /// Whether the file is a binary one.
     pub binary: bool,

@@ -171,6 +171,7 @@ impl Default for CurvedRows {
 
 /// Why moving facets could not be made. Facets are numbered as given.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MovingError {
     /// No facets.
     #[error("there are no facets")]

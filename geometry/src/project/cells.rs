@@ -1,16 +1,19 @@
 //! Cells: pieces small enough to be nearly flat, each with a block of cells around it for which one test proves that a
 //! stationary point is the nearest one, and with its distance from everything outside of the block.
+//!
+//! The proofs are nearly all of the work of setting up a set, and queries ask for those of the cells that they end in only: each
+//! is made when it is first asked for.
 
 use crate::parallel::*;
 
-use super::convex::{Axes, Convex, Tangents, axes, tangents};
+use super::convex::{Axes, Convex, axes};
 use super::local::Local;
 use super::piece::{Piece, Pieces, split};
-use super::set::Grid;
-use super::tree::Tree;
+use super::set::{Grid, PatchSet};
 use super::trimmed::Trimmed;
 use crate::bezier::BezierPiece;
-use crate::surface::Vec3;
+use crate::surface::{Surface, Vec3};
+use std::sync::OnceLock;
 
 /// Control polygons of a cell turn by about this much at most (radians), unless there would be more than [`MOST`].
 const TURN: f64 = 0.4;
@@ -102,6 +105,19 @@ pub(super) fn cut(
 pub(super) struct Cell {
     /// The cells around it up to the next crease or edge: `[direction][first, end]`, numbers within the patch.
     pub block: [[u32; 2]; 2],
+    /// Box along the axes of the cell.
+    pub slab: Slab,
+    /// Parameters (0 to 1) of the cell grow along these vectors, from 1/2 at the middle of the slab; zero where the cell spans
+    /// no plane.
+    seed: [Vec3; 2],
+    /// Whether it spans a plane.
+    spans: bool,
+    proofs: OnceLock<Box<Proofs>>,
+}
+
+/// What proves that stationary points of a cell are nearest ones.
+#[derive(Debug, Clone)]
+pub(super) struct Proofs {
     /// Proof for the block, and the block's widths in the parameters.
     around: Convex,
     around_width: [f64; 2],
@@ -110,10 +126,6 @@ pub(super) struct Cell {
     own_width: [f64; 2],
     /// Lower bound of the distance between the cell and everything outside of the block.
     pub clear: f64,
-    /// Box along the axes of the cell.
-    pub slab: Slab,
-    /// Parameters (0 to 1) of the cell grow along these vectors, from 1/2 at the middle of the slab.
-    seed: [Vec3; 2],
 }
 
 /// A box along given axes.
@@ -193,23 +205,17 @@ impl Cell {
             })
     }
 
-    /// Whether a stationary point of this cell (which is `piece`) is proved to be the nearest point of the block. Points
-    /// that the cell's own border holds inside of the block are not stationary in the block.
+    /// Whether a stationary point of this cell (which is `piece`) is stationary in its block. Points that the cell's own border
+    /// holds inside of the block are not.
     #[inline]
-    pub fn settles_block(&self, piece: &Piece, q: &Vec3, s: &Local, slack: f64) -> bool {
-        let stationary = (0..2).all(|k| {
-            let [first, end] = self.block[k];
-            !s.active[k]
-                || s.at[k] < 0 && piece.cell[k] == first
-                || s.at[k] > 0 && piece.cell[k] + 1 == end
-        });
-        stationary && s.converged && holds(&self.around, q, s, &self.around_width, slack)
-    }
-
-    /// Whether a stationary point of this cell is proved to be the nearest point of the cell.
-    #[inline]
-    pub fn settles_itself(&self, q: &Vec3, s: &Local, slack: f64) -> bool {
-        s.converged && holds(&self.own, q, s, &self.own_width, slack)
+    pub fn is_stationary_in_block(&self, piece: &Piece, s: &Local) -> bool {
+        s.converged
+            && (0..2).all(|k| {
+                let [first, end] = self.block[k];
+                !s.active[k]
+                    || s.at[k] < 0 && piece.cell[k] == first
+                    || s.at[k] > 0 && piece.cell[k] + 1 == end
+            })
     }
 
     /// Where to look for the foot of `q` (parameters 0 to 1 of the cell, outside of it by half of its width at most).
@@ -218,6 +224,20 @@ impl Cell {
         let slab = &self.slab;
         let p = along(&slab.axes, q) - slab.middle;
         self.seed.map(|s| (0.5 + s.dot(&p)).clamp(-0.5, 1.5))
+    }
+}
+
+impl Proofs {
+    /// Whether a point that is stationary in the block is proved to be the nearest point of the block.
+    #[inline]
+    pub fn settle_block(&self, q: &Vec3, s: &Local, slack: f64) -> bool {
+        holds(&self.around, q, s, &self.around_width, slack)
+    }
+
+    /// Whether a stationary point of the cell is proved to be the nearest point of the cell.
+    #[inline]
+    pub fn settle_cell(&self, q: &Vec3, s: &Local, slack: f64) -> bool {
+        holds(&self.own, q, s, &self.own_width, slack)
     }
 }
 
@@ -235,26 +255,14 @@ pub(super) fn holds(convex: &Convex, q: &Vec3, s: &Local, width: &[f64; 2], slac
 }
 
 /// All cells, in the order of the pieces.
-pub(super) fn cells(pieces: &Pieces, grids: &[Grid], tree: &Tree, trimmed: &Trimmed) -> Vec<Cell> {
-    let tangents: Vec<Tangents> = pieces
-        .list
-        .par_iter()
-        .map(|piece| tangents(pieces.net(piece), piece.degree))
-        .collect();
+pub(super) fn cells(pieces: &Pieces, grids: &[Grid], trimmed: &Trimmed) -> Vec<Cell> {
     (0..pieces.list.len() as u32)
         .into_par_iter()
-        .map(|number| cell(pieces, grids, tree, trimmed, &tangents, number))
+        .map(|number| cell(pieces, grids, trimmed, number))
         .collect()
 }
 
-fn cell(
-    pieces: &Pieces,
-    grids: &[Grid],
-    tree: &Tree,
-    trimmed: &Trimmed,
-    tangents: &[Tangents],
-    number: u32,
-) -> Cell {
+fn cell(pieces: &Pieces, grids: &[Grid], trimmed: &Trimmed, number: u32) -> Cell {
     let piece = &pieces.list[number as usize];
     let grid = &grids[piece.patch as usize];
     let net = pieces.net(piece);
@@ -266,70 +274,93 @@ fn cell(
             (piece.cell[k] + 2).min(end),
         ]
     });
-    let block = trimmed.block(grid, piece.cell, block);
     let found = axes(net, piece.degree);
     let plain = [Vec3::x(), Vec3::y(), Vec3::z()];
-    let slab = Slab::new(net, found.as_ref().unwrap_or(&plain));
-    let mut out = Cell {
-        block,
-        around: Convex::NEVER,
-        own: Convex::NEVER,
-        around_width: [0, 1].map(|k| {
-            let [low, high] = [block[k][0], block[k][1] - 1].map(|c| {
-                let mut place = piece.cell;
-                place[k] = c;
-                pieces.list[grid.piece(place) as usize].domain[k]
-            });
-            high[1] - low[0]
+    Cell {
+        block: trimmed.block(grid, piece.cell, block),
+        slab: Slab::new(net, found.as_ref().unwrap_or(&plain)),
+        seed: found.as_ref().map_or([Vec3::zeros(); 2], |axes| {
+            seed_vectors(net, piece.degree, axes)
         }),
-        own_width: piece.domain.map(|[a, b]| b - a),
-        clear: 0.0,
-        seed: [Vec3::zeros(); 2],
-        slab,
-    };
-    let Some(axes) = found else {
-        return out;
-    };
-    out.own = Convex::new(pieces, tangents, &axes, std::iter::once(number));
-    out.seed = seed_vectors(net, piece.degree, &axes);
-    if !trimmed.is_inside(number) {
-        // Never the middle of a block.
-        return out;
+        spans: found.is_some(),
+        proofs: OnceLock::new(),
     }
-    let members = (block[1][0]..block[1][1])
-        .flat_map(|j| (block[0][0]..block[0][1]).map(move |i| grid.piece([i, j])));
-    out.around = Convex::new(pieces, tangents, &axes, members);
-    // The cells beside the block are outside of it and near: the scan has little left to look at.
-    let mut clear2 = f64::INFINITY;
-    for k in 0..2 {
-        let last = grid.cells[k][grid.spans[k]];
-        let beside = [block[k][0].checked_sub(1), Some(block[k][1])];
-        for place in beside.into_iter().flatten().filter(|&place| place < last) {
-            let mut cell = piece.cell;
-            cell[k] = place;
-            let other = &pieces.list[grid.piece(cell) as usize];
-            clear2 = clear2.min(out.slab.net_separation2(pieces.net(other)));
+}
+
+impl<S: Surface> PatchSet<S> {
+    /// The proofs of a cell, made when they are first asked for.
+    #[inline]
+    pub(super) fn proofs(&self, number: u32) -> &Proofs {
+        let cell = &self.cells[number as usize];
+        cell.proofs.get_or_init(|| self.prove(number))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn prove(&self, number: u32) -> Box<Proofs> {
+        let (pieces, trimmed) = (&self.pieces, &self.trimmed);
+        let piece = &pieces.list[number as usize];
+        let grid = &self.grids[piece.patch as usize];
+        let cell = &self.cells[number as usize];
+        let block = &cell.block;
+        let mut out = Box::new(Proofs {
+            around: Convex::NEVER,
+            around_width: [0, 1].map(|k| {
+                let [low, high] = [block[k][0], block[k][1] - 1].map(|c| {
+                    let mut place = piece.cell;
+                    place[k] = c;
+                    pieces.list[grid.piece(place) as usize].domain[k]
+                });
+                high[1] - low[0]
+            }),
+            own: Convex::NEVER,
+            own_width: piece.domain.map(|[a, b]| b - a),
+            clear: 0.0,
+        });
+        if !cell.spans {
+            return out;
         }
-    }
-    if clear2 <= 0.0 {
-        return out;
-    }
-    tree.scan(
-        |low, high| out.slab.box_separation2(low, high),
-        clear2,
-        |number| {
-            // Trim curves lie in cells, which count.
-            if let Some(other) = pieces.list.get(number as usize)
-                && !out.covers(piece.patch, other)
-            {
-                clear2 = clear2.min(out.slab.net_separation2(pieces.net(other)));
+        let axes = &cell.slab.axes;
+        out.own = Convex::new(pieces, axes, std::iter::once(number));
+        if !trimmed.is_inside(number) {
+            // Never the middle of a block.
+            return out;
+        }
+        let members = (block[1][0]..block[1][1])
+            .flat_map(|j| (block[0][0]..block[0][1]).map(move |i| grid.piece([i, j])));
+        out.around = Convex::new(pieces, axes, members);
+        // The cells beside the block are outside of it and near: the scan has little left to look at.
+        let mut clear2 = f64::INFINITY;
+        for k in 0..2 {
+            let last = grid.cells[k][grid.spans[k]];
+            let beside = [block[k][0].checked_sub(1), Some(block[k][1])];
+            for place in beside.into_iter().flatten().filter(|&place| place < last) {
+                let mut other = piece.cell;
+                other[k] = place;
+                let other = &pieces.list[grid.piece(other) as usize];
+                clear2 = clear2.min(cell.slab.net_separation2(pieces.net(other)));
             }
-            // Nothing is below zero, so that ends the scan.
-            if clear2 > 0.0 { clear2 } else { -1.0 }
-        },
-    );
-    out.clear = clear2.max(0.0).sqrt();
-    out
+        }
+        if clear2 <= 0.0 {
+            return out;
+        }
+        self.tree.scan(
+            |low, high| cell.slab.box_separation2(low, high),
+            clear2,
+            |number| {
+                // Trim curves lie in cells, which count.
+                if let Some(other) = pieces.list.get(number as usize)
+                    && !cell.covers(piece.patch, other)
+                {
+                    clear2 = clear2.min(cell.slab.net_separation2(pieces.net(other)));
+                }
+                // Nothing is below zero, so that ends the scan.
+                if clear2 > 0.0 { clear2 } else { -1.0 }
+            },
+        );
+        out.clear = clear2.max(0.0).sqrt();
+        out
+    }
 }
 
 /// The vectors that are dual to the mean tangents, along the axes.

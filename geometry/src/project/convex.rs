@@ -168,11 +168,11 @@ impl Derivatives {
 
 /// Vectors whose convex hull holds the tangents `rho_1`, `rho_2` of a rational piece (for parameters from 0 to 1); none
 /// for a polynomial one, whose tangents have control vectors of their own.
-pub(super) type Tangents = [Vec<Vec3>; 2];
+type Tangents = [Vec<Vec3>; 2];
 
 /// With numerator `A` and denominator `w`, `rho_i = (A_i w - A w_i) / w^2`; both sides of the fraction are brought to
 /// twice the degrees, where the ratios of their coefficients are such vectors.
-pub(super) fn tangents(net: &[[f64; 4]], degree: [usize; 2]) -> Tangents {
+fn tangents(net: &[[f64; 4]], degree: [usize; 2]) -> Tangents {
     if net.iter().all(|p| p[3] == net[0][3]) {
         return [Vec::new(), Vec::new()];
     }
@@ -287,20 +287,15 @@ impl Convex {
         half: [Vec3::new(0.0, 0.0, 0.0); 3],
     };
 
-    /// For a rectangle that consists of the pieces with the given numbers; `tangents` of all pieces.
-    pub fn new(
-        pieces: &Pieces,
-        tangents: &[Tangents],
-        axes: &Axes,
-        members: impl Iterator<Item = u32>,
-    ) -> Convex {
+    /// For a rectangle that consists of the pieces with the given numbers.
+    pub fn new(pieces: &Pieces, axes: &Axes, members: impl Iterator<Item = u32>) -> Convex {
         let mut all = Derivatives::NONE;
         for number in members {
             let piece = &pieces.list[number as usize];
-            let tangents = &tangents[number as usize];
             let width = piece.domain.map(|[a, b]| b - a);
-            let tangents = [&tangents[0][..], &tangents[1][..]];
             let net = pieces.net(piece);
+            let tangents = tangents(net, piece.degree);
+            let tangents = [&tangents[0][..], &tangents[1][..]];
             all.join(&Derivatives::of(net, piece.degree, width, tangents, axes));
         }
         Convex::from_ranges(&all, axes)

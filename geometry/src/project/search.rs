@@ -136,7 +136,8 @@ impl<'a, S: Surface> Search<'a, S> {
         self.best = Some((piece, *local));
         let id = piece as usize;
         self.settled = local.trim.is_none()
-            && set.cells[id].settles_block(&set.pieces.list[id], &self.q, local, self.slack);
+            && set.cells[id].is_stationary_in_block(&set.pieces.list[id], local)
+            && (set.proofs(piece)).settle_block(&self.q, local, self.slack);
     }
 
     /// Makes a point the best one that is nearer than the last one by no more than the tolerance.
@@ -259,7 +260,7 @@ impl<'a, S: Surface> Search<'a, S> {
         let Some((best, _)) = self.best else {
             return false;
         };
-        self.settled && 2.0 * self.wide < self.set.cells[best as usize].clear
+        self.settled && 2.0 * self.wide < self.set.proofs(best).clear
     }
 
     /// Radius of the ball that pieces must be proved to lie outside of: the best distance less a tolerance well above
@@ -449,7 +450,8 @@ impl<'a, S: Surface> Search<'a, S> {
             }
         }
         let ends = |search: &Self, local: &Local| {
-            cell.settles_itself(&search.q, local, search.slack) || search.cut < 0.0
+            local.converged && set.proofs(id).settle_cell(&search.q, local, search.slack)
+                || search.cut < 0.0
         };
         let local = match &self.best {
             Some((best, local)) if *best == id => {

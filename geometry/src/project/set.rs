@@ -158,7 +158,9 @@ fn smooth(kinks: &[u8]) -> Vec<[usize; 2]> {
     out
 }
 
-/// Patches of one kind of surface with their tree, their shared edges and their sides. Queries take `&self` and lock nothing.
+/// Patches of one kind of surface with their tree, their shared edges and their sides. Queries take `&self` and lock nothing
+/// but, where a query is the first to end in a part of the surface, what proves that points of this part are the nearest: that is
+/// made then, once, and is the same whoever makes it.
 #[derive(Debug, Clone)]
 pub struct PatchSet<S: Surface = NurbsPatch> {
     pub(super) patches: Vec<S>,
@@ -248,7 +250,7 @@ impl<S: Surface> PatchSet<S> {
             return Err(PatchSetError::Size(size));
         }
         let sides = vec![1.0; patches.len()];
-        let cells = cells(&pieces, &grids, &tree, &trimmed);
+        let cells = cells(&pieces, &grids, &trimmed);
         let spheres = patches.iter().zip(&grids).map(|(patch, grid)| {
             let own = &pieces.list[grid.first as usize..][..grid.count()];
             Sphere::of(patch, &pieces, own, size)

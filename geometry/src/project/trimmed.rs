@@ -8,7 +8,7 @@ use super::piece::{Pieces, hull};
 use super::set::Grid;
 use crate::bezier::BezierPiece;
 use crate::surface::{Surface, Vec3};
-use crate::trim::{Monotone, Part, Trim, product};
+use crate::trim::{Monotone, Part, Trim, binomials};
 
 /// Control polygons of curve leaves turn by about this much at most (radians).
 const TURN: f64 = 0.5;
@@ -263,14 +263,37 @@ fn compose(bezier: &BezierPiece, curve: &[[f64; 3]]) -> Vec<[f64; 4]> {
 }
 
 /// De Casteljau's algorithm on points whose coordinates are polynomials.
-fn casteljau(mut points: Vec<[Vec<f64>; 4]>, [down, up]: &[Vec<f64>; 2]) -> [Vec<f64>; 4] {
+fn casteljau(mut points: Vec<[Vec<f64>; 4]>, factors: &[Vec<f64>; 2]) -> [Vec<f64>; 4] {
+    let m = factors[0].len() - 1;
+    // Products of polynomials in Bernstein form: sums of products of the coefficients, each times its binomial.
+    let scaled =
+        |f: &[f64]| -> Vec<f64> { f.iter().zip(binomials(m)).map(|(x, c)| x * c).collect() };
+    let factors = [scaled(&factors[0]), scaled(&factors[1])];
+    let mut other = Vec::new();
     while points.len() > 1 {
+        let n = points[0][0].len() - 1;
+        let own: Vec<f64> = binomials(n).collect();
+        let all: Vec<f64> = binomials(n + m).collect();
+        let product = |a: &[f64], b: &[f64], out: &mut Vec<f64>| {
+            out.clear();
+            out.resize(n + m + 1, 0.0);
+            for (i, (a, c)) in a.iter().zip(&own).enumerate() {
+                for (out, b) in out[i..].iter_mut().zip(b) {
+                    *out += a * c * b;
+                }
+            }
+            for (out, c) in out.iter_mut().zip(&all) {
+                *out /= c;
+            }
+        };
         points = points
             .windows(2)
             .map(|pair| {
                 [0, 1, 2, 3].map(|c| {
-                    let mut sum = product(&pair[0][c], down);
-                    for (sum, x) in sum.iter_mut().zip(product(&pair[1][c], up)) {
+                    let mut sum = Vec::new();
+                    product(&pair[0][c], &factors[0], &mut sum);
+                    product(&pair[1][c], &factors[1], &mut other);
+                    for (sum, x) in sum.iter_mut().zip(&other) {
                         *sum += x;
                     }
                     sum

@@ -353,7 +353,9 @@ impl<S: Surface> Search<'_, S> {
         let u = cell.seed(&self.q).map(|u| u.clamp(0.05, 0.95));
         let local = self.iterate(id, piece, u);
         let inside = !set.trimmed_away(piece.patch, local.xi);
-        if inside && cell.settles_itself(&self.q, &local, self.slack()) || self.cut() < 0.0 {
+        let settled =
+            || local.converged && set.proofs(id).settle_cell(&self.q, &local, self.slack());
+        if inside && settled() || self.cut() < 0.0 {
             return;
         }
         let mut room = ROOM.take();

@@ -18,6 +18,7 @@ const NO_AREA: f64 = 1e-10;
 
 /// What was noticed about a loop.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum TrimNoteKind {
     /// A gap (a share of the domain) after the curve with this number was closed.
     Gap(usize, f64),

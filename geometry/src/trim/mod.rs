@@ -18,7 +18,7 @@ use index::Index;
 #[cfg(test)]
 pub(crate) use monotone::choose;
 use monotone::monotone_pieces;
-pub(crate) use monotone::{Monotone, product};
+pub(crate) use monotone::{Monotone, binomials};
 
 /// Why a trim could not be made. Loops and curves count from zero, curves within their loop.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

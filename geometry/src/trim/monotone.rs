@@ -277,7 +277,7 @@ fn turning(net: &[[f64; 3]], k: usize) -> Vec<f64> {
 }
 
 /// Product of polynomials in Bernstein form.
-pub(crate) fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
+fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
     let n = a.len() + b.len() - 2;
     let b: Vec<f64> = b
         .iter()
@@ -297,7 +297,7 @@ pub(crate) fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
 }
 
 /// The binomial coefficients of `n` as floats, in order.
-fn binomials(n: usize) -> impl Iterator<Item = f64> {
+pub(crate) fn binomials(n: usize) -> impl Iterator<Item = f64> {
     let next =
         move |&(k, c): &(usize, f64)| (k < n).then(|| (k + 1, c * (n - k) as f64 / (k + 1) as f64));
     std::iter::successors(Some((0, 1.0)), next).map(|(_, c)| c)

@@ -5,7 +5,7 @@ use crate::support::assets;
 use covact_geometry::io::{
     CadFile, FaceBorder, IgesWriteError, LengthUnit, read_iges, read_path, write_iges,
 };
-use covact_geometry::{NurbsPatch, Vec3};
+use covact_geometry::{NurbsCurve, NurbsPatch, Trim, Vec3};
 use std::path::Path;
 
 /// The file as IGES and back; every record has 80 columns.
@@ -135,4 +135,37 @@ fn files_without_a_unit_are_refused() {
     file.unit = LengthUnit::from_metres(0.2, Some("hand"));
     let told = write_iges(&file).unwrap_err();
     assert!(matches!(told, IgesWriteError::UnknownUnit { .. }), "{told}");
+}
+
+/// Curves in space are written as they are, unless one of a boundary ends beside the surface: then none of that boundary is.
+#[test]
+fn curves_in_space_that_part_from_their_border_are_left_out() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/step/trimmed_patch.step");
+    let file = read_path(&path).unwrap();
+    let in_space = |file: &CadFile| -> usize {
+        let trim = file.patches[0].patch.trim().unwrap();
+        let curves = trim.loops().iter().flat_map(|l| &l.curves);
+        curves.filter(|c| c.space.is_some()).count()
+    };
+    let all = in_space(&file);
+    assert!(all > 1 && in_space(&again(&file)) == all, "{all}");
+    let patch = &file.patches[0].patch;
+    let [low, high] = patch.bounds();
+    for (share, expected) in [(1e-7, all), (1e-4, 0)] {
+        let mut loops = patch.trim().unwrap().loops().to_vec();
+        let shift = Vec3::new(0., 0., share * (high - low).norm());
+        let curves = loops.iter_mut().flat_map(|l| &mut l.curves);
+        let spaces: Vec<_> = curves.filter_map(|c| c.space.as_mut()).collect();
+        let space = spaces.into_iter().next().unwrap();
+        let [a, b] = space.ends();
+        *space = NurbsCurve::line(a + shift, b).unwrap();
+        let trim = Trim::new(loops, patch.domain(), 1e-6).unwrap();
+        let mut moved = file.clone();
+        moved.patches[0].patch = patch.clone().with_trim(Some(trim));
+        let text = write_iges(&moved).unwrap();
+        let back = read_iges(text.as_bytes(), "again.igs").unwrap();
+        assert_eq!(in_space(&back), expected, "{share:e}");
+        let area = |file: &CadFile| -> f64 { set(file, None).areas().iter().sum() };
+        near(area(&back), area(&file), 1e-8);
+    }
 }

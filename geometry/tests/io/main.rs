@@ -5,6 +5,7 @@ mod damage;
 mod habits;
 mod healing;
 mod iges;
+mod iges_shells;
 mod iges_write;
 mod json;
 #[path = "../mutate_common/mod.rs"]
@@ -15,6 +16,7 @@ mod round;
 mod samples;
 mod step;
 mod step_builder;
+mod step_forms;
 mod step_hidden;
 mod step_mutants;
 mod step_poles;

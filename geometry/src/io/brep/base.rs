@@ -14,6 +14,16 @@ pub struct BasePatch {
     pub deviation: f64,
 }
 
+/// Says how far patches are from the surface that the file defines; `None` where it is rounding.
+pub(in crate::io) fn approximation(patches: &[BasePatch]) -> Option<String> {
+    let fitted = patches.iter().any(|p| {
+        let [low, high] = p.patch.bounds();
+        p.deviation > 1e-12 * (high - low).norm()
+    });
+    let deviation = patches.iter().fold(0.0, |d: f64, p| d.max(p.deviation));
+    fitted.then(|| format!("read as a NURBS surface that differs by up to {deviation:.1e}"))
+}
+
 impl BasePatch {
     /// A patch with the file's own parameters, exact.
     pub(in crate::io) fn exact(patch: NurbsPatch) -> Self {

@@ -25,6 +25,7 @@ mod sides;
 
 pub use areas::{by_parameters, disagreement};
 pub use base::BasePatch;
+pub(in crate::io) use base::approximation;
 pub use curves::{Tally, add};
 pub use enclosed::bounds_outside;
 pub use extent::grown;

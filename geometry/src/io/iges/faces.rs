@@ -12,8 +12,8 @@ use super::transform::{Affine, matrix_of};
 use super::trimmed::{self, describe};
 use super::{Model, params::Params};
 use crate::io::brep::{
-    Boundary, Face, GAP, Grant, Host, Stretch, Tally, add, bounds_outside, by_parameters,
-    disagreement, grown, loops, widest_gap,
+    Boundary, Face, GAP, Grant, Host, Stretch, Tally, add, approximation, bounds_outside,
+    by_parameters, disagreement, grown, loops, widest_gap,
 };
 use crate::{NurbsPatch, Vec3};
 
@@ -168,6 +168,10 @@ impl<'a> Reader<'a, '_> {
                 }
             };
             name = found;
+            let pieces = match copy.turned {
+                true => pieces.and_then(turned),
+                false => pieces,
+            };
             let pieces = pieces.and_then(|pieces| {
                 let granted = pieces.iter().try_for_each(|(p, _)| self.grant.patch(p));
                 granted.map_err(|reason| (SkipKind::Surface, reason))?;
@@ -419,14 +423,7 @@ impl<'a> Reader<'a, '_> {
 
     /// Says where a surface is not what the entity defines.
     fn approximated(&mut self, entry: &Entry, patches: &[BasePatch]) {
-        let deviation = patches.iter().fold(0.0, |d: f64, p| d.max(p.deviation));
-        // Rounding is no approximation.
-        let told = patches.iter().any(|p| {
-            let [low, high] = p.patch.bounds();
-            p.deviation > 1e-12 * (high - low).norm()
-        });
-        if told {
-            let text = format!("read as a NURBS surface that differs by up to {deviation:.1e}");
+        if let Some(text) = approximation(patches) {
             let note = format!("{}: {text}", describe(entry));
             if !self.notes.contains(&note) {
                 self.notes.push(note);
@@ -444,6 +441,15 @@ impl<'a> Reader<'a, '_> {
         }
         Ok(own_name(entry))
     }
+}
+
+/// The pieces with the opposite normals.
+fn turned(pieces: Vec<Piece>) -> Found {
+    let turn = |(patch, border): Piece| match patch.reversed(0) {
+        Ok(patch) => Ok((patch, border)),
+        Err(e) => Err((SkipKind::Surface, e.to_string())),
+    };
+    pieces.into_iter().map(turn).collect()
 }
 
 /// The name among the properties that follow an entity's own values.

@@ -19,6 +19,8 @@ pub struct Usage {
     pub face: Option<usize>,
     /// What it is a member of: a group (402), a subfigure definition (308), a shell (514), a solid (186).
     pub parent: Option<usize>,
+    /// Whether its parent, a shell (514) or a solid (186), says that it uses it with the opposite normal.
+    turned: bool,
 }
 
 /// One copy of an entity in model space.
@@ -30,6 +32,8 @@ pub struct Placement {
     pub instance: u32,
     /// Number of a hidden entity that holds it, 0 for none.
     pub hidden_in: u32,
+    /// Whether the shells and solids that hold it use it with the opposite normal.
+    pub turned: bool,
 }
 
 /// Groups, subfigures and solids may be nested, but nobody does so this deep.
@@ -76,10 +80,16 @@ impl Groups {
         notes: &mut Vec<String>,
     ) -> Result<(), Fail> {
         let params = || model.params(entry);
-        let list = match entry.type_number {
-            308 => members(model, &params()?, 3, "a member of a subfigure (308)")?,
+        let same = |list: Vec<usize>| list.into_iter().map(|child| (child, true)).collect();
+        let list: Vec<(usize, bool)> = match entry.type_number {
+            308 => same(members(
+                model,
+                &params()?,
+                3,
+                "a member of a subfigure (308)",
+            )?),
             402 if matches!(entry.form, 1 | 7 | 14 | 15) => {
-                members(model, &params()?, 1, "a member of a group (402)")?
+                same(members(model, &params()?, 1, "a member of a group (402)")?)
             }
             514 => pairs(model, &params()?, 1, "a face of a shell (514)")?,
             186 => solid(model, &params()?)?,
@@ -132,8 +142,12 @@ impl Groups {
                 return Ok(());
             }
         };
-        for child in list {
-            self.usage[child].parent.get_or_insert(parent);
+        for (child, agrees) in list {
+            let usage = &mut self.usage[child];
+            if usage.parent.is_none() {
+                usage.parent = Some(parent);
+                usage.turned = !agrees;
+            }
         }
         Ok(())
     }
@@ -164,6 +178,7 @@ impl Groups {
             map: Affine::identity(),
             instance: 0,
             hidden_in: 0,
+            turned: false,
         };
         self.place(model, index, start, &mut chain, &mut out, notes)?;
         Ok(out)
@@ -198,12 +213,14 @@ impl Groups {
                     map: map.after(&copy.map),
                     instance: placed.number,
                     hidden_in: hidden(placed, copy.hidden_in),
+                    turned: copy.turned,
                 };
                 self.place(model, instance, copy, chain, out, notes)?;
             }
         }
         if let Some(parent) = self.usage[index].parent {
             let holder = &model.entries[parent];
+            copy.turned ^= self.usage[index].turned;
             // A group that only refers to an entity neither moves nor hides it.
             if holder.type_number != 402 || entry.status.physically_dependent() {
                 if holder.type_number != 308 {
@@ -265,21 +282,36 @@ pub fn members(model: &Model, params: &Params, at: usize, what: &str) -> Result<
     Ok(list)
 }
 
-/// The entities in a list `count, pointer, flag, pointer, flag, ...` whose count is value `at`.
-fn pairs(model: &Model, params: &Params, at: usize, what: &str) -> Result<Vec<usize>, Fail> {
+/// The entities in a list `count, pointer, flag, pointer, flag, ...` whose count is value `at`, each with whether its
+/// normal is used as it is.
+fn pairs(
+    model: &Model,
+    params: &Params,
+    at: usize,
+    what: &str,
+) -> Result<Vec<(usize, bool)>, Fail> {
     let count = params.count(at, "a number of members")?;
     if count > params.len().saturating_sub(at + 1).div_ceil(2) {
         return Err(params.fail(params.len(), format!("{count} pointers with flags: {what}")));
     }
     (0..count)
-        .map(|k| pointer(model, params, at + 1 + 2 * k, what))
+        .map(|k| oriented(model, params, at + 1 + 2 * k, what))
         .collect()
 }
 
+/// The entity that value `i` points to, and whether the orientation flag that follows (true by default) says that it is used
+/// with its own normal.
+fn oriented(model: &Model, params: &Params, i: usize, what: &str) -> Result<(usize, bool), Fail> {
+    let target = pointer(model, params, i, what)?;
+    let agrees = params.is_default(i + 1)
+        || params.integer(i + 1, "the orientation flag that follows a pointer")? != 0;
+    Ok((target, agrees))
+}
+
 /// A 186: the outer shell with its flag, then the voids.
-fn solid(model: &Model, params: &Params) -> Result<Vec<usize>, Fail> {
+fn solid(model: &Model, params: &Params) -> Result<Vec<(usize, bool)>, Fail> {
     let what = "a shell of a solid (186)";
-    let mut list = vec![pointer(model, params, 1, what)?];
+    let mut list = vec![oriented(model, params, 1, what)?];
     if params.len() > 3 {
         list.extend(pairs(model, params, 3, what)?);
     }

@@ -52,6 +52,9 @@ const UNITS: [(&str, u32, &str); 10] = [
 const FREE: &str = "00000000";
 const PART: &str = "00010000";
 const PLANE: &str = "00010500";
+/// Curves in space are written for boundaries whose ends all lie where the curves in the parameter plane end, within this
+/// share of the size of the surface: a reader that is given both and finds them apart may mend the wrong one.
+const AGREE: f64 = 1e-5;
 /// Columns of data in a record of parameters.
 const WIDTH: usize = 64;
 
@@ -236,10 +239,11 @@ impl Writer {
                 surface.to_string(),
                 "1".to_owned(),
                 holes.len().to_string(),
-                self.boundary(surface, ring, true)?.to_string(),
+                self.boundary(surface, &patch, ring, true)?.to_string(),
             ];
             for hole in holes {
-                values.push(self.boundary(surface, &loops[hole], false)?.to_string());
+                let inner = self.boundary(surface, &patch, &loops[hole], false)?;
+                values.push(inner.to_string());
             }
             self.entity(144, FREE, &label, &values);
         }
@@ -276,7 +280,13 @@ impl Writer {
     }
 
     /// A boundary on a surface, counterclockwise or clockwise.
-    fn boundary(&mut self, surface: usize, ring: &Ring, left: bool) -> Result<usize, String> {
+    fn boundary(
+        &mut self,
+        surface: usize,
+        patch: &NurbsPatch,
+        ring: &Ring,
+        left: bool,
+    ) -> Result<usize, String> {
         let turned = (ring.area > 0.0) != left;
         let curves = match turned {
             false => ring.curves.to_vec(),
@@ -290,7 +300,12 @@ impl Writer {
         let plane: Vec<String> = (curves.iter())
             .map(|c| self.curve(&c.parameter, PLANE).to_string())
             .collect();
-        let space: Option<Vec<&NurbsCurve<3>>> = curves.iter().map(|c| c.space.as_ref()).collect();
+        let [low, high] = patch.bounds();
+        let near = AGREE * (high - low).norm();
+        let agreeing = |c: &'_ &TrimCurve| ends_agree(patch, c, near);
+        let space: Option<Vec<&NurbsCurve<3>>> = (curves.iter())
+            .map(|c| Some(c).filter(agreeing)?.space.as_ref())
+            .collect();
         let space: Vec<String> = (space.into_iter().flatten())
             .map(|c| self.curve(c, PART).to_string())
             .collect();
@@ -335,6 +350,16 @@ impl Writer {
         values.extend([0.0, 0.0, up].map(real));
         self.entity(126, status, "", &values)
     }
+}
+
+/// Whether the curve in space ends where that in the parameter plane does, within a distance.
+fn ends_agree(patch: &NurbsPatch, curve: &TrimCurve, near: f64) -> bool {
+    let Some(space) = &curve.space else {
+        return false;
+    };
+    let ends = curve.parameter.ends().map(|xi| patch.point([xi.x, xi.y]));
+    let pairs = ends.iter().zip(space.ends());
+    pairs.fold(0.0, |d: f64, (a, b)| d.max((a - b).norm())) <= near
 }
 
 fn reversed(curve: &TrimCurve) -> Result<TrimCurve, String> {

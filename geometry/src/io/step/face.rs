@@ -7,8 +7,8 @@ use super::scope::Scope;
 use super::surface::{Shape, Surface};
 use super::surface_read;
 use crate::io::brep::{
-    BasePatch, Boundary, Face, GAP, Grant, Host, Tally, add, bounds_outside, grown, loops,
-    widest_gap,
+    BasePatch, Boundary, Face, GAP, Grant, Host, Tally, add, approximation, bounds_outside, grown,
+    loops, widest_gap,
 };
 use crate::io::report::{FaceBorder, SkipKind, TrimReport};
 use crate::trim::Trimmed;
@@ -40,6 +40,16 @@ pub struct Account<'n> {
 impl Account<'_> {
     fn note(&mut self, entity: &Entity, text: &str) {
         self.notes.push(format!("{}: {text}", entity.describe()));
+    }
+
+    /// Says where a patch is not what the surface entity defines, once for each surface.
+    fn approximated(&mut self, carrier: &Entity, base: &BasePatch) {
+        if let Some(text) = approximation(std::slice::from_ref(base)) {
+            let note = format!("{}: {text}", carrier.describe());
+            if !self.notes.contains(&note) {
+                self.notes.push(note);
+            }
+        }
     }
 }
 
@@ -129,8 +139,10 @@ pub fn whole(scope: &Scope, entity: &Entity, account: &mut Account) -> Result<Fa
     account.grant.open().map_err(surface_fault)?;
     let surface = surface_read::read(scope, entity.index).map_err(surface_fault)?;
     let reason = |e: String| (SkipKind::Unsupported, format!("{} {e}", entity.describe()));
-    let patch = surface.whole().map_err(reason)?.patch;
-    account.grant.patch(&patch).map_err(surface_fault)?;
+    let base = surface.whole().map_err(reason)?;
+    account.grant.patch(&base.patch).map_err(surface_fault)?;
+    account.approximated(entity, &base);
+    let patch = base.patch;
     Ok(FacePatch {
         patch,
         border: FaceBorder::Natural,
@@ -201,6 +213,7 @@ fn bounded(
     }
     let patch = surface.sized(&points).map_err(|e| surface_fault(on(e)))?;
     account.grant.patch(&patch.patch).map_err(surface_fault)?;
+    account.approximated(&carrier, &patch);
     let (patch, border) = match boundaries.is_empty() {
         true => (patch.patch, FaceBorder::Natural),
         false => {

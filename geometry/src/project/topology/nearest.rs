@@ -8,6 +8,8 @@ use crate::surface::{Surface, Vec3};
 /// Most steps of the iteration, and halvings of one step.
 const ITERATIONS: usize = 30;
 const HALVINGS: usize = 12;
+/// Blocks of an edge whose distances are kept while the nearest chord is looked for.
+const KEPT: usize = 64;
 /// Steps shorter than this share of the size are not halved.
 const SHORT: f64 = 1e-9;
 
@@ -19,18 +21,28 @@ pub(crate) fn nearest_on_edge<S: Surface>(set: &PatchSet<S>, q: &Vec3, edge: &Ed
         nearest_chord(q, &edge.samples, &mut best);
         return nearest_from(set, q, edge, best.1);
     }
-    // The nearest block first: its chords leave few other blocks to look at.
+    // The nearest block first: its chords leave few other blocks to look at. Distances of the first blocks are kept.
     let far = |k: usize| box_distance2(q, &edge.blocks[k][0], &edge.blocks[k][1]);
     let chords = |k: usize| {
         let end = ((k + 1) * BLOCK + 1).min(edge.samples.len());
         &edge.samples[k * BLOCK..end]
     };
     let count = edge.blocks.len();
-    let nearest = (0..count).map(|k| (far(k), k));
-    let (_, first) = nearest.fold((f64::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a });
+    let mut kept = [0.0; KEPT];
+    let mut nearest = (f64::INFINITY, 0);
+    for k in 0..count {
+        let distance2 = far(k);
+        if let Some(kept) = kept.get_mut(k) {
+            *kept = distance2;
+        }
+        if distance2 < nearest.0 {
+            nearest = (distance2, k);
+        }
+    }
+    let first = nearest.1;
     nearest_chord(q, chords(first), &mut best);
     for k in (0..count).filter(|&k| k != first) {
-        if far(k) < best.0 {
+        if kept.get(k).map_or_else(|| far(k), |&distance2| distance2) < best.0 {
             nearest_chord(q, chords(k), &mut best);
         }
     }

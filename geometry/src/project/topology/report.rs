@@ -74,6 +74,7 @@ pub struct Border {
 /// What was found about edges. All numbers of edges are those of [`Location`](crate::Location): below 4 a side of the
 /// domain, `4 + k` trim curve `k`.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct EdgeReport {
     /// Whole edges joined in pairs.
     pub joints: Vec<Joint>,

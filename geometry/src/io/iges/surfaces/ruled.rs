@@ -8,6 +8,7 @@ use crate::curve::join::inner_knots;
 use crate::curve::{CurveError, CurveJet};
 use crate::io::brep::{ParameterMap, Reparametrise};
 use crate::{NurbsCurve, NurbsPatch, Vec3};
+use std::cell::Cell;
 
 /// Largest deviation of a rail that must be given a new parameter, as a share of the surface's size.
 const TOLERANCE: f64 = 1e-9;
@@ -69,12 +70,17 @@ pub fn read(mut reader: SurfaceReader) -> Found {
             if !by_length && rail.map.as_affine().is_some() && !is_rational(&rail.curve) {
                 continue;
             }
+            let left = &reader.model.evaluations;
             let fitted = if by_length {
-                by_relative_length(&rail.curve, TOLERANCE * size)
+                by_relative_length(&rail.curve, TOLERANCE * size, left)
             } else {
                 by_file_parameter(rail, TOLERANCE * size)
             };
-            let (curve, off) = fitted.map_err(|e| e.to_string())?;
+            let (curve, off) = fitted.map_err(|e| match left.get() {
+                0 => "its rails by length take more work than a file of this length is granted"
+                    .to_owned(),
+                _ => e.to_string(),
+            })?;
             rail.curve = curve;
             deviation = deviation.max(off);
         }
@@ -177,12 +183,14 @@ fn by_file_parameter(
     fit(&f, &breaks, tolerance)
 }
 
-/// The curve with its relative length as parameter.
+/// The curve with its relative length as parameter. Takes from the evaluations that are `left`; without any there are no
+/// finite points.
 fn by_relative_length(
     curve: &NurbsCurve<3>,
     tolerance: f64,
+    left: &Cell<u64>,
 ) -> Result<(NurbsCurve<3>, f64), crate::curve::fit::FitError> {
-    let lengths = Lengths::new(curve);
+    let lengths = Lengths::new(curve, left);
     let total = lengths.total();
     if total <= 0.0 {
         return Ok((curve.clone(), 0.0));
@@ -234,10 +242,15 @@ struct Lengths<'a> {
     curve: &'a NurbsCurve<3>,
     /// At the start of each part, and at the end of the last.
     start: Vec<f64>,
+    /// Evaluations of surfaces that the work may still be worth.
+    left: &'a Cell<u64>,
 }
 
+/// Evaluations that a step towards a length counts for.
+const STEP: u64 = 9;
+
 impl<'a> Lengths<'a> {
-    fn new(curve: &'a NurbsCurve<3>) -> Self {
+    fn new(curve: &'a NurbsCurve<3>, left: &'a Cell<u64>) -> Self {
         let mut start = vec![0.0];
         let mut sum = 0.0;
         for span in 0..curve.basis().span_count() {
@@ -247,7 +260,7 @@ impl<'a> Lengths<'a> {
                 start.push(sum);
             }
         }
-        Self { curve, start }
+        Self { curve, start, left }
     }
 
     fn total(&self) -> f64 {
@@ -269,6 +282,10 @@ impl<'a> Lengths<'a> {
         };
         // The speed is near constant in a part: a few steps of Newton's method do.
         for _ in 0..8 {
+            self.left.set(self.left.get().saturating_sub(STEP));
+            if self.left.get() == 0 {
+                return f64::NAN;
+            }
             let rest = s - from - length(self.curve, span, a, t);
             let speed = self.curve.jet_in_span(span, t).d1.norm();
             let step = rest / speed;
