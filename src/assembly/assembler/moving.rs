@@ -355,6 +355,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         self.borders = DrivenBlock::all(self.model, &pattern)?;
         self.element_maps = maps.elements;
         self.kinds = maps.kinds;
+        self.seams.place(maps.seams);
         self.point_maps = maps.points;
         self.follower_maps = maps.followers;
         self.matrix = super::system(self.model, pattern.clone());
