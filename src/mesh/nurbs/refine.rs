@@ -1,5 +1,5 @@
 //! A patch as a file gives it made bicubic and fine, without a change of shape.
-use super::{DEGREE, Joints, NurbsError, NurbsSheet, SheetPatch};
+use super::{DEGREE, Edge, Joints, NurbsError, NurbsSheet, SheetPatch};
 use covact_geometry::{NurbsPatch, Vec3};
 use std::collections::BTreeMap;
 
@@ -55,6 +55,10 @@ impl NurbsSheet {
         }
         let all: Vec<&NurbsPatch> = fine.iter().collect();
         let mut joints = Joints::new(&all, thickness);
+        if let Some(pair) = twice(&all, &joints, thickness) {
+            let faces = pair.map(|k| faces[k].0);
+            return Err((pair[1], NurbsError::Twice { faces }));
+        }
         let turned = joints.turned(fine.len()).map_err(|pair| {
             let faces = pair.map(|k| faces[k].0);
             (pair[1], NurbsError::OneSided { faces })
@@ -88,6 +92,16 @@ impl NurbsSheet {
             edge_sets: BTreeMap::new(),
         })
     }
+}
+
+/// Two patches that are joined along all of their edges and are near each other in their middle.
+fn twice(patches: &[&NurbsPatch], joints: &Joints, thickness: f64) -> Option<[usize; 2]> {
+    let middle = |k: usize| patches[k].point(patches[k].domain().map(|[a, b]| 0.5 * (a + b)));
+    let pairs = joints.seams.iter().map(|seam| seam.edges.map(Edge::patch));
+    pairs.clone().find(|pair| {
+        pairs.clone().filter(|other| other == pair).count() >= 4
+            && (middle(pair[0]) - middle(pair[1])).norm() < thickness
+    })
 }
 
 /// A patch raised to degree 3 and cut into elements, whose numbers are added up. Its shape is checked not to have moved.

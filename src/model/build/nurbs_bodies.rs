@@ -125,6 +125,13 @@ impl Builder<'_> {
                 sheet.edge_name(*edge)
             ));
         }
+        for (edge, patch) in &joints.inside {
+            self.warnings.push(format!(
+                "body `{name}`: the free edge `{}` lies on the inside of face {}, and is not joined to it: only edges are",
+                sheet.edge_name(*edge),
+                sheet.patches[*patch].face
+            ));
+        }
         for near in &joints.near {
             let [a, b] = near.edges.map(|e| sheet.edge_name(e));
             self.warnings.push(format!(
@@ -221,11 +228,12 @@ impl Builder<'_> {
             );
             Err(text(at(field), message).help(help.to_owned()))
         };
-        if rigid.is_none() {
+        let body = |set: &str| set.split_once('.').map_or(set, |(body, _)| body).to_owned();
+        if rigid.is_none() && body(&contact.slave) == body(&contact.master) {
             return refuse(
                 "master",
-                "masters that are bodies",
-                "take a rigid surface as master",
+                "masters on the same body",
+                "take another body or a rigid surface as master",
             );
         }
         let described = self.scene.surfaces.get(&contact.master);
@@ -235,6 +243,9 @@ impl Builder<'_> {
                 "surfaces driven by force",
                 "prescribe the motion of the surface",
             );
+        }
+        if let (None, Tangent::Published { .. }) = (rigid, contact.tangent) {
+            return refuse("tangent", "published tangents", "take `exact`");
         }
         if matches!(contact.points, Points::Segments(_)) {
             return refuse("points", "integration segments", "take `{\"gauss\": 4}`");
@@ -459,6 +470,8 @@ fn refused(file: &str, elements: &str, label: &str, error: NurbsError) -> ModelE
         NurbsError::Crease { .. } | NurbsError::Closed { .. } => {
             Some("cut the face there in the CAD program, and take one of its parts")
         }
+        NurbsError::Twice { .. } => Some("name the faces that are the shell in `faces`"),
+        NurbsError::OneSided { .. } => Some("make two bodies of it"),
         NurbsError::Pole { .. } => Some("cut the pole away, or mesh the face (`mesh`)"),
         _ => None,
     };

@@ -1,8 +1,8 @@
 //! Seams: where two patches of a sheet are joined. Their control points stay their own; an energy per undeformed length holds
 //! displacements together and the angle between both sides,
-//! `alpha_d/2 |u_A - u_B|^2 + alpha_r (1 - m . n_B)` with `m = c0 n_A + s0 nu_A`,
+//! `alpha_d/2 |u_A - u_B|^2 + alpha_r (1 - m . n_B)` with `m = c0 n_A + s0 nu_A + t0 tau_A`,
 //! where `tau` is the unit tangent of the edge on side A, `nu_A = tau x n_A`, and the constants `c0 = N_A . N_B`,
-//! `s0 = Nu_A . N_B` are those of the undeformed shell. `1 - m . n_B` is twice the square of the sine of half the change of the
+//! `s0 = Nu_A . N_B` and `t0 = Tau_A . N_B` are those of the undeformed shell, the last no more than a gap makes of it. `1 - m . n_B` is twice the square of the sine of half the change of the
 //! angle, whatever the angle is: flat seams, folds and normals that are turned over are one expression. Displacements, not
 //! positions, are compared, so that a gap within the tolerance of a CAD file strains nothing.
 //!
@@ -50,8 +50,8 @@ struct SeamPoint {
     n_i: [[[f64; NODES]; 2]; 2],
     /// The parameter of side A that runs along the seam.
     along: usize,
-    /// `c0, s0`.
-    angle: [f64; 2],
+    /// `c0, s0, t0`.
+    angle: [f64; 3],
     /// `alpha_d` and `alpha_r` times the undeformed length.
     stiffness: [f64; 2],
 }
@@ -186,6 +186,12 @@ impl SeamSpan {
         self.points.iter_mut().for_each(|p| p.stiffness[0] = 0.0);
     }
 
+    /// Another normal of side B at rest, in the axes of side A.
+    #[cfg(test)]
+    pub fn with_angle(&mut self, angle: [f64; 3]) {
+        self.points.iter_mut().for_each(|p| p.angle = angle);
+    }
+
     /// Sum of the stiffnesses that hold displacements together.
     #[cfg(test)]
     pub fn stretching(&self) -> f64 {
@@ -286,17 +292,16 @@ impl SeamPoint {
         let length = dot(t, t).sqrt();
         let tau = t.map(|t| t / length);
         let nu = cross(&tau, &a.frame.n);
-        let angle = [dot(&a.frame.n, &b.frame.n), dot(&nu, &b.frame.n)];
-        let size = angle[0].hypot(angle[1]);
+        let angle = [a.frame.n, nu, tau].map(|axis| dot(&axis, &b.frame.n));
         let scale = STIFF / (0.5 * (a.width + b.width)) * weight * length;
         let stiffness = [stretch * scale, bending * scale];
         // Two normals of one edge are both across it.
-        let sound = size > 0.9 && stiffness.iter().all(|s| *s > 0.0 && s.is_finite());
+        let sound = angle[2].abs() < 0.5 && stiffness.iter().all(|s| *s > 0.0 && s.is_finite());
         sound.then(|| SeamPoint {
             n: [a.shapes.n, b.shapes.n],
             n_i: [a, b].map(|p| [p.shapes.second[0], p.shapes.second[1]]),
             along,
-            angle: angle.map(|x| x / size),
+            angle,
             stiffness,
         })
     }
@@ -329,8 +334,8 @@ impl<D: DualNum<f64> + Copy> Joint<D> {
         let length = dot(&t, &t).sqrt();
         let tau = t.map(|t| t / length);
         let nu = cross(&tau, &frames[0].n);
-        let [c0, s0] = p.angle;
-        let m = [0, 1, 2].map(|c| frames[0].n[c] * c0 + nu[c] * s0);
+        let [c0, s0, t0] = p.angle;
+        let m = [0, 1, 2].map(|c| frames[0].n[c] * c0 + nu[c] * s0 + tau[c] * t0);
         Joint {
             off: [0, 1, 2].map(|c| frames[1].n[c] - m[c]),
             frames,
@@ -359,10 +364,13 @@ impl<D: DualNum<f64> + Copy> Joint<D> {
             let by = dot(&self.off, &beta);
             return n.map(|n| n * by);
         }
-        let [c0, s0] = p.angle;
-        let along = p.n_i[0][p.along][a];
-        let turned = -dot(&self.off, &self.tau) * along / self.length * s0;
-        let lifted = -dot(&self.off, &beta) * c0 + dot(&self.off, n) * dot(&self.nu, &beta) * s0;
+        let [c0, s0, t0] = p.angle;
+        // dtau = T (nu x nu + n x n) dx
+        let along = self.length.recip() * p.n_i[0][p.along][a];
+        let turned = (dot(&self.off, &self.nu) * t0 - dot(&self.off, &self.tau) * s0) * along;
+        let lifted = -dot(&self.off, &beta) * c0
+            + dot(&self.off, n) * dot(&self.nu, &beta) * s0
+            + dot(&self.off, n) * along * t0;
         [0, 1, 2].map(|c| self.nu[c] * turned + n[c] * lifted)
     }
 }
@@ -372,10 +380,11 @@ impl Joint<f64> {
     /// the shape function along the edge over its length, second variations are
     /// `v . D(dn) = phi_b n x beta_a + phi_a beta_b x n - (v . n) (beta_a . beta_b) n x n` and
     /// `v . D(dnu) = (v . tau) T_a [T_b (tau x nu + nu x tau) - psi_b n x n] - T_a T_b [(v . nu) nu x nu + (v . n) nu x n]
-    /// - (v . n) [theta_a T_b n x nu + psi_b n x beta_a + psi_a beta_b x n] - psi_a phi_b n x n`.
+    /// - (v . n) [theta_a T_b n x nu + psi_b n x beta_a + psi_a beta_b x n] - psi_a phi_b n x n` and
+    /// `v . D(dtau) = -T_a T_b [(v . nu) (tau x nu + nu x tau) + (v . n) (tau x n + n x tau) + (v . tau) (nu x nu + n x n)]`.
     fn add_tangent(&self, p: &SeamPoint, k: &mut [f64]) {
         let [shift, turn] = p.stiffness;
-        let [c0, s0] = p.angle;
+        let [c0, s0, t0] = p.angle;
         let [na, nb] = [Vec3::from(self.frames[0].n), Vec3::from(self.frames[1].n)];
         let (tau, nu, m) = (
             Vec3::from(self.tau),
@@ -393,6 +402,8 @@ impl Joint<f64> {
         let [n_n, nu_nu, nu_n, n_nu] =
             [(na, na), (nu, nu), (nu, na), (na, nu)].map(|(u, v)| u * v.transpose());
         let turning = tau * nu.transpose() + nu * tau.transpose();
+        let lifting = tau * na.transpose() + na * tau.transpose();
+        let across = nu_nu + n_n;
         let mut put = |[row, column]: [usize; 2], block: nalgebra::Matrix3<f64>| {
             for c in 0..3 {
                 let to = &mut k[(3 * column + c) * SEAM_DOFS + 3 * row..][..3];
@@ -416,9 +427,10 @@ impl Joint<f64> {
                     - n_nu * (v_n * theta[a] * t[b])
                     - (na * ba.transpose() * psi[b] + bb * na.transpose() * psi[a]) * v_n
                     - n_n * (psi[a] * phi[b]);
+                let stretched = (turning * v_nu + lifting * v_n + across * v_tau) * both;
                 put(
                     [a, b],
-                    plain([0, a], [0, b]) - (bent * c0 + crossed * s0) * turn,
+                    plain([0, a], [0, b]) - (bent * c0 + crossed * s0 - stretched * t0) * turn,
                 );
                 let (ba, bb) = (beta[1][a], beta[1][b]);
                 let bent = nb * ba.transpose() * phi_b[b] + bb * nb.transpose() * phi_b[a]
@@ -429,7 +441,8 @@ impl Joint<f64> {
             for a in 0..NODES {
                 // -dm . Dn_B
                 let mixed = na * (s0 * psi[a] * na.dot(&bb) - c0 * beta[0][a].dot(&bb))
-                    - nu * (s0 * t[a] * tau.dot(&bb));
+                    - nu * (s0 * t[a] * tau.dot(&bb))
+                    + across * bb * (t0 * t[a]);
                 put(
                     [a, NODES + b],
                     plain([0, a], [1, b]) + mixed * nb.transpose() * turn,

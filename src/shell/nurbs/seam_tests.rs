@@ -67,8 +67,10 @@ fn derivatives_against_dual_numbers() {
     let fine: Vec<&NurbsPatch> = raw.patches.iter().map(|p| &p.patch).collect();
     raw.joints = Joints::new(&fine, 0.05);
     for sheet in [&sheet, &raw] {
-        let spans = SeamSpan::all(sheet, &law()).unwrap();
+        let mut spans = SeamSpan::all(sheet, &law()).unwrap();
         assert!(spans.len() >= 3, "{}", spans.len());
+        // A normal that is not across the edge, as gaps have it, much exaggerated.
+        spans[1].with_angle([0.48, -0.64, 0.6]);
         let u = moved(0.05);
         let vectors = u.map(Vec3::from);
         let mut k = vec![0.0; SEAM_DOFS * SEAM_DOFS];
@@ -313,6 +315,13 @@ fn seams_are_found_by_their_shape() {
             "{gap}"
         );
     }
+    // A rib on the inside, whose edge is near no other.
+    let rib = patch([0.0, 1.0], [&[], &[]], |x, t| Vec3::new(0.4, t, x));
+    let joints = find(&[a.clone(), rib]);
+    assert_eq!(
+        (joints.seams.len(), joints.inside),
+        (0, vec![(Edge::of(1)[0], 0)])
+    );
     // Turned over.
     let joints = find(&[a.clone(), b.reversed(0).unwrap()]);
     assert_eq!(joints.turned(2), Ok(vec![false, true]));
