@@ -70,6 +70,7 @@ fn folder() -> tempfile::TempDir {
     };
     write("lower.json", dish(0.0, -0.006, -0.004));
     write("upper.json", dish(1.3, 0.0, 0.0));
+    write("bulge.json", dish(1.3, 0.004, 0.003));
     folder
 }
 
@@ -121,7 +122,7 @@ fn two_sheets_bend() {
         }
         let s = &both.summary;
         assert!(
-            s.newton_iterations <= 8 * s.steps,
+            s.newton_iterations <= 8 * u64::from(s.steps),
             "{}",
             s.newton_iterations
         );
@@ -209,16 +210,17 @@ fn balance_and_tangent_of_two_sheets() {
     assert!(worst < 2e-6 * scale, "{}", worst / scale);
 }
 
-/// Slave sheets on bodies of elements: a sheet pressed on a block against the same block pressed on the sheet.
+/// A bulged sheet and a block wider than what touches, each of them the slave once: the same force.
 #[test]
 fn a_sheet_on_a_block() {
     let forces = [true, false].map(|slave| {
-        let mut scene = scene(json!("upper.corner.1"), json!({"penalty": "auto"}), 1.2);
+        let mut scene = scene(json!("lower.bottom"), json!({}), 1.2);
+        scene["bodies"]["upper"]["nurbs"]["file"] = json!("bulge.json");
         scene["bodies"]["lower"] = json!({
-            "mesh": {"block": {"min": [-6, -6, -6], "max": [6, 6, 0.75], "elements": [6, 6, 3]}}, "material": "soft"
+            "mesh": {"block": {"min": [-20, -20, -6], "max": [20, 20, 0.75], "elements": [24, 24, 2]}},
+            "material": "soft"
         });
         scene["materials"]["soft"] = json!({"neo_hooke": {"E": 1200, "nu": 0.3}});
-        scene["supports"]["held"] = json!({"on": "lower.bottom", "fixed": true});
         scene["supports"]["border"]["displacement"]["x"] = json!(0);
         if !slave {
             scene["contacts"]["press"]["slave"] = json!("lower.top");
@@ -232,8 +234,6 @@ fn a_sheet_on_a_block() {
         force
     });
     println!("{forces:?}: {}", off(forces[1], forces[0]));
-    assert!(
-        forces[0].abs() > 20.0 && off(forces[1], forces[0]) < 2e-2,
-        "{forces:?}"
-    );
+    assert!(forces[0].abs() > 20.0, "{forces:?}");
+    assert!(off(forces[1], forces[0]) < 1e-2, "{forces:?}");
 }
