@@ -26,6 +26,12 @@ impl Seams {
         }
     }
 
+    /// Bytes of heap for so many seams.
+    pub fn size(count: usize) -> usize {
+        let room = if count > 0 { SEAM_DOFS * SEAM_DOFS } else { 0 };
+        count * pairs(SEAM_NODES) * size_of::<u32>() + room * size_of::<f64>()
+    }
+
     /// Bytes of heap that it holds.
     pub fn bytes(&self) -> usize {
         heap(&self.maps) + heap(&self.tangent)

@@ -157,20 +157,23 @@ impl SeamSpan {
                         place(sheet, seam.edges[b], curves[b].foot(&x).0, &mut room),
                     ];
                     let along = 1 - seam.edges[a].direction();
-                    let Some(point) =
+                    let Some(mut point) =
                         SeamPoint::new(&places, along, 0.5 * w * size, stretch, bending)
                     else {
                         let element = places[0].element as u32;
                         return Err(ShellError::NoNormal { element });
                     };
+                    let reference = places
+                        .each_ref()
+                        .map(|p| p.shapes.nodes.map(|n| positions[n as usize]));
+                    // The numbers that it is compared with later, to the last bit.
+                    point.angle = Joint::new(&point, &reference).off;
                     let nodes = std::array::from_fn(|k| places[k / NODES].shapes.nodes[k % NODES]);
                     match out.last_mut() {
                         Some(last) if last.nodes == nodes => last.points.push(point),
                         _ => out.push(SeamSpan {
                             nodes,
-                            reference: places
-                                .each_ref()
-                                .map(|p| p.shapes.nodes.map(|n| positions[n as usize])),
+                            reference,
                             points: vec![point],
                         }),
                     }
@@ -291,17 +294,17 @@ impl SeamPoint {
         let t = &a.frame.r[along];
         let length = dot(t, t).sqrt();
         let tau = t.map(|t| t / length);
-        let nu = cross(&tau, &a.frame.n);
-        let angle = [a.frame.n, nu, tau].map(|axis| dot(&axis, &b.frame.n));
+        // Two normals of one edge are both across it.
+        let slant = dot(&tau, &b.frame.n);
         let scale = STIFF / (0.5 * (a.width + b.width)) * weight * length;
         let stiffness = [stretch * scale, bending * scale];
-        // Two normals of one edge are both across it.
-        let sound = angle[2].abs() < 0.5 && stiffness.iter().all(|s| *s > 0.0 && s.is_finite());
+        let sound = slant.abs() < 0.5 && stiffness.iter().all(|s| *s > 0.0 && s.is_finite());
         sound.then(|| SeamPoint {
             n: [a.shapes.n, b.shapes.n],
             n_i: [a, b].map(|p| [p.shapes.second[0], p.shapes.second[1]]),
             along,
-            angle,
+            // Set by what is compared with it.
+            angle: [0.0; 3],
             stiffness,
         })
     }
@@ -319,8 +322,9 @@ struct Joint<D> {
     tau: V<D>,
     nu: V<D>,
     m: V<D>,
-    /// `n_B - m`: what remains of products with either, because a unit vector turns across itself.
-    off: V<D>,
+    /// `n_B - m` along `n_A`, `nu` and `tau`: nothing at all at rest, not even round-off, where nothing else has forces either.
+    /// Products with it are those with `n_B` or `-m` alone, because a unit vector turns across itself.
+    off: [D; 3],
     /// Length of `rho_t`.
     length: D,
 }
@@ -337,7 +341,11 @@ impl<D: DualNum<f64> + Copy> Joint<D> {
         let [c0, s0, t0] = p.angle;
         let m = [0, 1, 2].map(|c| frames[0].n[c] * c0 + nu[c] * s0 + tau[c] * t0);
         Joint {
-            off: [0, 1, 2].map(|c| frames[1].n[c] - m[c]),
+            off: [
+                dot(&frames[1].n, &frames[0].n) - c0,
+                dot(&frames[1].n, &nu) - s0,
+                dot(&frames[1].n, &tau) - t0,
+            ],
             frames,
             tau,
             nu,
@@ -359,18 +367,18 @@ impl<D: DualNum<f64> + Copy> Joint<D> {
     fn gradient(&self, p: &SeamPoint, side: usize, a: usize) -> V<D> {
         let beta = self.beta(p, side, a);
         let n = &self.frames[side].n;
+        let [off_n, off_nu, off_tau] = self.off;
+        let [psi, theta] = [dot(&self.nu, &beta), dot(&self.tau, &beta)];
         if side == 1 {
             // m . dn_B, and n_B . dn_B = 0.
-            let by = dot(&self.off, &beta);
+            let by = off_n * dot(&self.frames[0].n, &beta) + off_nu * psi + off_tau * theta;
             return n.map(|n| n * by);
         }
         let [c0, s0, t0] = p.angle;
         // dtau = T (nu x nu + n x n) dx
         let along = self.length.recip() * p.n_i[0][p.along][a];
-        let turned = (dot(&self.off, &self.nu) * t0 - dot(&self.off, &self.tau) * s0) * along;
-        let lifted = -dot(&self.off, &beta) * c0
-            + dot(&self.off, n) * dot(&self.nu, &beta) * s0
-            + dot(&self.off, n) * along * t0;
+        let turned = (off_nu * t0 - off_tau * s0) * along;
+        let lifted = -(off_nu * psi + off_tau * theta) * c0 + off_n * psi * s0 + off_n * along * t0;
         [0, 1, 2].map(|c| self.nu[c] * turned + n[c] * lifted)
     }
 }
