@@ -258,7 +258,7 @@ fn seams_hold_what_is_announced() {
         "covact": 1,
         "units": {"length": "mm"},
         "materials": {"m": {"st_venant_kirchhoff": {"E": 70000, "nu": 0.33}}},
-        "bodies": {"panel": {"nurbs": {"file": file, "thickness": 1, "size": 20}, "material": "m"}},
+        "bodies": {"panel": {"nurbs": {"file": file, "thickness": 1, "size": 10}, "material": "m"}},
         "supports": {"clamped": {"on": "panel.rim", "clamped": true}}
     });
     let (model, parts) = held(&scene, 0.5);
