@@ -33,6 +33,9 @@ const STIFF: f64 = 1e3;
 /// Most points of one rule.
 const RULE: usize = 8;
 
+/// Vectors at the control points of both sides.
+type Sides<D> = [[V<D>; NODES]; 2];
+
 /// Two spans, one on each side of a seam.
 #[derive(Debug, Clone)]
 pub struct SeamSpan {
@@ -212,7 +215,7 @@ impl SeamSpan {
         u: &[V<D>; SEAM_NODES],
     ) -> (D, [V<D>; SEAM_NODES]) {
         let (mut energy, mut f) = (D::zero(), [[D::zero(); 3]; SEAM_NODES]);
-        let (own, x) = self.sides(u);
+        let [own, x] = self.sides(u);
         for p in &self.points {
             let at = Joint::new(p, &x);
             let jump = p.jump(&own);
@@ -233,17 +236,14 @@ impl SeamSpan {
     }
 
     /// Displacements and positions of both sides.
-    fn sides<D: DualNum<f64> + Copy>(
-        &self,
-        u: &[V<D>; SEAM_NODES],
-    ) -> ([[V<D>; NODES]; 2], [[V<D>; NODES]; 2]) {
+    fn sides<D: DualNum<f64> + Copy>(&self, u: &[V<D>; SEAM_NODES]) -> [Sides<D>; 2] {
         let own = [0, 1].map(|s| std::array::from_fn(|a| u[NODES * s + a]));
         let x = [0, 1].map(|s: usize| {
             std::array::from_fn(|a| {
                 [0, 1, 2].map(|c| u[NODES * s + a][c] + self.reference[s][a][c])
             })
         });
-        (own, x)
+        [own, x]
     }
 
     /// Energy at displacements `u`; forces, and with a room for it (columns of [`SEAM_DOFS`]) the tangent, exactly symmetric.
@@ -260,7 +260,7 @@ impl SeamSpan {
             return energy;
         };
         k.fill(0.0);
-        let (_, x) = self.sides(&u);
+        let [_, x] = self.sides(&u);
         for p in &self.points {
             Joint::new(p, &x).add_tangent(p, k);
         }
@@ -310,7 +310,7 @@ impl SeamPoint {
     }
 
     /// `u_A - u_B`.
-    fn jump<D: DualNum<f64> + Copy>(&self, u: &[[V<D>; NODES]; 2]) -> V<D> {
+    fn jump<D: DualNum<f64> + Copy>(&self, u: &Sides<D>) -> V<D> {
         let [a, b] = [0, 1].map(|s: usize| combine(&self.n[s], &u[s]));
         [0, 1, 2].map(|c| a[c] - b[c])
     }
@@ -330,7 +330,7 @@ struct Joint<D> {
 }
 
 impl<D: DualNum<f64> + Copy> Joint<D> {
-    fn new(p: &SeamPoint, x: &[[V<D>; NODES]; 2]) -> Self {
+    fn new(p: &SeamPoint, x: &Sides<D>) -> Self {
         let frames = [0, 1].map(|s: usize| {
             Normal::new([combine(&p.n_i[s][0], &x[s]), combine(&p.n_i[s][1], &x[s])])
         });

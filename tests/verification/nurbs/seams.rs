@@ -26,11 +26,9 @@ fn fine(patch: &Patch, spans: [usize; 2]) -> NurbsPatch {
         Some(&weights),
     )
     .expect("a patch");
-    for dir in 0..2 {
+    for (dir, spans) in spans.into_iter().enumerate() {
         out = out.elevated(dir, 3 - patch.degree[dir]).expect("raised");
-        let inner: Vec<f64> = (1..spans[dir])
-            .map(|k| k as f64 / spans[dir] as f64)
-            .collect();
+        let inner: Vec<f64> = (1..spans).map(|k| k as f64 / spans as f64).collect();
         out = out.insert_knots(dir, &inner).expect("refined");
     }
     out
