@@ -76,7 +76,9 @@ pub use bezier::{BezierPiece, bezier_pieces};
 pub use curve::NurbsCurve;
 pub use facet::{Bilinear, Biquadratic, FacetMesh};
 pub use frame::Frame;
-pub use moving::{CurvedRows, MovingError, MovingFacets, MovingFoot, MovingPlace, ShapeRows};
+pub use moving::{
+    CurvedRows, MovingError, MovingFacets, MovingFoot, MovingPlace, PatchSpans, ShapeRows,
+};
 /// Vectors, points and poses are those of nalgebra.
 pub use nalgebra;
 pub use patch::{NurbsPatch, PatchError, PatchShape};

@@ -44,6 +44,58 @@ impl Lever {
         self.combine(&self.n, &position) + normal * (self.height / normal.norm())
     }
 
+    /// Unit normal on the side that the point lies on, of nodes at these positions.
+    pub fn outward(&self, position: impl Fn(u32) -> Vec3) -> Vec3 {
+        self.base(&position).normal * self.height.signum()
+    }
+
+    /// The matrix of a point and of other nodes as one of the nodes below the point and those others: `point` is that of
+    /// `1 + others` nodes by columns of `3 node + axis`, the point itself the first, on which the force `f` acts; `out` is that of
+    /// [`NODES`] and the others.
+    ///
+    /// # Panics
+    /// Where a matrix has another size.
+    pub fn expand(
+        &self,
+        position: impl Fn(u32) -> Vec3,
+        f: &Vec3,
+        others: usize,
+        point: &[f64],
+        out: &mut [f64],
+    ) {
+        let (small, large) = (3 * (1 + others), 3 * (NODES + others));
+        assert_eq!([point.len(), out.len()], [small * small, large * large]);
+        let at = |r: usize, c: usize| point[c * small + r];
+        let own = Matrix3::from_fn(at);
+        let mut ke = [0.0; 9 * NODES * NODES];
+        self.spread(&position, f, Some((&own, &mut ke)));
+        let size = 3 * NODES;
+        for (column, own) in ke.chunks_exact(size).enumerate() {
+            out[column * large..][..size].copy_from_slice(own);
+        }
+        let Base { normal, up } = self.base(&position);
+        for a in 0..NODES {
+            let beta = up[0] * self.n_i[0][a] + up[1] * self.n_i[1][a];
+            let row = Matrix3::identity() * self.n[a] - beta * normal.transpose() * self.height;
+            for k in 0..others {
+                let first = 3 + 3 * k;
+                let below = row.tr_mul(&Matrix3::from_fn(|r, c| at(r, first + c)));
+                let beside = Matrix3::from_fn(|r, c| at(first + r, c)) * row;
+                for c in 0..3 {
+                    for r in 0..3 {
+                        out[(size + 3 * k + c) * large + 3 * a + r] = below[(r, c)];
+                        out[(3 * a + c) * large + size + 3 * k + r] = beside[(r, c)];
+                    }
+                }
+            }
+        }
+        for c in 0..3 * others {
+            for r in 0..3 * others {
+                out[(size + c) * large + size + r] = at(3 + r, 3 + c);
+            }
+        }
+    }
+
     fn base(&self, position: &impl Fn(u32) -> Vec3) -> Base {
         let r = self.n_i.each_ref().map(|n| self.combine(n, position));
         let normal = r[0].cross(&r[1]);
@@ -190,6 +242,53 @@ mod tests {
                         "{dof} {a} {c}: {slope} {exact}"
                     );
                 }
+            }
+        }
+    }
+
+    /// A point and two other nodes, with any tangent: the expanded matrix is that of the chain rule, against differences of the
+    /// forces.
+    #[test]
+    fn a_point_and_other_nodes() {
+        let (lever, x) = lever();
+        let others = 2;
+        let f = Vec3::new(0.3, -1.1, 0.7);
+        let small: Vec<f64> = (0..81).map(|k| noise(200 + k)).collect();
+        let (size, large) = (9, 3 * (NODES + others));
+        let mut ke = vec![f64::NAN; large * large];
+        lever.expand(|n| x[n as usize], &f, others, &small, &mut ke);
+        let norm = ke.iter().map(|k| k * k).sum::<f64>().sqrt();
+        assert!(norm > 1.0 && norm.is_finite(), "{norm}");
+        let rest = lever.position(|n| x[n as usize]);
+        // Linear forces of the point and the others by their motions.
+        let forces = |moved: &[f64]| -> Vec<f64> {
+            let x: Vec<Vec3> = (x.iter().enumerate())
+                .map(|(a, x)| x + Vec3::from_column_slice(&moved[3 * a..][..3]))
+                .collect();
+            let y = lever.position(|n| x[n as usize]) - rest;
+            let mut way = [0.0; 9];
+            way[..3].copy_from_slice(y.as_slice());
+            way[3..].copy_from_slice(&moved[3 * NODES..]);
+            let of = |r: usize| (0..9).map(|c| small[c * size + r] * way[c]).sum::<f64>();
+            let own = f + Vec3::from_fn(|r, _| of(r));
+            let spread = lever.spread(|n| x[n as usize], &own, None);
+            let all = spread.iter().flat_map(|f| f.iter().copied());
+            all.chain((3..9).map(of)).collect()
+        };
+        for column in 0..large {
+            let h = 1e-5;
+            let ends = [h, -h].map(|h| {
+                let mut moved = vec![0.0; large];
+                moved[column] = h;
+                forces(&moved)
+            });
+            for row in 0..large {
+                let slope = (ends[0][row] - ends[1][row]) / (2.0 * h);
+                let exact = ke[column * large + row];
+                assert!(
+                    (slope - exact).abs() < 1e-8 * norm,
+                    "{row} {column}: {slope} {exact}"
+                );
             }
         }
     }

@@ -121,7 +121,7 @@ mod tests {
         let knots = || vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         let patch = NurbsPatch::new([2, 2], [knots(), knots()], [3, 3], &points, None).unwrap();
         let sheet = NurbsSheet::new(&patch, 0.1, Fineness::Elements([2, 2]), true).unwrap();
-        let positions = sheet.patch.points();
+        let positions = sheet.positions();
         for edge in Edge::ALL {
             let spans = CoupleSpan::all(&sheet, edge, 0);
             assert_eq!(spans.len(), 2);

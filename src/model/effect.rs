@@ -49,6 +49,7 @@ effects! {
     H8Eas3, "element.h8_eas3", listed: "8-node solid-shell elements enhanced through their thickness only";
     Q18SolidShell, "element.q18_solid_shell", listed: "18-node quadratic solid-shells, for thin and curved sheets";
     NurbsShell, "element.nurbs_shell", listed: "a CAD surface as a thin shell: its control points are the unknowns";
+    NurbsSeams, "element.nurbs_seams", listed: "faces of a CAD surface joined along their edges, whose knots need not match";
     AssumedStrains, "element.assumed_strains", detail: "strains interpolated so that thin elements do not lock";
     EnhancedStrains, "element.enhanced_strains", detail: "further strains inside an element, condensed";
     StVenantKirchhoff, "material.st_venant_kirchhoff", listed: "linear stress-strain law for small strains";

@@ -1,7 +1,7 @@
 //! Can a body move without being strained? Six rigid motions against its supports.
 use super::{Model, Support};
 use crate::scene::ValueError;
-use crate::shell::Block;
+use crate::shell::{Block, SEAM_NODES};
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 
@@ -162,6 +162,10 @@ fn pieces(nodes: usize, body: &super::BodyModel) -> Vec<Vec<u32>> {
             let r = root(&mut parent, n);
             parent[r as usize] = first;
         }
+    }
+    for seam in body.block.seams() {
+        let [a, b] = [seam.nodes[0], seam.nodes[SEAM_NODES - 1]].map(|n| root(&mut parent, n));
+        parent[b as usize] = a;
     }
     let mut groups = std::collections::BTreeMap::<u32, Vec<u32>>::new();
     for n in 0..nodes as u32 {

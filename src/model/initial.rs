@@ -119,7 +119,8 @@ fn initial_gaps(
 fn slave_normals(model: &Model, pair: &PairModel) -> Vec<Vec3> {
     let body = &model.bodies[pair.body];
     let mut at_node = vec![Vec3::zeros(); body.mesh.nodes.len()];
-    for &face in &pair.faces {
+    let solid = body.block.sheet().is_none();
+    for &face in pair.faces.iter().filter(|_| solid) {
         let (area, normal) = body.mesh.face_area_normal(face);
         for &n in body.mesh.face_nodes(face).nodes() {
             at_node[n as usize] += normal * area;
@@ -127,6 +128,9 @@ fn slave_normals(model: &Model, pair: &PairModel) -> Vec<Vec3> {
     }
     let first = body.first_node as usize;
     let normal = |p: &SlavePoint| {
+        if let Some(number) = p.lever_number() {
+            return model.levers[number].outward(|n| model.nodes[n as usize]);
+        }
         let sum = (p.terms()).fold(Vec3::zeros(), |s, (n, w)| s + at_node[n - first] * w);
         sum.try_normalize(0.0).unwrap_or_else(Vec3::zeros)
     };

@@ -147,7 +147,7 @@ mod tests {
         let sheet = sheet();
         let faces = [4, 5].map(|face| Face { element: 1, face });
         let spans = PressedSpan::all(&sheet, &faces, 0);
-        let positions = sheet.patch.points();
+        let positions = sheet.positions();
         let x = spans[1].nodes.map(|n| positions[n as usize]);
         let (mut f, mut k) = ([0.0; DOFS], [0.0; DOFS * DOFS]);
         spans[1].force(&x, 2.5, &mut f, Some(&mut k));

@@ -13,10 +13,10 @@ pub(crate) const SHEET: &str = "sheet_element";
 pub struct MidSurface {
     /// Name of the part, on which those of its files are built.
     pub name: String,
-    /// Undeformed.
-    pub rest: NurbsPatch,
-    /// Deformed, on the same knots with the same weights.
-    pub now: NurbsPatch,
+    /// Undeformed patches.
+    pub rest: Vec<NurbsPatch>,
+    /// The same deformed, on the same knots with the same weights.
+    pub now: Vec<NurbsPatch>,
     /// Contact pressure at the control points, on either face; none of a body without slave faces.
     pub pressure: Option<Vec<f64>>,
     /// Thickness of the undeformed sheet (length).
@@ -24,14 +24,18 @@ pub struct MidSurface {
 }
 
 impl MidSurface {
-    /// The surface as the bytes of a `.vtu` file: a Bezier cell for every element. Point data, at the control points of the
+    /// The surface as the bytes of a `.vtu` file: a Bezier cell for every element, patch after patch. Point data, at the control points of the
     /// cells: `displacement`, the weights, `contact_pressure`; cell data: `sheet_element` (counted from 0), `thickness` and the
     /// degrees.
     ///
     /// # Errors
     /// [`OutputError::FieldLength`] where the pressure has not one value per control point.
     pub fn to_vtu(&self) -> Result<Vec<u8>, OutputError> {
-        let pieces = |patch: &NurbsPatch| SurfacePiece::of_patch(patch, 0, 0, false);
+        let pieces = |patches: &[NurbsPatch]| -> Vec<SurfacePiece> {
+            let all = patches.iter();
+            all.flat_map(|patch| SurfacePiece::of_patch(patch, 0, 0, false))
+                .collect()
+        };
         let (rest, now) = (pieces(&self.rest), pieces(&self.now));
         let pressure = match &self.pressure {
             None => None,
@@ -84,18 +88,27 @@ impl MidSurface {
         .into_bytes()
     }
 
-    /// Values of the control points as the first coordinate of a patch on the same knots.
-    fn scalar(&self, values: &[f64]) -> Result<NurbsPatch, OutputError> {
-        let weights = self.rest.weights();
+    /// Values of the control points as the first coordinate of patches on the same knots.
+    fn scalar(&self, values: &[f64]) -> Result<Vec<NurbsPatch>, OutputError> {
+        let expected = self.rest.iter().map(|p| p.homogeneous().len()).sum();
         let wrong = || OutputError::FieldLength {
             part: self.name.clone(),
             field: "contact_pressure".to_owned(),
-            expected: weights.len(),
+            expected,
             found: values.len(),
         };
-        let basis = [self.rest.basis(0).clone(), self.rest.basis(1).clone()];
-        let points = values.iter().zip(&weights);
-        let points = points.map(|(p, w)| [p * w, 0.0, 0.0, *w]).collect();
-        NurbsPatch::from_homogeneous(basis, points).map_err(|_| wrong())
+        if values.len() != expected {
+            return Err(wrong());
+        }
+        let mut values = values.iter();
+        (self.rest.iter())
+            .map(|patch| {
+                let basis = [patch.basis(0).clone(), patch.basis(1).clone()];
+                // Weights first: where they end no value is taken.
+                let points = patch.weights().into_iter().zip(values.by_ref());
+                let points: Vec<[f64; 4]> = points.map(|(w, p)| [p * w, 0.0, 0.0, w]).collect();
+                NurbsPatch::from_homogeneous(basis, points).map_err(|_| wrong())
+            })
+            .collect()
     }
 }

@@ -41,6 +41,7 @@ impl Reporter<'_> {
             ]),
         ];
         out.extend(self.elements());
+        out.push(self.seams());
         out.extend(self.strains());
         out.extend(self.materials());
         out
@@ -100,6 +101,34 @@ impl Reporter<'_> {
             ))
         };
         kinds.into_iter().map(effect).collect()
+    }
+
+    /// Faces of CAD surfaces that are joined.
+    fn seams(&self) -> Effect {
+        let joined = || (self.described()).filter(|(b, _)| !b.block.seams().is_empty());
+        let sheet = || (self.described()).find(|(b, _)| b.block.sheet().is_some());
+        let names = listed(joined().map(|(b, _)| b.name.as_str()));
+        let pairs: usize = joined().map(|(b, _)| b.block.seams().len()).sum();
+        let at = match joined().next().or_else(sheet) {
+            Some((body, _)) => pointer(&["bodies", &body.name, "nurbs"]),
+            None => "/bodies".to_owned(),
+        };
+        self.effect(
+            EffectKind::NurbsSeams,
+            at,
+            why(
+                pairs > 0,
+                format!("{pairs} pairs of elements on both sides of common edges (body {names})"),
+                "no body has faces with a common edge",
+            ),
+        )
+        .costs("a 96 x 96 tangent a pair")
+        .holds(vec![Held::assembler(
+            "seams",
+            Per::Whole,
+            sizes::seams(self.model),
+            1,
+        )])
     }
 
     /// Strains that elements do not take from their displacements alone.

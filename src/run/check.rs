@@ -245,7 +245,10 @@ fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
         name: body.name.clone(),
         nodes: body.mesh.nodes.len(),
         elements: body.block.elements(),
-        parts: body.mesh.components(),
+        parts: match body.block.sheet() {
+            Some(sheet) => sheet.parts(),
+            None => body.mesh.components(),
+        },
         element,
         material,
         bounds: body.mesh.bounds().map(Into::into),

@@ -1,4 +1,5 @@
 //! Fields of sheets for the output: on a mesh of quadratic bricks between both faces, as they are deformed.
+use crate::mesh::nurbs::SheetPatch;
 use crate::mesh::{ElementKind, Face, Mesh};
 use crate::model::BodyModel;
 use crate::output::{ContactFields, Field, MidSurface, Place};
@@ -30,18 +31,21 @@ pub(super) fn mid_surface(
     pressure: Option<&[f64]>,
 ) -> Option<MidSurface> {
     let sheet = body.block.sheet()?;
-    let (rest, first) = (&sheet.patch, body.first_node as usize);
-    let count = rest.homogeneous().len();
-    let own = u[3 * first..][..3 * count].chunks_exact(3);
-    let points = rest.homogeneous().iter().zip(own);
-    let moved = points.map(|([x, y, z, w], u)| [x + w * u[0], y + w * u[1], z + w * u[2], *w]);
-    let basis = [rest.basis(0).clone(), rest.basis(1).clone()];
+    let first = body.first_node as usize;
+    let moved = |part: &SheetPatch| {
+        let own = 3 * (first + part.first_node as usize);
+        let own = u[own..][..3 * part.nodes()].chunks_exact(3);
+        let points = part.patch.homogeneous().iter().zip(own);
+        let moved = points.map(|([x, y, z, w], u)| [x + w * u[0], y + w * u[1], z + w * u[2], *w]);
+        let basis = [0, 1].map(|dir| part.patch.basis(dir).clone());
+        // Displacements that are not finite were refused before.
+        NurbsPatch::from_homogeneous(basis, moved.collect()).ok()
+    };
     Some(MidSurface {
         name: sheet_name(body),
-        // Displacements that are not finite were refused before.
-        now: NurbsPatch::from_homogeneous(basis, moved.collect()).ok()?,
-        rest: rest.clone(),
-        pressure: pressure.map(|all| all[first..first + count].to_vec()),
+        now: sheet.patches.iter().map(moved).collect::<Option<_>>()?,
+        rest: sheet.patches.iter().map(|p| p.patch.clone()).collect(),
+        pressure: pressure.map(|all| all[first..first + sheet.nodes()].to_vec()),
         thickness: sheet.thickness,
     })
 }
@@ -59,10 +63,11 @@ impl SheetFields {
             return None;
         };
         let sheet = block.sheet();
-        let spans = [0, 1].map(|dir| sheet.patch.spans(dir));
-        let along = [0, 1].map(|dir| 2 * DIVISIONS * spans[dir].len() + 1);
-        let count = along[0] * along[1];
-        let positions = sheet.patch.points();
+        let grids: Vec<[usize; 2]> = (sheet.patches.iter())
+            .map(|p| p.spans().map(|n| 2 * DIVISIONS * n + 1))
+            .collect();
+        let count: usize = grids.iter().map(|[a, b]| a * b).sum();
+        let positions = sheet.positions();
         let own = &u[3 * body.first_node as usize..][..3 * positions.len()];
         let moved: Vec<Vec3> = (positions.iter().zip(own.chunks_exact(3)))
             .map(|(x, u)| x + Vec3::from_column_slice(u))
@@ -72,38 +77,37 @@ impl SheetFields {
         let mut nodes = vec![Vec3::zeros(); 2 * count];
         let mut displacement = vec![Vec3::zeros(); 2 * count];
         let mut room = PatchShape::default();
-        for k in 0..count {
-            let point = grid_point(
-                [k % along[0], k / along[0]],
-                [spans[0].len(), spans[1].len()],
-            );
-            let xi = [0, 1].map(|dir| {
-                let [a, b] = spans[dir][point.span[dir]];
-                a + point.at[dir] * (b - a)
-            });
-            sheet.patch.shape_in_span(point.span, xi, &mut room);
-            let face = |x: &[Vec3]| {
-                let sum = |of: &dyn Fn(usize) -> f64| -> Vec3 {
-                    let all = room.indices.iter().enumerate();
-                    all.map(|(a, n)| x[*n as usize] * of(a)).sum()
+        for (part, along) in sheet.patches.iter().zip(&grids) {
+            let spans = part.spans();
+            for k in 0..along[0] * along[1] {
+                let point = grid_point([k % along[0], k / along[0]], spans);
+                let xi = [0, 1].map(|dir| {
+                    let [a, b] = part.patch.basis(dir).span_range(point.span[dir]);
+                    a + point.at[dir] * (b - a)
+                });
+                part.patch.shape_in_span(point.span, xi, &mut room);
+                let numbers: [u32; 16] = std::array::from_fn(|a| room.indices[a] + part.first_node);
+                let face = |x: &[Vec3]| {
+                    let sum = |of: &dyn Fn(usize) -> f64| -> Vec3 {
+                        let all = numbers.iter().enumerate();
+                        all.map(|(a, n)| x[*n as usize] * of(a)).sum()
+                    };
+                    let rho = sum(&|a| room.n[a]);
+                    let normal = sum(&|a| room.n_i[a][0]).cross(&sum(&|a| room.n_i[a][1]));
+                    let normal = normal.try_normalize(0.0).unwrap_or_default();
+                    [rho - normal * half, rho + normal * half]
                 };
-                let rho = sum(&|a| room.n[a]);
-                let normal = sum(&|a| room.n_i[a][0]).cross(&sum(&|a| room.n_i[a][1]));
-                let normal = normal.try_normalize(0.0).unwrap_or_default();
-                [rho - normal * half, rho + normal * half]
-            };
-            let (start, now) = (face(&positions), face(&moved));
-            for side in 0..2 {
-                nodes[side * count + k] = start[side];
-                displacement[side * count + k] = now[side] - start[side];
+                let (start, now) = (face(&positions), face(&moved));
+                let at = shapes.len();
+                for side in 0..2 {
+                    nodes[side * count + at] = start[side];
+                    displacement[side * count + at] = now[side] - start[side];
+                }
+                shapes.push((numbers, std::array::from_fn(|a| room.n[a])));
             }
-            shapes.push((
-                std::array::from_fn(|a| room.indices[a]),
-                std::array::from_fn(|a| room.n[a]),
-            ));
         }
-        let mesh = bricks(nodes, along);
-        let stress = stresses(body, block, u, along);
+        let mesh = bricks(nodes, &grids);
+        let stress = stresses(body, block, u, &grids);
         Some(SheetFields {
             mesh,
             displacement,
@@ -147,20 +151,24 @@ fn grid_point(k: [usize; 2], spans: [usize; 2]) -> GridPoint {
     }
 }
 
-/// Bricks over a grid of `along` nodes a face, the bottom first.
-fn bricks(nodes: Vec<Vec3>, along: [usize; 2]) -> Mesh {
-    let count = along[0] * along[1];
-    let cells = along.map(|n| (n - 1) / 2);
-    let mut connectivity = Vec::with_capacity(18 * cells[0] * cells[1]);
-    for j in 0..cells[1] {
-        for i in 0..cells[0] {
-            for k in 0..18 {
-                let (a, b) = (2 * i + k % 3, 2 * j + k / 3 % 3);
-                connectivity.push((a + along[0] * b + count * (k / 9)) as u32);
+/// Bricks over grids of so many nodes along both directions, one for each patch; all nodes of the bottom first.
+fn bricks(nodes: Vec<Vec3>, grids: &[[usize; 2]]) -> Mesh {
+    let count = nodes.len() / 2;
+    let mut connectivity = Vec::new();
+    let (mut first, mut elements) = (0, 0);
+    for along in grids {
+        let cells = along.map(|n| (n - 1) / 2);
+        for j in 0..cells[1] {
+            for i in 0..cells[0] {
+                for k in 0..18 {
+                    let (a, b) = (2 * i + k % 3, 2 * j + k / 3 % 3);
+                    connectivity.push((first + a + along[0] * b + count * (k / 9)) as u32);
+                }
             }
         }
+        elements += (cells[0] * cells[1]) as u32;
+        first += along[0] * along[1];
     }
-    let elements = (cells[0] * cells[1]) as u32;
     let faces = |face: u8| {
         (0..elements)
             .map(|element| Face { element, face })
@@ -178,31 +186,41 @@ fn bricks(nodes: Vec<Vec3>, along: [usize; 2]) -> Mesh {
     }
 }
 
-/// Cauchy stress on both faces: from the resultants of every element, averaged where elements meet.
-fn stresses(body: &BodyModel, block: &NurbsBlock, u: &[f64], along: [usize; 2]) -> Vec<[f64; 6]> {
-    let count = along[0] * along[1];
+/// Cauchy stress on both faces: from the resultants of every element, averaged where elements of a patch meet.
+fn stresses(
+    body: &BodyModel,
+    block: &NurbsBlock,
+    u: &[f64],
+    grids: &[[usize; 2]],
+) -> Vec<[f64; 6]> {
+    let count: usize = grids.iter().map(|[a, b]| a * b).sum();
     let mut sum = vec![[0.0; 6]; 2 * count];
     let mut met = vec![0.0f64; count];
-    let [nu, _] = block.sheet().spans();
     let steps = 2 * DIVISIONS;
     let places: Vec<[f64; 2]> = (0..(steps + 1) * (steps + 1))
         .map(|k| [k % (steps + 1), k / (steps + 1)].map(|k| k as f64 / steps as f64))
         .collect();
-    for e in 0..block.elements() {
-        let now = body.displacements(block, e, u);
-        let Ok(faces) = block.face_stresses(e, &now, &places) else {
-            continue;
-        };
-        for (k, [bottom, top]) in faces.iter().enumerate() {
-            let i = steps * (e % nu) + k % (steps + 1);
-            let j = steps * (e / nu) + k / (steps + 1);
-            let node = i + along[0] * j;
-            met[node] += 1.0;
-            for c in 0..6 {
-                sum[node][c] += bottom[c];
-                sum[count + node][c] += top[c];
+    let mut first = 0;
+    for (part, along) in block.sheet().patches.iter().zip(grids) {
+        let nu = part.spans()[0];
+        for own in 0..part.elements() {
+            let e = part.first_element as usize + own;
+            let now = body.displacements(block, e, u);
+            let Ok(faces) = block.face_stresses(e, &now, &places) else {
+                continue;
+            };
+            for (k, [bottom, top]) in faces.iter().enumerate() {
+                let i = steps * (own % nu) + k % (steps + 1);
+                let j = steps * (own / nu) + k / (steps + 1);
+                let node = first + i + along[0] * j;
+                met[node] += 1.0;
+                for c in 0..6 {
+                    sum[node][c] += bottom[c];
+                    sum[count + node][c] += top[c];
+                }
             }
         }
+        first += along[0] * along[1];
     }
     for (k, sum) in sum.iter_mut().enumerate() {
         sum.iter_mut().for_each(|s| *s /= met[k % count].max(1.0));

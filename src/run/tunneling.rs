@@ -46,7 +46,8 @@ pub(super) fn none_passed(
             .filter(|(i, p)| {
                 let open = !from.points[offset + i].closed && !to.points[offset + i].closed;
                 let own = || {
-                    (p.terms()).fold(Vec3::zeros(), |v, (n, w)| v + moved(model, n, from, to) * w)
+                    (model.terms(p))
+                        .fold(Vec3::zeros(), |v, (n, w)| v + moved(model, n, from, to) * w)
                 };
                 open && own().norm() + way > depth
             })

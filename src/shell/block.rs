@@ -435,6 +435,14 @@ impl Block {
         with_block!(self, b => b.law())
     }
 
+    /// Where patches of a CAD surface are joined; none of other bodies.
+    pub fn seams(&self) -> &[super::nurbs::SeamSpan] {
+        match self {
+            Block::Nurbs(block) => block.seams(),
+            Block::H8(_) | Block::Q18(_) => &[],
+        }
+    }
+
     /// The CAD surface that the elements are knot spans of.
     pub fn sheet(&self) -> Option<&crate::mesh::NurbsSheet> {
         match self {

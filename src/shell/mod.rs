@@ -38,7 +38,9 @@ pub use error::{ElementFault, FaultCause, ShellError};
 pub use h8::{Formulation, H8Block, H8System};
 pub use history::PlasticWork;
 pub use material::{Law, MaterialLaw, Metric, NeoHooke, Response, StVenantKirchhoff};
-pub use nurbs::{HeldNormal, NurbsBlock, NurbsSystem, SheetResultants};
+pub use nurbs::{
+    HeldNormal, NurbsBlock, NurbsSystem, SEAM_DOFS, SEAM_NODES, SeamSpan, SheetResultants,
+};
 pub use q18::{Q18Block, Q18System};
 pub use stress::{extrapolate, extrapolate_quadratic};
 

@@ -98,6 +98,15 @@ fn panel() -> Value {
     })
 }
 
+/// Faces of a CAD file that are joined, clamped along their free edges.
+fn joined() -> Value {
+    let mut scene = panel();
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/cad/flanged.igs");
+    scene["bodies"]["panel"]["nurbs"]["file"] = json!(file);
+    scene["supports"]["clamped"]["on"] = json!("panel.rim");
+    scene
+}
+
 /// A plate on the face of a die that a trimming curve bounds.
 fn trimmed() -> Value {
     let die = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/die.igs");
@@ -209,6 +218,7 @@ fn scenes() -> Vec<Value> {
         blocks(&[("/contacts/press/master_surface", json!("smooth"))]),
         tube(),
         panel(),
+        joined(),
         tubes(),
     ]
 }

@@ -249,3 +249,21 @@ fn without_contact_nothing_of_it_is_held() {
     let (_, parts) = held(&bricks, 0.5);
     assert!(parts.values().all(|bytes| *bytes == 0), "{parts:?}");
 }
+
+/// Faces of a CAD file joined along five common edges.
+#[test]
+fn seams_hold_what_is_announced() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/cad/flanged.igs");
+    let scene = json!({
+        "covact": 1,
+        "units": {"length": "mm"},
+        "materials": {"m": {"st_venant_kirchhoff": {"E": 70000, "nu": 0.33}}},
+        "bodies": {"panel": {"nurbs": {"file": file, "thickness": 1, "size": 10}, "material": "m"}},
+        "supports": {"clamped": {"on": "panel.rim", "clamped": true}}
+    });
+    let (model, parts) = held(&scene, 0.5);
+    assert!(model.bodies[0].block.seams().len() > 20);
+    assert!(parts["seams"] > 8 * 96 * 96, "{}", parts["seams"]);
+    let (_, parts) = held(&plate(), 0.5);
+    assert_eq!(parts["seams"], 0);
+}

@@ -8,7 +8,7 @@
 //! - [`MovingFacets::new`]: the facets as they are, degree 1 where all have 2 x 2 nodes, else degree 2 (a direction with
 //!   two nodes is raised).
 //! - [`MovingFacets::smooth`]: one bicubic surface over the mesh.
-//! - [`MovingFacets::of_patch`]: the spans of a bicubic B-spline patch whose control points move.
+//! - [`MovingFacets::of_patches`]: the spans of bicubic B-spline patches whose control points move.
 //!
 //! [`update`](MovingFacets::update) moves the control points and refits the search tree, [`project`](MovingFacets::project)
 //! gives the closest point, proved to be the closest as for [`PatchSet`](crate::PatchSet). Neither allocates once the
@@ -32,6 +32,7 @@ use crate::surface::{Jet, Vec3};
 use extraction::Operator;
 use topology::Topology;
 
+pub use patch::PatchSpans;
 pub use smooth::CREASE;
 
 /// Most nodes that a facet may depend on.

@@ -12,69 +12,120 @@ use nalgebra::Matrix4;
 /// Functions of a cubic that act on a span.
 const M: usize = 4;
 
+/// Some spans of a patch, as [`MovingFacets::of_patches`] takes them.
+#[derive(Debug, Clone, Copy)]
+pub struct PatchSpans<'a> {
+    /// Bicubic, without weights that differ.
+    pub patch: &'a NurbsPatch,
+    /// Numbers of spans, xi1 fastest.
+    pub spans: &'a [usize],
+    /// Spans with a side that is joined to another patch, whose knots need not match (0: xi1 at its start, 1: at its end, 2: xi2
+    /// at its start, 3: at its end): the surface does not end there.
+    pub joined: &'a [(usize, usize)],
+}
+
 impl MovingFacets {
-    /// Some spans of a bicubic patch, numbered with xi1 fastest, each as the facet that it is, exactly. Nodes are the control
-    /// points, by the numbers that `number` gives them. With `reversed` the outside is against `rho_1 x rho_2`: the parameters of
-    /// the facets are then exchanged. [`source`](Self::source) is the place in `spans`.
+    /// Some spans of a bicubic patch: [`Self::of_patches`] of one.
     ///
     /// # Errors
-    /// [`MovingError::Empty`], [`MovingError::TooMany`]; [`MovingError::Patch`] for degrees other than 3, weights that differ, and
-    /// spans that there are not.
+    /// As there.
     pub fn of_patch(
         patch: &NurbsPatch,
         spans: &[usize],
         reversed: bool,
         number: impl Fn(u32) -> u32,
     ) -> Result<Self, MovingError> {
-        if spans.is_empty() {
+        let part = PatchSpans {
+            patch,
+            spans,
+            joined: &[],
+        };
+        Self::of_patches(&[part], reversed, |_, n| number(n))
+    }
+
+    /// Some spans of bicubic patches, each as the facet that it is, exactly. Nodes are the control points, by the numbers that
+    /// `number` gives for the place of the patch and the number in it. With `reversed` the outside is against `rho_1 x rho_2`:
+    /// the parameters of the facets are then exchanged. [`source`](Self::source) is the place among all spans, patch after patch.
+    /// Patches share no nodes; a foot at an edge where they are joined counts as one at a sharp edge.
+    ///
+    /// # Errors
+    /// [`MovingError::Empty`], [`MovingError::TooMany`]; [`MovingError::Patch`] for degrees other than 3, weights that differ, and
+    /// spans that there are not.
+    pub fn of_patches(
+        parts: &[PatchSpans],
+        reversed: bool,
+        number: impl Fn(usize, u32) -> u32,
+    ) -> Result<Self, MovingError> {
+        let total: usize = parts.iter().map(|p| p.spans.len()).sum();
+        if total == 0 {
             return Err(MovingError::Empty);
         }
-        if spans.len() > (u32::MAX / 64) as usize {
-            return Err(MovingError::TooMany(spans.len()));
+        if total > (u32::MAX / 64) as usize {
+            return Err(MovingError::TooMany(total));
         }
-        let counts = [0, 1].map(|dir| patch.basis(dir).span_count());
-        let fits = spans.iter().all(|span| *span < counts[0] * counts[1]);
-        if patch.degree() != [M - 1; 2] || patch.is_rational() || !fits {
-            return Err(MovingError::Patch);
-        }
-        let extractions = [0, 1].map(|dir| -> Vec<Matrix4<f64>> {
-            (0..counts[dir])
-                .map(|span| extraction(patch, dir, span))
-                .collect()
-        });
-        let mut outlines = Vec::with_capacity(spans.len());
+        let mut outlines = Vec::with_capacity(total);
+        let mut borders = Vec::new();
         let mut set = Parts::default();
         let mut room = PatchShape::default();
-        for (k, span) in spans.iter().enumerate() {
-            let at = [span % counts[0], span / counts[0]];
-            let vertex = |i: usize, j: usize| (at[0] + i + (counts[0] + 1) * (at[1] + j)) as u32;
-            let middle = [0, 1].map(|dir| {
-                let [a, b] = patch.basis(dir).span_range(at[dir]);
-                0.5 * (a + b)
+        let mut first_vertex = 0;
+        for (place, part) in parts.iter().enumerate() {
+            let PatchSpans {
+                patch,
+                spans,
+                joined,
+            } = part;
+            let counts = [0, 1].map(|dir| patch.basis(dir).span_count());
+            let fits = spans.iter().all(|span| *span < counts[0] * counts[1]);
+            if patch.degree() != [M - 1; 2] || patch.is_rational() || !fits {
+                return Err(MovingError::Patch);
+            }
+            let extractions = [0, 1].map(|dir| -> Vec<Matrix4<f64>> {
+                (0..counts[dir])
+                    .map(|span| extraction(patch, dir, span))
+                    .collect()
             });
-            patch.shape_in_span(at, middle, &mut room);
-            let nodes: Vec<u32> = room.indices.iter().map(|n| number(*n)).collect();
-            let [first, second] = [0, 1].map(|dir| &extractions[dir][at[dir]]);
-            let row = |i: usize, j: usize| -> Vec<(u16, f64)> {
-                let entry = |a: usize| (a as u16, first[(i, a % M)] * second[(j, a / M)]);
-                (0..M * M).map(entry).collect()
-            };
-            // Exchanged parameters: row (i, j) of the facet is (j, i) of the span.
-            let rows = (0..M * M).map(|c| match reversed {
-                false => row(c % M, c / M),
-                true => row(c / M, c % M),
-            });
-            set.push(k, &nodes, Operator::new(rows))?;
-            let corner = |c: usize| match reversed {
-                false => vertex(c % 2, c / 2),
-                true => vertex(c / 2, c % 2),
-            };
-            outlines.push(Outline {
-                corners: std::array::from_fn(corner),
-                middles: [None; 4],
-            });
+            for span in *spans {
+                let at = [span % counts[0], span / counts[0]];
+                let vertex = |i: usize, j: usize| {
+                    (first_vertex + at[0] + i + (counts[0] + 1) * (at[1] + j)) as u32
+                };
+                let middle = [0, 1].map(|dir| {
+                    let [a, b] = patch.basis(dir).span_range(at[dir]);
+                    0.5 * (a + b)
+                });
+                patch.shape_in_span(at, middle, &mut room);
+                let nodes: Vec<u32> = room.indices.iter().map(|n| number(place, *n)).collect();
+                let [first, second] = [0, 1].map(|dir| &extractions[dir][at[dir]]);
+                let row = |i: usize, j: usize| -> Vec<(u16, f64)> {
+                    let entry = |a: usize| (a as u16, first[(i, a % M)] * second[(j, a / M)]);
+                    (0..M * M).map(entry).collect()
+                };
+                // Exchanged parameters: row (i, j) of the facet is (j, i) of the span.
+                let rows = (0..M * M).map(|c| match reversed {
+                    false => row(c % M, c / M),
+                    true => row(c / M, c % M),
+                });
+                let facet = outlines.len();
+                set.push(facet, &nodes, Operator::new(rows))?;
+                for (_, side) in joined.iter().filter(|(of, _)| of == span) {
+                    borders.push((facet, if reversed { (side + 2) % 4 } else { *side }));
+                }
+                let corner = |c: usize| match reversed {
+                    false => vertex(c % 2, c / 2),
+                    true => vertex(c / 2, c % 2),
+                };
+                outlines.push(Outline {
+                    corners: std::array::from_fn(corner),
+                    middles: [None; 4],
+                });
+            }
+            first_vertex += (counts[0] + 1) * (counts[1] + 1);
         }
-        Ok(set.finish(M - 1, Topology::new(&outlines)?))
+        let mut topology = Topology::new(&outlines)?;
+        for (facet, edge) in borders {
+            topology.join(facet, edge);
+        }
+        Ok(set.finish(M - 1, topology))
     }
 }
 
@@ -177,6 +228,99 @@ mod tests {
             assert_eq!(foot.place, crate::MovingPlace::Face);
             let sign = if reversed { -1.0 } else { 1.0 };
             assert!((foot.signed_distance - 0.05 * sign).abs() < 1e-12);
+        }
+    }
+
+    /// Two halves of a square whose spans do not match, one a little above the other and turned up by 20 degrees: points over the
+    /// gap have their foot at the seam, which is no free border, on both sides; at the other borders feet are free.
+    #[test]
+    fn a_seam_is_no_border() {
+        let plate = |x: [f64; 2], rise: f64, inner: &[f64]| {
+            let corners: Vec<Vec3> = (0..4)
+                .map(|k| {
+                    let z = if k % 2 == 1 { rise } else { 0.0 };
+                    Vec3::new(x[k % 2], (k / 2) as f64, z)
+                })
+                .collect();
+            let knots = || vec![0.0, 0.0, 1.0, 1.0];
+            let patch = NurbsPatch::new([1, 1], [knots(), knots()], [2, 2], &corners, None);
+            let patch = patch.unwrap().elevated(0, 2).unwrap();
+            patch
+                .elevated(1, 2)
+                .unwrap()
+                .insert_knots(1, inner)
+                .unwrap()
+        };
+        let slope = -20f64.to_radians().tan();
+        let (a, b) = (
+            plate([0.0, 1.0], 0.0, &[0.5]),
+            plate([1.0, 2.0], slope, &[0.3, 0.6]),
+        );
+        let points = [a.points(), b.points()];
+        for reversed in [false, true] {
+            let of = |joined: bool| {
+                let part = |patch, spans, joined| PatchSpans {
+                    patch,
+                    spans,
+                    joined,
+                };
+                let [left, right]: [&[_]; 2] = match joined {
+                    true => [&[(0, 1), (1, 1)], &[(0, 0), (1, 0), (2, 0)]],
+                    false => [&[], &[]],
+                };
+                let parts = [part(&a, &[0, 1], left), part(&b, &[0, 1, 2], right)];
+                let mut facets =
+                    MovingFacets::of_patches(&parts, reversed, |k, n| 100 * k as u32 + n).unwrap();
+                facets.update(|n| points[n as usize / 100][n as usize % 100]);
+                facets
+            };
+            let place = |facets: &MovingFacets, x: Vec3| {
+                let foot = facets.project(&x, None, f64::INFINITY, |_| true).unwrap();
+                (foot.place, foot.signed_distance)
+            };
+            // In the wedge of the normals.
+            let above = Vec3::new(1.0 + 0.1 * 10f64.to_radians().sin(), 0.4, 0.1);
+            let (open, _) = place(&of(false), above);
+            assert!(matches!(
+                open,
+                crate::MovingPlace::Edge {
+                    kind: crate::project::EdgeKind::Free,
+                    ..
+                }
+            ));
+            let (found, distance) = place(&of(true), above);
+            assert!(
+                matches!(
+                    found,
+                    crate::MovingPlace::Edge {
+                        kind: crate::project::EdgeKind::Sharp,
+                        ..
+                    }
+                ),
+                "{found:?}"
+            );
+            let exact = (0.01f64 + (above.x - 1.0).powi(2)).sqrt();
+            let sign = if reversed { -1.0 } else { 1.0 };
+            assert!(
+                (distance - sign * exact).abs() < 1e-12,
+                "{distance} {exact}"
+            );
+            // At the outer end of the seam the border is free, and so is the other end of the first half.
+            for x in [Vec3::new(1.01, -0.1, 0.1), Vec3::new(-0.1, 0.4, 0.1)] {
+                let (found, _) = place(&of(true), x);
+                let free = matches!(
+                    found,
+                    crate::MovingPlace::Edge {
+                        kind: crate::project::EdgeKind::Free,
+                        ..
+                    } | crate::MovingPlace::Corner {
+                        kind: crate::project::EdgeKind::Free
+                    }
+                );
+                assert!(free, "{found:?}");
+            }
+            let (face, _) = place(&of(true), Vec3::new(0.5, 0.4, 0.1));
+            assert_eq!(face, crate::MovingPlace::Face);
         }
     }
 

@@ -58,7 +58,10 @@ impl MovingFacets {
         accept: &dyn Fn(u32) -> bool,
     ) -> Option<(MovingPlace, Vec3)> {
         let n = self.normal_near::<M>(facet, on_edge(edge, s));
-        let mut kind = EdgeKind::Free;
+        let mut kind = match self.topology.is_joined(facet, edge) {
+            true => EdgeKind::Sharp,
+            false => EdgeKind::Free,
+        };
         let mut sum = n;
         for (other, xi) in self.behind(facet, edge, s).filter(|o| accept(o.0)) {
             let m = self.normal_near::<M>(other, xi);
@@ -103,7 +106,10 @@ impl MovingFacets {
                     }
                 }
                 if !joined {
-                    kind = EdgeKind::Free;
+                    kind = match self.topology.is_joined(own, edge) {
+                        true => EdgeKind::Sharp,
+                        false => EdgeKind::Free,
+                    };
                 }
             }
         }

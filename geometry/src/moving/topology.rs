@@ -63,6 +63,8 @@ pub(super) struct Topology {
     corners: Lists,
     first_neighbour: Vec<u32>,
     neighbours: Vec<u32>,
+    /// Facets and edges where the surface goes on without a common edge, ascending.
+    joined: Vec<(u32, u8)>,
 }
 
 /// A facet as its boundary: corner nodes by corner number, and the middle nodes of its edges where it has some.
@@ -81,9 +83,14 @@ impl Topology {
             corners,
             first_neighbour,
             neighbours,
+            joined,
         } = self;
         let lists = [edges, corners].map(|l| heap(&l.first) + heap(&l.members));
-        let own = heap(edge_of) + heap(corner_of) + heap(first_neighbour) + heap(neighbours);
+        let own = heap(edge_of)
+            + heap(corner_of)
+            + heap(first_neighbour)
+            + heap(neighbours)
+            + heap(joined);
         own + lists.iter().sum::<usize>()
     }
 
@@ -138,6 +145,19 @@ impl Topology {
             out.first_neighbour.push(out.neighbours.len() as u32);
         }
         Ok(out)
+    }
+
+    /// Says that the surface goes on beyond an edge of a facet, on facets that do not share it.
+    pub fn join(&mut self, facet: usize, edge: usize) {
+        let own = (facet as u32, edge as u8);
+        if let Err(place) = self.joined.binary_search(&own) {
+            self.joined.insert(place, own);
+        }
+    }
+
+    /// Whether the surface goes on beyond an edge that no other facet shares.
+    pub fn is_joined(&self, facet: u32, edge: usize) -> bool {
+        self.joined.binary_search(&(facet, edge as u8)).is_ok()
     }
 
     pub fn neighbours(&self, facet: u32) -> &[u32] {

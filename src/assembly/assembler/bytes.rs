@@ -17,6 +17,7 @@ pub(crate) mod sizes {
     use super::super::maps::PointMaps;
     use super::super::moving::Meetings;
     use super::super::per_pair::PerPair;
+    use super::super::seams::Seams;
     use super::super::sliding::Sliding;
     use super::super::small::Linear;
     use crate::contact::clearance::Clearance;
@@ -94,6 +95,12 @@ pub(crate) mod sizes {
         nodes.len()
     }
 
+    /// Where the tangents of seams go, and room for one.
+    pub fn seams(model: &Model) -> usize {
+        let all = model.bodies.iter().map(|b| b.block.seams().len());
+        Seams::size(all.sum())
+    }
+
     /// Where the tangents of follower loads go.
     pub fn followers(model: &Model) -> usize {
         let of = |faces: &[crate::fem::FaceNodes]| -> usize {
@@ -124,6 +131,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             point_maps,
             follower_maps,
             systems,
+            seams,
             touches,
             clearances,
             held,
@@ -162,6 +170,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             ("transposed matrix", transposed),
             ("pattern", matrix.pattern().bytes()),
             ("element maps", heap(element_maps) + heap(kinds)),
+            ("seams", seams.bytes()),
             ("element work", systems.bytes()),
             ("scatter work", work.bytes()),
             ("rigid maps", point_maps.bytes(PointMaps::bytes)),

@@ -5,6 +5,7 @@
 //! and the facets around. Only where a point touches a facet outside of that is the pattern built anew.
 use super::links::Links;
 use super::memory::{CouplingMemory, MemoryError};
+use crate::contact::lever::Lever;
 use crate::contact::points::SlavePoint;
 use crate::model::state::heap;
 use covact_geometry::MovingFacets;
@@ -39,13 +40,16 @@ pub(super) struct Couplings {
 
 impl Couplings {
     /// The cells of a pair, coupled with nothing.
-    pub fn new(points: &[SlavePoint]) -> Self {
+    pub fn new(points: &[SlavePoint], levers: &[Lever]) -> Self {
         let mut cell_of = Vec::with_capacity(points.len());
         let mut nodes: Vec<u32> = Vec::new();
         let mut starts = vec![0u32];
         let mut last: Option<&[u32]> = None;
         for p in points {
-            let own = &p.nodes[..p.count as usize];
+            let own = match p.lever_number() {
+                Some(number) => &levers[number].nodes[..],
+                None => &p.nodes[..p.count as usize],
+            };
             if last != Some(own) {
                 nodes.extend_from_slice(own);
                 starts.push(nodes.len() as u32);

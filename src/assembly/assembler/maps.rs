@@ -12,6 +12,8 @@ use crate::model::{Model, PairModel};
 pub(super) struct Maps {
     pub elements: Vec<u32>,
     pub kinds: Vec<Kind>,
+    /// Of the seams of all bodies.
+    pub seams: Vec<u32>,
     /// Per pair with a rigid master.
     pub points: PerPair<PointMaps>,
     /// Per follower load: per face, where its blocks go.
@@ -125,6 +127,9 @@ pub(super) fn pattern(
             plain.extend(body.element_nodes(e));
             add(&plain);
         }
+        for seam in body.block.seams() {
+            add(&seam.nodes.map(|n| n + body.first_node));
+        }
     }
     for (index, pair) in model.pairs.iter().enumerate() {
         let couplings = couplings.get(index);
@@ -153,6 +158,7 @@ pub(super) fn pattern(
 impl Maps {
     pub fn new(model: &Model, dofs: &DofMap, pattern: &Pattern) -> Result<Self, PatternError> {
         let (mut elements, mut kinds) = (Vec::new(), Vec::new());
+        let mut seams = Vec::new();
         let (mut nodes, mut extended) = (Vec::new(), Vec::new());
         for body in &model.bodies {
             for e in 0..body.block.elements() {
@@ -170,6 +176,12 @@ impl Maps {
                 });
             }
         }
+        for body in &model.bodies {
+            for seam in body.block.seams() {
+                pattern.element_map(&seam.nodes.map(|n| n + body.first_node), &mut seams)?;
+            }
+        }
+        seams.shrink_to_fit();
         let mut points = Vec::new();
         // At small displacements points have a loop of their own.
         let rigid = |p: &PairModel| p.rigid_master().is_some() && model.small.is_none();
@@ -199,6 +211,7 @@ impl Maps {
         Ok(Maps {
             elements,
             kinds,
+            seams,
             points: PerPair::from(points),
             followers,
         })

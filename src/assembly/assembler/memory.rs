@@ -58,6 +58,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             point_maps: _,
             follower_maps: _,
             systems: _,
+            seams: _,
             touches: _,
             clearances: _,
             held: _,

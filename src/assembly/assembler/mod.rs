@@ -18,6 +18,7 @@ mod moving;
 mod per_pair;
 mod pressed;
 mod rigid;
+mod seams;
 mod sliding;
 mod small;
 mod touched;
@@ -42,6 +43,7 @@ use covact_geometry::Vec3;
 use maps::{Maps, PointMaps};
 use moving::Meetings;
 use per_pair::PerPair;
+use seams::Seams;
 use sliding::Sliding;
 use small::Linear;
 
@@ -214,6 +216,8 @@ pub struct Assembler<'m, L = Penalty> {
     point_maps: PerPair<PointMaps>,
     follower_maps: Vec<Vec<u32>>,
     systems: Systems,
+    /// Where patches of bodies are joined; empty where none are.
+    seams: Seams,
     /// Room for the points of a pair with a rigid master.
     touches: Vec<Result<Option<Touch>, PointFault>>,
     /// Per point of pairs with rigid masters: what the last search has proved since [`Assembler::begin_solution`].
@@ -310,6 +314,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
                 true => Systems::new(model),
                 false => Systems::default(),
             },
+            seams: Seams::new(maps.seams),
             touches: vec![Ok(None); rigid::most(model)],
             clearances: vec![Clearance::default(); rigid::cleared(model)],
             held: Vec::new(),
@@ -422,6 +427,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
         rhs.fill(0.0);
         let mut totals = Totals::default();
         self.elements(state, (increments, from), residual, rhs, &mut totals)?;
+        self.seams::<true>(&state.u, increments, residual, rhs, &mut totals);
         self.acting::<true>(state, time, increments, residual, rhs, &mut totals)?;
         self.own_blocks(&state.u, time, residual, &mut totals)?;
         for (b, r) in rhs.iter_mut().zip(residual.iter()) {
@@ -447,6 +453,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
         residual.fill(0.0);
         let mut totals = Totals::default();
         self.element_forces(state, residual, &mut totals)?;
+        self.seams::<false>(&state.u, None, residual, &mut [], &mut totals);
         self.acting::<false>(state, time, None, residual, &mut [], &mut totals)?;
         Ok(totals)
     }

@@ -12,6 +12,7 @@ use crate::contact::friction::history::PointHistory;
 use crate::contact::kernel::assemble_force;
 use crate::contact::kind::{FrictionKind, LawKind, MasterKind, TangentKind};
 use crate::contact::law::{Held, Multipliers, NoOffset, Offsets, PairLaw, PointLaw};
+use crate::contact::lever;
 use crate::contact::moving::{MovingMaster, MovingTouch};
 use crate::contact::point::FaceTangent;
 use crate::contact::points::SlavePoint;
@@ -58,10 +59,9 @@ impl Meetings {
         else {
             return None;
         };
-        let slave = pair.points.iter().map(|p| p.count as usize).max();
         let facets = 0..master.facets.len() as u32;
         let facet = facets.map(|f| master.facets.nodes(f).len()).max();
-        Some((3 * (slave.unwrap_or(0) + facet.unwrap_or(0))).pow(2))
+        Some(room(pair, facet.unwrap_or(0)))
     }
 
     /// Bytes of heap that it holds.
@@ -112,12 +112,23 @@ impl Meetings {
     }
 }
 
+/// Numbers of the largest matrix of a point of a pair with so many other nodes: of a point at a height above a mid-surface that of
+/// the nodes below it, and besides that of the point itself.
+pub(super) fn room(pair: &PairModel, others: usize) -> usize {
+    let size = |nodes: usize| (3 * (nodes + others)).pow(2);
+    let own = |p: &SlavePoint| match p.count {
+        0 => size(lever::NODES) + size(1),
+        n => size(n as usize),
+    };
+    pair.points.iter().map(own).max().unwrap_or(size(0))
+}
+
 /// Couplings of all pairs before anything has moved.
 pub(super) fn first_couplings(model: &Model, masters: &Masters) -> PerPair<Couplings> {
     let zero = vec![0.0; 3 * model.nodes.len()];
     let couplings = (model.pairs.iter().enumerate()).map(|(index, pair)| {
         let surface = masters.surface(index)?;
-        let mut couplings = Couplings::new(&pair.points);
+        let mut couplings = Couplings::new(&pair.points, &model.levers);
         if let Some(small) = &model.small {
             // Feet stay where they are.
             couplings.set(small.pairs[index].feet());
@@ -366,6 +377,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         self.borders = DrivenBlock::all(self.model, &pattern)?;
         self.element_maps = maps.elements;
         self.kinds = maps.kinds;
+        self.seams.place(maps.seams);
         self.point_maps = maps.points;
         self.follower_maps = maps.followers;
         self.matrix = super::system(self.model, pattern.clone());
@@ -448,7 +460,16 @@ impl<L: PairLaw> Assembler<'_, L> {
                     let Some(touch) = touched.get(i) else { return };
                     let p = &points[i as usize];
                     facets.shape(touch.facet, touch.xi, rows);
-                    if TANGENT {
+                    if TANGENT && let Some(number) = p.lever_number() {
+                        let size = 3 * (lever::NODES + rows.count);
+                        let (ke, point) = ke.split_at_mut(size * size);
+                        let size = 3 * (1 + rows.count);
+                        let point = &mut point[..size * size];
+                        assemble_point(&touch.tangent, &[1.0], rows, p.area, point);
+                        let f = touch.residual.fixed_rows::<3>(0) * p.area;
+                        let position = |n: u32| self.model.position(n as usize, u);
+                        self.model.levers[number].expand(position, &f, rows.count, point, ke);
+                    } else if TANGENT {
                         let slave = &p.shape[..p.count as usize];
                         let size = 3 * (slave.len() + rows.count);
                         let ke = &mut ke[..size * size];
@@ -482,6 +503,14 @@ impl<L: PairLaw> Assembler<'_, L> {
                         self.contact[3 * node + c] += f[c];
                     }
                 };
+                let lever = p.lever_number().map(|number| &self.model.levers[number]);
+                if let Some(lever) = lever {
+                    let f = assemble_force(&r, &[1.0, 0.0, 0.0]);
+                    let forces = lever.spread(|n| self.model.position(n as usize, u), &f, None);
+                    for (node, f) in lever.nodes.iter().zip(&forces) {
+                        add(*node as usize, f, &mut force.slave);
+                    }
+                }
                 for (node, w) in p.terms() {
                     add(node, &assemble_force(&r, &[w, 0.0, 0.0]), &mut force.slave);
                 }
@@ -492,10 +521,14 @@ impl<L: PairLaw> Assembler<'_, L> {
                     add(node as usize, &assemble_force(&r, &row), &mut force.master);
                 }
                 if TANGENT {
-                    let slave = p.count as usize;
+                    let own = match lever {
+                        Some(lever) => &lever.nodes[..],
+                        None => &p.nodes[..p.count as usize],
+                    };
+                    let slave = own.len();
                     let n = slave + nodes.len();
-                    let mut all = [0; 9 + covact_geometry::moving::MAX];
-                    all[..slave].copy_from_slice(&p.nodes[..slave]);
+                    let mut all = [0; lever::NODES + covact_geometry::moving::MAX];
+                    all[..slave].copy_from_slice(own);
                     all[slave..n].copy_from_slice(nodes);
                     let pattern = self.matrix.pattern();
                     let made = couplings.map(i as usize, touch.facet, |_, out| {

@@ -1,6 +1,7 @@
 //! Contact with friction between bodies: as [`super::moving`], with histories, and columns for the facets that hold the
 //! attraction points.
 use super::answer::PointAnswer;
+use super::moving::room;
 use super::per_pair::PerPair;
 use super::rigid::rounding;
 use super::touched::{self, Touched};
@@ -10,10 +11,11 @@ use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::moving::{Form, Full, Reduced};
 use crate::contact::friction::rigid::Friction;
-use crate::contact::friction::scatter::PointNodes;
+use crate::contact::friction::scatter::{MOST, PointNodes};
 use crate::contact::friction::touch::MovingFrictionTouch;
 use crate::contact::kind::{LawKind, TangentKind};
 use crate::contact::law::{Augmented, Offsets, PairLaw};
+use crate::contact::lever;
 use crate::contact::moving::MovingMaster;
 use crate::contact::rigid::PointFault;
 use crate::model::friction::FrictionModel;
@@ -26,6 +28,9 @@ use crate::model::{Model, PairModel};
 use covact_geometry::{CurvedRows, ShapeRows, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
+
+/// Stands for a slave point itself among the nodes, where that is at a height above a mid-surface.
+const POINT: u32 = u32::MAX;
 
 /// Points whose matrices are formed before they are summed.
 const CHUNK: usize = 64;
@@ -64,10 +69,9 @@ impl Sliding {
         let (Some(master), Some(_)) = (pair.body_master(), &pair.friction) else {
             return None;
         };
-        let slave = pair.points.iter().map(|p| p.count as usize).max();
         let facets = 0..master.facets.len() as u32;
         let facet = facets.map(|f| master.facets.nodes(f).len()).max();
-        Some((3 * (slave.unwrap_or(0) + 2 * facet.unwrap_or(0))).pow(2))
+        Some(room(pair, 2 * facet.unwrap_or(0)))
     }
 
     /// Bytes of heap that it holds.
@@ -218,7 +222,8 @@ impl<L: PairLaw> Assembler<'_, L> {
         totals: &mut Totals,
         form: &M,
     ) {
-        let pair = &self.model.pairs[index];
+        let model = self.model;
+        let pair = &model.pairs[index];
         let points = &pair.points;
         let u = &state.u[..];
         let half = pair.half.is_some();
@@ -255,7 +260,11 @@ impl<L: PairLaw> Assembler<'_, L> {
                         anchor,
                     } = work;
                     let count = p.count as usize;
-                    nodes.start(&p.nodes[..count], &p.shape[..count]);
+                    let lever = p.lever_number();
+                    match lever {
+                        Some(_) => nodes.start(&[POINT], &[1.0]),
+                        None => nodes.start(&p.nodes[..count], &p.shape[..count]),
+                    }
                     match M::FULL {
                         true => facets.curved_shape(touch.foot.patch, touch.foot.xi, shape),
                         false => {
@@ -268,8 +277,24 @@ impl<L: PairLaw> Assembler<'_, L> {
                             facets.shape(at.patch, at.xi, anchor);
                             nodes.anchor(facets.nodes(at.patch), anchor);
                         }
-                        let size = 3 * nodes.nodes().len();
-                        nodes.assemble(&touch.response, p.area, form, &mut ke[..size * size]);
+                        let count = nodes.nodes().len();
+                        let size = 3 * count;
+                        match lever {
+                            None => {
+                                let ke = &mut ke[..size * size];
+                                nodes.assemble(&touch.response, p.area, form, ke);
+                            }
+                            Some(number) => {
+                                let others = count - 1;
+                                let large = 3 * (lever::NODES + others);
+                                let (ke, point) = ke.split_at_mut(large * large);
+                                let point = &mut point[..size * size];
+                                nodes.assemble(&touch.response, p.area, form, point);
+                                let f = touch.response.residual.fixed_rows::<3>(0) * p.area;
+                                let position = |n: u32| model.position(n as usize, u);
+                                model.levers[number].expand(position, &f, others, point, ke);
+                            }
+                        }
                     }
                 });
             for ((&i, work), ke) in
@@ -284,21 +309,40 @@ impl<L: PairLaw> Assembler<'_, L> {
                 let x = self.model.point_position(p, u);
                 totals.contact_rounding += rounding(&law, touch.gap, p, &x);
                 let nodes = &work.nodes;
-                for (k, (node, f)) in nodes.forces(&touch.response, p.area).enumerate() {
-                    let node = node as usize;
-                    let side: &mut SurfaceForce = match k < nodes.slave() {
-                        true => &mut force.slave,
-                        false => &mut force.master,
-                    };
+                let lever = p.lever_number().map(|number| &model.levers[number]);
+                let mut add = |node: usize, f: &Vec3, side: &mut SurfaceForce| {
                     side.force -= f;
-                    side.moment -= self.model.position(node, u).cross(&f);
+                    side.moment -= model.position(node, u).cross(f);
                     for c in 0..3 {
                         residual[3 * node + c] += f[c];
                         self.contact[3 * node + c] += f[c];
                     }
+                };
+                for (k, (node, f)) in nodes.forces(&touch.response, p.area).enumerate() {
+                    match lever {
+                        Some(lever) if k == 0 => {
+                            let position = |n: u32| model.position(n as usize, u);
+                            let forces = lever.spread(position, &f, None);
+                            for (node, f) in lever.nodes.iter().zip(&forces) {
+                                add(*node as usize, f, &mut force.slave);
+                            }
+                        }
+                        _ if k < nodes.slave() => add(node as usize, &f, &mut force.slave),
+                        _ => add(node as usize, &f, &mut force.master),
+                    }
                 }
                 if TANGENT {
-                    let own = nodes.nodes();
+                    let mut all = [0; lever::NODES + MOST];
+                    let own = match lever {
+                        None => nodes.nodes(),
+                        Some(lever) => {
+                            let others = &nodes.nodes()[1..];
+                            let count = lever::NODES + others.len();
+                            all[..lever::NODES].copy_from_slice(&lever.nodes);
+                            all[lever::NODES..count].copy_from_slice(others);
+                            &all[..count]
+                        }
+                    };
                     let n = own.len();
                     let foot = touch.foot.patch;
                     let key = [

@@ -26,6 +26,12 @@ pub enum NurbsError {
     /// The surface moved under refinement.
     #[error("refinement moved the surface by {moved:e} of its size (limit {limit:e})")]
     Moved { moved: f64, limit: f64 },
+    /// No side is the top throughout.
+    #[error("faces {} and {} are parts of a surface with one side only (as a Moebius strip), which has no top", faces[0], faces[1])]
+    OneSided { faces: [u32; 2] },
+    /// Two patches lie on each other.
+    #[error("faces {} and {} are the same: their edges coincide all round", faces[0], faces[1])]
+    Twice { faces: [u32; 2] },
     /// More elements than make sense.
     #[error("{elements} knot spans are more than the limit of {limit}")]
     TooMany { elements: u64, limit: u64 },

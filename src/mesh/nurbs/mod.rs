@@ -2,46 +2,115 @@
 //! nodes.
 mod error;
 mod refine;
+pub(crate) mod seams;
 mod select;
 
 use super::{ElementKind, Face, Mesh};
 use covact_geometry::{NurbsPatch, PatchShape, Vec3};
 pub use error::NurbsError;
 pub use refine::Fineness;
+pub use seams::{Joints, Near, Seam};
 use std::collections::BTreeMap;
 
 /// Degree of the elements along both directions.
 pub const DEGREE: usize = 3;
 
-/// An edge of a patch: 0 is xi1 = start, 1 is xi1 = end, 2 is xi2 = start, 3 is xi2 = end. Scenes count from one.
+/// An edge of a patch: its side 0 is xi1 = start, 1 is xi1 = end, 2 is xi2 = start, 3 is xi2 = end. Scenes count from one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Edge(u8);
+pub struct Edge {
+    patch: u32,
+    side: u8,
+}
 
 impl Edge {
-    /// All four.
-    pub const ALL: [Edge; 4] = [Edge(0), Edge(1), Edge(2), Edge(3)];
+    /// All four of the first patch.
+    pub const ALL: [Edge; 4] = Edge::of(0);
+
+    /// All four of a patch.
+    pub const fn of(patch: usize) -> [Edge; 4] {
+        let patch = patch as u32;
+        [
+            Edge { patch, side: 0 },
+            Edge { patch, side: 1 },
+            Edge { patch, side: 2 },
+            Edge { patch, side: 3 },
+        ]
+    }
+
+    /// Place of its patch in [`NurbsSheet::patches`].
+    pub const fn patch(self) -> usize {
+        self.patch as usize
+    }
+
+    /// Which of the four it is, counted from zero.
+    pub const fn side(self) -> usize {
+        self.side as usize
+    }
 
     /// The direction that is constant along it.
     pub const fn direction(self) -> usize {
-        self.0 as usize / 2
+        self.side as usize / 2
     }
 
     /// Whether that is at its end, not at its start.
     pub const fn at_end(self) -> bool {
-        self.0 % 2 == 1
-    }
-
-    /// The name of its set.
-    pub fn name(self) -> String {
-        format!("edge.{}", self.0 + 1)
+        self.side % 2 == 1
     }
 }
 
-/// A patch that stands for a shell of constant thickness, bicubic and as fine as the elements are to be.
+/// A patch of a sheet, bicubic and as fine as the elements are to be.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NurbsSheet {
+pub struct SheetPatch {
     /// The mid-surface, without a trim. `rho_1 x rho_2` points to the top.
     pub patch: NurbsPatch,
+    /// Number of the face in its file.
+    pub face: u32,
+    /// xi1 runs against that of the file, so that all patches have their top on one side.
+    pub reversed: bool,
+    /// Number of its first control point in the sheet.
+    pub first_node: u32,
+    /// Number of its first element in the sheet.
+    pub first_element: u32,
+}
+
+impl SheetPatch {
+    /// Knot spans along both directions.
+    pub fn spans(&self) -> [usize; 2] {
+        [0, 1].map(|dir| self.patch.spans(dir).len())
+    }
+
+    /// Elements.
+    pub fn elements(&self) -> usize {
+        self.spans().iter().product()
+    }
+
+    /// Control points.
+    pub fn nodes(&self) -> usize {
+        self.patch.homogeneous().len()
+    }
+
+    /// Control points at the corners, numbered in the sheet: xi1 fastest, as it is here.
+    pub fn corners(&self) -> [u32; 4] {
+        let [nu, nv] = self.patch.counts();
+        [0, nu - 1, nu * (nv - 1), nu * nv - 1].map(|k| self.first_node + k as u32)
+    }
+
+    /// Number of an edge as the file's parameters count it, from one.
+    fn side_in_file(&self, edge: Edge) -> usize {
+        1 + match (self.reversed, edge.side) {
+            (true, side @ 0..=1) => usize::from(1 - side),
+            (_, side) => usize::from(side),
+        }
+    }
+}
+
+/// Patches that stand for a shell of constant thickness, joined along common edges.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NurbsSheet {
+    /// One at least.
+    pub patches: Vec<SheetPatch>,
+    /// Where they are joined.
+    pub joints: Joints,
     /// Half of it lies on either side.
     pub thickness: f64,
     /// Membrane strains are assumed.
@@ -63,7 +132,7 @@ pub fn side(face: Face) -> Option<f64> {
 /// A point of a sheet's mid-surface with the shape functions of the control points that act on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SheetPoint {
-    /// Control points, numbered in the patch.
+    /// Control points, numbered in the sheet.
     pub nodes: [u32; 16],
     pub n: [f64; 16],
     /// Derivatives along xi1 and xi2.
@@ -78,22 +147,166 @@ pub struct SheetPoint {
     pub position: Vec3,
 }
 
+impl SheetPatch {
+    /// A point of a span that stands for `weight` of its parameters; `positions` are the control points of the patch.
+    fn point(
+        &self,
+        span: [usize; 2],
+        xi: [f64; 2],
+        weight: f64,
+        positions: &[Vec3],
+        room: &mut PatchShape,
+    ) -> SheetPoint {
+        self.patch.shape_in_span(span, xi, room);
+        let mut out = SheetPoint {
+            nodes: [0; 16],
+            n: [0.0; 16],
+            n_i: [[0.0; 16]; 2],
+            area: 0.0,
+            weight,
+            normal: Vec3::zeros(),
+            position: Vec3::zeros(),
+        };
+        let mut tangents = [Vec3::zeros(); 2];
+        for a in 0..16 {
+            out.nodes[a] = room.indices[a] + self.first_node;
+            out.n[a] = room.n[a];
+            let x = positions[room.indices[a] as usize];
+            out.position += x * room.n[a];
+            for (k, tangent) in tangents.iter_mut().enumerate() {
+                out.n_i[k][a] = room.n_i[a][k];
+                *tangent += x * room.n_i[a][k];
+            }
+        }
+        let normal = tangents[0].cross(&tangents[1]);
+        out.area = weight * normal.norm();
+        out.normal = normal.normalize();
+        out
+    }
+}
+
 impl NurbsSheet {
-    /// Knot spans along both directions.
-    pub fn spans(&self) -> [usize; 2] {
-        [0, 1].map(|dir| self.patch.spans(dir).len())
+    /// Elements of all patches.
+    pub fn elements(&self) -> usize {
+        self.patches.iter().map(SheetPatch::elements).sum()
+    }
+
+    /// Control points of all patches.
+    pub fn nodes(&self) -> usize {
+        self.patches.iter().map(SheetPatch::nodes).sum()
+    }
+
+    /// Positions of all control points.
+    pub fn positions(&self) -> Vec<Vec3> {
+        let all = self.patches.iter();
+        all.flat_map(|p| p.patch.points()).collect()
+    }
+
+    /// The patch that element `e` belongs to, and its span there.
+    pub fn place(&self, e: usize) -> (&SheetPatch, [usize; 2]) {
+        let after = (self.patches).partition_point(|p| p.first_element as usize <= e);
+        let patch = &self.patches[after.max(1) - 1];
+        let own = e - patch.first_element as usize;
+        let nu = patch.spans()[0];
+        (patch, [own % nu, own / nu])
     }
 
     /// Ranges of parameters of element `e`.
     pub fn range(&self, e: usize) -> [[f64; 2]; 2] {
-        let [nu, _] = self.spans();
-        let at = [e % nu, e / nu];
-        [0, 1].map(|dir| self.patch.spans(dir)[at[dir]])
+        let (patch, at) = self.place(e);
+        [0, 1].map(|dir| patch.patch.spans(dir)[at[dir]])
+    }
+
+    /// Edges that are not joined to another one, all along or in part.
+    pub fn free_edges(&self) -> Vec<Edge> {
+        let all = (0..self.patches.len()).flat_map(Edge::of);
+        all.filter(|edge| !self.joints.inner.contains(edge))
+            .collect()
+    }
+
+    /// Spans of a patch with the sides (as [`Edge::side`] counts them) along which they are joined, by the middle of the side.
+    pub fn joined_sides(&self, patch: usize) -> Vec<(usize, usize)> {
+        let part = &self.patches[patch];
+        let counts = part.spans();
+        let mut out = Vec::new();
+        for edge in Edge::of(patch) {
+            let (across, along) = (edge.direction(), 1 - edge.direction());
+            let ranges: Vec<[f64; 2]> = (self.joints.seams.iter())
+                .flat_map(|seam| [0, 1].map(|k| (seam.edges[k], seam.ranges[k])))
+                .filter(|(of, _)| *of == edge)
+                .map(|(_, range)| range)
+                .collect();
+            for (k, [a, b]) in part.patch.spans(along).into_iter().enumerate() {
+                let middle = 0.5 * (a + b);
+                if ranges.iter().any(|[a, b]| (*a..=*b).contains(&middle)) {
+                    let mut at = [if edge.at_end() { counts[across] - 1 } else { 0 }; 2];
+                    at[along] = k;
+                    out.push((at[0] + counts[0] * at[1], edge.side()));
+                }
+            }
+        }
+        out
+    }
+
+    /// Name of a set of a patch: `edge.1` of the only one, `12.edge.1` of face 12 of several.
+    fn name(&self, patch: usize, set: &str) -> String {
+        match self.patches.len() {
+            1 => set.to_owned(),
+            _ => format!("{}.{set}", self.patches[patch].face),
+        }
+    }
+
+    /// The set of an edge.
+    pub fn edge_name(&self, edge: Edge) -> String {
+        let number = self.patches[edge.patch()].side_in_file(edge);
+        self.name(edge.patch(), &format!("edge.{number}"))
+    }
+
+    /// The seam with the largest angle between the normals of its two sides, and that angle (degrees); none without seams.
+    pub fn sharpest_fold(&self) -> Option<(&Seam, f64)> {
+        let normal = |edge: Edge, s: f64| {
+            let patch = &self.patches[edge.patch()].patch;
+            let jet = patch.jet(seams::Curve::new(patch, edge).xi(s));
+            jet.rho_i[0].cross(&jet.rho_i[1])
+        };
+        let angle = |seam: &Seam| {
+            let [a, b] = seam.edges;
+            let other = &self.patches[b.patch()].patch;
+            let other = seams::Curve::new(other, b);
+            let own = &self.patches[a.patch()].patch;
+            let own = seams::Curve::new(own, a);
+            let [low, high] = seam.ranges[0];
+            (0..=8)
+                .map(|k| {
+                    let s = low + (high - low) * f64::from(k) / 8.0;
+                    let (foot, _) = other.foot(&own.point(s));
+                    let (n, m) = (normal(a, s), normal(b, foot));
+                    n.cross(&m).norm().atan2(n.dot(&m)).to_degrees()
+                })
+                .fold(0.0, f64::max)
+        };
+        let all = self.joints.seams.iter().map(|seam| (seam, angle(seam)));
+        all.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Number of connected parts.
+    pub fn parts(&self) -> usize {
+        let mut part: Vec<usize> = (0..self.patches.len()).collect();
+        for seam in &self.joints.seams {
+            let [a, b] = seam.edges.map(|e| part[e.patch()]);
+            part.iter_mut()
+                .filter(|p| **p == a.max(b))
+                .for_each(|p| *p = a.min(b));
+        }
+        part.iter().enumerate().filter(|(k, p)| k == *p).count()
     }
 
     /// Control points along an edge, `row` rows away from it.
     pub fn row(&self, edge: Edge, row: usize) -> Vec<u32> {
-        let counts = self.patch.counts();
+        let SheetPatch {
+            patch, first_node, ..
+        } = &self.patches[edge.patch()];
+        let counts = patch.counts();
         let across = edge.direction();
         let at = match edge.at_end() {
             false => row,
@@ -104,20 +317,22 @@ impl NurbsSheet {
                 0 => (at + counts[0] * k) as u32,
                 _ => (k + counts[0] * at) as u32,
             })
+            .map(|n| n + first_node)
             .collect()
     }
 
     /// Gauss points along an edge, element after element, with the undeformed length that each stands for.
     pub fn edge_points(&self, edge: Edge) -> Vec<Vec<(SheetPoint, f64)>> {
         let across = edge.direction();
-        let spans = [0, 1].map(|dir| self.patch.spans(dir));
+        let patch = &self.patches[edge.patch()];
+        let spans = [0, 1].map(|dir| patch.patch.spans(dir));
         let last = spans[across].len() - 1;
         let (end, at) = match edge.at_end() {
             false => (0, spans[across][0][0]),
             true => (last, spans[across][last][1]),
         };
         let rule = crate::fem::gauss(DEGREE + 1).expect("a rule of four points exists");
-        let positions = self.patch.points();
+        let positions = patch.patch.points();
         let mut room = PatchShape::default();
         let mut of = |k: usize, [a, b]: [f64; 2]| {
             let mut span = [end; 2];
@@ -125,9 +340,9 @@ impl NurbsSheet {
             let points = rule.iter().map(|(s, w)| {
                 let mut xi = [at; 2];
                 xi[1 - across] = 0.5 * (a + b) + 0.5 * s * (b - a);
-                let p = self.point(span, xi, 0.5 * w * (b - a), &positions, &mut room);
+                let p = patch.point(span, xi, 0.5 * w * (b - a), &positions, &mut room);
                 let tangent: Vec3 = (p.nodes.iter().zip(p.n_i[1 - across]))
-                    .map(|(n, d)| positions[*n as usize] * d)
+                    .map(|(n, d)| positions[(*n - patch.first_node) as usize] * d)
                     .sum();
                 (p, p.weight * tangent.norm())
             });
@@ -146,12 +361,6 @@ impl NurbsSheet {
             }
         }
         lengths.into_iter().collect()
-    }
-
-    /// The control points at the corners: xi1 fastest, as four numbers.
-    pub fn corners(&self) -> [u32; 4] {
-        let [nu, nv] = self.patch.counts();
-        [0, nu - 1, nu * (nv - 1), nu * nv - 1].map(|k| k as u32)
     }
 
     /// `n x n` Gauss points of some elements, element after element, xi1 fastest.
@@ -174,13 +383,15 @@ impl NurbsSheet {
         rule: &crate::fem::Rule,
     ) -> Vec<SheetPoint> {
         let mut room = PatchShape::default();
-        let spans = [0, 1].map(|dir| self.patch.spans(dir));
-        let nu = spans[0].len();
-        let positions = self.patch.points();
         let mut out = Vec::new();
+        let mut known: Option<(&SheetPatch, Vec<Vec3>)> = None;
         for e in elements {
-            let span = [e % nu, e / nu];
-            let [u, v] = [spans[0][span[0]], spans[1][span[1]]];
+            let (patch, span) = self.place(e);
+            let positions = match known {
+                Some((of, positions)) if std::ptr::eq(of, patch) => positions,
+                _ => patch.patch.points(),
+            };
+            let [u, v] = [0, 1].map(|dir| patch.patch.basis(dir).span_range(span[dir]));
             for (t, wt) in rule.iter() {
                 for (s, ws) in rule.iter() {
                     let xi = [
@@ -188,53 +399,18 @@ impl NurbsSheet {
                         0.5 * (v[0] + v[1]) + 0.5 * t * (v[1] - v[0]),
                     ];
                     let weight = 0.25 * ws * wt * (u[1] - u[0]) * (v[1] - v[0]);
-                    out.push(self.point(span, xi, weight, &positions, &mut room));
+                    out.push(patch.point(span, xi, weight, &positions, &mut room));
                 }
             }
+            known = Some((patch, positions));
         }
-        out
-    }
-
-    /// A point of a span that stands for `weight` of its parameters; `positions` are the control points.
-    fn point(
-        &self,
-        span: [usize; 2],
-        xi: [f64; 2],
-        weight: f64,
-        positions: &[Vec3],
-        room: &mut PatchShape,
-    ) -> SheetPoint {
-        self.patch.shape_in_span(span, xi, room);
-        let mut out = SheetPoint {
-            nodes: [0; 16],
-            n: [0.0; 16],
-            n_i: [[0.0; 16]; 2],
-            area: 0.0,
-            weight,
-            normal: Vec3::zeros(),
-            position: Vec3::zeros(),
-        };
-        let mut tangents = [Vec3::zeros(); 2];
-        for a in 0..16 {
-            out.nodes[a] = room.indices[a];
-            out.n[a] = room.n[a];
-            let x = positions[room.indices[a] as usize];
-            out.position += x * room.n[a];
-            for (k, tangent) in tangents.iter_mut().enumerate() {
-                out.n_i[k][a] = room.n_i[a][k];
-                *tangent += x * room.n_i[a][k];
-            }
-        }
-        let normal = tangents[0].cross(&tangents[1]);
-        out.area = weight * normal.norm();
-        out.normal = normal.normalize();
         out
     }
 
     /// Integral of every control point's shape function over the mid-surface.
     pub fn tributary_areas(&self) -> Vec<f64> {
-        let mut areas = vec![0.0; self.patch.homogeneous().len()];
-        let elements = self.spans().iter().product();
+        let mut areas = vec![0.0; self.nodes()];
+        let elements = self.elements();
         let rule = crate::fem::gauss(DEGREE + 1).expect("a rule of four points exists");
         for p in self.sampled(0..elements, &rule) {
             for (node, n) in p.nodes.iter().zip(p.n) {
@@ -245,58 +421,89 @@ impl NurbsSheet {
     }
 
     /// Control points and knot spans as a mesh, with the sets `top`, `bottom`, `edge.1` to `edge.4` and `corner.1` to
-    /// `corner.4`.
+    /// `corner.4`. Of several patches the sets of each begin with the number of its face, those of edges that are joined all
+    /// along are left out, and `rim` holds the others.
     pub fn mesh(&mut self) -> Mesh {
-        let spans = self.spans();
         let mut room = PatchShape::default();
-        let mut connectivity = Vec::with_capacity(16 * spans[0] * spans[1]);
-        for j in 0..spans[1] {
-            for i in 0..spans[0] {
-                let [u, v] = [self.patch.spans(0)[i], self.patch.spans(1)[j]];
-                let middle = [0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1])];
-                self.patch.shape_in_span([i, j], middle, &mut room);
-                connectivity.extend_from_slice(&room.indices);
-            }
-        }
-        let elements = (spans[0] * spans[1]) as u32;
-        let faces = |face: u8| -> Vec<Face> {
-            (0..elements)
+        let count = self.elements();
+        let mut connectivity = Vec::with_capacity(16 * count);
+        let (mut node_sets, mut face_sets) = (BTreeMap::new(), BTreeMap::new());
+        let nodes = self.positions();
+        let faces = |first: u32, count: usize, face: u8| -> Vec<Face> {
+            (first..first + count as u32)
                 .map(|element| Face { element, face })
                 .collect()
         };
-        let nodes = self.patch.points();
-        let all: Vec<u32> = (0..nodes.len() as u32).collect();
-        let mut node_sets = BTreeMap::new();
-        for name in ["top", "bottom"] {
-            node_sets.insert(name.to_owned(), all.clone());
+        let mut edge_sets: Vec<(String, Vec<Edge>)> = Vec::new();
+        let several = self.patches.len() > 1;
+        for (k, part) in self.patches.iter().enumerate() {
+            let spans = part.spans();
+            for j in 0..spans[1] {
+                for i in 0..spans[0] {
+                    let [u, v] = [0, 1].map(|dir| part.patch.basis(dir).span_range([i, j][dir]));
+                    let middle = [0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1])];
+                    part.patch.shape_in_span([i, j], middle, &mut room);
+                    connectivity.extend(room.indices.iter().map(|n| n + part.first_node));
+                }
+            }
+            for edge in Edge::of(k) {
+                if !self.joints.inner.contains(&edge) {
+                    edge_sets.push((self.edge_name(edge), vec![edge]));
+                }
+            }
+            for (c, corner) in part.corners().into_iter().enumerate() {
+                let number = 1 + if part.reversed { c ^ 1 } else { c };
+                let name = self.name(k, &format!("corner.{number}"));
+                node_sets.insert(name, vec![corner]);
+            }
+            if several {
+                let own = part.first_node..part.first_node + part.nodes() as u32;
+                for (name, face) in [("bottom", 4), ("top", 5)] {
+                    let name = self.name(k, name);
+                    node_sets.insert(name.clone(), own.clone().collect());
+                    face_sets.insert(name, faces(part.first_element, part.elements(), face));
+                }
+            }
         }
-        for edge in Edge::ALL {
-            node_sets.insert(edge.name(), sorted(self.row(edge, 0)));
-            self.edge_sets.insert(edge.name(), vec![edge]);
+        if several {
+            edge_sets.push(("rim".to_owned(), self.free_edges()));
         }
-        for (k, corner) in self.corners().into_iter().enumerate() {
-            node_sets.insert(format!("corner.{}", k + 1), vec![corner]);
+        for (name, edges) in edge_sets {
+            let own = edges.iter().flat_map(|edge| self.row(*edge, 0));
+            node_sets.insert(name.clone(), sorted(own.collect()));
+            self.edge_sets.insert(name, edges);
+        }
+        for (name, face) in [("bottom", 4), ("top", 5)] {
+            node_sets.insert(name.to_owned(), (0..nodes.len() as u32).collect());
+            face_sets.insert(name.to_owned(), faces(0, count, face));
         }
         Mesh {
             kind: ElementKind::Nurbs,
             nodes,
             connectivity,
             node_sets,
-            face_sets: BTreeMap::from([
-                ("bottom".to_owned(), faces(4)),
-                ("top".to_owned(), faces(5)),
-            ]),
+            face_sets,
         }
     }
 
     /// Smallest and largest coordinates of the control points.
     pub fn bounds(&self) -> [Vec3; 2] {
-        self.patch.bounds()
+        let all = self.patches.iter().map(|p| p.patch.bounds());
+        all.reduce(|a, b| [a[0].inf(&b[0]), a[1].sup(&b[1])])
+            .unwrap_or_default()
+    }
+
+    /// Longest length of every span along both directions, of all patches.
+    fn lengths(&self) -> [Vec<f64>; 2] {
+        [0, 1].map(|dir| {
+            let all = self.patches.iter();
+            all.flat_map(|p| refine::lengths(&p.patch, dir)).collect()
+        })
     }
 
     /// Shortest and longest side of the elements.
     pub fn span_lengths(&self) -> [f64; 2] {
-        let both = [0, 1].map(|dir| refine::lengths(&self.patch, dir));
+        let both = self.lengths();
         let all = || both.iter().flatten().copied();
         [
             all().fold(f64::INFINITY, f64::min),
@@ -306,9 +513,9 @@ impl NurbsSheet {
 
     /// Mean length of the spans' sides.
     pub fn span_length(&self) -> f64 {
-        let [nu, nv] = self.spans();
-        let both = [0, 1].map(|dir| refine::lengths(&self.patch, dir).iter().sum::<f64>());
-        0.5 * (both[0] / nu as f64 + both[1] / nv as f64)
+        let mean = |all: &Vec<f64>| all.iter().sum::<f64>() / all.len() as f64;
+        let [u, v] = self.lengths();
+        0.5 * (mean(&u) + mean(&v))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Selections by geometry on a sheet: control points do not lie on the surface, so nodes are chosen as whole edges, or corners.
 use super::super::sets::{boxed, corners, not_negative, outside_box, slack, unit, vector, words};
 use super::super::{Face, Mesh, MeshError};
-use super::{Edge, NurbsSheet, side, sorted};
+use super::{Edge, NurbsSheet, SheetPatch, side, sorted};
 use crate::scene::{Corners, Selection};
 use covact_geometry::Vec3;
 
@@ -40,10 +40,10 @@ impl NurbsSheet {
             nearest = nearest.min(miss);
             miss <= picked.slack
         };
-        let edges: Vec<Edge> = (Edge::ALL.into_iter())
+        let edges: Vec<Edge> = (self.free_edges().into_iter())
             .filter(|edge| within(miss(edge)))
             .collect();
-        let corners: Vec<u32> = (self.corners().into_iter())
+        let corners: Vec<u32> = (self.patches.iter().flat_map(SheetPatch::corners))
             .filter(|&n| within(picked.miss(&mesh.nodes[n as usize])))
             .collect();
         let nodes = match edges.is_empty() {
@@ -62,14 +62,15 @@ impl NurbsSheet {
 
     /// Points along an edge.
     fn along(&self, edge: Edge) -> Vec<Vec3> {
-        let domain = self.patch.domain();
+        let patch = &self.patches[edge.patch()].patch;
+        let domain = patch.domain();
         let across = edge.direction();
         let [a, b] = domain[1 - across];
         (0..ALONG)
             .map(|k| {
                 let mut xi = [a + (b - a) * k as f64 / (ALONG - 1) as f64; 2];
                 xi[across] = domain[across][usize::from(edge.at_end())];
-                self.patch.point(xi)
+                patch.point(xi)
             })
             .collect()
     }
@@ -84,10 +85,11 @@ impl NurbsSheet {
         for element in 0..mesh.elements() {
             let [u, v] = self.range(element);
             let xi = |s: f64, t: f64| [u[0] + s * (u[1] - u[0]), v[0] + t * (v[1] - v[0])];
-            let jet = self.patch.jet(xi(0.5, 0.5));
+            let patch = &self.place(element).0.patch;
+            let jet = patch.jet(xi(0.5, 0.5));
             let normal = jet.rho_i[0].cross(&jet.rho_i[1]).normalize();
             let places = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
-                .map(|[s, t]| self.patch.point(xi(s, t)));
+                .map(|[s, t]| patch.point(xi(s, t)));
             for face in [4, 5] {
                 let face = Face {
                     element: element as u32,

@@ -14,7 +14,10 @@ use crate::mesh::nurbs::{Fineness, side};
 use crate::mesh::{Edge, Face, Mesh, NurbsError, NurbsSheet};
 use crate::scene::{self, Contact, Gap, NurbsSurface, Passes, Points, SetNames, Tangent};
 use crate::shell::{Block, Law, NurbsBlock, bytes_per_element};
-use covact_geometry::{MovingError, MovingFacets, NurbsPatch, Vec3, io};
+use covact_geometry::{MovingError, MovingFacets, NurbsPatch, PatchSpans, Vec3, io};
+
+/// Largest angle between neighbouring patches of a master (degrees): at a seam the side of a point is told by one of both normals.
+const STEEPEST: f64 = 89.0;
 
 /// Points along each direction of a face where the scene asks for none: as many as its polynomials have numbers.
 const POINTS: usize = 4;
@@ -29,7 +32,7 @@ impl Builder<'_> {
         law: Law,
     ) -> Result<(Mesh, Block), ModelError> {
         let at = |field: &str| format!("/bodies/{name}/nurbs/{field}");
-        let (patch, label) = self.face(name, nurbs)?;
+        let faces = self.nurbs_faces(name, nurbs)?;
         let fineness = match (nurbs.size, nurbs.elements) {
             (Some(size), _) => Fineness::Size(size),
             (None, Some(counts)) => Fineness::Elements(counts),
@@ -39,13 +42,23 @@ impl Builder<'_> {
             }
         };
         let placement = &body.placement;
-        let patch = patch
-            .moved(&pose(placement), placement.scale)
-            .at(|| at("file"))?;
-        let mut sheet = NurbsSheet::new(&patch, nurbs.thickness, fineness, nurbs.assumed_membrane)
-            .map_err(|e| refused(&at("file"), &at("elements"), &label, e))?;
-        let spans = sheet.spans();
-        let elements = (spans[0] * spans[1]) as u64;
+        let placed = faces.into_iter().map(|(face, patch)| {
+            let placed = patch.moved(&pose(placement), placement.scale);
+            placed.map(|patch| (face, patch))
+        });
+        let faces: Vec<(u32, NurbsPatch)> = placed.collect::<Result<_, _>>().at(|| at("file"))?;
+        let mut sheet =
+            NurbsSheet::joined(&faces, nurbs.thickness, fineness, nurbs.assumed_membrane).map_err(
+                |(k, e)| {
+                    refused(
+                        &at("file"),
+                        &at("elements"),
+                        &format!("face {}", faces[k].0),
+                        e,
+                    )
+                },
+            )?;
+        let elements = sheet.elements() as u64;
         let each: usize = bytes_per_element(body.element, false).iter().sum();
         memory::ask(memory::times(elements, each as u64)).map_err(|shortage| {
             let message = format!("body `{name}` with its {elements} elements: {shortage}");
@@ -59,26 +72,82 @@ impl Builder<'_> {
                 .map_err(|e| e.help(extent(name, &mesh)))?;
         }
         let block = NurbsBlock::new(&sheet, law).at(|| at("file"))?;
+        self.tell_sheet(name, nurbs, &sheet);
+        Ok((mesh, Block::Nurbs(Box::new(block))))
+    }
+
+    /// What was made of the faces of a file.
+    fn tell_sheet(&mut self, name: &str, nurbs: &NurbsSurface, sheet: &NurbsSheet) {
+        let number = crate::model::error::number;
+        let (what, elements) = match &sheet.patches[..] {
+            [one] => {
+                let [u, v] = one.spans();
+                (format!("face {}", one.face), format!("{u} x {v}"))
+            }
+            all => (format!("{} faces", all.len()), sheet.elements().to_string()),
+        };
         self.notes.push(format!(
-            "body `{name}`: {label} of {} as a shell of thickness {}, {} x {} bicubic elements{}; its surface did not move",
+            "body `{name}`: {what} of {} as a shell of thickness {}, {elements} bicubic elements{}; its surface did not move",
             nurbs.file.display(),
-            crate::model::error::number(nurbs.thickness),
-            spans[0],
-            spans[1],
+            number(nurbs.thickness),
             match nurbs.assumed_membrane {
                 true => ", with assumed membrane strains",
                 false => "",
             }
         ));
-        Ok((mesh, Block::Nurbs(Box::new(block))))
+        if sheet.patches.len() == 1 {
+            return;
+        }
+        let joints = &sheet.joints;
+        let gap = joints.seams.iter().map(|s| s.gap).fold(0.0, f64::max);
+        let parts = match sheet.parts() {
+            1 => String::new(),
+            n => format!("; {n} parts are not joined to each other"),
+        };
+        self.notes.push(format!(
+            "body `{name}`: joined along {} edge(s), with gaps of up to {}{parts}",
+            joints.seams.len(),
+            number(gap)
+        ));
+        let turned: Vec<String> = (sheet.patches.iter().filter(|p| p.reversed))
+            .map(|p| p.face.to_string())
+            .collect();
+        if !turned.is_empty() {
+            self.notes.push(format!(
+                "body `{name}`: the normal of face(s) {} is turned over, so that `top` is on the side of face {}",
+                turned.join(", "),
+                sheet.patches[0].face
+            ));
+        }
+        for edge in &joints.partial {
+            self.notes.push(format!(
+                "body `{name}`: `{}` is joined along a part of its length",
+                sheet.edge_name(*edge)
+            ));
+        }
+        for (edge, patch) in &joints.inside {
+            self.warnings.push(format!(
+                "body `{name}`: the free edge `{}` lies on the inside of face {}, and is not joined to it: only edges are",
+                sheet.edge_name(*edge),
+                sheet.patches[*patch].face
+            ));
+        }
+        for near in &joints.near {
+            let [a, b] = near.edges.map(|e| sheet.edge_name(e));
+            self.warnings.push(format!(
+                "body `{name}`: the free edge `{a}` runs within {} of `{b}`, less than the thickness, but is not joined to it: the gap \
+                 is larger than CAD files leave",
+                number(near.distance)
+            ));
+        }
     }
 
-    /// The one face of the file that the scene takes, in the units of the scene, and what it is called.
-    fn face(
+    /// The faces of the file that the scene takes, with their numbers, in the units of the scene.
+    fn nurbs_faces(
         &mut self,
         name: &str,
         nurbs: &NurbsSurface,
-    ) -> Result<(NurbsPatch, String), ModelError> {
+    ) -> Result<Vec<(u32, NurbsPatch)>, ModelError> {
         let at = |field: &str| format!("/bodies/{name}/nurbs/{field}");
         let shown = nurbs.file.display();
         let options = io::ReadOptions {
@@ -101,22 +170,20 @@ impl Builder<'_> {
             }
         }
         let chosen: Vec<_> = file.patches.iter().filter(|p| wanted(p.entity)).collect();
-        let [patch] = chosen[..] else {
-            let (field, message) = match chosen.len() {
-                0 => ("file", format!("{shown} holds no face that can be used")),
-                n => (
-                    "faces",
-                    format!(
-                        "{n} faces of {shown} are chosen, and only one can be a shell: faces are not joined yet"
-                    ),
-                ),
-            };
-            let help = match chosen.len() {
-                0 => "`covact inspect` lists what is in a CAD file".to_owned(),
-                _ => format!("name one in `faces`; {}", listed()),
-            };
-            return Err(text(at(field), message).help(help));
-        };
+        if chosen.is_empty() {
+            let message = format!("{shown} holds no face that can be used");
+            let help = "`covact inspect` lists what is in a CAD file";
+            return Err(text(at("file"), message).help(help));
+        }
+        if nurbs.faces.is_empty() && !file.skipped.is_empty() {
+            let skipped = file.skipped.iter();
+            let all: Vec<String> = skipped
+                .map(|s| format!("{} ({})", s.entity, s.reason))
+                .collect();
+            let message = format!("{shown}: faces cannot be read: {}", all.join(", "));
+            let help = "name the faces that are the shell in `faces`";
+            return Err(text(at("file"), message).help(help));
+        }
         let own = io::LengthUnit::from_name(self.scene.units.length.name());
         let factor = own.as_ref().and_then(|own| file.unit.factor_to(own));
         if factor.is_none() {
@@ -126,10 +193,13 @@ impl Builder<'_> {
             ));
         }
         let factor = factor.unwrap_or(1.0);
-        let scaled = (patch.patch)
-            .transformed(&|x| x * factor)
-            .at(|| at("file"))?;
-        Ok((scaled, format!("face {}", patch.entity)))
+        (chosen.into_iter())
+            .map(|p| {
+                let scaled = p.patch.transformed(&|x| x * factor);
+                scaled.map(|patch| (p.entity, patch))
+            })
+            .collect::<Result<_, _>>()
+            .at(|| at("file"))
     }
 
     /// What a contact asks for that a face of a sheet cannot do, or that nothing was tried of.
@@ -158,11 +228,12 @@ impl Builder<'_> {
             );
             Err(text(at(field), message).help(help.to_owned()))
         };
-        if rigid.is_none() {
+        let body = |set: &str| set.split_once('.').map_or(set, |(body, _)| body).to_owned();
+        if rigid.is_none() && body(&contact.slave) == body(&contact.master) {
             return refuse(
                 "master",
-                "masters that are bodies",
-                "take a rigid surface as master",
+                "masters on the same body",
+                "take another body or a rigid surface as master",
             );
         }
         let described = self.scene.surfaces.get(&contact.master);
@@ -172,6 +243,9 @@ impl Builder<'_> {
                 "surfaces driven by force",
                 "prescribe the motion of the surface",
             );
+        }
+        if let (None, Tangent::Published { .. }) = (rigid, contact.tangent) {
+            return refuse("tangent", "published tangents", "take `exact`");
         }
         if matches!(contact.points, Points::Segments(_)) {
             return refuse("points", "integration segments", "take `{\"gauss\": 4}`");
@@ -255,9 +329,22 @@ impl Builder<'_> {
             .split_once('.')
             .unwrap_or((&contact.master, ""));
         let body = self.body_index.get(name).map(|i| &self.bodies[*i]);
+        let fold = (body.and_then(|b| b.block.sheet()))
+            .and_then(|s| s.sharpest_fold())
+            .filter(|(_, angle)| *angle > STEEPEST);
+        if let (Some(sheet), Some((seam, angle))) = (body.and_then(|b| b.block.sheet()), fold) {
+            let [a, b] = seam.edges.map(|e| sheet.patches[e.patch()].face);
+            let message = format!(
+                "`{}` is folded by {:.0} degrees between faces {a} and {b}: a face of a body of kind `nurbs` that is a master is folded by \
+                 {STEEPEST} degrees at most",
+                contact.master, angle
+            );
+            let help = "take the faces on one side of the fold as masters of contacts of their own";
+            return Err(text(at("master"), message).help(help));
+        }
         let rational = body
             .and_then(|b| b.block.sheet())
-            .is_some_and(|s| s.patch.is_rational());
+            .is_some_and(|s| s.patches.iter().any(|p| p.patch.is_rational()));
         if rational {
             let message = format!(
                 "`{}` is a face of a rational surface (a cylinder, a sphere, an arc), which cannot be a master yet",
@@ -281,7 +368,7 @@ impl Builder<'_> {
         let spans: Vec<usize> = faces.iter().map(|f| f.element as usize).collect();
         let bottom = faces.first().and_then(|f| side(*f)) == Some(-1.0);
         let number = |n: u32| n + model.first_node;
-        let facets = MovingFacets::of_patch(&sheet.patch, &spans, bottom, number);
+        let facets = sheet_master_facets(sheet, &spans, bottom, number);
         Some(facets.map(|mut facets| {
             facets.update(|n| self.nodes[n as usize]);
             (facets, 0.5 * sheet.thickness)
@@ -321,17 +408,47 @@ impl Builder<'_> {
     }
 }
 
+/// Spans of a sheet as a surface that others meet. Elements are of one side and ascend.
+fn sheet_master_facets(
+    sheet: &NurbsSheet,
+    elements: &[usize],
+    bottom: bool,
+    number: impl Fn(u32) -> u32,
+) -> Result<MovingFacets, MovingError> {
+    let spans: Vec<Vec<usize>> = (sheet.patches.iter())
+        .map(|part| {
+            let first = part.first_element as usize;
+            let own = first..first + part.elements();
+            let of_part = elements.iter().filter(|e| own.contains(e));
+            of_part.map(|e| e - first).collect()
+        })
+        .collect();
+    let joined: Vec<_> = (0..spans.len()).map(|k| sheet.joined_sides(k)).collect();
+    let parts: Vec<PatchSpans> = (sheet.patches.iter().zip(&spans).zip(&joined))
+        .map(|((part, spans), joined)| PatchSpans {
+            patch: &part.patch,
+            spans,
+            joined,
+        })
+        .collect();
+    MovingFacets::of_patches(&parts, bottom, |k, n| {
+        number(n + sheet.patches[k].first_node)
+    })
+}
+
 /// The edges of a sheet one of whose faces is loaded as a whole, as nodes of the model; none where a part of one is.
 pub(super) fn sheet_rims(
     sheet: &NurbsSheet,
     faces: &[Face],
     first_node: u32,
 ) -> Option<Vec<Vec<u32>>> {
-    let elements: usize = sheet.spans().iter().product();
+    let elements = sheet.elements();
     let of = |side: u8| faces.iter().filter(|f| f.face == side).count();
     let whole = [4, 5].iter().all(|side| [0, elements].contains(&of(*side)));
     let shifted = |edge| sheet.row(edge, 0).iter().map(|n| n + first_node).collect();
-    whole.then(|| Edge::ALL.map(shifted).to_vec())
+    // Both sides of a seam: their displacements are not the same numbers.
+    let all = (0..sheet.patches.len()).flat_map(Edge::of);
+    whole.then(|| all.map(shifted).collect())
 }
 
 /// Sizes of the elements of a sheet, as a contact on its faces sees them.
@@ -353,6 +470,8 @@ fn refused(file: &str, elements: &str, label: &str, error: NurbsError) -> ModelE
         NurbsError::Crease { .. } | NurbsError::Closed { .. } => {
             Some("cut the face there in the CAD program, and take one of its parts")
         }
+        NurbsError::Twice { .. } => Some("name the faces that are the shell in `faces`"),
+        NurbsError::OneSided { .. } => Some("make two bodies of it"),
         NurbsError::Pole { .. } => Some("cut the pole away, or mesh the face (`mesh`)"),
         _ => None,
     };

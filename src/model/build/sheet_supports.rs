@@ -80,10 +80,10 @@ impl Builder<'_> {
                 let message =
                     format!("`{reference}` is no whole edge, and only edges can be clamped");
                 return Err(text(at, message)
-                    .help("take `edge.1` to `edge.4`, or a set of nodes that holds a whole edge"));
+                    .help("take an edge (`edge.1` to `edge.4`), or a set of nodes that holds a whole edge"));
             }
             // A symmetry of all control points, as of plane problems, holds no normal.
-            if nodes.len() == sheet.patch.homogeneous().len() {
+            if nodes.len() == sheet.nodes() {
                 continue;
             }
             for edge in edges {
@@ -108,7 +108,7 @@ fn component(axis: Axis) -> usize {
 
 /// Lines of control points along an axis, that all points belong to.
 fn extruded(sheet: &NurbsSheet, axis: usize) -> Option<Vec<Vec<u32>>> {
-    let points = sheet.patch.points();
+    let points = sheet.positions();
     let [low, high] = sheet.bounds();
     let slack = ROUND * (high - low).norm();
     let straight = |line: &Vec<u32>| {
@@ -118,16 +118,22 @@ fn extruded(sheet: &NurbsSheet, axis: usize) -> Option<Vec<Vec<u32>>> {
             (0..3).all(|c| c == axis || off[c].abs() <= slack)
         })
     };
-    [Edge::ALL[0], Edge::ALL[2]].into_iter().find_map(|edge| {
-        // Lines across the edge: one point of every row.
-        let rows: Vec<Vec<u32>> = (0..sheet.patch.counts()[edge.direction()])
-            .map(|k| sheet.row(edge, k))
-            .collect();
-        let lines: Vec<Vec<u32>> = (0..rows[0].len())
-            .map(|k| rows.iter().map(|row| row[k]).collect())
-            .collect();
-        lines.iter().all(straight).then_some(lines)
-    })
+    let of_patch = |k: usize| {
+        let patch = &sheet.patches[k].patch;
+        let edges = Edge::of(k);
+        [edges[0], edges[2]].into_iter().find_map(|edge| {
+            // Lines across the edge: one point of every row.
+            let rows: Vec<Vec<u32>> = (0..patch.counts()[edge.direction()])
+                .map(|k| sheet.row(edge, k))
+                .collect();
+            let lines: Vec<Vec<u32>> = (0..rows[0].len())
+                .map(|k| rows.iter().map(|row| row[k]).collect())
+                .collect();
+            lines.iter().all(straight).then_some(lines)
+        })
+    };
+    let all: Option<Vec<_>> = (0..sheet.patches.len()).map(of_patch).collect();
+    all.map(|lines| lines.concat())
 }
 
 impl SheetSupports {
@@ -144,7 +150,7 @@ impl SheetSupports {
 
     /// The second row follows the edge along the normal where that is the same axis everywhere; else the normal is held.
     fn clamp(&mut self, sheet: &NurbsSheet, body: usize, edge: Edge, first: u32, support: u32) {
-        let points = sheet.patch.points();
+        let points = sheet.positions();
         let rows = [0, 1].map(|row| sheet.row(edge, row));
         let spread: Vec<Vec3> = (rows.iter().flatten())
             .map(|n| points[*n as usize] - points[rows[0][0] as usize])
@@ -170,8 +176,10 @@ impl SheetSupports {
         (first, axis): (u32, usize),
         support: u32,
     ) {
-        let points = sheet.patch.points();
-        let weights = sheet.patch.weights();
+        let points = sheet.positions();
+        let weights: Vec<f64> = (sheet.patches.iter())
+            .flat_map(|p| p.patch.weights())
+            .collect();
         let rows = [0, 1].map(|row| sheet.row(edge, row));
         let orthogonal = rows[0].iter().zip(&rows[1]).all(|(a, b)| {
             let off = points[*b as usize] - points[*a as usize];

@@ -172,7 +172,12 @@ impl<'a> Sets<'a> {
                     *sets.entry(set).or_insert(faces) |= faces;
                 }
             }
-            let open = matches!(body.mesh, MeshSource::File(_) | MeshSource::Cells(_));
+            let open = match &body.mesh {
+                MeshSource::File(_) | MeshSource::Cells(_) => true,
+                // Of several faces each has sets of its own.
+                MeshSource::Nurbs(nurbs) => nurbs.faces.len() != 1,
+                _ => false,
+            };
             (name.as_str(), BodySets { sets, open })
         });
         Sets {

@@ -72,7 +72,8 @@ impl NurbsBlock {
         to: HeldNormal,
         out: &mut Vec<(usize, BorderPoint)>,
     ) -> Result<(), ShellError> {
-        let patch = &self.sheet.patch;
+        let part = &self.sheet.patches[edge.patch()];
+        let patch = &part.patch;
         let spans = [patch.spans(0), patch.spans(1)];
         let (across, along) = (edge.direction(), 1 - edge.direction());
         let last = spans[across].len() - 1;
@@ -87,7 +88,7 @@ impl NurbsBlock {
         for (k, range) in spans[along].iter().enumerate() {
             let mut span = [end; 2];
             span[along] = k;
-            let e = span[0] + spans[0].len() * span[1];
+            let e = part.first_element as usize + span[0] + spans[0].len() * span[1];
             for (s, w) in rule.iter() {
                 let mut xi = [at; 2];
                 xi[along] = 0.5 * (range[0] + range[1]) + 0.5 * s * (range[1] - range[0]);

@@ -12,6 +12,9 @@ mod borders;
 mod frame;
 mod plane_stress;
 mod point;
+mod seam;
+#[cfg(test)]
+mod seam_tests;
 mod strain;
 mod stress;
 mod tangent;
@@ -29,6 +32,7 @@ pub use frame::{DOFS, NODES};
 use num_dual::DualNum;
 use plane_stress::Sheet;
 use point::{ASSUMED, BorderPoint, GaussPoint, PLAIN, TyingPoint, biquadratic, shapes};
+pub use seam::{SEAM_DOFS, SEAM_NODES, SeamSpan};
 use strain::Strains;
 pub use stress::SheetResultants;
 
@@ -85,6 +89,8 @@ pub struct NurbsBlock {
     borders: Vec<BorderPoint>,
     /// Where the border points of each element begin, and the end; empty where nothing is held.
     starts: Vec<u32>,
+    /// Where patches are joined.
+    seams: Vec<SeamSpan>,
 }
 
 impl NurbsBlock {
@@ -100,25 +106,24 @@ impl NurbsBlock {
     /// A law without a form in plane stress; a span where the surface has no normal.
     pub fn new(sheet: &NurbsSheet, law: Law) -> Result<NurbsBlock, ShellError> {
         let plane = Sheet::new(&law, sheet.thickness).ok_or(ShellError::PlaneStress)?;
-        let patch = &sheet.patch;
-        let spans = [patch.spans(0), patch.spans(1)];
-        let [nu, nv] = [spans[0].len(), spans[1].len()];
+        let count = sheet.elements();
         let per_side = if sheet.assumed_membrane { 3 } else { 4 };
         let rule = gauss(per_side).expect("a rule of three or four points exists");
         let per = per_side * per_side;
-        let positions = patch.points();
+        let positions = sheet.positions();
         let mut block = NurbsBlock {
             law,
             sheet: sheet.clone(),
             plane,
-            nodes: Vec::with_capacity(nu * nv),
-            reference: Vec::with_capacity(nu * nv),
+            nodes: Vec::with_capacity(count),
+            reference: Vec::with_capacity(count),
             per,
-            points: Vec::with_capacity(nu * nv * per),
+            points: Vec::with_capacity(count * per),
             ties: Vec::new(),
             functions: [[0.0; ASSUMED]; ASSUMED],
             borders: Vec::new(),
             starts: Vec::new(),
+            seams: SeamSpan::all(sheet, &law)?,
         };
         let places: Vec<(f64, f64)> = (rule.iter())
             .map(|(s, w)| (0.5 * (1.0 + s), 0.5 * w))
@@ -127,17 +132,19 @@ impl NurbsBlock {
             for g in 0..per {
                 block.functions[g] = biquadratic(places[g % 3].0, places[g / 3].0);
             }
-            block.ties.reserve_exact(nu * nv * ASSUMED);
+            block.ties.reserve_exact(count * ASSUMED);
         }
         let mut room = PatchShape::default();
-        for (e, span) in (0..nv)
-            .flat_map(|j| (0..nu).map(move |i| [i, j]))
-            .enumerate()
-        {
-            let [u, v] = [spans[0][span[0]], spans[1][span[1]]];
+        for e in 0..count {
+            let (part, span) = sheet.place(e);
+            let patch = &part.patch;
+            let [u, v] = [0, 1].map(|dir| patch.basis(dir).span_range(span[dir]));
             let at = |s: f64, t: f64| [u[0] + s * (u[1] - u[0]), v[0] + t * (v[1] - v[0])];
             let size = (u[1] - u[0]) * (v[1] - v[0]);
-            let centre = shapes(patch, span, at(0.5, 0.5), &mut room);
+            let mut centre = shapes(patch, span, at(0.5, 0.5), &mut room);
+            for node in &mut centre.nodes {
+                *node += part.first_node;
+            }
             let x = centre.nodes.map(|a| positions[a as usize].into());
             let first = frame::combine(&centre.second[0], &x);
             block.nodes.push(centre.nodes);
@@ -177,6 +184,11 @@ impl NurbsBlock {
         self.law
     }
 
+    /// Where patches are joined.
+    pub fn seams(&self) -> &[SeamSpan] {
+        &self.seams
+    }
+
     /// Number of elements.
     pub fn elements(&self) -> usize {
         self.nodes.len()
@@ -192,9 +204,11 @@ impl NurbsBlock {
         self.sheet.thickness * self.gauss(e).iter().map(|p| p.weight).sum::<f64>()
     }
 
-    /// Bytes of heap that the points on borders take.
+    /// Bytes of heap that the points on borders and seams take.
     pub fn border_bytes(&self) -> usize {
-        size_of_val(&self.borders[..]) + size_of_val(&self.starts[..])
+        let seams =
+            size_of_val(&self.seams[..]) + self.seams.iter().map(SeamSpan::bytes).sum::<usize>();
+        size_of_val(&self.borders[..]) + size_of_val(&self.starts[..]) + seams
     }
 
     /// Gauss points of an element.

@@ -171,7 +171,7 @@ fn a_rotation_is_free_of_force() {
 fn patch_test_on_a_distorted_net() {
     let mut sheet = sheet(0.0, true);
     let mesh = sheet.mesh();
-    let [nu, nv] = sheet.patch.counts();
+    let [nu, nv] = sheet.patches[0].patch.counts();
     for law in laws() {
         let block = NurbsBlock::new(&sheet, law).unwrap();
         let mut forces = vec![Vec3::zeros(); mesh.nodes.len()];
@@ -220,7 +220,7 @@ fn constant_curvature() {
         .unwrap()
         .insert_knots(1, &[0.5])
         .unwrap();
-    assert_eq!(w.counts(), sheet.patch.counts());
+    assert_eq!(w.counts(), sheet.patches[0].patch.counts());
     let w = w.points();
     for e in 0..block.elements() {
         let u = block

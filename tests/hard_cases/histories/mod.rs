@@ -79,6 +79,7 @@ histories!(
     crossed_tubes,
     draw_bead,
     drop,
+    flanged_panel,
     hat_pressed,
     hertz_block,
     ironing,

@@ -44,6 +44,12 @@ pub fn drop(scene: &mut Value) {
     end(scene, 0.004);
 }
 
+/// Coarser, and until the punch has dented the panel.
+pub fn flanged_panel(scene: &mut Value) {
+    set(scene, "/bodies/panel/nurbs/size", 12);
+    scene["solution"]["end_time"] = json!(0.5);
+}
+
 pub fn hat_pressed(_: &mut Value) {}
 
 pub fn hertz_block(scene: &mut Value) {

@@ -6,8 +6,10 @@
 mod contact;
 mod linear;
 mod nonlinear;
+mod pair;
 mod panel;
 mod refusals;
+mod seams;
 
 use crate::support::{Outcome, solve_in};
 use serde_json::{Value, json};

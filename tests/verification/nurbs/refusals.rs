@@ -106,7 +106,11 @@ fn faces_that_cannot_be_sheets() {
     let mut second = two["patches"][0].clone();
     second["entity"] = json!(2);
     two["patches"].as_array_mut().expect("patches").push(second);
-    only(&scene, &two, &["2 faces", "only one can be a shell"]);
+    only(
+        &scene,
+        &two,
+        &["/bodies/sheet/nurbs/file", "faces 1 and 2 are the same"],
+    );
     let mut chosen = scene.clone();
     chosen["bodies"]["sheet"]["nurbs"]["faces"] = json!([2]);
     assert_eq!(problems(&chosen, &two), Vec::<String>::new());
@@ -257,8 +261,8 @@ fn contacts_that_are_not_there_yet() {
     };
     for (scene, words) in [
         (
-            with("master", json!("block.top")),
-            ["/contacts/c/master", "masters that are bodies"],
+            with("master", json!("sheet.bottom")),
+            ["/contacts/c/master", "masters on the same body"],
         ),
         (
             contact(json!({"slave": "block.top", "master": "sheet.bottom", "passes": "edges"})),

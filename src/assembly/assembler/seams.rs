@@ -1,0 +1,86 @@
+//! Seams between the patches of a body, one after the other.
+use super::elements::pairs;
+use super::{Assembler, Totals, put};
+use crate::contact::law::PairLaw;
+use crate::model::state::heap;
+use crate::shell::{SEAM_DOFS, SEAM_NODES};
+use covact_geometry::Vec3;
+
+/// Places of the seams of all bodies in the matrix, and room for one.
+#[derive(Debug, Default)]
+pub(super) struct Seams {
+    maps: Vec<u32>,
+    tangent: Vec<f64>,
+}
+
+impl Seams {
+    pub fn new(maps: Vec<u32>) -> Seams {
+        let size = if maps.is_empty() {
+            0
+        } else {
+            SEAM_DOFS * SEAM_DOFS
+        };
+        Seams {
+            maps,
+            tangent: vec![0.0; size],
+        }
+    }
+
+    /// Bytes of heap for so many seams.
+    pub fn size(count: usize) -> usize {
+        let room = if count > 0 { SEAM_DOFS * SEAM_DOFS } else { 0 };
+        count * pairs(SEAM_NODES) * size_of::<u32>() + room * size_of::<f64>()
+    }
+
+    /// Bytes of heap that it holds.
+    pub fn bytes(&self) -> usize {
+        heap(&self.maps) + heap(&self.tangent)
+    }
+
+    /// Places on another pattern.
+    pub fn place(&mut self, maps: Vec<u32>) {
+        self.maps = maps;
+    }
+}
+
+impl<L: PairLaw> Assembler<'_, L> {
+    /// Adds forces, energy and, where asked for, the tangent of all seams.
+    pub(super) fn seams<const TANGENT: bool>(
+        &mut self,
+        u: &[f64],
+        increments: Option<&[f64]>,
+        residual: &mut [f64],
+        rhs: &mut [f64],
+        totals: &mut Totals,
+    ) {
+        let mut at = 0;
+        let mut f = [0.0; SEAM_DOFS];
+        for body in &self.model.bodies {
+            for seam in body.block.seams() {
+                let nodes = seam.nodes.map(|n| n + body.first_node);
+                let own = nodes.map(|n| Vec3::from_column_slice(&u[3 * n as usize..][..3]));
+                let tangent = TANGENT.then_some(&mut self.seams.tangent[..]);
+                totals.internal_energy += seam.evaluate(&own, &mut f, tangent);
+                for (f, &n) in f.chunks_exact(3).zip(&nodes) {
+                    (0..3).for_each(|c| residual[3 * n as usize + c] += f[c]);
+                }
+                if !TANGENT {
+                    continue;
+                }
+                let count = pairs(SEAM_NODES);
+                let map = &self.seams.maps[at..at + count];
+                at += count;
+                put(
+                    &mut self.matrix,
+                    self.dofs,
+                    &mut self.work,
+                    &nodes,
+                    map,
+                    &mut self.seams.tangent,
+                    increments,
+                    rhs,
+                );
+            }
+        }
+    }
+}

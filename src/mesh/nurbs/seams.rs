@@ -1,0 +1,379 @@
+//! Which edges of patches are the same curve in space, so that the shells on both sides are joined there.
+//!
+//! An edge is compared with every other one by its closest points: where the distance is within the tolerance all along a part
+//! of both, the parts are a seam. Parts begin and end at the ends of either edge, so that knots need not match, an edge may run
+//! along several others, and three patches may meet in one.
+use super::{DEGREE, Edge};
+use covact_geometry::{NurbsPatch, Vec3};
+
+/// Distance of edges that are one, as a part of the size of the body: what CAD systems leave.
+const TOLERANCE: f64 = 1e-5;
+
+/// The same as a part of the thickness: a gap that is no gap for a shell.
+const OF_THICKNESS: f64 = 0.02;
+
+/// The tolerance is no more than this part of an edge's length.
+const OF_LENGTH: f64 = 0.05;
+
+/// Points inside of a part that have to lie on the other edge.
+const INSIDE: usize = 9;
+
+/// +1 where the parameter along an edge goes round the patch counter-clockwise.
+const SENSE: [i8; 4] = [-1, 1, 1, -1];
+
+/// A part of two edges that is one curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seam {
+    pub edges: [Edge; 2],
+    /// Parameters along each, ascending.
+    pub ranges: [[f64; 2]; 2],
+    /// The parameters run against each other.
+    pub opposed: bool,
+    /// Largest distance between both at the points that were compared (length).
+    pub gap: f64,
+}
+
+/// A free edge that runs near another one without being joined to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Near {
+    pub edges: [Edge; 2],
+    /// Largest distance of the points that were compared (length).
+    pub distance: f64,
+}
+
+/// Edges of a body's patches.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Joints {
+    pub seams: Vec<Seam>,
+    /// Edges that are joined along all of their length.
+    pub inner: Vec<Edge>,
+    /// Edges that are joined along some of it.
+    pub partial: Vec<Edge>,
+    pub near: Vec<Near>,
+    /// Free edges that lie on the inside of a patch, as that of a rib, which is not joined.
+    pub inside: Vec<(Edge, usize)>,
+}
+
+/// Distance of a point from a patch: from the nearest of a grid of points by Gauss' and Newton's method.
+fn distance(patch: &NurbsPatch, grid: &[([f64; 2], Vec3)], x: &Vec3) -> f64 {
+    let by = |a: &&([f64; 2], Vec3), b: &&([f64; 2], Vec3)| {
+        (a.1 - x)
+            .norm_squared()
+            .total_cmp(&(b.1 - x).norm_squared())
+    };
+    let Some((mut xi, first)) = grid.iter().min_by(by).copied() else {
+        return f64::INFINITY;
+    };
+    let domain = patch.domain();
+    let mut least = (first - x).norm();
+    for _ in 0..10 {
+        let jet = patch.jet(xi);
+        let off = x - jet.rho;
+        least = least.min(off.norm());
+        let [a, b] = jet.rho_i;
+        let (aa, ab, bb) = (a.dot(&a), a.dot(&b), b.dot(&b));
+        let det = aa * bb - ab * ab;
+        let (fa, fb) = (a.dot(&off), b.dot(&off));
+        let step = [(bb * fa - ab * fb) / det, (aa * fb - ab * fa) / det];
+        let next = [0, 1].map(|d: usize| (xi[d] + step[d]).clamp(domain[d][0], domain[d][1]));
+        if !next.iter().all(|x| x.is_finite()) {
+            break;
+        }
+        xi = next;
+    }
+    least
+}
+
+/// Points of all spans of a patch.
+fn grid(patch: &NurbsPatch) -> Vec<([f64; 2], Vec3)> {
+    let at = |dir: usize| -> Vec<f64> {
+        let spans = patch.spans(dir);
+        let ends = spans.iter().flat_map(|[a, b]| [*a, 0.5 * (a + b)]);
+        ends.chain(spans.last().map(|s| s[1])).collect()
+    };
+    let (us, vs) = (at(0), at(1));
+    let all = vs.iter().flat_map(|v| us.iter().map(move |u| [*u, *v]));
+    all.map(|xi| (xi, patch.point(xi))).collect()
+}
+
+/// An edge as a curve.
+pub(crate) struct Curve<'a> {
+    patch: &'a NurbsPatch,
+    edge: Edge,
+    range: [f64; 2],
+    samples: Vec<(f64, Vec3)>,
+    length: f64,
+}
+
+impl<'a> Curve<'a> {
+    pub fn new(patch: &'a NurbsPatch, edge: Edge) -> Self {
+        let along = 1 - edge.direction();
+        let range = patch.domain()[along];
+        let mut curve = Curve {
+            patch,
+            edge,
+            range,
+            samples: Vec::new(),
+            length: 0.0,
+        };
+        for [a, b] in patch.spans(along) {
+            let steps = 2 * (DEGREE + 1);
+            for k in 0..steps {
+                let s = a + (b - a) * k as f64 / steps as f64;
+                curve.samples.push((s, curve.point(s)));
+            }
+        }
+        curve.samples.push((range[1], curve.point(range[1])));
+        let chords = curve.samples.windows(2);
+        curve.length = chords.map(|w| (w[1].1 - w[0].1).norm()).sum();
+        curve
+    }
+
+    /// Parameters of the patch.
+    pub fn xi(&self, s: f64) -> [f64; 2] {
+        let across = self.edge.direction();
+        let mut xi = [s; 2];
+        xi[across] = self.patch.domain()[across][usize::from(self.edge.at_end())];
+        xi
+    }
+
+    pub fn point(&self, s: f64) -> Vec3 {
+        self.patch.point(self.xi(s))
+    }
+
+    fn tangent(&self, s: f64) -> Vec3 {
+        self.patch.jet(self.xi(s)).rho_i[1 - self.edge.direction()]
+    }
+
+    /// The closest point of the edge, and its distance.
+    pub fn foot(&self, x: &Vec3) -> (f64, f64) {
+        let by = |a: &&(f64, Vec3), b: &&(f64, Vec3)| {
+            (a.1 - x)
+                .norm_squared()
+                .total_cmp(&(b.1 - x).norm_squared())
+        };
+        let mut s = self
+            .samples
+            .iter()
+            .min_by(by)
+            .map_or(self.range[0], |p| p.0);
+        let [low, high] = self.range;
+        for _ in 0..40 {
+            let t = self.tangent(s);
+            let step = (x - self.point(s)).dot(&t) / t.norm_squared();
+            let next = (s + step).clamp(low, high);
+            // Not finite where the tangent vanishes: the sample stands.
+            if !next.is_finite() || (next - s).abs() <= 1e-15 * (high - low) {
+                break;
+            }
+            s = next;
+        }
+        (s, (self.point(s) - x).norm())
+    }
+
+    fn bounds(&self) -> [Vec3; 2] {
+        let start = [Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)];
+        let points = self.samples.iter();
+        points.fold(start, |[low, high], (_, x)| [low.inf(x), high.sup(x)])
+    }
+
+    fn ends(&self) -> [Vec3; 2] {
+        [self.samples[0].1, self.samples[self.samples.len() - 1].1]
+    }
+
+    /// Parts of this edge that lie on `other`, as seams.
+    fn on(&self, other: &Curve, tolerance: f64) -> Vec<Seam> {
+        let tolerance = tolerance.min(OF_LENGTH * self.length.min(other.length));
+        let [low, high] = self.range;
+        let mut cuts = vec![low, high];
+        for end in other.ends() {
+            let (s, distance) = self.foot(&end);
+            let from_ends = self.ends().map(|x| (self.point(s) - x).norm());
+            if distance <= tolerance && from_ends.iter().all(|d| *d > 2.0 * tolerance) {
+                cuts.push(s);
+            }
+        }
+        cuts.sort_by(f64::total_cmp);
+        let mut out = Vec::new();
+        for part in cuts.windows(2) {
+            let [a, b] = [part[0], part[1]];
+            let at = |k: usize| a + (b - a) * k as f64 / (INSIDE + 1) as f64;
+            let feet: Vec<(f64, f64)> = (1..=INSIDE)
+                .map(|k| other.foot(&self.point(at(k))))
+                .collect();
+            let gap = feet.iter().map(|f| f.1).fold(0.0, f64::max);
+            if gap > tolerance {
+                continue;
+            }
+            let [from, to] = [a, b].map(|s| other.foot(&self.point(s)).0);
+            // A closed curve would have one foot for both ends.
+            let opposed = feet[INSIDE - 1].0 < feet[0].0;
+            let run = if opposed { from > to } else { from < to };
+            if run {
+                out.push(Seam {
+                    edges: [self.edge, other.edge],
+                    ranges: [[a, b], [from.min(to), from.max(to)]],
+                    opposed,
+                    gap,
+                });
+            }
+        }
+        out
+    }
+}
+
+/// Whether two ranges have more in common than a small part of the shorter one.
+fn overlap(a: [f64; 2], b: [f64; 2]) -> bool {
+    let common = a[1].min(b[1]) - a[0].max(b[0]);
+    common > 1e-3 * (a[1] - a[0]).min(b[1] - b[0])
+}
+
+impl Joints {
+    /// Compares all edges of some patches of a shell of this thickness.
+    pub fn new(patches: &[&NurbsPatch], thickness: f64) -> Joints {
+        let mut out = Joints::default();
+        if patches.len() < 2 {
+            return out;
+        }
+        let curves: Vec<Curve> = (patches.iter().enumerate())
+            .flat_map(|(k, patch)| Edge::of(k).map(|edge| Curve::new(patch, edge)))
+            .collect();
+        let boxes: Vec<[Vec3; 2]> = curves.iter().map(Curve::bounds).collect();
+        let low = boxes.iter().fold(boxes[0][0], |low, b| low.inf(&b[0]));
+        let high = boxes.iter().fold(boxes[0][1], |high, b| high.sup(&b[1]));
+        let tolerance = (TOLERANCE * (high - low).norm()).max(OF_THICKNESS * thickness);
+        let apart = |i: usize, j: usize, reach: f64| {
+            (0..3).any(|c| {
+                boxes[i][0][c] > boxes[j][1][c] + reach || boxes[j][0][c] > boxes[i][1][c] + reach
+            })
+        };
+        for i in 0..curves.len() {
+            for j in i + 1..curves.len() {
+                let own = curves[i].edge.patch() == curves[j].edge.patch();
+                if !own && !apart(i, j, tolerance) {
+                    out.seams.extend(curves[i].on(&curves[j], tolerance));
+                }
+            }
+        }
+        let grids: Vec<_> = patches.iter().map(|p| grid(p)).collect();
+        let extents: Vec<[Vec3; 2]> = patches.iter().map(|p| p.bounds()).collect();
+        for (i, curve) in curves.iter().enumerate() {
+            let free = out.free(curve);
+            let whole = curve.range[1] - curve.range[0];
+            let left: f64 = free.iter().map(|[a, b]| b - a).sum();
+            if left < 1e-3 * whole {
+                out.inner.push(curve.edge);
+                continue;
+            }
+            if left < (1.0 - 1e-3) * whole {
+                out.partial.push(curve.edge);
+            }
+            for (j, other) in curves.iter().enumerate() {
+                let own = curve.edge.patch() == other.edge.patch();
+                let known = |n: &Near| n.edges == [other.edge, curve.edge];
+                if own || apart(i, j, thickness) || out.near.iter().any(known) {
+                    continue;
+                }
+                for [a, b] in &free {
+                    let at = |k: usize| curve.point(a + (b - a) * 0.25 * k as f64);
+                    let distances = [1, 2, 3].map(|k| other.foot(&at(k)).1);
+                    let distance = distances.into_iter().fold(0.0, f64::max);
+                    if distance <= thickness {
+                        let edges = [curve.edge, other.edge];
+                        out.near.push(Near { edges, distance });
+                        break;
+                    }
+                }
+            }
+            for (k, patch) in patches.iter().enumerate() {
+                let told = |n: &Near| n.edges.contains(&curve.edge);
+                let [low, high] = extents[k];
+                let far = (0..3).any(|c| {
+                    boxes[i][0][c] > high[c] + thickness || boxes[i][1][c] < low[c] - thickness
+                });
+                if far || k == curve.edge.patch() || out.near.iter().any(told) {
+                    continue;
+                }
+                let on = |[a, b]: &[f64; 2]| {
+                    (1..=3).all(|m| {
+                        let x = curve.point(a + (b - a) * 0.25 * f64::from(m));
+                        distance(patch, &grids[k], &x) <= thickness
+                    })
+                };
+                if free.iter().any(on) {
+                    out.inside.push((curve.edge, k));
+                }
+            }
+        }
+        out
+    }
+
+    /// Parts of an edge that are on no seam.
+    fn free(&self, curve: &Curve) -> Vec<[f64; 2]> {
+        let mut taken: Vec<[f64; 2]> = (self.seams.iter())
+            .flat_map(|seam| [0, 1].map(|k| (seam.edges[k], seam.ranges[k])))
+            .filter(|(edge, _)| *edge == curve.edge)
+            .map(|(_, range)| range)
+            .collect();
+        taken.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let [mut from, end] = curve.range;
+        let mut free = Vec::new();
+        for [a, b] in taken {
+            if a > from {
+                free.push([from, a]);
+            }
+            from = from.max(b);
+        }
+        if end > from {
+            free.push([from, end]);
+        }
+        free
+    }
+
+    /// Which patches have to be turned over, so that the normals of all point to one side: that of the first one of each
+    /// connected part. Where three and more meet, any side will do.
+    ///
+    /// # Errors
+    /// Two neighbours that cannot have one side: a surface with one side only.
+    pub fn turned(&self, patches: usize) -> Result<Vec<bool>, [usize; 2]> {
+        let branches = |seam: &Seam| {
+            [0, 1].iter().any(|&k| {
+                let others = self.seams.iter().filter(|o| *o != seam);
+                others
+                    .flat_map(|o| [0, 1].map(|m| (o.edges[m], o.ranges[m])))
+                    .any(|(edge, range)| edge == seam.edges[k] && overlap(range, seam.ranges[k]))
+            })
+        };
+        let links: Vec<([usize; 2], bool)> = (self.seams.iter())
+            .filter(|seam| !branches(seam))
+            .map(|seam| {
+                let sense = seam.edges.map(|e| SENSE[e.side()]);
+                let same = (sense[0] == sense[1]) != seam.opposed;
+                (seam.edges.map(Edge::patch), same)
+            })
+            .collect();
+        let mut turned: Vec<Option<bool>> = vec![None; patches];
+        for first in 0..patches {
+            if turned[first].is_some() {
+                continue;
+            }
+            turned[first] = Some(false);
+            let mut front = vec![first];
+            while let Some(at) = front.pop() {
+                for (pair, same) in links.iter().filter(|(pair, _)| pair.contains(&at)) {
+                    let other = if pair[0] == at { pair[1] } else { pair[0] };
+                    let wanted = turned[at].map(|t| t != *same);
+                    match turned[other] {
+                        None => {
+                            turned[other] = wanted;
+                            front.push(other);
+                        }
+                        found if found != wanted => return Err(*pair),
+                        _ => {}
+                    }
+                }
+            }
+        }
+        Ok(turned.into_iter().map(|t| t == Some(true)).collect())
+    }
+}
