@@ -17,6 +17,7 @@
 //! - forces are as smooth as the die is.
 mod deformable;
 mod rigid;
+mod stiff;
 
 use crate::support::Outcome;
 
