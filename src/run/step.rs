@@ -2,9 +2,10 @@
 //!
 //! 1. The path so far, continued: rotations are then right to second order, and a smooth path takes three or four
 //!    iterations.
-//!    Points that were in contact and that it takes off a rigid surface are kept in contact by the first linearisation:
+//!    Points that were in contact and that it takes off a surface are kept in contact by the first linearisation:
 //!    where the path fails as it is, and in the steps after one that needed it.
-//! 2. The last accepted state. With friction the first linearisations take secants.
+//! 2. The last accepted state. With friction the first linearisations take secants. Points are kept in contact in the first
+//!    iterations where the first correction opens most of them.
 //! 3. The last accepted state under a soft penalty that is stiffened in stages. A flat tool on a flat sheet touches at
 //!    hundreds of points of which a handful stay: under a stiff penalty the points chatter, under a soft one the few
 //!    come out, and each stage starts from nearly the right ones.

@@ -400,12 +400,12 @@ fn friction_of_a_contact_that_travels_is_counted() {
         "surfaces": { "p": {
             "cylinder": { "radius": 3, "length": 20, "center": [30, 3, 3.52] },
             "motion": { "translation": [
-                { "table": [[0, 0], [1, 0], [2, 20]] }, 0, { "table": [[0, 0], [1, -6]] }
+                { "table": [[0, 0], [1, 0], [2, 19]] }, 0, { "table": [[0, 0], [1, -6]] }
             ] }
         } },
         "contacts": { "c": { "slave": "b.top", "master": "p", "friction": 0.3 } },
         "supports": { "f": { "on": "b.x_min", "fixed": true }, "y": { "on": "b.y_min", "symmetry": "y" } },
-        "solution": { "end_time": 2 },
+        "solution": { "end_time": 2, "step": { "initial": 0.05, "max": 0.05 } },
         "output": { "every": 0 }
     });
     let outcome = done(&scene);
@@ -414,6 +414,7 @@ fn friction_of_a_contact_that_travels_is_counted() {
         "{lost} out of balance, {taken} taken by friction; {:#?}",
         outcome.summary.warnings
     );
-    // Counted by its way while it is closed alone, two fifths of what friction takes would be missing.
-    assert!(taken > 50.0 && lost.abs() < 0.25 * taken);
+    // Counted by its way while it is closed alone, two fifths of what friction takes would be missing. Steps are a little less than
+    // an element: of a whole number of elements they would see the force, which swings from row to row, at one phase only.
+    assert!(taken > 50.0 && lost.abs() < 0.15 * taken);
 }

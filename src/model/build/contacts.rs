@@ -18,6 +18,9 @@ use covact_geometry::{MovingError, MovingFacets};
 use penalty::{FaceSize, Suitable};
 use std::collections::{BTreeMap, BTreeSet};
 
+/// Part of the slave's stiffness below which a master is much softer.
+const MUCH_SOFTER: f64 = 0.1;
+
 impl Builder<'_> {
     /// All rigid surfaces with the names of their patches, as far as they can be read, and what is wrong with the others.
     pub(super) fn surfaces(&mut self) -> (Vec<(SurfaceModel, Vec<String>)>, Vec<ModelError>) {
@@ -183,6 +186,14 @@ impl Builder<'_> {
                 }
                 if of_master.automatic < suits.automatic {
                     softer = "the master's, which are softer than the slave's,";
+                }
+                let much = of_master.automatic < MUCH_SOFTER * suits.automatic;
+                if much && self.scene.contacts.get(name) == Some(contact) {
+                    self.notes.push(format!(
+                        "contact `{name}`: `{}` is much softer than `{}`: as the master it bulges out between slave points, unseen; \
+                         with the softer side as the slave runs end more surely",
+                        contact.master, contact.slave
+                    ));
                 }
                 suits = suits.both(&of_master);
                 Master::Body(Box::new(master))

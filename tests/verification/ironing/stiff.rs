@@ -94,3 +94,26 @@ fn a_stiff_die_that_deforms_is_drawn_as_a_rigid_one() {
     // Limits of what it costs. Where contact is given up as soon as it opens the first takes 2200 in 59 steps.
     assert!(took < 500 && few < 260, "{took} and {few}");
 }
+
+/// Between the points of a stiff slave a soft master bulges out: who names the sides so is told.
+#[test]
+fn a_much_softer_master_is_noted() {
+    let mut scene = scene(deformable);
+    let noted = |scene: &Value| {
+        let loaded = covact::scene::parse(&scene.to_string(), "scene.json").expect("valid scene");
+        let model = covact::model::build::build(&loaded).expect("a model");
+        let told = model
+            .notes
+            .iter()
+            .find(|n| n.contains("is much softer than"));
+        told.cloned()
+    };
+    assert_eq!(noted(&scene), None);
+    let contact = &mut scene["contacts"]["c"];
+    (contact["slave"], contact["master"]) = (json!("die.outer"), json!("slab.top"));
+    let told = noted(&scene).expect("a note");
+    assert!(
+        told.contains("`slab.top` is much softer than `die.outer`"),
+        "{told}"
+    );
+}
