@@ -172,6 +172,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let mut energy = 0.0;
         let (mut totals, secants) = self.begin(trial, time, pending)?;
         let (mut touched, mut keep, mut bends) = (false, false, false);
+        // The first correction, or the motion, has opened most points.
+        let mut far = self.first.keep && self.assembler.linearization.keep_active;
         let (mut cycle, mut round, mut damped) = (Cycle::default(), None::<PingPong>, 0u32);
         for iteration in 0.. {
             if self.interrupt.load(Ordering::Relaxed) {
@@ -284,7 +286,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 }
             }
             self.assembler.linearization = Linearization {
-                keep_active: self.first.keep && held && iteration < KEPT && norms.relative() > NEAR,
+                keep_active: far && held && iteration < KEPT && norms.relative() > NEAR,
                 secant_slip: iteration + 1 < secants,
                 keep_facets: keep,
             };
@@ -306,6 +308,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 && let Some(kept) = self.keep(trial, time)?
             {
                 totals = kept;
+                far = true;
             }
             energy = dot(&self.workspace.du, &self.workspace.rhs).abs();
             if iteration == 0 {
@@ -332,9 +335,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         self.assembler.begin_solution();
         let totals = self.linearize(trial, time, (pending, false))?;
         self.opened = totals.opened > 0;
-        let before = self.workspace.base.points.iter();
-        let pressed = before.filter(|point| point.closed).count();
-        let most_open = self.first.keep && MOST_OPEN * totals.active < pressed;
+        let before = &self.workspace.base.points;
+        let pressed = || before.iter().filter(|point| point.closed).count();
+        let most_open = self.first.keep && MOST_OPEN * totals.active < pressed();
         if !(self.first.hold && self.opened || most_open) {
             return Ok((totals, secants));
         }

@@ -17,6 +17,7 @@ mod memory;
 mod moving;
 mod per_pair;
 mod pressed;
+mod pressing;
 mod rigid;
 mod seams;
 mod sliding;

@@ -5,18 +5,17 @@ use super::couplings::Couplings;
 use super::driven::DrivenBlock;
 use super::links;
 use super::per_pair::PerPair;
+use super::pressing::{Batch, Measured};
 use super::rigid::rounding;
 use super::touched::{self, Touched};
 use super::{Assembler, Fault, PairForce, PatternError, SurfaceForce, Totals, maps, put};
-use crate::contact::friction::history::PointHistory;
 use crate::contact::kernel::assemble_force;
-use crate::contact::kind::{FrictionKind, LawKind, MasterKind, TangentKind};
-use crate::contact::law::{Held, Multipliers, NoOffset, Offsets, PairLaw, PointLaw};
+use crate::contact::kind::{FrictionKind, LawKind, MasterKind};
+use crate::contact::law::PairLaw;
 use crate::contact::lever;
 use crate::contact::moving::{MovingMaster, MovingTouch};
-use crate::contact::point::FaceTangent;
 use crate::contact::points::SlavePoint;
-use crate::contact::rigid::{Exact, PointFault};
+use crate::contact::rigid::PointFault;
 use crate::contact::scatter::{assemble_point, keep_slave_rows};
 use crate::model::kernel::{GapKind, Kernel, SideKind};
 use crate::model::master::{MasterNow, Masters};
@@ -302,23 +301,22 @@ impl<L: PairLaw> Assembler<'_, L> {
             if hold {
                 self.held.extend(states.iter().map(|p| p.closed));
             }
-            let offsets = Measured {
+            let measured = Measured {
                 histories: known,
                 offsets,
                 held: hold.then_some(&self.held[..]),
             };
             let ran = match &master.own {
-                None => batch.offset(states, touches, offsets, &All),
+                None => batch.offset(states, touches, measured, &All),
                 Some(own) => {
                     let accept = Opposing {
                         own,
                         normals: &surface.normals,
                         position: |n: u32| self.model.position(n as usize, &state.u),
                     };
-                    batch.offset(states, touches, offsets, &accept)
+                    batch.offset(states, touches, measured, &accept)
                 }
             };
-            let Measured { offsets, .. } = offsets;
             self.ran[index] = Some(ran);
             if let (Some(_), Some(range)) = (histories, pair.history()) {
                 let answers = self.answers[range].iter_mut().zip(touches.iter());
@@ -553,107 +551,5 @@ impl<L: PairLaw> Assembler<'_, L> {
         }
         let touching = !touched.active.is_empty();
         totals.end_pair((index, pair), force, deepest, touching);
-    }
-}
-
-/// The slave points of a pair at one trial state.
-struct Batch<'a, L> {
-    model: &'a Model,
-    points: &'a [SlavePoint],
-    master: MovingMaster<'a>,
-    law: &'a L,
-    kernel: &'a Kernel,
-    u: &'a [f64],
-}
-
-/// What the gaps of the points of a pair are measured from.
-#[derive(Clone, Copy)]
-struct Measured<'a> {
-    /// Empty without multipliers.
-    histories: &'a [PointHistory],
-    offsets: Option<Offsets<'a>>,
-    /// Points that stay in contact wherever they are.
-    held: Option<&'a [bool]>,
-}
-
-impl<L: PairLaw> Batch<'_, L> {
-    /// Evaluates every point under the law that the plan names: with gaps measured from where the pair says, and with
-    /// multipliers where it has any. Returns what was run.
-    fn offset<A: Accept>(
-        &self,
-        states: &mut [PointState],
-        touches: &mut [Result<Option<MovingTouch>, PointFault>],
-        Measured {
-            histories,
-            offsets,
-            held,
-        }: Measured,
-        accept: &A,
-    ) -> Kernel {
-        if let Some(held) = held {
-            let held = Held {
-                held,
-                histories,
-                offsets,
-            };
-            return self.choose(states, touches, &held, accept);
-        }
-        match self.kernel.law {
-            LawKind::Penalty | LawKind::Held => self.choose(states, touches, &NoOffset, accept),
-            LawKind::Offset => self.choose(states, touches, &offsets.unwrap_or_default(), accept),
-            LawKind::Multipliers => {
-                let multipliers = Multipliers { histories, offsets };
-                self.choose(states, touches, &multipliers, accept)
-            }
-        }
-    }
-
-    /// Evaluates every point under the tangent that the plan names.
-    fn choose<O: PointLaw, A: Accept>(
-        &self,
-        states: &mut [PointState],
-        touches: &mut [Result<Option<MovingTouch>, PointFault>],
-        offsets: &O,
-        accept: &A,
-    ) -> Kernel {
-        match self.kernel.tangent {
-            TangentKind::Exact => self.evaluate(states, touches, offsets, accept, &Exact),
-            TangentKind::Published(parts) => {
-                self.evaluate(states, touches, offsets, accept, &parts)
-            }
-        }
-    }
-
-    /// Evaluates every point; law, offsets, tangent and the facets that exist are types here, nothing is chosen inside the
-    /// loop.
-    fn evaluate<O: PointLaw, A: Accept, T: FaceTangent>(
-        &self,
-        states: &mut [PointState],
-        touches: &mut [Result<Option<MovingTouch>, PointFault>],
-        offsets: &O,
-        accept: &A,
-        tangent: &T,
-    ) -> Kernel {
-        (self.points.par_iter())
-            .zip(states.par_iter_mut())
-            .zip(touches.par_iter_mut())
-            .enumerate()
-            .with_min_len(32)
-            .for_each(|(i, ((p, s), out))| {
-                let x = self.model.point_position(p, self.u);
-                let at = accept.point(i);
-                let facet = |f| accept.facet(at, f);
-                let law = offsets.law(i, self.law);
-                *out = (self.master).touch(&x, &mut s.hint, &law, tangent, facet);
-            });
-        Kernel {
-            gap: GapKind::Pointwise,
-            master: A::KIND,
-            law: O::KIND,
-            friction: FrictionKind::None,
-            tangent: tangent.kind(),
-            // Which rows are summed is another loop's.
-            sides: SideKind::Both,
-        }
     }
 }

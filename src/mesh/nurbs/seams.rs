@@ -4,7 +4,8 @@
 //! of both, the parts are a seam. Parts begin and end at the ends of either edge, so that knots need not match, an edge may run
 //! along several others, and three patches may meet in one.
 use super::{DEGREE, Edge};
-use covact_geometry::{NurbsPatch, Vec3};
+use covact_geometry::{NurbsPatch, PatchSet, Vec3};
+use std::cell::OnceCell;
 
 /// Distance of edges that are one, as a part of the size of the body: what CAD systems leave.
 const TOLERANCE: f64 = 1e-5;
@@ -52,48 +53,6 @@ pub struct Joints {
     pub near: Vec<Near>,
     /// Free edges that lie on the inside of a patch, as that of a rib, which is not joined.
     pub inside: Vec<(Edge, usize)>,
-}
-
-/// Distance of a point from a patch: from the nearest of a grid of points by Gauss' and Newton's method.
-fn distance(patch: &NurbsPatch, grid: &[([f64; 2], Vec3)], x: &Vec3) -> f64 {
-    let by = |a: &&([f64; 2], Vec3), b: &&([f64; 2], Vec3)| {
-        (a.1 - x)
-            .norm_squared()
-            .total_cmp(&(b.1 - x).norm_squared())
-    };
-    let Some((mut xi, first)) = grid.iter().min_by(by).copied() else {
-        return f64::INFINITY;
-    };
-    let domain = patch.domain();
-    let mut least = (first - x).norm();
-    for _ in 0..10 {
-        let jet = patch.jet(xi);
-        let off = x - jet.rho;
-        least = least.min(off.norm());
-        let [a, b] = jet.rho_i;
-        let (aa, ab, bb) = (a.dot(&a), a.dot(&b), b.dot(&b));
-        let det = aa * bb - ab * ab;
-        let (fa, fb) = (a.dot(&off), b.dot(&off));
-        let step = [(bb * fa - ab * fb) / det, (aa * fb - ab * fa) / det];
-        let next = [0, 1].map(|d: usize| (xi[d] + step[d]).clamp(domain[d][0], domain[d][1]));
-        if !next.iter().all(|x| x.is_finite()) {
-            break;
-        }
-        xi = next;
-    }
-    least
-}
-
-/// Points of all spans of a patch.
-fn grid(patch: &NurbsPatch) -> Vec<([f64; 2], Vec3)> {
-    let at = |dir: usize| -> Vec<f64> {
-        let spans = patch.spans(dir);
-        let ends = spans.iter().flat_map(|[a, b]| [*a, 0.5 * (a + b)]);
-        ends.chain(spans.last().map(|s| s[1])).collect()
-    };
-    let (us, vs) = (at(0), at(1));
-    let all = vs.iter().flat_map(|v| us.iter().map(move |u| [*u, *v]));
-    all.map(|xi| (xi, patch.point(xi))).collect()
 }
 
 /// An edge as a curve.
@@ -255,7 +214,11 @@ impl Joints {
                 }
             }
         }
-        let grids: Vec<_> = patches.iter().map(|p| grid(p)).collect();
+        // Made where a free edge comes near; one that cannot be searched is near nothing.
+        let surfaces = vec![OnceCell::new(); patches.len()];
+        let surface = |k: usize| -> &Option<PatchSet> {
+            surfaces[k].get_or_init(|| PatchSet::new(vec![patches[k].clone()], None).ok())
+        };
         let extents: Vec<[Vec3; 2]> = patches.iter().map(|p| p.bounds()).collect();
         for (i, curve) in curves.iter().enumerate() {
             let free = out.free(curve);
@@ -285,9 +248,8 @@ impl Joints {
                     }
                 }
             }
-            for (k, patch) in patches.iter().enumerate() {
+            for (k, [low, high]) in extents.iter().enumerate() {
                 let told = |n: &Near| n.edges.contains(&curve.edge);
-                let [low, high] = extents[k];
                 let far = (0..3).any(|c| {
                     boxes[i][0][c] > high[c] + thickness || boxes[i][1][c] < low[c] - thickness
                 });
@@ -295,10 +257,11 @@ impl Joints {
                     continue;
                 }
                 let on = |[a, b]: &[f64; 2]| {
-                    (1..=3).all(|m| {
-                        let x = curve.point(a + (b - a) * 0.25 * f64::from(m));
-                        distance(patch, &grids[k], &x) <= thickness
-                    })
+                    let near = |x: &Vec3| {
+                        let surface = surface(k).as_ref();
+                        surface.is_some_and(|s| s.project(x, None, thickness).is_some())
+                    };
+                    (1..=3).all(|m| near(&curve.point(a + (b - a) * 0.25 * f64::from(m))))
                 };
                 if free.iter().any(on) {
                     out.inside.push((curve.edge, k));

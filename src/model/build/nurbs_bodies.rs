@@ -1,6 +1,6 @@
 //! Bodies of kind `nurbs`: a face of a CAD file that bends.
 use super::super::edge_couple::CoupleSpan;
-use super::super::error::{At, text};
+use super::super::error::{At, number, text};
 use super::super::motion::pose;
 use super::super::penalty::FaceSize;
 use super::super::sheet_pressure::FollowingSpan;
@@ -78,7 +78,6 @@ impl Builder<'_> {
 
     /// What was made of the faces of a file.
     fn tell_sheet(&mut self, name: &str, nurbs: &NurbsSurface, sheet: &NurbsSheet) {
-        let number = crate::model::error::number;
         let (what, elements) = match &sheet.patches[..] {
             [one] => {
                 let [u, v] = one.spans();

@@ -37,7 +37,7 @@ fn scordelis_lo_roof() {
 }
 
 fn hemisphere(n: u32) -> f64 {
-    let patch = Patch::sphere(10.0, 72.0 * PI / 180.0);
+    let patch = Patch::sphere(10.0, [0.0, 72.0 * PI / 180.0]);
     let supports = json!({
         "plane_y": {"on": "sheet.edge.1", "symmetry": "y"},
         "plane_x": {"on": "sheet.edge.2", "symmetry": "x"},

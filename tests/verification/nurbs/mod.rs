@@ -62,14 +62,16 @@ impl Patch {
         }
     }
 
-    /// A sphere: xi1 is the longitude from x towards y, xi2 the latitude from 0 (radians).
-    pub fn sphere(radius: f64, latitude: f64) -> Patch {
-        let points = arc(0.0, latitude).into_iter().flat_map(|[c, s, w]| {
-            arc(0.0, 0.5 * PI).map(|[x, y, v]| {
-                let w = w * v;
-                [w * radius * c * x, w * radius * c * y, w * radius * s, w]
-            })
-        });
+    /// A part of a sphere: xi1 is the longitude from x towards y, xi2 the latitude between two (radians).
+    pub fn sphere(radius: f64, latitudes: [f64; 2]) -> Patch {
+        let points = arc(latitudes[0], latitudes[1])
+            .into_iter()
+            .flat_map(|[c, s, w]| {
+                arc(0.0, 0.5 * PI).map(|[x, y, v]| {
+                    let w = w * v;
+                    [w * radius * c * x, w * radius * c * y, w * radius * s, w]
+                })
+            });
         Patch {
             degree: [2, 2],
             knots: [knots(2), knots(2)],

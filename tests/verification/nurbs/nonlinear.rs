@@ -107,7 +107,7 @@ fn hemisphere() {
         "solution": {"step": {"initial": 0.1}},
         "output": {"every": 0}
     });
-    let outcome = solve_sheet(&Patch::sphere(10.0, 72.0 * PI / 180.0), &scene);
+    let outcome = solve_sheet(&Patch::sphere(10.0, [0.0, 72.0 * PI / 180.0]), &scene);
     let (a, b) = (outcome.at("probe.a.x", 1.0), -outcome.at("probe.b.y", 1.0));
     println!("{a} {b}, {} iterations", outcome.summary.newton_iterations);
     assert!(off(a, 3.811) < 1e-3 && off(b, 7.474) < 1e-3, "{a} {b}");

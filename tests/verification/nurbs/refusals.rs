@@ -73,7 +73,7 @@ fn the_scene_itself_is_right() {
 #[test]
 fn faces_that_cannot_be_sheets() {
     let scene = scene_of(sheet(0.1, [2, 2]));
-    let pole = Patch::sphere(1.0, std::f64::consts::FRAC_PI_2).json();
+    let pole = Patch::sphere(1.0, [0.0, std::f64::consts::FRAC_PI_2]).json();
     only(
         &scene,
         &pole,
@@ -228,7 +228,7 @@ fn keys_that_do_not_fit() {
         );
     }
     // A dish is not extruded along y.
-    let dish = Patch::sphere(1.0, 1.0).json();
+    let dish = Patch::sphere(1.0, [0.0, 1.0]).json();
     let scene = with(
         "/supports",
         "more",
