@@ -200,7 +200,10 @@ impl Attempts<'_, '_> {
                 let failure = match self.converge(step, end, trial, Patience::Short) {
                     Err(failure) if another(&failure) => failure,
                     other => {
-                        self.habit.hold = hold && self.opened;
+                        // A start that opens none tells nothing.
+                        if self.opened {
+                            self.habit.hold = hold;
+                        }
                         return other;
                     }
                 };

@@ -4,6 +4,7 @@
 //! before it falls, and a search that forbids the jump would crawl. The line search (on the slope of the energy along
 //! the increment, which also covers steps an element cannot take) comes in where full steps fail to make headway.
 mod advance;
+mod keeping;
 mod line_search;
 mod rigid_limit;
 mod small;
@@ -21,7 +22,7 @@ use super::unstable::{Unstable, singular};
 use crate::assembly::{Assembler, Fault, Linearization, Totals};
 use crate::machine::clock::Phases;
 use crate::model::Model;
-use crate::model::state::{PointState, State};
+use crate::model::state::State;
 use crate::scene;
 use crate::system::linear::{Factorization, LinearError, LinearSolver, Method};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -285,9 +286,10 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                     self.workspace.bend = bend;
                 }
             }
+            let keep_active = far && held && iteration < KEPT && norms.relative() > NEAR;
             self.assembler.linearization = Linearization {
-                keep_active: far && held && iteration < KEPT && norms.relative() > NEAR,
-                secant_slip: iteration + 1 < secants,
+                keep_active,
+                secant_slip: iteration + 1 < secants || keep_active,
                 keep_facets: keep,
             };
             let search = self.settings.line_search
@@ -299,10 +301,12 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             // Residuals then rise before they fall, more than others do.
             let search = search && (!mixed || self.first.search);
             let pressed = totals.active;
+            let keeps = iteration == 0 && self.first.keep;
             (totals, factor, pending) =
-                self.advance(trial, time, (search, mixed), pending, largest)?;
-            if iteration == 0
-                && self.first.keep
+                self.advance(trial, time, (search, mixed, keeps), pending, largest)?;
+            far |= keeps && self.assembler.linearization.keep_active;
+            if keeps
+                && !far
                 && !pending
                 && MOST_OPEN * totals.active < pressed
                 && let Some(kept) = self.keep(trial, time)?
@@ -316,65 +320,6 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             }
         }
         unreachable!("the loop ends by its own limit")
-    }
-
-    /// The first linearisation, and the number of those that take secants.
-    fn begin(
-        &mut self,
-        trial: &mut State,
-        time: f64,
-        pending: bool,
-    ) -> Result<(Totals, u32), Fault> {
-        let secants = if self.first.secants { SECANTS } else { 0 };
-        self.assembler.linearization = Linearization {
-            keep_active: false,
-            secant_slip: secants > 0,
-            keep_facets: false,
-        };
-        self.workspace.base.points.clone_from(&trial.points);
-        self.assembler.begin_solution();
-        let totals = self.linearize(trial, time, (pending, false))?;
-        self.opened = totals.opened > 0;
-        let before = &self.workspace.base.points;
-        let pressed = || before.iter().filter(|point| point.closed).count();
-        let most_open = self.first.keep && MOST_OPEN * totals.active < pressed();
-        if !(self.first.hold && self.opened || most_open) {
-            return Ok((totals, secants));
-        }
-        trial.points.copy_from_slice(&self.workspace.base.points);
-        self.assembler.linearization = Linearization {
-            keep_active: true,
-            secant_slip: true,
-            keep_facets: false,
-        };
-        Ok((self.linearize(trial, time, (pending, false))?, SECANTS))
-    }
-
-    /// Linearises with the points that switched in the last iteration kept in contact, where that can be done.
-    fn keep(&mut self, trial: &mut State, time: f64) -> Result<Option<Totals>, Fault> {
-        let now: Vec<PointState> = trial.points.clone();
-        for (point, before) in trial.points.iter_mut().zip(&self.workspace.base.points) {
-            point.closed |= before.closed;
-        }
-        if trial.points == now {
-            return Ok(None);
-        }
-        let linearization = self.assembler.linearization;
-        self.assembler.linearization = Linearization {
-            keep_active: true,
-            secant_slip: true,
-            keep_facets: false,
-        };
-        match self.linearize(trial, time, (false, false)) {
-            Ok(totals) => Ok(Some(totals)),
-            // A point that cannot be kept: all as it was.
-            Err(_) => {
-                trial.points = now;
-                self.assembler.linearization = linearization;
-                self.linearize(trial, time, (false, false))?;
-                Ok(None)
-            }
-        }
     }
 
     /// `pending`: prescribed displacements are still to come; `mixed`: with mixed integration points.

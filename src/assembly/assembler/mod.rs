@@ -194,8 +194,7 @@ enum Kind {
 /// How contact is linearised where the state is far from equilibrium: the first iterates of a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Linearization {
-    /// Points that are closed in the state stay so wherever they are, but on rigid surfaces that are driven by force. The
-    /// residual is then not that of the state.
+    /// Points that are closed in the state stay so wherever they are. The residual is then not that of the state.
     pub keep_active: bool,
     /// Sliding points have the tangent of their secant. The residual is that of the state.
     pub secant_slip: bool,

@@ -86,8 +86,6 @@ impl<L: PairLaw> Assembler<'_, L> {
                 secant_slip: secant,
                 keep_facets: keep,
             } = self.linearization;
-            // A surface driven by force follows the points as they are.
-            let hold = hold && surface.driven.is_none();
             self.held.clear();
             if hold && pair.friction.is_none() {
                 self.held.extend(points.iter().map(|p| p.closed));

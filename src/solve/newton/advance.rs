@@ -9,13 +9,14 @@ use rayon::prelude::*;
 
 impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
     /// Moves `trial` along the increment and linearises there; halves the step where an element or a contact point
-    /// cannot follow, and searches along it where asked to, with mixed integration points where asked for. A body that nothing holds yet goes a part of the way only.
+    /// cannot follow, and searches along it where asked to, with mixed integration points where asked for, and keeps
+    /// points in contact where it asks for that and cannot do without. A body that nothing holds yet goes a part of the way only.
     /// Returns the factor and whether prescribed displacements are still to come.
     pub(super) fn advance(
         &mut self,
         trial: &mut State,
         time: f64,
-        (search, mixed): (bool, bool),
+        (search, mixed, keeps): (bool, bool, bool),
         pending: bool,
         largest: f64,
     ) -> Result<(Totals, f64, bool), StepFailure> {
@@ -43,8 +44,19 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 Err(_) if self.assembler.linearization.keep_active => {
                     self.assembler.linearization.keep_active = false;
                 }
-                Err(_) if s > smallest => s *= 0.5,
-                Err(fault) => return Err(fault.into()),
+                Err(fault) => {
+                    // What has opened may have been all that holds a surface driven by force.
+                    if keeps
+                        && !left
+                        && let Some(kept) = self.kept(trial, time)
+                    {
+                        return Ok((kept, s, left));
+                    }
+                    if s <= smallest {
+                        return Err(fault.into());
+                    }
+                    s *= 0.5;
+                }
             }
         }
     }

@@ -1,4 +1,5 @@
 //! Friction on rigid surfaces in scenes: closed forms, and constructions whose answer is known.
+mod belt;
 mod capstan;
 mod loop_;
 mod shear_limited;
