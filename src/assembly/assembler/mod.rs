@@ -167,7 +167,7 @@ pub struct Totals {
     pub active: usize,
     /// Points or nodes whose status differs from the one in the state when the evaluation began.
     pub changed: usize,
-    /// Number of points that opened during this evaluation (rigid masters only).
+    /// Number of points that opened during this evaluation; not of averaged gaps.
     pub opened: usize,
     /// Deepest penetration, >= 0, per pair.
     pub penetration: Vec<f64>,

@@ -191,7 +191,6 @@ impl<L: PairLaw> Assembler<'_, L> {
                 model: self.model,
                 u,
             };
-            let may_open = surface.driven.is_none();
             let each = pair.points.iter().zip(touches.iter()).zip(points);
             for (i, ((p, touch), state)) in each.enumerate() {
                 let touch = match touch {
@@ -202,7 +201,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                     Ok(touch) => touch,
                 };
                 totals.changed += usize::from(touch.is_some() != state.closed);
-                totals.opened += usize::from(state.closed && touch.is_none() && may_open);
+                totals.opened += usize::from(state.closed && touch.is_none());
                 state.closed = touch.is_some();
                 let Some(touch) = touch else { continue };
                 totals.contact_rounding += rounding(&law, touch.gap, p, &touch.x);
