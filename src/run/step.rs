@@ -17,10 +17,10 @@
 //! whether its penalties serve is measured by [`super::penalty_rule`]. What fails all four is cut.
 mod augmenting;
 mod continuing;
+mod softened;
 
-use super::augment;
 use super::habit::Habit;
-use super::penalty_rule::{self, PenaltyRule};
+use super::penalty_rule::PenaltyRule;
 use super::progress::Progress;
 use super::tunneling;
 use super::validity;
@@ -39,8 +39,6 @@ use crate::system::linear::LinearSolver;
 use nalgebra::Vector6;
 use std::sync::atomic::AtomicBool;
 
-/// Stages of a softened start, as multiples of the penalty.
-const STAGES: [f64; 3] = [1e-3, 1e-2, 1e-1];
 /// First linearisations from the last accepted state, which knows nothing of where points slide to. Softened stages do without:
 /// their own tangents serve them better.
 const SECANTS: First = First {
@@ -293,71 +291,6 @@ impl Attempts<'_, '_> {
             Start::Softened => self.habit.softened.tried(iterations, result.is_ok()),
         }
         result
-    }
-
-    fn softened(
-        &mut self,
-        step: u32,
-        end: f64,
-        trial: &mut State,
-        penalties: &[f64],
-    ) -> Result<Converged, StepFailure> {
-        let mut iterations = 0;
-        // The last stage that was solved, where the run may keep its penalties.
-        let chooses = penalty_rule::rules_all(self.model);
-        let mut kept: Option<(State, Vec<f64>)> = None;
-        for (i, stage) in STAGES.into_iter().enumerate() {
-            for (eps, full) in self.assembler.penalties.iter_mut().zip(penalties) {
-                *eps = stage * full;
-            }
-            if i == 0 {
-                self.restart(end, trial)?;
-                augment::forget(self.model, &mut trial.histories);
-            }
-            match self.newton(step, end, trial, Patience::Long) {
-                Ok(converged) => iterations += converged.iterations,
-                Err(failure) => return self.eased(step, end, trial, kept, failure, penalties),
-            }
-            if chooses {
-                kept = Some((trial.clone(), self.assembler.penalties.clone()));
-            }
-        }
-        self.assembler.penalties.copy_from_slice(penalties);
-        match self.converge(step, end, trial, Patience::Long) {
-            Ok(mut converged) => {
-                converged.iterations += iterations;
-                converged.softened = true;
-                Ok(converged)
-            }
-            Err(failure) => self.eased(step, end, trial, kept, failure, penalties),
-        }
-    }
-
-    /// Goes back to the last stage of a softened start that was solved, after the next one failed.
-    fn eased(
-        &mut self,
-        step: u32,
-        end: f64,
-        trial: &mut State,
-        kept: Option<(State, Vec<f64>)>,
-        failure: StepFailure,
-        full: &[f64],
-    ) -> Result<Converged, StepFailure> {
-        let Some((state, penalties)) = kept.filter(|_| failure != StepFailure::Interrupted) else {
-            return Err(failure);
-        };
-        self.again(step, "the penalty of the last stage", &failure, &penalties);
-        trial.copy_from(&state);
-        let mut converged = match self.converge(step, end, trial, Patience::Long) {
-            Ok(converged) => converged,
-            Err(StepFailure::Interrupted) => return Err(StepFailure::Interrupted),
-            // What falls through under so soft a penalty says nothing of the full one.
-            Err(_) => return Err(failure),
-        };
-        converged.softened = true;
-        converged.eased = true;
-        self.rule.reject(&penalties, full);
-        Ok(converged)
     }
 
     /// Solves a step that is in equilibrium again, under stiffer penalties.
