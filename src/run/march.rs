@@ -44,6 +44,9 @@ use std::sync::atomic::AtomicBool;
 const RELIABLE: f64 = 1e-4;
 /// Cuts of a step after which one that gained energy out of nothing is taken, and told.
 const GIVES_IN: u32 = 4;
+/// Cuts of a run from which on it crawls, where there are more than one in so many steps.
+const CRAWLS: u32 = 10;
+const MANY_CUTS: u32 = 5;
 
 /// The first of the steps that the head of a warning names, `step 3: ` or `steps 3 to 9 (4 of them): `, and how many they are.
 fn steps_told(head: &str) -> Option<(u32, u32)> {
@@ -92,6 +95,8 @@ pub(super) struct March<'a, 'm> {
     rule: &'a mut PenaltyRule,
     /// Bodies whose elements another variant may replace.
     replaceable: &'a [String],
+    /// Whether another variant may exchange the sides of a contact.
+    exchangeable: bool,
     pub peaks: &'a mut Peaks,
 }
 
@@ -364,6 +369,7 @@ impl March<'_, '_> {
                 (_, None) => 1.0 / self.workspace.bend,
                 _ => 0.5,
             };
+            let hopeless = hopeless || self.exchangeable && self.crawls();
             let next = walk.stepping.failed(dt, part).filter(|_| !hopeless);
             let Some(next_dt) = next else {
                 let unstable = self.workspace.unstable.map_or_else(String::new, |u| {
@@ -445,6 +451,15 @@ impl March<'_, '_> {
             )),
             squeezed: Vec::new(),
         }
+    }
+
+    /// Whether steps in contact with a body are cut again and again.
+    fn crawls(&self) -> bool {
+        let (cuts, steps) = (self.progress.cuts, self.progress.steps);
+        let mut pairs = self.model.pairs.iter().zip(&*self.touching);
+        cuts >= CRAWLS
+            && MANY_CUTS * cuts > steps
+            && pairs.any(|(pair, touching)| *touching && pair.body_master().is_some())
     }
 
     /// Whether a flag is set for pair `i`, or for another pass of its contact: of two curved sides one may have no slave

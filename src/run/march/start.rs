@@ -34,6 +34,8 @@ pub(crate) struct Problem {
     pub plan: Plan,
     /// Bodies whose elements another variant may replace.
     pub replaceable: Vec<String>,
+    /// Whether another variant may exchange the sides of a contact.
+    pub exchangeable: bool,
 }
 
 /// Everything of a run that lasts from one step to the next.
@@ -272,6 +274,7 @@ impl<'m> RunState<'m> {
             compliance,
             rule,
             replaceable: &problem.replaceable,
+            exchangeable: problem.exchangeable,
             peaks,
         };
         (march, course)

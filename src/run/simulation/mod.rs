@@ -19,7 +19,7 @@ use crate::scene::{self, Element, LoadedScene};
 use crate::solve::event::{Event, Observer, Silent};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use variant::{Safe, names_element, safe_variant, with_edges, with_smooth};
+use variant::{Safe, names_element, safe_variant, with_edges, with_exchanged, with_smooth};
 
 /// Nobody interrupts.
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -205,7 +205,7 @@ impl<'o> Simulation<'o> {
     }
 
     /// Begins again at time 0 where other elements may replace those that gave way, where the run stopped while an edge of a
-    /// master lay on its slave, or in contact with flat faces of a body that may be smooth.
+    /// master lay on its slave, or in contact with a body that is softer than its slave, or with flat faces that may be smooth.
     fn begin_again(&mut self) -> Result<bool, RunError> {
         let Some(ending) = &self.ended else {
             return Ok(false);
@@ -220,12 +220,17 @@ impl<'o> Simulation<'o> {
             let found = stopped && run.edges_on_slaves();
             found.then(|| with_edges(&self.scene, before, Some(time)))?
         };
+        let exchanged = || {
+            let found = stopped && run.on_bodies();
+            found.then(|| with_exchanged(&self.scene, before, Some(time)))?
+        };
         let smooth = || {
             let found = stopped && run.on_bodies();
             found.then(|| with_smooth(&self.scene, before, Some(time)))?
         };
         let safe = safe_variant(&self.scene, before, squeezed, time);
-        let Some(safe) = safe.or_else(edges).or_else(smooth) else {
+        let contacts = || edges().or_else(exchanged).or_else(smooth);
+        let Some(safe) = safe.or_else(contacts) else {
             return Ok(false);
         };
         let observer = &mut *self.options.observer;
@@ -345,6 +350,7 @@ fn running(
         model,
         plan,
         replaceable,
+        exchangeable: with_exchanged(loaded, None, None).is_some(),
     });
     let threads = rayon::current_num_threads();
     let running = Running::try_new(problem, |problem| {

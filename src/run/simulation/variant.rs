@@ -1,5 +1,6 @@
 //! What a run that stopped is repeated with: bodies with other elements, where their default ones give way in strong
-//! compression, and contacts with the edges of their masters, where such an edge lies on the slave, or with smooth masters.
+//! compression, and contacts with the edges of their masters, where such an edge lies on the slave, with their sides exchanged,
+//! where the master is the softer one, or with smooth masters.
 use crate::model::error::number;
 use crate::run::checkpoint::{self, Fingerprint};
 use crate::scene::{Contact, Element, LoadedScene, MasterSurface, Passes, Points, pointer};
@@ -86,6 +87,28 @@ pub(super) fn with_smooth(
     with_contacts(scene, before, time, ("master_surface", change, text))
 }
 
+/// The scene with the sides exchanged of every contact whose master is softer than its slave, unless it names its passes: a soft
+/// master bulges out between the points of a stiff slave, which snap from bulge to bulge where they slide.
+pub(super) fn with_exchanged(
+    scene: &LoadedScene,
+    before: Option<&Safe>,
+    time: Option<f64>,
+) -> Option<Safe> {
+    let young = |set: &str| {
+        let body = scene.scene.bodies.get(set.split('.').next()?)?;
+        let material = scene.scene.materials.get(&body.material)?;
+        Some(material.law(&scene.scene.units)?.elastic().e)
+    };
+    let change = |contact: &mut Contact| {
+        let stiffer = young(&contact.slave).zip(young(&contact.master));
+        std::mem::swap(&mut contact.slave, &mut contact.master);
+        contact.passes == Passes::One && stiffer.is_some_and(|(slave, master)| slave > master)
+    };
+    let text = "in steps cut again and again, its master softer than its slave; it was repeated with the softer side as the slave \
+                (`\"passes\": \"one\"` keeps the sides as they are)";
+    with_contacts(scene, before, time, ("passes", change, text))
+}
+
 /// The scene with a change to every contact with another body that does not name a key; `change` tells whether it applies.
 fn with_contacts(
     scene: &LoadedScene,
@@ -149,7 +172,7 @@ pub(in crate::run) fn variant_in(out: &Path, scene: &LoadedScene) -> Option<Safe
     });
     let elements: Vec<Safe> = elements.collect();
     let mut all: Vec<Option<Safe>> = elements.into_iter().map(Some).chain([None]).collect();
-    for with in [with_edges, with_smooth] {
+    for with in [with_edges, with_exchanged, with_smooth] {
         let more = all
             .iter()
             .filter_map(|before| with(scene, before.as_ref(), None));
