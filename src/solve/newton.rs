@@ -109,7 +109,7 @@ pub struct Newton<'a, 'm, S: LinearSolver + ?Sized> {
     pub interrupt: &'a AtomicBool,
     /// Iterations done, also by a solve that failed.
     pub iterations: u32,
-    /// Whether points that were in contact were open at the start.
+    /// Whether points that were in contact were open at the start, so many that they are worth keeping.
     pub opened: bool,
     /// Cycles of contact points that were broken.
     pub ping_pongs: u32,
@@ -122,6 +122,9 @@ const KEPT: u32 = 4;
 const NEAR: f64 = 0.05;
 /// Times as many points as are left in contact have to be in contact before for that.
 const MOST_OPEN: usize = 2;
+/// Points in contact with bodies of which more than one has to open at the start for those that do to be worth keeping: where
+/// few do, many others are pressed in, and it is these that go wrong.
+const MANY_OPENED: usize = 4;
 /// Iterations without headway after which the line search is switched on.
 const UNTIL_SEARCH: u32 = 6;
 /// Iterations without headway after which a start is given up where another is at hand. A thin shell may take six to

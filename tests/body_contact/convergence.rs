@@ -19,7 +19,10 @@ pub fn endings(outcome: &Outcome) -> Vec<Vec<f64>> {
                 if *iteration == 0 || *changed > 0 {
                     settled.clear();
                 }
-                settled.push(*residual);
+                // The first linearisation may keep points that are open: its residual is not that of the state.
+                if *iteration > 0 {
+                    settled.push(*residual);
+                }
             }
             Event::StepAccepted { .. } => out.push(std::mem::take(&mut settled)),
             _ => {}

@@ -167,8 +167,9 @@ pub struct Totals {
     pub active: usize,
     /// Points or nodes whose status differs from the one in the state when the evaluation began.
     pub changed: usize,
-    /// Number of points that opened during this evaluation; not of averaged gaps.
+    /// Number of points that opened during this evaluation, on rigid masters and on bodies; not of averaged gaps.
     pub opened: usize,
+    pub opened_on_bodies: usize,
     /// Deepest penetration, >= 0, per pair.
     pub penetration: Vec<f64>,
     /// Whether any point or node is in contact, per pair.

@@ -68,7 +68,7 @@ impl<T: Clone> Touched<T> {
         for (state, touch) in states.iter_mut().zip(&self.all) {
             let closed = of(touch).is_some();
             totals.changed += usize::from(closed != state.closed);
-            totals.opened += usize::from(state.closed && !closed);
+            totals.opened_on_bodies += usize::from(state.closed && !closed);
             state.closed = closed;
         }
         totals.active += self.active.len();

@@ -1,5 +1,5 @@
 //! Points that are kept in contact where an iterate opens them, for the linearisation that follows.
-use super::{MOST_OPEN, Newton, SECANTS};
+use super::{MANY_OPENED, MOST_OPEN, Newton, SECANTS};
 use crate::assembly::{Fault, Linearization, Totals};
 use crate::model::state::{PointState, State};
 use crate::system::linear::LinearSolver;
@@ -24,7 +24,10 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let before = &self.workspace.base.points;
         let pressed = || before.iter().filter(|point| point.closed).count();
         let (opened, most) = match &totals {
-            Ok(totals) => (totals.opened > 0, MOST_OPEN * totals.active < pressed()),
+            Ok(totals) => (
+                totals.opened > 0 || MANY_OPENED * totals.opened_on_bodies > pressed(),
+                MOST_OPEN * totals.active < pressed(),
+            ),
             // What has opened may have been all that holds a surface driven by force.
             Err(_) => {
                 let switched = trial.points != *before;
