@@ -298,9 +298,8 @@ impl<S: Surface> PatchSet<S> {
         let cell = Cell {
             block: self.trimmed.block(grid, place.cell, block),
             slab: Slab::new(&net, found.as_ref().unwrap_or(&plain)),
-            seed: (found.as_ref()).map_or([Vec3::zeros(); 2], |axes| {
-                seed_vectors(&net, degree, axes)
-            }),
+            seed: (found.as_ref())
+                .map_or([Vec3::zeros(); 2], |axes| seed_vectors(&net, degree, axes)),
             spans: found.is_some(),
             proofs: OnceLock::new(),
         };

@@ -157,9 +157,8 @@ fn middle([low, high]: &[Vec3; 2]) -> Vec3 {
 
 /// A control net about a point.
 fn about(middle: Vec3, net: &[[f64; 4]]) -> impl Iterator<Item = [f64; 4]> {
-    let moved = move |&[x, y, z, w]: &[f64; 4]| {
-        [x - middle.x * w, y - middle.y * w, z - middle.z * w, w]
-    };
+    let moved =
+        move |&[x, y, z, w]: &[f64; 4]| [x - middle.x * w, y - middle.y * w, z - middle.z * w, w];
     net.iter().map(moved)
 }
 

@@ -451,7 +451,10 @@ impl<'a, S: Surface> Search<'a, S> {
             }
         }
         let ends = |search: &Self, local: &Local| {
-            local.converged && set.proofs(id, piece).settle_cell(&search.q, local, search.slack)
+            local.converged
+                && set
+                    .proofs(id, piece)
+                    .settle_cell(&search.q, local, search.slack)
                 || search.cut < 0.0
         };
         let local = match &self.best {

@@ -292,7 +292,8 @@ impl<S: Surface> PatchSet<S> {
         }
         let sides = vec![1.0; patches.len()];
         drop(boxes);
-        let spheres = (patches.iter().zip(&grids)).map(|(patch, grid)| Sphere::of(patch, grid, size));
+        let spheres =
+            (patches.iter().zip(&grids)).map(|(patch, grid)| Sphere::of(patch, grid, size));
         let mut spheres: Vec<Option<Sphere>> = spheres.collect();
         round::number(&mut spheres);
         let mut set = PatchSet {

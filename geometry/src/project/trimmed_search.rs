@@ -352,8 +352,12 @@ impl<S: Surface> Search<'_, S> {
         let u = piece.own.seed(&self.q).map(|u| u.clamp(0.05, 0.95));
         let local = self.iterate(id, piece, u);
         let inside = !set.trimmed_away(piece.patch, local.xi);
-        let settled =
-            || local.converged && set.proofs(id, piece).settle_cell(&self.q, &local, self.slack());
+        let settled = || {
+            local.converged
+                && set
+                    .proofs(id, piece)
+                    .settle_cell(&self.q, &local, self.slack())
+        };
         if inside && settled() || self.cut() < 0.0 {
             return;
         }
