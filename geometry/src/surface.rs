@@ -60,6 +60,16 @@ pub trait Surface: Clone + Send + Sync + std::fmt::Debug {
     /// The same surface with the same parameters in Bezier form: one piece per pair of spans, those of xi1 fastest.
     fn bezier_pieces(&self) -> Vec<BezierPiece>;
 
+    /// The one of the [`bezier_pieces`](Self::bezier_pieces) that belongs to a pair of spans, to the last bit. Sets of patches
+    /// ask for one at a time: surfaces of many spans should not make all of them for it, as this does unless overridden.
+    ///
+    /// # Panics
+    /// May panic if there is no such span.
+    fn bezier_piece(&self, span: [usize; 2]) -> BezierPiece {
+        let number = span[0] + self.spans(0).len() * span[1];
+        self.bezier_pieces().swap_remove(number)
+    }
+
     /// Parameters inside the domain of direction `dir` at which the tangents may jump.
     fn crease_knots(&self, _dir: usize) -> Vec<f64> {
         Vec::new()

@@ -87,11 +87,15 @@ impl Surface for Bilinear {
     }
 
     fn bezier_pieces(&self) -> Vec<BezierPiece> {
-        vec![BezierPiece {
+        vec![self.bezier_piece([0, 0])]
+    }
+
+    fn bezier_piece(&self, span: [usize; 2]) -> BezierPiece {
+        BezierPiece {
             domain: self.domain(),
-            span: [0, 0],
+            span,
             degree: [1, 1],
             points: self.nodes.iter().map(|x| [x.x, x.y, x.z, 1.0]).collect(),
-        }]
+        }
     }
 }

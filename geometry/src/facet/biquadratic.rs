@@ -94,8 +94,12 @@ impl Surface for Biquadratic {
         Self::jet_of(&self.nodes, xi)
     }
 
-    /// Lagrange to Bernstein: the ends stay, the middle point becomes `2 b - (a + c) / 2`.
     fn bezier_pieces(&self) -> Vec<BezierPiece> {
+        vec![self.bezier_piece([0, 0])]
+    }
+
+    /// Lagrange to Bernstein: the ends stay, the middle point becomes `2 b - (a + c) / 2`.
+    fn bezier_piece(&self, span: [usize; 2]) -> BezierPiece {
         let mut x = self.nodes;
         let middle = |a: Vec3, b: Vec3, c: Vec3| b * 2.0 - (a + c) * 0.5;
         for j in 0..3 {
@@ -104,11 +108,11 @@ impl Surface for Biquadratic {
         for i in 0..3 {
             x[i + 3] = middle(x[i], x[i + 3], x[i + 6]);
         }
-        vec![BezierPiece {
+        BezierPiece {
             domain: self.domain(),
-            span: [0, 0],
+            span,
             degree: [2, 2],
             points: x.iter().map(|x| [x.x, x.y, x.z, 1.0]).collect(),
-        }]
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! A NURBS patch as a [`Surface`].
 
 use super::NurbsPatch;
-use crate::bezier::{BezierPiece, bezier_pieces};
+use crate::bezier::{BezierPiece, bezier_piece, bezier_pieces};
 use crate::surface::{Jet, Surface, Vec3};
 use crate::trim::Trim;
 
@@ -35,6 +35,10 @@ impl Surface for NurbsPatch {
 
     fn bezier_pieces(&self) -> Vec<BezierPiece> {
         bezier_pieces(self)
+    }
+
+    fn bezier_piece(&self, span: [usize; 2]) -> BezierPiece {
+        bezier_piece(self, span)
     }
 
     fn crease_knots(&self, dir: usize) -> Vec<f64> {

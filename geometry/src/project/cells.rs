@@ -4,13 +4,10 @@
 //! The proofs are nearly all of the work of setting up a set, and queries ask for those of the cells that they end in only: each
 //! is made when it is first asked for.
 
-use crate::parallel::*;
-
 use super::convex::{Axes, Convex, axes};
 use super::local::Local;
-use super::piece::{Piece, Pieces, split};
-use super::set::{Grid, PatchSet};
-use super::trimmed::Trimmed;
+use super::piece::{Piece, Place, split};
+use super::set::PatchSet;
 use crate::bezier::BezierPiece;
 use crate::surface::{Surface, Vec3};
 use std::sync::OnceLock;
@@ -57,24 +54,12 @@ pub(super) fn parts(bezier: &BezierPiece) -> [usize; 2] {
     ]
 }
 
-/// Cuts a Bezier piece into equal parts in each direction and calls `f` with place, domain and net of each, xi1
-/// fastest.
+/// Cuts a Bezier piece into equal parts in each direction and calls `f` with place and net of each, xi1 fastest.
 pub(super) fn cut(
     bezier: &BezierPiece,
     parts: [usize; 2],
-    mut f: impl FnMut([usize; 2], [[f64; 2]; 2], &[[f64; 4]]),
+    mut f: impl FnMut([usize; 2], &[[f64; 4]]),
 ) {
-    let domain = |dir: usize, k: usize| {
-        let [a, b] = bezier.domain[dir];
-        let at = |k: usize| {
-            if k == parts[dir] {
-                b
-            } else {
-                a + (b - a) * (k as f64 / parts[dir] as f64)
-            }
-        };
-        [at(k), at(k + 1)]
-    };
     let size = bezier.points.len();
     let mut rest = bezier.points.clone();
     let mut row = vec![[0.0; 4]; size];
@@ -95,9 +80,30 @@ pub(super) fn cut(
                 split(&mut cell, &mut row, bezier.degree, 0, t);
                 std::mem::swap(&mut row_rest, &mut row);
             }
-            f([i, j], [domain(0, i), domain(1, j)], &cell);
+            f([i, j], &cell);
         }
     }
+}
+
+/// The net of the part at a place of those that [`cut`] makes, to the last bit.
+pub(super) fn part(bezier: BezierPiece, parts: [usize; 2], place: [usize; 2]) -> Vec<[f64; 4]> {
+    let mut net = bezier.points;
+    if parts == [1, 1] {
+        return net;
+    }
+    let mut rest = vec![[0.0; 4]; net.len()];
+    for dir in [1, 0] {
+        for k in 0..=place[dir] {
+            if k + 1 < parts[dir] {
+                let t = 1.0 / (parts[dir] - k) as f64;
+                split(&mut net, &mut rest, bezier.degree, dir, t);
+                if k < place[dir] {
+                    std::mem::swap(&mut net, &mut rest);
+                }
+            }
+        }
+    }
+    net
 }
 
 /// A cell within its surroundings.
@@ -197,7 +203,7 @@ fn along(axes: &Axes, p: &Vec3) -> Vec3 {
 impl Cell {
     /// Whether a piece belongs to the block around this cell, which is one of patch `patch`.
     #[inline]
-    pub fn covers(&self, patch: u32, piece: &Piece) -> bool {
+    pub fn covers(&self, patch: u32, piece: &Place) -> bool {
         piece.patch == patch
             && (0..2).all(|k| {
                 let [first, end] = self.block[k];
@@ -208,7 +214,7 @@ impl Cell {
     /// Whether a stationary point of this cell (which is `piece`) is stationary in its block. Points that the cell's own border
     /// holds inside of the block are not.
     #[inline]
-    pub fn is_stationary_in_block(&self, piece: &Piece, s: &Local) -> bool {
+    pub fn is_stationary_in_block(&self, piece: &Place, s: &Local) -> bool {
         s.converged
             && (0..2).all(|k| {
                 let [first, end] = self.block[k];
@@ -254,54 +260,64 @@ pub(super) fn holds(convex: &Convex, q: &Vec3, s: &Local, width: &[f64; 2], slac
     convex.holds(&(q - s.jet.rho), held, slope, slack)
 }
 
-/// All cells, in the order of the pieces.
-pub(super) fn cells(pieces: &Pieces, grids: &[Grid], trimmed: &Trimmed) -> Vec<Cell> {
-    (0..pieces.list.len() as u32)
-        .into_par_iter()
-        .map(|number| cell(pieces, grids, trimmed, number))
-        .collect()
-}
-
-fn cell(pieces: &Pieces, grids: &[Grid], trimmed: &Trimmed, number: u32) -> Cell {
-    let piece = &pieces.list[number as usize];
-    let grid = &grids[piece.patch as usize];
-    let net = pieces.net(piece);
-    let block = [0, 1].map(|k| {
-        let spans = grid.smooth_spans(k, piece.span[k]);
-        let [first, end] = spans.map(|s| grid.cells[k][s]);
-        [
-            piece.cell[k].saturating_sub(1).max(first),
-            (piece.cell[k] + 2).min(end),
-        ]
-    });
-    let found = axes(net, piece.degree);
-    let plain = [Vec3::x(), Vec3::y(), Vec3::z()];
-    Cell {
-        block: trimmed.block(grid, piece.cell, block),
-        slab: Slab::new(net, found.as_ref().unwrap_or(&plain)),
-        seed: found.as_ref().map_or([Vec3::zeros(); 2], |axes| {
-            seed_vectors(net, piece.degree, axes)
-        }),
-        spans: found.is_some(),
-        proofs: OnceLock::new(),
-    }
-}
-
 impl<S: Surface> PatchSet<S> {
-    /// The proofs of a cell, made when they are first asked for.
+    /// A piece, made when it is first asked for.
     #[inline]
-    pub(super) fn proofs(&self, number: u32) -> &Proofs {
-        let cell = &self.cells[number as usize];
-        cell.proofs.get_or_init(|| self.prove(number))
+    pub(super) fn piece(&self, number: u32) -> &Piece {
+        self.pieces.get(number, || self.make(number))
+    }
+
+    /// Where a piece lies; makes nothing.
+    pub(super) fn piece_place(&self, number: u32) -> Place {
+        let after = self.grids.partition_point(|grid| grid.first <= number);
+        self.grids[after - 1].place(after as u32 - 1, number)
+    }
+
+    /// Degrees and control net of a piece, which are not kept.
+    pub(super) fn net_at(&self, place: &Place) -> ([usize; 2], Vec<[f64; 4]>) {
+        let grid = &self.grids[place.patch as usize];
+        grid.net(&self.patches[place.patch as usize], place)
     }
 
     #[cold]
     #[inline(never)]
-    fn prove(&self, number: u32) -> Box<Proofs> {
-        let (pieces, trimmed) = (&self.pieces, &self.trimmed);
-        let piece = &pieces.list[number as usize];
+    fn make(&self, number: u32) -> Box<Piece> {
+        let place = self.piece_place(number);
+        let (degree, net) = self.net_at(&place);
+        let grid = &self.grids[place.patch as usize];
+        let block = [0, 1].map(|k| {
+            let spans = grid.smooth_spans(k, place.span[k]);
+            let [first, end] = spans.map(|s| grid.cells[k][s]);
+            [
+                place.cell[k].saturating_sub(1).max(first),
+                (place.cell[k] + 2).min(end),
+            ]
+        });
+        let found = axes(&net, degree);
+        let plain = [Vec3::x(), Vec3::y(), Vec3::z()];
+        let cell = Cell {
+            block: self.trimmed.block(grid, place.cell, block),
+            slab: Slab::new(&net, found.as_ref().unwrap_or(&plain)),
+            seed: (found.as_ref())
+                .map_or([Vec3::zeros(); 2], |axes| seed_vectors(&net, degree, axes)),
+            spans: found.is_some(),
+            proofs: OnceLock::new(),
+        };
+        Box::new(Piece::new(place, degree, net, cell))
+    }
+
+    /// The proofs of a piece, made when they are first asked for.
+    #[inline]
+    pub(super) fn proofs<'a>(&'a self, number: u32, piece: &'a Piece) -> &'a Proofs {
+        piece.own.proofs.get_or_init(|| self.prove(number, piece))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn prove(&self, number: u32, piece: &Piece) -> Box<Proofs> {
+        let trimmed = &self.trimmed;
         let grid = &self.grids[piece.patch as usize];
-        let cell = &self.cells[number as usize];
+        let cell = &piece.own;
         let block = &cell.block;
         let mut out = Box::new(Proofs {
             around: Convex::NEVER,
@@ -309,7 +325,7 @@ impl<S: Surface> PatchSet<S> {
                 let [low, high] = [block[k][0], block[k][1] - 1].map(|c| {
                     let mut place = piece.cell;
                     place[k] = c;
-                    pieces.list[grid.piece(place) as usize].domain[k]
+                    self.piece(grid.piece(place)).domain[k]
                 });
                 high[1] - low[0]
             }),
@@ -321,14 +337,14 @@ impl<S: Surface> PatchSet<S> {
             return out;
         }
         let axes = &cell.slab.axes;
-        out.own = Convex::new(pieces, axes, std::iter::once(number));
+        out.own = Convex::new(axes, std::iter::once(piece));
         if !trimmed.is_inside(number) {
             // Never the middle of a block.
             return out;
         }
         let members = (block[1][0]..block[1][1])
-            .flat_map(|j| (block[0][0]..block[0][1]).map(move |i| grid.piece([i, j])));
-        out.around = Convex::new(pieces, axes, members);
+            .flat_map(|j| (block[0][0]..block[0][1]).map(move |i| self.piece(grid.piece([i, j]))));
+        out.around = Convex::new(axes, members);
         // The cells beside the block are outside of it and near: the scan has little left to look at.
         let mut clear2 = f64::INFINITY;
         for k in 0..2 {
@@ -337,8 +353,8 @@ impl<S: Surface> PatchSet<S> {
             for place in beside.into_iter().flatten().filter(|&place| place < last) {
                 let mut other = piece.cell;
                 other[k] = place;
-                let other = &pieces.list[grid.piece(other) as usize];
-                clear2 = clear2.min(cell.slab.net_separation2(pieces.net(other)));
+                let other = self.piece(grid.piece(other));
+                clear2 = clear2.min(cell.slab.net_separation2(other.net()));
             }
         }
         if clear2 <= 0.0 {
@@ -349,10 +365,11 @@ impl<S: Surface> PatchSet<S> {
             clear2,
             |number| {
                 // Trim curves lie in cells, which count.
-                if let Some(other) = pieces.list.get(number as usize)
-                    && !cell.covers(piece.patch, other)
-                {
-                    clear2 = clear2.min(cell.slab.net_separation2(pieces.net(other)));
+                if (number as usize) < self.pieces.count() {
+                    let other = self.piece(number);
+                    if !cell.covers(piece.patch, other) {
+                        clear2 = clear2.min(cell.slab.net_separation2(other.net()));
+                    }
                 }
                 // Nothing is below zero, so that ends the scan.
                 if clear2 > 0.0 { clear2 } else { -1.0 }

@@ -12,7 +12,7 @@
 //! so the proof costs less than an evaluation; it holds on the side where the surface bends away however far the
 //! point is, and on the other side up to about the radius of curvature.
 
-use super::piece::{Pieces, difference, hull, row_of_pascal};
+use super::piece::{Piece, difference, hull, row_of_pascal};
 use crate::surface::Vec3;
 
 /// Range of a number.
@@ -287,13 +287,12 @@ impl Convex {
         half: [Vec3::new(0.0, 0.0, 0.0); 3],
     };
 
-    /// For a rectangle that consists of the pieces with the given numbers.
-    pub fn new(pieces: &Pieces, axes: &Axes, members: impl Iterator<Item = u32>) -> Convex {
+    /// For a rectangle that consists of the given pieces.
+    pub fn new<'a>(axes: &Axes, members: impl Iterator<Item = &'a Piece>) -> Convex {
         let mut all = Derivatives::NONE;
-        for number in members {
-            let piece = &pieces.list[number as usize];
+        for piece in members {
             let width = piece.domain.map(|[a, b]| b - a);
-            let net = pieces.net(piece);
+            let net = piece.net();
             let tangents = tangents(net, piece.degree);
             let tangents = [&tangents[0][..], &tangents[1][..]];
             all.join(&Derivatives::of(net, piece.degree, width, tangents, axes));

@@ -36,9 +36,7 @@ pub(super) fn over<S: Surface, const N: usize>(
     let surface = &set.patches[patch as usize];
     let trimmed = (edges.first()).is_some_and(|e| matches!(e.curve, EdgeCurve::Trim { .. }));
     if !trimmed {
-        let first = set.grids[patch as usize].first as usize;
-        let pieces = set.pieces.list[first..].iter();
-        for piece in pieces.take_while(|piece| piece.patch == patch) {
+        for piece in set.grids[patch as usize].places(patch) {
             let [[a1, b1], [a2, b2]] = piece.domain;
             for (x2, w2) in GAUSS {
                 for (x1, w1) in GAUSS {
@@ -156,7 +154,7 @@ struct Cells<'a, S: Surface, F, const N: usize> {
 impl<'a, S: Surface, F: Fn(&Jet) -> [f64; N], const N: usize> Cells<'a, S, F, N> {
     fn new(set: &'a PatchSet<S>, patch: u32, f: &'a F) -> Self {
         let grid = &set.grids[patch as usize];
-        let degree = set.pieces.list[grid.first as usize].degree;
+        let degree = set.patches[patch as usize].bezier_piece([0, 0]).degree;
         let parts = |k: usize| match degree[k] {
             0 | 1 => 1,
             _ => INTERVALS.div_ceil(grid.breaks[k].len()),

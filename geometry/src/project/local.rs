@@ -178,7 +178,7 @@ impl<S: Surface> PatchSet<S> {
     #[inline(never)]
     fn is_lost_in_rounding(&self, s: &Local, floor: f64, limit: f64) -> bool {
         let patch = s.region.patch;
-        let piece = &self.pieces.list[self.piece_number(patch, s.span, s.xi) as usize];
+        let piece = self.piece(self.piece_number(patch, s.span, s.xi));
         (0..2).all(|k| {
             let [a, b] = piece.domain[k];
             // Rounding comes from the neighbourhood, which is a little larger than the cell.

@@ -1,19 +1,33 @@
 //! Bezier pieces: control nets with bounds on their points and derivatives.
+//!
+//! Of every piece a set keeps its box, in the tree. The rest, some twenty times as much, follows from the patch and is made by
+//! the first query that comes near.
 
+use super::cells::Cell;
 use crate::basis::WIDTH;
 use crate::surface::Vec3;
+use std::ops::Deref;
+use std::sync::OnceLock;
 
-/// One Bezier piece of a patch, or a part of one, as the search uses it.
-#[derive(Debug, Clone)]
-pub(super) struct Piece {
+/// Where a piece lies.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
     pub patch: u32,
     pub span: [usize; 2],
     /// Place among the pieces of the patch.
     pub cell: [u32; 2],
     pub domain: [[f64; 2]; 2],
+}
+
+/// One Bezier piece of a patch, or a part of one, as the search uses it.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    place: Place,
     pub degree: [usize; 2],
-    /// Start of its control net in [`Pieces::nets`].
-    net: usize,
+    /// Homogeneous control points (w x, w y, w z, w), xi1 fastest.
+    net: Box<[[f64; 4]]>,
+    /// The piece within its surroundings.
+    pub own: Cell,
     /// Bounds on `|rho_i|` over the piece, for parameters that run from 0 to 1.
     pub scale: [f64; 2],
     /// Bound on the second derivative as a quadratic form, in parameters scaled by `scale`.
@@ -22,43 +36,56 @@ pub(super) struct Piece {
     pub third: f64,
 }
 
-/// All pieces with their control nets in one place.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Pieces {
-    pub list: Vec<Piece>,
-    /// Homogeneous control points (w x, w y, w z, w), xi1 fastest.
-    nets: Vec<[f64; 4]>,
+impl Deref for Piece {
+    type Target = Place;
+
+    #[inline]
+    fn deref(&self) -> &Place {
+        &self.place
+    }
 }
 
-impl Pieces {
-    /// Adds a piece: patch, spans, place among the patch's pieces, domain, degrees and control net.
-    pub fn push(
-        &mut self,
-        patch: u32,
-        span: [usize; 2],
-        cell: [u32; 2],
-        domain: [[f64; 2]; 2],
-        degree: [usize; 2],
-        points: &[[f64; 4]],
-    ) {
-        let net = self.nets.len();
-        self.nets.extend_from_slice(points);
-        let bounds = derivative_bounds(points, degree);
-        self.list.push(Piece {
-            patch,
-            span,
-            cell,
-            domain,
+impl Piece {
+    pub fn new(place: Place, degree: [usize; 2], net: Vec<[f64; 4]>, own: Cell) -> Self {
+        let bounds = derivative_bounds(&net, degree);
+        Self {
+            place,
             degree,
-            net,
+            net: net.into(),
+            own,
             scale: bounds.scale,
             second: bounds.second,
             third: bounds.third,
-        });
+        }
     }
 
-    pub fn net(&self, piece: &Piece) -> &[[f64; 4]] {
-        &self.nets[piece.net..piece.net + (piece.degree[0] + 1) * (piece.degree[1] + 1)]
+    /// Homogeneous control points (w x, w y, w z, w), xi1 fastest.
+    #[inline]
+    pub fn net(&self) -> &[[f64; 4]] {
+        &self.net
+    }
+}
+
+/// All pieces by number, each made when it is first asked for.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Pieces {
+    list: Vec<OnceLock<Box<Piece>>>,
+}
+
+impl Pieces {
+    pub fn of(count: usize) -> Self {
+        let list = (0..count).map(|_| OnceLock::new()).collect();
+        Self { list }
+    }
+
+    pub fn count(&self) -> usize {
+        self.list.len()
+    }
+
+    /// The piece with a number, made by `make` if it is the first time.
+    #[inline]
+    pub fn get(&self, number: u32, make: impl FnOnce() -> Box<Piece>) -> &Piece {
+        self.list[number as usize].get_or_init(make)
     }
 }
 
@@ -71,12 +98,7 @@ struct Bounds {
 /// Bounds on the derivatives of a rational Bezier piece up to order three: the derivative nets of numerator (about the
 /// middle of the piece) and denominator are bounded by their largest control vectors, the quotient rule does the rest.
 fn derivative_bounds(net: &[[f64; 4]], degree: [usize; 2]) -> Bounds {
-    let [low, high] = hull(net);
-    let middle = (low + high) * 0.5;
-    let moved: Vec<[f64; 4]> = net
-        .iter()
-        .map(|&[x, y, z, w]| [x - middle.x * w, y - middle.y * w, z - middle.z * w, w])
-        .collect();
+    let moved: Vec<[f64; 4]> = about(middle(&hull(net)), net).collect();
     let smallest = net.iter().map(|p| p[3]).fold(f64::INFINITY, f64::min);
     // Bounds on numerator and denominator derivatives, then on the derivatives of the surface, [order 1][order 2].
     let mut above = [[0.0f64; 4]; 4];
@@ -111,11 +133,7 @@ fn derivative_bounds(net: &[[f64; 4]], degree: [usize; 2]) -> Bounds {
             surface[a][b] = sum / smallest;
         }
     }
-    let size = surface[1][0].max(surface[0][1]).max(f64::MIN_POSITIVE);
-    let m = [
-        surface[1][0].max(1e-9 * size),
-        surface[0][1].max(1e-9 * size),
-    ];
+    let m = scale(surface[1][0], surface[0][1]);
     let form = |terms: &[(usize, usize, f64)]| {
         terms
             .iter()
@@ -131,6 +149,58 @@ fn derivative_bounds(net: &[[f64; 4]], degree: [usize; 2]) -> Bounds {
         second: form(&[(2, 0, 1.0), (1, 1, 2.0), (0, 2, 1.0)]),
         third: form(&[(3, 0, 1.0), (2, 1, 3.0), (1, 2, 3.0), (0, 3, 1.0)]),
     }
+}
+
+fn middle([low, high]: &[Vec3; 2]) -> Vec3 {
+    (low + high) * 0.5
+}
+
+/// A control net about a point.
+fn about(middle: Vec3, net: &[[f64; 4]]) -> impl Iterator<Item = [f64; 4]> {
+    let moved =
+        move |&[x, y, z, w]: &[f64; 4]| [x - middle.x * w, y - middle.y * w, z - middle.z * w, w];
+    net.iter().map(moved)
+}
+
+/// Bounds on `|rho_i|` that are no less than a billionth of each other.
+fn scale(first: f64, second: f64) -> [f64; 2] {
+    let size = first.max(second).max(f64::MIN_POSITIVE);
+    [first.max(1e-9 * size), second.max(1e-9 * size)]
+}
+
+/// What of [`derivative_bounds`] a set keeps of every patch, [`Piece::scale`], to the last bit, from a control net and its
+/// [`hull`]; `room` is left as it comes.
+pub(super) fn tangent_bounds(
+    net: &[[f64; 4]],
+    degree: [usize; 2],
+    hull: &[Vec3; 2],
+    room: &mut Vec<[f64; 4]>,
+) -> [f64; 2] {
+    room.clear();
+    room.extend(about(middle(hull), net));
+    let (mut smallest, mut reach) = (f64::INFINITY, 0.0f64);
+    for &[x, y, z, w] in room.iter() {
+        smallest = smallest.min(w);
+        reach = reach.max(Vec3::new(x, y, z).norm() / w);
+    }
+    let n1 = degree[0] + 1;
+    let tangent = |dir: usize| {
+        let ([columns, rows], step) = match dir {
+            0 => ([n1 - 1, degree[1] + 1], 1),
+            _ => ([n1, degree[1]], n1),
+        };
+        let (mut vector, mut weight) = (0.0f64, 0.0f64);
+        for j in 0..rows {
+            for k in n1 * j..n1 * j + columns {
+                let [x, y, z, w] = difference(&room[k + step], &room[k]);
+                vector = vector.max(Vec3::new(x, y, z).norm());
+                weight = weight.max(w.abs());
+            }
+        }
+        let factor = degree[dir] as f64;
+        (vector * factor + weight * factor * reach) / smallest
+    };
+    scale(tangent(0), tangent(1))
 }
 
 /// Largest control vector of the derivative net of the given orders: of its first three components and of the fourth.

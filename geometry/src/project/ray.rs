@@ -151,9 +151,9 @@ impl<'a, S: Surface> Ray<'a, S> {
         };
         let tree = &set.tree;
         tree.scan(enters, limit(self.reach), |leaf| {
-            if let Some(piece) = set.pieces.list.get(leaf as usize)
+            if (leaf as usize) < set.pieces.count()
                 && fault.is_none()
-                && let Err(error) = self.piece(piece)
+                && let Err(error) = self.piece(set.piece(leaf))
             {
                 fault = Some(error);
             }
@@ -190,7 +190,7 @@ impl<'a, S: Surface> Ray<'a, S> {
     /// Adds the intersections with one piece.
     fn piece(&mut self, piece: &Piece) -> Result<(), RayError> {
         let degree = piece.degree;
-        let seen = self.set.pieces.net(piece).iter().map(|&[x, y, z, w]| {
+        let seen = piece.net().iter().map(|&[x, y, z, w]| {
             let d = Vec3::new(x, y, z) - self.origin * w;
             [
                 self.axes[0].dot(&d),

@@ -64,7 +64,7 @@ impl<S: Surface> PatchSet<S> {
         };
         // Curvatures below rounding are flat.
         let flat = 1e-10 / self.size;
-        for piece in &self.pieces.list {
+        for piece in (0..self.pieces.count() as u32).map(|number| self.piece_place(number)) {
             let patch = &self.patches[piece.patch as usize];
             for k in 0..25 {
                 let xi = [0, 1].map(|dir| {

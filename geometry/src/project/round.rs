@@ -3,7 +3,8 @@
 
 use nalgebra::Matrix3;
 
-use super::piece::{Piece, Pieces, row_of_pascal};
+use super::piece::row_of_pascal;
+use super::set::Grid;
 use crate::surface::{Surface, Vec3};
 
 /// A sphere that holds all of a patch.
@@ -30,14 +31,15 @@ pub(super) fn number(spheres: &mut [Option<Sphere>]) {
 }
 
 impl Sphere {
-    /// The sphere that a patch with these pieces lies on, within 1e-12 of `size`.
-    pub fn of<S: Surface>(patch: &S, pieces: &Pieces, own: &[Piece], size: f64) -> Option<Self> {
+    /// The sphere that a patch lies on, within 1e-12 of `size`.
+    pub fn of<S: Surface>(patch: &S, grid: &Grid, size: f64) -> Option<Self> {
         // Polynomials cannot.
-        let varies = |p: &Piece| {
-            let net = pieces.net(p);
-            p.degree.iter().all(|&d| d >= 2) && net.iter().any(|x| x[3] != net[0][3])
+        let varies = |degree: [usize; 2], net: &[[f64; 4]]| {
+            degree.iter().all(|&d| d >= 2) && net.iter().any(|x| x[3] != net[0][3])
         };
-        if !own.iter().all(varies) {
+        let mut nets = grid.places(0).map(|place| grid.net(patch, &place));
+        let (degree, net) = nets.next()?;
+        if !varies(degree, &net) {
             return None;
         }
         let domain = patch.domain();
@@ -57,8 +59,11 @@ impl Sphere {
             return None;
         }
         let mut slack = 1e-15 * (centre.norm() + radius);
-        for piece in own {
-            slack = off(pieces.net(piece), piece.degree, &centre, radius).max(slack);
+        for (degree, net) in std::iter::once((degree, net)).chain(nets) {
+            if !varies(degree, &net) {
+                return None;
+            }
+            slack = off(&net, degree, &centre, radius).max(slack);
             if slack.is_nan() || slack > limit {
                 return None;
             }

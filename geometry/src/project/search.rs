@@ -3,7 +3,7 @@
 use super::PatchSet;
 use super::ball::outside_ball;
 use super::local::{Local, Region};
-use super::piece::Piece;
+use super::piece::{Piece, Place};
 use super::round::Sphere;
 use super::subdivide::covered;
 use crate::surface::{Surface, Vec3};
@@ -134,10 +134,11 @@ impl<'a, S: Surface> Search<'a, S> {
         };
         self.slack = self.least_slack() + 2.0 * tolerance * distance;
         self.best = Some((piece, *local));
-        let id = piece as usize;
-        self.settled = local.trim.is_none()
-            && set.cells[id].is_stationary_in_block(&set.pieces.list[id], local)
-            && (set.proofs(piece)).settle_block(&self.q, local, self.slack);
+        self.settled = local.trim.is_none() && {
+            let own = set.piece(piece);
+            own.own.is_stationary_in_block(own, local)
+                && (set.proofs(piece, own)).settle_block(&self.q, local, self.slack)
+        };
     }
 
     /// Makes a point the best one that is nearer than the last one by no more than the tolerance.
@@ -260,7 +261,7 @@ impl<'a, S: Surface> Search<'a, S> {
         let Some((best, _)) = self.best else {
             return false;
         };
-        self.settled && 2.0 * self.wide < self.set.proofs(best).clear
+        self.settled && 2.0 * self.wide < self.set.proofs(best, self.set.piece(best)).clear
     }
 
     /// Radius of the ball that pieces must be proved to lie outside of: the best distance less a tolerance well above
@@ -302,28 +303,28 @@ impl<'a, S: Surface> Search<'a, S> {
 
     /// Whether nothing in a piece is as near as the best point, by the tests that need no iteration.
     #[inline]
-    pub fn excluded(&self, piece: &Piece, id: u32) -> bool {
+    pub fn excluded(&self, piece: &Piece) -> bool {
         if self.behind_sphere(piece.patch) {
             return true;
         }
         if let Some((best, local)) = &self.best
             && self.settled
-            && self.set.cells[*best as usize].covers(local.region.patch, piece)
+            && (self.set.piece(*best).own).covers(local.region.patch, piece)
         {
             return true;
         }
         let c = self.wide;
         c < 0.0
             || c.is_finite()
-                && (self.set.cells[id as usize].slab.distance2(&self.q) >= c * c
-                    || outside_ball(self.set.pieces.net(piece), piece.degree, &self.q, c))
+                && (piece.own.slab.distance2(&self.q) >= c * c
+                    || outside_ball(piece.net(), piece.degree, &self.q, c))
     }
 
     /// Whether a piece that the ball of everything as near reaches is proved to hold nothing nearer; it is kept then.
     fn only_as_near(&mut self, piece: &Piece, id: u32) -> bool {
         let found = self.best.is_some()
             && self.cut < self.wide
-            && outside_ball(self.set.pieces.net(piece), piece.degree, &self.q, self.cut);
+            && outside_ball(piece.net(), piece.degree, &self.q, self.cut);
         if found && self.kept_count < MOST_KEPT {
             self.kept[self.kept_count] = id;
             self.kept_count += 1;
@@ -338,12 +339,12 @@ impl<'a, S: Surface> Search<'a, S> {
         let set = self.set;
         for k in 0..self.kept_count {
             let id = self.kept[k];
-            let piece = &set.pieces.list[id as usize];
+            let piece = set.piece(id);
             if self.tie.is_some() || self.cut < 0.0 {
                 return;
             }
-            if !self.excluded(piece, id) {
-                let u = set.cells[id as usize].seed(&self.q);
+            if !self.excluded(piece) {
+                let u = piece.own.seed(&self.q);
                 self.iterate(id, piece, u.map(|u| u.clamp(0.05, 0.95)));
             }
         }
@@ -419,11 +420,12 @@ impl<'a, S: Surface> Search<'a, S> {
 
     fn piece(&mut self, id: u32) {
         let set = self.set;
-        if id as usize >= set.pieces.list.len() {
-            return self.curve_leaf(id as usize - set.pieces.list.len());
+        if id as usize >= set.pieces.count() {
+            return self.curve_leaf(id as usize - set.pieces.count());
         }
+        let piece = set.piece(id);
         if !self.centred
-            && let Some(sphere) = &set.spheres[set.pieces.list[id as usize].patch as usize]
+            && let Some(sphere) = &set.spheres[piece.patch as usize]
             && sphere.has_near_centre(&self.q)
         {
             self.start_from_centre(sphere.beyond(&self.q));
@@ -431,26 +433,28 @@ impl<'a, S: Surface> Search<'a, S> {
         if set.trimmed.is_cut(id) {
             return self.cut_cell(id);
         }
-        let piece = &set.pieces.list[id as usize];
         if self.behind_sphere(piece.patch) {
             return;
         }
-        let cell = &set.cells[id as usize];
+        let cell = &piece.own;
         let own = |search: &Self| search.best.as_ref().is_some_and(|best| best.0 == id);
         if self.settled || !own(self) {
-            if self.excluded(piece, id) || self.only_as_near(piece, id) {
+            if self.excluded(piece) || self.only_as_near(piece, id) {
                 return;
             }
             if self.best.is_none() {
                 let u = cell.seed(&self.q);
                 self.start(piece.patch, piece.span, at(piece, u));
-                if self.settled && self.excluded(piece, id) {
+                if self.settled && self.excluded(piece) {
                     return;
                 }
             }
         }
         let ends = |search: &Self, local: &Local| {
-            local.converged && set.proofs(id).settle_cell(&search.q, local, search.slack)
+            local.converged
+                && set
+                    .proofs(id, piece)
+                    .settle_cell(&search.q, local, search.slack)
                 || search.cut < 0.0
         };
         let local = match &self.best {
@@ -491,7 +495,7 @@ impl<'a, S: Surface> Search<'a, S> {
 
 /// The region that a piece is.
 #[inline]
-pub(super) fn region_of(piece: &Piece) -> Region {
+pub(super) fn region_of(piece: &Place) -> Region {
     Region {
         patch: piece.patch,
         spans: piece.span.map(|s| [s, s + 1]),
@@ -501,7 +505,7 @@ pub(super) fn region_of(piece: &Piece) -> Region {
 
 /// Parameters of the patch for parameters 0 to 1 of a piece.
 #[inline]
-pub(super) fn at(piece: &Piece, u: [f64; 2]) -> [f64; 2] {
+pub(super) fn at(piece: &Place, u: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|k| {
         let [a, b] = piece.domain[k];
         a + u[k] * (b - a)

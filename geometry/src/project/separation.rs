@@ -6,7 +6,7 @@
 //! as small as the tolerance. The points themselves come from closest points on one set and on the other in turn, with
 //! the limit of their sequence extrapolated.
 
-use super::piece::{Piece, hull, split};
+use super::piece::{Piece, Place, hull, split};
 use super::{Foot, PatchSet, QueryError};
 use crate::surface::{Surface, Vec3};
 use crate::trim::Part;
@@ -68,9 +68,10 @@ impl<S: Surface> PatchSet<S> {
             pose,
             best: None,
         };
-        let count = self.pieces.list.len();
+        let count = self.pieces.count();
         let step = count.div_ceil(STARTS);
-        for piece in self.pieces.list.iter().step_by(step) {
+        for number in (0..count as u32).step_by(step) {
+            let piece = self.piece_place(number);
             search.improve_from(&self.patches[piece.patch as usize].point(middle(piece.domain)))?;
         }
         search.run(tolerance)
@@ -110,8 +111,8 @@ impl Cell {
         }
     }
 
-    fn of(piece: &Piece, net: Vec<[f64; 4]>) -> Self {
-        Self::new(piece.patch, piece.degree, piece.domain, net)
+    fn of(place: &Place, degree: [usize; 2], net: Vec<[f64; 4]>) -> Self {
+        Self::new(place.patch, degree, place.domain, net)
     }
 
     fn size(&self) -> f64 {
@@ -296,19 +297,20 @@ impl<S: Surface, T: Surface> Search<'_, S, T> {
         let mut pairs = BinaryHeap::new();
         let turn = self.pose.rotation;
         let placed = |piece: &Piece| {
-            let net = self.other.pieces.net(piece).iter().map(|&[x, y, z, w]| {
+            let net = piece.net().iter().map(|&[x, y, z, w]| {
                 let p = turn * Vec3::new(x, y, z) + self.pose.translation.vector * w;
                 [p.x, p.y, p.z, w]
             });
-            Cell::of(piece, net.collect())
+            Cell::of(piece, piece.degree, net.collect())
         };
         let back = self.pose.inverse();
-        for (number, piece) in self.one.pieces.list.iter().enumerate() {
-            if !self.one.trimmed.is_inside(number as u32) && !self.one.trimmed.is_cut(number as u32)
-            {
+        for number in 0..self.one.pieces.count() as u32 {
+            if !self.one.trimmed.is_inside(number) && !self.one.trimmed.is_cut(number) {
                 continue;
             }
-            let cell = Cell::of(piece, self.one.pieces.net(piece).to_vec());
+            let place = self.one.piece_place(number);
+            let (degree, net) = self.one.net_at(&place);
+            let cell = Cell::of(&place, degree, net);
             // A ball around the cell in the coordinates of the other set.
             let centre = back.transform_point(&cell.centre().into()).coords;
             let radius = cell.size() / 2.0;
@@ -320,7 +322,9 @@ impl<S: Surface, T: Surface> Search<'_, S, T> {
             };
             let mut found = Vec::new();
             self.other.tree.scan(measure, limit.min(f64::MAX), |leaf| {
-                found.extend(self.other.pieces.list.get(leaf as usize));
+                if (leaf as usize) < self.other.pieces.count() {
+                    found.push(self.other.piece(leaf));
+                }
                 limit.min(f64::MAX)
             });
             for piece in found {

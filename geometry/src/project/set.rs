@@ -1,8 +1,8 @@
 //! The set of patches and its search.
 
-use super::cells::{Cell, cells, cut, parts};
+use super::cells::{cut, part, parts};
 use super::local::Region;
-use super::piece::Pieces;
+use super::piece::{Pieces, Place, hull, tangent_bounds};
 use super::round::{self, Sphere};
 use super::search::Search;
 use super::topology::{self, Topology};
@@ -99,26 +99,73 @@ impl Grid {
             .saturating_mul(self.cells[1][self.spans[1]] as usize)
     }
 
-    /// Adds the cells of a patch to the pieces, those of xi1 fastest.
-    fn push_pieces(&self, patch: u32, beziers: &[BezierPiece], pieces: &mut Pieces) {
+    /// Adds the boxes of the cells of a patch, those of xi1 fastest, and takes note of their tangents.
+    fn push_boxes(&mut self, beziers: &[BezierPiece], boxes: &mut Vec<[Vec3; 2]>) {
+        let start = boxes.len();
+        boxes.resize(start + self.count(), [Vec3::zeros(); 2]);
         let columns = self.cells[0][self.spans[0]] as usize;
-        for row in beziers.chunks(self.spans[0]) {
-            // Whole rows of cells must be complete before the next: collect those of one row of spans.
-            let rows = self.parts(1, row[0].span[1]);
-            let mut nets = vec![None; columns * rows];
-            for bezier in row {
-                let parts = [0, 1].map(|k| self.parts(k, bezier.span[k]));
-                let first = self.cells[0][bezier.span[0]] as usize;
-                cut(bezier, parts, |[i, j], domain, net| {
-                    nets[first + i + columns * j] = Some((bezier, domain, net.to_vec()));
-                });
-            }
-            let start = self.cells[1][row[0].span[1]];
-            for (k, (bezier, domain, net)) in nets.into_iter().flatten().enumerate() {
-                let cell = [(k % columns) as u32, start + (k / columns) as u32];
-                pieces.push(patch, bezier.span, cell, domain, bezier.degree, &net);
-            }
+        let (mut scale, mut room) = ([0.0f64; 2], Vec::new());
+        for bezier in beziers {
+            let parts = [0, 1].map(|k| self.parts(k, bezier.span[k]));
+            let first = [0, 1].map(|k| self.cells[k][bezier.span[k]] as usize);
+            cut(bezier, parts, |[i, j], net| {
+                let own = hull(net);
+                let bounds = tangent_bounds(net, bezier.degree, &own, &mut room);
+                boxes[start + first[0] + i + columns * (first[1] + j)] = own;
+                for (k, place) in [i, j].into_iter().enumerate() {
+                    let [a, b] = self.range(k, bezier.span[k], place);
+                    scale[k] = scale[k].max(bounds[k] / (b - a));
+                }
+            });
         }
+        self.scale = scale;
+    }
+
+    /// Parameters of a cell of a span.
+    fn range(&self, dir: usize, span: usize, cell: usize) -> [f64; 2] {
+        let [a, b] = [self.breaks[dir][span], self.breaks[dir][span + 1]];
+        let parts = self.parts(dir, span);
+        let at = |k: usize| {
+            if k == parts {
+                b
+            } else {
+                a + (b - a) * (k as f64 / parts as f64)
+            }
+        };
+        [at(cell), at(cell + 1)]
+    }
+
+    /// Where a piece of this patch lies.
+    pub fn place(&self, patch: u32, number: u32) -> Place {
+        let columns = self.cells[0][self.spans[0]];
+        let cell = [
+            (number - self.first) % columns,
+            (number - self.first) / columns,
+        ];
+        let span = [0, 1].map(|k| self.cells[k].partition_point(|&c| c <= cell[k]) - 1);
+        Place {
+            patch,
+            span,
+            cell,
+            domain: [0, 1].map(|k| {
+                let own = cell[k] - self.cells[k][span[k]];
+                self.range(k, span[k], own as usize)
+            }),
+        }
+    }
+
+    /// All pieces of this patch.
+    pub fn places(&self, patch: u32) -> impl Iterator<Item = Place> {
+        let end = self.first + self.count() as u32;
+        (self.first..end).map(move |number| self.place(patch, number))
+    }
+
+    /// Degrees and control net of a piece of this patch.
+    pub fn net<S: Surface>(&self, surface: &S, place: &Place) -> ([usize; 2], Vec<[f64; 4]>) {
+        let bezier = surface.bezier_piece(place.span);
+        let parts = [0, 1].map(|k| self.parts(k, place.span[k]));
+        let own = [0, 1].map(|k| (place.cell[k] - self.cells[k][place.span[k]]) as usize);
+        (bezier.degree, part(bezier, parts, own))
     }
 
     /// Number of cells of a span in direction `dir`.
@@ -127,7 +174,7 @@ impl Grid {
     }
 
     /// Number of all pieces.
-    fn count(&self) -> usize {
+    pub fn count(&self) -> usize {
         let [columns, rows] = [0, 1].map(|k| self.cells[k][self.spans[k]] as usize);
         columns * rows
     }
@@ -159,14 +206,13 @@ fn smooth(kinks: &[u8]) -> Vec<[usize; 2]> {
 }
 
 /// Patches of one kind of surface with their tree, their shared edges and their sides. Queries take `&self` and lock nothing
-/// but, where a query is the first to end in a part of the surface, what proves that points of this part are the nearest: that is
-/// made then, once, and is the same whoever makes it.
+/// but, where a query is the first to come near a part of the surface, the Bezier form of this part and what proves that points of it
+/// are the nearest: these are made then, once, and are the same whoever makes them.
 #[derive(Debug, Clone)]
 pub struct PatchSet<S: Surface = NurbsPatch> {
     pub(super) patches: Vec<S>,
     pub(super) grids: Vec<Grid>,
     pub(super) pieces: Pieces,
-    pub(super) cells: Vec<Cell>,
     /// For every patch the sphere that it lies on, if any.
     pub(super) spheres: Vec<Option<Sphere>>,
     pub(super) tree: Tree,
@@ -218,28 +264,23 @@ impl<S: Surface> PatchSet<S> {
         {
             return Err(PatchSetError::Resolution(resolution));
         }
-        let mut pieces = Pieces::default();
+        let mut boxes = Vec::new();
         let mut trimmed = Trimmed::default();
         let mut grids = Vec::with_capacity(patches.len());
         for (number, patch) in patches.iter().enumerate() {
             let beziers = patch.bezier_pieces();
-            let mut grid = grid(patch, pieces.list.len() as u32);
+            let mut grid = grid(patch, boxes.len() as u32);
             let total = grid.cut(&beziers);
-            if total.saturating_add(pieces.list.len()) >= 1 << 31 {
+            if total.saturating_add(boxes.len()) >= 1 << 31 {
                 return Err(PatchSetError::TooLarge);
             }
-            grid.push_pieces(number as u32, &beziers, &mut pieces);
+            grid.push_boxes(&beziers, &mut boxes);
+            trimmed.push_patch(patch, number as u32, &grid, &beziers);
             grids.push(grid);
-            trimmed.push_patch(patch, &grids[number], &beziers, &pieces);
-            let grid = &mut grids[number];
-            for piece in &pieces.list[grid.first as usize..] {
-                for k in 0..2 {
-                    let [a, b] = piece.domain[k];
-                    grid.scale[k] = grid.scale[k].max(piece.scale[k] / (b - a));
-                }
-            }
         }
-        let boxes = trimmed.boxes(&pieces);
+        let pieces = Pieces::of(boxes.len());
+        trimmed.shrink();
+        trimmed.finish_boxes(&mut boxes);
         if boxes.len() >= 1 << 31 {
             return Err(PatchSetError::TooLarge);
         }
@@ -250,18 +291,15 @@ impl<S: Surface> PatchSet<S> {
             return Err(PatchSetError::Size(size));
         }
         let sides = vec![1.0; patches.len()];
-        let cells = cells(&pieces, &grids, &trimmed);
-        let spheres = patches.iter().zip(&grids).map(|(patch, grid)| {
-            let own = &pieces.list[grid.first as usize..][..grid.count()];
-            Sphere::of(patch, &pieces, own, size)
-        });
+        drop(boxes);
+        let spheres =
+            (patches.iter().zip(&grids)).map(|(patch, grid)| Sphere::of(patch, grid, size));
         let mut spheres: Vec<Option<Sphere>> = spheres.collect();
         round::number(&mut spheres);
         let mut set = PatchSet {
             patches,
             grids,
             pieces,
-            cells,
             spheres,
             tree,
             trimmed,

@@ -94,7 +94,7 @@ impl<S: Surface> Search<'_, S> {
     }
 
     fn bisect(&mut self, id: u32, piece: &Piece, first: Known, room: &mut Room) {
-        let net = self.set.pieces.net(piece);
+        let net = piece.net();
         let size = net.len();
         let Room { nets, parts } = room;
         nets.clear();

@@ -4,7 +4,7 @@
 //! A piece of a trim curve within one Bezier piece of the surface is a rational Bezier curve in space: the surface's control
 //! net is run through de Casteljau's algorithm with the polynomials of the parameter curve in place of numbers.
 
-use super::piece::{Pieces, hull};
+use super::piece::hull;
 use super::set::Grid;
 use crate::bezier::BezierPiece;
 use crate::surface::{Surface, Vec3};
@@ -40,27 +40,24 @@ pub(super) struct Trimmed {
 }
 
 impl Trimmed {
-    /// Takes note of the pieces of a patch, which are the last of `pieces`, from `first` on.
+    /// Takes note of the pieces of a patch, the last one so far.
     pub fn push_patch<S: Surface>(
         &mut self,
         patch: &S,
+        number: u32,
         grid: &Grid,
         beziers: &[BezierPiece],
-        pieces: &Pieces,
     ) {
         let first = grid.first as usize;
         let Some(trim) = patch.trim() else {
             if !self.parts.is_empty() {
-                self.parts.resize(pieces.list.len(), Part::Inside);
+                self.parts.resize(first + grid.count(), Part::Inside);
             }
             return;
         };
         self.parts.resize(first, Part::Inside);
-        let parts = pieces.list[first..].iter().map(|p| trim.part(p.domain));
+        let parts = grid.places(number).map(|p| trim.part(p.domain));
         self.parts.extend(parts);
-        let Some(number) = pieces.list.get(first).map(|p| p.patch) else {
-            return;
-        };
         let start = self.leaves.len();
         for piece in trim.pieces() {
             if piece.t[0] < piece.t[1] {
@@ -143,18 +140,22 @@ impl Trimmed {
         &self.nets[leaf.net[0]..leaf.net[0] + leaf.net[1]]
     }
 
+    /// Gives back the memory that more patches would have taken.
+    pub fn shrink(&mut self) {
+        self.parts.shrink_to_fit();
+        self.leaves.shrink_to_fit();
+        self.nets.shrink_to_fit();
+    }
+
     /// Boxes for the tree: those of the pieces, turned inside out where the piece is trimmed away, then those of the leaves.
-    pub fn boxes(&self, pieces: &Pieces) -> Vec<[Vec3; 2]> {
+    pub fn finish_boxes(&self, boxes: &mut Vec<[Vec3; 2]>) {
         let away = [f64::INFINITY, f64::NEG_INFINITY].map(Vec3::from_element);
-        let of = |k: usize| {
-            if self.parts.get(k) == Some(&Part::Outside) {
-                away
-            } else {
-                hull(pieces.net(&pieces.list[k]))
+        for (own, part) in boxes.iter_mut().zip(&self.parts) {
+            if *part == Part::Outside {
+                *own = away;
             }
-        };
-        let leaves = self.leaves.iter().map(|leaf| hull(self.net(leaf)));
-        (0..pieces.list.len()).map(of).chain(leaves).collect()
+        }
+        boxes.extend(self.leaves.iter().map(|leaf| hull(self.net(leaf))));
     }
 
     /// Whether a piece lies inside of its trim, if there is one.

@@ -252,7 +252,7 @@ impl<S: Surface> Search<'_, S> {
             && let Some(place) = local.trim
             && let Some(leaf) = self.set.trimmed.leaf_at(patch, place.curve, place.t)
         {
-            self.offer((self.set.pieces.list.len() + leaf) as u32, &local);
+            self.offer((self.set.pieces.count() + leaf) as u32, &local);
         }
     }
 
@@ -263,7 +263,7 @@ impl<S: Surface> Search<'_, S> {
         let set = self.set;
         let leaf = &set.trimmed.leaves[id];
         let mut room = ROOM.take();
-        self.search_curve((set.pieces.list.len() + id) as u32, leaf, &mut room);
+        self.search_curve((set.pieces.count() + id) as u32, leaf, &mut room);
         ROOM.set(room);
     }
 
@@ -345,16 +345,19 @@ impl<S: Surface> Search<'_, S> {
     #[inline(never)]
     pub(super) fn cut_cell(&mut self, id: u32) {
         let set = self.set;
-        let piece = &set.pieces.list[id as usize];
-        if self.excluded(piece, id) {
+        let piece = set.piece(id);
+        if self.excluded(piece) {
             return;
         }
-        let cell = &set.cells[id as usize];
-        let u = cell.seed(&self.q).map(|u| u.clamp(0.05, 0.95));
+        let u = piece.own.seed(&self.q).map(|u| u.clamp(0.05, 0.95));
         let local = self.iterate(id, piece, u);
         let inside = !set.trimmed_away(piece.patch, local.xi);
-        let settled =
-            || local.converged && set.proofs(id).settle_cell(&self.q, &local, self.slack());
+        let settled = || {
+            local.converged
+                && set
+                    .proofs(id, piece)
+                    .settle_cell(&self.q, &local, self.slack())
+        };
         if inside && settled() || self.cut() < 0.0 {
             return;
         }
@@ -368,7 +371,7 @@ impl<S: Surface> Search<'_, S> {
         let Some(trim) = set.patches[piece.patch as usize].trim() else {
             return;
         };
-        let net = set.pieces.net(piece);
+        let net = piece.net();
         let size = net.len();
         // Sides at which the surface ends or breaks may hold a minimum that is not stationary.
         let smooth = set.region(piece.patch, piece.span).domain;

@@ -181,12 +181,8 @@ pub(super) fn edges_of<S: Surface>(set: &PatchSet<S>, patch: u32) -> Vec<Edge> {
         links: Vec::new(),
         vertices: Vec::new(),
     };
-    let piece = &set.pieces.list[grid.first as usize];
-    let degree = piece.degree;
-    let polynomial = {
-        let net = set.pieces.net(piece);
-        net.iter().all(|p| p[3] == net[0][3])
-    };
+    let (degree, net) = grid.net(surface, &grid.place(patch, grid.first));
+    let polynomial = net.iter().all(|p| p[3] == net[0][3]);
     let mut edges = Vec::new();
     match surface.trim() {
         None => {

@@ -63,11 +63,12 @@ fn inside_of<S: Surface>(
     let limit2 = set.tolerance * set.tolerance;
     let mut out: Vec<(u32, f64)> = Vec::new();
     set.tree.visit(p, limit2, |id| {
-        let Some(piece) = set.pieces.list.get(id as usize) else {
+        if id as usize >= set.pieces.count() {
             return limit2;
-        };
+        }
+        let piece = set.piece_place(id);
         if piece.patch != own && out.iter().all(|o| o.0 != piece.patch) {
-            let region = region_of(piece);
+            let region = region_of(&piece);
             let middle = piece.domain.map(|[a, b]| 0.5 * (a + b));
             let local = set.descend(p, &region, middle, piece.span, 1e-10);
             if local.d2 <= limit2 && !set.trimmed_away(piece.patch, local.xi) {
