@@ -19,10 +19,7 @@ pub fn endings(outcome: &Outcome) -> Vec<Vec<f64>> {
                 if *iteration == 0 || *changed > 0 {
                     settled.clear();
                 }
-                // The first linearisation may keep points that are open: its residual is not that of the state.
-                if *iteration > 0 {
-                    settled.push(*residual);
-                }
+                settled.push(*residual);
             }
             Event::StepAccepted { .. } => out.push(std::mem::take(&mut settled)),
             _ => {}

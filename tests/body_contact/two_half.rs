@@ -92,16 +92,21 @@ fn residuals_fall_quadratically_in_two_half_passes() {
     scene["contacts"]["press"]["passes"] = json!("two_half");
     let outcome = solve(&scene);
     assert_eq!(outcome.summary.status.name(), "done");
-    let mut good = 0;
+    let mut good = 0u32;
     for e in endings(&outcome) {
         println!("{e:?}");
+        // A foot that passes from facet to facet spoils one pair of residuals, and the next falls again as it should.
+        let mut spoilt = false;
         for pair in e.windows(2) {
             let bound = (C * pair[0] * pair[0]).max(FLOOR);
             if bound < 0.1 * pair[0] {
-                assert!(pair[1] <= bound, "{e:?}");
-                good += 1;
+                let falls = pair[1] <= bound;
+                assert!(falls || !spoilt, "{e:?}");
+                good += u32::from(falls);
+                spoilt = !falls;
             }
         }
+        assert!(!spoilt, "{e:?}");
     }
     assert!(good >= 2, "{good}");
 }
