@@ -167,8 +167,9 @@ pub struct Totals {
     pub active: usize,
     /// Points or nodes whose status differs from the one in the state when the evaluation began.
     pub changed: usize,
-    /// Number of points that opened during this evaluation, on rigid masters and on bodies; not of averaged gaps.
+    /// Number of points on rigid masters that opened during this evaluation; not of averaged gaps.
     pub opened: usize,
+    /// The same of points on bodies.
     pub opened_on_bodies: usize,
     /// Deepest penetration, >= 0, per pair.
     pub penetration: Vec<f64>,

@@ -104,8 +104,8 @@ pub(super) fn with_exchanged(
         std::mem::swap(&mut contact.slave, &mut contact.master);
         contact.passes == Passes::One && stiffer.is_some_and(|(slave, master)| slave > master)
     };
-    let text = "in steps cut again and again, its master softer than its slave; it was repeated with the softer side as the slave \
-                (`\"passes\": \"one\"` keeps the sides as they are)";
+    let text = "in steps cut again and again, its master softer than its slave; it was repeated with the softer side as the slave, \
+                of which now is what is told of a slave (`\"passes\": \"one\"` keeps the sides as they are)";
     with_contacts(scene, before, time, ("passes", change, text))
 }
 
