@@ -18,9 +18,7 @@ pub fn find(model: &Model, u: &[f64]) -> Vec<u32> {
             targets[target as usize] = true;
         }
     }
-    let may = |dof: u32| {
-        model.dofs.dof(dof as usize) == Dof::Free && !targets[dof as usize]
-    };
+    let may = |dof: u32| model.dofs.dof(dof as usize) == Dof::Free && !targets[dof as usize];
     let mut out = Vec::new();
     for free in free_motions(model) {
         let Some(body) = model.bodies.iter().find(|b| b.name == free.body) else {
@@ -42,7 +40,12 @@ pub fn find(model: &Model, u: &[f64]) -> Vec<u32> {
                 let best = (nodes.iter())
                     .flat_map(|n| dofs(*n))
                     .filter(|dof| may(*dof) && !out.contains(dof))
-                    .map(|dof| (dof, held.rest(frame.row(position(dof / 3), dof as usize % 3))))
+                    .map(|dof| {
+                        (
+                            dof,
+                            held.rest(frame.row(position(dof / 3), dof as usize % 3)),
+                        )
+                    })
                     .max_by(|a, b| a.1.norm().total_cmp(&b.1.norm()));
                 match best {
                     Some((dof, rest)) if held.0.len() < 6 && rest.norm() > NEW => {

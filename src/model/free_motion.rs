@@ -208,9 +208,16 @@ fn free_motion(model: &Model, body: &super::BodyModel, piece: &[u32]) -> Option<
     let frame = Frame::new(nodes);
     let mut gram = Matrix6::<f64>::zeros();
     let own = |node: u32| node >= first && piece.binary_search(&(node - first)).is_ok();
-    held_rows(model, body, &frame, own, |n| model.nodes[n as usize], |row| {
-        gram += row * row.transpose();
-    });
+    held_rows(
+        model,
+        body,
+        &frame,
+        own,
+        |n| model.nodes[n as usize],
+        |row| {
+            gram += row * row.transpose();
+        },
+    );
     let eigen = SymmetricEigen::new(gram);
     let largest = eigen.eigenvalues.max();
     let limit = HINDERED * largest.max(1e-300);

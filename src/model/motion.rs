@@ -214,7 +214,14 @@ mod tests {
         back.go_back(WayBack { from: 0.8, to: 1.2 });
         let place = |m: &Motion, t: f64| m.pose(t).unwrap().translation.vector;
         // Twice as fast as it came.
-        for (t, as_at) in [(0.3, 0.3), (0.8, 0.8), (0.9, 0.6), (1.0, 0.4), (1.2, 0.0), (1.5, 0.0)] {
+        for (t, as_at) in [
+            (0.3, 0.3),
+            (0.8, 0.8),
+            (0.9, 0.6),
+            (1.0, 0.4),
+            (1.2, 0.0),
+            (1.5, 0.0),
+        ] {
             let apart = (place(&back, t) - place(&forth, as_at)).norm();
             assert!(apart < 1e-14, "at {t}: {apart}");
         }

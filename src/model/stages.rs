@@ -47,7 +47,9 @@ pub fn lowered(scene: &Scene) -> Option<Scene> {
         return None;
     }
     let mut out = scene.clone();
-    let ends: Vec<f64> = (0..scene.stages.len()).map(|k| scene.stage_span(k)[1]).collect();
+    let ends: Vec<f64> = (0..scene.stages.len())
+        .map(|k| scene.stage_span(k)[1])
+        .collect();
     // Rows of a table: nothing at the start, and what stages say at their ends.
     let table = |of: &dyn Fn(usize) -> Option<f64>| {
         let mut rows = vec![[0.0, 0.0]];
@@ -116,7 +118,10 @@ pub fn enter(
             .collect();
     }
     let given = start.held.iter().chain(&start.released);
-    if given.into_iter().any(|(dof, _)| *dof as usize >= model.dofs.dofs()) {
+    if given
+        .into_iter()
+        .any(|(dof, _)| *dof as usize >= model.dofs.dofs())
+    {
         let message = "what the stage begins with belongs to another model";
         return Err(text(format!("/stages/{index}"), message));
     }
@@ -134,7 +139,8 @@ pub fn enter(
     if index > 0 {
         let [from, to] = span;
         let table = vec![[from, 1.0], [to, 0.0]];
-        let factor = (Value::Table { table }.compile(&TIME)).at(|| format!("/stages/{index}/until"))?;
+        let factor =
+            (Value::Table { table }.compile(&TIME)).at(|| format!("/stages/{index}/until"))?;
         let forces = start.released.clone();
         (model.dead_loads).push((stage.name.clone(), DeadLoad::Nodal { forces, factor }));
     }
@@ -238,7 +244,8 @@ pub fn stabilized(model: &mut Model) -> Result<(), ModelError> {
                 "in the stage `{}` body `{body}` can move freely {motion}: no active support hinders it",
                 stage.name
             );
-            let help = format!("add `{AUTOMATIC}` to the `supports` of the stage, or keep a support");
+            let help =
+                format!("add `{AUTOMATIC}` to the `supports` of the stage, or keep a support");
             return Err(text(format!("/stages/{index}/supports"), message).help(help));
         }
     }

@@ -116,8 +116,10 @@ impl RunState<'_> {
         let before = before.unwrap_or_default();
         let index = before.index + 1;
         let mut residual = vec![0.0; state.u.len()];
-        let totals = (self.assembler.contact(&mut state.clone(), time, &mut residual))
-            .map_err(|e| RunError::internal(&e))?;
+        let totals = (self
+            .assembler
+            .contact(&mut state.clone(), time, &mut residual))
+        .map_err(|e| RunError::internal(&e))?;
         let active = scene.active_contacts(index);
         let lasting = |pair: usize| active.contains(model.pairs[pair].name.as_str());
         let [all, kept] = [&|_: usize| true, &lasting as &dyn Fn(usize) -> bool]
@@ -185,7 +187,9 @@ impl RunState<'_> {
         }
         let residual = self.workspace.residual();
         let held = stage.start.held.iter();
-        let reaction = held.fold(0.0f64, |most, (dof, _)| most.max(residual[*dof as usize].abs()));
+        let reaction = held.fold(0.0f64, |most, (dof, _)| {
+            most.max(residual[*dof as usize].abs())
+        });
         let bears = |name: &&String| {
             let mut pairs = model.pairs.iter().zip(&self.touching);
             pairs.any(|(pair, touching)| *touching && pair.name == **name)
@@ -237,7 +241,9 @@ impl FrictionTotals {
             let (Some(range), Some(_)) = (pair.history(), &pair.friction) else {
                 continue;
             };
-            let answers = pair.augmentation.map(|_| &assembler.answers()[range.clone()]);
+            let answers = pair
+                .augmentation
+                .map(|_| &assembler.answers()[range.clone()]);
             let eps_t = assembler.ratios[index] * assembler.penalties[index];
             let histories = &state.histories[range];
             total.add(histories, answers, &pair.points, eps_t, pair.share());
@@ -251,7 +257,10 @@ impl HandOver {
     ///
     /// # Errors
     /// A body that nothing holds in the stage, or a fault of the program.
-    pub(in crate::run) fn next(&mut self, loaded: &LoadedScene) -> Result<(Model, State), RunError> {
+    pub(in crate::run) fn next(
+        &mut self,
+        loaded: &LoadedScene,
+    ) -> Result<(Model, State), RunError> {
         let mut model = build::build_stage(loaded, self.start.clone(), Some(&self.u))
             .map_err(|e| RunError::model(loaded, e))?;
         let state = self.state(&model).map_err(|e| RunError::internal(&e))?;
@@ -326,7 +335,9 @@ impl HandOver {
             rebuilds: self.rebuilds,
             ..assembler.memory()
         };
-        assembler.restore(&memory).map_err(|e| RunError::internal(&e))
+        assembler
+            .restore(&memory)
+            .map_err(|e| RunError::internal(&e))
     }
 }
 
@@ -380,7 +391,12 @@ impl<'m> RunState<'m> {
             stored: before,
             ..
         } = hand;
-        let watch = watch.enter(model, &assembler, (&residual, &totals), (stored - before, tractions));
+        let watch = watch.enter(
+            model,
+            &assembler,
+            (&residual, &totals),
+            (stored - before, tractions),
+        );
         let settings = &loaded.scene.solution;
         let walk = StepControl {
             stepping: Stepping::new(

@@ -170,8 +170,13 @@ impl<'m> RunState<'m> {
             march.warn(note);
         }
         let masters = &mut march.assembler.masters;
-        commit::start(march.model, masters, &mut course.committed, (0.0, &|_| true))
-            .map_err(|e| RunError::internal(&e))?;
+        commit::start(
+            march.model,
+            masters,
+            &mut course.committed,
+            (0.0, &|_| true),
+        )
+        .map_err(|e| RunError::internal(&e))?;
         (march
             .assembler
             .set_in_motion(march.solver, &course.committed))
@@ -286,7 +291,11 @@ impl<'m> RunState<'m> {
 }
 
 /// The solver that the scene asks for; an unsymmetric system has only one, which the model has checked.
-pub(super) fn solver(scene: &Scene, symmetric: bool, threads: usize) -> Box<dyn LinearSolver + Send> {
+pub(super) fn solver(
+    scene: &Scene,
+    symmetric: bool,
+    threads: usize,
+) -> Box<dyn LinearSolver + Send> {
     use crate::scene::LinearSolver as Choice;
     use crate::system::linear::Mode;
     let options = |mode| SolverOptions {

@@ -19,7 +19,11 @@ pub(super) fn check(c: &mut Checker, scene: &Scene) {
         }
         if !names.insert(&stage.name) {
             let message = format!("two stages have the name `{}`", shorten(&stage.name));
-            c.add(&format!("{at}/name"), message, Some("choose another name".into()));
+            c.add(
+                &format!("{at}/name"),
+                message,
+                Some("choose another name".into()),
+            );
         }
         check_time(c, &at, scene, index);
         if check_names(c, &at, scene, stage) {
@@ -53,7 +57,11 @@ fn together(c: &mut Checker, scene: &Scene) {
                 let message = format!(
                     "`{AUTOMATIC}` is the name of the supports that stages find, and of columns of the history"
                 );
-                c.add(&path(&[section, AUTOMATIC]), message, Some("choose another name".into()));
+                c.add(
+                    &path(&[section, AUTOMATIC]),
+                    message,
+                    Some("choose another name".into()),
+                );
             }
         }
     }
@@ -65,7 +73,10 @@ fn check_time(c: &mut Checker, at: &str, scene: &Scene, index: usize) {
     let place = format!("{at}/until");
     let Some(until) = stage.until else {
         if !last {
-            let message = format!("the stage `{}` does not say when it ends", shorten(&stage.name));
+            let message = format!(
+                "the stage `{}` does not say when it ends",
+                shorten(&stage.name)
+            );
             let help = "give the time `until` which it goes; only the last stage ends with the run";
             c.add(at, message, Some(help.into()));
         }
@@ -148,19 +159,25 @@ fn check_release(c: &mut Checker, at: &str, scene: &Scene, index: usize) {
             continue;
         };
         if surface.motion.free.is_some() {
-            let message = format!("surface `{master}` is driven by force: it has no way back that is known");
+            let message =
+                format!("surface `{master}` is driven by force: it has no way back that is known");
             let help = "take `\"release\": \"forces\"`, or list its contacts in `contacts`";
             c.add(&place, message, Some(help.into()));
         }
         let shared = |other: &&&str| {
             !ending.contains(**other)
-                && scene.contacts.get(**other).is_some_and(|o| o.master == contact.master)
+                && scene
+                    .contacts
+                    .get(**other)
+                    .is_some_and(|o| o.master == contact.master)
         };
         if let Some(other) = active.iter().find(shared) {
             let message = format!(
                 "surface `{master}` would go back, but contact `{other}`, which goes on, has it as its master"
             );
-            let help = format!("list contact `{name}` in `contacts` too, or take `\"release\": \"forces\"`");
+            let help = format!(
+                "list contact `{name}` in `contacts` too, or take `\"release\": \"forces\"`"
+            );
             c.add(&place, message, Some(help));
         }
     }
@@ -191,7 +208,11 @@ fn check_starts(c: &mut Checker, at: &str, scene: &Scene, index: usize) {
                 shorten(&contact.master),
                 shorten(&scene.stages[gone].name)
             );
-            c.add(&place, message, Some("give the later contact a surface of its own".into()));
+            c.add(
+                &place,
+                message,
+                Some("give the later contact a surface of its own".into()),
+            );
         }
     }
 }
@@ -248,9 +269,14 @@ fn check_loads(c: &mut Checker, at: &str, scene: &Scene, stage: &Stage) {
             continue;
         };
         let vectors = [&load.force, &load.traction, &load.gravity];
-        let given = (vectors.into_iter().flatten().flatten()).chain(&load.pressure).chain(&load.couple);
+        let given = (vectors.into_iter().flatten().flatten())
+            .chain(&load.pressure)
+            .chain(&load.couple);
         if given.into_iter().any(|v| !matches!(v, Value::Number(_))) {
-            let message = format!("load `{}` is not given by numbers, which a stage could multiply", shorten(name));
+            let message = format!(
+                "load `{}` is not given by numbers, which a stage could multiply",
+                shorten(name)
+            );
             let help = "give the load a number in place of a table or an expression, or leave it out of the stage";
             c.add(&place, message, Some(help.into()));
         }
