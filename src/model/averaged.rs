@@ -71,6 +71,11 @@ impl SlaveNodes {
         })
     }
 
+    /// From here on `first` averaged nodes come before them in the model.
+    pub fn renumber(&mut self, first: usize) {
+        self.first = first;
+    }
+
     /// Number of nodes.
     pub fn len(&self) -> usize {
         self.nodes.len()

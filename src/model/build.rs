@@ -19,6 +19,7 @@ use super::error::{At, number, text};
 use super::loads::{DeadLoad, FollowerPressure, LoadPoint, load_points, sheet_load_points};
 use super::motion::pose;
 use super::sheet_pressure::{FollowingSpan, PressedSpan};
+use super::stages::{self, StageStart};
 use super::symmetry::Unsymmetric;
 use super::{BodyModel, Metal, Model, ModelError, SurfaceModel, grid};
 use crate::contact::lever::Lever;
@@ -42,6 +43,8 @@ pub(crate) const FEWER: &str = "take fewer elements, or a coarser mesh away from
 struct Builder<'s> {
     scene: &'s Scene,
     dir: &'s Path,
+    /// The stage whose supports are resolved.
+    stage: usize,
     nodes: Vec<Vec3>,
     bodies: Vec<BodyModel>,
     body_index: BTreeMap<&'s str, usize>,
@@ -60,8 +63,23 @@ struct Builder<'s> {
 /// # Errors
 /// [`ModelError`] with the field of the scene at fault.
 pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
-    let scene = &loaded.scene;
-    let mut builder = Builder::new(loaded);
+    build_stage(loaded, StageStart::default(), None)
+}
+
+/// The model of one stage of a scene, or of all of it where it has none. Where displacements `u` are given, supports are found for
+/// where they put the bodies.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_stage(
+    loaded: &LoadedScene,
+    start: StageStart,
+    u: Option<&[f64]>,
+) -> Result<Model, ModelError> {
+    let lowered = stages::lowered(&loaded.scene);
+    let scene = lowered.as_ref().unwrap_or(&loaded.scene);
+    let mut builder = Builder::new(scene, &loaded.dir);
+    builder.stage = start.index;
     let bodies = builder.bodies();
     let sets = match bodies {
         Ok(()) => builder.references(),
@@ -71,6 +89,12 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
     ModelError::all(bodies.err().into_iter().chain(sets).chain(wrong))?;
     let (pairs, mut surfaces) = builder.contacts(surfaces)?;
     let held = builder.drive(&mut surfaces)?;
+    // Those of later stages, so that a contradiction is told before anything is solved.
+    for later in (0..scene.stages.len()).filter(|stage| *stage > start.index) {
+        builder.stage = later;
+        builder.supports(&held)?;
+    }
+    builder.stage = start.index;
     let supports = builder.supports(&held)?;
     builder.hold_normals(&supports.held_normals)?;
     builder.held_fibres()?;
@@ -91,6 +115,7 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         dofs: supports.dofs,
         probes,
         levers: builder.levers,
+        stage: None,
         stabilization: None,
         dynamics: None,
         small: None,
@@ -100,14 +125,19 @@ pub fn build(loaded: &LoadedScene) -> Result<Model, ModelError> {
         warnings: builder.warnings,
         kinks: Vec::new(),
     };
+    let first = start.index == 0;
+    stages::enter(scene, &mut model, start, u)?;
     model.small = super::small::linearise(scene, &mut model)?;
     model.unsymmetric = symmetry(scene, &mut model)?;
     model.kinks = kinks(scene, &model);
     values::check(scene, &model)?;
     model.dynamics = super::dynamics::dynamics(scene, &model)?;
     stabilize(scene, &mut model)?;
+    stages::stabilized(&mut model)?;
     super::initial::check(&mut model, scene)?;
-    super::driven::start::approach(&mut model, scene)?;
+    if first {
+        super::driven::start::approach(&mut model, scene)?;
+    }
     Ok(model)
 }
 
@@ -129,14 +159,15 @@ pub fn exact_surface(loaded: &LoadedScene, name: &str) -> Result<PatchSet, Model
         size: None,
         count: Some([1, 1]),
     });
-    Builder::new(loaded).exact(name, &surface)
+    Builder::new(&loaded.scene, &loaded.dir).exact(name, &surface)
 }
 
 impl<'s> Builder<'s> {
-    fn new(loaded: &'s LoadedScene) -> Self {
+    fn new(scene: &'s Scene, dir: &'s Path) -> Self {
         Builder {
-            scene: &loaded.scene,
-            dir: &loaded.dir,
+            scene,
+            dir,
+            stage: 0,
             nodes: Vec::new(),
             bodies: Vec::new(),
             body_index: BTreeMap::new(),
@@ -221,6 +252,7 @@ fn kinks(scene: &Scene, model: &Model) -> Vec<f64> {
     let mut times: Vec<f64> = (model.functions())
         .flat_map(|(f, _)| f.breakpoints())
         .chain(shrunk)
+        .chain(stages::kinks(scene, model))
         .chain(match scene.solution.stabilization {
             Stabilization::Viscous { until, .. } => until,
             Stabilization::Auto | Stabilization::None => None,

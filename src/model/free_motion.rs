@@ -92,13 +92,13 @@ impl FreeMotion {
 const HINDERED: f64 = 1e-10;
 
 /// Rigid motions of a piece: three shifts, and three turns about its centre at a radius of its size.
-struct Frame {
+pub(super) struct Frame {
     center: Vec3,
     size: f64,
 }
 
 impl Frame {
-    fn new(nodes: impl Iterator<Item = Vec3> + Clone) -> Frame {
+    pub(super) fn new(nodes: impl Iterator<Item = Vec3> + Clone) -> Frame {
         let (sum, count) = (nodes.clone()).fold((Vec3::zeros(), 0.0), |(s, n), x| (s + x, n + 1.0));
         let center = sum / count;
         let squares: f64 = nodes.map(|x| (x - center).norm_squared()).sum();
@@ -109,7 +109,7 @@ impl Frame {
     }
 
     /// What the six motions do to a component of a point.
-    fn row(&self, x: Vec3, component: usize) -> Vector6<f64> {
+    pub(super) fn row(&self, x: Vec3, component: usize) -> Vector6<f64> {
         Vector6::from_fn(|k, _| {
             let mut unit = Vector6::zeros();
             unit[k] = 1.0;
@@ -175,29 +175,49 @@ fn pieces(nodes: usize, body: &super::BodyModel) -> Vec<Vec<u32>> {
     groups.into_values().collect()
 }
 
-fn free_motion(model: &Model, body: &super::BodyModel, piece: &[u32]) -> Option<FreeMotion> {
-    let first = body.first_node;
-    let nodes = piece.iter().map(|n| model.nodes[(first + n) as usize]);
-    let frame = Frame::new(nodes);
-    let own = |dof: u32| dof / 3 >= first && piece.binary_search(&(dof / 3 - first)).is_ok();
-    let mut gram = Matrix6::<f64>::zeros();
-    for support in model.supports().filter(|s| own(s.dofs[0])) {
-        let row = frame.held(&support, |n| model.nodes[n as usize]);
-        gram += row * row.transpose();
+/// What supports and ties hold of the rigid motions of a piece of a body, with its nodes at these positions: calls `add` with a
+/// row for each.
+pub(super) fn held_rows(
+    model: &Model,
+    body: &super::BodyModel,
+    frame: &Frame,
+    own: impl Fn(u32) -> bool,
+    position: impl Fn(u32) -> Vec3 + Copy,
+    mut add: impl FnMut(Vector6<f64>),
+) {
+    for support in model.supports().filter(|s| own(s.dofs[0] / 3)) {
+        add(frame.held(&support, position));
     }
     // What a sheet's control points follow moves with them, and normals that are held do not turn.
-    for tied in model.tied.iter().filter(|t| own(t.dof) && t.to != t.dof) {
-        let [a, b] =
-            [tied.dof, tied.to].map(|d| frame.row(model.nodes[d as usize / 3], d as usize % 3));
-        gram += (a - b) * (a - b).transpose();
+    for tied in (model.tied.iter()).filter(|t| own(t.dof / 3) && t.to != t.dof) {
+        let [a, b] = [tied.dof, tied.to].map(|d| frame.row(position(d / 3), d as usize % 3));
+        add(a - b);
     }
     if let Block::Nurbs(block) = &body.block {
         for axis in block.held_turns() {
             let mut row = Vector6::zeros();
             row.fixed_rows_mut::<3>(3).copy_from(&axis);
-            gram += row * row.transpose();
+            add(row);
         }
     }
+}
+
+fn free_motion(model: &Model, body: &super::BodyModel, piece: &[u32]) -> Option<FreeMotion> {
+    let first = body.first_node;
+    let nodes = piece.iter().map(|n| model.nodes[(first + n) as usize]);
+    let frame = Frame::new(nodes);
+    let mut gram = Matrix6::<f64>::zeros();
+    let own = |node: u32| node >= first && piece.binary_search(&(node - first)).is_ok();
+    held_rows(
+        model,
+        body,
+        &frame,
+        own,
+        |n| model.nodes[n as usize],
+        |row| {
+            gram += row * row.transpose();
+        },
+    );
     let eigen = SymmetricEigen::new(gram);
     let largest = eigen.eigenvalues.max();
     let limit = HINDERED * largest.max(1e-300);

@@ -27,6 +27,11 @@ pub enum DeadLoad {
         points: Vec<LoadPoint>,
         value: TimeFunction,
     },
+    /// Forces on degrees of freedom, all of them times one factor.
+    Nodal {
+        forces: Vec<(u32, f64)>,
+        factor: TimeFunction,
+    },
 }
 
 /// A quadrature point of a loaded face on the undeformed mesh.
@@ -137,6 +142,10 @@ impl DeadLoad {
                     p.terms().for_each(|(n, w)| put(n, f * w));
                 }
             }
+            DeadLoad::Nodal { forces, factor } => {
+                let factor = factor.eval(t)?;
+                (forces.iter()).for_each(|&(dof, f)| force[dof as usize] += factor * f);
+            }
             DeadLoad::Pressure { points, value } => {
                 for p in points {
                     let f = p.normal * (-value.eval_at(&p.position, t)? * p.area);
@@ -152,6 +161,7 @@ impl DeadLoad {
         match self {
             DeadLoad::Force { value, .. } | DeadLoad::Traction { value, .. } => value,
             DeadLoad::Pressure { value, .. } => std::slice::from_ref(value),
+            DeadLoad::Nodal { factor, .. } => std::slice::from_ref(factor),
         }
     }
 }

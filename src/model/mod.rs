@@ -9,6 +9,7 @@ pub(crate) mod edge_couple;
 pub(crate) mod edges;
 mod effect;
 pub(crate) mod error;
+mod found_supports;
 pub(crate) mod free_motion;
 pub(crate) mod friction;
 pub(crate) mod grid;
@@ -29,6 +30,7 @@ pub(crate) mod sheet_pressure;
 pub(crate) mod slave;
 pub(crate) mod small;
 pub(crate) mod stabilization;
+pub(crate) mod stages;
 pub mod state;
 pub mod surface;
 pub(crate) mod symmetry;
@@ -51,6 +53,7 @@ use master::Master;
 use overclosure::Overclosure;
 use small::SmallModel;
 use stabilization::StabilizationModel;
+use stages::StageModel;
 use symmetry::Unsymmetric;
 
 pub use effect::EffectKind;
@@ -95,6 +98,8 @@ pub struct Model {
     pub kinks: Vec<f64>,
     /// Curves that the scene asks for.
     pub probes: Vec<probe::ProbeModel>,
+    /// Which part of the run it is the model of; none where the scene has no stages.
+    pub stage: Option<StageModel>,
     /// Slave points at a height above a mid-surface, by the numbers in them; none where no shell is a CAD surface.
     pub levers: Vec<Lever>,
 }

@@ -9,6 +9,29 @@ pub struct Motion {
     placement: Isometry3<f64>,
     translation: [TimeFunction; 3],
     rotation: Option<Turn>,
+    back: Option<WayBack>,
+}
+
+/// From the time `from` on the motion is run back, evenly until `to`, and the surface then stays where it was at time 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WayBack {
+    pub from: f64,
+    pub to: f64,
+}
+
+impl WayBack {
+    /// The time whose place the surface has at time `t`.
+    fn of(&self, t: f64) -> f64 {
+        match t <= self.from {
+            true => t,
+            false => self.from * ((self.to - t) / (self.to - self.from)).max(0.0),
+        }
+    }
+
+    /// The time at which the surface has the place of `t` once more.
+    fn again(&self, t: f64) -> f64 {
+        self.to - t / self.from * (self.to - self.from)
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -73,11 +96,35 @@ impl Motion {
             placement: pose(placement),
             translation: [compile(x)?, compile(y)?, compile(z)?],
             rotation,
+            back: None,
         })
+    }
+
+    /// Runs the motion back from a time on.
+    pub fn go_back(&mut self, back: WayBack) {
+        self.back = Some(back);
+    }
+
+    /// The time that its functions are evaluated at.
+    #[inline]
+    fn clock(&self, t: f64) -> f64 {
+        self.back.map_or(t, |back| back.of(t))
+    }
+
+    /// Times at which it has a kink on its way back.
+    pub fn kinks_back(&self) -> Vec<f64> {
+        let Some(back) = self.back else {
+            return Vec::new();
+        };
+        let rows = self.functions().flat_map(TimeFunction::breakpoints);
+        let passed = rows.filter(|t| *t > 0.0 && *t < back.from);
+        let again = passed.map(|t| back.again(t));
+        again.chain([back.from, back.to]).collect()
     }
 
     /// From the surface's own coordinates to space at time `t`.
     pub fn pose(&self, t: f64) -> Result<Isometry3<f64>, ValueError> {
+        let t = self.clock(t);
         let [x, y, z] = &self.translation;
         let moved = Vec3::new(x.eval(t)?, y.eval(t)?, z.eval(t)?);
         let turned = match &self.rotation {
@@ -118,6 +165,7 @@ impl Motion {
         let Some(turn) = &self.rotation else {
             return Ok(0.0);
         };
+        let [start, end] = [start, end].map(|t| self.clock(t));
         Ok(turn.angle.eval(end)? - turn.angle.eval(start)?)
     }
 
@@ -128,6 +176,7 @@ impl Motion {
 
     /// Prescribed translation at a time, and the angle of the prescribed rotation (degrees) where there is one.
     pub fn way(&self, t: f64) -> Result<(Vec3, Option<f64>), ValueError> {
+        let t = self.clock(t);
         let [x, y, z] = &self.translation;
         let angle = self.rotation.as_ref().map(|turn| turn.angle.eval(t));
         Ok((
@@ -152,6 +201,32 @@ impl Motion {
 mod tests {
     use super::*;
     use nalgebra::Point3;
+
+    #[test]
+    fn run_back_it_meets_its_places_again() {
+        let text = |t: &str| scene::Value::Expression(t.to_owned());
+        let motion = scene::Motion {
+            translation: [text("3*t*t"), text("0"), text("-t")],
+            ..scene::Motion::default()
+        };
+        let forth = Motion::new(&motion, &scene::Placement::default()).unwrap();
+        let mut back = forth.clone();
+        back.go_back(WayBack { from: 0.8, to: 1.2 });
+        let place = |m: &Motion, t: f64| m.pose(t).unwrap().translation.vector;
+        // Twice as fast as it came.
+        for (t, as_at) in [
+            (0.3, 0.3),
+            (0.8, 0.8),
+            (0.9, 0.6),
+            (1.0, 0.4),
+            (1.2, 0.0),
+            (1.5, 0.0),
+        ] {
+            let apart = (place(&back, t) - place(&forth, as_at)).norm();
+            assert!(apart < 1e-14, "at {t}: {apart}");
+        }
+        assert!(place(&back, 1.0).norm() > 0.1);
+    }
 
     #[test]
     fn placed_then_turned_about_its_centre_then_moved() {

@@ -156,7 +156,9 @@ pub fn stabilization(
 fn piece(model: &Model, motion: FreeMotion) -> Result<FreePiece, ModelError> {
     let body = (model.bodies.iter()).position(|b| b.name == motion.body);
     let meets = (model.pairs.iter())
-        .filter(|p| Some(p.body) == body || p.body_master().is_some_and(|m| Some(m.body) == body));
+        .filter(|p| Some(p.body) == body || p.body_master().is_some_and(|m| Some(m.body) == body))
+        // Contacts that do not act in a stage have none.
+        .filter(|p| !p.points.is_empty());
     let depth = meets
         .map(|p| p.master.depth(model))
         .fold(f64::INFINITY, f64::min);

@@ -93,6 +93,9 @@ pub struct Summary {
     /// What was found about the accuracy of contact forces.
     #[serde(default)]
     pub accuracy: Accuracy,
+    /// Stages of the run that have ended, in their order; none where the scene has no stages.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stages: Vec<StageSummary>,
     /// Times that the run was continued after an interruption. Seconds and phases are then those of all parts, each up to
     /// the step that the next one went on from.
     #[serde(default)]
@@ -102,6 +105,25 @@ pub struct Summary {
     pub scene: String,
     /// Versions that made this file.
     pub versions: Versions,
+}
+
+/// How a stage of a run ended.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StageSummary {
+    pub name: String,
+    /// Time at its end.
+    pub until: f64,
+    /// Its last step.
+    pub step: u32,
+    /// The largest force so far of a tool, between bodies, or of what was let down in a stage (force); 0 in the first stage.
+    pub force: f64,
+    /// Number of displacements that supports found by the program held.
+    pub found_supports: usize,
+    /// Largest force of one of these supports at the end (force).
+    pub reaction: f64,
+    /// Contacts whose tools have gone back, and which still bear.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bearing: Vec<String>,
 }
 
 /// A column of a probe.

@@ -355,13 +355,15 @@ fn supports(scene: &Scene, model: &Model) -> Vec<SupportReport> {
         }
         words
     };
+    // Those that stages find are not known before a run.
     (model.supports.iter().enumerate())
-        .map(|(i, name)| {
+        .filter_map(|(i, name)| Some((i, name, scene.supports.get(name)?)))
+        .map(|(i, name, support)| {
             let own = |support: u32| support as usize == i;
             SupportReport {
                 name: name.clone(),
-                on: scene.supports[name].on.to_string(),
-                kind: kind(&scene.supports[name]),
+                on: support.on.to_string(),
+                kind: kind(support),
                 components: model.prescribed.iter().filter(|p| own(p.support)).count()
                     + model.means.iter().filter(|m| own(m.support)).count(),
             }

@@ -33,7 +33,7 @@ pub struct FrictionTotals {
 impl FrictionTotals {
     /// Adds the points of a pair, of whose energies `share` counts. With multipliers the tangential penalty carries only what
     /// `answers` say is elastic.
-    fn add(
+    pub(super) fn add(
         &mut self,
         histories: &[PointHistory],
         answers: Option<&[Option<PointAnswer>]>,
@@ -57,11 +57,16 @@ impl FrictionTotals {
     }
 }
 
-/// Sets the points that slip is measured from, before anything has moved.
+/// Sets the points that slip is measured from, at a time at which contacts begin: those of the pairs that are told.
 ///
 /// # Errors
-/// A motion without a value at time 0.
-pub fn start(model: &Model, masters: &mut Masters, state: &mut State) -> Result<(), Fault> {
+/// A motion without a value at that time.
+pub fn start(
+    model: &Model,
+    masters: &mut Masters,
+    state: &mut State,
+    (time, begins): (f64, &dyn Fn(usize) -> bool),
+) -> Result<(), Fault> {
     if model.histories() == 0 {
         return Ok(());
     }
@@ -70,18 +75,18 @@ pub fn start(model: &Model, masters: &mut Masters, state: &mut State) -> Result<
     for (index, pair) in model.pairs.iter().enumerate() {
         let points = first..first + state.slaves(model, index).len();
         first = points.end;
-        let (Some(range), Some(_)) = (pair.history(), &pair.friction) else {
+        let (Some(range), Some(_), true) = (pair.history(), &pair.friction, begins(index)) else {
             continue;
         };
         let Master::Rigid(surface) = &pair.master else {
-            let batch = moving::Batch::new(model, masters, index, &state.u, 0.0, Penalty::of(0.0));
+            let batch = moving::Batch::new(model, masters, index, &state.u, time, Penalty::of(0.0));
             if let Some(batch) = batch {
                 batch.start(&state.points[points], &mut state.histories[range]);
             }
             continue;
         };
-        let master = model.surfaces[*surface].at(0.0, &state.u)?;
-        let offsets = pair.offsets(0.0);
+        let master = model.surfaces[*surface].at(time, &state.u)?;
+        let offsets = pair.offsets(time);
         let (u, hints) = (&state.u, &state.points[points]);
         (state.histories[range]
             .par_iter_mut()
@@ -122,13 +127,16 @@ pub fn commit<L: PairLaw>(
     (before, start): (&[f64], f64),
     time: f64,
 ) -> Result<FrictionTotals, Fault> {
+    let mut total = FrictionTotals {
+        dissipated: model.stage.as_ref().map_or(0.0, |s| s.start.dissipated),
+        ..FrictionTotals::default()
+    };
     if model.histories() == 0 {
-        return Ok(FrictionTotals::default());
+        return Ok(total);
     }
     assembler.masters.update(model, &state.u);
     let (masters, answers) = (&assembler.masters, assembler.answers());
     let (penalties, ratios) = (&assembler.penalties, &assembler.ratios);
-    let mut total = FrictionTotals::default();
     let mut first = 0;
     for (index, pair) in model.pairs.iter().enumerate() {
         let points = first..first + state.slaves(model, index).len();

@@ -6,6 +6,7 @@ mod released;
 mod replaced;
 mod restart;
 mod settle;
+mod stages;
 mod start;
 mod summary;
 

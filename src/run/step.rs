@@ -310,6 +310,10 @@ impl Attempts<'_, '_> {
         trial.copy_from(self.committed);
         for entry in self.model.driven() {
             let (index, surface, driven) = entry;
+            // One that stands still, because no contact acts on it.
+            if !driven.free().contains(&true) {
+                continue;
+            }
             let mut first = 0;
             let touches = (self.model.pairs.iter().enumerate()).any(|(i, pair)| {
                 let range = first..first + trial.slaves(self.model, i).len();

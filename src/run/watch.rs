@@ -160,6 +160,44 @@ impl Watch {
         (self.loads).copy_from_slice(&assembler.external()[..loads]);
     }
 
+    /// Normal tractions and gaps of the points `range` with multipliers; nothing where the model has none.
+    pub(super) fn tractions(&self, range: std::ops::Range<usize>) -> &[[f64; 2]] {
+        self.tractions.get(range).unwrap_or_default()
+    }
+
+    /// Goes on in the model of the next stage, whose forces at its start are these: `changed` is what contacts store more there
+    /// than at the end of the stage before, which nobody put in, and `tractions` are those of the points with history.
+    pub(super) fn enter<L: PairLaw>(
+        self,
+        model: &Model,
+        assembler: &Assembler<L>,
+        (residual, totals): (&[f64], &Totals),
+        (changed, tractions): (f64, Vec<[f64; 2]>),
+    ) -> Watch {
+        let mut watch = Watch::new(model);
+        let n = watch.reactions.len();
+        watch.reactions.copy_from_slice(&residual[..n]);
+        let loads = watch.loads.len();
+        (watch.loads).copy_from_slice(&assembler.external()[..loads]);
+        watch.surfaces.clone_from(&totals.surfaces);
+        if watch.tractions.len() == tractions.len() {
+            watch.tractions = tractions;
+        }
+        Watch {
+            external: self.external,
+            adjusted: self.adjusted + changed,
+            imbalance: self.imbalance,
+            turnover: self.turnover,
+            worst: self.worst,
+            worst_step: self.worst_step,
+            speed: self.speed,
+            span: self.span,
+            penalties: self.penalties,
+            ratios: self.ratios,
+            ..watch
+        }
+    }
+
     /// Into a checkpoint.
     pub(super) fn put(&self, out: &mut Writer) {
         let Watch {

@@ -72,6 +72,7 @@ impl SceneBuilder {
                 supports: BTreeMap::new(),
                 loads: BTreeMap::new(),
                 probes: BTreeMap::new(),
+                stages: Vec::new(),
                 solution: Solution::default(),
                 output: Output::default(),
             },
@@ -99,6 +100,12 @@ impl SceneBuilder {
     /// The units of all numbers; materials that are taken by name need them.
     pub fn units(mut self, units: Units) -> Self {
         self.scene.units = units;
+        self
+    }
+
+    /// Adds a stage behind those that there are.
+    pub fn stage(mut self, stage: Stage) -> Self {
+        self.scene.stages.push(stage);
         self
     }
 

@@ -11,6 +11,7 @@ mod json;
 mod load;
 mod problem;
 mod schema;
+mod stages;
 mod types;
 mod value;
 

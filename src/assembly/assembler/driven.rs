@@ -106,7 +106,10 @@ impl DrivenBlock {
 
     /// The borders of all driven surfaces.
     pub fn all(model: &Model, pattern: &Pattern) -> Result<Vec<DrivenBlock>, PatternError> {
+        // One that stands still, because no contact acts on it, has no rows.
+        let free = |driven: &Driven| driven.free().contains(&true);
         let borders: Result<Vec<DrivenBlock>, _> = (model.driven())
+            .filter(|(_, _, driven)| free(driven))
             .map(|(surface, _, driven)| DrivenBlock::new(model, surface, driven, pattern))
             .collect();
         let mut borders = borders?;

@@ -5,7 +5,7 @@ use super::super::error::{At, number, text};
 use super::sheet_supports::SheetSupports;
 use super::{BodyModel, Builder, ModelError};
 use crate::mesh::{Edge, ThicknessColumns};
-use crate::scene::{Axis, POSITION_AND_TIME, Support, TimeFunction, Value};
+use crate::scene::{AUTOMATIC, Axis, POSITION_AND_TIME, Support, TimeFunction, Value};
 use crate::shell::HeldNormal;
 use crate::system::{DofMap, DofMapBuilder};
 use covact_geometry::Vec3;
@@ -49,7 +49,9 @@ impl Builder<'_> {
         let mut all = Collector {
             nodes: &self.nodes,
             end_time: scene.solution.end_time,
-            names: scene.supports.keys().cloned().collect(),
+            names: (scene.supports.keys().cloned())
+                .chain(scene.finds_supports().then(|| AUTOMATIC.to_owned()))
+                .collect(),
             prescribed: Vec::new(),
             means: Vec::new(),
             dofs: DofMapBuilder::new(self.nodes.len()),
@@ -58,10 +60,12 @@ impl Builder<'_> {
         };
         let mut columns: BTreeMap<usize, ThicknessColumns> = BTreeMap::new();
         let mut sheets = SheetSupports::default();
+        let stage = scene.stages.get(self.stage);
+        let active = |name: &str| stage.is_none_or(|stage| stage.holds(name));
         // Supports of single nodes first: where one of a column is held, the mean moves the other.
         for mid_surface in [false, true] {
             for (index, (name, support)) in scene.supports.iter().enumerate() {
-                if support.mid_surface != mid_surface {
+                if support.mid_surface != mid_surface || !active(name) {
                     continue;
                 }
                 self.sheet_support((index as u32, name, support), &mut sheets)?;

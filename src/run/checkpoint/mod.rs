@@ -14,6 +14,7 @@ pub mod bytes;
 mod error;
 mod fingerprint;
 mod slots;
+pub mod stages;
 pub mod state;
 #[cfg(test)]
 mod tests;
@@ -34,7 +35,7 @@ use std::time::{Duration, Instant};
 /// First bytes of a file; the line ends show where it was taken for text.
 const MARK: &[u8; 8] = b"covact\r\n";
 /// Version of the layout and of the sections; to be raised with every change of them.
-const FORMAT: u32 = 11;
+const FORMAT: u32 = 12;
 /// Mark, format, length and number.
 const HEAD: usize = 28;
 /// Time between two checkpoints that are brought to the disk, in times of what the last one took.
@@ -180,6 +181,20 @@ impl Sections {
     ) -> Result<T, CheckpointError> {
         let mut reader = Reader::new(&self.bytes[self.start..]);
         let out = take(&mut reader).and_then(|out| reader.end().map(|()| out));
+        out.map_err(|fault| damaged(&self.path, fault.0))
+    }
+
+    /// Reads the first of them.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Damaged`] where `take` finds something that cannot be.
+    pub fn read_first<T>(
+        &self,
+        name: &'static str,
+        take: impl FnOnce(&mut Reader) -> Result<T, Malformed>,
+    ) -> Result<T, CheckpointError> {
+        let mut reader = Reader::new(&self.bytes[self.start..]);
+        let out = reader.section(name, take);
         out.map_err(|fault| damaged(&self.path, fault.0))
     }
 }

@@ -8,9 +8,9 @@ use crate::assembly::{AssemblerMemory, CouplingMemory, Factored};
 use crate::effects::inertia::{Motion, MotionEnergy};
 use crate::model::Model;
 use crate::model::state::State;
-use crate::output::{HistoryMark, OutputError};
+use crate::output::{HistoryMark, OutputError, StageSummary};
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
-use crate::run::checkpoint::{CheckpointError, Keeper, Sections, Slot, state};
+use crate::run::checkpoint::{CheckpointError, Keeper, Sections, Slot, stages, state};
 use crate::run::compliance::Compliance;
 use crate::run::cost::ResourceUse;
 use crate::run::habit::Habit;
@@ -42,6 +42,7 @@ pub struct Kept {
     pub assembler: AssemblerMemory,
     pub expects_indefinite: bool,
     pub(super) spent: ResourceUse,
+    pub(super) stages: Vec<StageSummary>,
 }
 
 /// The files of a run at a checkpoint.
@@ -65,6 +66,8 @@ impl Kept {
     }
 
     fn take(model: &Model, sections: &Sections, from: &mut Reader) -> Result<Self, Malformed> {
+        // The model is that of its stage.
+        let (_, stages) = from.section("stages", stages::take)?;
         let (progress, spent) = from.section("progress", |r| {
             Ok((take_progress(r)?, ResourceUse::take(r)?))
         })?;
@@ -123,6 +126,7 @@ impl Kept {
             assembler,
             expects_indefinite,
             spent,
+            stages,
         })
     }
 }
@@ -154,6 +158,7 @@ impl RunState<'_> {
             course,
             // Of the checkpoint that the run went on from.
             files: _,
+            stages,
         } = self;
         let Course {
             committed,
@@ -181,6 +186,8 @@ impl RunState<'_> {
         let spent = cost.spent(phases);
         let memory = assembler.memory();
         keeper.keep(|out| {
+            // First, since the model that reads the others depends on it.
+            out.section("stages", |out| stages::put(model, stages, out));
             out.section("progress", |out| {
                 put_progress(progress, out);
                 spent.put(out);

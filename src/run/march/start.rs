@@ -6,6 +6,7 @@ use crate::model::Model;
 use crate::model::edges;
 use crate::model::error::number;
 use crate::model::state::State;
+use crate::output::StageSummary;
 use crate::plan::Plan;
 use crate::run::checkpoint::{CheckpointError, Sections};
 use crate::run::commit;
@@ -56,6 +57,8 @@ pub(crate) struct RunState<'m> {
     pub(in crate::run) course: Course,
     /// The files of the checkpoint that the run went on from.
     pub(in crate::run) files: Option<KeptFiles>,
+    /// Stages that have ended.
+    pub(super) stages: Vec<StageSummary>,
 }
 
 impl<'m> RunState<'m> {
@@ -149,6 +152,7 @@ impl<'m> RunState<'m> {
                 outputs,
             },
             files: None,
+            stages: Vec::new(),
         };
         match kept {
             None => run.begin(observer)?,
@@ -168,8 +172,13 @@ impl<'m> RunState<'m> {
             march.warn(note);
         }
         let masters = &mut march.assembler.masters;
-        commit::start(march.model, masters, &mut course.committed)
-            .map_err(|e| RunError::internal(&e))?;
+        commit::start(
+            march.model,
+            masters,
+            &mut course.committed,
+            (0.0, &|_| true),
+        )
+        .map_err(|e| RunError::internal(&e))?;
         (march
             .assembler
             .set_in_motion(march.solver, &course.committed))
@@ -205,8 +214,10 @@ impl<'m> RunState<'m> {
             expects_indefinite: _,
             spent,
             files,
+            stages,
         } = kept;
         self.files = Some(files);
+        self.stages = stages;
         self.workspace.factorizations = factorizations;
         (self.progress, self.touched, self.touching) = (progress, touched, touching);
         (self.watch, self.compliance, self.peaks) = (watch, compliance, peaks);
@@ -256,6 +267,7 @@ impl<'m> RunState<'m> {
             cost: _,
             course,
             files: _,
+            stages: _,
         } = self;
         let march = March {
             scene: &problem.loaded.scene,
@@ -282,7 +294,11 @@ impl<'m> RunState<'m> {
 }
 
 /// The solver that the scene asks for; an unsymmetric system has only one, which the model has checked.
-fn solver(scene: &Scene, symmetric: bool, threads: usize) -> Box<dyn LinearSolver + Send> {
+pub(super) fn solver(
+    scene: &Scene,
+    symmetric: bool,
+    threads: usize,
+) -> Box<dyn LinearSolver + Send> {
     use crate::scene::LinearSolver as Choice;
     use crate::system::linear::Mode;
     let options = |mode| SolverOptions {

@@ -60,6 +60,7 @@ impl RunState<'_> {
             probes: BTreeMap::new(),
             warnings: warnings.clone(),
             resumed,
+            stages: self.stages.clone(),
             scene: String::new(),
             versions: Versions::default(),
         }

@@ -1,5 +1,6 @@
 //! A run in memory: stepped from outside or run through, with its results at hand and no file touched.
 mod read;
+mod stages;
 mod stepping;
 pub(super) mod variant;
 
@@ -12,6 +13,7 @@ use super::march::{Caller, Ending, KeptFiles, Problem, RunState};
 use super::probes;
 use crate::machine;
 use crate::machine::clock::Phases;
+use crate::model::stages::StageStart;
 use crate::model::{self, Model};
 use crate::output::{RunStatus, Summary, Table};
 use crate::plan::Plan;
@@ -328,7 +330,13 @@ fn running(
     let fingerprint = Fingerprint::new(loaded);
     let mut phases = Phases::new();
     phases.start("model");
-    let mut model = model::build::build(loaded).map_err(|e| RunError::model(loaded, e))?;
+    // A run that goes on does so in the stage where it was.
+    let stage = match sections {
+        Some(sections) => sections.read_first("stages", checkpoint::stages::take)?.0,
+        None => StageStart::default(),
+    };
+    let mut model =
+        model::build::build_stage(loaded, stage, None).map_err(|e| RunError::model(loaded, e))?;
     model.warnings.extend_from_slice(changed);
     let plan = Plan::new(loaded, &model);
     phases.stop("model");

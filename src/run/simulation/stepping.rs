@@ -157,6 +157,10 @@ impl Simulation<'_> {
         }
         (self.ended, self.concluded) = (None, false);
         self.closed = None;
+        if let Err(error) = self.enter_stage() {
+            self.fail(&error);
+            return Err(error);
+        }
         let caller = Caller {
             observer: &mut *self.options.observer,
             interrupt: self.options.interrupt,
@@ -168,6 +172,8 @@ impl Simulation<'_> {
         match outcome {
             Ok(Outcome::Accepted(accepted, ending)) => {
                 self.ended = ending;
+                let observer = &mut *self.options.observer;
+                (self.running).with_dependent_mut(|_, run| run.end_stage(observer));
                 let run = self.running.borrow_dependent();
                 self.history.rows.push(run.course.outputs.row.clone());
                 let AcceptedStep {

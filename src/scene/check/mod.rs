@@ -7,6 +7,7 @@ mod material;
 mod names;
 mod shapes;
 mod small;
+mod stages;
 
 use super::document::Document;
 use super::load::LoadedScene;
@@ -70,6 +71,7 @@ pub(super) fn problems(scene: &Scene, document: &Document) -> Vec<Problem> {
     check_solution(&mut c, &scene.solution);
     small::check(&mut c, scene);
     dynamics::check(&mut c, scene);
+    stages::check(&mut c, scene);
     c.whole("/output/tessellation", scene.output.tessellation, 1, 200);
     if scene.output.contact_points && scene.contacts.values().all(|c| c.friction.is_none()) {
         c.add(

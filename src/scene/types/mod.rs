@@ -15,6 +15,7 @@ mod nurbs;
 mod probe;
 mod set_names;
 mod solution;
+mod stage;
 mod surface;
 mod units;
 
@@ -33,6 +34,7 @@ pub use nurbs::*;
 pub use probe::*;
 pub use set_names::*;
 pub use solution::*;
+pub use stage::*;
 pub use surface::*;
 pub use units::*;
 
@@ -109,6 +111,9 @@ pub struct Scene {
     /// Curves of the history, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub probes: BTreeMap<String, Probe>,
+    /// Parts of the run in their order, such as forming and release; without them the run is one part.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stages: Vec<Stage>,
     #[serde(default)]
     pub solution: Solution,
     #[serde(default)]
