@@ -276,6 +276,7 @@ fn a_summary_reads_back() {
         cuts: 1,
         ping_pongs: 0,
         pattern_rebuilds: 0,
+        stages: vec![],
         effects: vec!["normal contact".into()],
         probes: BTreeMap::new(),
         plan: Default::default(),

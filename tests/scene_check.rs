@@ -244,13 +244,13 @@ fn numbers_out_of_range() {
         ),
         (
             "\"initial\": 0.1",
-            "\"initial\": 0.2",
+            "\"initial\": 0.2, \"max\": 0.1",
             "17:36: the first step 0.2 is larger than the largest step 0.1",
         ),
         (
             "\"initial\": 0.1",
-            "\"min\": 0.2, \"max\": 1",
-            "17:32: the smallest step 0.2 is larger than the first step",
+            "\"initial\": 0.1, \"min\": 0.2, \"max\": 1",
+            "17:48: the smallest step 0.2 is larger than the first step",
         ),
         (
             "\"step\":",

@@ -110,12 +110,13 @@ impl State {
         out.stabilized = self.stabilized;
     }
 
-    /// Takes the displacements and enhanced strains of an accepted step into what material laws remember.
+    /// Takes the displacements and enhanced strains of an accepted step into what material laws remember; returns by how much the
+    /// equivalent plastic strain of a point grew at most.
     ///
     /// # Errors
     /// The body and the element whose strain is impossible.
-    pub fn remember(&mut self, model: &Model) -> Result<(), (String, ElementFault)> {
-        let mut first = 0;
+    pub fn remember(&mut self, model: &Model) -> Result<f64, (String, ElementFault)> {
+        let (mut first, mut most) = (0, 0.0);
         for body in &model.bodies {
             let len = model.state_len(body);
             let own = first..first + len * body.block.elements();
@@ -124,17 +125,18 @@ impl State {
                 continue;
             }
             let (u, states) = (&self.u, &mut self.elements[own]);
-            with_block!(&body.block, block => {
+            let flow = with_block!(&body.block, block => {
                 (states.par_chunks_mut(len).enumerate())
                     .with_min_len(64)
-                    .try_for_each(|(e, state)| {
+                    .map(|(e, state)| {
                         let u = body.displacements(block, e, u);
                         ElementBlock::remember(block, e, &u, state)
                     })
-            })
-            .map_err(|fault| (body.name.clone(), fault))?;
+                    .try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
+            });
+            most = flow.map_err(|fault| (body.name.clone(), fault))?.max(most);
         }
-        Ok(())
+        Ok(most)
     }
 
     /// Work that plastic flow has taken since the start; zero where no law flows.

@@ -276,7 +276,7 @@ impl March<'_, '_> {
                         None => walk.before = Some((committed.clone(), dt)),
                     }
                     committed.copy_from(trial);
-                    (committed.remember(self.model)).map_err(|(body, fault)| {
+                    let flow = (committed.remember(self.model)).map_err(|(body, fault)| {
                         RunError::internal(&Fault::Element { body, fault })
                     })?;
                     let flowed = committed.plastic_work(self.model);
@@ -294,6 +294,7 @@ impl March<'_, '_> {
                             self.move_on(moved, end, work, &mut walk.stepping);
                         }
                     }
+                    walk.stepping.flowed(dt, flow);
                     if walk.stepping.at_kink(end) {
                         walk.before = None;
                     }

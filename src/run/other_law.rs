@@ -149,7 +149,13 @@ fn energy_force_and_pressure_follow_the_law() {
         let mut assembler =
             Assembler::<Quadratic>::with_law(&model, &model.dofs).expect("an assembler");
         let mut committed = State::new(&model);
-        commit::start(&model, &mut assembler.masters, &mut committed).expect("a start");
+        commit::start(
+            &model,
+            &mut assembler.masters,
+            &mut committed,
+            (0.0, &|_| true),
+        )
+        .expect("a start");
         let mut state = state_at(&model, &committed, 1.0);
         let found = evaluate(&mut assembler, &mut state, 1.0);
         let gap = DEPTH + model.pairs[0].offset;
@@ -191,7 +197,13 @@ fn forces_and_tangent_are_derivatives_of_the_energy_of_the_law() {
         let mut assembler =
             Assembler::<Quadratic>::with_law(&model, &model.dofs).expect("an assembler");
         let mut committed = State::new(&model);
-        commit::start(&model, &mut assembler.masters, &mut committed).expect("a start");
+        commit::start(
+            &model,
+            &mut assembler.masters,
+            &mut committed,
+            (0.0, &|_| true),
+        )
+        .expect("a start");
         let wave = |i: usize, k: f64| 1e-3 * (k * i as f64).sin();
         let at = |s: f64| {
             let mut state = state_at(&model, &committed, 1.0);
@@ -268,7 +280,7 @@ fn imbalance(scene: &Value, steps: u32, raise: f64) -> [f64; 2] {
         Assembler::<Quadratic>::with_law(&model, &model.dofs).expect("an assembler");
     let mut watch = Watch::new(&model);
     let mut from = State::new(&model);
-    commit::start(&model, &mut assembler.masters, &mut from).expect("a start");
+    commit::start(&model, &mut assembler.masters, &mut from, (0.0, &|_| true)).expect("a start");
     let (mut start, mut energy) = (0.0, 0.0);
     for step in 1..=steps {
         let end = f64::from(step) / f64::from(steps);

@@ -51,6 +51,14 @@ impl Scene {
         active
     }
 
+    /// Whether a stage releases a contact: what matters is then the shape that a body has taken, plastic strains included.
+    pub fn releases(&self, contact: &str) -> bool {
+        let releases = |k: &usize| {
+            self.stages[*k].release.is_some() && self.ending_contacts(*k).contains(contact)
+        };
+        (1..self.stages.len()).any(|k| releases(&k))
+    }
+
     /// Rigid surfaces that go back in stage `index`.
     pub fn returning_tools(&self, index: usize) -> BTreeSet<&str> {
         let back = self.stages.get(index).and_then(|s| s.release) == Some(Release::Tools);

@@ -4,23 +4,27 @@ use super::material::{Collapsed, LawState, MaterialLaw, Metric, state_of};
 use super::stress;
 use std::iter::Sum;
 
-/// Advances the states of the law at all points of an element, whose metric and strain `at` gives.
+/// Advances the states of the law at all points of an element, whose metric and strain `at` gives; returns by how much the
+/// equivalent plastic strain grew at most.
 pub(super) fn advance<L: MaterialLaw>(
     law: &L,
     at: impl Fn(usize) -> (Metric, [f64; 6]),
     states: &mut [f64],
-) -> Result<(), (u8, Collapsed)> {
+) -> Result<f64, (u8, Collapsed)> {
+    let mut most = 0.0;
     if L::State::LEN == 0 {
-        return Ok(());
+        return Ok(most);
     }
     for (g, state) in states.chunks_exact_mut(L::State::LEN).enumerate() {
         let (metric, strain) = at(g);
+        let old = L::State::read(state);
         let new = law
-            .advance(&metric, &strain, &L::State::read(state))
+            .advance(&metric, &strain, &old)
             .map_err(|c| (g as u8, c))?;
+        most = f64::max(most, law.flow(&old, &new));
         new.write(state);
     }
-    Ok(())
+    Ok(most)
 }
 
 /// [`stress::cauchy`] at a point of an element with the states of its law.

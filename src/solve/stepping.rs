@@ -20,6 +20,8 @@ const FEW: u32 = 10;
 /// By how much.
 const LARGER: f64 = 1.6;
 const SMALLER: f64 = 0.7;
+/// Equivalent plastic strain that a step may bring: stresses follow the flow of one step along one direction.
+const FLOW: f64 = 0.02;
 /// Least part that is left of a step that is cut.
 const MOST_CUT: f64 = 1.0 / 64.0;
 
@@ -105,6 +107,14 @@ impl Stepping {
             factor
         };
         self.dt = (factor * dt).max(self.settings.min).min(self.settings.max);
+    }
+
+    /// An accepted step of size `dt` brought a plastic strain of at most `flow`: the next one is no larger than what brings [`FLOW`].
+    pub fn flowed(&mut self, dt: f64, flow: f64) {
+        if self.settings.adaptive && flow > 0.0 {
+            let most = (FLOW / flow * dt).max(self.settings.min);
+            self.dt = self.dt.min(most);
+        }
     }
 
     /// Whether a step of this size would not be cut.

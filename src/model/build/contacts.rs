@@ -209,8 +209,12 @@ impl Builder<'_> {
                 (suits.impact(), None)
             }
             (Penalty::Auto, None) => {
+                let usual = match self.scene.releases(name) {
+                    true => penalty::RELEASED_ACCURACY,
+                    false => penalty::ACCURACY,
+                };
                 let ruled = penalty::Ruled {
-                    accuracy: contact.accuracy.unwrap_or(penalty::ACCURACY),
+                    accuracy: contact.accuracy.unwrap_or(usual),
                     stiffest: suits.stiffest,
                     deepest: suits.deepest,
                 };

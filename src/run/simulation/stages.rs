@@ -18,6 +18,7 @@ impl Simulation<'_> {
             loaded,
             plan,
             replaceable,
+            exchangeable,
             ..
         } = &**self.running.borrow_owner();
         let (mut model, state) = hand.next(loaded)?;
@@ -31,6 +32,7 @@ impl Simulation<'_> {
             model,
             plan: plan.clone(),
             replaceable: replaceable.clone(),
+            exchangeable: *exchangeable,
         });
         let (threads, observer) = (rayon::current_num_threads(), &mut *self.options.observer);
         self.running = Running::try_new(problem, |problem| {

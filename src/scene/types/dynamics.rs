@@ -66,7 +66,8 @@ impl Default for Dynamics {
 const STEPS: [f64; 3] = [1e-2, 1e-7, 0.05];
 
 impl Solution {
-    /// The sizes of steps: in dynamics those that are not `given`, by their keys, are parts of the time of the run.
+    /// The sizes of steps: those that are not `given`, by their keys, are bounded by those that are; in dynamics they are parts of the
+    /// time of the run.
     pub fn steps(&self, given: impl Fn(&str) -> bool) -> Step {
         let Step {
             initial,
@@ -74,15 +75,11 @@ impl Solution {
             max,
             adaptive,
         } = self.step;
-        if self.dynamics.is_none() {
-            return self.step;
-        }
-        let part = |key: &str, own: f64, part: f64| match given(key) {
+        let part = |key: &str, own: f64, part: f64| match given(key) || self.dynamics.is_none() {
             true => own,
             false => part * self.end_time,
         };
         let [first, smallest, largest] = STEPS;
-        // What is given bounds what is not.
         let mut large = part("max", max, largest);
         let mut begin = part("initial", initial, first);
         match given("initial") {
@@ -91,6 +88,14 @@ impl Solution {
             false => begin = begin.min(large),
         }
         let mut small = part("min", min, smallest);
+        if given("min") && !given("initial") {
+            begin = begin.max(small);
+            large = if given("max") {
+                large
+            } else {
+                large.max(begin)
+            };
+        }
         if !given("min") {
             small = small.min(begin);
         }

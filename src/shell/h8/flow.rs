@@ -31,13 +31,19 @@ impl H8Block {
         Ok(out)
     }
 
-    /// Takes a step that is accepted at displacements `u` and the enhanced strains in `state` into the states of the law.
+    /// Takes a step that is accepted at displacements `u` and the enhanced strains in `state` into the states of the law; returns by how
+    /// much the equivalent plastic strain grew at most.
     ///
     /// # Errors
     /// [`ElementFault`] where the strain is impossible.
-    pub fn remember(&self, e: usize, u: &[Vec3; 8], state: &mut [f64]) -> Result<(), ElementFault> {
+    pub fn remember(
+        &self,
+        e: usize,
+        u: &[Vec3; 8],
+        state: &mut [f64],
+    ) -> Result<f64, ElementFault> {
         if self.law.state_len() == 0 {
-            return Ok(());
+            return Ok(0.0);
         }
         let u = arrays(u);
         let re = &self.reference[e];

@@ -244,6 +244,10 @@ impl MaterialLaw for J2 {
         Ok(new)
     }
 
+    fn flow(&self, old: &J2State, new: &J2State) -> f64 {
+        new.p - old.p
+    }
+
     fn flow_measures(&self, metric: &Metric, state: &J2State) -> [f64; 2] {
         let trace = lowered_trace(metric, &state.stress);
         let deviator: [f64; 6] =

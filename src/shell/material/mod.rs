@@ -144,6 +144,11 @@ pub trait MaterialLaw: Copy + Send + Sync {
         Ok(*old)
     }
 
+    /// By how much the equivalent plastic strain grew from one state to the next.
+    fn flow(&self, _old: &Self::State, _new: &Self::State) -> f64 {
+        0.0
+    }
+
     /// Equivalent plastic strain, and equivalent stress over yield stress, of a point.
     fn flow_measures(&self, _metric: &Metric, _state: &Self::State) -> [f64; 2] {
         [0.0; 2]

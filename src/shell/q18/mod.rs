@@ -274,7 +274,7 @@ impl Q18Block {
         e: usize,
         u: &[Vec3; 18],
         state: &mut [f64],
-    ) -> Result<(), ElementFault> {
+    ) -> Result<f64, ElementFault> {
         let (u, re) = (arrays(u), &self.reference[e]);
         let strain = strain::strains(re, &split(&u), &head(state));
         let states = &mut state[tangent::STATE..];
