@@ -6,12 +6,16 @@ const SOFTENED: u32 = 0;
 const SEARCHED: u32 = 10;
 /// Iterations that a search may have cost per step that it has solved, and above which it is not tried where all else fails.
 const TOO_MANY: u32 = 40;
+/// Failures in a row after which a kind of start is left out of steps that have not been cut: a shorter step costs less.
+const MISSES: u32 = 2;
 
 /// What a kind of start has cost and brought.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Account {
     iterations: u32,
     solved: u32,
+    /// Failures since the last step that it has solved.
+    misses: u32,
 }
 
 impl Account {
@@ -19,7 +23,13 @@ impl Account {
         Account {
             iterations,
             solved: 0,
+            misses: 0,
         }
+    }
+
+    /// Whether it is worth a try in a step that has been `cut`, or has not.
+    pub fn serves(&self, cut: bool) -> bool {
+        cut || self.misses < MISSES
     }
 
     /// Iterations per step that it has solved.
@@ -31,17 +41,20 @@ impl Account {
     pub fn tried(&mut self, iterations: u32, solved: bool) {
         self.iterations += iterations;
         self.solved += u32::from(solved);
+        self.misses = if solved { 0 } else { self.misses + 1 };
     }
 
     fn put(&self, out: &mut Writer) {
         out.u32(self.iterations);
         out.u32(self.solved);
+        out.u32(self.misses);
     }
 
     fn take(from: &mut Reader) -> Result<Self, Malformed> {
         Ok(Account {
             iterations: from.u32()?,
             solved: from.u32()?,
+            misses: from.u32()?,
         })
     }
 }
@@ -57,6 +70,8 @@ pub(super) struct Habit {
     pub searched: Account,
     /// Starts from a softened penalty.
     pub softened: Account,
+    /// Starts from the last accepted state without mixed integration points, where those with them have failed.
+    pub plain: Account,
 }
 
 impl Default for Habit {
@@ -66,6 +81,7 @@ impl Default for Habit {
             search: false,
             searched: Account::new(SEARCHED),
             softened: Account::new(SOFTENED),
+            plain: Account::new(0),
         }
     }
 }
@@ -87,11 +103,13 @@ impl Habit {
             search,
             searched,
             softened,
+            plain,
         } = self;
         out.bool(*hold);
         out.bool(*search);
         searched.put(out);
         softened.put(out);
+        plain.put(out);
     }
 
     pub fn take(from: &mut Reader) -> Result<Self, Malformed> {
@@ -100,6 +118,7 @@ impl Habit {
             search: from.bool()?,
             searched: Account::take(from)?,
             softened: Account::take(from)?,
+            plain: Account::take(from)?,
         })
     }
 }

@@ -13,6 +13,8 @@
 //!    a full step. It is tried where a step has been cut, before the softened penalty where that has cost more
 //!    ([`super::habit`]), and goes on in the steps after one that it has solved, until one fails.
 //!
+//! Kinds of starts that have failed again and again are left out of steps that have not been cut yet ([`super::habit`]).
+//!
 //! Where the last stages fail and the run may choose the penalties, the last stage that was solved is what the step gets:
 //! whether its penalties serve is measured by [`super::penalty_rule`]. What fails all four is cut.
 mod augmenting;
@@ -221,7 +223,7 @@ impl Attempts<'_, '_> {
         } else {
             Start::Accepted
         }];
-        if touching {
+        if touching && self.habit.softened.serves(self.cut) {
             starts.push(Start::Softened);
         }
         // A step that was cut is near enough to the path that a search is unlikely to leave it for another equilibrium.
@@ -238,6 +240,7 @@ impl Attempts<'_, '_> {
         let mut result = self.started(starts[0], (step, end, patience(0)), trial, penalties);
         if let (true, Err(failure)) = (self.was_mixed, &result)
             && another(failure)
+            && self.habit.plain.serves(self.cut)
         {
             self.again(step, Start::Plain.words(), failure, penalties);
             result = self.started(Start::Plain, (step, end, patience(0)), trial, penalties);
@@ -283,7 +286,8 @@ impl Attempts<'_, '_> {
         };
         let iterations = (self.progress.iterations - before) as u32;
         match start {
-            Start::Accepted | Start::Plain => {}
+            Start::Accepted => {}
+            Start::Plain => self.habit.plain.tried(iterations, result.is_ok()),
             Start::Searched => {
                 self.habit.search = result.is_ok();
                 self.habit.searched.tried(iterations, result.is_ok());
