@@ -23,3 +23,4 @@ mod step_poles;
 mod step_shapes;
 mod support;
 mod surface;
+mod volumes;
