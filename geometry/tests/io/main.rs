@@ -1,6 +1,7 @@
 //! Reading CAD files: samples of several writers, damaged files, small files written by hand, and the punch of the
 //! examples.
 
+mod contradictions;
 mod damage;
 mod habits;
 mod healing;
@@ -14,6 +15,7 @@ mod offsets;
 mod punch;
 mod round;
 mod samples;
+mod spikes;
 mod step;
 mod step_builder;
 mod step_forms;

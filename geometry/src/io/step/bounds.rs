@@ -7,7 +7,7 @@ use super::place::{point, points};
 use super::scope::Scope;
 use super::surface::Surface;
 use crate::Vec3;
-use crate::io::brep::{Boundary, Part, Stretch, reversed};
+use crate::io::brep::{Boundary, Part, Preference, Stretch, reversed};
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
@@ -130,11 +130,11 @@ fn oriented(scope: &Scope, index: u32, base: Option<Base>) -> Told<Stretch> {
     let mut stretch = Stretch {
         parameter: Vec::new(),
         space: parts(&runs).map_err(told)?,
-        space_first: false,
+        preference: Preference::None,
         edge: number,
     };
     if curve.is("SURFACE_CURVE") {
-        stretch.space_first = prefers_space(&curve)?;
+        stretch.preference = preference(&curve)?;
         let found = pcurves(scope, &curve, base.map(|b| b.0))?;
         // A seam has one for each side; where the loop has come to tells later which period is meant.
         let chosen = if ahead { found.first() } else { found.last() };
@@ -167,12 +167,13 @@ fn extent(course: &Course<3>, ends: &[Vec3; 2]) -> f64 {
     }
 }
 
-fn prefers_space(curve: &Entity) -> Told<bool> {
+fn preference(curve: &Entity) -> Told<Preference> {
     let item = curve.attribute("SURFACE_CURVE", 2, "which curve is preferred")?;
-    Ok(matches!(
-        item.value,
-        super::scan::Value::Enumeration(b"CURVE_3D")
-    ))
+    Ok(match item.value {
+        super::scan::Value::Enumeration(b"CURVE_3D") => Preference::Space,
+        super::scan::Value::Enumeration(b"PCURVE_S1" | b"PCURVE_S2") => Preference::Parameter,
+        _ => Preference::None,
+    })
 }
 
 /// The curves in the parameter plane of `base` that a curve on surfaces has: two where it is a seam.
@@ -376,7 +377,10 @@ fn member(scope: &Scope, index: u32, base: Base) -> Told<Stretch> {
     Ok(Stretch {
         parameter,
         space,
-        space_first: surface_curve && prefers_space(&curve)?,
+        preference: match surface_curve {
+            true => preference(&curve)?,
+            false => Preference::None,
+        },
         edge,
     })
 }
