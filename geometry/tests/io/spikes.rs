@@ -126,32 +126,75 @@ fn spikes_of_several_curves_and_what_is_none() {
     assert!((area(&surface) / (0.5 * 1.5 * thin) - 1.0).abs() < 1e-9);
 }
 
-/// The same triangle in the parameter plane and in space, where the lowest side is a cubic that runs through nine tenths of
-/// its length in the first half of its parameters and through the rest in the second: with a knot of full multiplicity,
-/// where its speed falls to a hundredth. The two agree to the last digits.
-#[test]
-fn speed_makes_no_gap_between_both_kinds_of_curves() {
-    let x = [0.2, 0.7, 1.2, 1.75, 1.755, 1.76, 1.8];
-    let points: Vec<String> = x.iter().map(|x| format!("{x:?},0.2,0.")).collect();
-    let knots = "0.,0.,0.,0.,1.,1.,1.,2.,2.,2.,2.";
-    let ones = ["1."; 7].join(",");
-    let uneven = format!(
-        "6,3,1,0,1,0,{knots},{ones},{},0.,2.,0.,0.,1.",
+/// A spline 126 along y = 0.2 through points x.
+fn level(degree: usize, knots: &[f64], x: &[f64], y: impl Fn(f64) -> f64) -> Entity<'static> {
+    let points: Vec<String> = (x.iter())
+        .map(|&x| format!("{x:?},{:?},0.", y(x)))
+        .collect();
+    let end = knots[knots.len() - 1];
+    let knots: Vec<String> = knots.iter().map(|k| format!("{k:?}")).collect();
+    let values = format!(
+        "{},{degree},1,0,1,0,{},{},{},0.,{end:?},0.,0.,1.",
+        x.len() - 1,
+        knots.join(","),
+        vec!["1."; x.len()].join(","),
         points.join(",")
     );
-    let sides = [[0.2, 0.2], [1.8, 0.2], [0.2, 1.8]];
+    child(126, &values)
+}
+
+/// A polyline of eighty sides over x from `a` to `b`.
+fn dense(a: f64, b: f64, y: impl Fn(f64) -> f64) -> Entity<'static> {
+    let x: Vec<f64> = (0..=80)
+        .map(|k| a + (b - a) * f64::from(k) / 80.0)
+        .collect();
+    let mut knots = vec![0.0];
+    knots.extend((0..=80).map(f64::from));
+    knots.push(80.0);
+    level(1, &knots, &x, y)
+}
+
+/// A face with the three curves in the parameter plane and in space, which agree to the last digits.
+fn alike(plane: [Entity<'static>; 3], space: [Entity<'static>; 3]) {
     let mut entities = vec![
         entity(144, "3,1,0,5"),
         child(128, &flat(2.0, 2.0)),
         child(142, "0,3,7,15,0"),
         child(102, "3,9,11,13"),
     ];
-    entities.extend((0..3).map(|k| line(sides[k], sides[(k + 1) % 3])));
+    entities.extend(plane);
     entities.push(child(102, "3,17,19,21"));
-    entities.push(child(126, &uneven));
-    entities.extend((1..3).map(|k| line(sides[k], sides[(k + 1) % 3])));
+    entities.extend(space);
     let file = read(&entities);
     assert_eq!(file.notes, [""; 0]);
     assert_eq!((file.trims.exact, file.trims.rejected), (3, 0));
     assert!(file.trims.largest_gap < 1e-12, "{}", file.trims.largest_gap);
+}
+
+/// In space the lowest side of a triangle is a cubic of three spans, the middle one a hundred times as slow as the others; in
+/// the parameter plane it has many spans, as CATIA writes them.
+#[test]
+fn speed_makes_no_gap_between_both_kinds_of_curves() {
+    let x = [0.2, 0.35, 0.6, 1.0, 1.002, 1.004, 1.006, 1.3, 1.6, 1.8];
+    let knots = [0., 0., 0., 0., 1., 1., 1., 2., 2., 2., 3., 3., 3., 3.];
+    let sides = [[0.2, 0.2], [1.8, 0.2], [0.2, 1.8]];
+    let other = |k: usize| line(sides[k], sides[(k + 1) % 3]);
+    let bottom = |_| 0.2;
+    alike(
+        [dense(0.2, 1.8, bottom), other(1), other(2)],
+        [level(3, &knots, &x, bottom), other(1), other(2)],
+    );
+}
+
+/// Two sides of a triangle leave their corner at a small angle: of the points looked at on the curves in space the nearest
+/// one lies on the other side.
+#[test]
+fn narrow_corners_make_no_gap_between_both_kinds_of_curves() {
+    let sides = [[0.2, 0.2], [1.8, 0.2], [1.8, 0.25]];
+    let own = |k: usize| line(sides[k], sides[(k + 1) % 3]);
+    let top = |x: f64| 0.2 + (x - 0.2) / 32.0;
+    alike(
+        [own(0), own(1), dense(1.8, 0.2, top)],
+        [dense(0.2, 1.8, |_| 0.2), own(1), own(2)],
+    );
 }

@@ -2,6 +2,7 @@
 //! in space, else the space curves projected.
 
 use super::super::report::TrimReport;
+use super::chain::Chain;
 use super::face::{Part, Preference, Stretch};
 use super::fit::{Fitted, fit, smooth_breaks};
 use super::host::{Host, Xi};
@@ -409,94 +410,4 @@ pub(super) fn parameters(
             (0..n).map(move |k| a + (b - a) * (k as f64 / n as f64))
         })
         .chain([end])
-}
-
-/// Space curves one after the other, for distances to them.
-struct Chain<'a> {
-    parts: &'a [Part<3>],
-    samples: Vec<Sample>,
-}
-
-/// A point of a chain.
-struct Sample {
-    /// Number of its curve, and of the span that begins at it or holds it.
-    place: [usize; 2],
-    t: f64,
-    point: Vec3,
-}
-
-impl<'a> Chain<'a> {
-    fn new(parts: &'a [Part<3>]) -> Self {
-        let mut samples = Vec::new();
-        for (k, part) in parts.iter().enumerate() {
-            let basis = part.curve.basis();
-            let mut add = |span: usize, t: f64| {
-                samples.push(Sample {
-                    place: [k, span],
-                    t,
-                    point: part.curve.point(t),
-                });
-            };
-            let n = 2 * (basis.degree() + 1);
-            for span in 0..basis.span_count() {
-                let [a, b] = basis.span_range(span);
-                (0..n).for_each(|i| add(span, a + (b - a) * (i as f64 / n as f64)));
-            }
-            add(basis.span_count() - 1, basis.domain()[1]);
-        }
-        Self { parts, samples }
-    }
-
-    fn ends(&self) -> [Vec3; 2] {
-        let last = self.parts.len() - 1;
-        [
-            self.parts[0].curve.ends()[0],
-            self.parts[last].curve.ends()[1],
-        ]
-    }
-
-    /// Distance of `q` from the nearest curve: Newton's method from the nearest sample and those beside it, each within its
-    /// own span. (Across a knot the curve may have a kink, or run on at another speed.)
-    fn distance(&self, q: &Vec3) -> f64 {
-        let off = |k: &usize| (self.samples[*k].point - q).norm_squared();
-        let n = self.samples.len();
-        let Some(nearest) = (0..n).min_by(|a, b| off(a).total_cmp(&off(b))) else {
-            return f64::INFINITY;
-        };
-        let mut best = off(&nearest).sqrt();
-        let around = [nearest, (nearest + n - 1) % n, (nearest + 1) % n].map(|k| &self.samples[k]);
-        for (k, sample) in around.iter().enumerate() {
-            if around[..k].iter().all(|s| s.place != sample.place) {
-                best = best.min(self.within(sample, q));
-            }
-        }
-        best
-    }
-
-    /// Distance of `q` from the span of a sample.
-    fn within(&self, sample: &Sample, q: &Vec3) -> f64 {
-        let [part, span] = sample.place;
-        let curve = &self.parts[part].curve;
-        let [a, b] = curve.basis().span_range(span);
-        let (mut t, mut best) = (sample.t, f64::INFINITY);
-        for _ in 0..12 {
-            let jet = curve.jet_in_span(span, t);
-            let d = jet.point - q;
-            best = best.min(d.norm());
-            let slope = jet.d1.dot(&d);
-            let full = jet.d1.norm_squared() + jet.d2.dot(&d);
-            // Gauss-Newton where the curve bends away from the point.
-            let bend = if full > 0.0 {
-                full
-            } else {
-                jet.d1.norm_squared()
-            };
-            let next = (t - slope / bend).clamp(a, b);
-            if !next.is_finite() || next == t {
-                break;
-            }
-            t = next;
-        }
-        best.min((curve.point(t) - q).norm())
-    }
 }

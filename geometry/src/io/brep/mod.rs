@@ -9,6 +9,7 @@
 
 mod areas;
 mod base;
+mod chain;
 mod curves;
 mod enclosed;
 mod extent;
