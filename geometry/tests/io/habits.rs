@@ -371,7 +371,7 @@ fn drawings_are_called_drawings() {
     noted(&file, &["wireframe: 1 curve(s)"]);
     // Without its end it is still a drawing.
     let cut: Vec<&str> = text.lines().collect();
-    let cut = cut[..cut.len() - 1].join("\n");
+    let cut = cut[..cut.len() - 2].join("\n");
     let error = read_iges(cut.as_bytes(), "hand.igs")
         .unwrap_err()
         .to_string();

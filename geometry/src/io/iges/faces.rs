@@ -73,6 +73,15 @@ pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
         hidden += usize::from(model.hidden && blanked && refused.is_none());
         reader.entity(entry, &placed, refused)?;
     }
+    let elsewhere = model.entries.iter().filter(|e| e.type_number == 416);
+    if let Some(first) = elsewhere.clone().next() {
+        let text = format!(
+            "{} external reference(s) (416), the first of them entity {}: what stands in other files is not read",
+            elsewhere.count(),
+            first.number
+        );
+        reader.notes.push(text);
+    }
     reader.bridge()?;
     let rivals = std::mem::take(&mut reader.rivals);
     rivals.settle(&mut reader.out, model.resolution(), reader.notes);

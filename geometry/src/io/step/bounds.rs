@@ -51,7 +51,8 @@ pub fn bound(scope: &Scope, index: u32, base: Option<Base>, turned: bool) -> Tol
     } else if a_loop.is("EDGE_LOOP") {
         let list = a_loop.targets("PATH", 0, "an edge of a loop")?;
         let edges = list.into_iter().map(|edge| oriented(scope, edge, base));
-        edges.collect::<Told<Vec<_>>>()?
+        let edges = edges.collect::<Told<Vec<_>>>()?;
+        edges.into_iter().flatten().collect()
     } else {
         return Err(format!("{name} is a loop of a type that is not read"));
     };
@@ -85,8 +86,9 @@ fn vertex_point(scope: &Scope, index: u32) -> Told<Vec3> {
     point(scope.exchange, at)
 }
 
-/// An ORIENTED_EDGE in its own direction.
-fn oriented(scope: &Scope, index: u32, base: Option<Base>) -> Told<Stretch> {
+/// An ORIENTED_EDGE in its own direction; `None` for a straight edge between a vertex and itself, as it is written at the tip of
+/// a cone: it is that point.
+fn oriented(scope: &Scope, index: u32, base: Option<Base>) -> Told<Option<Stretch>> {
     let mut use_of = scope.entity(index, 0)?;
     let (mut ahead, mut depth) = (true, 0);
     while use_of.is("ORIENTED_EDGE") {
@@ -122,7 +124,11 @@ fn oriented(scope: &Scope, index: u32, base: Option<Base>) -> Told<Stretch> {
             edge: number,
             ..Stretch::default()
         };
-        return if ahead { Ok(stretch) } else { turned(stretch) };
+        let stretch = if ahead { stretch } else { turned(stretch)? };
+        return Ok(Some(stretch));
+    }
+    if closed && curve.is("LINE") {
+        return Ok(None);
     }
     let course = curve_read::read::<3>(scope, geometry)?;
     let near = scope.near.max(END * extent(&course, &ends));
@@ -144,7 +150,7 @@ fn oriented(scope: &Scope, index: u32, base: Option<Base>) -> Told<Stretch> {
             stretch.parameter = read.unwrap_or_default();
         }
     }
-    if ahead { Ok(stretch) } else { turned(stretch) }
+    Ok(Some(if ahead { stretch } else { turned(stretch)? }))
 }
 
 /// The size of a curve, as far as ends and control points tell.

@@ -1,0 +1,240 @@
+//! How files of IGES are written down by various systems: line ends, columns, numbers, flags and records that are wrong or
+//! missing where nothing depends on them.
+
+use super::support::{Entity, GLOBAL, child, entity, flat, iges, line};
+use covact_geometry::PatchSet;
+use covact_geometry::io::{CadFile, LengthUnit, SkipKind, read_iges};
+use std::f64::consts::PI;
+
+fn read(text: &str) -> CadFile {
+    read_iges(text.as_bytes(), "hand.igs").unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+fn areas(file: &CadFile) -> Vec<f64> {
+    assert_eq!(file.skipped, [], "{:?}", file.notes);
+    let patches = file.patches.iter().map(|p| p.patch.clone()).collect();
+    PatchSet::new(patches, None).unwrap().areas()
+}
+
+/// A triangle on a plane, and its text.
+fn triangle() -> String {
+    let mut entities = vec![
+        entity(144, "3,1,0,5"),
+        child(128, &flat(2.0, 2.0)),
+        child(142, "0,3,7,0,1"),
+        child(102, "3,9,11,13"),
+    ];
+    let sides = [[0.2, 0.2], [1.8, 0.2], [0.2, 1.8]];
+    entities.extend((0..3).map(|k| line(sides[k], sides[(k + 1) % 3])));
+    iges(GLOBAL, &entities)
+}
+
+fn is_the_triangle(file: &CadFile) {
+    let found = areas(file);
+    assert!(
+        found.len() == 1 && (found[0] - 1.28).abs() < 1e-12,
+        "{found:?}"
+    );
+}
+
+#[test]
+fn line_ends_and_what_follows_column_80() {
+    let text = triangle();
+    for end in [
+        "\n",
+        "\r\n",
+        "\r",
+        "   \n",
+        "  \r\n",
+        " ignored text\n",
+        "\t\n",
+        "\n\n",
+    ] {
+        let file = read(&text.replace('\n', end));
+        is_the_triangle(&file);
+        assert_eq!(file.notes, [""; 0], "{end:?}");
+    }
+    // Records back to back, and a last line without an end.
+    is_the_triangle(&read(&text.replace('\n', "")));
+    is_the_triangle(&read(text.trim_end()));
+    // The end mark of CP/M and DOS behind the last record, blank lines in front of the first.
+    let file = read(&format!("\n\n{text}\u{1a}"));
+    is_the_triangle(&file);
+    assert_eq!(file.notes.len(), 1, "{:?}", file.notes);
+}
+
+#[test]
+fn a_missing_terminate_record_is_told() {
+    let text = triangle();
+    let end = text.trim_end().rfind('\n').unwrap() + 1;
+    let file = read(&text[..end]);
+    is_the_triangle(&file);
+    assert_eq!(
+        file.notes,
+        ["the terminate record T is missing; every entity is complete"]
+    );
+    // One more record missing, or a part of one, and the file is cut off.
+    let cut = text[..end - 1].rfind('\n').unwrap() + 1;
+    for end in [cut, end - 2, end - 40] {
+        let error = read_iges(&text.as_bytes()[..end], "hand.igs").unwrap_err();
+        assert!(error.place().is_some(), "{error}");
+    }
+    let directory = text.lines().take_while(|l| l.as_bytes()[72] != b'P');
+    let directory: Vec<&str> = directory.collect();
+    let error = read_iges(directory.join("\n").as_bytes(), "hand.igs").unwrap_err();
+    assert!(error.to_string().contains("the file is cut off"), "{error}");
+}
+
+#[test]
+fn units_flag_three_without_a_name_is_unspecified() {
+    for unit in ["3,", "3,2H  "] {
+        let global = GLOBAL.replace("2,2HMM", unit);
+        let file = read(&iges(&global, &[entity(128, &flat(4.0, 2.0))]));
+        assert_eq!(file.unit, LengthUnit::unspecified());
+        assert!(
+            file.notes[0].contains("units flag is 3"),
+            "{:?}",
+            file.notes
+        );
+        assert!((areas(&file)[0] - 8.0).abs() < 1e-12);
+        let mut file = file;
+        let millimetre = LengthUnit::from_name("mm").unwrap();
+        assert!(file.convert_to(&millimetre).is_err());
+    }
+}
+
+/// A quarter of a cylinder of radius 2 and height 3 as a rational 128, with the flags PROP1 to PROP5 given.
+fn quarter(flags: &str) -> String {
+    let w = 0.5f64.sqrt();
+    format!(
+        "2,1,2,1,{flags},0.,0.,0.,1.,1.,1.,0.,0.,1.,1.,1.,{w:?},1.,1.,{w:?},1.,\
+         2.,0.,0.,2.,2.,0.,0.,2.,0.,2.,0.,3.,2.,2.,3.,0.,2.,3.,0.,1.,0.,1."
+    )
+}
+
+/// PROP1 and PROP2 (closed), PROP3 (polynomial), PROP4 and PROP5 (periodic) say what the numbers say anyway.
+#[test]
+fn flags_of_splines_do_not_count() {
+    for flags in [
+        "0,0,0,0,0",
+        "1,1,0,0,0",
+        "0,0,1,0,0",
+        "0,0,0,1,1",
+        "1,1,1,1,1",
+        ",,,,",
+    ] {
+        let file = read(&iges(GLOBAL, &[entity(128, &quarter(flags))]));
+        let found = areas(&file);
+        assert!(
+            (found[0] / (3.0 * PI) - 1.0).abs() < 1e-6,
+            "{flags}: {found:?}"
+        );
+        let middle = file.patches[0].patch.point([0.5, 0.5]);
+        assert!((middle.x.hypot(middle.y) - 2.0).abs() < 1e-14, "{flags}");
+        // That the numbers contradict a flag is told.
+        let closed = flags.split(',').take(2).filter(|&f| f == "1").count();
+        let told = file.notes.iter().filter(|n| n.contains("flagged closed"));
+        assert_eq!((told.count(), file.notes.len()), (closed, closed));
+    }
+    // The same of curves: a circle of four quarters as the border of a plane.
+    let w = 0.5f64.sqrt();
+    for flags in ["0,0,0,0", "1,1,0,0", "1,0,1,1", "0,0,1,0"] {
+        let weights = [1.0, w, 1.0, w, 1.0, w, 1.0, w, 1.0].map(|w| format!("{w:?}"));
+        let corners = [
+            [1, 0],
+            [1, 1],
+            [0, 1],
+            [-1, 1],
+            [-1, 0],
+            [-1, -1],
+            [0, -1],
+            [1, -1],
+            [1, 0],
+        ];
+        let points = corners.map(|[x, y]| {
+            format!(
+                "{:?},{:?},0.",
+                1.0 + 0.5 * f64::from(x),
+                1.0 + 0.5 * f64::from(y)
+            )
+        });
+        let circle = format!(
+            "8,2,{flags},0.,0.,0.,1.,1.,2.,2.,3.,3.,4.,4.,4.,{},{},0.,4.,0.,0.,1.",
+            weights.join(","),
+            points.join(",")
+        );
+        let file = read(&iges(
+            GLOBAL,
+            &[
+                entity(144, "3,1,0,5"),
+                child(128, &flat(2.0, 2.0)),
+                child(142, "0,3,7,0,1"),
+                child(126, &circle),
+            ],
+        ));
+        let found = areas(&file);
+        assert!(
+            (found[0] / (0.25 * PI) - 1.0).abs() < 1e-7,
+            "{flags}: {found:?}"
+        );
+    }
+}
+
+/// External references (416) where a surface, a subfigure or a member of a group should be: what needs them is named.
+#[test]
+fn external_references_are_named() {
+    let reference = || Entity {
+        form: 1,
+        ..child(416, "9Hother.igs,4Hpart")
+    };
+    let mut entities = vec![
+        entity(144, "3,1,0,5"),
+        reference(),
+        child(142, "0,3,7,0,1"),
+        child(102, "3,9,11,13"),
+    ];
+    let sides = [[0.2, 0.2], [1.8, 0.2], [0.2, 1.8]];
+    entities.extend((0..3).map(|k| line(sides[k], sides[(k + 1) % 3])));
+    entities.push(entity(128, &flat(2.0, 2.0)));
+    let file = read(&iges(GLOBAL, &entities));
+    assert_eq!(file.patches.len(), 1);
+    let [skipped] = &file.skipped[..] else {
+        panic!("{:?}", file.skipped);
+    };
+    assert_eq!((skipped.entity, skipped.kind), (1, SkipKind::Unsupported));
+    assert!(
+        skipped.reason.contains("External Reference"),
+        "{}",
+        skipped.reason
+    );
+    // A group that holds one beside a surface.
+    let file = read(&iges(
+        GLOBAL,
+        &[
+            Entity {
+                form: 7,
+                ..entity(402, "2,3,5")
+            },
+            child(128, &flat(2.0, 2.0)),
+            reference(),
+        ],
+    ));
+    assert_eq!(areas(&file).len(), 1);
+    // An instance of a subfigure that stands in another file.
+    let text = iges(
+        GLOBAL,
+        &[
+            entity(408, "3,0.,0.,0.,1."),
+            reference(),
+            entity(128, &flat(2.0, 2.0)),
+        ],
+    );
+    let file = read(&text);
+    assert_eq!(areas(&file).len(), 1);
+    assert_eq!(
+        file.notes,
+        [
+            "1 external reference(s) (416), the first of them entity 3: what stands in other files is not read"
+        ]
+    );
+}
