@@ -132,9 +132,14 @@ fn flags_of_splines_do_not_count() {
         let middle = file.patches[0].patch.point([0.5, 0.5]);
         assert!((middle.x.hypot(middle.y) - 2.0).abs() < 1e-14, "{flags}");
         // That the numbers contradict a flag is told.
-        let closed = flags.split(',').take(2).filter(|&f| f == "1").count();
+        let set: Vec<bool> = flags.split(',').map(|f| f == "1").collect();
+        let closed = set[..2].iter().filter(|&&f| f).count();
         let told = file.notes.iter().filter(|n| n.contains("flagged closed"));
-        assert_eq!((told.count(), file.notes.len()), (closed, closed));
+        assert_eq!(told.count(), closed, "{flags}: {:?}", file.notes);
+        let polynomial = file.notes.iter().filter(|n| n.contains("the flag PROP3"));
+        assert_eq!(polynomial.count(), usize::from(set[2]), "{flags}");
+        let all = closed + usize::from(set[2]);
+        assert_eq!(file.notes.len(), all, "{flags}: {:?}", file.notes);
     }
     // The same of curves: a circle of four quarters as the border of a plane.
     let w = 0.5f64.sqrt();
@@ -235,6 +240,60 @@ fn external_references_are_named() {
         file.notes,
         [
             "1 external reference(s) (416), the first of them entity 3: what stands in other files is not read"
+        ]
+    );
+}
+
+/// Levels by number and by property, colours by number and by definition.
+#[test]
+fn levels_and_colours_are_layers_and_colours() {
+    let text = iges(
+        GLOBAL,
+        &[
+            entity(128, &flat(2.0, 2.0)),
+            entity(128, &flat(2.0, 3.0)),
+            entity(128, &flat(2.0, 4.0)),
+            entity(128, &flat(2.0, 5.0)),
+            child(314, "100.,50.2,0."),
+            child(314, "10.,20.,30.,5Hsteel"),
+            Entity {
+                form: 1,
+                ..child(406, "2,4,7")
+            },
+        ],
+    );
+    // Level in columns 33 to 40 of the first record, colour in 17 to 24 of the second.
+    let mut number = 0;
+    let lines = text.lines().map(|l| {
+        if l.as_bytes()[72] != b'D' {
+            return l.to_owned();
+        }
+        number += 1;
+        let (field, value) = match number {
+            1 => (32..40, "       3"),
+            2 => (16..24, "       2"),
+            3 => (32..40, "     -13"),
+            4 => (16..24, "      -9"),
+            6 => (16..24, "     -11"),
+            7 => (32..40, "      -9"),
+            8 => (16..24, "      99"),
+            _ => return l.to_owned(),
+        };
+        format!("{}{value}{}", &l[..field.start], &l[field.end..])
+    });
+    let file = read(&(lines.collect::<Vec<_>>().join("\n") + "\n"));
+    assert_eq!(file.skipped, []);
+    let found: Vec<_> = (file.patches.iter())
+        .map(|p| (p.tags.layer.as_deref(), p.tags.colour.as_deref()))
+        .collect();
+    assert_eq!(
+        found,
+        [
+            (Some("3"), Some("red")),
+            (Some("4,7"), Some("#ff8000")),
+            (None, Some("steel")),
+            // A pointer to what is no list of levels, and a number that is no colour.
+            (None, None),
         ]
     );
 }

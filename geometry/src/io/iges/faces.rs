@@ -1,7 +1,7 @@
 //! What becomes of every surface entity of a file: patches, or a reason why not.
 
 use super::super::error::Fail;
-use super::super::report::{CadPatch, CadTags, FaceBorder, SkipKind, Skipped, TrimReport};
+use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped, TrimReport};
 use super::Model;
 use super::brep::{self, Edges};
 use super::bridging::{Bridging, Skip};
@@ -11,6 +11,7 @@ use super::groups::{Groups, Placement, refusal};
 use super::labels::{label, name_of};
 use super::rivals::{Rival, Rivals};
 use super::surfaces::{self, BasePatch, BaseSurface};
+use super::tags::tags;
 use super::transform::{Affine, matrix_of};
 use super::trimmed::{self, describe};
 use crate::NurbsPatch;
@@ -225,7 +226,7 @@ impl<'a> Reader<'a, '_> {
                             instance: copy.instance,
                             border: piece.border,
                             name: name.clone(),
-                            tags: CadTags::default(),
+                            tags: tags(self.model, entry),
                         });
                     }
                 }

@@ -27,6 +27,7 @@ mod records;
 mod rivals;
 mod surface;
 mod surfaces;
+mod tags;
 mod transform;
 mod trimmed;
 mod write;
