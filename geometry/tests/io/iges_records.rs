@@ -185,6 +185,51 @@ fn flags_of_splines_do_not_count() {
     }
 }
 
+/// Border curves of which a part counts only (V(0) to V(1) within their knots), as CATIA writes them, on a quarter of a
+/// cylinder given as a tabulated cylinder: between z = 0.5 and z = 2.
+#[test]
+fn parts_of_curves_bound_a_tabulated_cylinder() {
+    let w = 0.5f64.sqrt();
+    let arc = |z: f64, back: bool| {
+        let mut points = [[2., 0., z], [2., 2., z], [0., 2., z]];
+        if back {
+            points.reverse();
+        }
+        let points: Vec<String> = points.iter().flatten().map(|x| format!("{x:?}")).collect();
+        let values = format!(
+            "2,2,0,0,0,0,0.,0.,0.,1.,1.,1.,1.,{w:?},1.,{},0.,1.,0.,0.,1.",
+            points.join(",")
+        );
+        child(126, &values)
+    };
+    // Twenty long, of which from z = 0.5 to 2 or back counts.
+    let part = |x: f64, y: f64, from: f64, range: [f64; 2]| {
+        let [a, b] = range;
+        let values = format!(
+            "1,1,1,0,1,0,0.,0.,1.,1.,1.,1.,{x:?},{y:?},{from:?},{x:?},{y:?},{:?},{a:?},{b:?},0.,0.,1.",
+            -from
+        );
+        child(126, &values)
+    };
+    let file = read(&iges(
+        GLOBAL,
+        &[
+            entity(144, "3,1,0,5"),
+            child(122, "7,2.,0.,3."),
+            child(142, "0,3,0,9,2"),
+            arc(0.0, false),
+            child(102, "4,11,13,15,17"),
+            arc(0.5, false),
+            part(0.0, 2.0, -10.0, [0.525, 0.6]),
+            arc(2.0, true),
+            part(2.0, 0.0, 10.0, [0.4, 0.475]),
+        ],
+    ));
+    let found = areas(&file);
+    assert!((found[0] / (1.5 * PI) - 1.0).abs() < 1e-6, "{found:?}");
+    assert_eq!(file.notes, [""; 0]);
+}
+
 /// External references (416) where a surface, a subfigure or a member of a group should be: what needs them is named.
 #[test]
 fn external_references_are_named() {

@@ -7,6 +7,7 @@ use super::brep::{self, Edges};
 use super::bridging::{Bridging, Skip};
 use super::curve;
 use super::directory::Entry;
+use super::drawing;
 use super::groups::{Groups, Placement, refusal};
 use super::labels::{label, name_of};
 use super::rivals::{Rival, Rivals};
@@ -74,15 +75,7 @@ pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
         hidden += usize::from(model.hidden && blanked && refused.is_none());
         reader.entity(entry, &placed, refused)?;
     }
-    let elsewhere = model.entries.iter().filter(|e| e.type_number == 416);
-    if let Some(first) = elsewhere.clone().next() {
-        let text = format!(
-            "{} external reference(s) (416), the first of them entity {}: what stands in other files is not read",
-            elsewhere.count(),
-            first.number
-        );
-        reader.notes.push(text);
-    }
+    reader.notes.extend(drawing::external(&model.entries));
     reader.bridge()?;
     let rivals = std::mem::take(&mut reader.rivals);
     rivals.settle(&mut reader.out, model.resolution(), reader.notes);
@@ -436,7 +429,11 @@ impl<'a> Reader<'a, '_> {
                     ));
                 }
                 let border = border_of(&trimmed.patch);
-                let other = (tally.rejected > 0).then(|| by_parameters(&host, face, sort));
+                // The other face takes as much again.
+                let other = tally.rejected > 0
+                    && self.grant.boundary(curves, points).is_ok()
+                    && self.grant.patch(patch).is_ok();
+                let other = other.then(|| by_parameters(&host, face, sort));
                 let rival = other.flatten().map(|(patch, other, told)| {
                     said.extend(disagreement(&trimmed.patch, &patch));
                     Rival {
