@@ -4,7 +4,7 @@
 //!
 //! The table is an object with an entry for each file name: `{"part.step": {"faces": 6, "area_mm2": 24.0, "volumes_mm3":
 //! [8.0], "box_mm": [0, 0, 0, 2, 2, 2], "face_areas": [4, 4, 4, 4, 4, 4], "points": [[3, 1, 1, 1.0, 1]]}}`; any of them may be
-//! missing. Points are x, y, z, the distance from the faces and -1 inside of a solid, 1 outside, 0 for none. The script
+//! missing. Volumes are positive, less voids. Points are x, y, z, the distance from the faces and -1 inside of a solid, 1 outside, 0 for none. The script
 //! `tests/data/cad_truth.py` makes such a table.
 
 use covact_geometry::io::{CadFile, LengthUnit, read_path};
@@ -264,11 +264,9 @@ fn measures(file: &CadFile, body: Option<usize>) -> Result<Measures, Box<dyn std
             },
         )?;
     }
-    let parts = set.components().iter().zip(set.volumes());
-    // The normals of a void point into it.
-    let volume = parts
-        .map(|(part, volume)| volume.map(|v| v * set.sides()[part[0]]))
-        .sum();
+    // Voids count negative, whichever way the file parametrises them.
+    set.turn_cavities(|_| ());
+    let volume = set.volumes().iter().copied().sum();
     Ok(Measures {
         areas: entities.into_iter().zip(set.areas()).collect(),
         volume,

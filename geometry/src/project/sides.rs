@@ -92,8 +92,10 @@ impl<S: Surface> PatchSet<S> {
     }
 
     /// Volume that every connected component encloses, by quadrature; `None` for one with free edges (or folded onto
-    /// itself, without volume). Closed components start with their normals out of that volume; a cavity inside another
-    /// component is turned over with [`turn_cavities`](Self::turn_cavities).
+    /// itself, without volume). The sign is that of its [`sides`](Self::sides), whichever way the patches are parametrised:
+    /// positive where its normals point out of what it encloses, negative where they point into it. Closed components
+    /// start positive; a cavity inside another component is turned over with [`turn_cavities`](Self::turn_cavities), so
+    /// that the volumes of a body's components add up to that of its material.
     pub fn volumes(&self) -> &[Option<f64>] {
         &self.topology.volumes
     }
@@ -116,6 +118,11 @@ impl<S: Surface> PatchSet<S> {
         let factor = wanted * self.sides[members[0]];
         for &patch in members {
             self.sides[patch] *= factor;
+        }
+        if factor < 0.0
+            && let Some(volume) = &mut self.topology.volumes[component]
+        {
+            *volume = -*volume;
         }
     }
 

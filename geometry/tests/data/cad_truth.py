@@ -10,6 +10,10 @@ Millimetres.
 Areas and volumes are integrated to 1e-9: the default of BRepGProp is off by 1e-3 on B-splines of many spans. Even the
 adaptive one is off by 1e-4 where the knots of a surface that is not trimmed are of full multiplicity, so such surfaces are
 integrated here, by Gauss points in every span.
+
+Where the area so found differs by more than a thousandth from that of triangles within 1e-5 of the face's size, the triangles
+count, and a line says so. In `CTS17806-38038.igs` and `PRO20358-X28.igs` of Open CASCADE's own samples it does: BRepGProp gives
+5.580 and 7412 to 9967, depending on the tolerance asked for, where the triangles have 6.0734 and 8831.75.
 """
 import json
 import os
@@ -24,6 +28,7 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
 from OCP.BRepClass3d import BRepClass3d_SolidClassifier
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.BRepGProp import BRepGProp
+from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.GeomAbs import GeomAbs_BSplineSurface
 from OCP.gp import gp_Pnt, gp_Vec
 from OCP.GProp import GProp_GProps
@@ -32,6 +37,7 @@ from OCP.Interface import Interface_Static
 from OCP.STEPControl import STEPControl_Reader
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_IN, TopAbs_SOLID
 from OCP.TopExp import TopExp_Explorer
+from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Compound
 
 COUNT = 50
@@ -74,6 +80,29 @@ def whole(surface, knots, pieces):
 
 
 def area(face):
+    found, triangles = integrated(face), triangulated(face)
+    if triangles is None or abs(found - triangles) < 1e-3 * triangles:
+        return found
+    print(f"  {found} by integration, {triangles} by triangles", file=sys.stderr)
+    return triangles
+
+
+def triangulated(face):
+    """Area of triangles near a face; None where there are none."""
+    box = Bnd_Box()
+    BRepBndLib.Add_s(face, box, False)
+    BRepMesh_IncrementalMesh(face, 1e-5 * box.SquareExtent() ** 0.5, False, 0.02)
+    mesh = BRep_Tool.Triangulation_s(TopoDS.Face(face), TopLoc_Location())
+    if mesh is None:
+        return None
+    total = 0.0
+    for i in range(1, mesh.NbTriangles() + 1):
+        a, b, c = (mesh.Node(k) for k in mesh.Triangle(i).Get())
+        total += gp_Vec(a, b).Crossed(gp_Vec(a, c)).Magnitude() / 2
+    return total
+
+
+def integrated(face):
     surface = BRepAdaptor_Surface(TopoDS.Face(face))
     if surface.GetType() == GeomAbs_BSplineSurface:
         spline = surface.BSpline()

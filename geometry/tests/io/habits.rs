@@ -1,6 +1,6 @@
 //! Habits of the systems that write IGES, in small files with areas known in closed form.
 
-use super::support::{Entity, GLOBAL, entity, iges};
+use super::support::{Entity, GLOBAL, child, entity, flat, iges, line};
 use covact_geometry::PatchSet;
 use covact_geometry::io::{
     CadFile, FaceBorder, LengthUnit, ReadOptions, SkipKind, read_iges, read_iges_with, read_path,
@@ -9,13 +9,6 @@ use covact_geometry::io::{
 fn read(entities: &[Entity]) -> CadFile {
     let text = iges(GLOBAL, entities);
     read_iges(text.as_bytes(), "hand.igs").unwrap_or_else(|e| panic!("{e}\n{text}"))
-}
-
-fn child(type_number: u32, values: &str) -> Entity<'static> {
-    Entity {
-        status: "00010000",
-        ..entity(type_number, values)
-    }
 }
 
 /// The areas of all patches.
@@ -39,19 +32,6 @@ fn noted(file: &CadFile, parts: &[&str]) {
         "no {parts:?} in {:?}",
         file.notes
     );
-}
-
-/// A 128 in the plane z = 0 over [0, a] x [0, b] with these as parameters.
-fn flat(a: f64, b: f64) -> String {
-    format!(
-        "1,1,1,1,0,0,1,0,0,0.,0.,{a:?},{a:?},0.,0.,{b:?},{b:?},1.,1.,1.,1.,\
-         0.,0.,0.,{a:?},0.,0.,0.,{b:?},0.,{a:?},{b:?},0.,0.,{a:?},0.,{b:?}"
-    )
-}
-
-fn line(from: [f64; 2], to: [f64; 2]) -> Entity<'static> {
-    let [[a, b], [c, d]] = [from, to];
-    child(110, &format!("{a:?},{b:?},0.,{c:?},{d:?},0."))
 }
 
 /// A triangle of curves of which two miss each other by 0.003 on a surface of 2 x 2 (entity 1).
@@ -391,7 +371,7 @@ fn drawings_are_called_drawings() {
     noted(&file, &["wireframe: 1 curve(s)"]);
     // Without its end it is still a drawing.
     let cut: Vec<&str> = text.lines().collect();
-    let cut = cut[..cut.len() - 1].join("\n");
+    let cut = cut[..cut.len() - 2].join("\n");
     let error = read_iges(cut.as_bytes(), "hand.igs")
         .unwrap_err()
         .to_string();

@@ -109,7 +109,13 @@ fn units_and_model_scale() {
     let file = unit("1.,2,2HIN").unwrap();
     assert_eq!(file.unit.name, "mm");
     assert_eq!(file.notes.len(), 1);
-    for wrong in ["1.,12,2HMM", "1.,3", "1.,,2HMM", "0.,2,2HMM", "-1.,2,2HMM"] {
+    for wrong in [
+        "1.,12,2HMM",
+        "1.,3,7HFURLONG",
+        "1.,,2HMM",
+        "0.,2,2HMM",
+        "-1.,2,2HMM",
+    ] {
         assert!(unit(wrong).is_err(), "{wrong}");
     }
     let mut file = unit("0.5,1,2HIN").unwrap();

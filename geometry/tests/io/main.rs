@@ -1,10 +1,12 @@
 //! Reading CAD files: samples of several writers, damaged files, small files written by hand, and the punch of the
 //! examples.
 
+mod contradictions;
 mod damage;
 mod habits;
 mod healing;
 mod iges;
+mod iges_records;
 mod iges_shells;
 mod iges_write;
 mod json;
@@ -14,6 +16,7 @@ mod offsets;
 mod punch;
 mod round;
 mod samples;
+mod spikes;
 mod step;
 mod step_builder;
 mod step_forms;
@@ -21,5 +24,7 @@ mod step_hidden;
 mod step_mutants;
 mod step_poles;
 mod step_shapes;
+mod step_text;
 mod support;
 mod surface;
+mod volumes;

@@ -66,6 +66,9 @@ fn caps_of_a_sphere() {
         (X, Y, 1., true),
         (Y, Z, 0., false),
         (X, Z, 0., true),
+        (Y, X, 0., false),
+        (X, Y, 0., true),
+        (Y, [0.6, 0., 0.8], 0., true),
         // Askew: round one pole.
         ([0., s, c], X, 0.5, false),
         ([0., s, c], X, 0.5, true),

@@ -79,6 +79,28 @@ pub fn entity(type_number: u32, values: &str) -> Entity<'static> {
     }
 }
 
+/// An entity that is a part of another.
+pub fn child(type_number: u32, values: &str) -> Entity<'static> {
+    Entity {
+        status: "00010000",
+        ..entity(type_number, values)
+    }
+}
+
+/// A 128 in the plane z = 0 over [0, a] x [0, b] with these as parameters.
+pub fn flat(a: f64, b: f64) -> String {
+    format!(
+        "1,1,1,1,0,0,1,0,0,0.,0.,{a:?},{a:?},0.,0.,{b:?},{b:?},1.,1.,1.,1.,\
+         0.,0.,0.,{a:?},0.,0.,0.,{b:?},0.,{a:?},{b:?},0.,0.,{a:?},0.,{b:?}"
+    )
+}
+
+/// A line in the plane z = 0.
+pub fn line(from: [f64; 2], to: [f64; 2]) -> Entity<'static> {
+    let [[a, b], [c, d]] = [from, to];
+    child(110, &format!("{a:?},{b:?},0.,{c:?},{d:?},0."))
+}
+
 /// Millimetres, usual delimiters.
 pub const GLOBAL: &str = "1H,,1H;,4Htest,4Htest,1H1,1H1,32,38,6,308,15,,1.,2,2HMM,1,0.01,,1.E-6;";
 

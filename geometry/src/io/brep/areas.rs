@@ -9,8 +9,13 @@ use crate::{NurbsPatch, PatchSet};
 /// Areas that differ by less than this share are the same face.
 const SAME: f64 = 0.01;
 
-/// The face that the curves in the parameter plane bound by themselves, if they do.
-pub fn by_parameters(host: &Host, face: &Face, sort: bool) -> Option<NurbsPatch> {
+/// The face that the curves in the parameter plane bound by themselves, if they do, with what became of them and what is to
+/// be said of it.
+pub fn by_parameters(
+    host: &Host,
+    face: &Face,
+    sort: bool,
+) -> Option<(NurbsPatch, Tally, Vec<String>)> {
     let stretch = |s: &Stretch| Stretch {
         parameter: s.parameter.clone(),
         ..Stretch::default()
@@ -21,16 +26,14 @@ pub fn by_parameters(host: &Host, face: &Face, sort: bool) -> Option<NurbsPatch>
             stretches: b.stretches.iter().map(stretch).collect(),
         })
         .collect();
-    let made = loops(
-        host,
-        &boundaries,
-        sort,
-        &mut Tally::default(),
-        &mut Vec::new(),
-    )
-    .ok()?;
+    let mut tally = Tally {
+        tolerance: host.agree,
+        ..Tally::default()
+    };
+    let mut said = Vec::new();
+    let made = loops(host, &boundaries, sort, &mut tally, &mut said).ok()?;
     let trimmed = host.patch.trimmed_by(made, face.outer, GAP).ok()?;
-    Some(trimmed.patch)
+    Some((trimmed.patch, tally, said))
 }
 
 /// Says how far the areas of a face as it was read and of the `other` one differ, if they do.

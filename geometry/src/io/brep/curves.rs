@@ -2,9 +2,11 @@
 //! in space, else the space curves projected.
 
 use super::super::report::TrimReport;
-use super::face::{Part, Stretch};
+use super::chain::Chain;
+use super::face::{Part, Preference, Stretch};
 use super::fit::{Fitted, fit, smooth_breaks};
 use super::host::{Host, Xi};
+use super::poles;
 use super::sides::along_side;
 use crate::trim::TrimCurve;
 use crate::{NurbsCurve, Vec3};
@@ -53,13 +55,17 @@ pub fn curves(
         Ok(given) => {
             let gap = given.gap;
             // Space curves count where the file says so, or where the others cannot be meant, if they do lie on the surface.
-            if stretch.space_first || gap > WRONG * host.size {
+            if stretch.preference == Preference::Space || gap > WRONG * host.size {
                 let mut fresh = Tally::default();
                 if let Ok(curves) = projected(host, stretch, &mut fresh)
                     && fresh.largest_gap < 0.5 * gap
                 {
+                    let against = match stretch.preference {
+                        Preference::Parameter => ", although the file prefers the former",
+                        _ => "",
+                    };
                     complaints.push(format!(
-                        "its curves in the parameter plane lie up to {gap:.1e} from those in space, which were projected"
+                        "its curves in the parameter plane lie up to {gap:.1e} from those in space, which were projected{against}"
                     ));
                     fresh.rejected = 1;
                     add(tally, &fresh);
@@ -304,11 +310,11 @@ fn refitted(host: &Host, file: &NurbsCurve<2>, shift: Xi) -> Result<Fitted, Stri
     fit(host, &breaks, &mut path, start, FIT * host.size)
 }
 
-/// Space curves projected onto the surface, one for one.
+/// Space curves projected onto the surface, one for one except where they run through a pole.
 fn projected(host: &Host, stretch: &Stretch, tally: &mut Tally) -> Result<Vec<TrimCurve>, String> {
     let mut curves = Vec::with_capacity(stretch.space.len());
     let mut near = Xi::from_fn(|d, _| 0.5 * (host.domain[d][0] + host.domain[d][1]));
-    for part in &stretch.space {
+    for part in &poles::cut(host, &stretch.space).map_err(|e| e.to_string())? {
         let (fitted, off) = match host.exact_projection(&part.curve) {
             Some(curve) => {
                 let off = sample_space(&part.curve)
@@ -392,7 +398,10 @@ fn sample_space(curve: &NurbsCurve<3>) -> impl Iterator<Item = (f64, Vec3)> + '_
     parameters(curve.basis(), 2).map(|t| (t, curve.point(t)))
 }
 
-fn parameters(basis: &crate::basis::Basis, density: usize) -> impl Iterator<Item = f64> + '_ {
+pub(super) fn parameters(
+    basis: &crate::basis::Basis,
+    density: usize,
+) -> impl Iterator<Item = f64> + '_ {
     let n = density * (basis.degree() + 1);
     let end = basis.domain()[1];
     (0..basis.span_count())
@@ -401,64 +410,4 @@ fn parameters(basis: &crate::basis::Basis, density: usize) -> impl Iterator<Item
             (0..n).map(move |k| a + (b - a) * (k as f64 / n as f64))
         })
         .chain([end])
-}
-
-/// Space curves one after the other, for distances to them.
-struct Chain<'a> {
-    parts: &'a [Part<3>],
-    /// Part, parameter and point.
-    samples: Vec<(usize, f64, Vec3)>,
-}
-
-impl<'a> Chain<'a> {
-    fn new(parts: &'a [Part<3>]) -> Self {
-        let samples = parts
-            .iter()
-            .enumerate()
-            .flat_map(|(k, part)| sample_space(&part.curve).map(move |(t, x)| (k, t, x)))
-            .collect();
-        Self { parts, samples }
-    }
-
-    fn ends(&self) -> [Vec3; 2] {
-        let last = self.parts.len() - 1;
-        [
-            self.parts[0].curve.ends()[0],
-            self.parts[last].curve.ends()[1],
-        ]
-    }
-
-    /// Distance of `q` from the nearest curve: Newton's method from the nearest sample, with one beside it.
-    fn distance(&self, q: &Vec3) -> f64 {
-        let nearest = |s: &&(usize, f64, Vec3)| (s.2 - q).norm_squared();
-        let Some(&(k, mut t, x)) = self
-            .samples
-            .iter()
-            .min_by(|a, b| nearest(a).total_cmp(&nearest(b)))
-        else {
-            return f64::INFINITY;
-        };
-        let curve = &self.parts[k].curve;
-        let [a, b] = curve.domain();
-        let mut best = (x - q).norm();
-        for _ in 0..12 {
-            let jet = curve.jet(t);
-            let d = jet.point - q;
-            let slope = jet.d1.dot(&d);
-            let full = jet.d1.norm_squared() + jet.d2.dot(&d);
-            // Gauss-Newton where the curve bends away from the point.
-            let bend = if full > 0.0 {
-                full
-            } else {
-                jet.d1.norm_squared()
-            };
-            let next = (t - slope / bend).clamp(a, b);
-            if !next.is_finite() || next == t {
-                break;
-            }
-            t = next;
-            best = best.min((curve.point(t) - q).norm());
-        }
-        best
-    }
 }

@@ -1,7 +1,7 @@
 //! Faces and what bounds them, as a file describes them.
 
-use crate::NurbsCurve;
 use crate::curve::CurveError;
+use crate::{NurbsCurve, Vec3};
 
 /// A curve with the number of the entity that it comes from.
 #[derive(Debug, Clone)]
@@ -10,14 +10,24 @@ pub struct Part<const D: usize> {
     pub curve: NurbsCurve<D>,
 }
 
+/// Which of two kinds of curves a file prefers where it gives both.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Preference {
+    /// It does not say, or takes both for equal.
+    #[default]
+    None,
+    Parameter,
+    Space,
+}
+
 /// A stretch of a boundary that is given in the parameter plane, in space, or in both, in the direction of the boundary.
 #[derive(Debug, Clone, Default)]
 pub struct Stretch {
     /// In the file's parameters of the surface.
     pub parameter: Vec<Part<2>>,
     pub space: Vec<Part<3>>,
-    /// The file prefers the curves in space (PREF) where both are given and disagree.
-    pub space_first: bool,
+    /// What counts where both are given and disagree.
+    pub preference: Preference,
     /// Number of the edge in the edge list that neighbours share, as an entity number; 0 where there is none.
     pub edge: u32,
 }
@@ -42,6 +52,31 @@ pub struct Face {
     pub values: usize,
     /// Why the boundaries cannot be used.
     pub fault: Option<String>,
+}
+
+impl Face {
+    /// Boundary curves and their control points, in both planes.
+    pub fn extent(&self) -> [usize; 2] {
+        let mut extent = [0, 0];
+        for stretch in self.boundaries.iter().flat_map(|b| &b.stretches) {
+            extent[0] += stretch.parameter.len().max(stretch.space.len());
+            let plane = stretch.parameter.iter();
+            extent[1] += plane.map(|p| p.curve.homogeneous().len()).sum::<usize>();
+            let space = stretch.space.iter();
+            extent[1] += space.map(|p| p.curve.homogeneous().len()).sum::<usize>();
+        }
+        extent
+    }
+
+    /// Control points of the space curves, between which these run.
+    pub fn points(&self) -> Vec<Vec3> {
+        let parts = self.boundaries.iter().flat_map(|b| &b.stretches);
+        let curves = parts.flat_map(|s| &s.space).map(|p| &p.curve);
+        curves
+            .flat_map(|c| c.homogeneous())
+            .map(|p| Vec3::new(p[0], p[1], p[2]) / p[3])
+            .collect()
+    }
 }
 
 /// The same chain run through backwards.

@@ -5,6 +5,7 @@ use super::curves::{Tally, curves};
 use super::enclosed::{runs_back, signed_area, without_spikes};
 use super::face::Boundary;
 use super::host::{Host, Xi};
+use super::spikes::without_ends;
 use crate::NurbsCurve;
 use crate::curve::CurveError;
 use crate::trim::{TrimCurve, TrimLoop};
@@ -45,6 +46,12 @@ pub fn loops(
             let curves = without_spikes(host, chain.curves).map_err(named)?;
             // What was a seam and nothing else leaves the whole surface.
             if !curves.is_empty() {
+                let (curves, cut) = without_ends(host, curves).map_err(named)?;
+                if cut > 0.0 {
+                    complaints.push(named(format!(
+                        "its boundary runs there and back over a length of {cut:.1e}, which bounds nothing and was cut off"
+                    )));
+                }
                 closed.push(curves);
             }
         } else {

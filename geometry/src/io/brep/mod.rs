@@ -3,11 +3,13 @@
 //!
 //! A reader hands over a [`BasePatch`] and a [`Face`] of [`Boundary`]s. `loops` chains the curves of each, which `curves`
 //! brings to the patch's parameters: those of the file by a [`ParameterMap`] each way, those in space by projection onto the
-//! `host`; `fit` makes splines of what has no exact form. `extent` continues a patch that its boundary leaves, and `areas`
+//! `host`; `fit` makes splines of what has no exact form, and `spikes`
+//! cuts off ends that run back along each other. `extent` continues a patch that its boundary leaves, and `areas`
 //! compares what contradicting curves bound. [`Grant`] bounds work and memory by the length of the file.
 
 mod areas;
 mod base;
+mod chain;
 mod curves;
 mod enclosed;
 mod extent;
@@ -19,9 +21,11 @@ mod knots;
 mod loops;
 mod offset_fit;
 mod parameter_map;
+mod poles;
 mod reparametrise;
 mod revolve;
 mod sides;
+mod spikes;
 
 pub use areas::{by_parameters, disagreement};
 pub use base::BasePatch;
@@ -29,7 +33,7 @@ pub(in crate::io) use base::approximation;
 pub use curves::{Tally, add};
 pub use enclosed::bounds_outside;
 pub use extent::grown;
-pub use face::{Boundary, Face, Part, Stretch, reversed};
+pub use face::{Boundary, Face, Part, Preference, Stretch, reversed};
 pub use grant::{Grant, evaluations};
 pub use host::Host;
 pub use knots::{merge_close, pieces};

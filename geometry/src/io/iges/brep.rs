@@ -10,7 +10,7 @@ use super::groups::pointer;
 use super::params::Params;
 use super::transform::Affine;
 use super::trimmed::{describe, parameter_list, space_parts};
-use crate::io::brep::{Boundary, Face, Stretch, reversed};
+use crate::io::brep::{Boundary, Face, Preference, Stretch, reversed};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry as Slot;
 
@@ -113,7 +113,7 @@ fn read_508(
                 stretches.push(Stretch {
                     parameter,
                     space,
-                    space_first: false,
+                    preference: Preference::None,
                     edge: curve.number,
                 });
             }

@@ -36,6 +36,10 @@ pub struct Entry {
     pub status: Status,
     /// Number of its transformation matrix, 0 for none.
     pub matrix: i64,
+    /// Number of its level, 0 for none; negative: the pointer to a property (406) that lists several.
+    pub level: i64,
+    /// Number of its colour, 0 for none; negative: the pointer to a colour definition (314).
+    pub colour: i64,
     /// Entity label with subscript, or empty.
     pub label: String,
     /// Its records in the parameter section.
@@ -136,6 +140,9 @@ pub fn read(sections: &Sections, notes: &mut Vec<String>) -> Result<Vec<Entry>, 
             form,
             status: status(first)?,
             matrix: field(first, 7, "the pointer to a transformation matrix")?,
+            // Nothing that is read depends on these two.
+            level: field(first, 5, "a level").unwrap_or(0),
+            colour: field(second, 3, "a colour").unwrap_or(0),
             label: label(second),
             records,
         });

@@ -1,4 +1,4 @@
-//! Files without surfaces: drawings and wireframes.
+//! What a file holds beside surfaces, or instead of them: drawings, wireframes, references to other files.
 
 use super::curve::is_curve;
 use super::directory::Entry;
@@ -25,4 +25,15 @@ pub fn account(entries: &[Entry]) -> String {
         (0, 1..) => format!("the file is a wireframe: {curves} curve(s), no surfaces"),
         (0, 0) => "the file holds neither surfaces nor curves".to_owned(),
     }
+}
+
+/// Says that a file refers to others.
+pub fn external(entries: &[Entry]) -> Option<String> {
+    let mut elsewhere = entries.iter().filter(|e| e.type_number == 416);
+    let first = elsewhere.next()?;
+    Some(format!(
+        "{} external reference(s) (416), the first of them entity {}: what stands in other files is not read",
+        1 + elsewhere.count(),
+        first.number
+    ))
 }

@@ -1,21 +1,25 @@
 //! What becomes of every surface entity of a file: patches, or a reason why not.
 
 use super::super::error::Fail;
-use super::super::report::{CadPatch, CadTags, FaceBorder, SkipKind, Skipped, TrimReport};
+use super::super::report::{CadPatch, FaceBorder, SkipKind, Skipped, TrimReport};
+use super::Model;
 use super::brep::{self, Edges};
 use super::bridging::{Bridging, Skip};
 use super::curve;
 use super::directory::Entry;
-use super::groups::{Groups, Placement, members, refusal};
+use super::drawing;
+use super::groups::{Groups, Placement, refusal};
+use super::labels::{label, name_of};
+use super::rivals::{Rival, Rivals};
 use super::surfaces::{self, BasePatch, BaseSurface};
+use super::tags::tags;
 use super::transform::{Affine, matrix_of};
 use super::trimmed::{self, describe};
-use super::{Model, params::Params};
+use crate::NurbsPatch;
 use crate::io::brep::{
     Boundary, Face, GAP, Grant, Host, Stretch, Tally, add, approximation, bounds_outside,
     by_parameters, disagreement, grown, loops, widest_gap,
 };
-use crate::{NurbsPatch, Vec3};
 
 /// All surfaces of a file.
 #[derive(Default)]
@@ -28,8 +32,22 @@ pub struct Outcome {
 /// A reason to skip a surface.
 type Refusal = (SkipKind, String);
 
-/// A patch with what bounds it.
-type Piece = (NurbsPatch, FaceBorder);
+/// A patch with what bounds it, and the one that other curves of the file would bound.
+struct Piece {
+    patch: NurbsPatch,
+    border: FaceBorder,
+    rival: Option<Rival>,
+}
+
+impl Piece {
+    fn whole(patch: NurbsPatch) -> Self {
+        Self {
+            patch,
+            border: FaceBorder::Natural,
+            rival: None,
+        }
+    }
+}
 
 /// The patches of one entity.
 type Found = Result<Vec<Piece>, Refusal>;
@@ -44,6 +62,7 @@ pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
         out: Outcome::default(),
         grant: model.grant(),
         bridging: Bridging::new(),
+        rivals: Rivals::default(),
         notes,
     };
     for (index, entry) in model.entries.iter().enumerate() {
@@ -56,7 +75,10 @@ pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
         hidden += usize::from(model.hidden && blanked && refused.is_none());
         reader.entity(entry, &placed, refused)?;
     }
+    reader.notes.extend(drawing::external(&model.entries));
     reader.bridge()?;
+    let rivals = std::mem::take(&mut reader.rivals);
+    rivals.settle(&mut reader.out, model.resolution(), reader.notes);
     if hidden > 0 {
         let text = format!("{hidden} hidden (blanked) surface(s) were asked for and read as well");
         reader.notes.push(text);
@@ -88,6 +110,7 @@ struct Reader<'a, 'n> {
     out: Outcome,
     grant: Grant,
     bridging: Bridging<'a>,
+    rivals: Rivals,
     notes: &'n mut Vec<String>,
 }
 
@@ -173,27 +196,32 @@ impl<'a> Reader<'a, '_> {
                 false => pieces,
             };
             let pieces = pieces.and_then(|pieces| {
-                let granted = pieces.iter().try_for_each(|(p, _)| self.grant.patch(p));
+                let granted = pieces.iter().try_for_each(|p| self.grant.patch(&p.patch));
                 granted.map_err(|reason| (SkipKind::Surface, reason))?;
                 Ok(pieces)
             });
             match pieces {
                 Ok(pieces) => {
-                    let whole = pieces.iter().filter(|p| p.1 == FaceBorder::Natural);
+                    let whole = pieces.iter().filter(|p| p.border == FaceBorder::Natural);
                     self.bridging
-                        .extend(whole.flat_map(|p| p.0.bounds()).collect::<Vec<_>>());
-                    self.out
-                        .patches
-                        .extend(pieces.into_iter().map(|(patch, border)| CadPatch {
-                            patch,
+                        .extend(whole.flat_map(|p| p.patch.bounds()).collect::<Vec<_>>());
+                    for piece in pieces {
+                        self.rivals.extend(
+                            piece
+                                .rival
+                                .map(|rival| (entry.number, copy.instance, rival)),
+                        );
+                        self.out.patches.push(CadPatch {
+                            patch: piece.patch,
                             entity: entry.number,
                             type_number: entry.type_number,
                             base,
                             instance: copy.instance,
-                            border,
+                            border: piece.border,
                             name: name.clone(),
-                            tags: CadTags::default(),
-                        }));
+                            tags: tags(self.model, entry),
+                        });
+                    }
                 }
                 Err(reason) => {
                     refused.get_or_insert(reason);
@@ -210,16 +238,13 @@ impl<'a> Reader<'a, '_> {
         let (surface, values) =
             match curve::settle(surfaces::read(self.model, entry, outer, self.notes))? {
                 Ok(read) => read,
-                Err(reason) => return Ok((own_name(entry), Err((SkipKind::Surface, reason)))),
+                Err(reason) => return Ok((label(entry), Err((SkipKind::Surface, reason)))),
             };
-        let name = self.name_of(entry, values)?;
+        let name = name_of(self.model, entry, values)?;
         let pieces = match surface {
             BaseSurface::Patches(patches) => {
                 self.approximated(entry, &patches);
-                Ok(patches
-                    .into_iter()
-                    .map(|p| (p.patch, FaceBorder::Natural))
-                    .collect())
+                Ok(patches.into_iter().map(|p| Piece::whole(p.patch)).collect())
             }
             BaseSurface::Unbounded(plane) => match &plane.border {
                 Some((number, border)) if *border == surfaces::Border::Outer => {
@@ -266,7 +291,7 @@ impl<'a> Reader<'a, '_> {
             values: 0,
             fault: None,
         };
-        Ok(match plane.sized(&points(&face)) {
+        Ok(match plane.sized(&face.points()) {
             Ok(base) => self
                 .bounded(entry, &base, &face, None)
                 .map(|piece| vec![piece]),
@@ -283,9 +308,9 @@ impl<'a> Reader<'a, '_> {
             _ => brep::read_510(model, entry, map, &mut self.edges, self.notes)?,
         };
         let base = &model.entries[face.base];
-        let mut name = match self.name_of(entry, face.values)? {
+        let mut name = match name_of(self.model, entry, face.values)? {
             Some(name) => Some(name),
-            None => own_name(base),
+            None => label(base),
         };
         let refused = |kind, reason: String| Err((kind, reason));
         if let Some(reason) = &face.fault {
@@ -306,11 +331,11 @@ impl<'a> Reader<'a, '_> {
             Err(reason) => return Ok((name, refused(SkipKind::Surface, on(reason)), base.number)),
         };
         if name.is_none() {
-            name = self.name_of(base, values)?;
+            name = name_of(self.model, base, values)?;
         }
         let patches = match surface {
             BaseSurface::Patches(patches) => patches,
-            BaseSurface::Unbounded(unbounded) => match unbounded.sized(&points(&face)) {
+            BaseSurface::Unbounded(unbounded) => match unbounded.sized(&face.points()) {
                 Ok(patch) => vec![patch],
                 Err(reason) => {
                     return Ok((name, refused(SkipKind::Boundary, on(reason)), base.number));
@@ -319,10 +344,9 @@ impl<'a> Reader<'a, '_> {
         };
         self.approximated(base, &patches);
         let pieces = match &patches[..] {
-            _ if face.boundaries.is_empty() => Ok(patches
-                .into_iter()
-                .map(|p| (p.patch, FaceBorder::Natural))
-                .collect()),
+            _ if face.boundaries.is_empty() => {
+                Ok(patches.into_iter().map(|p| Piece::whole(p.patch)).collect())
+            }
             [patch] => {
                 let name = (entry.number != base.number).then_some(base);
                 self.bounded(entry, patch, &face, name)
@@ -347,9 +371,8 @@ impl<'a> Reader<'a, '_> {
         face: &Face,
         surface: Option<&Entry>,
     ) -> Result<Piece, Refusal> {
-        let global = &self.model.global;
-        let resolution = global.resolution.map_or(0.0, |r| r / global.scale);
-        match points(face) {
+        let resolution = self.model.resolution().unwrap_or(0.0);
+        match face.points() {
             points if points.is_empty() => self.bridging.extend(base.patch.bounds()),
             points => self.bridging.extend(points),
         }
@@ -364,7 +387,7 @@ impl<'a> Reader<'a, '_> {
         let mut said = Vec::new();
         // A B-rep's loops do not say which of them is the outer one.
         let sort = entry.type_number != 144;
-        let [curves, points] = extent(face);
+        let [curves, points] = face.extent();
         let granted = self.grant.boundary(curves, points);
         let made =
             granted.and_then(|()| loops(&host, &face.boundaries, sort, &mut tally, &mut said));
@@ -385,36 +408,54 @@ impl<'a> Reader<'a, '_> {
             };
             trimmed.map_err(|e| e.to_string())
         });
-        let note = |text: &str| format!("{}: {text}", describe(entry));
-        self.notes.extend(said.iter().map(|text| note(text)));
         if let Some(grown) = grown.as_ref().filter(|g| g.continued > 0.0) {
             let share = grown.continued;
-            let text = format!(
+            said.push(format!(
                 "its boundary leaves the surface, which was continued by {share:.1e} of its range"
-            );
-            self.notes.push(note(&text));
+            ));
         }
+        let noted = |said: Vec<String>| -> Vec<String> {
+            let whole = said
+                .iter()
+                .map(|text| format!("{}: {text}", describe(entry)));
+            whole.collect()
+        };
         match trimmed {
             Ok(trimmed) => {
-                let other = (tally.rejected > 0).then(|| by_parameters(&host, face, sort));
-                if let Some(text) = other.and_then(|other| disagreement(&trimmed.patch, &other?)) {
-                    self.notes.push(note(&text));
-                }
                 if tally.bridged > 0 {
                     let (n, widest) = (tally.bridged, tally.largest_bridge);
-                    let text = format!(
+                    said.push(format!(
                         "{n} gap(s) of up to {widest:.1e} between its boundary curves were closed"
-                    );
-                    self.notes.push(note(&text));
+                    ));
                 }
-                add(&mut self.out.trims, &tally);
-                let border = match trimmed.patch.trim() {
-                    Some(_) => FaceBorder::Trimmed,
-                    None => FaceBorder::Rectangle,
-                };
-                Ok((trimmed.patch, border))
+                let border = border_of(&trimmed.patch);
+                // The other face takes as much again.
+                let other = tally.rejected > 0
+                    && self.grant.boundary(curves, points).is_ok()
+                    && self.grant.patch(patch).is_ok();
+                let other = other.then(|| by_parameters(&host, face, sort));
+                let rival = other.flatten().map(|(patch, other, told)| {
+                    said.extend(disagreement(&trimmed.patch, &patch));
+                    Rival {
+                        border: border_of(&patch),
+                        patch,
+                        tallies: [tally, other],
+                        notes: [std::mem::take(&mut said), told].map(&noted),
+                    }
+                });
+                // What there is to say of a face with a rival is said when one of the two is chosen.
+                if rival.is_none() {
+                    self.notes.extend(noted(said));
+                    add(&mut self.out.trims, &tally);
+                }
+                Ok(Piece {
+                    patch: trimmed.patch,
+                    border,
+                    rival,
+                })
             }
             Err(reason) => {
+                self.notes.extend(noted(said));
                 let on = surface.map_or(String::new(), |s| format!(" on {}", describe(s)));
                 Err((SkipKind::Boundary, format!("{reason}{on}")))
             }
@@ -430,73 +471,25 @@ impl<'a> Reader<'a, '_> {
             }
         }
     }
-
-    /// Name of an entity: its property 406 form 15 if there is one, or else its label. After an entity's own `values`
-    /// values stand two lists of pointers, each with its length in front: associativities, then properties.
-    fn name_of(&self, entry: &Entry, values: usize) -> Result<Option<String>, Fail> {
-        let model = self.model;
-        let params = model.params(entry)?;
-        if let Some(name) = property_name(model, &params, values)? {
-            return Ok(Some(name));
-        }
-        Ok(own_name(entry))
-    }
 }
 
 /// The pieces with the opposite normals.
 fn turned(pieces: Vec<Piece>) -> Found {
-    let turn = |(patch, border): Piece| match patch.reversed(0) {
-        Ok(patch) => Ok((patch, border)),
-        Err(e) => Err((SkipKind::Surface, e.to_string())),
+    let turn = |piece: Piece| -> Result<Piece, crate::PatchError> {
+        let rival = piece.rival.map(Rival::turned).transpose()?;
+        Ok(Piece {
+            patch: piece.patch.reversed(0)?,
+            rival,
+            ..piece
+        })
     };
-    pieces.into_iter().map(turn).collect()
+    let turned = pieces.into_iter().map(turn).collect::<Result<_, _>>();
+    turned.map_err(|e| (SkipKind::Surface, e.to_string()))
 }
 
-/// The name among the properties that follow an entity's own values.
-fn property_name(model: &Model, params: &Params, values: usize) -> Result<Option<String>, Fail> {
-    if params.len() <= values {
-        return Ok(None);
+fn border_of(patch: &NurbsPatch) -> FaceBorder {
+    match patch.trim() {
+        Some(_) => FaceBorder::Trimmed,
+        None => FaceBorder::Rectangle,
     }
-    let skip = params.count(values, "a number of associativity pointers")?;
-    let at = values.saturating_add(skip).saturating_add(1);
-    if params.len() <= at {
-        return Ok(None);
-    }
-    for index in members(model, params, at, "a property")? {
-        let property = &model.entries[index];
-        if property.type_number == 406 && property.form == 15 {
-            let params = model.params(property)?;
-            if let Some(name) = params.string(2, "a name")? {
-                return Ok(Some(name.trim().to_owned()));
-            }
-        }
-    }
-    Ok(None)
-}
-
-/// Boundary curves of a face and their control points, in both planes.
-fn extent(face: &Face) -> [usize; 2] {
-    let mut extent = [0, 0];
-    for stretch in face.boundaries.iter().flat_map(|b| &b.stretches) {
-        extent[0] += stretch.parameter.len().max(stretch.space.len());
-        let plane = stretch.parameter.iter();
-        extent[1] += plane.map(|p| p.curve.homogeneous().len()).sum::<usize>();
-        let space = stretch.space.iter();
-        extent[1] += space.map(|p| p.curve.homogeneous().len()).sum::<usize>();
-    }
-    extent
-}
-
-/// Points between which a face's space curves run.
-fn points(face: &Face) -> Vec<Vec3> {
-    let parts = face.boundaries.iter().flat_map(|b| &b.stretches);
-    let curves = parts.flat_map(|s| &s.space).map(|p| &p.curve);
-    curves
-        .flat_map(|c| c.homogeneous())
-        .map(|p| Vec3::new(p[0], p[1], p[2]) / p[3])
-        .collect()
-}
-
-fn own_name(entry: &Entry) -> Option<String> {
-    (!entry.label.is_empty()).then(|| entry.label.clone())
 }

@@ -154,6 +154,14 @@ fn unit(params: &Params, notes: &mut Vec<String>) -> Result<LengthUnit, Fail> {
     } else {
         params.integer(11, "the units flag")?
     };
+    if flag == 3 && named.as_deref().is_none_or(|name| name.trim().is_empty()) {
+        notes.push(format!(
+            "line {}: the units flag is 3, but there is no name of a unit; the unit is {}",
+            params.place_of(11).0,
+            LengthUnit::unspecified().name
+        ));
+        return Ok(LengthUnit::unspecified());
+    }
     if flag == 3 {
         return known.ok_or_else(|| {
             params.fail(

@@ -19,12 +19,15 @@ mod drawing;
 mod faces;
 mod global;
 mod groups;
+mod labels;
 mod names;
 mod number;
 mod params;
 mod records;
+mod rivals;
 mod surface;
 mod surfaces;
+mod tags;
 mod transform;
 mod trimmed;
 mod write;
@@ -59,6 +62,11 @@ impl<'a> Model<'a> {
     fn grant(&self) -> super::brep::Grant {
         let parameter = self.sections.parameter.len();
         super::brep::Grant::of_lines(parameter, parameter + self.sections.directory.len())
+    }
+
+    /// Smallest distance that the writer tells apart, in the file's unit; `None` where it does not say.
+    fn resolution(&self) -> Option<f64> {
+        self.global.resolution.map(|r| r / self.global.scale)
     }
 
     /// The values of an entity.
@@ -139,7 +147,7 @@ fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<CadFile, Fail
         path: name.to_owned(),
         format: CadFormat::Iges,
         unit: model.global.unit.clone(),
-        resolution: model.global.resolution.map(|r| r / model.global.scale),
+        resolution: model.resolution(),
         patches: read.patches,
         bodies: Vec::new(),
         entities,

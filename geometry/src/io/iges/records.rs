@@ -87,7 +87,9 @@ pub fn split<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Result<Sections<'a
             _ => {}
         }
     }
-    if counts[4] == 0 {
+    if counts[4] == 0 && is_complete(&sections) {
+        notes.push("the terminate record T is missing; every entity is complete".to_owned());
+    } else if counts[4] == 0 {
         let expected = "the terminate record T (the file is cut off)";
         let found = match of_drawing(&sections) {
             true => "the end of the file (what there is of it is a drawing, without surfaces)",
@@ -101,6 +103,21 @@ pub fn split<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Result<Sections<'a
         ));
     }
     Ok(sections)
+}
+
+/// Whether the directory ends with a whole entity, and the parameter data with the last record that an entity counts.
+fn is_complete(sections: &Sections) -> bool {
+    let count = |digits: &[u8]| parse_count(digits).filter(|&n| n > 0);
+    let last = sections.directory.chunks(2).map(|pair| {
+        let [first, second] = pair else {
+            return None;
+        };
+        let (start, length) = (count(first.columns(9, 16))?, count(second.columns(25, 32))?);
+        start.checked_add(length - 1)
+    });
+    // `None` for an entity that is not whole.
+    let last: Option<Vec<usize>> = last.collect();
+    last.and_then(|last| last.into_iter().max()) == Some(sections.parameter.len())
 }
 
 /// Whether the directory holds annotation, views or drawings and nothing that may be a surface or carry one.

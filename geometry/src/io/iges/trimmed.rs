@@ -8,7 +8,7 @@ use super::groups::{members, pointer};
 use super::params::Params;
 use super::transform::{Affine, matrix_of};
 use super::{Model, entity_name};
-use crate::io::brep::{Boundary, Face, Part, Stretch, reversed};
+use crate::io::brep::{Boundary, Face, Part, Preference, Stretch, reversed};
 
 pub fn describe(entry: &Entry) -> String {
     let name = entity_name(entry.type_number, entry.form);
@@ -107,8 +107,12 @@ fn read_142(
     let mut stretch = Stretch::default();
     if params.len() > 5 {
         // 1: the parameter plane, 2: space, 3: both alike, 0: it does not say.
-        stretch.space_first =
-            params.integer(5, "the preference PREF of a curve on a surface")? == 2;
+        stretch.preference =
+            match params.integer(5, "the preference PREF of a curve on a surface")? {
+                1 => Preference::Parameter,
+                2 => Preference::Space,
+                _ => Preference::None,
+            };
     }
     let bptr = params.integer(3, "the curve BPTR in the parameter plane")?;
     if bptr != 0 {
@@ -214,7 +218,11 @@ fn read_141(
     let params = model.params(entry)?;
     let map = outer.after(&matrix_of(model, entry, notes)?);
     // 1: space, 2: the parameter plane, 3: both alike, 0: it does not say.
-    let space_first = params.integer(2, "the preference PREF of a boundary (141)")? == 1;
+    let preference = match params.integer(2, "the preference PREF of a boundary (141)")? {
+        1 => Preference::Space,
+        2 => Preference::Parameter,
+        _ => Preference::None,
+    };
     let count = params.count(4, "the number of curves of a boundary (141)")?;
     // Boundaries of curves in space alone (type 0) are also written without the counts K, which are all 0.
     let without_counts = params.len() == 5 + 2 * count && params.integer(1, "the type")? == 0;
@@ -250,7 +258,7 @@ fn read_141(
         stretches.push(Stretch {
             parameter,
             space,
-            space_first,
+            preference,
             edge: model.entries[curve].number,
         });
     }

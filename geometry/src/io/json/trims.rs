@@ -2,7 +2,9 @@
 
 use super::Content;
 use crate::curve::NurbsCurve;
-use crate::io::brep::{BasePatch, Boundary, GAP, Grant, Host, Part, Stretch, Tally, add, loops};
+use crate::io::brep::{
+    BasePatch, Boundary, GAP, Grant, Host, Part, Preference, Stretch, Tally, add, loops,
+};
 use crate::io::report::FaceBorder;
 use crate::trim::TrimNoteKind;
 use crate::{NurbsPatch, Vec3};
@@ -142,7 +144,7 @@ fn stretch(
     Ok(Stretch {
         parameter: vec![Part { entity, curve }],
         space,
-        space_first: false,
+        preference: Preference::None,
         edge: entity,
     })
 }

@@ -7,7 +7,7 @@ use super::place::{point, points};
 use super::scope::Scope;
 use super::surface::Surface;
 use crate::Vec3;
-use crate::io::brep::{Boundary, Part, Stretch, reversed};
+use crate::io::brep::{Boundary, Part, Preference, Stretch, reversed};
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
@@ -51,7 +51,8 @@ pub fn bound(scope: &Scope, index: u32, base: Option<Base>, turned: bool) -> Tol
     } else if a_loop.is("EDGE_LOOP") {
         let list = a_loop.targets("PATH", 0, "an edge of a loop")?;
         let edges = list.into_iter().map(|edge| oriented(scope, edge, base));
-        edges.collect::<Told<Vec<_>>>()?
+        let edges = edges.collect::<Told<Vec<_>>>()?;
+        edges.into_iter().flatten().collect()
     } else {
         return Err(format!("{name} is a loop of a type that is not read"));
     };
@@ -85,8 +86,9 @@ fn vertex_point(scope: &Scope, index: u32) -> Told<Vec3> {
     point(scope.exchange, at)
 }
 
-/// An ORIENTED_EDGE in its own direction.
-fn oriented(scope: &Scope, index: u32, base: Option<Base>) -> Told<Stretch> {
+/// An ORIENTED_EDGE in its own direction; `None` for a straight edge between a vertex and itself, as it is written at the tip of
+/// a cone: it is that point.
+fn oriented(scope: &Scope, index: u32, base: Option<Base>) -> Told<Option<Stretch>> {
     let mut use_of = scope.entity(index, 0)?;
     let (mut ahead, mut depth) = (true, 0);
     while use_of.is("ORIENTED_EDGE") {
@@ -122,7 +124,11 @@ fn oriented(scope: &Scope, index: u32, base: Option<Base>) -> Told<Stretch> {
             edge: number,
             ..Stretch::default()
         };
-        return if ahead { Ok(stretch) } else { turned(stretch) };
+        let stretch = if ahead { stretch } else { turned(stretch)? };
+        return Ok(Some(stretch));
+    }
+    if closed && curve.is("LINE") {
+        return Ok(None);
     }
     let course = curve_read::read::<3>(scope, geometry)?;
     let near = scope.near.max(END * extent(&course, &ends));
@@ -130,11 +136,11 @@ fn oriented(scope: &Scope, index: u32, base: Option<Base>) -> Told<Stretch> {
     let mut stretch = Stretch {
         parameter: Vec::new(),
         space: parts(&runs).map_err(told)?,
-        space_first: false,
+        preference: Preference::None,
         edge: number,
     };
     if curve.is("SURFACE_CURVE") {
-        stretch.space_first = prefers_space(&curve)?;
+        stretch.preference = preference(&curve)?;
         let found = pcurves(scope, &curve, base.map(|b| b.0))?;
         // A seam has one for each side; where the loop has come to tells later which period is meant.
         let chosen = if ahead { found.first() } else { found.last() };
@@ -144,7 +150,7 @@ fn oriented(scope: &Scope, index: u32, base: Option<Base>) -> Told<Stretch> {
             stretch.parameter = read.unwrap_or_default();
         }
     }
-    if ahead { Ok(stretch) } else { turned(stretch) }
+    Ok(Some(if ahead { stretch } else { turned(stretch)? }))
 }
 
 /// The size of a curve, as far as ends and control points tell.
@@ -167,12 +173,13 @@ fn extent(course: &Course<3>, ends: &[Vec3; 2]) -> f64 {
     }
 }
 
-fn prefers_space(curve: &Entity) -> Told<bool> {
+fn preference(curve: &Entity) -> Told<Preference> {
     let item = curve.attribute("SURFACE_CURVE", 2, "which curve is preferred")?;
-    Ok(matches!(
-        item.value,
-        super::scan::Value::Enumeration(b"CURVE_3D")
-    ))
+    Ok(match item.value {
+        super::scan::Value::Enumeration(b"CURVE_3D") => Preference::Space,
+        super::scan::Value::Enumeration(b"PCURVE_S1" | b"PCURVE_S2") => Preference::Parameter,
+        _ => Preference::None,
+    })
 }
 
 /// The curves in the parameter plane of `base` that a curve on surfaces has: two where it is a seam.
@@ -376,7 +383,10 @@ fn member(scope: &Scope, index: u32, base: Base) -> Told<Stretch> {
     Ok(Stretch {
         parameter,
         space,
-        space_first: surface_curve && prefers_space(&curve)?,
+        preference: match surface_curve {
+            true => preference(&curve)?,
+            false => Preference::None,
+        },
         edge,
     })
 }

@@ -269,6 +269,9 @@ pub(super) fn link(
             );
         }
         let names = pair.edges.map(|k| name(&edges[k]));
+        if pair.stacked {
+            report.folded.extend(names);
+        }
         let widest = usize::from(pair.contacts[1].gap > pair.contacts[0].gap);
         let gap_at = pair.contacts[widest].gap_at;
         let gap = Gap {

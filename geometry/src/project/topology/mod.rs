@@ -47,7 +47,7 @@ pub(crate) struct Topology {
     pub component_of: Vec<usize>,
     /// For each component with one side only: two patches that cannot be oriented alike.
     pub one_sided: Vec<Option<[usize; 2]>>,
-    /// Volume enclosed by each component with outward sides, where it is closed.
+    /// Volume enclosed by each component where it is closed, negative where its sides point inward.
     pub volumes: Vec<Option<f64>>,
     pub report: EdgeReport,
 }

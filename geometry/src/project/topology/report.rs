@@ -88,6 +88,8 @@ pub struct EdgeReport {
     pub poles: Vec<(u32, u32)>,
     /// Edges at which more than two patches meet; the nearest pair is joined and orients the surface.
     pub branching: Vec<(u32, u32)>,
+    /// Edges of joints at which the surface folds back onto itself, so that both patches leave them in the same direction.
+    pub folded: Vec<(u32, u32)>,
     /// Joints across which the surface is smooth.
     pub smooth: usize,
     /// Joints at an angle.
