@@ -199,14 +199,16 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
             )
             .help("take the faces on the other side of that body, whose outward normals point at the other faces"));
         }
-        notes.push(format!(
-            "contact `{}`: initial gaps from {} to {} at {} points, {} of them in contact",
-            pair.name,
-            number(gap.smallest),
-            number(gap.largest),
-            pair.points.len(),
-            gap.touching
-        ));
+        let (name, points) = (&pair.name, pair.points.len());
+        notes.push(match gap.smallest.is_finite() {
+            true => format!(
+                "contact `{name}`: initial gaps from {} to {} at {points} points, {} of them in contact",
+                number(gap.smallest),
+                number(gap.largest),
+                gap.touching
+            ),
+            false => format!("contact `{name}`: at the start none of its {points} points has the other side in front of it"),
+        });
         let limit = 0.5 * pair.element_size;
         if gap.smallest < -limit {
             let (pointer, start, help) = match &pair.master {

@@ -28,8 +28,9 @@ use super::watch::{Span, Watch};
 use crate::assembly::{Assembler, Fault, Totals};
 use crate::contact::law::Penalty;
 use crate::machine::clock::Phases;
+use crate::model::master::Master;
 use crate::model::state::State;
-use crate::model::{BodyModel, Model, segments};
+use crate::model::{BodyModel, Model, PairModel, segments};
 use crate::output::RunStatus;
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
@@ -425,6 +426,11 @@ impl March<'_, '_> {
         for text in soft.into_iter().chain(self.peaks.warnings(self.model)) {
             self.warn(text);
         }
+        let (_, guards) = self.untouched();
+        if !guards.is_empty() {
+            let text = format!("contact `{}` never touched", guards.join("`, `"));
+            self.observer.event(&Event::Note { text });
+        }
         for text in self.peaks.notes(self.model) {
             self.observer.event(&Event::Note { text });
         }
@@ -432,11 +438,7 @@ impl March<'_, '_> {
 
     /// How a run that reached its end time ended.
     fn ending(&self) -> Ending {
-        let pairs = self.model.pairs.iter().enumerate();
-        let never: Vec<&str> = pairs
-            .filter(|(i, pair)| !self.either(self.touched, *i) && !pair.is_second())
-            .map(|(_, pair)| pair.name.as_str())
-            .collect();
+        let (never, _) = self.untouched();
         if never.is_empty() {
             return Ending {
                 status: RunStatus::Done,
@@ -453,6 +455,35 @@ impl March<'_, '_> {
             )),
             squeezed: Vec::new(),
         }
+    }
+
+    /// Contacts that never touched: those that were to, and those that only might have. A body in contact with itself guards against
+    /// what need not happen, and so does a contact of which both sides have touched in others; where nothing has touched at all, every
+    /// contact was to.
+    fn untouched(&self) -> (Vec<&str>, Vec<&str>) {
+        let pairs = &self.model.pairs;
+        let sides = |pair: &PairModel| match &pair.master {
+            Master::Rigid(surface) => [(false, pair.body), (true, *surface)],
+            Master::Body(master) => [(false, pair.body), (false, master.body)],
+        };
+        let touched = |i: usize| self.either(self.touched, i);
+        let met: BTreeSet<(bool, usize)> = (pairs.iter().enumerate())
+            .filter(|(i, _)| touched(*i))
+            .flat_map(|(_, pair)| sides(pair))
+            .collect();
+        let mut out = (Vec::new(), Vec::new());
+        for (i, pair) in pairs.iter().enumerate() {
+            if touched(i) || pair.is_second() {
+                continue;
+            }
+            let own = sides(pair);
+            let guards = own[0] == own[1] || own.iter().all(|side| met.contains(side));
+            match guards && !met.is_empty() {
+                true => out.1.push(pair.name.as_str()),
+                false => out.0.push(pair.name.as_str()),
+            }
+        }
+        out
     }
 
     /// Whether steps in contact with a body are cut again and again.

@@ -216,7 +216,9 @@ impl<'o> Simulation<'o> {
         let squeezed = (ending.squeezed.iter()).map(|&body| bodies[body].name.as_str());
         let before = self.safe.as_ref();
         let time = self.time();
-        let stopped = ending.status == RunStatus::NotConverged;
+        // A run that reached its end is kept, whatever is to be said of its last state.
+        let whole = time >= self.scene.scene.solution.end_time * (1.0 - 1e-12);
+        let stopped = ending.status == RunStatus::NotConverged && !whole;
         let run = self.running.borrow_dependent();
         let edges = || {
             let found = stopped && run.edges_on_slaves();
