@@ -47,14 +47,19 @@ impl March<'_, '_> {
         if !last {
             return None;
         }
-        let stored = converged.totals.internal_energy;
-        if state.stabilized > DISSIPATES * stored {
+        // What flows or is released stores little of what was done on it.
+        let later = self.model.stage.as_ref().is_some_and(|s| s.start.index > 0);
+        let (all, name) = match later || converged.totals.plastic_work > 0.0 {
+            true => (self.watch.turned_over(), "work"),
+            false => (converged.totals.internal_energy, "strain energy"),
+        };
+        if state.stabilized > DISSIPATES * all {
             self.warn(format!(
-                "stabilization has dissipated {}, more than {:.0} % of the strain energy {} at the end: something snapped or \
+                "stabilization has dissipated {}, more than {:.0} % of the {name} {} at the end: something snapped or \
                  moved freely, or its `factor` is too large",
                 number(state.stabilized),
                 100.0 * DISSIPATES,
-                number(stored)
+                number(all)
             ));
         }
         let moving = model.free.iter().find_map(|piece| {

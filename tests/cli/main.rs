@@ -21,4 +21,5 @@ mod resume;
 mod rounds;
 mod run;
 mod schema;
+mod stages;
 mod support;

@@ -193,6 +193,35 @@ fn killed_while_it_flows() {
     }));
 }
 
+/// A metal strip that a tool bends with friction and that is released in a second stage: what is let down and what holds the strip is
+/// continued.
+#[test]
+fn killed_while_it_is_released() {
+    killed(&json!({
+        "covact": 1,
+        "materials": {"metal": {"j2": {
+            "E": 200e3, "nu": 0.3, "hardening": {"swift": {"strength": 500, "offset": 0.01, "exponent": 0.2}}
+        }}},
+        "bodies": {"strip": {
+            "mesh": {"plate": {"size": [40, 5], "thickness": 1, "elements": [16, 1]}},
+            "material": "metal"
+        }},
+        "surfaces": {"tool": {
+            "cylinder": {"center": [35, 2.5, 5.5], "axis": [0, 1, 0], "radius": 5, "length": 20}, "side": "outward"
+        }},
+        "contacts": {"press": {"slave": "strip.top", "master": "tool", "friction": 0.1}},
+        "supports": {
+            "clamped": {"on": "strip.x_min", "fixed": true},
+            "side": {"on": "strip.y_min", "symmetry": "y"}
+        },
+        "stages": [
+            {"name": "bend", "until": 0.6, "tools": {"tool": [0, 0, -6]}},
+            {"name": "release", "release": "forces", "supports": ["side", "automatic"]}
+        ],
+        "solution": {"step": {"initial": 0.02, "max": 0.02}},
+    }));
+}
+
 /// Friction and augmentation on a rigid surface, enhanced strains; slave points are written.
 #[test]
 fn killed_while_it_slides() {

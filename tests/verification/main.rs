@@ -28,6 +28,7 @@ mod plate_under_ball;
 mod punch;
 mod quadratic;
 mod resolution;
+mod springback;
 mod strip_over_cylinder;
 mod support;
 mod supports;

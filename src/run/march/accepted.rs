@@ -23,7 +23,13 @@ impl March<'_, '_> {
         for (i, pair) in self.model.pairs.iter().enumerate() {
             let deepest = converged.totals.penetration[i];
             self.touched[i] |= touching[i];
-            let lasting = self.model.dynamics.is_none();
+            // A tool that a stage takes back is meant to leave.
+            let ends = self
+                .model
+                .stage
+                .as_ref()
+                .is_some_and(|s| s.ending.contains(&pair.name));
+            let lasting = self.model.dynamics.is_none() && !ends;
             if lasting && self.either(&before, i) && !self.either(touching, i) && !pair.is_second()
             {
                 self.warn(format!(

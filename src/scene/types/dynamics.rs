@@ -96,7 +96,7 @@ impl Solution {
                 large.max(begin)
             };
         }
-        if !given("min") {
+        if !given("min") && self.dynamics.is_some() {
             small = small.min(begin);
         }
         Step {
