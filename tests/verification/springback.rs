@@ -116,16 +116,12 @@ fn curvatures(simulation: &Simulation) -> Vec<[f64; 2]> {
 /// Every element springs back by what the moment that has bent it explains, over the part that lay on the cylinder.
 #[test]
 fn a_wrapped_strip_springs_back_as_a_beam() {
-    // Moments of the closed form against Gardiner's tables for perfect plasticity would need no hardening: its limits instead.
+    // The limits of the closed form: elastic, and above the fully plastic moment.
     let (elastic, plastic) = (moment(1e-4), moment(1e3));
     assert!((elastic / (PLANE * 1e-4 / 12.0) - 1.0).abs() < 1e-12);
     assert!(plastic > 2.0 * YIELD / 3f64.sqrt() / 4.0);
-    for (radius, way, tolerance) in [
-        (10.0, [3.0, 1.9], 0.02),
-        (50.0, [3.0, 1.9], 0.015),
-        (100.0, [3.0, 2.1], 0.015),
-    ] {
-        let mut run = simulation(&wrapped(radius, way, 60));
+    for (radius, way) in [(10.0, [3.0, 1.9]), (50.0, [3.0, 1.9]), (200.0, [3.0, 2.4])] {
+        let mut run = simulation(&wrapped(radius, way, 90));
         to(&mut run, 1.0);
         let bent = curvatures(&run);
         to(&mut run, 1.3);
@@ -149,12 +145,12 @@ fn a_wrapped_strip_springs_back_as_a_beam() {
             summary.failed_iterations
         );
         assert!(count >= 5, "{count}");
-        assert!((found / expected - 1.0).abs() < tolerance);
+        assert!((found / expected - 1.0).abs() < 0.015);
         // Supports that are found bear nothing, and tools are gone.
         let stages = &summary.stages;
         assert_eq!(stages.len(), 2);
         assert!(stages[1].found_supports == 1 && stages[1].bearing.is_empty());
-        assert!(stages[1].force > 1.0 && stages[1].reaction < 1e-6 * stages[1].force);
+        assert!(stages[1].force > 0.1 && stages[1].reaction < 1e-6 * stages[1].force);
     }
 }
 
