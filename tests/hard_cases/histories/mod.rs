@@ -76,6 +76,7 @@ histories!(
     ball_by_weight,
     ball_drag,
     ball_on_plate,
+    bend_and_release,
     crossed_tubes,
     draw_bead,
     drop,

@@ -33,6 +33,12 @@ pub fn crossed_tubes(scene: &mut Value) {
     }
 }
 
+/// Coarser, and bent less.
+pub fn bend_and_release(scene: &mut Value) {
+    elements(scene, "strip", "plate", json!([20, 1]));
+    set(scene, "/stages/0/tools/punch/2", -6);
+}
+
 /// The bead closes, and the sheet begins to slide.
 pub fn draw_bead(scene: &mut Value) {
     end(scene, 1.2);
