@@ -8,6 +8,16 @@ use covact_geometry::Vec3;
 use iges_builder::{Builder, values};
 use iges_read::{one, polynomial, read, reason, spline_112, worst_on_curve};
 
+/// Control points that lie in no plane.
+const POINTS: [[f64; 3]; 6] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 2.0, 0.5],
+    [2.0, -1.0, 1.0],
+    [4.0, 0.0, 0.0],
+    [5.0, 3.0, -1.0],
+    [6.0, 0.0, 2.0],
+];
+
 /// The Taylor coefficients of a piece moved on by `h`, so that the next piece is as smooth as asked for.
 fn next_piece([a, b, c, d]: [f64; 4], h: f64, smooth: usize, kick: f64) -> [f64; 4] {
     let mut t = [
@@ -118,14 +128,7 @@ fn rational(p: usize, knots: &[f64], weights: &[f64], points: &[[f64; 3]], t: f6
 
 #[test]
 fn rational_splines() {
-    let points = [
-        [0.0, 0.0, 0.0],
-        [1.0, 2.0, 0.5],
-        [2.0, -1.0, 1.0],
-        [4.0, 0.0, 0.0],
-        [5.0, 3.0, -1.0],
-        [6.0, 0.0, 2.0],
-    ];
+    let points = POINTS;
     let weights = [1.0, 0.5, 2.0, 1.0, 3.0, 1.0];
     let clamped = [0.0, 0.0, 0.0, 0.0, 0.4, 0.7, 1.0, 1.0, 1.0, 1.0];
     let floating = [-3.0, -2.0, -1.0, 0.0, 0.5, 0.7, 1.0, 2.0, 3.0, 4.5];
@@ -170,14 +173,7 @@ fn rational_splines() {
 /// A knot inside repeated degree + 1 times: two curves, each on its own part of the range; the range runs backwards.
 #[test]
 fn splines_in_pieces_and_backwards() {
-    let points = [
-        [0.0, 0.0, 0.0],
-        [1.0, 2.0, 0.5],
-        [2.0, -1.0, 1.0],
-        [4.0, 0.0, 0.0],
-        [5.0, 3.0, -1.0],
-        [6.0, 0.0, 2.0],
-    ];
+    let points = POINTS;
     let broken = [0.0, 0.0, 0.0, 0.5, 0.5, 0.5, 1.0, 1.0, 1.0];
     let mut file = Builder::new();
     file.add(

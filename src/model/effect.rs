@@ -61,6 +61,7 @@ effects! {
     MidSurface, "support.mid_surface", listed: "supports on the mean of both faces of a shell";
     DeadLoad, "load.dead", listed: "loads of constant direction";
     FollowerPressure, "load.follower_pressure", listed: "pressures that follow the deformed faces";
+    Stages, "stages", listed: "parts of the run with contacts, supports and ways of tools of their own, and release";
     Viscous, "stabilization.viscous", listed: "a small viscous force holds bodies until contact does";
     Inertia, "dynamics.inertia", listed: "bodies have inertia: they move, vibrate and rebound";
     MassDamping, "dynamics.damping", listed: "forces against the velocity, in proportion to the mass";

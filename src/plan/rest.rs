@@ -53,21 +53,26 @@ impl Reporter<'_> {
             )
             .costs("six rows for each surface, coupled with every slave node of its pairs")
             .holds(held);
+        let scene = &self.loaded.scene;
         let moves = |name: &str| {
-            let described = self.loaded.scene.surfaces.get(name);
+            let described = scene.surfaces.get(name);
             described.is_some_and(|_| self.loaded.has(&at(name, "motion")))
         };
         let moving = model.surfaces.iter().find(|s| moves(&s.name));
+        let tools = |k: usize| scene.stages[k].tools.keys().map(move |name| (k, name));
+        let staged = (0..scene.stages.len()).flat_map(tools).next();
         let motion = self.effect(
             EffectKind::SurfaceMotion,
-            match moving {
-                Some(surface) => at(&surface.name, "motion"),
-                None => "/surfaces".to_owned(),
+            match (moving, staged) {
+                (Some(surface), _) => at(&surface.name, "motion"),
+                (None, Some((k, _))) => format!("/stages/{k}/tools"),
+                (None, None) => "/surfaces".to_owned(),
             },
-            match moving {
-                Some(surface) => Ok(format!("surface `{}` has a `motion`", surface.name)),
-                None if model.surfaces.is_empty() => Err("there are no rigid surfaces".to_owned()),
-                None => Err("no surface has a `motion`".to_owned()),
+            match (moving, staged) {
+                (Some(surface), _) => Ok(format!("surface `{}` has a `motion`", surface.name)),
+                (None, Some((_, name))) => Ok(format!("surface `{name}` is moved by `stages`")),
+                _ if model.surfaces.is_empty() => Err("there are no rigid surfaces".to_owned()),
+                _ => Err("no surface has a `motion`".to_owned()),
             },
         );
         vec![driven, motion]
@@ -115,7 +120,20 @@ impl Reporter<'_> {
             let n = if first { model.body_nodes() } else { 0 };
             Held::run("loads watched", Per::Node, 24, n)
         };
-        let mut out = vec![mid];
+        let stages: Vec<String> = (0..scene.stages.len())
+            .map(|k| scene.stage_in_words(k))
+            .collect();
+        let stages = self
+            .effect(
+                EffectKind::Stages,
+                "/stages",
+                match stages.is_empty() {
+                    true => Err("no `stages`: all contacts and supports act throughout".to_owned()),
+                    false => Ok(stages.join(", ")),
+                },
+            )
+            .costs("the model and the pattern of its system made anew at the end of a stage");
+        let mut out = vec![mid, stages];
         let is_first = dead.is_some();
         out.push(
             self.effect(

@@ -135,6 +135,14 @@ struct Evaluated {
     forces: Vec<f64>,
 }
 
+/// The state of a model before anything has moved, with all contacts begun.
+fn started(model: &Model, assembler: &mut Assembler<Quadratic>) -> State {
+    let mut state = State::new(model);
+    let masters = &mut assembler.masters;
+    commit::start(model, masters, &mut state, (0.0, &|_| true)).expect("a start");
+    state
+}
+
 fn evaluate(assembler: &mut Assembler<Quadratic>, state: &mut State, time: f64) -> Evaluated {
     let mut forces = vec![0.0; state.u.len()];
     let totals = (assembler.contact(state, time, &mut forces)).unwrap_or_else(|e| panic!("{e}"));
@@ -148,14 +156,7 @@ fn energy_force_and_pressure_follow_the_law() {
         let model = model(&scene);
         let mut assembler =
             Assembler::<Quadratic>::with_law(&model, &model.dofs).expect("an assembler");
-        let mut committed = State::new(&model);
-        commit::start(
-            &model,
-            &mut assembler.masters,
-            &mut committed,
-            (0.0, &|_| true),
-        )
-        .expect("a start");
+        let committed = started(&model, &mut assembler);
         let mut state = state_at(&model, &committed, 1.0);
         let found = evaluate(&mut assembler, &mut state, 1.0);
         let gap = DEPTH + model.pairs[0].offset;
@@ -196,14 +197,7 @@ fn forces_and_tangent_are_derivatives_of_the_energy_of_the_law() {
         let model = model(&scene);
         let mut assembler =
             Assembler::<Quadratic>::with_law(&model, &model.dofs).expect("an assembler");
-        let mut committed = State::new(&model);
-        commit::start(
-            &model,
-            &mut assembler.masters,
-            &mut committed,
-            (0.0, &|_| true),
-        )
-        .expect("a start");
+        let committed = started(&model, &mut assembler);
         let wave = |i: usize, k: f64| 1e-3 * (k * i as f64).sin();
         let at = |s: f64| {
             let mut state = state_at(&model, &committed, 1.0);
@@ -279,8 +273,7 @@ fn imbalance(scene: &Value, steps: u32, raise: f64) -> [f64; 2] {
     let mut assembler =
         Assembler::<Quadratic>::with_law(&model, &model.dofs).expect("an assembler");
     let mut watch = Watch::new(&model);
-    let mut from = State::new(&model);
-    commit::start(&model, &mut assembler.masters, &mut from, (0.0, &|_| true)).expect("a start");
+    let mut from = started(&model, &mut assembler);
     let (mut start, mut energy) = (0.0, 0.0);
     for step in 1..=steps {
         let end = f64::from(step) / f64::from(steps);

@@ -72,6 +72,22 @@ impl Scene {
             .collect()
     }
 
+    /// What happens in a stage, in a few words: when it ends, and how contacts end with it.
+    pub fn stage_in_words(&self, index: usize) -> String {
+        let Some(stage) = self.stages.get(index) else {
+            return String::new();
+        };
+        let ending: Vec<String> = (self.ending_contacts(index).iter())
+            .map(|name| format!("`{name}`"))
+            .collect();
+        let how = match (stage.release, ending.is_empty()) {
+            (_, true) => String::new(),
+            (Some(Release::Tools), _) => format!(" (the tools of {} go back)", ending.join(", ")),
+            _ => format!(" (the forces of {} are let down)", ending.join(", ")),
+        };
+        format!("`{}` until {}{how}", stage.name, self.stage_span(index)[1])
+    }
+
     /// Whether any stage has supports that the program finds.
     pub fn finds_supports(&self) -> bool {
         self.stages.iter().any(Stage::finds_supports)

@@ -172,18 +172,27 @@ fn killed(scene: &Value) {
     assert_eq!(summary(whole.path())["resumed"], json!(0));
 }
 
+fn metal() -> Value {
+    json!({"metal": {"j2": {
+        "E": 200e3, "nu": 0.3, "hardening": {"swift": {"strength": 500, "offset": 0.01, "exponent": 0.2}}
+    }}})
+}
+
+/// A strip of [`metal`].
+fn strip() -> Value {
+    json!({"strip": {
+        "mesh": {"plate": {"size": [40, 5], "thickness": 1, "elements": [16, 1]}},
+        "material": "metal"
+    }})
+}
+
 /// A metal sheet that is bent over a tool and let go: what its points remember is continued.
 #[test]
 fn killed_while_it_flows() {
     killed(&json!({
         "covact": 1,
-        "materials": {"metal": {"j2": {
-            "E": 200e3, "nu": 0.3, "hardening": {"swift": {"strength": 500, "offset": 0.01, "exponent": 0.2}}
-        }}},
-        "bodies": {"strip": {
-            "mesh": {"plate": {"size": [40, 5], "thickness": 1, "elements": [16, 1]}},
-            "material": "metal"
-        }},
+        "materials": metal(),
+        "bodies": strip(),
         "supports": {
             "clamped": {"on": "strip.x_min", "fixed": true},
             "side": {"on": "strip.y_min", "symmetry": "y"},
@@ -199,13 +208,8 @@ fn killed_while_it_flows() {
 fn killed_while_it_is_released() {
     killed(&json!({
         "covact": 1,
-        "materials": {"metal": {"j2": {
-            "E": 200e3, "nu": 0.3, "hardening": {"swift": {"strength": 500, "offset": 0.01, "exponent": 0.2}}
-        }}},
-        "bodies": {"strip": {
-            "mesh": {"plate": {"size": [40, 5], "thickness": 1, "elements": [16, 1]}},
-            "material": "metal"
-        }},
+        "materials": metal(),
+        "bodies": strip(),
         "surfaces": {"tool": {
             "cylinder": {"center": [35, 2.5, 5.5], "axis": [0, 1, 0], "radius": 5, "length": 20}, "side": "outward"
         }},

@@ -107,3 +107,25 @@ fn an_elastic_plate_goes_back() {
         assert!(summary["stages"][1]["force"].as_f64().unwrap() > 1.0);
     }
 }
+
+/// A plate that a pressure lifts against the ball is not free when the ball is back.
+#[test]
+fn a_contact_that_still_bears_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let stages = json!([{ "name": "press", "until": 0.5, "tools": { "ball": [0, 0, -2] } }, { "name": "back", "release": "tools" }]);
+    let mut scene = plate_with(&[("/stages", stages)]);
+    scene["surfaces"]["ball"]
+        .as_object_mut()
+        .unwrap()
+        .remove("motion");
+    scene["loads"] = json!({ "lift": { "on": "plate.bottom", "pressure": 0.5 } });
+    let text = serde_json::to_string_pretty(&scene).unwrap();
+    std::fs::write(folder.path().join("scene.json"), text).unwrap();
+    let output = covact(folder.path(), &["run", "scene.json", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let told = unfolded(&(stdout(&output) + &stderr(&output)));
+    assert!(
+        told.contains("stage `back`: contact `press` still bears at its end, with its tool back where it started"),
+        "{told}"
+    );
+}

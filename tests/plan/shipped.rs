@@ -103,8 +103,27 @@ fn ironing() {
 }
 
 #[test]
+fn bend_and_release() {
+    let s = Shipped::new("bend_and_release");
+    s.decided(
+        "stages",
+        true,
+        "\"stages\"",
+        "`bend` until 1, `release` until 1.5 (the forces of `carried`, `pressed` are let down)",
+    );
+    s.decided(
+        "surface.motion",
+        true,
+        "\"tools\"",
+        "`punch` is moved by `stages`",
+    );
+    s.decided("material.j2", true, "\"j2\"", "`strip`");
+}
+
+#[test]
 fn ball_on_plate() {
     let s = Shipped::new("ball_on_plate");
+    s.decided("stages", false, "{", "no `stages`");
     s.decided("contact.friction.coulomb", false, "\"press\"", "no history");
     s.decided("contact.master.deformable", false, "\"master\"", "no nodes");
     s.decided("load.dead", false, "{", "no loads");

@@ -1,6 +1,6 @@
 //! STEP files as a whole: structure and its damage, units, assemblies, names, what is not read.
 
-use crate::step_builder::{Step, area, box_faces, extent, near, set, volume};
+use crate::step_builder::{Step, area, box_faces, cube, extent, near, set, volume};
 use crate::support::assets;
 use covact_geometry::io::{CadFormat, SkipKind, read_path, read_step};
 use std::path::PathBuf;
@@ -13,17 +13,9 @@ fn refs(list: &[String]) -> Vec<&str> {
     list.iter().map(String::as_str).collect()
 }
 
-/// A cube of side 2 in a file with its context.
-fn cube() -> (Step, String) {
-    let mut step = Step::default();
-    let faces = box_faces(&mut step, [[0.; 3], [2.; 3]], [None, None]);
-    let solid = step.solid(&refs(&faces));
-    (step, solid)
-}
-
 #[test]
 fn cube_of_six_faces() {
-    let (step, solid) = cube();
+    let (step, solid, _) = cube();
     let file = step.whole(&[&solid]);
     assert_eq!(file.format, CadFormat::Step);
     assert_eq!(file.unit.name, "mm");
@@ -54,7 +46,7 @@ fn failure(text: &str) -> String {
 
 #[test]
 fn damage_is_told_with_line_and_column() {
-    let (mut step, solid) = cube();
+    let (mut step, solid, _) = cube();
     let context = step.millimetres();
     step.shape(&[&solid], &context);
     let text = step.text();
@@ -110,7 +102,7 @@ fn damage_is_told_with_line_and_column() {
 
 #[test]
 fn wrong_values_cost_the_faces_that_need_them() {
-    let (mut step, solid) = cube();
+    let (mut step, solid, _) = cube();
     let context = step.millimetres();
     step.shape(&[&solid], &context);
     let text = step.text();
@@ -291,7 +283,7 @@ fn assembly_of_two_placements_in_inches() {
 
 #[test]
 fn mapped_items_scale_and_mirror() {
-    let (mut step, solid) = cube();
+    let (mut step, solid, _) = cube();
     let context = step.millimetres();
     let place = step.placement([0.; 3], [0., 0., 1.], [1., 0., 0.]);
     let part = step.shape(&[&solid], &context);
@@ -328,7 +320,7 @@ fn mapped_items_scale_and_mirror() {
 /// Properties refer to a solid by a representation of their own: that is no second copy of a part that stands elsewhere.
 #[test]
 fn solids_listed_for_properties_stand_once() {
-    let (mut step, solid) = cube();
+    let (mut step, solid, _) = cube();
     let context = step.millimetres();
     let place = step.placement([0.; 3], [0., 0., 1.], [1., 0., 0.]);
     let part = step.shape(&[&solid], &context);
@@ -346,7 +338,7 @@ fn solids_listed_for_properties_stand_once() {
 
 #[test]
 fn what_is_not_read_is_named() {
-    let (mut step, solid) = cube();
+    let (mut step, solid, _) = cube();
     let block = step.add("BLOCK('cut',$,1.,1.,1.)");
     let context = step.millimetres();
     step.shape(&[&solid, &block], &context);

@@ -187,6 +187,23 @@ fn corners([a, b]: [[f64; 3]; 2]) -> [[f64; 3]; 8] {
     std::array::from_fn(|k| [0, 1, 2].map(|d| if k >> d & 1 == 0 { a[d] } else { b[d] }))
 }
 
+/// A cube of side 2 without a context: the file, its solid, its faces.
+pub fn cube() -> (Step, String, Vec<String>) {
+    let mut step = Step::default();
+    let faces = box_faces(&mut step, [[0.; 3], [2.; 3]], [None, None]);
+    let refs: Vec<&str> = faces.iter().map(String::as_str).collect();
+    let solid = step.solid(&refs);
+    (step, solid, faces)
+}
+
+/// [`cube`] as the shape of a product in millimetres.
+pub fn cube_in_millimetres() -> (Step, String, Vec<String>) {
+    let (mut step, solid, faces) = cube();
+    let context = step.millimetres();
+    step.shape(&[&solid], &context);
+    (step, solid, faces)
+}
+
 /// The six faces of a box, of planes with normals that point out of it; `holes` adds a bound to the lower (z) and the upper
 /// face.
 pub fn box_faces(step: &mut Step, extent: [[f64; 3]; 2], holes: [Option<&str>; 2]) -> Vec<String> {

@@ -1,19 +1,8 @@
 //! How files of STEP are written down by various systems: white space, comments, strings, numbers, units.
 
-use crate::step_builder::{Step, area, box_faces, near, set, volume};
+use crate::step_builder::{Step, area, box_faces, cube_in_millimetres, near, set, volume};
 use covact_geometry::io::{CadFile, LengthUnit, read_step};
 use std::f64::consts::PI;
-
-/// A cube of side 2, as text.
-fn cube() -> String {
-    let mut step = Step::default();
-    let faces = box_faces(&mut step, [[0.; 3], [2.; 3]], [None, None]);
-    let refs: Vec<&str> = faces.iter().map(String::as_str).collect();
-    let solid = step.solid(&refs);
-    let context = step.millimetres();
-    step.shape(&[&solid], &context);
-    step.text()
-}
 
 fn read(text: &str) -> CadFile {
     let file = read_step(text.as_bytes(), "part.step").unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -47,7 +36,7 @@ fn between(text: &str, filler: &str) -> String {
 
 #[test]
 fn white_space_and_comments_between_all_tokens() {
-    let text = cube();
+    let text = cube_in_millimetres().0.text();
     let data = text.find("DATA;").unwrap();
     let (head, data) = text.split_at(data);
     for filler in [
@@ -76,7 +65,7 @@ fn white_space_and_comments_between_all_tokens() {
 
 #[test]
 fn strings_with_quotes_and_other_alphabets() {
-    let text = cube();
+    let text = cube_in_millimetres().0.text();
     for (written, name) in [
         (r"\X2\00DF00E4\X0\ and ''quotes''", "ßä and 'quotes'"),
         (r"\X\E4 \S\d", "ä ä"),
@@ -96,7 +85,7 @@ fn strings_with_quotes_and_other_alphabets() {
 
 #[test]
 fn numbers_in_all_their_forms() {
-    let text = cube();
+    let text = cube_in_millimetres().0.text();
     for (two, zero) in [
         ("2", "0"),
         ("2.", "-0."),
@@ -132,7 +121,7 @@ fn numbers_in_all_their_forms() {
 
 #[test]
 fn prefixes_of_the_metre() {
-    let text = cube();
+    let text = cube_in_millimetres().0.text();
     for (prefix, metres) in [
         ("$", 1.),
         (".KILO.", 1e3),

@@ -1,24 +1,14 @@
 //! The surface of a file as users ask for it: faces by name, reasons where there is no answer.
 
-use crate::step_builder::{Step, box_faces};
+use crate::step_builder::{Step, cube_in_millimetres};
 use covact_geometry::Vec3;
 use covact_geometry::io::{CadFile, ReadOptions, SurfaceError, read_step, read_step_with};
 use covact_geometry::nalgebra::{Isometry3, Vector3};
 use covact_geometry::project::QueryError;
 
-fn cube() -> (Step, String, Vec<String>) {
-    let mut step = Step::default();
-    let faces = box_faces(&mut step, [[0.; 3], [2.; 3]], [None, None]);
-    let refs: Vec<&str> = faces.iter().map(String::as_str).collect();
-    let solid = step.solid(&refs);
-    let context = step.millimetres();
-    step.shape(&[&solid], &context);
-    (step, solid, faces)
-}
-
 #[test]
 fn feet_know_their_faces() {
-    let (step, _, faces) = cube();
+    let (step, _, faces) = cube_in_millimetres();
     let surface = step.read().surface().unwrap();
     // The second face is the one at z = 2.
     let foot = surface.closest(&Vec3::new(1., 1., 5.)).unwrap();
@@ -31,7 +21,7 @@ fn feet_know_their_faces() {
 
 #[test]
 fn queries_without_an_answer_say_why() {
-    let surface = cube().0.read().surface().unwrap();
+    let surface = cube_in_millimetres().0.read().surface().unwrap();
     let q = Vec3::new(1., 1., 5.);
     let reach = QueryError::BeyondReach { reach: 2.9 };
     assert_eq!(surface.closest_within(&q, 2.9), Err(reach));
@@ -51,7 +41,7 @@ fn queries_without_an_answer_say_why() {
 
 #[test]
 fn poses_are_arguments() {
-    let surface = cube().0.read().surface().unwrap();
+    let surface = cube_in_millimetres().0.read().surface().unwrap();
     let pose = Isometry3::new(Vector3::new(10., -3., 2.), Vector3::new(0.3, -0.7, 0.4));
     let q = Vec3::new(8.5, 1.5, 7.);
     let foot = surface.set().closest_at(&pose, &q, f64::INFINITY).unwrap();
@@ -71,7 +61,7 @@ fn poses_are_arguments() {
 #[test]
 fn files_without_a_surface_say_why() {
     let read = |step: &Step| -> CadFile { step.read() };
-    let (mut step, solid, _) = cube();
+    let (mut step, solid, _) = cube_in_millimetres();
     let style = step.add("PRESENTATION_STYLE_ASSIGNMENT((NULL_STYLE(.NULL.)))");
     let item = step.add(format!("STYLED_ITEM('',({style}),{solid})"));
     step.add(format!("INVISIBILITY(({item}))"));
@@ -89,7 +79,7 @@ fn files_without_a_surface_say_why() {
     let shown = read_step_with(text.as_bytes(), "part.step", &options).unwrap();
     assert_eq!(shown.surface().unwrap().faces().len(), 6);
 
-    let (step, _, _) = cube();
+    let (step, _, _) = cube_in_millimetres();
     let text = step.text().replace("PLANE(", "QUADRIC(");
     let unread = read_step(text.as_bytes(), "part.step").unwrap();
     let told = unread.surface().unwrap_err().to_string();

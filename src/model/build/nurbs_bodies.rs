@@ -4,7 +4,7 @@ use super::super::error::{At, number, text};
 use super::super::motion::pose;
 use super::super::penalty::FaceSize;
 use super::super::sheet_pressure::FollowingSpan;
-use super::{Builder, FEWER, ModelError, extent};
+use super::{Builder, FEWER, ModelError, elements_key, extent};
 use crate::contact::lever::Lever;
 use crate::contact::points::SlavePoint;
 use crate::fem::quadrature::QuadratureError;
@@ -62,7 +62,7 @@ impl Builder<'_> {
         let each: usize = bytes_per_element(body.element, false).iter().sum();
         memory::ask(memory::times(elements, each as u64)).map_err(|shortage| {
             let message = format!("body `{name}` with its {elements} elements: {shortage}");
-            text(super::elements_key(name, &body.mesh), message).help(FEWER)
+            text(elements_key(name, &body.mesh), message).help(FEWER)
         })?;
         let mut mesh = sheet.mesh();
         for (set, selection) in &body.sets {

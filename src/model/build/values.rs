@@ -1,7 +1,8 @@
-//! Expressions that have no value somewhere in a run, found before anything is solved.
+//! What is prescribed over a run: its kinks, and expressions that have no value somewhere, found before anything is solved.
 use super::super::error::At;
 use super::{Model, ModelError, Scene};
-use crate::scene::{TimeFunction, ValueError};
+use crate::model::stages;
+use crate::scene::{InitialOverclosure, Stabilization, TimeFunction, ValueError};
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
 
@@ -113,4 +114,26 @@ fn at_point(f: &TimeFunction, x: &Vec3, times: &[f64], end: f64) -> Result<(), V
         (true, false) => f.eval_at(x, 0.0).map(drop),
         (true, true) => evenly(end, FEW_TIMES).try_for_each(|t| f.eval_at(x, t).map(drop)),
     }
+}
+
+/// Times inside the run at which something prescribed has a kink.
+pub(super) fn kinks(scene: &Scene, model: &Model) -> Vec<f64> {
+    let end = scene.solution.end_time;
+    let shrunk = (scene.contacts.values()).filter_map(|c| match c.initial_overclosure {
+        InitialOverclosure::Shrink { until } => Some(until),
+        _ => None,
+    });
+    let mut times: Vec<f64> = (model.functions())
+        .flat_map(|(f, _)| f.breakpoints())
+        .chain(shrunk)
+        .chain(stages::kinks(scene, model))
+        .chain(match scene.solution.stabilization {
+            Stabilization::Viscous { until, .. } => until,
+            Stabilization::Auto | Stabilization::None => None,
+        })
+        .filter(|t| *t > 0.0 && *t < end)
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
 }

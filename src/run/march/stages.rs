@@ -15,7 +15,6 @@ use crate::run::commit::{self, FrictionTotals};
 use crate::run::compliance::Compliance;
 use crate::run::cost::Cost;
 use crate::run::fields::Fields;
-use crate::run::habit::Habit;
 use crate::run::memory;
 use crate::run::peaks::Peaks;
 use crate::run::penalty_rule::PenaltyRule;
@@ -24,7 +23,6 @@ use crate::run::watch::Watch;
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::newton::Workspace;
-use crate::solve::stepping::Stepping;
 use crate::system::linear::Method;
 use covact_geometry::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
@@ -205,7 +203,8 @@ impl RunState<'_> {
         }
         for contact in &bearing {
             texts.push(format!(
-                "stage `{}`: contact `{contact}` still bears at its end, though its tool has gone back",
+                "stage `{}`: contact `{contact}` still bears at its end, with its tool back where it started: what is left is not the \
+                 shape of a free body. Move the tool on, away from it, or take `\"release\": \"forces\"`",
                 stage.name
             ));
         }
@@ -358,12 +357,7 @@ impl<'m> RunState<'m> {
             Assembler::new(model, &model.dofs).map_err(|e| memory::pattern(loaded, &e))?;
         hand.set(&mut assembler)?;
         let (residual, totals) = evaluate(&mut assembler, &committed, hand.time)?;
-        let mut solver = super::start::solver(&loaded.scene, model.symmetric, threads);
-        if let Some(pattern) = assembler.take_new_pattern() {
-            let analysis = solver.analyze(&pattern);
-            let factorizing = analysis.map_err(|e| memory::analysis(loaded, &e))?.threads;
-            memory::packing(loaded, factorizing)?;
-        }
+        let solver = super::start::analysed(loaded, model, &mut assembler, threads)?;
         let stored = totals.contact_energy
             + FrictionTotals::of(model, &assembler, &committed, &|_| true).stored;
         let acting = |pair: usize| !model.pairs[pair].points.is_empty();
@@ -397,20 +391,7 @@ impl<'m> RunState<'m> {
             (&residual, &totals),
             (stored - before, tractions),
         );
-        let settings = &loaded.scene.solution;
-        let walk = StepControl {
-            stepping: Stepping::new(
-                settings.steps(|key| loaded.has(&format!("/solution/step/{key}"))),
-                settings.end_time,
-                &model.kinks,
-                &settings.stops,
-            ),
-            before: None,
-            habit: Habit::default(),
-            jump: None,
-            given_up: None,
-            turned: BTreeSet::new(),
-        };
+        let walk = StepControl::new(loaded, model);
         let mut workspace = Workspace::new(model);
         workspace.factorizations = factorizations;
         let mut outputs = Outputs {

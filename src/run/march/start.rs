@@ -96,30 +96,12 @@ impl<'m> RunState<'m> {
             (assembler.restore(&kept.assembler))
                 .map_err(|e| CheckpointError::misfit(sections.folder(), &e.to_string()))?;
         }
-        let mut solver = solver(&loaded.scene, model.symmetric, threads);
-        if let Some(pattern) = assembler.take_new_pattern() {
-            let analysis = solver.analyze(&pattern);
-            let factorizing = analysis.map_err(|e| memory::analysis(loaded, &e))?.threads;
-            memory::packing(loaded, factorizing)?;
-        }
+        let mut solver = analysed(loaded, model, &mut assembler, threads)?;
         if let Some(kept) = &kept {
             solver.expect_indefinite(kept.expects_indefinite);
         }
         phases.stop("analysis");
-        let settings = &loaded.scene.solution;
-        let walk = StepControl {
-            stepping: Stepping::new(
-                settings.steps(|key| loaded.has(&format!("/solution/step/{key}"))),
-                settings.end_time,
-                &model.kinks,
-                &settings.stops,
-            ),
-            before: None,
-            habit: Habit::default(),
-            jump: None,
-            given_up: None,
-            turned: BTreeSet::new(),
-        };
+        let walk = StepControl::new(loaded, model);
         let outputs = Outputs {
             fields: Fields::new(model, &loaded.scene.output)?,
             row: Vec::new(),
@@ -293,12 +275,47 @@ impl<'m> RunState<'m> {
     }
 }
 
-/// The solver that the scene asks for; an unsymmetric system has only one, which the model has checked.
-pub(super) fn solver(
-    scene: &Scene,
-    symmetric: bool,
+impl StepControl {
+    /// That of a run, or a stage, which begins.
+    pub(super) fn new(loaded: &LoadedScene, model: &Model) -> Self {
+        let settings = &loaded.scene.solution;
+        StepControl {
+            stepping: Stepping::new(
+                settings.steps(|key| loaded.has(&format!("/solution/step/{key}"))),
+                settings.end_time,
+                &model.kinks,
+                &settings.stops,
+            ),
+            before: None,
+            habit: Habit::default(),
+            jump: None,
+            given_up: None,
+            turned: BTreeSet::new(),
+        }
+    }
+}
+
+/// The solver of a model, with the pattern of its system analysed.
+///
+/// # Errors
+/// What has no room in memory.
+pub(super) fn analysed(
+    loaded: &LoadedScene,
+    model: &Model,
+    assembler: &mut Assembler,
     threads: usize,
-) -> Box<dyn LinearSolver + Send> {
+) -> Result<Box<dyn LinearSolver + Send>, RunError> {
+    let mut solver = solver(&loaded.scene, model.symmetric, threads);
+    if let Some(pattern) = assembler.take_new_pattern() {
+        let analysis = solver.analyze(&pattern);
+        let factorizing = analysis.map_err(|e| memory::analysis(loaded, &e))?.threads;
+        memory::packing(loaded, factorizing)?;
+    }
+    Ok(solver)
+}
+
+/// The solver that the scene asks for; an unsymmetric system has only one, which the model has checked.
+fn solver(scene: &Scene, symmetric: bool, threads: usize) -> Box<dyn LinearSolver + Send> {
     use crate::scene::LinearSolver as Choice;
     use crate::system::linear::Mode;
     let options = |mode| SolverOptions {

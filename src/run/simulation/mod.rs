@@ -217,9 +217,9 @@ impl<'o> Simulation<'o> {
         let before = self.safe.as_ref();
         let time = self.time();
         // A run that reached its end is kept, whatever is to be said of its last state.
-        let whole = time >= self.scene.scene.solution.end_time * (1.0 - 1e-12);
-        let stopped = ending.status == RunStatus::NotConverged && !whole;
         let run = self.running.borrow_dependent();
+        let stopped =
+            ending.status == RunStatus::NotConverged && !run.course.walk.stepping.done(time);
         let edges = || {
             let found = stopped && run.edges_on_slaves();
             found.then(|| with_edges(&self.scene, before, Some(time)))?

@@ -283,7 +283,7 @@ fn trimmed(
     let grown = grown(base, face, scope.near, account.grant);
     let patch = grown.as_ref().map_or(&base.patch, |g| &g.patch);
     let host = Host::new(patch, &base.parameters, scope.near, account.grant);
-    let [curves, points] = extent(face);
+    let [curves, points] = face.extent();
     account.grant.boundary(curves, points)?;
     let (mut said, mut tally) = (Vec::new(), Tally::default());
     let mut trimmed = by_loops(&host, face, &mut tally, &mut said);
@@ -341,17 +341,4 @@ fn by_loops(
     };
     let trimmed = host.patch.trimmed_by(loops, outer, gap);
     trimmed.map_err(|e| e.to_string())
-}
-
-/// Boundary curves of a face and their control points, in both planes.
-fn extent(face: &Face) -> [usize; 2] {
-    let mut extent = [0, 0];
-    for stretch in face.boundaries.iter().flat_map(|b| &b.stretches) {
-        extent[0] += stretch.parameter.len().max(stretch.space.len());
-        let plane = stretch.parameter.iter();
-        extent[1] += plane.map(|p| p.curve.homogeneous().len()).sum::<usize>();
-        let space = stretch.space.iter();
-        extent[1] += space.map(|p| p.curve.homogeneous().len()).sum::<usize>();
-    }
-    extent
 }
