@@ -182,12 +182,18 @@ fn scenes() -> Vec<Value> {
             ("/contacts/press/offset", json!(0.1)),
             ("/solution/stabilization", json!({"viscous": {}})),
         ]),
-        plate_with(&[(
-            "/materials/steel",
-            json!({"j2": {
-                "E": 12000, "nu": 0.3, "hardening": {"linear": {"yield_stress": 20}}
-            }}),
-        )]),
+        plate_with(&[
+            (
+                "/materials/steel",
+                json!({"j2": {
+                    "E": 12000, "nu": 0.3, "hardening": {"linear": {"yield_stress": 20}}
+                }}),
+            ),
+            (
+                "/stages",
+                json!([{"name": "press", "until": 0.5}, {"name": "back", "release": "forces"}]),
+            ),
+        ]),
         facets("bilinear"),
         facets("biquadratic"),
         facets("smooth"),
