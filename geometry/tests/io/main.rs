@@ -23,6 +23,7 @@ mod step_forms;
 mod step_hidden;
 mod step_mutants;
 mod step_poles;
+mod step_seams;
 mod step_shapes;
 mod step_text;
 mod support;

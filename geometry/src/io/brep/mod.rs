@@ -1,11 +1,11 @@
 //! Faces on surfaces, whatever the format: boundaries become loops of curves in the parameter plane, space curves are
 //! projected, and the patch is trimmed by the loops. Readers of IGES and STEP stand on it.
 //!
-//! A reader hands over a [`BasePatch`] and a [`Face`] of [`Boundary`]s. `loops` chains the curves of each, which `curves`
-//! brings to the patch's parameters: those of the file by a [`ParameterMap`] each way, those in space by projection onto the
-//! `host`; `fit` makes splines of what has no exact form, and `spikes`
-//! cuts off ends that run back along each other. `extent` continues a patch that its boundary leaves, and `areas`
-//! compares what contradicting curves bound. [`Grant`] bounds work and memory by the length of the file.
+//! A reader hands over a [`BasePatch`] and a [`Face`] of [`Boundary`]s. `curves` brings the curves of each to the patch's
+//! parameters: those of the file by a [`ParameterMap`] each way, those in space by projection onto the `host`. `unroll` chains
+//! them across seams and poles, and `loops` closes them; `fit` makes splines of what has no exact form, and `spikes` cuts off
+//! ends that run back along each other. `extent` continues a patch that its boundary leaves, and `areas` compares what
+//! contradicting curves bound. [`Grant`] bounds work and memory by the length of the file.
 
 mod areas;
 mod base;
@@ -26,6 +26,7 @@ mod reparametrise;
 mod revolve;
 mod sides;
 mod spikes;
+mod unroll;
 
 pub use areas::{by_parameters, disagreement};
 pub use base::BasePatch;
