@@ -16,6 +16,11 @@ const GAUSS: [(f64, f64); 4] = [
 /// Spans of a trimmed patch are cut so that the primitive has at least about this many intervals.
 const INTERVALS: usize = 6;
 
+/// Rational trim curves are cut until each part contributes to the area with this accuracy, as a share of the curve's box.
+const EXACT: f64 = 1e-12;
+/// Halvings of one interval of a polyline.
+const HALVINGS: u32 = 10;
+
 /// Integrates `f dxi1 dxi2` over the part of the domain that belongs to the surface: 4 x 4 Gauss points per Bezier piece of
 /// an untrimmed patch. On a trimmed patch the divergence theorem of the parameter plane turns it into an integral along
 /// the trim curves of the primitive of `f` in xi1. The intervals of the curves' polylines are cut where they cross knot lines
@@ -122,6 +127,7 @@ fn walk<'s, S: Surface>(
             cuts[first..].sort_by(f64::total_cmp);
         }
         cuts.extend(edge.samples.last().map(|s| s.t));
+        refine(curve, area_of(curve), &mut cuts);
         out.extend(cuts.windows(2).map(|pair| {
             let middle = curve.point(0.5 * (pair[0] + pair[1]));
             Part {
@@ -134,6 +140,53 @@ fn walk<'s, S: Surface>(
         }));
     }
     out
+}
+
+/// Halves the intervals of a rational curve until the rule integrates what they bound in the parameter plane. (Of polynomial
+/// curves of degree 3 it is exact; the ends of a hyperbola are run through thousands of times as fast as its middle.)
+fn refine(curve: &NurbsCurve<2>, area: f64, cuts: &mut Vec<f64>) {
+    if curve
+        .homogeneous()
+        .iter()
+        .all(|p| p[3] == curve.homogeneous()[0][3])
+    {
+        return;
+    }
+    let moment = |a: f64, b: f64, x: f64| {
+        let terms = GAUSS.iter().map(|(s, w)| {
+            let jet = curve.jet(a + (b - a) * s);
+            w * (b - a) * (jet.point.x - x) * jet.d1.y
+        });
+        terms.sum::<f64>()
+    };
+    let mut out = Vec::with_capacity(cuts.len());
+    let mut left = Vec::new();
+    for pair in cuts.windows(2) {
+        left.push((pair[0], pair[1], 0));
+        while let Some((a, b, depth)) = left.pop() {
+            let (middle, x) = (0.5 * (a + b), curve.point(a).x);
+            let halves = moment(a, middle, x) + moment(middle, b, x);
+            if depth < HALVINGS && (moment(a, b, x) - halves).abs() > EXACT * area {
+                left.extend([(middle, b, depth + 1), (a, middle, depth + 1)]);
+            } else {
+                out.push(a);
+            }
+        }
+    }
+    out.extend(cuts.last());
+    *cuts = out;
+}
+
+/// Area of the box around a curve's control points.
+fn area_of(curve: &NurbsCurve<2>) -> f64 {
+    let extent = |d: usize| {
+        let values = curve.homogeneous().iter().map(|p| p[d] / p[3]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        high - low
+    };
+    extent(0) * extent(1)
 }
 
 /// Number of the interval between breaks that holds `x`, the first or the last one beyond them.
