@@ -22,6 +22,7 @@ mod step_builder;
 mod step_forms;
 mod step_hidden;
 mod step_mutants;
+mod step_pcurves;
 mod step_poles;
 mod step_seams;
 mod step_shapes;

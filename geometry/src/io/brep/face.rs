@@ -68,6 +68,29 @@ impl Face {
         extent
     }
 
+    /// The same face bounded by its curves in space alone; `None` where they do not bound all of it, or do so already.
+    pub fn in_space(&self) -> Option<Self> {
+        let mut stretches = self.boundaries.iter().flat_map(|b| &b.stretches);
+        let given = stretches.clone().any(|s| !s.parameter.is_empty());
+        if !given || stretches.any(|s| s.space.is_empty()) {
+            return None;
+        }
+        let boundary = |b: &Boundary| Boundary {
+            name: b.name.clone(),
+            stretches: (b.stretches.iter())
+                .map(|s| Stretch {
+                    parameter: Vec::new(),
+                    ..s.clone()
+                })
+                .collect(),
+        };
+        Some(Self {
+            boundaries: self.boundaries.iter().map(boundary).collect(),
+            fault: self.fault.clone(),
+            ..*self
+        })
+    }
+
     /// Control points of the space curves, between which these run.
     pub fn points(&self) -> Vec<Vec3> {
         let parts = self.boundaries.iter().flat_map(|b| &b.stretches);
@@ -77,6 +100,13 @@ impl Face {
             .map(|p| Vec3::new(p[0], p[1], p[2]) / p[3])
             .collect()
     }
+}
+
+/// What is to be said of a face that its curves in space bound, because those in the parameter plane bound none.
+pub fn without_parameters(reason: &str) -> String {
+    format!(
+        "its curves in the parameter plane bound no part of the surface ({reason}); those in space were projected"
+    )
 }
 
 /// The same chain run through backwards.

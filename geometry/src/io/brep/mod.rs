@@ -34,7 +34,7 @@ pub(in crate::io) use base::approximation;
 pub use curves::{Tally, add};
 pub use enclosed::bounds_outside;
 pub use extent::grown;
-pub use face::{Boundary, Face, Part, Preference, Stretch, reversed};
+pub use face::{Boundary, Face, Part, Preference, Stretch, reversed, without_parameters};
 pub use grant::{Grant, evaluations};
 pub use host::Host;
 pub use knots::{merge_close, pieces};

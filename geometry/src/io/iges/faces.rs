@@ -10,15 +10,15 @@ use super::directory::Entry;
 use super::drawing;
 use super::groups::{Groups, Placement, refusal};
 use super::labels::{label, name_of};
+use super::piece::{Found, Piece, Refusal, border_of, turned};
 use super::rivals::{Rival, Rivals};
 use super::surfaces::{self, BasePatch, BaseSurface};
 use super::tags::tags;
 use super::transform::{Affine, matrix_of};
 use super::trimmed::{self, describe};
-use crate::NurbsPatch;
 use crate::io::brep::{
     Boundary, Face, GAP, Grant, Host, Stretch, Tally, add, approximation, bounds_outside,
-    by_parameters, disagreement, grown, loops, widest_gap,
+    by_parameters, disagreement, grown, loops, widest_gap, without_parameters,
 };
 
 /// All surfaces of a file.
@@ -28,29 +28,6 @@ pub struct Outcome {
     pub skipped: Vec<Skipped>,
     pub trims: TrimReport,
 }
-
-/// A reason to skip a surface.
-type Refusal = (SkipKind, String);
-
-/// A patch with what bounds it, and the one that other curves of the file would bound.
-struct Piece {
-    patch: NurbsPatch,
-    border: FaceBorder,
-    rival: Option<Rival>,
-}
-
-impl Piece {
-    fn whole(patch: NurbsPatch) -> Self {
-        Self {
-            patch,
-            border: FaceBorder::Natural,
-            rival: None,
-        }
-    }
-}
-
-/// The patches of one entity.
-type Found = Result<Vec<Piece>, Refusal>;
 
 /// Reads all surfaces, in the order of the file.
 pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
@@ -455,6 +432,13 @@ impl<'a> Reader<'a, '_> {
                 })
             }
             Err(reason) => {
+                if let Some(face) = face.in_space()
+                    && let Ok(piece) = self.bounded(entry, base, &face, surface)
+                {
+                    self.notes.extend(noted(vec![without_parameters(&reason)]));
+                    self.out.trims.rejected += 1;
+                    return Ok(piece);
+                }
                 self.notes.extend(noted(said));
                 let on = surface.map_or(String::new(), |s| format!(" on {}", describe(s)));
                 Err((SkipKind::Boundary, format!("{reason}{on}")))
@@ -470,26 +454,5 @@ impl<'a> Reader<'a, '_> {
                 self.notes.push(note);
             }
         }
-    }
-}
-
-/// The pieces with the opposite normals.
-fn turned(pieces: Vec<Piece>) -> Found {
-    let turn = |piece: Piece| -> Result<Piece, crate::PatchError> {
-        let rival = piece.rival.map(Rival::turned).transpose()?;
-        Ok(Piece {
-            patch: piece.patch.reversed(0)?,
-            rival,
-            ..piece
-        })
-    };
-    let turned = pieces.into_iter().map(turn).collect::<Result<_, _>>();
-    turned.map_err(|e| (SkipKind::Surface, e.to_string()))
-}
-
-fn border_of(patch: &NurbsPatch) -> FaceBorder {
-    match patch.trim() {
-        Some(_) => FaceBorder::Trimmed,
-        None => FaceBorder::Rectangle,
     }
 }

@@ -23,6 +23,7 @@ mod labels;
 mod names;
 mod number;
 mod params;
+mod piece;
 mod records;
 mod rivals;
 mod surface;
