@@ -34,6 +34,42 @@ fn between(text: &str, filler: &str) -> String {
     out
 }
 
+/// What is missing costs no instance: each is told once.
+#[test]
+fn ends_that_are_left_out() {
+    let text = cube_in_millimetres().0.text();
+    for (from, to, told) in [
+        (
+            "ENDSEC;\nEND-ISO",
+            "END-ISO",
+            "ENDSEC at the end of the data is missing",
+        ),
+        ("END-ISO-10303-21;\n", "", "END-ISO-10303-21 is missing"),
+        ("END-ISO-10303-21;\n", "END-ISO-10303-21", ""),
+        ("ENDSEC;\nDATA;", "DATA;", ""),
+    ] {
+        assert!(text.contains(from));
+        let file = read(&text.replace(from, to));
+        is_a_cube(&file, 2.);
+        let expected: Vec<&str> = Some(told).filter(|t| !t.is_empty()).into_iter().collect();
+        assert_eq!(file.notes, expected);
+    }
+    // Between two instances nobody knows what else there was.
+    let end = text.rfind("#").unwrap();
+    let error = read_step(&text.as_bytes()[..end], "part.step").unwrap_err();
+    assert!(error.to_string().contains("the end of the file"), "{error}");
+}
+
+#[test]
+fn types_in_small_letters() {
+    let text = cube_in_millimetres().0.text().to_lowercase();
+    let text = text.replace(",.t.)", ",.T.)").replace("'part'", "'Part'");
+    let file = read(&text);
+    is_a_cube(&file, 2.);
+    let told = "types of instances in small letters were read as if in capitals";
+    assert_eq!(file.notes, [told]);
+}
+
 #[test]
 fn white_space_and_comments_between_all_tokens() {
     let text = cube_in_millimetres().0.text();

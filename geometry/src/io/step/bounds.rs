@@ -187,9 +187,9 @@ fn pcurves(scope: &Scope, curve: &Entity, base: Option<u32>) -> Told<Vec<u32>> {
     let mut found = Vec::new();
     for one in curve.targets("SURFACE_CURVE", 1, "a curve in a parameter plane")? {
         let pcurve = scope.entity(one, 0)?;
-        if pcurve.is("PCURVE")
-            && Some(pcurve.reference("PCURVE", 0, "the surface of a curve")?) == base
-        {
+        // One on a surface that is not in the file is no curve of this face.
+        let surface = pcurve.reference("PCURVE", 0, "the surface of a curve");
+        if pcurve.is("PCURVE") && surface.is_ok_and(|surface| Some(surface) == base) {
             found.push(one);
         }
     }

@@ -4,7 +4,7 @@
 //! when they are asked for, so memory is bounded by the number of instances, not by their size.
 
 use super::super::error::Fail;
-use super::scan::{Damage, Item, Scanner};
+use super::scan::{Damage, Item, Scanner, Value};
 
 /// Name and place of an instance.
 #[derive(Debug, Clone, Copy)]
@@ -32,6 +32,10 @@ pub struct Exchange<'a> {
     records: Vec<Record>,
     /// Numbers of records by ascending name.
     by_name: Vec<u32>,
+    /// Whether a type of an instance is written in small letters.
+    pub small_letters: bool,
+    /// What is missing at the end of the data or of the file, where no instance can be.
+    pub unended: Option<&'static str>,
     /// Names of the schemas.
     pub schemas: Vec<&'a [u8]>,
     /// For every block of [`BLOCK`] bytes the number of line ends in front of it and the start of the line it begins in.
@@ -39,6 +43,7 @@ pub struct Exchange<'a> {
 }
 
 const BLOCK: usize = 1 << 14;
+const END: &str = "END-ISO-10303-21";
 
 impl<'a> Exchange<'a> {
     /// Checks a whole file and lists its instances.
@@ -57,6 +62,8 @@ impl<'a> Exchange<'a> {
             lines: lines.collect(),
             records: Vec::new(),
             by_name: Vec::new(),
+            small_letters: false,
+            unended: None,
             schemas: Vec::new(),
         };
         match exchange.sections() {
@@ -86,7 +93,7 @@ impl<'a> Exchange<'a> {
     fn sections(&mut self) -> Result<(), Damage> {
         let mut scan = Scanner::new(self.bytes, 0);
         let start = "ISO-10303-21 at the start of a STEP file";
-        if scan.keyword(start)? != b"ISO-10303-21" {
+        if !(scan.keyword(start)?).eq_ignore_ascii_case(b"ISO-10303-21") {
             scan.at = 0;
             return Err(scan.damage(start));
         }
@@ -96,8 +103,12 @@ impl<'a> Exchange<'a> {
             scan.blank()?;
             let at = scan.at;
             let expected = "a section (HEADER, DATA) or END-ISO-10303-21";
+            if data && scan.peek().is_none() {
+                self.unended.get_or_insert(END);
+                return Ok(());
+            }
             let name = scan.keyword(expected)?;
-            if name.eq_ignore_ascii_case(b"END-ISO-10303-21") {
+            if name.eq_ignore_ascii_case(END.as_bytes()) {
                 if !data {
                     scan.at = at;
                     return Err(scan.damage("a section DATA before the end"));
@@ -105,7 +116,7 @@ impl<'a> Exchange<'a> {
                 // The semicolon behind it is left out by some writers.
                 return Ok(());
             }
-            match name {
+            match &*name.to_ascii_uppercase() {
                 b"HEADER" => {
                     scan.expect(b';', "a semicolon")?;
                     self.header(&mut scan)?;
@@ -137,22 +148,29 @@ impl<'a> Exchange<'a> {
 
     fn header(&mut self, scan: &mut Scanner<'a>) -> Result<(), Damage> {
         loop {
+            scan.blank()?;
+            let at = scan.at;
             let name = scan.keyword("an entry of the header or ENDSEC")?;
-            if name == b"ENDSEC" {
+            if name.eq_ignore_ascii_case(b"ENDSEC") {
                 return scan.expect(b';', "a semicolon after ENDSEC");
+            }
+            if name.eq_ignore_ascii_case(b"DATA") {
+                // The header has no end of its own.
+                scan.at = at;
+                return Ok(());
             }
             let items = scan.list()?;
             scan.expect(b';', "a semicolon after an entry of the header")?;
-            if name == b"FILE_SCHEMA"
+            if name.eq_ignore_ascii_case(b"FILE_SCHEMA")
                 && let Some(Item {
-                    value: super::scan::Value::List(names),
+                    value: Value::List(names),
                     ..
                 }) = items.first()
             {
                 self.schemas = names
                     .iter()
                     .filter_map(|item| match item.value {
-                        super::scan::Value::Text(text) => Some(text),
+                        Value::Text(text) => Some(text),
                         _ => None,
                     })
                     .collect();
@@ -166,7 +184,13 @@ impl<'a> Exchange<'a> {
             let at = scan.at;
             if scan.peek() != Some(b'#') {
                 let expected = "an instance (#12 = ...) or ENDSEC";
-                if scan.keyword(expected)? != b"ENDSEC" {
+                let name = scan.keyword(expected)?;
+                if name.eq_ignore_ascii_case(END.as_bytes()) {
+                    self.unended = Some("ENDSEC at the end of the data");
+                    scan.at = at;
+                    return Ok(());
+                }
+                if !name.eq_ignore_ascii_case(b"ENDSEC") {
                     scan.at = at;
                     return Err(scan.damage(expected));
                 }
@@ -188,7 +212,8 @@ impl<'a> Exchange<'a> {
                     scan.skip_list()?;
                 }
             } else {
-                scan.keyword("an entity type (scopes are not read)")?;
+                let keyword = scan.keyword("an entity type (scopes are not read)")?;
+                self.small_letters |= keyword.iter().any(u8::is_ascii_lowercase);
                 scan.skip_list()?;
             }
             scan.expect(b';', "a semicolon after an instance")?;

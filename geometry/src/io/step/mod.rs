@@ -8,6 +8,7 @@
 mod assembly;
 mod bodies;
 mod bounds;
+mod capitals;
 mod copies;
 mod curve;
 mod curve_read;
@@ -32,6 +33,7 @@ use super::error::Fail;
 use super::healing::{Healing, heal};
 use super::report::{CadFile, CadFormat, EntityCount};
 use super::{CadError, ReadOptions, ReadProgress};
+use capitals::capitals;
 use exchange::Exchange;
 use std::collections::BTreeMap;
 
@@ -39,7 +41,7 @@ use std::collections::BTreeMap;
 pub fn is_step(bytes: &[u8]) -> bool {
     let mut scan = scan::Scanner::new(bytes, 0);
     let start = scan.keyword("").ok();
-    start == Some(b"ISO-10303-21")
+    start.is_some_and(|start| start.eq_ignore_ascii_case(b"ISO-10303-21"))
 }
 
 /// Reads a STEP file. `name` stands for the file in messages.
@@ -86,8 +88,17 @@ fn read(
     options: &ReadOptions,
     watch: &mut dyn FnMut(ReadProgress),
 ) -> Result<CadFile, Fail> {
-    let exchange = Exchange::read(bytes)?;
+    let mut exchange = Exchange::read(bytes)?;
     let mut notes = Vec::new();
+    let upper;
+    if exchange.small_letters {
+        upper = capitals(bytes);
+        exchange = Exchange::read(&upper)?;
+        notes.push("types of instances in small letters were read as if in capitals".to_owned());
+    }
+    if let Some(end) = exchange.unended {
+        notes.push(format!("{end} is missing"));
+    }
     let read = bodies::read(&exchange, options, &mut notes, watch);
     let mut file = CadFile {
         path: name.to_owned(),
