@@ -79,7 +79,7 @@ pub(super) fn over<S: Surface, const N: usize>(
             for (x, w) in GAUSS {
                 let jet = part.curve.jet(a + (b - a) * x);
                 let outer = part.sense * w * (b - a) * jet.d1.y;
-                let from = cells.breaks[0][part.cell[0]];
+                let from = cells.start(0, part.cell[0]);
                 let row = cells.row([from, jet.point.x], jet.point.y, part.cell);
                 add(outer, row);
             }
@@ -199,6 +199,8 @@ fn cell(breaks: &[f64], x: f64) -> usize {
 struct Cells<'a, S: Surface, F, const N: usize> {
     surface: &'a S,
     breaks: &'a [Vec<f64>; 2],
+    /// Lowest parameters of the trim curves: what lies below bounds nothing, and may be where the surface folds.
+    low: [f64; 2],
     /// Cells are cut into so many parts in each direction.
     parts: [usize; 2],
     f: &'a F,
@@ -212,12 +214,21 @@ impl<'a, S: Surface, F: Fn(&Jet) -> [f64; N], const N: usize> Cells<'a, S, F, N>
             0 | 1 => 1,
             _ => INTERVALS.div_ceil(grid.breaks[k].len()),
         };
+        let surface = &set.patches[patch as usize];
+        let bounds = surface.trim().map(|trim| trim.bounds());
         Self {
-            surface: &set.patches[patch as usize],
+            surface,
             breaks: &grid.breaks,
+            low: [0, 1].map(|k| bounds.map_or(f64::NEG_INFINITY, |b| b[k][0])),
             parts: [parts(0), parts(1)],
             f,
         }
+    }
+
+    /// Where what counts of a column or row of cells begins.
+    fn start(&self, dir: usize, cell: usize) -> f64 {
+        let [a, b] = [self.breaks[dir][cell], self.breaks[dir][cell + 1]];
+        self.low[dir].clamp(a, b)
     }
 
     /// Integral along a line of constant second parameter.
@@ -239,7 +250,7 @@ impl<'a, S: Surface, F: Fn(&Jet) -> [f64; N], const N: usize> Cells<'a, S, F, N>
     /// Integral over the part of a cell between two values of the second parameter.
     fn slab(&self, [from, to]: [f64; 2], cell: [usize; 2]) -> [f64; N] {
         let mut sum = [0.0; N];
-        let line = [self.breaks[0][cell[0]], self.breaks[0][cell[0] + 1]];
+        let line = [self.start(0, cell[0]), self.breaks[0][cell[0] + 1]];
         let h = (to - from) / self.parts[1] as f64;
         for part in 0..self.parts[1] {
             for (y, w) in GAUSS {
@@ -258,7 +269,7 @@ impl<'a, S: Surface, F: Fn(&Jet) -> [f64; N], const N: usize> Cells<'a, S, F, N>
         let mut sum = [0.0; N];
         let mut out = vec![sum];
         for row in 0..breaks.len() - 1 {
-            let values = self.slab([breaks[row], breaks[row + 1]], [column, row]);
+            let values = self.slab([self.start(1, row), breaks[row + 1]], [column, row]);
             for (sum, value) in sum.iter_mut().zip(values) {
                 *sum += value;
             }
@@ -270,7 +281,7 @@ impl<'a, S: Surface, F: Fn(&Jet) -> [f64; N], const N: usize> Cells<'a, S, F, N>
     /// Integral over a column from its start to `y`.
     fn below(&self, column: usize, rows: &[[f64; N]], y: f64) -> [f64; N] {
         let row = cell(&self.breaks[1], y);
-        let mut sum = self.slab([self.breaks[1][row], y], [column, row]);
+        let mut sum = self.slab([self.start(1, row), y], [column, row]);
         for (sum, value) in sum.iter_mut().zip(rows[row]) {
             *sum += value;
         }

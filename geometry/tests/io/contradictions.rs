@@ -1,6 +1,6 @@
 //! Faces whose curves in the parameter plane and in space contradict each other: what their neighbours say of them.
 
-use super::support::{Entity, GLOBAL, child, entity, flat, iges, line};
+use super::support::{Entity, GLOBAL, area, child, entity, flat, iges, line};
 use covact_geometry::io::{CadFile, read_iges};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -188,4 +188,43 @@ fn caps_of_a_tube_bulge_out_of_it() {
     assert!((distance([0.3, 0.0, -1.4]) - (0.09f64 + 1.96).sqrt() + 1.0).abs() < 1e-6);
     assert!((distance([0.3, 0.4, 0.2]) + 0.5).abs() < 1e-6);
     assert!((distance([0.0, 0.5, -0.5]) + 1.0 - 0.5f64.sqrt()).abs() < 1e-6);
+}
+
+/// Curves of the parameter plane that are preferred and end short of each other bound nothing: those in space do.
+#[test]
+fn curves_that_do_not_meet_give_way_to_those_in_space() {
+    let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]];
+    let mut entities = Vec::new();
+    let surface = add(&mut entities, child(128, &flat(4.0, 1.0)));
+    let chain = |entities: &mut Vec<Entity<'static>>, share: f64| {
+        let members: Vec<String> = (0..4)
+            .map(|k| {
+                let [a, b] = [corners[k], corners[(k + 1) % 4]];
+                let short = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|d| a[d] + share * (b[d] - a[d]));
+                add(entities, line(short(a, b), short(b, a))).to_string()
+            })
+            .collect();
+        add(entities, child(102, &format!("4,{}", members.join(","))))
+    };
+    let [plane, space] = [3e-4, 0.0].map(|share| chain(&mut entities, share));
+    let boundary = add(
+        &mut entities,
+        child(142, &format!("0,{surface},{plane},{space},1")),
+    );
+    add(
+        &mut entities,
+        entity(144, &format!("{surface},1,0,{boundary}")),
+    );
+    let file = read(&entities);
+    assert!(
+        (area(&file.patches[0].patch) - 4.0).abs() < 1e-12,
+        "{:?}",
+        file.notes
+    );
+    assert_eq!(
+        notes(&file, "bound no part of the surface"),
+        1,
+        "{:?}",
+        file.notes
+    );
 }

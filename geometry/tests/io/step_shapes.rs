@@ -270,6 +270,34 @@ fn revolution_of_a_line() {
     );
 }
 
+/// A line across its axis sweeps a plane twice. A disc on it, away from the axis, has its own area: the surface is not
+/// integrated over where it folds.
+#[test]
+fn disc_on_a_surface_that_folds_elsewhere() {
+    let mut step = Step::default();
+    let points = [-2., 1., 4., 7.].map(|x| step.point([x, 0., 0.]));
+    let line = step.add(format!(
+        "B_SPLINE_CURVE_WITH_KNOTS('',3,({}),.UNSPECIFIED.,.F.,.F.,(4,4),(0.,1.),.UNSPECIFIED.)",
+        points.join(",")
+    ));
+    let foot = step.point(ORIGIN);
+    let axis = step.direction(Z);
+    let axis = step.add(format!("AXIS1_PLACEMENT('',{foot},{axis})"));
+    let surface = step.add(format!("SURFACE_OF_REVOLUTION('',{line},{axis})"));
+    // Across the line between the first two quarters of the turn.
+    let vertex = step.vertex([1., 5., 0.]);
+    let place = step.placement([0., 5., 0.], Z, X);
+    let circle = step.placed("CIRCLE", &place, "1.");
+    let edge = step.edge([&vertex, &vertex], &circle);
+    let bound = step.bound(&[&edge]);
+    let face = step.face(&[&bound], &surface, true);
+    let sheet = step.sheet(&[&face]);
+    // The border is fitted to 1e-7 of the size of the surface.
+    let file = step.whole(&[&sheet]);
+    let whole = file.surface().unwrap();
+    near(area(whole.set()), PI, 2e-6);
+}
+
 /// Offsets of a plane, a cylinder and a cone, each bounded by edges where the offset lies.
 #[test]
 fn offsets_of_analytic_surfaces() {

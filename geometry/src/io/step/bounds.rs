@@ -136,11 +136,10 @@ fn oriented(scope: &Scope, index: u32, base: Option<Base>) -> Told<Option<Stretc
     let mut stretch = Stretch {
         parameter: Vec::new(),
         space: parts(&runs).map_err(told)?,
-        preference: Preference::None,
+        preference: Preference::Space,
         edge: number,
     };
     if curve.is("SURFACE_CURVE") {
-        stretch.preference = preference(&curve)?;
         let found = pcurves(scope, &curve, base.map(|b| b.0))?;
         // A seam has one for each side; where the loop has come to tells later which period is meant.
         let chosen = if ahead { found.first() } else { found.last() };
@@ -171,15 +170,6 @@ fn extent(course: &Course<3>, ends: &[Vec3; 2]) -> f64 {
             points.fold(chord, |size, x| size.max((x - ends[0]).norm()))
         }
     }
-}
-
-fn preference(curve: &Entity) -> Told<Preference> {
-    let item = curve.attribute("SURFACE_CURVE", 2, "which curve is preferred")?;
-    Ok(match item.value {
-        super::scan::Value::Enumeration(b"CURVE_3D") => Preference::Space,
-        super::scan::Value::Enumeration(b"PCURVE_S1" | b"PCURVE_S2") => Preference::Parameter,
-        _ => Preference::None,
-    })
 }
 
 /// The curves in the parameter plane of `base` that a curve on surfaces has: two where it is a seam.
@@ -383,10 +373,7 @@ fn member(scope: &Scope, index: u32, base: Base) -> Told<Stretch> {
     Ok(Stretch {
         parameter,
         space,
-        preference: match surface_curve {
-            true => preference(&curve)?,
-            false => Preference::None,
-        },
+        preference: Preference::Space,
         edge,
     })
 }

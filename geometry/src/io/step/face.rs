@@ -8,7 +8,7 @@ use super::surface::{Shape, Surface};
 use super::surface_read;
 use crate::io::brep::{
     BasePatch, Boundary, Face, GAP, Grant, Host, Tally, add, approximation, bounds_outside, grown,
-    loops, widest_gap, without_parameters,
+    loops, widest_gap,
 };
 use crate::io::report::{FaceBorder, SkipKind, TrimReport};
 use crate::trim::Trimmed;
@@ -287,17 +287,6 @@ fn trimmed(
     account.grant.boundary(curves, points)?;
     let (mut said, mut tally) = (Vec::new(), Tally::default());
     let mut trimmed = by_loops(&host, face, &mut tally, &mut said);
-    if let Err(reason) = &trimmed
-        && let Some(face) = face.in_space()
-    {
-        let (mut again, mut tally_again) = (Vec::new(), Tally::default());
-        account.grant.boundary(curves, points)?;
-        if let Ok(made) = by_loops(&host, &face, &mut tally_again, &mut again) {
-            again.push(without_parameters(reason));
-            tally_again.rejected = 1;
-            (trimmed, tally, said) = (Ok(made), tally_again, again);
-        }
-    }
     let mut bridged = None;
     if trimmed.is_err() {
         // Edges of a loop share their vertices: what is between their ends is a gap of the file's making, if it is small.
