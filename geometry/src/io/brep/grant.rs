@@ -14,7 +14,7 @@ const WORK: [u64; 2] = [500_000, 4_000];
 pub const FOOT: u64 = 64;
 /// Parts of the surface that the search for it may look into for that, and evaluations that each one more counts for. Next to a
 /// surface that is millions of times as long as wide there are hundreds.
-pub const PARTS: [u64; 2] = [16, 16];
+pub const PARTS: [u64; 2] = [16, 48];
 /// Bytes granted to any file, and for each of its records (of 80 bytes).
 const BYTES: [u64; 2] = [500_000, 50 * 80];
 /// Bytes that a control point of a patch, of a curve, and of a boundary curve in both its planes stand for: the last with the
