@@ -9,7 +9,7 @@ use std::cell::Cell;
 /// Evaluations of a surface granted to any file, and for each of its lines of parameter data. A span of a space curve takes a
 /// hundred projections to be followed on its surface, some 6,000 evaluations, and stands on one to three lines. Borders that
 /// are given in the parameter plane take next to nothing.
-const WORK: [u64; 2] = [500_000, 4_000];
+const WORK: [u64; 2] = [1_500_000, 4_000];
 /// Evaluations that one projection counts for.
 pub const FOOT: u64 = 64;
 /// Parts of the surface that the search for it may look into for that, and evaluations that each one more counts for. Next to a
