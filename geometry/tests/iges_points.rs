@@ -20,7 +20,10 @@ struct Row {
     points: Vec<[f64; 5]>,
 }
 
-/// Lengths of the kernel over ours: it takes another unit from a file whose global section is damaged.
+/// Lengths of the kernel over ours. The global section of this file gives 38 characters as the length of a name of 32: the
+/// kernel counts them off, loses the parameters that follow and takes the unit for an inch. Units flag (2), unit name (MM) and
+/// the largest coordinate of the section (39.02, which is the file's own) say millimetres, as do the kernel's numbers once the
+/// name is counted right.
 const SCALES: &[(&str, f64)] = &[("real/testfile.igs", 25.4)];
 
 /// The file of a row: files made here are assets of this repository.

@@ -9,12 +9,11 @@ use std::cell::Cell;
 /// Evaluations of a surface granted to any file, and for each of its lines of parameter data. A span of a space curve takes a
 /// hundred projections to be followed on its surface, some 6,000 evaluations, and stands on one to three lines. Borders that
 /// are given in the parameter plane take next to nothing.
-const WORK: [u64; 2] = [1_500_000, 4_000];
-/// Evaluations that one projection counts for.
-pub const FOOT: u64 = 64;
-/// Parts of the surface that the search for it may look into for that, and evaluations that each one more counts for. Next to a
-/// surface that is millions of times as long as wide there are hundreds.
-pub const PARTS: [u64; 2] = [16, 48];
+const WORK: [u64; 2] = [1_000_000, 4_000];
+/// Evaluations that one projection counts for, and each part of the surface that the search for it looks into: mostly one or
+/// two, thousands next to a surface that is millions of times as long as wide.
+pub const FOOT: u64 = 32;
+pub const PART: u64 = 32;
 /// Bytes granted to any file, and for each of its records (of 80 bytes).
 const BYTES: [u64; 2] = [500_000, 50 * 80];
 /// Bytes that a control point of a patch, of a curve, and of a boundary curve in both its planes stand for: the last with the

@@ -1,6 +1,6 @@
 //! The surface under a face: its points at the file's parameters, and the parameters of points on it.
 
-use super::grant::{FOOT, Grant, PARTS};
+use super::grant::{FOOT, Grant, PART};
 use super::reparametrise::Reparametrise;
 use crate::basis::MAX_DEGREE;
 use crate::{NurbsCurve, NurbsPatch, PatchSet, Vec3};
@@ -173,8 +173,7 @@ impl<'a> Host<'a> {
         let (foot, parts) = set.as_ref().map_or((None, 0), |set| {
             set.project_counted(q, Some(hint), (f64::INFINITY, f64::INFINITY))
         });
-        let [few, part] = PARTS;
-        self.grant.work(part * (parts as u64).saturating_sub(few))?;
+        self.grant.work(PART * parts as u64)?;
         let foot = foot.ok_or("the surface has no closest points to project its border to")?;
         let xi = self.nearest_copy(Xi::from(foot.xi), near);
         Ok((xi, foot.distance))
