@@ -19,6 +19,11 @@ pub struct Skip<'a> {
 }
 
 impl Skip<'_> {
+    /// Whether a boundary was refused for a gap between its curves: what else is wrong with it a wider gap does not mend.
+    pub fn is_open(&self) -> bool {
+        self.refused.0 == SkipKind::Boundary && self.refused.1.contains("is open")
+    }
+
     pub fn told(self) -> Skipped {
         let entry = self.entry;
         let label = || (!entry.label.is_empty()).then(|| entry.label.clone());

@@ -115,7 +115,7 @@ impl<'a> Reader<'a, '_> {
         };
         // Copies that were read are kept: what refused the next one is not the boundary, which is theirs as well.
         let none_read = self.out.patches.len() == before.1;
-        if skip.refused.0 == SkipKind::Boundary && none_read {
+        if skip.is_open() && none_read {
             self.notes.truncate(before.0);
             self.out.trims = before.2;
             self.bridging.open.push(skip);
