@@ -189,7 +189,7 @@ impl March<'_, '_> {
             (self.assembler).pass(&committed.u, walk.jump.map_or(0.0, |jump| jump.rate));
             self.workspace.unstable = None;
             let penalties = self.assembler.penalties.clone();
-            let mut result = (self.attempts(committed, &mut walk.habit, cuts > 0)).solve(
+            let mut result = (self.attempts(committed, &mut walk.habit, cuts)).solve(
                 step,
                 end,
                 dt,

@@ -13,7 +13,8 @@
 //!    a full step. It is tried where a step has been cut, before the softened penalty where that has cost more
 //!    ([`super::habit`]), and goes on in the steps after one that it has solved, until one fails.
 //!
-//! Kinds of starts that have failed again and again are left out of steps that have not been cut yet ([`super::habit`]).
+//! Where the first of these has failed again and again, the one that has lately solved steps in the fewest iterations comes before
+//! it for some steps. Later ones that have failed again and again are left out of some attempts ([`super::habit`]).
 //!
 //! Where the last stages fail and the run may choose the penalties, the last stage that was solved is what the step gets:
 //! whether its penalties serve is measured by [`super::penalty_rule`]. What fails all four is cut.
@@ -21,7 +22,7 @@ mod augmenting;
 mod continuing;
 mod softened;
 
-use super::habit::Habit;
+use super::habit::{Account, Habit};
 use super::penalty_rule::PenaltyRule;
 use super::progress::Progress;
 use super::tunneling;
@@ -49,12 +50,16 @@ const SECANTS: First = First {
     search: false,
     keep: false,
 };
+/// Cuts from which on an attempt leaves no start out.
+const SMALL: u32 = 4;
 /// Times a penalty that lets points fall through their master may be raised within a step, and the factor.
 const DEEPER: (usize, f64) = (4, 10.0);
 
-/// Starts that know nothing of the path.
+/// Starts of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Start {
+    /// The path, continued.
+    Path,
     Accepted,
     /// Without mixed integration points.
     Plain,
@@ -65,12 +70,21 @@ enum Start {
 impl Start {
     fn words(self) -> &'static str {
         match self {
+            Start::Path => "the continued path",
             Start::Accepted => "the last accepted state",
             Start::Plain => "the last accepted state, without mixed integration points",
             Start::Searched => "the last accepted state, searching along every increment",
             Start::Softened => "a softened penalty",
         }
     }
+}
+
+/// Whether another start may do better: none brings tractions nearer to multipliers.
+fn another(failure: &StepFailure) -> bool {
+    !matches!(
+        failure,
+        StepFailure::Interrupted | StepFailure::NotAugmented { .. }
+    )
 }
 
 /// The attempts at one step.
@@ -90,8 +104,8 @@ pub(super) struct Attempts<'a, 'm> {
     /// For the first Newton iterations of a start.
     pub first: Option<First>,
     pub habit: &'a mut Habit,
-    /// Whether the step has been cut.
-    pub cut: bool,
+    /// How often the step has been cut.
+    pub cuts: u32,
     /// Whether the last start opened points that were in contact.
     pub opened: bool,
     /// Whether the next Newton iterations may have mixed integration points.
@@ -176,97 +190,140 @@ impl Attempts<'_, '_> {
             trial.copy_from(self.committed);
             return self.penalized(step, end, trial, Patience::Long);
         }
-        // Another start would not bring the tractions nearer to multipliers.
-        let another = |failure: &StepFailure| {
-            !matches!(
-                failure,
-                StepFailure::Interrupted | StepFailure::NotAugmented { .. }
-            )
-        };
-        if self.continues(before, dt, trial) {
-            for hold in [self.habit.hold, true] {
-                self.continues(before, dt, trial);
-                // The path of a body that nothing holds yet may lead through what it is to meet.
-                let stabilization = self.model.stabilization.as_ref();
-                if stabilization.is_some_and(|s| s.leaps(&self.committed.u, &trial.u)) {
-                    break;
-                }
-                self.first = Some(First {
-                    hold,
-                    secants: false,
-                    search: self.habit.search,
-                    keep: false,
-                });
-                let failure = match self.converge(step, end, trial, Patience::Short) {
-                    Err(failure) if another(&failure) => failure,
-                    other => {
-                        // A start that opens none tells nothing.
-                        if self.opened {
-                            self.habit.hold = hold;
-                        }
-                        return other;
-                    }
-                };
-                if hold || !self.opened {
-                    self.again(step, "the last accepted state", &failure, penalties);
-                    break;
-                }
-                let start = "the continued path with the points kept that it opens";
-                self.again(step, start, &failure, penalties);
-            }
-        }
-        self.habit.hold = false;
         let touching = !self.model.pairs.is_empty();
-        let searched = self.habit.search;
-        let mut starts = vec![if searched {
-            Start::Searched
-        } else {
-            Start::Accepted
-        }];
-        if touching && self.habit.softened.serves(self.cut) {
-            starts.push(Start::Softened);
-        }
-        // A step that was cut is near enough to the path that a search is unlikely to leave it for another equilibrium.
-        if self.cut && !searched && self.settings.line_search && self.habit.may_search() {
-            let first = self.habit.search_first();
-            starts.insert(if first { 1 } else { starts.len() }, Start::Searched);
-        }
+        let at = (step, end, dt);
+        // The path of a body that nothing holds yet may lead through what it is to meet.
+        let stabilization = self.model.stabilization.as_ref();
+        let leaps = |u: &[f64]| stabilization.is_some_and(|s| s.leaps(&self.committed.u, u));
+        let path = self.continues(before, dt, trial) && !leaps(&trial.u);
+        self.habit.hold &= path;
+        let starts = self.starts(path, touching);
         // Where nothing comes after it, a start of what cannot be softened may take all iterations.
         let patience = |i: usize| match touching || i + 1 < starts.len() {
             true => Patience::Short,
             false => Patience::Long,
         };
-        self.was_mixed = false;
-        let mut result = self.started(starts[0], (step, end, patience(0)), trial, penalties);
-        if let (true, Err(failure)) = (self.was_mixed, &result)
-            && another(failure)
-            && self.habit.plain.serves(self.cut)
-        {
-            self.again(step, Start::Plain.words(), failure, penalties);
-            result = self.started(Start::Plain, (step, end, patience(0)), trial, penalties);
-        }
-        for (i, start) in starts.iter().enumerate().skip(1) {
-            match &result {
-                Err(failure) if another(failure) => {
-                    self.again(step, start.words(), failure, penalties);
-                }
-                _ => return result,
+        let mut result = Err(StepFailure::Interrupted);
+        for (i, start) in starts.iter().enumerate() {
+            if let (false, Err(failure)) = (i == 0, &result) {
+                self.again(step, start.words(), failure, penalties);
             }
-            result = self.started(*start, (step, end, patience(i)), trial, penalties);
+            self.was_mixed = false;
+            result = self.started(*start, at, (before, patience(i)), trial, penalties);
+            if let (Start::Accepted, true, Err(failure)) = (start, self.was_mixed, &result)
+                && another(failure)
+                && !self.put_off(Start::Plain)
+            {
+                self.again(step, Start::Plain.words(), failure, penalties);
+                result = self.started(Start::Plain, at, (before, patience(i)), trial, penalties);
+            }
+            if !result.as_ref().is_err_and(another) {
+                break;
+            }
         }
+        self.habit.ended();
         result
+    }
+
+    /// The starts of a step in their order; there is a path or not.
+    fn starts(&self, path: bool, touching: bool) -> Vec<Start> {
+        let searched = self.habit.search;
+        let mut starts = Vec::with_capacity(4);
+        if path {
+            starts.push(Start::Path);
+        }
+        if searched {
+            starts.push(Start::Searched);
+        } else if !path || !self.put_off(Start::Accepted) {
+            starts.push(Start::Accepted);
+        }
+        if touching && !self.put_off(Start::Softened) {
+            starts.push(Start::Softened);
+        }
+        // A step that was cut is near enough to the path that a search is unlikely to leave it for another equilibrium.
+        if self.cuts > 0 && !searched && self.settings.line_search && self.habit.may_search() {
+            let softened = starts.last() == Some(&Start::Softened);
+            let first = softened && self.habit.searched.price() < self.habit.softened.price();
+            starts.insert(starts.len() - usize::from(first), Start::Searched);
+        }
+        if self.put_off(starts[0])
+            && let Some(cheapest) = (1..starts.len())
+                .filter(|i| self.account(starts[*i]).solves())
+                .min_by(|i, j| {
+                    let [i, j] = [i, j].map(|i| self.account(starts[*i]).price());
+                    i.total_cmp(&j)
+                })
+            && self.account(starts[cheapest]).price() < self.account(starts[0]).price()
+        {
+            starts[..=cheapest].rotate_right(1);
+        }
+        starts
+    }
+
+    /// Whether an attempt does without a start, which has failed again and again. One at a step that is small already has all.
+    fn put_off(&self, start: Start) -> bool {
+        self.cuts < SMALL && self.account(start).put_off()
+    }
+
+    fn account(&self, start: Start) -> &Account {
+        match start {
+            Start::Path => &self.habit.path,
+            Start::Accepted => &self.habit.accepted,
+            Start::Plain => &self.habit.plain,
+            Start::Searched => &self.habit.searched,
+            Start::Softened => &self.habit.softened,
+        }
+    }
+
+    /// Solves from the path continued, as it is or with the points kept that it opens.
+    fn continued(
+        &mut self,
+        (step, end, dt): (u32, f64, f64),
+        before: Option<&(State, f64)>,
+        trial: &mut State,
+        penalties: &[f64],
+    ) -> Result<Converged, StepFailure> {
+        let mut hold = self.habit.hold;
+        loop {
+            self.continues(before, dt, trial);
+            self.first = Some(First {
+                hold,
+                secants: false,
+                search: self.habit.search,
+                keep: false,
+            });
+            let failure = match self.converge(step, end, trial, Patience::Short) {
+                Err(failure) if another(&failure) => failure,
+                other => {
+                    // A start that opens none tells nothing.
+                    if self.opened {
+                        self.habit.hold = hold;
+                    }
+                    return other;
+                }
+            };
+            if hold || !self.opened {
+                self.habit.hold = false;
+                return Err(failure);
+            }
+            let start = "the continued path with the points kept that it opens";
+            self.again(step, start, &failure, penalties);
+            hold = true;
+        }
     }
 
     /// Solves from a start, and takes down what it has cost.
     fn started(
         &mut self,
         start: Start,
-        (step, end, patience): (u32, f64, Patience),
+        (step, end, dt): (u32, f64, f64),
+        (before, patience): (Option<&(State, f64)>, Patience),
         trial: &mut State,
         penalties: &[f64],
     ) -> Result<Converged, StepFailure> {
-        let before = self.progress.iterations;
+        let iterations = self.progress.iterations;
         let result = match start {
+            Start::Path => self.continued((step, end, dt), before, trial, penalties),
             Start::Accepted | Start::Plain | Start::Searched => {
                 self.restart(end, trial)?;
                 let search = start == Start::Searched;
@@ -284,16 +341,18 @@ impl Attempts<'_, '_> {
             }
             Start::Softened => self.softened(step, end, trial, penalties),
         };
-        let iterations = (self.progress.iterations - before) as u32;
-        match start {
-            Start::Accepted => {}
-            Start::Plain => self.habit.plain.tried(iterations, result.is_ok()),
-            Start::Searched => {
-                self.habit.search = result.is_ok();
-                self.habit.searched.tried(iterations, result.is_ok());
-            }
-            Start::Softened => self.habit.softened.tried(iterations, result.is_ok()),
+        let iterations = (self.progress.iterations - iterations) as u32;
+        if start == Start::Searched {
+            self.habit.search = result.is_ok();
         }
+        let account = match start {
+            Start::Path => &mut self.habit.path,
+            Start::Accepted => &mut self.habit.accepted,
+            Start::Plain => &mut self.habit.plain,
+            Start::Searched => &mut self.habit.searched,
+            Start::Softened => &mut self.habit.softened,
+        };
+        account.tried(iterations, result.is_ok());
         result
     }
 

@@ -157,7 +157,7 @@ impl March<'_, '_> {
             squares.sum::<f64>().sqrt()
         };
         let far = FAR * way(committed, &held);
-        match (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial) {
+        match (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial) {
             Ok(next) if way(&held, trial) <= far => {
                 converged.stiffened(next);
                 walk.jump = None;
@@ -169,7 +169,7 @@ impl March<'_, '_> {
                 self.assembler.pass(&committed.u, jump.rate);
                 trial.copy_from(&held);
                 let again =
-                    (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial);
+                    (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial);
                 converged.stiffened(again?);
             }
         }

@@ -33,7 +33,7 @@ impl March<'_, '_> {
             viscous.for_each(|v| v.scale(factor));
         };
         scale(self, RELEASED);
-        match (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial) {
+        match (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial) {
             Ok(next) => converged.stiffened(next),
             Err(StepFailure::Interrupted) => return Err(StepFailure::Interrupted),
             Err(failure) => {
@@ -45,7 +45,7 @@ impl March<'_, '_> {
                 });
                 trial.copy_from(&held);
                 let again =
-                    (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial);
+                    (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial);
                 converged.stiffened(again?);
             }
         }

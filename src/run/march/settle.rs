@@ -47,7 +47,7 @@ impl<'m> March<'_, 'm> {
         &'b mut self,
         committed: &'b State,
         habit: &'b mut Habit,
-        cut: bool,
+        cuts: u32,
     ) -> Attempts<'b, 'm> {
         Attempts {
             model: self.model,
@@ -63,7 +63,7 @@ impl<'m> March<'_, 'm> {
             rule: self.rule,
             first: None,
             habit,
-            cut,
+            cuts,
             opened: false,
             mixed: true,
             was_mixed: false,
@@ -155,7 +155,7 @@ impl<'m> March<'_, 'm> {
                 penalties: softer,
                 errors: ruling,
             };
-            match (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial) {
+            match (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial) {
                 Ok(next) => {
                     converged.stiffened(next);
                     tried = Some(from);
@@ -190,7 +190,7 @@ impl<'m> March<'_, 'm> {
             start: "the penalty before it was raised".to_owned(),
             reason: why.to_owned(),
         });
-        (self.attempts(committed, &mut walk.habit, false)).stiffened(step, end, trial)
+        (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial)
     }
 
     /// What rigid contact would change; nothing where contact cannot be evaluated beside the state.
