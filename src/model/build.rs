@@ -1,5 +1,6 @@
 //! Scene to model.
 mod cad_bodies;
+mod contact_faces;
 mod contacts;
 mod facets;
 mod fibres;

@@ -3,6 +3,7 @@ mod averaged;
 mod bad_input;
 mod blocks;
 mod convergence;
+mod cut_faces;
 mod edges;
 mod friction;
 mod invariance;

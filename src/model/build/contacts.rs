@@ -90,8 +90,8 @@ impl Builder<'_> {
     ) -> Result<Option<PairModel>, ModelError> {
         let pointer = |field: &str| format!("/contacts/{name}/{field}");
         self.sheet_contact(name, contact, None)?;
-        let (slave, slave_faces) = self.faces(&contact.slave, &pointer("slave"))?;
-        let (master, faces) = self.faces(&contact.master, &pointer("master"))?;
+        let (slave, slave_faces) = self.contact_faces(name, &contact.slave, &pointer("slave"))?;
+        let (master, faces) = self.contact_faces(name, &contact.master, &pointer("master"))?;
         if slave == master {
             let message = "self contact has no edges of another side".to_owned();
             return Err(text(pointer("passes"), message).help("leave `passes` out"));
@@ -139,7 +139,7 @@ impl Builder<'_> {
         only: Option<&BTreeSet<u32>>,
     ) -> Result<PairModel, ModelError> {
         let pointer = |field: &str| format!("/contacts/{name}/{field}");
-        let (body, faces) = self.faces(&contact.slave, &pointer("slave"))?;
+        let (body, faces) = self.contact_faces(name, &contact.slave, &pointer("slave"))?;
         self.sheet_contact(name, contact, rigid)?;
         let model = &self.bodies[body];
         let first_node = model.first_node;
@@ -477,7 +477,7 @@ impl Builder<'_> {
         contact: &Contact,
     ) -> Result<(BodyMaster, Suitable), ModelError> {
         let pointer = || format!("/contacts/{name}/master");
-        let (body, faces) = self.faces(&contact.master, &pointer())?;
+        let (body, faces) = self.contact_faces(name, &contact.master, &pointer())?;
         let (size, suits) = self.stiffness(body, &faces);
         let smooth = contact.master_surface == Some(MasterSurface::Smooth);
         let (facets, height) = match self.sheet_facets(body, &faces) {
