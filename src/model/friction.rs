@@ -182,13 +182,20 @@ impl FrictionModel {
         element_size: f64,
         time: f64,
     ) -> Result<Option<f64>, ValueError> {
-        let largest = match self.law.at(time)? {
+        let eps_t = self.largest(pressure, time)? / (SLIP * element_size);
+        Ok((eps_t > 0.0).then(|| (eps_t / eps_n).min(self.ratio)))
+    }
+
+    /// The largest traction of friction at a pressure (force / length^2).
+    ///
+    /// # Errors
+    /// A coefficient without a value at this time.
+    pub fn largest(&self, pressure: f64, time: f64) -> Result<f64, ValueError> {
+        Ok(match self.law.at(time)? {
             LawNow::Coulomb(law) => law.mu * pressure,
             LawNow::Orthotropic(law) => law.mu[0].max(law.mu[1]) * pressure,
             LawNow::ShearLimited(law) => (law.mu * pressure).min(law.limit),
-        };
-        let eps_t = largest / (SLIP * element_size);
-        Ok((eps_t > 0.0).then(|| (eps_t / eps_n).min(self.ratio)))
+        })
     }
 
     /// What varies in time.

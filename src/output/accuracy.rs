@@ -42,4 +42,7 @@ pub struct ContactAccuracy {
     pub penalty: f64,
     #[serde(default)]
     pub tangential_penalty: f64,
+    /// Estimated relative error of its friction by the elastic slip of points that stick; 0 without friction.
+    #[serde(default)]
+    pub friction_error: f64,
 }

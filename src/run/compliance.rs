@@ -18,6 +18,7 @@
 //! assemblies of contact: as long as it shows little it is made at fewer and fewer steps, and wherever forces have grown or motions
 //! have turned.
 mod kept;
+pub(super) mod sticking;
 mod told;
 
 use super::bearing::{Bearings, Deepest};
@@ -29,6 +30,7 @@ use crate::scene::ValueError;
 use crate::solve::newton::RigidLimit;
 use covact_geometry::Vec3;
 use nalgebra::Isometry3;
+use sticking::Sticking;
 
 /// Mean penetration over the deepest one.
 const MEAN: f64 = 0.3;
@@ -121,6 +123,8 @@ pub struct Compliance {
     /// Largest force and displacement so far.
     force: f64,
     displacement: f64,
+    /// What elastic slip takes from friction.
+    pub sticking: Sticking,
     /// Poses of the surfaces at the start.
     poses: Vec<Isometry3<f64>>,
 }
@@ -188,6 +192,7 @@ impl Compliance {
             raised: f64::INFINITY,
             path: [[0.0; 2]; 2],
             penalties: Vec::new(),
+            sticking: Sticking::default(),
             force: 0.0,
             displacement: 0.0,
             poses: model.surfaces.iter().map(pose).collect::<Result<_, _>>()?,

@@ -6,6 +6,7 @@ mod released;
 mod replaced;
 mod restart;
 mod settle;
+mod slip;
 mod stages;
 mod start;
 mod summary;
@@ -236,6 +237,7 @@ impl March<'_, '_> {
                         sliding,
                         errors,
                         limit,
+                        sticking,
                     } = settled.unwrap_or_default();
                     (self.assembler).balance(&trial.u, self.workspace.residual_mut());
                     let residual = self.workspace.residual();
@@ -310,6 +312,9 @@ impl March<'_, '_> {
                         (work, drag),
                         (errors, limit),
                     )?;
+                    let bearings = &outputs.fields.bearings;
+                    (self.adapt_slip(bearings, end, &converged, &sticking))
+                        .map_err(|e| RunError::internal(&e))?;
                     let internal = converged.totals.internal_energy;
                     // A load that goes up and down again between kinks is seen, too.
                     let grown = internal > 2.0 * self.progress.measured;
@@ -423,7 +428,11 @@ impl March<'_, '_> {
             self.warn(text);
         }
         let soft = (self.compliance).warning(self.model, &self.assembler.penalties);
-        for text in soft.into_iter().chain(self.peaks.warnings(self.model)) {
+        let (penalties, ratios) = (&self.assembler.penalties, &self.assembler.ratios);
+        let tangential: Vec<f64> = penalties.iter().zip(ratios).map(|(p, r)| p * r).collect();
+        let sticking = (self.compliance.sticking).warnings(self.model, &tangential);
+        let all = soft.into_iter().chain(sticking);
+        for text in all.chain(self.peaks.warnings(self.model)) {
             self.warn(text);
         }
         let (_, guards) = self.untouched();

@@ -179,25 +179,33 @@ impl Peaks {
     }
 
     /// The same as it stands in the summary.
-    /// `penalties` are those at the end, and the tangential ones over them.
-    pub fn account(&self, model: &Model, [penalties, ratios]: [&[f64]; 2]) -> Vec<ContactAccuracy> {
+    /// `penalties` are those at the end, and the tangential ones over them; `friction` tells the error of a pair's friction.
+    pub fn account(
+        &self,
+        model: &Model,
+        [penalties, ratios]: [&[f64]; 2],
+        friction: impl Fn(usize) -> f64,
+    ) -> Vec<ContactAccuracy> {
         let pairs = model.pairs.iter().zip(&self.0);
         let pairs = pairs.zip(penalties.iter().zip(ratios));
-        let account =
-            |((pair, peak), (eps, ratio)): ((&PairModel, &Peak), (&f64, &f64))| ContactAccuracy {
-                name: pair.name.clone(),
-                force: peak.force,
-                step: peak.step,
-                active: peak.active,
-                few: (peak.few > 0).then_some(peak.few),
-                edge_share: match peak.force > 0.0 {
-                    true => peak.at_edges / peak.force,
-                    false => 0.0,
-                },
-                penalty: *eps,
-                tangential_penalty: ratio * eps,
-            };
-        pairs.map(account).collect()
+        let account = |(index, ((pair, peak), (eps, ratio))): (
+            usize,
+            ((&PairModel, &Peak), (&f64, &f64)),
+        )| ContactAccuracy {
+            name: pair.name.clone(),
+            force: peak.force,
+            step: peak.step,
+            active: peak.active,
+            few: (peak.few > 0).then_some(peak.few),
+            edge_share: match peak.force > 0.0 {
+                true => peak.at_edges / peak.force,
+                false => 0.0,
+            },
+            penalty: *eps,
+            tangential_penalty: ratio * eps,
+            friction_error: friction(index),
+        };
+        pairs.enumerate().map(account).collect()
     }
 }
 

@@ -8,6 +8,7 @@ mod keeping;
 mod line_search;
 mod rigid_limit;
 mod small;
+mod stick_limit;
 mod workspace;
 
 pub use rigid_limit::RigidLimit;

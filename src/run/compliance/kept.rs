@@ -18,6 +18,7 @@ impl Compliance {
             displacement,
             path,
             penalties,
+            sticking,
             // Known from the model.
             poses: _,
         } = self;
@@ -29,6 +30,7 @@ impl Compliance {
         out.f64s(path.as_flattened());
         out.count(penalties.len());
         out.f64s(penalties);
+        sticking.put(out);
     }
 
     /// [`Self::put`], read back for the same model.
@@ -56,7 +58,8 @@ impl Compliance {
             return Err(from.malformed("penalties of more contacts than there are"));
         }
         self.penalties.resize(count, 0.0);
-        from.f64s(&mut self.penalties)
+        from.f64s(&mut self.penalties)?;
+        self.sticking.take(model, from)
     }
 }
 

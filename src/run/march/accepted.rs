@@ -156,7 +156,6 @@ impl March<'_, '_> {
             None => (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?,
         };
         self.adapt(errors, growth, converged);
-        (self.adapt_slip(outputs, time, converged)).map_err(|e| RunError::internal(&e))?;
         let bearings = &outputs.fields.bearings;
         (self.peaks).step(self.model, step, bearings, &totals.pairs);
         let doubts = linearity_check::doubts(self.model, &mut self.assembler.masters, state, time);

@@ -6,16 +6,14 @@ use crate::model::state::State;
 use crate::run::RunError;
 use crate::run::bearing::{Bearing, Bearings};
 use crate::run::commit::{self, FrictionTotals};
+use crate::run::compliance::sticking::StickLimit;
 use crate::run::compliance::{Compliance, Errors, StepEnd};
 use crate::run::habit::Habit;
 use crate::run::penalty_rule::{self, PenaltyRule};
 use crate::run::step::Attempts;
-use crate::scene::ValueError;
 use crate::solve::event::Event;
 use crate::solve::newton::{Converged, RigidLimit, StepFailure};
 
-/// Iterations of a step, those of failed attempts included, above which tangential penalties are softened.
-const STRUGGLES: u32 = 16;
 /// Times that penalties may be raised within a step.
 const RAISES: usize = 6;
 
@@ -27,6 +25,8 @@ pub(super) struct Settled {
     pub errors: Errors,
     /// What rigid contact would change.
     pub limit: Option<RigidLimit>,
+    /// What rigid sticking would change, per pair; empty where it was not measured.
+    pub sticking: Vec<StickLimit>,
 }
 
 /// What a raise of penalties went out from.
@@ -99,16 +99,24 @@ impl<'m> March<'_, 'm> {
             let last = walk.stepping.done(end);
             let bearings = &outputs.fields.bearings;
             let turned = walk.stepping.at_kink(start);
-            let due = self.compliance.is_due(step, bearings, turned) || last;
+            let due = self.compliance.is_due(step, bearings, turned)
+                || self.compliance.sticking.is_due()
+                || last;
             let limit = match due && reliable(converged) {
                 true => self.rigid_limit(trial, &histories, bearings, end),
                 false => None,
+            };
+            let sticking = match limit.is_some() {
+                true => (self.stick_limits(trial, &histories, bearings, end))
+                    .map_err(|e| RunError::internal(&e))?,
+                false => Vec::new(),
             };
             let Some(fields) = &fields else {
                 return Ok(Ok(Settled {
                     sliding,
                     errors: Errors::default(),
                     limit,
+                    sticking,
                 }));
             };
             let at = (step, end, last);
@@ -141,6 +149,7 @@ impl<'m> March<'_, 'm> {
                     sliding,
                     errors,
                     limit,
+                    sticking,
                 }));
             }
             raises -= 1;
@@ -268,37 +277,6 @@ impl<'m> March<'_, 'm> {
         }
     }
 
-    /// Softens the tangential penalties of the next step, where the run may, after a step with friction that took many
-    /// iterations.
-    pub(super) fn adapt_slip(
-        &mut self,
-        outputs: &Outputs,
-        time: f64,
-        converged: &Converged,
-    ) -> Result<(), ValueError> {
-        if converged.iterations + self.failed <= STRUGGLES {
-            return Ok(());
-        }
-        let ratios = self
-            .assembler
-            .ratios
-            .iter_mut()
-            .zip(&self.assembler.penalties);
-        for ((pair, sum), (ratio, eps_n)) in
-            (self.model.pairs.iter().zip(&outputs.fields.bearings.pairs)).zip(ratios)
-        {
-            let Some(friction) = pair.friction.as_ref().filter(|f| f.ruled && sum.area > 0.0)
-            else {
-                continue;
-            };
-            let pressure = sum.force / sum.area;
-            if let Some(suits) = friction.suitable(pressure, *eps_n, pair.element_size, time)? {
-                *ratio = suits;
-            }
-        }
-        Ok(())
-    }
-
     /// Adapts the penalties that the run may choose to an accepted step, for the next one. `errors` are those at its end, `growth`
     /// the one that shows over the last steps.
     pub(super) fn adapt(&mut self, mut errors: Errors, growth: f64, converged: &Converged) {
@@ -322,19 +300,5 @@ impl<'m> March<'_, 'm> {
     pub(super) fn take_back(&mut self, penalties: &[f64]) {
         self.assembler.penalties.copy_from_slice(penalties);
         self.hold_given();
-    }
-
-    /// Tangential penalties that are given stay what they are, whatever the normal ones are now.
-    fn hold_given(&mut self) {
-        let ratios = self
-            .assembler
-            .ratios
-            .iter_mut()
-            .zip(&self.assembler.penalties);
-        for (pair, (ratio, eps_n)) in self.model.pairs.iter().zip(ratios) {
-            if let Some(eps_t) = pair.friction.as_ref().and_then(|f| f.given) {
-                *ratio = eps_t / eps_n;
-            }
-        }
     }
 }

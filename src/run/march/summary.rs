@@ -53,8 +53,11 @@ impl RunState<'_> {
             effects: plan.names(),
             plan: Some(plan.summary(self.assembler.ran())),
             accuracy: Accuracy {
-                contacts: (self.peaks)
-                    .account(model, [&self.assembler.penalties, &self.assembler.ratios]),
+                contacts: self.peaks.account(
+                    model,
+                    [&self.assembler.penalties, &self.assembler.ratios],
+                    |pair| self.compliance.sticking.error(pair),
+                ),
                 ..self.compliance.account(model)
             },
             probes: BTreeMap::new(),

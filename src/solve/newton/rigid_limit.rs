@@ -8,14 +8,14 @@
 //! forces and of the normal ones: slip that turns round says nothing of rigid contact. Of multipliers only what the penalty still
 //! carries counts.
 use super::Workspace;
-use crate::assembly::{Assembler, Fault, Totals};
+use crate::assembly::{Assembler, Fault, SurfaceForce, Totals};
 use crate::contact::friction::history::PointHistory;
 use crate::model::state::State;
 use crate::model::{Model, PairModel};
 use crate::system::linear::{LinearError, LinearSolver};
 
 /// Part of the change at which it is measured: points that the whole of it would open or close, or let slide, should not do so.
-const PART: f64 = 1.0 / 64.0;
+pub(super) const PART: f64 = 1.0 / 64.0;
 
 /// Change of a step's forces and displacements from the penalty to rigid contact, to first order.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -167,7 +167,7 @@ impl Workspace {
 }
 
 /// Puts the points of a state where those of another one are.
-fn place(base: &mut State, state: &State) {
+pub(super) fn place(base: &mut State, state: &State) {
     base.u.copy_from_slice(&state.u);
     base.points.clone_from(&state.points);
     base.nodes.copy_from_slice(&state.nodes);
@@ -224,7 +224,7 @@ impl Probe<'_> {
         gross[0] = gross[0].abs();
         let forces = (self.model.pairs.iter().enumerate())
             .map(|(index, pair)| {
-                let [w, s, m] = [totals, more, &moved].map(|t| force(pair, index, t));
+                let [w, s, m] = [totals, more, &moved].map(|t| force(pair, index, t).force);
                 [(s + m - 2.0 * w).norm() / PART, w.norm()]
             })
             .collect();
@@ -262,9 +262,9 @@ fn without_friction<T>(assembler: &mut Assembler, evaluate: impl FnOnce(&mut Ass
 }
 
 /// What acts on the slave side of a pair, or on the bodies from its rigid master.
-fn force(pair: &PairModel, index: usize, totals: &Totals) -> covact_geometry::Vec3 {
+pub(super) fn force<'t>(pair: &PairModel, index: usize, totals: &'t Totals) -> &'t SurfaceForce {
     match pair.rigid_master() {
-        Some(surface) => totals.surfaces[surface].force,
-        None => totals.pairs[index].slave.force,
+        Some(surface) => &totals.surfaces[surface],
+        None => &totals.pairs[index].slave,
     }
 }

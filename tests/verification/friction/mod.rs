@@ -4,4 +4,5 @@ mod capstan;
 mod loop_;
 mod shear_limited;
 mod stick_limit;
+mod sticking;
 mod wedge;

@@ -1,0 +1,109 @@
+//! Tangential penalties: what they leave of friction at a step, and what they are at the next one.
+use super::March;
+use crate::contact::friction::history::PointHistory;
+use crate::model::PairModel;
+use crate::model::state::State;
+use crate::run::bearing::{Bearing, Bearings};
+use crate::run::compliance::sticking::StickLimit;
+use crate::scene::ValueError;
+use crate::solve::newton::Converged;
+
+/// Iterations of a step, those of failed attempts included, above which tangential penalties are softened.
+const STRUGGLES: u32 = 16;
+/// Factor by which they are softened at most after one step: what it struggled with may have been something else.
+const SOFTER: f64 = 0.1;
+
+impl March<'_, '_> {
+    /// What rigid sticking would change, per pair; empty without friction, and where it cannot be measured.
+    pub(super) fn stick_limits(
+        &mut self,
+        state: &State,
+        histories: &[PointHistory],
+        bearings: &Bearings,
+        time: f64,
+    ) -> Result<Vec<StickLimit>, ValueError> {
+        if self.model.pairs.iter().all(|p| p.friction.is_none()) {
+            return Ok(Vec::new());
+        }
+        self.phases.start("accuracy");
+        let found = self.workspace.stick_limits(
+            self.model,
+            self.assembler,
+            self.solver,
+            (state, histories),
+            time,
+        );
+        self.phases.stop("accuracy");
+        let missing = found.ok().flatten().unwrap_or_default();
+        let friction = |pair: &PairModel| -> f64 {
+            let points = pair.history().map(|range| &state.histories[range]);
+            let points = points.into_iter().flatten().zip(&pair.points);
+            points.map(|(h, p)| h.t.norm() * p.area).sum()
+        };
+        let pairs = self.model.pairs.iter().zip(&bearings.pairs);
+        let limit = |((pair, bearing), missing): ((&PairModel, &Bearing), f64)| {
+            let (friction, area) = (friction(pair), bearing.area);
+            let largest = match &pair.friction {
+                Some(model) if area > 0.0 => area * model.largest(bearing.force / area, time)?,
+                _ => 0.0,
+            };
+            let room = (largest - friction).max(0.0);
+            Ok(StickLimit {
+                friction,
+                missing: missing.min(room),
+                room,
+            })
+        };
+        pairs.zip(missing).map(limit).collect()
+    }
+
+    /// Raises the tangential penalties of the next step, where the run may, by what was measured of the elastic slip, and softens
+    /// them after a step with friction that took many iterations.
+    pub(super) fn adapt_slip(
+        &mut self,
+        bearings: &Bearings,
+        time: f64,
+        converged: &Converged,
+        sticking: &[StickLimit],
+    ) -> Result<(), ValueError> {
+        let forces = bearings.pairs.iter().map(|b| b.force);
+        let struggles = converged.iterations + self.failed > STRUGGLES;
+        let factors = (self.compliance.sticking).step(
+            sticking,
+            forces,
+            (self.progress.steps, time),
+            struggles,
+        );
+        let ratios = self.assembler.ratios.iter_mut();
+        let pairs = (self.model.pairs.iter().zip(&bearings.pairs)).zip(factors);
+        let pairs = pairs.zip(ratios.zip(&self.assembler.penalties));
+        for (((pair, bearing), factor), (ratio, eps_n)) in pairs {
+            let Some(friction) = pair.friction.as_ref().filter(|f| f.ruled) else {
+                continue;
+            };
+            let raised = (*ratio * factor).min(friction.ratio);
+            if raised > *ratio {
+                *ratio = raised;
+            } else if struggles && bearing.area > 0.0 {
+                let pressure = bearing.force / bearing.area;
+                let suits = friction.suitable(pressure, *eps_n, pair.element_size, time)?;
+                *ratio = suits.map_or(*ratio, |suits| suits.max(SOFTER * *ratio));
+            }
+        }
+        Ok(())
+    }
+
+    /// Tangential penalties that are given stay what they are, whatever the normal ones are now.
+    pub(super) fn hold_given(&mut self) {
+        let ratios = self
+            .assembler
+            .ratios
+            .iter_mut()
+            .zip(&self.assembler.penalties);
+        for (pair, (ratio, eps_n)) in self.model.pairs.iter().zip(ratios) {
+            if let Some(eps_t) = pair.friction.as_ref().and_then(|f| f.given) {
+                *ratio = eps_t / eps_n;
+            }
+        }
+    }
+}
