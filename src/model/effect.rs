@@ -46,6 +46,7 @@ effects! {
         "linear elements, and contact linearised where it starts: for displacements that stay small";
     H8SolidShell, "element.h8_solid_shell", listed: "8-node solid-shell elements that do not lock when thin";
     H8Displacement, "element.h8_displacement", listed: "plain 8-node bricks, for solids (they lock when thin)";
+    H8MeanDilatation, "element.h8_mean_dilatation", listed: "8-node bricks with one change of volume each, for solids of rubber";
     H8Eas3, "element.h8_eas3", listed: "8-node solid-shell elements enhanced through their thickness only";
     Q18SolidShell, "element.q18_solid_shell", listed: "18-node quadratic solid-shells, for thin and curved sheets";
     NurbsShell, "element.nurbs_shell", listed: "a CAD surface as a thin shell: its control points are the unknowns";

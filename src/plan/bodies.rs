@@ -55,6 +55,11 @@ impl Reporter<'_> {
                 EffectKind::H8Displacement,
                 "h8_displacement",
             ),
+            (
+                Element::H8MeanDilatation,
+                EffectKind::H8MeanDilatation,
+                "h8_mean_dilatation",
+            ),
             (Element::H8Eas3, EffectKind::H8Eas3, "h8_eas3"),
             (Element::Q18, EffectKind::Q18SolidShell, "q18"),
             (Element::Nurbs, EffectKind::NurbsShell, "nurbs"),
@@ -135,7 +140,10 @@ impl Reporter<'_> {
     fn strains(&self) -> Vec<Effect> {
         let assumed = |b: &Body| match &b.mesh {
             MeshSource::Nurbs(nurbs) => nurbs.assumed_membrane,
-            _ => b.element != Element::H8Displacement,
+            _ => !matches!(
+                b.element,
+                Element::H8Displacement | Element::H8MeanDilatation
+            ),
         };
         let with: Vec<_> = self.described().filter(|(_, b)| assumed(b)).collect();
         let names =

@@ -231,6 +231,7 @@ fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
         Element::H8 => "8-node solid-shell",
         Element::H8Eas3 => "8-node solid-shell, enhanced through its thickness",
         Element::H8Displacement => "8-node brick without enhancement",
+        Element::H8MeanDilatation => "8-node brick with one change of volume",
         Element::Q18 => "18-node quadratic solid-shell",
         Element::Nurbs => "bicubic Kirchhoff-Love shell on a NURBS patch",
     };

@@ -26,7 +26,7 @@ const LOOKED_INTO: usize = 48;
 pub(super) fn remedy(turned: Option<&BodyModel>) -> &'static str {
     match turned {
         Some(_) => {
-            "; where it is squeezed rather than bent, element `h8_displacement` follows farther"
+            "; where it is squeezed rather than bent, element `h8_mean_dilatation` follows farther"
         }
         None => "",
     }

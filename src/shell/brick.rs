@@ -54,19 +54,7 @@ pub(super) fn forces<D: DualNum<f64> + Copy, L: MaterialLaw>(
             .stress(&re.metric[g], &e, &state_of::<L>(states, g))
             .map_err(|c| (g as u8, c))?;
         energy += psi * re.volume[g];
-        let frame = now.at(g);
-        let n = derivatives(g);
-        // Force vectors S^ij g_j.
-        let full = [[s[0], s[3], s[5]], [s[3], s[1], s[4]], [s[5], s[4], s[2]]];
-        for i in 0..3 {
-            for x in 0..3 {
-                let p =
-                    full[i][0] * frame[0][x] + full[i][1] * frame[1][x] + full[i][2] * frame[2][x];
-                for a in 0..8 {
-                    f[3 * a + x] += p * (n[i][a] * re.volume[g]);
-                }
-            }
-        }
+        add_forces(g, &now.at(g), &s, re.volume[g], &mut f);
     }
     Ok((energy, f))
 }
@@ -94,22 +82,56 @@ pub(super) fn evaluate<L: MaterialLaw>(
         let dv = re.volume[g];
         out.energy += response.energy * dv;
         let frame = now.at(g);
-        let n = derivatives(g);
+        add_forces(g, &frame, &response.stress, dv, &mut out.f);
+        Pointwise::new(&frame, &response.stress, &response.tangent, dv).add_to(g, &mut out.k);
+    }
+    mirror(&mut out.k);
+    Ok(())
+}
+
+/// Forces of the stress at Gauss point `g`, whose present tangents are `frame`, on the nodes.
+#[inline(always)]
+pub(super) fn add_forces<D: DualNum<f64> + Copy>(
+    g: usize,
+    frame: &[V<D>; 3],
+    s: &[D; 6],
+    dv: f64,
+    f: &mut [D; 24],
+) {
+    let n = derivatives(g);
+    // Force vectors S^ij g_j.
+    let full = [[s[0], s[3], s[5]], [s[3], s[1], s[4]], [s[5], s[4], s[2]]];
+    for i in 0..3 {
+        for x in 0..3 {
+            let p = full[i][0] * frame[0][x] + full[i][1] * frame[1][x] + full[i][2] * frame[2][x];
+            for a in 0..8 {
+                f[3 * a + x] += p * (n[i][a] * dv);
+            }
+        }
+    }
+}
+
+/// Tangent of one Gauss point between the derivatives of the displacement along i and j, `[i][j][x][y]`, times its volume.
+pub(super) struct Pointwise([[[[f64; 3]; 3]; 3]; 3]);
+
+impl Pointwise {
+    /// Of moduli against Voigt strains and of the stress, where the present tangents are `frame`.
+    #[inline(always)]
+    pub fn new(frame: &[V<f64>; 3], s: &[f64; 6], tangent: &[[f64; 6]; 6], dv: f64) -> Pointwise {
         // Rows of the strain in the derivative along direction i: `rows[i]` holds (Voigt index, vector).
-        let [g1, g2, g3] = frame;
+        let [g1, g2, g3] = *frame;
         let rows = [
             [(0, g1), (3, g2), (5, g3)],
             [(1, g2), (3, g1), (4, g3)],
             [(2, g3), (4, g2), (5, g1)],
         ];
-        let s = response.stress;
         let full = [[s[0], s[3], s[5]], [s[3], s[1], s[4]], [s[5], s[4], s[2]]];
         let mut q = [[[[0.0; 3]; 3]; 3]; 3];
         for i in 0..3 {
             for j in 0..3 {
                 for (v, gv) in &rows[i] {
                     for (w, gw) in &rows[j] {
-                        let c = response.tangent[*v][*w] * dv;
+                        let c = tangent[*v][*w] * dv;
                         for x in 0..3 {
                             for y in 0..3 {
                                 q[i][j][x][y] += c * gv[x] * gw[y];
@@ -121,13 +143,14 @@ pub(super) fn evaluate<L: MaterialLaw>(
                     q[i][j][x][x] += full[i][j] * dv;
                 }
             }
-            for x in 0..3 {
-                let p = full[i][0] * g1[x] + full[i][1] * g2[x] + full[i][2] * g3[x];
-                for a in 0..8 {
-                    out.f[3 * a + x] += p * (n[i][a] * dv);
-                }
-            }
         }
+        Pointwise(q)
+    }
+
+    /// Adds it to the upper triangle of an element's tangent, by columns.
+    #[inline(always)]
+    pub fn add_to(&self, g: usize, k: &mut [f64; 576]) {
+        let (n, Pointwise(q)) = (derivatives(g), self);
         for b in 0..8 {
             let mut column = [[[0.0; 3]; 3]; 3];
             for i in 0..3 {
@@ -142,7 +165,7 @@ pub(super) fn evaluate<L: MaterialLaw>(
             for a in 0..=b {
                 for y in 0..3 {
                     for x in 0..3 {
-                        out.k[(3 * b + y) * 24 + 3 * a + x] += n[0][a] * column[0][x][y]
+                        k[(3 * b + y) * 24 + 3 * a + x] += n[0][a] * column[0][x][y]
                             + n[1][a] * column[1][x][y]
                             + n[2][a] * column[2][x][y];
                     }
@@ -150,10 +173,14 @@ pub(super) fn evaluate<L: MaterialLaw>(
             }
         }
     }
+}
+
+/// Makes the lower triangle that of the upper one.
+#[inline(always)]
+pub(super) fn mirror(k: &mut [f64; 576]) {
     for column in 0..24 {
         for row in 0..column {
-            out.k[row * 24 + column] = out.k[column * 24 + row];
+            k[row * 24 + column] = k[column * 24 + row];
         }
     }
-    Ok(())
 }

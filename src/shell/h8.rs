@@ -7,7 +7,7 @@ use super::history::cauchy;
 use super::kinematics::{self, Fields, V};
 use super::material::{Collapsed, Law, MaterialLaw, with_law};
 use super::reference::Reference;
-use super::{brick, layered, stress, tangent};
+use super::{brick, layered, mean_dilatation, stress, tangent};
 use crate::mesh::{ElementKind, Mesh};
 use crate::scene::Element;
 use covact_geometry::Vec3;
@@ -30,6 +30,9 @@ pub enum Formulation {
     Layered,
     /// Displacement brick without assumed or enhanced strains.
     Displacement,
+    /// [`Formulation::Displacement`] whose points share the mean change of volume of their element: no locking in rubber and in
+    /// plastic flow.
+    MeanDilatation,
 }
 
 impl Formulation {
@@ -39,7 +42,7 @@ impl Formulation {
             Formulation::Eas7 => 7,
             Formulation::Layered => layered::MODES,
             Formulation::Eas3 => 3,
-            Formulation::Eas0 | Formulation::Displacement => 0,
+            Formulation::Eas0 | Formulation::Displacement | Formulation::MeanDilatation => 0,
         }
     }
 
@@ -65,6 +68,7 @@ impl Formulation {
             Element::H8 => Some(Formulation::Eas7),
             Element::H8Eas3 => Some(Formulation::Eas3),
             Element::H8Displacement => Some(Formulation::Displacement),
+            Element::H8MeanDilatation => Some(Formulation::MeanDilatation),
             Element::Q18 | Element::Nurbs => None,
         }
     }
@@ -276,6 +280,7 @@ impl H8Block {
             Formulation::Eas3 => tangent::evaluate::<_, 3>(law, re, &u, du, state, out),
             Formulation::Eas0 => tangent::evaluate::<_, 0>(law, re, &u, du, state, out),
             Formulation::Displacement => brick::evaluate(law, re, &u, state, out),
+            Formulation::MeanDilatation => mean_dilatation::evaluate(law, re, &u, state, out),
         })
         .map_err(|cause| ElementFault {
             element: e as u32,
@@ -334,10 +339,10 @@ impl H8Block {
             }
             Formulation::Eas3 => residual::<_, 3>(law, re, &u, state, f),
             Formulation::Eas0 => residual::<_, 0>(law, re, &u, state, f),
-            Formulation::Displacement => brick::forces(law, re, &u, state).map(|(energy, forces)| {
-                *f = forces;
-                energy
-            }),
+            Formulation::Displacement => brick::forces(law, re, &u, state).map(|all| kept(all, f)),
+            Formulation::MeanDilatation => {
+                mean_dilatation::forces(law, re, &u, state).map(|all| kept(all, f))
+            }
         })
         .map_err(|(point, c)| fault(e, point, c))
     }
@@ -381,7 +386,9 @@ impl H8Block {
         let u = arrays(u);
         let re = &self.reference[e];
         let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
-        let strain = self.strains(re, (&big, &du), state);
+        let strain = self
+            .strains(re, (&big, &du), state)
+            .map_err(|(point, c)| fault(e, point, c))?;
         let states = &state[self.condensation_len().min(state.len())..];
         for g in 0..8 {
             out[g] = with_law!(&self.law, law => cauchy(
@@ -415,17 +422,24 @@ impl H8Block {
         re: &Reference,
         (big, du): (&Fields<f64>, &Fields<f64>),
         state: &[f64],
-    ) -> [[f64; 6]; 8] {
-        match self.formulation {
+    ) -> Result<[[f64; 6]; 8], (u8, Collapsed)> {
+        Ok(match self.formulation {
             Formulation::Eas7 => kinematics::strains(re, big, du, &head::<7>(state)),
             Formulation::Eas3 => kinematics::strains(re, big, du, &head::<3>(state)),
             Formulation::Eas0 => kinematics::strains(re, big, du, &[]),
+            Formulation::MeanDilatation => return mean_dilatation::strains(re, big, du),
             // Strains of layered elements are taken at other points.
             Formulation::Displacement | Formulation::Layered => {
                 std::array::from_fn(|g| brick::strain(&big.at(g), &du.at(g)))
             }
-        }
+        })
     }
+}
+
+/// Keeps forces, and returns the energy.
+fn kept((energy, forces): (f64, [f64; 24]), f: &mut [f64; 24]) -> f64 {
+    *f = forces;
+    energy
 }
 
 /// The fault of a Gauss point.

@@ -24,6 +24,7 @@ mod hold;
 mod kinematics;
 mod layered;
 pub mod material;
+mod mean_dilatation;
 mod nurbs;
 mod q18;
 mod reference;

@@ -19,7 +19,7 @@ fn random(seed: &mut u64) -> f64 {
 }
 
 /// A distorted, warped element.
-fn nodes() -> [Vec3; 8] {
+pub(super) fn nodes() -> [Vec3; 8] {
     let mut seed = 1;
     std::array::from_fn(|a| {
         let (i, j, k) = ((a & 1) as f64, ((a >> 1) & 1) as f64, (a >> 2) as f64);
@@ -32,7 +32,7 @@ fn nodes() -> [Vec3; 8] {
     })
 }
 
-fn mesh(nodes: &[Vec3; 8]) -> Mesh {
+pub(super) fn mesh(nodes: &[Vec3; 8]) -> Mesh {
     Mesh {
         kind: ElementKind::H8,
         nodes: nodes.to_vec(),
@@ -42,7 +42,7 @@ fn mesh(nodes: &[Vec3; 8]) -> Mesh {
     }
 }
 
-fn laws() -> [Law; 4] {
+pub(super) fn laws() -> [Law; 4] {
     let elastic = Elastic {
         e: 1000.0,
         nu: 0.3,
@@ -76,7 +76,7 @@ const FORMULATIONS: [Formulation; 5] = [
 ];
 
 /// Largest difference relative to the largest expected value, which must not be zero.
-fn relative(found: &[f64], expected: &[f64]) -> f64 {
+pub(super) fn relative(found: &[f64], expected: &[f64]) -> f64 {
     assert_eq!(found.len(), expected.len());
     let scale = expected.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     assert!(scale > 1e-3, "nothing to compare");
@@ -234,7 +234,7 @@ fn energy_gradient<L: MaterialLaw, const NE: usize>(
     (gradient, f.iter().chain(&h).copied().collect())
 }
 
-fn deformed(size: f64) -> [Vec3; 8] {
+pub(super) fn deformed(size: f64) -> [Vec3; 8] {
     let mut seed = 7;
     std::array::from_fn(|_| {
         let mut noise = || size * random(&mut seed);

@@ -243,7 +243,13 @@ fn shell(
         );
         return Err(Fault::new(from, message).help(format!("body `{body}` is a {kind}")));
     }
-    let known = ["h8", "h8_displacement", "q18"];
+    let known = [
+        "h8",
+        "h8_displacement",
+        "h8_eas3",
+        "h8_mean_dilatation",
+        "q18",
+    ];
     if serde_json::from_value::<crate::scene::Element>(json!(element)).is_err() {
         let near =
             nearest(element, known).map_or(String::new(), |n| format!("did you mean `{n}`? "));

@@ -207,7 +207,10 @@ fn scenes() -> Vec<Value> {
         trimmed(),
         blocks(&[("/contacts/press/gap", json!("averaged"))]),
         blocks(&[("/contacts/press/passes", json!("two_half"))]),
-        blocks(&[("/bodies/lower/element", json!("h8_eas3"))]),
+        blocks(&[
+            ("/bodies/lower/element", json!("h8_eas3")),
+            ("/bodies/upper/element", json!("h8_mean_dilatation")),
+        ]),
         blocks(&[(
             "/contacts/press/friction",
             json!({"shear_limited": {"mu": 0.1, "limit": 1}}),

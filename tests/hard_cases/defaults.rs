@@ -162,7 +162,7 @@ fn finer_rings_take_hardly_more_iterations() {
 }
 
 /// A block of rubber squeezed by two fifths between bonded faces: the default element gives way there, and the run is
-/// repeated with displacement elements and says so. Where the scene names the element, it ends where it does.
+/// repeated with bricks of one change of volume each, and says so. Where the scene names the element, it ends where it does.
 #[test]
 fn squeezed_elements_are_replaced_and_told() {
     let mut scene = json!({
@@ -183,11 +183,11 @@ fn squeezed_elements_are_replaced_and_told() {
         o.summary
             .warnings
             .iter()
-            .any(|w| w.contains("`h8_displacement`"))
+            .any(|w| w.contains("`h8_mean_dilatation`"))
     };
     assert!(told(&outcome), "{:?}", outcome.summary.warnings);
     let force = outcome.at("force.above.z", 1.0);
-    scene["bodies"]["block"]["element"] = json!("h8_displacement");
+    scene["bodies"]["block"]["element"] = json!("h8_mean_dilatation");
     let named = done(&scene);
     assert_eq!(named.at("force.above.z", 1.0), force);
     scene["bodies"]["block"]["element"] = json!("h8");
@@ -197,7 +197,7 @@ fn squeezed_elements_are_replaced_and_told() {
         kept.summary
             .reason
             .as_ref()
-            .is_some_and(|r| r.contains("h8_displacement"))
+            .is_some_and(|r| r.contains("h8_mean_dilatation"))
     );
 }
 
@@ -231,32 +231,32 @@ fn told(run: &Outcome, text: &str) -> bool {
 }
 
 /// A ball pressed into a block of rubber: the default elements under it give way, in steps that converge, and would carry a third
-/// of the force. The run begins again with plain bricks and tells of it; a mesh of half the size needs a force within 5 %.
+/// of the force. The run begins again with bricks of one change of volume each and tells of it. Twelve elements through the depth
+/// give 37.86 with these and 38.50 with plain bricks, which converge from the other side.
 #[test]
 fn a_ball_pressed_into_rubber_has_its_force() {
-    let run = done(&ball_in_rubber(4, None, 0.0));
-    assert!(told(&run, "repeated with `h8_displacement`"));
+    let run = done(&ball_in_rubber(6, None, 0.0));
+    assert!(told(&run, "repeated with `h8_mean_dilatation`"));
     let force = |run: &Outcome| run.at("force.ball.z", 1.0);
-    let fine = done(&ball_in_rubber(8, Some("h8_displacement"), 0.0));
-    println!("{} {}", force(&run), force(&fine));
-    assert!((force(&run) / force(&fine) - 1.0).abs() < 0.05);
+    println!("{}", force(&run));
+    assert!((force(&run) / -38.2 - 1.0).abs() < 0.05);
     // Who names the element keeps it, and is told.
     let named = done(&ball_in_rubber(4, Some("h8"), 0.0));
     println!("{}", force(&named));
-    assert!((force(&named) / force(&fine)).abs() < 0.5);
+    assert!((force(&named) / -38.2).abs() < 0.5);
     assert!(told(&named, "lose their hold where they are squeezed"));
 }
 
 /// The same with friction, where the sign of a determinant is all that is known of the tangent: two shapes that give way at once
-/// leave it as it is, and the run went on with two thirds of the force.
+/// leave it as it is, and the run went on with two thirds of the force. Eight elements through the depth give 40.20 with bricks of
+/// one change of volume each and 41.67 with plain ones.
 #[test]
 fn a_ball_pressed_into_rubber_with_friction_has_its_force() {
-    let run = done(&ball_in_rubber(4, None, 0.3));
-    assert!(told(&run, "repeated with `h8_displacement`"));
-    let fine = done(&ball_in_rubber(8, Some("h8_displacement"), 0.3));
-    let [f, g] = [&run, &fine].map(|run| run.at("force.ball.z", 1.0));
-    println!("{f} {g}");
-    assert!(g != 0.0 && (f / g - 1.0).abs() < 0.05, "{f} {g}");
+    let run = done(&ball_in_rubber(6, None, 0.3));
+    assert!(told(&run, "repeated with `h8_mean_dilatation`"));
+    let force = run.at("force.ball.z", 1.0);
+    println!("{force}");
+    assert!((force / -40.9 - 1.0).abs() < 0.05, "{force}");
 }
 
 /// A block of rubber pressed onto a floor and pushed, with friction 1: it rolls over its edge, and near the end of its way some of

@@ -149,7 +149,7 @@ fn a_stepped_run_begins_again_with_other_elements() {
         simulation
             .warnings()
             .iter()
-            .any(|w| w.contains("repeated with `h8_displacement`"))
+            .any(|w| w.contains("repeated with `h8_mean_dilatation`"))
     );
 
     // Whoever names the elements keeps them, and learns why there is no further step, as often as it is asked for.

@@ -19,6 +19,7 @@ mod hertz_bodies;
 mod hinged_roof;
 mod ironing;
 mod loads;
+mod mean_dilatation;
 mod metal;
 mod nurbs;
 mod offset;

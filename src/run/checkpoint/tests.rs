@@ -295,6 +295,7 @@ fn what_laws_remember_is_committed_and_kept() {
     for element in [
         scene::Element::H8,
         scene::Element::H8Displacement,
+        scene::Element::H8MeanDilatation,
         scene::Element::H8Eas3,
         scene::Element::Q18,
     ] {
@@ -322,7 +323,9 @@ fn what_laws_remember_is_committed_and_kept() {
         };
         let points = match element {
             scene::Element::H8 => 24,
-            scene::Element::H8Displacement | scene::Element::H8Eas3 => 8,
+            scene::Element::H8Displacement
+            | scene::Element::H8MeanDilatation
+            | scene::Element::H8Eas3 => 8,
             scene::Element::Q18 => 18,
             scene::Element::Nurbs => 0,
         };

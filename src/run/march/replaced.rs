@@ -45,7 +45,7 @@ impl March<'_, '_> {
         // Once for a body, wherever its elements do so later.
         let head = format!("body `{name}`: elements with enhanced strains near");
         if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
-            self.warn(format!("{text}, from time {} on: what the body answers may be far off; `h8_displacement` holds", number(self.progress.time)));
+            self.warn(format!("{text}, from time {} on: what the body answers may be far off; `h8_mean_dilatation` holds", number(self.progress.time)));
         }
         None
     }

@@ -13,9 +13,9 @@ pub(in crate::run) struct Safe {
     pub changed: Vec<String>,
 }
 
-/// The scene with displacement elements for the bodies whose default elements a run could not go on with: enhanced strains lose
-/// their hold in strong compression, and steps accepted before may have suffered. Nothing where the scene names the
-/// elements.
+/// The scene with bricks of one change of volume each for the bodies whose default elements a run could not go on with: enhanced
+/// strains lose their hold in strong compression, and steps accepted before may have suffered. Nothing where the scene
+/// names the elements.
 pub(super) fn safe_variant<'n>(
     scene: &LoadedScene,
     before: Option<&Safe>,
@@ -31,7 +31,7 @@ pub(super) fn safe_variant<'n>(
     safe
 }
 
-/// The scene with displacement elements for a body, where it leaves the element to its default.
+/// The scene with such bricks for a body, where it leaves the element to its default.
 fn replaced(scene: &LoadedScene, before: Option<&Safe>, body: &str, when: &str) -> Option<Safe> {
     if names_element(scene, body) {
         return None;
@@ -44,10 +44,10 @@ fn replaced(scene: &LoadedScene, before: Option<&Safe>, body: &str, when: &str) 
     if *element != Element::H8 {
         return None;
     }
-    *element = Element::H8Displacement;
+    *element = Element::H8MeanDilatation;
     changed.push(format!(
         "body `{body}`: its default elements (`h8`) {when}, as they do in strong compression; the run was repeated with \
-         `h8_displacement` for it, which is stiffer in bending: refine it where it bends, and name the `element` to have one of \
+         `h8_mean_dilatation` for it, which is stiffer in bending: refine it where it bends, and name the `element` to have one of \
          them from the start"
     ));
     Some(Safe { loaded, changed })

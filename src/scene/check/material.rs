@@ -132,7 +132,7 @@ pub(super) fn check_body(c: &mut Checker, name: &str, body: &Body, scene: &Scene
         Element::Q18 => Some("q18"),
         Element::H8Eas3 => Some("h8_eas3"),
         // Its law is looked at below.
-        Element::H8 | Element::H8Displacement | Element::Nurbs => None,
+        Element::H8 | Element::H8Displacement | Element::H8MeanDilatation | Element::Nurbs => None,
     };
     if let Some(element) = two_points {
         c.add(

@@ -119,8 +119,11 @@ pub enum Element {
     /// 8-node solid-shell: assumed transverse shear and thickness strains, seven enhanced strains.
     #[default]
     H8,
-    /// 8-node brick without assumed or enhanced strains (locks when thin; for solids and comparisons).
+    /// 8-node brick without assumed or enhanced strains (locks when thin and in rubber; for solids and comparisons).
     H8Displacement,
+    /// As `h8_displacement`, with the mean change of volume of each element: for solids of rubber, which it follows far into
+    /// compression (stiff where it is thin and bends).
+    H8MeanDilatation,
     /// As `h8`, with the three of the enhanced strains that act through the thickness: stiff where a sheet bends in its own
     /// plane, and for nu up to 0.45.
     H8Eas3,

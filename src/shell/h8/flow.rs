@@ -58,7 +58,9 @@ impl H8Block {
                 .map_err(|(point, c)| fault(e, point, c));
         }
         let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
-        let strain = self.strains(re, (&big, &du), condensation);
+        let strain = self
+            .strains(re, (&big, &du), condensation)
+            .map_err(|(point, c)| fault(e, point, c))?;
         with_law!(&self.law, law => advance(law, |g| (re.metric[g], strain[g]), states))
             .map_err(|(point, c)| fault(e, point, c))
     }

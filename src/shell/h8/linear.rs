@@ -3,7 +3,7 @@ use super::{Formulation, H8Block, arrays, dual_head, fault};
 use crate::shell::error::ElementFault;
 use crate::shell::kinematics::{self, Fields};
 use crate::shell::material::with_law;
-use crate::shell::{brick, layered, stress};
+use crate::shell::{brick, layered, mean_dilatation, stress};
 use covact_geometry::Vec3;
 
 impl H8Block {
@@ -39,6 +39,9 @@ impl H8Block {
             Formulation::Eas7 => kinematics::strains(re, &big, &du, &dual_head::<7>(alpha)),
             Formulation::Eas3 => kinematics::strains(re, &big, &du, &dual_head::<3>(alpha)),
             Formulation::Eas0 => kinematics::strains(re, &big, &du, &[]),
+            Formulation::MeanDilatation => {
+                mean_dilatation::strains(re, &big, &du).map_err(|(point, c)| fault(e, point, c))?
+            }
             Formulation::Displacement | Formulation::Layered => {
                 std::array::from_fn(|g| brick::strain(&big.at(g), &du.at(g)))
             }

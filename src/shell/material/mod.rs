@@ -23,7 +23,7 @@ pub use j2::{J2, J2State};
 pub use neo_hooke::NeoHooke;
 use num_dual::DualNum;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
-use tensor::inverse;
+pub(in crate::shell) use tensor::{cauchy_green, invariants, inverse, isotropic, mixed};
 
 /// Metric of the undeformed frame: covariant `G_ij` and contravariant `G^ij`, in Voigt order without factors.
 #[derive(Debug, Clone, Copy, PartialEq)]

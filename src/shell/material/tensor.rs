@@ -3,7 +3,7 @@ use super::{Collapsed, Metric};
 use num_dual::DualNum;
 
 /// Adjugate of a symmetric 3 x 3 matrix over its determinant, and the determinant.
-pub(super) fn inverse<D: DualNum<f64> + Copy>(m: &[D; 6]) -> ([D; 6], D) {
+pub(in crate::shell) fn inverse<D: DualNum<f64> + Copy>(m: &[D; 6]) -> ([D; 6], D) {
     let [m11, m22, m33, m12, m23, m13] = *m;
     let c11 = m22 * m33 - m23 * m23;
     let c12 = m13 * m23 - m12 * m33;
@@ -23,7 +23,7 @@ pub(super) fn inverse<D: DualNum<f64> + Copy>(m: &[D; 6]) -> ([D; 6], D) {
 
 /// Mixed components `G^ik E_kj` of the strain, row i, column j.
 #[inline(always)]
-pub(super) fn mixed<D: DualNum<f64> + Copy>(metric: &Metric, e: &[D; 6]) -> [[D; 3]; 3] {
+pub(in crate::shell) fn mixed<D: DualNum<f64> + Copy>(metric: &Metric, e: &[D; 6]) -> [[D; 3]; 3] {
     let [a, b, c, d, f, g] = metric.upper;
     let (e12, e23, e13) = (e[3] * 0.5, e[4] * 0.5, e[5] * 0.5);
     let columns = [[e[0], e12, e13], [e12, e[1], e23], [e13, e23, e[2]]];
@@ -33,7 +33,7 @@ pub(super) fn mixed<D: DualNum<f64> + Copy>(metric: &Metric, e: &[D; 6]) -> [[D;
 
 /// Trace, second invariant and determinant of the mixed strain.
 #[inline(always)]
-pub(super) fn invariants<D: DualNum<f64> + Copy>(m: &[[D; 3]; 3]) -> (D, D, D) {
+pub(in crate::shell) fn invariants<D: DualNum<f64> + Copy>(m: &[[D; 3]; 3]) -> (D, D, D) {
     let minor = |i: usize, j: usize| m[i][i] * m[j][j] - m[i][j] * m[j][i];
     let second = minor(0, 1) + minor(1, 2) + minor(0, 2);
     let third = m[0][0] * minor(1, 2) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
@@ -44,7 +44,7 @@ pub(super) fn invariants<D: DualNum<f64> + Copy>(m: &[[D; 3]; 3]) -> (D, D, D) {
 /// `C = G + 2E`, checked to be positive definite, with `det C / det G - 1` from the invariants of E (no cancellation
 /// at small strain).
 #[inline(always)]
-pub(super) fn cauchy_green<D: DualNum<f64> + Copy>(
+pub(in crate::shell) fn cauchy_green<D: DualNum<f64> + Copy>(
     metric: &Metric,
     e: &[D; 6],
     (i1, i2, i3): (D, D, D),
@@ -84,7 +84,7 @@ pub(super) fn raise<D: DualNum<f64> + Copy>(m: &[[D; 3]; 3], upper: &[D; 6]) -> 
 
 /// `lambda A^ij A^kl + kappa (A^ik A^jl + A^il A^jk)`.
 #[inline(always)]
-pub(super) fn isotropic(a: &[f64; 6], lambda: f64, kappa: f64) -> [[f64; 6]; 6] {
+pub(in crate::shell) fn isotropic(a: &[f64; 6], lambda: f64, kappa: f64) -> [[f64; 6]; 6] {
     let [a11, a22, a33, a12, a23, a13] = *a;
     let full = [[a11, a12, a13], [a12, a22, a23], [a13, a23, a33]];
     let entry = |v: usize, w: usize| {
