@@ -188,24 +188,23 @@ impl Peaks {
     ) -> Vec<ContactAccuracy> {
         let pairs = model.pairs.iter().zip(&self.0);
         let pairs = pairs.zip(penalties.iter().zip(ratios));
-        let account = |(index, ((pair, peak), (eps, ratio))): (
-            usize,
-            ((&PairModel, &Peak), (&f64, &f64)),
-        )| ContactAccuracy {
-            name: pair.name.clone(),
-            force: peak.force,
-            step: peak.step,
-            active: peak.active,
-            few: (peak.few > 0).then_some(peak.few),
-            edge_share: match peak.force > 0.0 {
-                true => peak.at_edges / peak.force,
-                false => 0.0,
-            },
-            penalty: *eps,
-            tangential_penalty: ratio * eps,
-            friction_error: friction(index),
-        };
-        pairs.enumerate().map(account).collect()
+        let pairs = pairs.enumerate();
+        pairs
+            .map(|(index, ((pair, peak), (eps, ratio)))| ContactAccuracy {
+                name: pair.name.clone(),
+                force: peak.force,
+                step: peak.step,
+                active: peak.active,
+                few: (peak.few > 0).then_some(peak.few),
+                edge_share: match peak.force > 0.0 {
+                    true => peak.at_edges / peak.force,
+                    false => 0.0,
+                },
+                penalty: *eps,
+                tangential_penalty: ratio * eps,
+                friction_error: friction(index),
+            })
+            .collect()
     }
 }
 

@@ -57,6 +57,7 @@ impl<D: DualNum<f64> + Copy> Point<D> {
 }
 
 /// The points, and the logarithm of the mean change of volume.
+#[allow(clippy::type_complexity)]
 fn points<D: DualNum<f64> + Copy>(
     re: &Reference,
     big: &Fields<f64>,

@@ -3,11 +3,11 @@
 use crate::support::solve;
 use serde_json::{Value, json};
 
-/// A block that sticks to a floor, pressed and sheared by its top: the force on the floor and the error that is told of it.
+/// A block that sticks to a floor, pressed without widening and sheared by its top: the force on the floor and the error that is told of it.
 fn sheared(eps_t: f64) -> (f64, f64, bool) {
     let run = solve(&json!({
         "covact": 1,
-        "materials": {"m": {"st_venant_kirchhoff": {"E": 100, "nu": 0.3}}},
+        "materials": {"m": {"st_venant_kirchhoff": {"E": 100, "nu": 0}}},
         "bodies": {"block": {
             "mesh": {"block": {"min": [0, 0, 0], "max": [10, 10, 4], "elements": [6, 6, 3]}},
             "material": "m", "element": "h8_displacement"
@@ -36,7 +36,7 @@ fn sheared(eps_t: f64) -> (f64, f64, bool) {
 /// times as stiff, within a quarter of it, for penalties from a tenth to a hundred times the shear stiffness `G / h`.
 #[test]
 fn what_elastic_slip_takes_from_friction_is_told() {
-    let shear = 100.0 / 2.6 / 4.0;
+    let shear = 100.0 / 2.0 / 4.0;
     let (rigid, error, told) = sheared(1e4 * shear);
     println!("rigid {rigid} {error}");
     assert!(
