@@ -6,8 +6,8 @@ use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 /// Error above which the user is told, and above which a tangential penalty that the run may choose is raised for the next step,
 /// the error that it is to leave then, and the factor at most.
 const WARNED: f64 = 0.03;
-const RAISED: f64 = 0.01;
-const LEFT: f64 = 0.005;
+const RAISED: f64 = 0.03;
+const LEFT: f64 = 0.01;
 const FACTOR: f64 = 10.0;
 /// What is missing of friction below this part of the largest force of its contact is nothing.
 const JUDGED: f64 = 0.003;

@@ -46,10 +46,8 @@ static RULE_OF_SOME: [(f64, f64); SOME] = rule(&[
     (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
     (0.906_179_845_938_664, 0.236_926_885_056_189_08),
 ]);
-static RULE_OF_FEW: [(f64, f64); FEW] = rule(&[
-    (0.0, 8.0 / 9.0),
-    (0.774_596_669_241_483_4, 5.0 / 9.0),
-]);
+static RULE_OF_FEW: [(f64, f64); FEW] =
+    rule(&[(0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)]);
 
 /// The rule that a strain needs, from its first two invariants.
 fn rule_for(i1: f64, i2: f64) -> &'static [(f64, f64)] {

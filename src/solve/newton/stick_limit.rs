@@ -3,7 +3,8 @@
 //! A tangential penalty lets a point that sticks creep by its elastic slip, and carries the less the softer it is. To first order a
 //! stiffer one adds the tractions of that slip, which change the displacements by `K du = -f(t)`, and friction by `f(t)` and by
 //! what `du` makes of it: what the bodies do not follow is missing. Penalty and bodies are two springs in series, whose stiffnesses
-//! tell the whole of it. Points that slide have their traction from the pressure, whatever the penalty is, and add
+//! tell the whole of it. What is measured is the elastic slip of the step: what earlier steps have not carried stays missing as long as
+//! points stick. Points that slide have their traction from the pressure, whatever the penalty is, and add
 //! nothing.
 use super::Workspace;
 use super::rigid_limit::{PART, force, place};
