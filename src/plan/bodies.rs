@@ -48,23 +48,16 @@ impl Reporter<'_> {
     }
 
     fn elements(&self) -> Vec<Effect> {
-        let kinds = [
-            (Element::H8, EffectKind::H8SolidShell, "h8"),
-            (
-                Element::H8Displacement,
-                EffectKind::H8Displacement,
-                "h8_displacement",
-            ),
-            (
-                Element::H8MeanDilatation,
-                EffectKind::H8MeanDilatation,
-                "h8_mean_dilatation",
-            ),
-            (Element::H8Eas3, EffectKind::H8Eas3, "h8_eas3"),
-            (Element::Q18, EffectKind::Q18SolidShell, "q18"),
-            (Element::Nurbs, EffectKind::NurbsShell, "nurbs"),
-        ];
-        let effect = |(element, effect, word)| {
+        let kind = |element| match element {
+            Element::H8 => EffectKind::H8SolidShell,
+            Element::H8Displacement => EffectKind::H8Displacement,
+            Element::H8MeanDilatation => EffectKind::H8MeanDilatation,
+            Element::H8Eas3 => EffectKind::H8Eas3,
+            Element::Q18 => EffectKind::Q18SolidShell,
+            Element::Nurbs => EffectKind::NurbsShell,
+        };
+        let effect = |element: Element| {
+            let (effect, word) = (kind(element), element.word());
             let own: Vec<_> = (self.described())
                 .filter(|(_, b)| b.element == element)
                 .map(|(b, _)| b)
@@ -105,7 +98,8 @@ impl Reporter<'_> {
                 "a {size} x {size} tangent an element, from {points} Gauss points"
             ))
         };
-        kinds.into_iter().map(effect).collect()
+        let all = Element::OF_MESHES.into_iter().chain([Element::Nurbs]);
+        all.map(effect).collect()
     }
 
     /// Faces of CAD surfaces that are joined.
@@ -140,10 +134,7 @@ impl Reporter<'_> {
     fn strains(&self) -> Vec<Effect> {
         let assumed = |b: &Body| match &b.mesh {
             MeshSource::Nurbs(nurbs) => nurbs.assumed_membrane,
-            _ => !matches!(
-                b.element,
-                Element::H8Displacement | Element::H8MeanDilatation
-            ),
+            _ => b.element.assumes_strains(),
         };
         let with: Vec<_> = self.described().filter(|(_, b)| assumed(b)).collect();
         let names =

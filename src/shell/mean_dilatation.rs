@@ -138,6 +138,21 @@ pub(super) fn forces<D: DualNum<f64> + Copy, L: MaterialLaw>(
     Ok((energy, f))
 }
 
+/// What the law answers at a point, D being its moduli and S its stress.
+#[derive(Clone, Copy, Default)]
+struct Answer {
+    /// `a S`.
+    stress: [f64; 6],
+    /// `a^2 D`.
+    moduli: [[f64; 6]; 6],
+    /// `a^2/3 D C + 2a/3 S`.
+    h: [f64; 6],
+    /// `a^2/9 C D C + 2/3 p`.
+    k: f64,
+    /// Mean stress.
+    p: f64,
+}
+
 /// Forces and tangent.
 ///
 /// With `t' = theta'/theta - J'/J`, the strain that the law sees varies by `a E' + a/3 C t'`. The terms in `theta'/theta = b u'`
@@ -159,8 +174,7 @@ pub(super) fn evaluate<L: MaterialLaw>(
     };
     *out = H8System::default();
     let (points, ln_theta) = points(re, &big, &du).map_err(fault)?;
-    // Of each point: a S, a^2 D, h = a^2/3 D C + 2a/3 S, k = a^2/9 C D C + 2/3 p, and p.
-    let mut own = [([0.0; 6], [[0.0; 6]; 6], [0.0; 6], 0.0, 0.0); 8];
+    let mut own = [Answer::default(); 8];
     let (mut pressure, mut volume, mut bb) = (0.0, 0.0, 0.0);
     for (g, point) in points.iter().enumerate() {
         let (strain, a) = point.scaled(&re.metric[g], ln_theta);
@@ -178,11 +192,24 @@ pub(super) fn evaluate<L: MaterialLaw>(
         pressure += p * dv;
         volume += point.ln_j.exp() * dv;
         bb += k * dv;
-        own[g] = (stress, moduli, h, k, p);
+        own[g] = Answer {
+            stress,
+            moduli,
+            h,
+            k,
+            p,
+        };
     }
     let mean = pressure / volume;
     let (mut y, mut b) = ([0.0; 24], [0.0; 24]);
-    for (g, (point, (stress, moduli, h, k, p))) in points.iter().zip(own).enumerate() {
+    for (g, (point, own)) in points.iter().zip(own).enumerate() {
+        let Answer {
+            stress,
+            moduli,
+            h,
+            k,
+            p,
+        } = own;
         let (frame, dv, ci) = (now.at(g), re.volume[g], &point.ci);
         let j = point.ln_j.exp();
         let more = mean * j - p;

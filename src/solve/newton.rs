@@ -12,6 +12,7 @@ mod stick_limit;
 mod workspace;
 
 pub use rigid_limit::RigidLimit;
+pub use stick_limit::StickLimit;
 pub use workspace::Workspace;
 
 use super::convergence::{Norms, Verdict};

@@ -243,13 +243,7 @@ fn shell(
         );
         return Err(Fault::new(from, message).help(format!("body `{body}` is a {kind}")));
     }
-    let known = [
-        "h8",
-        "h8_displacement",
-        "h8_eas3",
-        "h8_mean_dilatation",
-        "q18",
-    ];
+    let known = crate::scene::Element::OF_MESHES.map(crate::scene::Element::word);
     if serde_json::from_value::<crate::scene::Element>(json!(element)).is_err() {
         let near =
             nearest(element, known).map_or(String::new(), |n| format!("did you mean `{n}`? "));

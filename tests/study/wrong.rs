@@ -96,7 +96,7 @@ fn shells_that_the_mesh_does_not_have() {
         &shell(json!({ "h9": [2, 2] })),
         at,
         "unknown element `h9`",
-        "did you mean `h8`? elements: h8, h8_displacement, h8_eas3, h8_mean_dilatation, q18",
+        "did you mean `h8`? elements: h8, h8_displacement, h8_mean_dilatation, h8_eas3, q18",
     );
     refused(
         &shell(json!({ "h8": [2, 2, 2] })),

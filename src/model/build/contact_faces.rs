@@ -46,12 +46,16 @@ impl Builder<'_> {
         if cut.is_empty() || cut.len() == faces.len() {
             return Ok((body, faces));
         }
-        self.notes.push(format!(
+        let note = format!(
             "contact `{contact}`: {} of the {} faces of `{reference}` lie in a plane of symmetry and are left out: the mirror image \
              goes on there",
             cut.len(),
             faces.len()
-        ));
+        );
+        // Both passes of a contact ask.
+        if !self.notes.contains(&note) {
+            self.notes.push(note);
+        }
         let kept = faces.into_iter().filter(|f| !cut.contains(f)).collect();
         Ok((body, kept))
     }

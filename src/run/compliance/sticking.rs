@@ -17,7 +17,7 @@ const ALL: f64 = 0.5;
 /// The friction of a contact at the end of a step, what rigid sticking would add to it, and what there is to sliding everywhere
 /// (force).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct StickLimit {
+pub struct Friction {
     pub friction: f64,
     pub missing: f64,
     pub room: f64,
@@ -64,7 +64,7 @@ impl Sticking {
     /// penalties are to rise.
     pub fn step(
         &mut self,
-        limits: &[StickLimit],
+        limits: &[Friction],
         forces: impl Iterator<Item = f64>,
         (step, time): (u32, f64),
         struggles: bool,

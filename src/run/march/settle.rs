@@ -6,7 +6,7 @@ use crate::model::state::State;
 use crate::run::RunError;
 use crate::run::bearing::{Bearing, Bearings};
 use crate::run::commit::{self, FrictionTotals};
-use crate::run::compliance::sticking::StickLimit;
+use crate::run::compliance::sticking::Friction;
 use crate::run::compliance::{Compliance, Errors, StepEnd};
 use crate::run::habit::Habit;
 use crate::run::penalty_rule::{self, PenaltyRule};
@@ -26,7 +26,7 @@ pub(super) struct Settled {
     /// What rigid contact would change.
     pub limit: Option<RigidLimit>,
     /// What rigid sticking would change, per pair; empty where it was not measured.
-    pub sticking: Vec<StickLimit>,
+    pub sticking: Vec<Friction>,
 }
 
 /// What a raise of penalties went out from.
@@ -106,12 +106,8 @@ impl<'m> March<'_, 'm> {
                 true => self.rigid_limit(trial, &histories, bearings, end),
                 false => None,
             };
-            let sticking = match limit.is_some() {
-                true => (self.stick_limits(trial, &histories, bearings, end))
-                    .map_err(|e| RunError::internal(&e))?,
-                false => Vec::new(),
-            };
             let Some(fields) = &fields else {
+                let sticking = self.sticking(limit.is_some(), trial, &histories, bearings, end)?;
                 return Ok(Ok(Settled {
                     sliding,
                     errors: Errors::default(),
@@ -145,6 +141,8 @@ impl<'m> March<'_, 'm> {
                 }));
             }
             if !raise {
+                let bearings = &outputs.fields.bearings;
+                let sticking = self.sticking(limit.is_some(), trial, &histories, bearings, end)?;
                 return Ok(Ok(Settled {
                     sliding,
                     errors,

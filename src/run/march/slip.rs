@@ -3,10 +3,11 @@ use super::March;
 use crate::contact::friction::history::PointHistory;
 use crate::model::PairModel;
 use crate::model::state::State;
+use crate::run::RunError;
 use crate::run::bearing::{Bearing, Bearings};
-use crate::run::compliance::sticking::StickLimit;
+use crate::run::compliance::sticking::Friction;
 use crate::scene::ValueError;
-use crate::solve::newton::Converged;
+use crate::solve::newton::{Converged, StickLimit};
 
 /// Iterations of a step, those of failed attempts included, above which tangential penalties are softened.
 const STRUGGLES: u32 = 16;
@@ -14,15 +15,16 @@ const STRUGGLES: u32 = 16;
 const SOFTER: f64 = 0.1;
 
 impl March<'_, '_> {
-    /// What rigid sticking would change, per pair; empty without friction, and where it cannot be measured.
-    pub(super) fn stick_limits(
+    /// What rigid sticking would change, per pair, where it is `due`; empty without friction, and where it cannot be measured.
+    pub(super) fn sticking(
         &mut self,
+        due: bool,
         state: &State,
         histories: &[PointHistory],
         bearings: &Bearings,
         time: f64,
-    ) -> Result<Vec<StickLimit>, ValueError> {
-        if self.model.pairs.iter().all(|p| p.friction.is_none()) {
+    ) -> Result<Vec<Friction>, RunError> {
+        if !due || self.model.pairs.iter().all(|p| p.friction.is_none()) {
             return Ok(Vec::new());
         }
         self.phases.start("accuracy");
@@ -34,27 +36,23 @@ impl March<'_, '_> {
             time,
         );
         self.phases.stop("accuracy");
-        let missing = found.ok().flatten().unwrap_or_default();
-        let friction = |pair: &PairModel| -> f64 {
-            let points = pair.history().map(|range| &state.histories[range]);
-            let points = points.into_iter().flatten().zip(&pair.points);
-            points.map(|(h, p)| h.t.norm() * p.area).sum()
-        };
-        let pairs = self.model.pairs.iter().zip(&bearings.pairs);
-        let limit = |((pair, bearing), missing): ((&PairModel, &Bearing), f64)| {
-            let (friction, area) = (friction(pair), bearing.area);
+        let found = found.ok().flatten().unwrap_or_default();
+        let pairs = self.model.pairs.iter().zip(&bearings.pairs).zip(found);
+        let friction = |((pair, bearing), limit): ((&PairModel, &Bearing), StickLimit)| {
+            let area = bearing.area;
             let largest = match &pair.friction {
                 Some(model) if area > 0.0 => area * model.largest(bearing.force / area, time)?,
                 _ => 0.0,
             };
-            let room = (largest - friction).max(0.0);
-            Ok(StickLimit {
-                friction,
-                missing: missing.min(room),
+            let room = (largest - limit.friction).max(0.0);
+            Ok(Friction {
+                friction: limit.friction,
+                missing: limit.missing.min(room),
                 room,
             })
         };
-        pairs.zip(missing).map(limit).collect()
+        let found: Result<_, ValueError> = pairs.map(friction).collect();
+        found.map_err(|e| RunError::internal(&e))
     }
 
     /// Raises the tangential penalties of the next step, where the run may, by what was measured of the elastic slip, and softens
@@ -64,7 +62,7 @@ impl March<'_, '_> {
         bearings: &Bearings,
         time: f64,
         converged: &Converged,
-        sticking: &[StickLimit],
+        sticking: &[Friction],
     ) -> Result<(), ValueError> {
         let forces = bearings.pairs.iter().map(|b| b.force);
         let struggles = converged.iterations + self.failed > STRUGGLES;

@@ -136,6 +136,34 @@ pub enum Element {
     Nurbs,
 }
 
+impl Element {
+    /// Those of meshes, in the order in which they are told.
+    pub const OF_MESHES: [Element; 5] = [
+        Element::H8,
+        Element::H8Displacement,
+        Element::H8MeanDilatation,
+        Element::H8Eas3,
+        Element::Q18,
+    ];
+
+    /// How a scene writes it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Element::H8 => "h8",
+            Element::H8Displacement => "h8_displacement",
+            Element::H8MeanDilatation => "h8_mean_dilatation",
+            Element::H8Eas3 => "h8_eas3",
+            Element::Q18 => "q18",
+            Element::Nurbs => "nurbs",
+        }
+    }
+
+    /// Whether its strains are other than those of its displacements.
+    pub const fn assumes_strains(self) -> bool {
+        !matches!(self, Element::H8Displacement | Element::H8MeanDilatation)
+    }
+}
+
 /// Where a body's mesh comes from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

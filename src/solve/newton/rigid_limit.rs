@@ -92,15 +92,20 @@ impl Workspace {
         if model.small.is_some() || assembler.has_new_pattern() {
             return Ok(None);
         }
-        // All of these are written by a step before it reads them, and contact reads nothing of elements.
-        let base = &mut self.base;
-        base.cuts.clone_from(&state.cuts);
-        base.histories.copy_from_slice(histories);
-        place(base, state);
+        self.beside(state, histories);
         let found = self.measure(model, assembler, solver, state, (time, little));
         place(&mut self.base, state);
         assembler.contact(&mut self.base, time, &mut self.scratch)?;
         Ok(found.ok().flatten().filter(RigidLimit::finite))
+    }
+
+    /// Makes the state with the histories that it was solved with one to evaluate contact beside. All of it is written by a step before
+    /// it reads it, and contact reads nothing of elements.
+    pub(super) fn beside(&mut self, state: &State, histories: &[PointHistory]) {
+        let base = &mut self.base;
+        base.cuts.clone_from(&state.cuts);
+        base.histories.copy_from_slice(histories);
+        place(base, state);
     }
 
     /// The measurement; leaves the assembler beside the state.

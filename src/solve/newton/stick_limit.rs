@@ -3,22 +3,30 @@
 //! A tangential penalty lets a point that sticks creep by its elastic slip, and carries the less the softer it is. To first order a
 //! stiffer one adds the tractions of that slip, which change the displacements by `K du = -f(t)`, and friction by `f(t)` and by
 //! what `du` makes of it: what the bodies do not follow is missing. Penalty and bodies are two springs in series, whose stiffnesses
-//! tell the whole of it. What is measured is the elastic slip of the step: what earlier steps have not carried stays missing as long as
-//! points stick. Points that slide have their traction from the pressure, whatever the penalty is, and add
-//! nothing.
+//! tell the whole of it: of the ratio of both is what is missing beside the friction of the points that stick. Points that slide have
+//! their traction from the pressure, whatever the penalty is.
 use super::Workspace;
 use super::rigid_limit::{PART, force, place};
 use crate::assembly::{Assembler, Fault, SurfaceForce};
-use crate::contact::friction::history::PointHistory;
+use crate::contact::friction::history::{PointHistory, PointStatus};
 use crate::model::state::State;
 use crate::model::{Model, PairModel};
 use crate::system::linear::LinearSolver;
 use covact_geometry::Vec3;
 
+/// The friction of a contact at the end of a step, and what rigid sticking would add to it (force).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct StickLimit {
+    /// Sum of the sizes of the tractions times their areas.
+    pub friction: f64,
+    /// Of the resultant of the points that stick, or of its moment about their middle over their mean distance from it.
+    pub missing: f64,
+}
+
 impl Workspace {
-    /// Change of the friction of every pair from its tangential penalty to rigid sticking: of its resultant, or of its moment about
-    /// the middle of the slave points over their mean distance from it (force), of the step that was just solved for, as [`Workspace::rigid_limit`]; nothing where the linear solver
-    /// cannot, or contact has no value beside the state.
+    /// Measures the contacts with friction at the end of the step that was just solved for and taken into the histories of `state`, as
+    /// [`Workspace::rigid_limit`] does before it; nothing where the linear solver cannot, or contact has no value beside the
+    /// state. Nothing acts where there is no friction.
     ///
     /// # Errors
     /// A point that cannot be evaluated at the state itself.
@@ -29,23 +37,17 @@ impl Workspace {
         solver: &mut S,
         (state, histories): (&State, &[PointHistory]),
         time: f64,
-    ) -> Result<Option<Vec<f64>>, Fault> {
+    ) -> Result<Option<Vec<StickLimit>>, Fault> {
         if model.small.is_some() || assembler.has_new_pattern() || !self.factored {
             return Ok(None);
         }
-        let base = &mut self.base;
-        base.cuts.clone_from(&state.cuts);
-        base.histories.copy_from_slice(histories);
-        place(base, state);
+        self.beside(state, histories);
         let ratios = assembler.ratios.clone();
-        let found: Result<Vec<f64>, ()> = (model.pairs.iter().enumerate())
-            .map(|(index, pair)| match pair.friction {
-                Some(_) => {
-                    let limit = self.stick_limit(model, assembler, solver, (state, index), time);
-                    assembler.ratios.copy_from_slice(&ratios);
-                    limit
-                }
-                None => Ok(0.0),
+        let found: Result<Vec<StickLimit>, ()> = (0..model.pairs.len())
+            .map(|index| {
+                let limit = self.stick_limit(model, assembler, solver, (state, index), time);
+                assembler.ratios.copy_from_slice(&ratios);
+                limit
             })
             .collect();
         place(&mut self.base, state);
@@ -61,7 +63,12 @@ impl Workspace {
         solver: &mut S,
         (state, index): (&State, usize),
         time: f64,
-    ) -> Result<f64, ()> {
+    ) -> Result<StickLimit, ()> {
+        let pair = &model.pairs[index];
+        let stuck = Stuck::new(model, pair, state);
+        let Some(stuck) = stuck.filter(|s| s.sticks()) else {
+            return Ok(stuck.map_or(StickLimit::default(), |s| s.missing([0.0; 2])));
+        };
         let Workspace {
             rhs: was,
             du,
@@ -76,15 +83,12 @@ impl Workspace {
         let more = assembler.contact(base, time, stiffer).map_err(drop)?;
         assembler.ratios[index] = ratio;
         let totals = assembler.contact(base, time, was).map_err(drop)?;
-        let pair = &model.pairs[index];
         let [w, s] = [&totals, &more].map(|t| *force(pair, index, t));
-        let (centre, lever) = lever(model, pair, &state.u);
-        let about = |f: &SurfaceForce| f.moment - centre.cross(&f.force);
-        let forces = [(w.force, s.force), (about(&w) / lever, about(&s) / lever)];
         let all = was.iter().map(|f| f.abs()).sum::<f64>();
-        let added = forces.map(|(w, s)| (s - w) / PART);
+        let [was_both, stiffer_both] = [&w, &s].map(|f| stuck.of(f));
+        let added = [0, 1].map(|k| (stiffer_both[k] - was_both[k]) / PART);
         if added.iter().all(|a| a.norm() <= ROUNDING * all) {
-            return Ok(0.0);
+            return Ok(stuck.missing([0.0; 2]));
         }
         for ((d, s), w) in du.iter_mut().zip(&**stiffer).zip(&**was) {
             *d = (w - s) / PART;
@@ -97,34 +101,81 @@ impl Workspace {
             *u += PART * d;
         }
         let moved = assembler.contact(base, time, now).map_err(drop)?;
-        let m = force(pair, index, &moved);
-        let missing = (added.iter().zip([m.force, about(m) / lever]).zip(forces))
-            .map(|((added, moved), (was, _))| {
-                let size = added.norm();
-                if size <= ROUNDING * all {
-                    return 0.0;
-                }
-                // Two springs in series: what the bodies do not follow of the added tractions, and so on for what that adds.
-                let change = added + (moved - was) / PART;
-                let stiff = (change.dot(added) / (size * size)).clamp(0.0, STIFFEST);
-                size * stiff / (1.0 - stiff)
-            })
-            .fold(0.0, f64::max);
-        if missing.is_finite() {
-            Ok(missing)
+        let moved = stuck.of(force(pair, index, &moved));
+        let ratio = |k: usize| {
+            let size = added[k].norm();
+            if size <= ROUNDING * all {
+                return 0.0;
+            }
+            let change = added[k] + (moved[k] - was_both[k]) / PART;
+            let bodies = (change.dot(&added[k]) / (size * size)).clamp(0.0, STIFFEST);
+            bodies / (1.0 - bodies)
+        };
+        let ratios = [ratio(0), ratio(1)];
+        if ratios.iter().all(|r| r.is_finite()) {
+            Ok(stuck.missing(ratios))
         } else {
             Err(())
         }
     }
 }
 
-/// Centre of the slave points of a pair, and their mean distance from it (length).
-fn lever(model: &Model, pair: &PairModel, u: &[f64]) -> (Vec3, f64) {
-    let at = || (pair.points.iter()).map(|p| (model.point_position(p, u), p.area));
-    let area: f64 = at().map(|(_, a)| a).sum();
-    let centre = at().map(|(x, a)| x * a).sum::<Vec3>() / area;
-    let square: f64 = at().map(|(x, a)| (x - centre).norm_squared() * a).sum();
-    (centre, (square / area).sqrt().max(f64::MIN_POSITIVE))
+/// The friction of a pair, and what of it acts at points that stick.
+#[derive(Clone, Copy)]
+struct Stuck {
+    friction: f64,
+    /// Middle of the slave points, and their mean distance from it (length).
+    centre: Vec3,
+    lever: f64,
+    /// Sizes of the resultant of the points that stick, and of its moment about the middle over the distance (force).
+    sizes: [f64; 2],
+}
+
+impl Stuck {
+    /// Nothing without friction.
+    fn new(model: &Model, pair: &PairModel, state: &State) -> Option<Stuck> {
+        let range = pair.history().filter(|_| pair.friction.is_some())?;
+        let at = || (pair.points.iter()).map(|p| (model.point_position(p, &state.u), p.area));
+        let area: f64 = at().map(|(_, a)| a).sum();
+        let centre = at().map(|(x, a)| x * a).sum::<Vec3>() / area;
+        let square: f64 = at().map(|(x, a)| (x - centre).norm_squared() * a).sum();
+        let lever = (square / area).sqrt();
+        let (mut friction, mut sum, mut moment) = (0.0, Vec3::zeros(), Vec3::zeros());
+        for ((x, area), history) in at().zip(&state.histories[range]) {
+            friction += history.t.norm() * area;
+            if history.status == PointStatus::Stick {
+                sum += history.t * area;
+                moment += (x - centre).cross(&history.t) * area;
+            }
+        }
+        Some(Stuck {
+            friction,
+            centre,
+            lever,
+            sizes: [sum.norm(), moment.norm() / lever],
+        })
+    }
+
+    fn sticks(&self) -> bool {
+        self.sizes[0] > 0.0
+    }
+
+    /// A force and its moment about the middle over the distance.
+    fn of(&self, f: &SurfaceForce) -> [Vec3; 2] {
+        [
+            f.force,
+            (f.moment - self.centre.cross(&f.force)) / self.lever,
+        ]
+    }
+
+    /// What is missing where the bodies are so many times as stiff as the penalty.
+    fn missing(&self, ratios: [f64; 2]) -> StickLimit {
+        let [a, b] = [0, 1].map(|k| ratios[k] * self.sizes[k]);
+        StickLimit {
+            friction: self.friction,
+            missing: a.max(b),
+        }
+    }
 }
 
 /// Part of all forces of contact below which what is added is rounding.

@@ -20,7 +20,6 @@ fn sheared(eps_t: f64) -> (f64, f64, bool) {
         "supports": {"top": {"on": "block.top", "displacement": {
             "x": {"table": [[0, 0], [0.4, 0], [1, 0.05]]}, "y": 0, "z": {"table": [[0, 0], [0.4, -0.2], [1, -0.2]]}
         }}},
-        "solution": {"step": {"initial": 0.6, "max": 0.6}},
         "output": {"every": 0}
     }));
     assert_eq!(run.summary.status.name(), "done");
@@ -33,7 +32,7 @@ fn sheared(eps_t: f64) -> (f64, f64, bool) {
     (run.at("force.floor.x", 1.0), error, told)
 }
 
-/// Sheared in one step, penalty and block are two springs in series: the estimate of what a soft one takes away is that of a run with one a thousand
+/// Penalty and block are two springs in series: the estimate of what a soft one takes away is that of a run with one a thousand
 /// times as stiff, within a quarter of it, for penalties from a tenth to a hundred times the shear stiffness `G / h`.
 #[test]
 fn what_elastic_slip_takes_from_friction_is_told() {
