@@ -1,6 +1,6 @@
 //! Time of one element evaluation on one core, by formulation and law.
 use covact::mesh::{ElementKind, Mesh};
-use covact::scene::{Elastic, Material};
+use covact::scene::{Elastic, HardeningCurve, LinearHardening, Material, Metal};
 use covact::shell::{Formulation, H8Block, H8System, Law};
 use covact_geometry::Vec3;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -28,10 +28,21 @@ fn element(c: &mut Criterion) {
         nu: 0.3,
         density: None,
     };
+    // Its yield stress is passed by far at all points.
+    let metal = Metal {
+        e: 210e3,
+        nu: 0.3,
+        density: None,
+        hardening: HardeningCurve::Linear(LinearHardening {
+            yield_stress: 200.0,
+            slope: 1000.0,
+        }),
+    };
     for (name, material) in [
         ("st_venant_kirchhoff", Material::StVenantKirchhoff(elastic)),
         ("neo_hooke", Material::NeoHooke(elastic)),
         ("hencky", Material::Hencky(elastic)),
+        ("j2", Material::J2(metal)),
     ] {
         let Ok(law) = Law::new(&material) else { return };
         for formulation in [
@@ -39,6 +50,7 @@ fn element(c: &mut Criterion) {
             Formulation::Eas3,
             Formulation::Eas0,
             Formulation::Displacement,
+            Formulation::Layered,
         ] {
             let Ok(block) = H8Block::new(&mesh, formulation, law) else {
                 return;
