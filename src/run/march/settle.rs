@@ -1,18 +1,18 @@
 //! A step that is solved, before it is accepted: its histories, its fields, and whether its penalties serve.
 use super::{March, Outputs, RELIABLE, StepControl};
+use crate::assembly::Totals;
 use crate::contact::friction::history::PointHistory;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::RunError;
 use crate::run::bearing::{Bearing, Bearings};
 use crate::run::commit::{self, FrictionTotals};
-use crate::run::compliance::sticking::Friction;
 use crate::run::compliance::{Compliance, Errors, StepEnd};
 use crate::run::habit::Habit;
 use crate::run::penalty_rule::{self, PenaltyRule};
 use crate::run::step::Attempts;
 use crate::solve::event::Event;
-use crate::solve::newton::{Converged, RigidLimit, StepFailure};
+use crate::solve::newton::{Converged, RigidLimit, StepFailure, StickLimit};
 
 /// Times that penalties may be raised within a step.
 const RAISES: usize = 6;
@@ -26,7 +26,7 @@ pub(super) struct Settled {
     /// What rigid contact would change.
     pub limit: Option<RigidLimit>,
     /// What rigid sticking would change, per pair; empty where it was not measured.
-    pub sticking: Vec<Friction>,
+    pub sticking: Vec<StickLimit>,
 }
 
 /// What a raise of penalties went out from.
@@ -34,6 +34,7 @@ struct Tried {
     state: State,
     penalties: Vec<f64>,
     errors: Errors,
+    totals: Totals,
 }
 
 /// Whether an equilibrium is more than what rounding leaves.
@@ -102,10 +103,23 @@ impl<'m> March<'_, 'm> {
             let due = self.compliance.is_due(step, bearings, turned)
                 || self.compliance.sticking.is_due()
                 || last;
-            let limit = match due && reliable(converged) {
+            let mut limit = match due && reliable(converged) {
                 true => self.rigid_limit(trial, &histories, bearings, end),
                 false => None,
             };
+            if let (Some(limit), Some(tried)) = (&mut limit, &tried) {
+                // What was not raised shows nothing.
+                let raised = self.assembler.penalties.iter().zip(&tried.penalties);
+                let raised = raised.zip(&converged.totals.touching);
+                let factors = raised.filter(|(_, touches)| **touches);
+                let factor =
+                    (factors.map(|((now, was), _)| now / was)).fold(f64::INFINITY, f64::min);
+                let bodies = 3 * self.model.body_nodes();
+                let ways = trial.u[..bodies].iter().zip(&tried.state.u);
+                let moved = ways.fold(0.0f64, |most, (now, was)| most.max((now - was).abs()));
+                let totals = [&tried.totals, &converged.totals];
+                limit.bound(self.model, totals, moved, factor);
+            }
             let Some(fields) = &fields else {
                 let sticking = self.sticking(limit.is_some(), trial, &histories, bearings, end)?;
                 return Ok(Ok(Settled {
@@ -161,6 +175,7 @@ impl<'m> March<'_, 'm> {
                 state: trial.clone(),
                 penalties: softer,
                 errors: ruling,
+                totals: converged.totals.clone(),
             };
             match (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial) {
                 Ok(next) => {

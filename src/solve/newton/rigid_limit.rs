@@ -29,6 +29,9 @@ pub struct RigidLimit {
     pub moved: [f64; 2],
 }
 
+/// Times of what a raise leaves by first order that may be left.
+const DOUBT: f64 = 3.0;
+
 /// Part of the sizes of all nodal forces below which a resultant says nothing: forces balance.
 const BALANCED: f64 = 0.05;
 
@@ -50,6 +53,22 @@ impl RigidLimit {
     pub fn change(&self) -> f64 {
         let gross = if self.balances() { self.gross[0] } else { 0.0 };
         self.forces.iter().fold(gross, |a, f| a.max(f[0]))
+    }
+
+    /// Takes what stiffer penalties have just shown for what the rest of the way to rigid contact may still change: where penalties rose
+    /// by a factor f, an error that falls as `1 / f` has left the part `1 / (f - 1)` of the change. A slip that is about to turn, or a
+    /// path about to, answers far more to the tractions of a step than to its penalty. `before` and `after` are the totals under
+    /// both, `moved` the largest change of a displacement. Nothing is taken where forces balance, whose change is not known.
+    pub fn bound(&mut self, model: &Model, [before, after]: [&Totals; 2], moved: f64, factor: f64) {
+        if factor <= 1.0 || self.balances() {
+            return;
+        }
+        let left = DOUBT / (factor - 1.0);
+        for ((index, pair), own) in model.pairs.iter().enumerate().zip(&mut self.forces) {
+            let [a, b] = [before, after].map(|t| force(pair, index, t).force);
+            own[0] = own[0].min(left * (b - a).norm());
+        }
+        self.moved[0] = self.moved[0].min(left * moved);
     }
 
     fn finite(&self) -> bool {
