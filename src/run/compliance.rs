@@ -18,7 +18,7 @@
 //! assemblies of contact: as long as it shows little it is made at fewer and fewer steps, and wherever forces have grown or motions
 //! have turned.
 mod kept;
-pub(super) mod sticking;
+mod sticking;
 mod told;
 
 use super::bearing::{Bearings, Deepest};

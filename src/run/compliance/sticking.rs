@@ -2,6 +2,7 @@
 use crate::model::Model;
 use crate::model::error::number;
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
+use crate::solve::newton::StickLimit;
 
 /// Error above which the user is told, and above which a tangential penalty that the run may choose is raised for the next step,
 /// the error that it is to leave then, and the factor at most.
@@ -10,18 +11,9 @@ const RAISED: f64 = 0.03;
 const LEFT: f64 = 0.01;
 const FACTOR: f64 = 10.0;
 /// What is missing of friction below this part of the largest force of its contact is nothing.
-const JUDGED: f64 = 0.003;
+const JUDGED: f64 = 0.01;
 /// Error from which on the estimate says no more than that the contact gives way.
 const ALL: f64 = 0.5;
-
-/// The friction of a contact at the end of a step, what rigid sticking would add to it, and what there is to sliding everywhere
-/// (force).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Friction {
-    pub friction: f64,
-    pub missing: f64,
-    pub room: f64,
-}
 
 /// A contact with friction at one step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -37,9 +29,6 @@ struct Pair {
     /// Largest friction, as it would be with rigid sticking, and largest force.
     friction: f64,
     force: f64,
-    /// What rigid sticking would add at most at one of the steps so far: a later, stiffer penalty does not bring back what a soft one
-    /// has not taken, unless all points slide.
-    missing: f64,
     /// At the step of the largest friction, and at the last one measured.
     peak: Measured,
     last: Measured,
@@ -64,7 +53,7 @@ impl Sticking {
     /// penalties are to rise.
     pub fn step(
         &mut self,
-        limits: &[Friction],
+        limits: &[StickLimit],
         forces: impl Iterator<Item = f64>,
         (step, time): (u32, f64),
         struggles: bool,
@@ -83,8 +72,7 @@ impl Sticking {
         pairs
             .map(|((pair, limit), force)| {
                 pair.force = pair.force.max(force);
-                pair.missing = pair.missing.max(limit.missing);
-                let missing = pair.missing.min(limit.room);
+                let missing = limit.missing;
                 let rigid = limit.friction + missing;
                 let largest = pair.friction.max(rigid);
                 let judged = missing > JUDGED * pair.force;
@@ -94,9 +82,8 @@ impl Sticking {
                     pair.peak = pair.last;
                 }
                 pair.friction = largest;
-                let here = limit.missing / largest;
-                match raises && judged && here > RAISED {
-                    true => (here / LEFT).min(FACTOR),
+                match raises && error > RAISED {
+                    true => (error / LEFT).min(FACTOR),
                     false => 1.0,
                 }
             })
@@ -145,7 +132,7 @@ impl Sticking {
         out.u32(self.wait);
         out.count(self.pairs.len());
         for pair in &self.pairs {
-            out.f64s(&[pair.friction, pair.force, pair.missing]);
+            out.f64s(&[pair.friction, pair.force]);
             for measured in [pair.peak, pair.last] {
                 out.f64s(&[measured.error, measured.time]);
                 out.u32(measured.step);
@@ -156,13 +143,13 @@ impl Sticking {
     /// [`Self::put`], read back for the same model.
     pub fn take(&mut self, model: &Model, from: &mut Reader) -> Result<(), Malformed> {
         (self.calm, self.wait) = (from.u32()?, from.u32()?);
-        let count = from.count(64)?;
+        let count = from.count(56)?;
         if count > model.pairs.len() {
             return Err(from.malformed("friction of more contacts than there are"));
         }
         self.pairs = (0..count)
             .map(|_| {
-                let mut sums = [0.0; 3];
+                let mut sums = [0.0; 2];
                 from.f64s(&mut sums)?;
                 let mut measured = || {
                     let mut numbers = [0.0; 2];
@@ -174,7 +161,6 @@ impl Sticking {
                 Ok(Pair {
                     friction: sums[0],
                     force: sums[1],
-                    missing: sums[2],
                     peak: measured()?,
                     last: measured()?,
                 })

@@ -5,7 +5,6 @@ use crate::model::PairModel;
 use crate::model::state::State;
 use crate::run::RunError;
 use crate::run::bearing::{Bearing, Bearings};
-use crate::run::compliance::sticking::Friction;
 use crate::scene::ValueError;
 use crate::solve::newton::{Converged, StickLimit};
 
@@ -23,7 +22,7 @@ impl March<'_, '_> {
         histories: &[PointHistory],
         bearings: &Bearings,
         time: f64,
-    ) -> Result<Vec<Friction>, RunError> {
+    ) -> Result<Vec<StickLimit>, RunError> {
         if !due || self.model.pairs.iter().all(|p| p.friction.is_none()) {
             return Ok(Vec::new());
         }
@@ -44,11 +43,11 @@ impl March<'_, '_> {
                 Some(model) if area > 0.0 => area * model.largest(bearing.force / area, time)?,
                 _ => 0.0,
             };
+            // Rigid sticking adds no more than there is to sliding.
             let room = (largest - limit.friction).max(0.0);
-            Ok(Friction {
-                friction: limit.friction,
+            Ok(StickLimit {
                 missing: limit.missing.min(room),
-                room,
+                ..limit
             })
         };
         let found: Result<_, ValueError> = pairs.map(friction).collect();
@@ -62,7 +61,7 @@ impl March<'_, '_> {
         bearings: &Bearings,
         time: f64,
         converged: &Converged,
-        sticking: &[Friction],
+        sticking: &[StickLimit],
     ) -> Result<(), ValueError> {
         let forces = bearings.pairs.iter().map(|b| b.force);
         let struggles = converged.iterations + self.failed > STRUGGLES;

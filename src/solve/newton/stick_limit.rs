@@ -102,13 +102,25 @@ impl Workspace {
         }
         let moved = assembler.contact(base, time, now).map_err(drop)?;
         let moved = stuck.of(force(pair, index, &moved));
+        // Of all nodes, along what is added at each.
+        let (mut size, mut along) = (0.0, 0.0);
+        let nodes = was.as_chunks::<3>().0.iter().zip(now.as_chunks::<3>().0);
+        for ((w, n), s) in nodes.zip(stiffer.as_chunks::<3>().0) {
+            let [w, n, s] = [w, n, s].map(|f| Vec3::from_column_slice(f));
+            let more = s - w;
+            size += more.norm();
+            along += (more + n - w).dot(&more) / more.norm().max(f64::MIN_POSITIVE);
+        }
         let ratio = |k: usize| {
-            let size = added[k].norm();
-            if size <= ROUNDING * all {
-                return 0.0;
-            }
-            let change = added[k] + (moved[k] - was_both[k]) / PART;
-            let bodies = (change.dot(&added[k]) / (size * size)).clamp(0.0, STIFFEST);
+            let own = added[k].norm() * PART;
+            // A resultant of what nearly balances is mostly rounding.
+            let bodies = if own < BALANCED * size {
+                along / size
+            } else {
+                let change = added[k] * PART + moved[k] - was_both[k];
+                change.dot(&added[k]) * PART / (own * own)
+            };
+            let bodies = bodies.clamp(0.0, STIFFEST);
             bodies / (1.0 - bodies)
         };
         let ratios = [ratio(0), ratio(1)];
@@ -180,5 +192,7 @@ impl Stuck {
 
 /// Part of all forces of contact below which what is added is rounding.
 const ROUNDING: f64 = 1e-9;
+/// Part of the sizes of what is added at all nodes below which its resultant says nothing.
+const BALANCED: f64 = 0.1;
 /// Share of the bodies in the stiffness of both springs above which nothing but the penalty gives way.
 const STIFFEST: f64 = 0.999;
