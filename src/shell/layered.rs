@@ -5,8 +5,8 @@
 //! strain 33: t^2 - 1/3 lets the thickness strain follow; without it the springback of a strip bent to ten times its
 //! thickness is 7 % wrong. It vanishes at two Gauss points, so that it needs the finer rule.
 //!
-//! The law takes most of the time of such an element, so that the tangent is put together plainly:
-//! `K = sum_g B^T C B + geometric - L^T D^-1 L`.
+//! The tangent is put together as that of the element with two points over the thickness ([`super::tangent`]): what a point adds
+//! is a few products along t, and shape functions along r and s are applied once per in-plane point.
 use super::error::FaultCause;
 use super::h8::H8System;
 use super::kinematics::{Fields, V, add, shear, stretch, tying};
@@ -14,7 +14,7 @@ use super::material::{Collapsed, MaterialLaw, Metric, state_of};
 use super::reference::{
     BASE, GP, LINE, PARAMETERS, TYING, WEIGHT, contravariant, det, enhanced, metric_of, sign,
 };
-use super::tangent::{factorise, factors, state_len, transverse_geometric};
+use super::tangent::{Column, Sums, add_membrane, add_parameters, condense, state_len};
 use crate::fem::quadrature::GAUSS_3;
 use num_dual::DualNum;
 
@@ -41,6 +41,10 @@ pub(super) const RULE: [(f64, f64); LAYERS] = {
 
 /// Enhanced strains that are different in their base: 33 times t, 11, 22, 12, 33 times t^2 - 1/3.
 const BASES: usize = 5;
+/// Base strains, those of the tying points included, and forces.
+const B: usize = 3 + BASES + 1;
+/// Parameters, and forces.
+const P: usize = PARAMETERS + 1;
 
 /// Base and in-plane weight of an enhanced strain at in-plane point `q`.
 #[inline(always)]
@@ -290,21 +294,6 @@ pub(super) fn forces<D: DualNum<f64> + Copy, L: MaterialLaw>(
     Ok((energy, f, h))
 }
 
-/// What the loop over the points gathers.
-struct Sums {
-    f: [f64; 24],
-    /// Upper triangle by columns.
-    k: [[f64; 24]; 24],
-    h: [f64; MODES],
-    l: [[f64; 24]; MODES],
-    d: [[f64; MODES]; MODES],
-    /// Initial-stress stiffness of the membrane strains, a scalar per pair of nodes.
-    geometric: [[f64; 8]; 8],
-    /// Forces on the tying points.
-    tied: [f64; PARAMETERS],
-    energy: f64,
-}
-
 /// Evaluates one element at displacements `u`: `out` receives condensed forces and tangent, `state` (its alpha and
 /// the states of the law being read) the condensation cache.
 pub(super) fn evaluate<L: MaterialLaw>(
@@ -314,146 +303,49 @@ pub(super) fn evaluate<L: MaterialLaw>(
     state: &mut [f64],
     out: &mut H8System,
 ) -> Result<(), FaultCause> {
-    let mut sums = gauss_loop(law, nodes, u, state)?;
-    let transverse = transverse_geometric(&sums.tied);
-    for b in 0..8 {
-        for a in 0..=b {
-            let both = sums.geometric[a][b] + 2.0 * transverse[a][b];
-            for x in 0..3 {
-                sums.k[3 * b + x][3 * a + x] += both;
-            }
-        }
-    }
-    state[MODES..2 * MODES].copy_from_slice(&sums.h);
-    state[2 * MODES..factors(MODES)].copy_from_slice(sums.l.as_flattened());
-    out.negative_pivots = factorise::<MODES, MODES>(&mut sums.d)?;
-    let packed = &mut state[factors(MODES)..];
-    for m in 0..MODES {
-        packed[m * (m + 1) / 2..][..=m].copy_from_slice(&sums.d[m][..=m]);
-        for n in 0..m {
-            let factor = sums.d[m][n];
-            sums.h[m] -= factor * sums.h[n];
-            let (head, tail) = sums.l.split_at_mut(m);
-            for (a, b) in tail[0].iter_mut().zip(&head[n]) {
-                *a -= factor * b;
-            }
-        }
-        let inverse = sums.d[m][m].recip();
-        let l = &sums.l[m];
-        for (column, k) in sums.k.iter_mut().enumerate() {
-            let scaled = l[column] * inverse;
-            for (k, l) in k[..=column].iter_mut().zip(l) {
-                *k -= scaled * l;
-            }
-            sums.f[column] -= scaled * sums.h[m];
-        }
-    }
-    out.f = sums.f;
-    out.energy = sums.energy;
-    for column in 0..24 {
-        for row in 0..=column {
-            out.k[24 * column + row] = sums.k[column][row];
-            out.k[24 * row + column] = sums.k[column][row];
-        }
-    }
-    Ok(())
-}
-
-fn gauss_loop<L: MaterialLaw>(
-    law: &L,
-    nodes: &[V<f64>; 8],
-    u: &[V<f64>; 8],
-    state: &[f64],
-) -> Result<Sums, FaultCause> {
     let geometry = Geometry::new(nodes);
     let du = Fields::new(u);
     let now = add(&geometry.big, &du);
-    let (tied, tied_rows) = (tying(&geometry.big, &du), TyingRows::new(&now));
+    let tied = tying(&geometry.big, &du);
     let mut alpha = [0.0; MODES];
     alpha.copy_from_slice(&state[..MODES]);
     let states = &state[state_len(MODES)..];
-    let mut sums = Sums {
-        f: [0.0; 24],
-        k: [[0.0; 24]; 24],
-        h: [0.0; MODES],
-        l: [[0.0; 24]; MODES],
-        d: [[0.0; MODES]; MODES],
-        geometric: [[0.0; 8]; 8],
-        tied: [0.0; PARAMETERS],
-        energy: 0.0,
-    };
-    for g in 0..POINTS {
-        let (q, w) = (g & 3, &WEIGHT[g & 3]);
-        let place = geometry.at(g);
-        let e = strain((&place, g), &du, &tied, &alpha);
-        let response = law
-            .response(&place.metric, &e, &state_of::<L>(states, g))
-            .map_err(|c| FaultCause::Collapsed {
-                point: g as u8,
-                ratio: c.ratio,
-            })?;
-        sums.energy += response.energy * place.volume;
-        let s = response.stress.map(|s| s * place.volume);
-        let c = response.tangent.map(|row| row.map(|c| c * place.volume));
-        let n = shape(g);
-        let b = rows(&now, &tied_rows, g, &n);
-        add_displacements(&mut sums, &c, &s, &b);
-        for a in 0..8 {
-            for b in a..8 {
-                sums.geometric[a][b] += s[0] * n[0][a] * n[0][b]
-                    + s[1] * n[1][a] * n[1][b]
-                    + s[3] * (n[0][a] * n[1][b] + n[1][a] * n[0][b]);
-            }
+    let mut sums = Sums::<P>::new();
+    for q in 0..4 {
+        let mut column = Column::<B>::new();
+        for (layer, (t, _)) in RULE.into_iter().enumerate() {
+            let g = q + 4 * layer;
+            let place = geometry.at(g);
+            let e = strain((&place, g), &du, &tied, &alpha);
+            let response = law
+                .response(&place.metric, &e, &state_of::<L>(states, g))
+                .map_err(|c| FaultCause::Collapsed {
+                    point: g as u8,
+                    ratio: c.ratio,
+                })?;
+            sums.energy += response.energy * place.volume;
+            let s = response.stress.map(|s| s * place.volume);
+            let c = response.tangent.map(|row| row.map(|c| c * place.volume));
+            let [g1, g2, _] = now.over(q, t);
+            let along_t = [0.5 * (1.0 - t), 0.5 * (1.0 + t)];
+            add_membrane(&mut sums.membrane[q], &c, &s, &g1, &g2, &along_t);
+            add_bases(&mut column, (&c, &s), &place.enhanced, (&g1, &g2), &along_t);
         }
-        for corner in 0..4 {
-            sums.tied[corner] += s[2] * w[corner];
-        }
-        for side in 0..2 {
-            sums.tied[4 + side] += s[4] * w[4 + side];
-            sums.tied[6 + side] += s[5] * w[6 + side];
-        }
-        add_enhanced(&mut sums, q, &place.enhanced, (&c, &s, &b));
+        add_parameters::<MODES, B, P>(&mut sums, q, &column);
     }
-    Ok(sums)
+    condense::<MODES, P>(&sums, &now, false, state, out)
 }
 
-/// Forces and `B^T C B` of one point.
+/// Stresses of unit base strains at one point: 33, 23, 13 at the tying points, then the enhanced ones.
 #[inline(always)]
-fn add_displacements(sums: &mut Sums, c: &[[f64; 6]; 6], s: &[f64; 6], b: &[[f64; 24]; 6]) {
-    let mut cb = [[0.0; 24]; 6];
-    for v in 0..6 {
-        for w in 0..6 {
-            for (sum, b) in cb[v].iter_mut().zip(&b[w]) {
-                *sum += c[v][w] * b;
-            }
-        }
-        for (f, b) in sums.f.iter_mut().zip(&b[v]) {
-            *f += s[v] * b;
-        }
-    }
-    for (column, k) in sums.k.iter_mut().enumerate() {
-        let w: [f64; 6] = std::array::from_fn(|v| b[v][column]);
-        // Whole columns: fixed lengths keep the vector units busy. The lower part is not read.
-        for (r, k) in k.iter_mut().enumerate() {
-            *k += w[0] * cb[0][r]
-                + w[1] * cb[1][r]
-                + w[2] * cb[2][r]
-                + w[3] * cb[3][r]
-                + w[4] * cb[4][r]
-                + w[5] * cb[5][r];
-        }
-    }
-}
-
-/// Forces on the enhanced strains, and their stiffness, of one point.
-#[inline(always)]
-fn add_enhanced(
-    sums: &mut Sums,
-    q: usize,
+fn add_bases(
+    column: &mut Column<B>,
+    (c, s): (&[[f64; 6]; 6], &[f64; 6]),
     enhanced: &[[f64; BASES]; 6],
-    (c, s, b): (&[[f64; 6]; 6], &[f64; 6], &[[f64; 24]; 6]),
+    g: (&V<f64>, &V<f64>),
+    along_t: &[f64; 2],
 ) {
-    // C A, A^T C A, A^T C B and A^T s of the bases A.
+    // C A, then A^T C A and A^T s of the bases A.
     let mut ca = [[0.0; BASES]; 6];
     for v in 0..6 {
         for w in 0..6 {
@@ -462,28 +354,36 @@ fn add_enhanced(
             }
         }
     }
-    let (mut aca, mut acb) = ([[0.0; BASES]; BASES], [[0.0; 24]; BASES]);
+    let mut aca = [[0.0; BASES]; BASES];
     let mut force = [0.0; BASES];
     for v in 0..6 {
         for m in 0..BASES {
             for n in 0..BASES {
                 aca[m][n] += enhanced[v][m] * ca[v][n];
             }
-            for (acb, b) in acb[m].iter_mut().zip(&b[v]) {
-                *acb += ca[v][m] * b;
-            }
             force[m] += enhanced[v][m] * s[v];
         }
     }
-    for m in 0..MODES {
-        let (base, w) = mode(m, q);
-        sums.h[m] += w * force[base];
-        for (l, acb) in sums.l[m].iter_mut().zip(&acb[base]) {
-            *l += w * acb;
+    let row = |v: usize| {
+        let x = &ca[v];
+        let tied = [c[v][2], c[v][4], c[v][5]];
+        [
+            tied[0], tied[1], tied[2], x[0], x[1], x[2], x[3], x[4], s[v],
+        ]
+    };
+    column.add_line([&row(0), &row(1), &row(3)], g, along_t);
+    for (base, v) in column.base.iter_mut().zip([2, 4, 5]) {
+        for (base, r) in base.iter_mut().zip(row(v)) {
+            *base += r;
         }
-        for n in 0..MODES {
-            let (other, v) = mode(n, q);
-            sums.d[m][n] += w * v * aca[base][other];
+    }
+    for (m, base) in column.base[3..3 + BASES].iter_mut().enumerate() {
+        let tied = [ca[2][m], ca[4][m], ca[5][m]];
+        for (base, r) in base
+            .iter_mut()
+            .zip(tied.into_iter().chain(aca[m]).chain([force[m]]))
+        {
+            *base += r;
         }
     }
 }

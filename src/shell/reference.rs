@@ -18,18 +18,20 @@ pub(super) const LINE: [[f64; 2]; 2] = [
 
 /// Parameters of the strain interpolation, in this order: eight tying points of assumed strains (33 at the four
 /// corners, 23 at r = -1 and r = +1, 13 at s = -1 and s = +1), up to seven enhanced modes (33: t, rt, st; 11: r;
-/// 22: s; 12: r, s), and one slot for forces.
+/// 22: s; 12: r, s), and one slot for forces. Elements with six layers have an eighth mode (33: t^2 - 1/3) before it.
 pub(super) const PARAMETERS: usize = 16;
 pub(super) const TYING: usize = 8;
-pub(super) const MODES: usize = 7;
 
-/// Base strain of every parameter: 0..3 assumed 33, 23, 13, 3..7 enhanced 33 (times t), 11, 22, 12, 7 forces.
-pub(super) const BASE: [usize; PARAMETERS] = [0, 0, 0, 0, 1, 1, 2, 2, 3, 3, 3, 4, 5, 6, 6, 7];
+/// Base strain of every parameter: 0..3 assumed 33, 23, 13, 3..7 enhanced 33 (times t), 11, 22, 12, then those that have a base of
+/// their own, forces at last.
+pub(super) const BASE: [usize; PARAMETERS + 1] =
+    [0, 0, 0, 0, 1, 1, 2, 2, 3, 3, 3, 4, 5, 6, 6, 7, 8];
 
 /// In-plane weight of every parameter at the four in-plane Gauss points.
-pub(super) const WEIGHT: [[f64; PARAMETERS]; 4] = [weights(0), weights(1), weights(2), weights(3)];
+pub(super) const WEIGHT: [[f64; PARAMETERS + 1]; 4] =
+    [weights(0), weights(1), weights(2), weights(3)];
 
-const fn weights(q: usize) -> [f64; PARAMETERS] {
+const fn weights(q: usize) -> [f64; PARAMETERS + 1] {
     let (ir, is) = (q & 1, q >> 1);
     let (r, s) = (GP * sign(q, 0), GP * sign(q, 1));
     [
@@ -48,6 +50,7 @@ const fn weights(q: usize) -> [f64; PARAMETERS] {
         s,
         r,
         s,
+        1.0,
         1.0,
     ]
 }

@@ -14,7 +14,7 @@ use super::error::FaultCause;
 use super::h8::H8System;
 use super::kinematics::{Fields, V, add, strains};
 use super::material::{MaterialLaw, state_of};
-use super::reference::{BASE, GP, LINE, MODES, PARAMETERS, Reference, TYING, WEIGHT, sign};
+use super::reference::{BASE, GP, LINE, PARAMETERS, Reference, TYING, WEIGHT, sign};
 
 /// Component pairs that are computed, i <= j; the others follow from symmetry.
 const PAIRS: [(usize, usize); 6] = super::VOIGT;
@@ -34,22 +34,73 @@ pub(super) const fn factors(ne: usize) -> usize {
     26 * ne
 }
 
-/// What the loop over Gauss points gathers.
-struct Sums {
+/// What the loop over Gauss points gathers, for `P` parameters.
+pub(super) struct Sums<const P: usize> {
     /// Membrane blocks at the in-plane points: `[point][11, 22, 12, 21][lane]`.
-    membrane: [[[f64; LANES]; 4]; 4],
+    pub membrane: [[[f64; LANES]; 4]; 4],
     /// Coupling of displacements `8 axis + node` with parameters; the last slot are the membrane forces.
-    z: [[f64; 24]; PARAMETERS],
+    z: [[f64; 24]; P],
     /// Stiffness among parameters; the last column are the forces on them.
-    c: [[f64; PARAMETERS]; PARAMETERS],
-    energy: f64,
+    c: [[f64; P]; P],
+    pub energy: f64,
     /// Forces on the tying points by the stresses of the geometric part; nothing where these are the true ones.
-    carried: [f64; PARAMETERS],
+    carried: [f64; TYING],
+}
+
+impl<const P: usize> Sums<P> {
+    #[inline(always)]
+    pub fn new() -> Self {
+        Sums {
+            membrane: [[[0.0; LANES]; 4]; 4],
+            z: [[0.0; 24]; P],
+            c: [[0.0; P]; P],
+            energy: 0.0,
+            carried: [0.0; TYING],
+        }
+    }
+}
+
+/// What the points over the thickness at one in-plane point gather, before shape functions along r and s: coupling of displacements
+/// `[bottom, top][along g_1, g_2][axis]` with the `B` base strains, and their stiffness; the last column are the forces.
+pub(super) struct Column<const B: usize> {
+    pub line: [[[[f64; B]; 3]; 2]; 2],
+    pub base: [[f64; B]; B],
+}
+
+impl<const B: usize> Column<B> {
+    #[inline(always)]
+    pub fn new() -> Self {
+        Column {
+            line: [[[[0.0; B]; 3]; 2]; 2],
+            base: [[0.0; B]; B],
+        }
+    }
+
+    /// Adds one point: the stresses of unit base strains by the membrane components 11, 22, 12 (the last column the stress itself),
+    /// the current vectors g_1 and g_2, and the linear shape functions along t.
+    #[inline(always)]
+    pub fn add_line(
+        &mut self,
+        [m11, m22, m12]: [&[f64; B]; 3],
+        (g1, g2): (&V<f64>, &V<f64>),
+        along_t: &[f64; 2],
+    ) {
+        for x in 0..3 {
+            for n in 0..B {
+                let along1 = m11[n] * g1[x] + m12[n] * g2[x];
+                let along2 = m12[n] * g1[x] + m22[n] * g2[x];
+                self.line[0][0][x][n] += along_t[0] * along1;
+                self.line[0][1][x][n] += along_t[0] * along2;
+                self.line[1][0][x][n] += along_t[1] * along1;
+                self.line[1][1][x][n] += along_t[1] * along2;
+            }
+        }
+    }
 }
 
 #[inline(always)]
-const fn used<const NE: usize>(parameter: usize) -> bool {
-    parameter < TYING + NE || parameter == PARAMETERS - 1
+const fn used<const NE: usize, const P: usize>(parameter: usize) -> bool {
+    parameter < TYING + NE || parameter == P - 1
 }
 
 /// Evaluates one element at displacements `u`: `out` receives condensed forces and tangent, `state` (its alpha and
@@ -72,11 +123,24 @@ pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
     let bent = correction.map(|du| quadratic(re, du));
     let states = &state[state_len(NE)..];
     let sums = gauss_loop::<L, NE>(law, re, &now, (&strain, bent.as_ref()), states)?;
+    condense::<NE, PARAMETERS>(&sums, &now, bent.is_some(), state, out)
+}
+
+/// Condensed forces and tangent of an element with `NE` enhanced strains from the sums over its points; `carried` says that the
+/// geometric part has stresses of its own. The condensation cache goes into `state`.
+#[inline(always)]
+pub(super) fn condense<const NE: usize, const P: usize>(
+    sums: &Sums<P>,
+    now: &Fields<f64>,
+    carried: bool,
+    state: &mut [f64],
+    out: &mut H8System,
+) -> Result<(), FaultCause> {
     let membrane = membrane_blocks(&sums.membrane);
-    let b = tying_rows(&now);
+    let b = tying_rows(now);
 
     // Displacement part: rows of L and of the coupling, forces.
-    let mut l = [[0.0; 24]; MODES];
+    let mut l = [[0.0; 24]; NE];
     for m in 0..NE {
         l[m] = times_rows(&sums.z[TYING + m], &sums.c[TYING + m], &b, 1.0);
     }
@@ -84,17 +148,18 @@ pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
     for p in 0..TYING {
         y[p] = times_rows(&sums.z[p], &sums.c[p], &b, 0.5);
     }
-    let mut force = [0.0; PARAMETERS];
+    let mut force = [0.0; P];
     for p in 0..TYING + NE {
-        force[p] = sums.c[p][PARAMETERS - 1];
+        force[p] = sums.c[p][P - 1];
     }
-    let mut f = times_rows(&sums.z[PARAMETERS - 1], &force, &b, 1.0);
+    let mut f = times_rows(&sums.z[P - 1], &force, &b, 1.0);
 
     // Half of the coupling plus half of the initial-stress part of the transverse strains; its transpose is the rest.
-    let geometric = transverse_geometric(match bent {
-        Some(_) => &sums.carried,
-        None => &force,
-    });
+    let tied = match carried {
+        true => sums.carried,
+        false => std::array::from_fn(|p| force[p]),
+    };
+    let geometric = transverse_geometric(&tied);
     let mut half = [[0.0; 24]; 24];
     for (column, half) in half.iter_mut().enumerate() {
         let node = column & 7;
@@ -111,7 +176,7 @@ pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
 
     // Static condensation of the enhanced strains.
     out.negative_pivots = 0;
-    let mut scaled = [[0.0; 24]; MODES];
+    let mut scaled = [[0.0; 24]; NE];
     if NE > 0 {
         for m in 0..NE {
             state[NE + m] = force[TYING + m];
@@ -122,13 +187,13 @@ pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
                 }
             }
         }
-        let mut d = [[0.0; MODES]; MODES];
+        let mut d = [[0.0; NE]; NE];
         for m in 0..NE {
-            d[m][..NE].copy_from_slice(&sums.c[TYING + m][TYING..TYING + NE]);
+            d[m].copy_from_slice(&sums.c[TYING + m][TYING..TYING + NE]);
         }
-        out.negative_pivots = factorise::<NE, MODES>(&mut d)?;
+        out.negative_pivots = factorise(&mut d)?;
         let packed = &mut state[factors(NE)..];
-        let mut h = [0.0; MODES];
+        let mut h = [0.0; NE];
         for m in 0..NE {
             packed[m * (m + 1) / 2..][..=m].copy_from_slice(&d[m][..=m]);
             h[m] = force[TYING + m];
@@ -178,19 +243,11 @@ fn gauss_loop<L: MaterialLaw, const NE: usize>(
     now: &Fields<f64>,
     (strain, bent): (&[[f64; 6]; 8], Option<&[[f64; 6]; 8]>),
     states: &[f64],
-) -> Result<Sums, FaultCause> {
-    let mut sums = Sums {
-        membrane: [[[0.0; LANES]; 4]; 4],
-        z: [[0.0; 24]; PARAMETERS],
-        c: [[0.0; PARAMETERS]; PARAMETERS],
-        energy: 0.0,
-        carried: [0.0; PARAMETERS],
-    };
+) -> Result<Sums<PARAMETERS>, FaultCause> {
+    let mut sums = Sums::new();
     for q in 0..4 {
         let (i, j) = (q & 1, q >> 1);
-        // Coupling before shape functions along r and s: [bottom, top][along g_1, g_2][axis][base strain].
-        let mut line = [[[[0.0; 8]; 3]; 2]; 2];
-        let mut base = [[0.0; 8]; 7];
+        let mut column = Column::<8>::new();
         for k in 0..2 {
             let g = q + 4 * k;
             let response = law
@@ -248,17 +305,8 @@ fn gauss_loop<L: MaterialLaw, const NE: usize>(
                 let x = &ca[v];
                 [c[v][2], c[v][4], c[v][5], x[0], x[1], x[2], x[3], s[v]]
             };
-            let (m11, m22, m12) = (row(0), row(1), row(3));
-            for x in 0..3 {
-                for n in 0..8 {
-                    let along1 = m11[n] * g1[x] + m12[n] * g2[x];
-                    let along2 = m12[n] * g1[x] + m22[n] * g2[x];
-                    line[0][0][x][n] += LINE[k][0] * along1;
-                    line[0][1][x][n] += LINE[k][0] * along2;
-                    line[1][0][x][n] += LINE[k][1] * along1;
-                    line[1][1][x][n] += LINE[k][1] * along2;
-                }
-            }
+            column.add_line([&row(0), &row(1), &row(3)], (g1, g2), &LINE[k]);
+            let base = &mut column.base;
             for (b, v) in [2, 4, 5].into_iter().enumerate() {
                 let r = row(v);
                 for n in 0..8 {
@@ -275,7 +323,7 @@ fn gauss_loop<L: MaterialLaw, const NE: usize>(
                 }
             }
         }
-        add_parameters::<NE>(&mut sums, q, &line, &base);
+        add_parameters::<NE, 8, PARAMETERS>(&mut sums, q, &column);
     }
     Ok(sums)
 }
@@ -283,7 +331,7 @@ fn gauss_loop<L: MaterialLaw, const NE: usize>(
 /// Membrane blocks of one Gauss point: `Q_ab[ij] = c^(a k b l) g_k,i g_l,j + S^ab delta_ij`, times the three products
 /// of shape functions along t.
 #[inline(always)]
-fn add_membrane(
+pub(super) fn add_membrane(
     sum: &mut [[f64; LANES]; 4],
     c: &[[f64; 6]; 6],
     s: &[f64; 6],
@@ -322,16 +370,15 @@ fn add_membrane(
 
 /// Spreads the sums of one in-plane point to parameters and nodes.
 #[inline(always)]
-fn add_parameters<const NE: usize>(
-    sums: &mut Sums,
+pub(super) fn add_parameters<const NE: usize, const B: usize, const P: usize>(
+    sums: &mut Sums<P>,
     q: usize,
-    line: &[[[[f64; 8]; 3]; 2]; 2],
-    base: &[[f64; 8]; 7],
+    Column { line, base }: &Column<B>,
 ) {
     let (i, j) = (q & 1, q >> 1);
     let n1 = [0, 1, 2, 3].map(|c| 0.5 * sign(c, 0) * LINE[j][c >> 1]);
     let n2 = [0, 1, 2, 3].map(|c| 0.5 * sign(c, 1) * LINE[i][c & 1]);
-    let mut nodes = [[0.0; 24]; 8];
+    let mut nodes = [[0.0; 24]; B];
     for (n, nodes) in nodes.iter_mut().enumerate() {
         for x in 0..3 {
             for t in 0..2 {
@@ -343,21 +390,21 @@ fn add_parameters<const NE: usize>(
         }
     }
     let w = &WEIGHT[q];
-    for p in 0..PARAMETERS {
-        if used::<NE>(p) {
+    for p in 0..P {
+        if used::<NE, P>(p) {
             for r in 0..24 {
                 sums.z[p][r] += w[p] * nodes[BASE[p]][r];
             }
         }
     }
-    let mut spread = [[0.0; PARAMETERS]; 7];
-    for v in 0..7 {
-        for p in 0..PARAMETERS {
+    let mut spread = [[0.0; P]; B];
+    for v in 0..B - 1 {
+        for p in 0..P {
             spread[v][p] = w[p] * base[v][BASE[p]];
         }
     }
     for p in 0..TYING + NE {
-        for n in 0..PARAMETERS {
+        for n in 0..P {
             sums.c[p][n] += w[p] * spread[BASE[p]][n];
         }
     }
@@ -436,7 +483,12 @@ fn tying_rows(now: &Fields<f64>) -> [[f64; 24]; 3] {
 
 /// `z + factor c^T b` for one parameter with coefficients `c` on the tying points.
 #[inline(always)]
-fn times_rows(z: &[f64; 24], c: &[f64; PARAMETERS], b: &[[f64; 24]; 3], factor: f64) -> [f64; 24] {
+fn times_rows<const P: usize>(
+    z: &[f64; 24],
+    c: &[f64; P],
+    b: &[[f64; 24]; 3],
+    factor: f64,
+) -> [f64; 24] {
     let mut w = [[0.0; 8]; 3];
     for a in 0..8 {
         w[0][a] = factor * c[a & 3];
@@ -455,7 +507,7 @@ fn times_rows(z: &[f64; 24], c: &[f64; PARAMETERS], b: &[[f64; 24]; 3], factor: 
 
 /// Half of the initial-stress stiffness of the transverse strains, a scalar per pair of nodes.
 #[inline(always)]
-pub(super) fn transverse_geometric(force: &[f64; PARAMETERS]) -> [[f64; 8]; 8] {
+fn transverse_geometric(force: &[f64; TYING]) -> [[f64; 8]; 8] {
     let mut k = [[0.0; 8]; 8];
     for c in 0..4 {
         let value = 0.125 * force[c];
@@ -487,9 +539,7 @@ const fn side_s(side: usize, m: usize) -> usize {
 
 /// Replaces the lower triangle of `d` by its factors, unit lower and diagonal; returns the number of negative pivots.
 #[inline(always)]
-pub(super) fn factorise<const NE: usize, const SIZE: usize>(
-    d: &mut [[f64; SIZE]; SIZE],
-) -> Result<u8, FaultCause> {
+fn factorise<const NE: usize>(d: &mut [[f64; NE]; NE]) -> Result<u8, FaultCause> {
     let mut negative = 0;
     for j in 0..NE {
         for i in j..NE {
@@ -507,7 +557,7 @@ pub(super) fn factorise<const NE: usize, const SIZE: usize>(
             });
         }
         negative += u8::from(pivot < 0.0);
-        for row in d.iter_mut().take(NE).skip(j + 1) {
+        for row in d.iter_mut().skip(j + 1) {
             row[j] /= pivot;
         }
     }
@@ -519,8 +569,8 @@ pub(super) fn factorise<const NE: usize, const SIZE: usize>(
 fn gather<const NE: usize, const AXIS: usize>(
     membrane: &[[[f64; LANES]; 4]; 4],
     half: &[[f64; 24]; 24],
-    l: &[[f64; 24]; MODES],
-    scaled: &[[f64; 24]; MODES],
+    l: &[[f64; 24]; NE],
+    scaled: &[[f64; 24]; NE],
     out: &mut H8System,
 ) {
     for b in 0..8 {
