@@ -274,6 +274,11 @@ impl Model {
             || self.driven().next().is_some()
     }
 
+    /// Whether any material flows.
+    pub fn flows(&self) -> bool {
+        self.bodies.iter().any(|body| body.material.flows())
+    }
+
     /// Numbers that an element of a body keeps in a run; none of the linear elements for small displacements.
     pub fn state_len(&self, body: &BodyModel) -> usize {
         match self.small {

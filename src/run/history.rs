@@ -96,7 +96,7 @@ pub fn columns(model: &Model) -> Vec<String> {
             .map(String::from),
         );
     }
-    if flows(model) {
+    if model.flows() {
         names.push("energy.plastic".into());
     }
     if model.stabilization.is_some() {
@@ -176,7 +176,7 @@ pub fn row(r: &Record) -> Vec<f64> {
         let s = r.sliding;
         out.extend([s.stored, s.dissipated, s.stick as f64, s.slip as f64]);
     }
-    if flows(r.model) {
+    if r.model.flows() {
         out.push(totals.plastic_work);
     }
     if r.model.stabilization.is_some() {
@@ -188,11 +188,6 @@ pub fn row(r: &Record) -> Vec<f64> {
     out.extend([r.watch.external, r.watch.adjusted, r.watch.imbalance]);
     out.extend(probes::values(r.model, r.time, r.u, r.residual, r.fields));
     out
-}
-
-/// Whether any material flows.
-fn flows(model: &Model) -> bool {
-    model.bodies.iter().any(|body| body.material.flows())
 }
 
 /// Whether any contact has multipliers.

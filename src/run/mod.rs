@@ -29,6 +29,7 @@ mod probes;
 mod progress;
 mod reaction_fields;
 mod remedy;
+mod resting;
 mod resultants;
 mod sheet_fields;
 mod simulation;

@@ -11,7 +11,8 @@
 //!    come out, and each stage starts from nearly the right ones.
 //! 4. The last accepted state, searching along every increment: a strip that snaps from one support to the next is thrown far by
 //!    a full step. It is tried where a step has been cut, before the softened penalty where that has cost more
-//!    ([`super::habit`]), and goes on in the steps after one that it has solved, until one fails.
+//!    ([`super::habit`]), and goes on in the steps after one that it has solved, until one fails. Where a material flows all starts
+//!    search.
 //!
 //! Where the first of these has failed again and again, the one that has lately solved steps in the fewest iterations comes before
 //! it for some steps. Later ones that have failed again and again are left out of some attempts ([`super::habit`]).
@@ -42,14 +43,6 @@ use crate::system::linear::LinearSolver;
 use nalgebra::Vector6;
 use std::sync::atomic::AtomicBool;
 
-/// First linearisations from the last accepted state, which knows nothing of where points slide to. Softened stages do without:
-/// their own tangents serve them better.
-const SECANTS: First = First {
-    hold: false,
-    secants: true,
-    search: false,
-    keep: false,
-};
 /// Cuts from which on an attempt leaves no start out.
 const SMALL: u32 = 4;
 /// Times a penalty that lets points fall through their master may be raised within a step, and the factor.
@@ -241,7 +234,8 @@ impl Attempts<'_, '_> {
             starts.push(Start::Softened);
         }
         // A step that was cut is near enough to the path that a search is unlikely to leave it for another equilibrium.
-        if self.cuts > 0 && !searched && self.settings.line_search && self.habit.may_search() {
+        let searches = self.settings.line_search && self.habit.may_search();
+        if self.cuts > 0 && !searched && searches && !self.model.flows() {
             let softened = starts.last() == Some(&Start::Softened);
             let first = softened && self.habit.searched.price() < self.habit.softened.price();
             starts.insert(starts.len() - usize::from(first), Start::Searched);
@@ -327,12 +321,13 @@ impl Attempts<'_, '_> {
             Start::Accepted | Start::Plain | Start::Searched => {
                 self.restart(end, trial)?;
                 let search = start == Start::Searched;
-                // Before the first step nothing is pressed that could be kept.
-                let keep = step > 1;
+                // Before the first step nothing is pressed that could be kept, but bodies may lie on what is to hold them.
+                let (keep, hold) = (step > 1, step == 1);
                 self.first = Some(First {
+                    hold,
+                    secants: true,
                     search,
                     keep,
-                    ..SECANTS
                 });
                 self.mixed = start == Start::Accepted;
                 let result = self.converge(step, end, trial, patience);

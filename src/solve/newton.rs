@@ -2,8 +2,12 @@
 //!
 //! Full steps by default: a thin shell's first iterate stretches it, so that the residual jumps by orders of magnitude
 //! before it falls, and a search that forbids the jump would crawl. The line search (on the slope of the energy along
-//! the increment, which also covers steps an element cannot take) comes in where full steps fail to make headway.
+//! the increment, which also covers steps an element cannot take) comes in where full steps fail to make headway. Where a material
+//! flows it is there from the start: what a point stores and takes in a step is convex in its strain (backward Euler's rule), but its
+//! slope turns by Young's modulus over the slope of hardening where it begins to flow, or ends, and full steps throw a bent sheet
+//! from one side of that to the other.
 mod advance;
+mod headway;
 mod keeping;
 mod line_search;
 mod rigid_limit;
@@ -11,6 +15,7 @@ mod small;
 mod stick_limit;
 mod workspace;
 
+use headway::{hops, nearly, oscillation};
 pub use rigid_limit::RigidLimit;
 pub use stick_limit::StickLimit;
 pub use workspace::Workspace;
@@ -141,18 +146,11 @@ const MIXED: u32 = 12;
 const MOSTLY: f64 = 0.5;
 /// Multiple of the allowed iterations up to which an attempt goes on that is nearly done.
 const EXTENDED: u32 = 2;
-/// Points left to switch where it is, and the iterations over which their number has to fall where more are left.
-const LEFT: usize = 2;
-const OVER: usize = 4;
 /// Iterations without headway after which a residual this multiple of the tolerance is accepted.
 const STALLS: u32 = 6;
 const STALLED: f64 = 100.0;
 /// Tolerance from which on that is done: who asks for a smaller one wants it met.
 const LOOSE: f64 = 1e-8;
-/// Iteration from which on a residual that is more than this part of the one before it makes points keep their facets: those
-/// that hop to and fro across a fold leave it where it is, and what is far from equilibrium may well hop.
-const KEEP: usize = 3;
-const HOPS: f64 = 0.3;
 impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
     /// Solves for equilibrium at `time`, starting from `trial`, and leaves it there. On failure `trial` is spoilt: the
     /// caller takes its copy back.
@@ -180,6 +178,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let (mut touched, mut keep, mut bends) = (false, false, false);
         // The first correction, or the motion, has opened most points.
         let mut far = self.first.keep && self.assembler.linearization.keep_active;
+        // Times that the last contact of a body that nothing else holds was kept.
+        let mut held_back = 0;
+        let searches = self.first.search || self.model.flows();
         let (mut cycle, mut round, mut damped) = (Cycle::default(), None::<PingPong>, 0u32);
         for iteration in 0.. {
             if self.interrupt.load(Ordering::Relaxed) {
@@ -297,15 +298,15 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 secant_slip: iteration + 1 < secants || keep_active,
                 keep_facets: keep,
             };
-            let search = self.settings.line_search
-                && !pending
-                && (self.first.search || since_best >= UNTIL_SEARCH);
+            let search =
+                self.settings.line_search && !pending && (searches || since_best >= UNTIL_SEARCH);
             let largest = if damped > 0 { 0.5 } else { 1.0 };
             damped = damped.saturating_sub(1);
             let mixed = self.mixed && !held && iteration < MIXED && bends;
             // Residuals then rise before they fall, more than others do.
-            let search = search && (!mixed || self.first.search);
+            let search = search && (!mixed || searches);
             let pressed = totals.active;
+            let touching = std::mem::take(&mut totals.touching);
             let keeps = iteration == 0 && self.first.keep;
             (totals, factor, pending) =
                 self.advance(trial, time, (search, mixed, keeps), pending, largest)?;
@@ -318,6 +319,20 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             {
                 totals = kept;
                 far = true;
+            }
+            // Supports, or inertia, hold others, which may well leave a surface.
+            let alone = self.model.stabilization.is_some() && self.model.dynamics.is_none();
+            let lost = alone
+                && (touching.iter().zip(&totals.touching)).any(|(before, now)| *before && !now);
+            if lost
+                && !far
+                && !pending
+                && held_back < KEPT
+                && !self.assembler.linearization.keep_active
+                && let Some(kept) = self.keep(trial, time)?
+            {
+                totals = kept;
+                held_back += 1;
             }
             energy = dot(&self.workspace.du, &self.workspace.rhs).abs();
             if iteration == 0 {
@@ -455,36 +470,6 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
     }
 }
 
-/// Whether an attempt is nearly done: few points are left to switch, or ever fewer. One that switches none has no more reason
-/// to go on than its iterations give.
-fn nearly(history: &[(f64, usize)]) -> bool {
-    let most = |from: usize, to: usize| {
-        let range = history.len().saturating_sub(from)..history.len().saturating_sub(to);
-        history[range].iter().map(|h| h.1).max().unwrap_or(0)
-    };
-    let now = most(OVER, 0);
-    now > 0 && (now <= LEFT || now < most(2 * OVER, OVER))
-}
-
-/// Whether points may be hopping from facet to facet: the residual does not fall as it would near a solution.
-fn hops(history: &[(f64, usize)]) -> bool {
-    match history {
-        [.., (before, _), (now, _)] => history.len() > KEEP && *now > HOPS * before,
-        _ => false,
-    }
-}
-
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-/// A word on points that keep switching at the end of a failed step.
-fn oscillation(history: &[(f64, usize)]) -> String {
-    let last = &history[history.len().saturating_sub(6)..];
-    let switching = last.iter().map(|h| h.1).min().unwrap_or(0);
-    if last.len() == 6 && switching > 0 {
-        format!("; at least {switching} contact point(s) switched status in each of the last 6")
-    } else {
-        String::new()
-    }
 }

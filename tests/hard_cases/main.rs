@@ -14,6 +14,7 @@ mod friction_energy;
 mod friction_history;
 mod friction_output;
 mod gauntlet;
+mod held_by_tools;
 mod histories;
 mod lost;
 mod parametrisation;

@@ -18,7 +18,7 @@ use crate::run::peaks::Peaks;
 use crate::run::penalty_rule::PenaltyRule;
 use crate::run::progress::Progress;
 use crate::run::watch::Watch;
-use crate::run::{RunError, memory};
+use crate::run::{RunError, memory, resting};
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
 use crate::solve::newton::Workspace;
@@ -161,6 +161,8 @@ impl<'m> RunState<'m> {
             (0.0, &|_| true),
         )
         .map_err(|e| RunError::internal(&e))?;
+        resting::close(march.model, masters, &mut course.committed)
+            .map_err(|e| RunError::internal(&e))?;
         (march
             .assembler
             .set_in_motion(march.solver, &course.committed))

@@ -59,7 +59,7 @@ pub struct Newton {
     pub max_iterations: u32,
     /// Residual relative to the largest force in the system, or to its round-off floor where that is higher.
     pub tolerance: f64,
-    /// Shorten steps of Newton's method that do not lower the residual.
+    /// Shorten steps of Newton's method that do not lower the residual, and all that go too far where a material flows.
     pub line_search: bool,
     /// Mixed integration points: stresses in the tangent of solid-shells are continued along the last correction, which lets a
     /// step rotate a thin shell much farther. The equilibrium is the same. Tried first, and left out where it does not help.
