@@ -120,10 +120,22 @@ pub const RELEASED_ACCURACY: f64 = 1e-4;
 pub struct Ruled {
     /// Relative error of forces that it aims at.
     pub accuracy: f64,
+    /// Penalty above which it aims at no more than [`ACCURACY`] (force / length^3); infinite where the scene says what it aims at.
+    pub rigid: f64,
     /// The stiffest that it may take (force / length^3).
     pub stiffest: f64,
     /// Penetration above which it is raised whatever the error of forces (length).
     pub deepest: f64,
+}
+
+impl Ruled {
+    /// Relative error of forces that it aims at under a penalty.
+    pub fn aim(&self, penalty: f64) -> f64 {
+        match penalty > self.rigid {
+            true => self.accuracy.max(ACCURACY),
+            false => self.accuracy,
+        }
+    }
 }
 
 /// Part of the depth of an element layer, or of its edges where they are shorter, that a point may sink in under a ruled
@@ -137,6 +149,10 @@ pub struct Suitable {
     pub automatic: f64,
     /// Where a penalty starts that is ruled by its error.
     pub start: f64,
+    /// That under which a pressure sinks in by [`ACCURACY`] of what it takes from the thickness of the body below. Where a
+    /// clamped sheet is pressed before it bends, next to nothing but that is strained, and any penalty errs beside it; what is bent
+    /// later does not feel it.
+    pub rigid: f64,
     /// What it stays below.
     pub stiffest: f64,
     /// Penetration that is too deep (length).
@@ -155,6 +171,7 @@ impl Suitable {
                 true => solid * bending * slender.powi(2),
                 false => solid * compact,
             },
+            rigid: modulus(material) / (ACCURACY * size.thickness),
             stiffest: solid * WARNED / FACTOR,
             deepest: DEEPEST * size.edge.min(size.depth),
         }
@@ -171,6 +188,7 @@ impl Suitable {
         Suitable {
             automatic: self.automatic.min(other.automatic),
             start: self.start.min(other.start),
+            rigid: self.rigid.min(other.rigid),
             stiffest: self.stiffest.min(other.stiffest),
             deepest: self.deepest.min(other.deepest),
         }

@@ -163,7 +163,7 @@ impl March<'_, '_> {
             walk,
             outputs,
         } = course;
-        let mut cuts = 0;
+        let (mut cuts, mut eased) = (0, false);
         let model = self.model;
         let number_of = |body: &BodyModel| {
             let mut bodies = model.bodies.iter();
@@ -352,6 +352,10 @@ impl March<'_, '_> {
                 }));
             }
             if self.passes((step, dt), &failure, committed, walk) {
+                continue;
+            }
+            if !eased && self.eases(step, &failure) {
+                eased = true;
                 continue;
             }
             cuts += 1;

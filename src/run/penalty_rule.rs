@@ -4,12 +4,12 @@
 //! of every step, before the step is accepted, and kept in a band: above [`HIGH`] the step is solved again, from where it is,
 //! under a stiffer penalty; below [`LOW`], where steps take many iterations, the next ones have a softer one. The work of
 //! contact is what a penalty costs in accuracy, so the size of an element does not decide, nor a deep point, as long as the
-//! layers of a stack stay apart ([`Ruled::deepest`]).
+//! layers of a stack stay apart ([`Ruled::deepest`](crate::model::penalty::Ruled::deepest)).
 //!
 //! A raise that Newton's method cannot follow is tried half as far, by its logarithm; one that does not lower the error is taken
 //! back, and not tried again for a while. Where none serves and the error is large, the step is cut a few times; then it is
 //! taken as it is. What error is left is told at the end of the run.
-use crate::model::penalty::Ruled;
+use crate::model::penalty::ACCURACY;
 use crate::model::{Model, PairModel};
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::run::compliance::Errors;
@@ -31,8 +31,9 @@ const MANY: u32 = 8;
 const SHARE: f64 = 0.1;
 /// Smallest and largest factor of a raise, and the largest where contact gives way more than the bodies do.
 const RAISE: [f64; 3] = [2.0, 100.0, 1e4];
-/// Smallest factor of a lowering.
+/// Smallest factor of a lowering, and where a step fails.
 const LOWER: f64 = 0.01;
+const EASE: f64 = 1e-4;
 /// Factor of a raise by depth, times how much too deep points are.
 const DEEPER: f64 = 10.0;
 /// Part of the error, or of the deepest penetration, that a raise may leave at most. Under a penalty that is far too soft the
@@ -58,6 +59,8 @@ struct PairRule {
     failed: u32,
     /// Steps in a row in which the error was low, and their iterations.
     low: [u32; 2],
+    /// Error and depth ([`Errors`]) at the last accepted step, by first order those under the penalty of now.
+    last: [f64; 2],
 }
 
 impl PairRule {
@@ -67,6 +70,7 @@ impl PairRule {
         wait: 0,
         failed: 0,
         low: [0; 2],
+        last: [0.0; 2],
     };
 }
 
@@ -92,6 +96,7 @@ impl PenaltyRule {
             wait,
             failed,
             low,
+            last,
         } in &self.pairs
         {
             out.f64(*bad);
@@ -99,6 +104,7 @@ impl PenaltyRule {
                 .into_iter()
                 .for_each(|n| out.u32(*n));
             low.iter().for_each(|n| out.u32(*n));
+            out.f64s(last);
         }
     }
 
@@ -112,6 +118,7 @@ impl PenaltyRule {
                 wait: from.u32()?,
                 failed: from.u32()?,
                 low: [from.u32()?, from.u32()?],
+                last: [from.f64()?, from.f64()?],
             };
         }
         Ok(rule)
@@ -141,23 +148,26 @@ impl PenaltyRule {
             let of = |values: &[f64]| values[index].max(values[other]);
             let (error, sunk) = (of(&errors.forces), of(&errors.sunk));
             let rule = &self.pairs[index];
-            let counts = total > HIGH * ruled.accuracy && error >= SHARE * largest;
-            let waits =
-                rule.wait > 0 && !again && total <= UNTENABLE * ruled.accuracy && sunk <= SUNK;
+            let accuracy = ruled.aim(penalties[index]);
+            let counts = total > HIGH * accuracy && error >= SHARE * largest;
+            let waits = rule.wait > 0 && !again && total <= UNTENABLE * accuracy && sunk <= SUNK;
             if !counts && sunk <= 1.0 || waits {
                 continue;
             }
             let by_error = match counts {
-                true => two_digits(total / ruled.accuracy).clamp(least, most),
+                true => two_digits(total / accuracy).clamp(least, most),
                 false => 1.0,
             };
+            // Past a penalty that is rigid for what bends, as far as others go.
+            let usual = two_digits(total / accuracy.max(ACCURACY)).max(1.0);
+            let by_error = by_error.min((ruled.rigid / penalties[index]).max(usual));
             // What is far too soft gives way by as much under a little more.
             let by_depth = match sunk > 1.0 {
                 true => two_digits(DEEPER * sunk),
                 false => 1.0,
             };
             // Between what serves and what does not.
-            let untenable = total > UNTENABLE * ruled.accuracy;
+            let untenable = total > UNTENABLE * accuracy;
             let known = again || !untenable || rule.remembered + SOON > FORGOTTEN;
             let bad = if known { rule.bad } else { f64::INFINITY };
             let between = (penalties[index] * bad).sqrt();
@@ -189,6 +199,31 @@ impl PenaltyRule {
         after.sum() < HELPS * before.sum() || after.deepest() < HELPS_DEPTH * before.deepest()
     }
 
+    /// Takes down the errors of an accepted step, of which the penalties were those `before` and are those of `now`.
+    pub fn remember(&mut self, errors: &Errors, before: &[f64], now: &[f64]) {
+        let all = errors.forces.iter().zip(&errors.sunk);
+        for ((rule, errors), (before, now)) in
+            (self.pairs.iter_mut().zip(all)).zip(before.iter().zip(now))
+        {
+            rule.last = [errors.0, errors.1].map(|e| e * before / now);
+        }
+    }
+
+    /// Lowers the penalties of pairs that made next to no error at the last accepted step, because a step fails: a clamp that was
+    /// pressed before anything was bent is far stiffer than what is bent now asks for.
+    pub fn ease(&mut self, model: &Model, penalties: &mut [f64]) -> bool {
+        let before = penalties.to_vec();
+        for (index, pair) in model.pairs.iter().enumerate() {
+            if let Some(factor) = softer(pair, self.pairs[index].last, before[index]) {
+                let eps = penalties[index].min(before[index] * factor.max(EASE));
+                set(model, index, eps, penalties);
+            }
+        }
+        let all = self.pairs.iter_mut().zip(before.iter().zip(&*penalties));
+        all.for_each(|(rule, (before, now))| rule.last = rule.last.map(|e| e * before / now));
+        before != penalties
+    }
+
     /// Lowers the penalties of pairs that make next to no error and may be what the iterations of the last steps were for.
     pub fn lower(
         &mut self,
@@ -205,9 +240,11 @@ impl PenaltyRule {
             if rule.remembered == 0 {
                 (rule.bad, rule.failed) = (f64::INFINITY, 0);
             }
-            // Where nothing touches nothing is known.
-            let low = |r: &Ruled| (0.0..LOW * r.accuracy).contains(&errors.forces[index]);
-            let Some(ruled) = pair.ruled.filter(|r| low(r) && errors.forces[index] > 0.0) else {
+            let Some(factor) = softer(
+                pair,
+                [errors.forces[index], errors.sunk[index]],
+                penalties[index],
+            ) else {
                 rule.low = [0; 2];
                 continue;
             };
@@ -216,10 +253,12 @@ impl PenaltyRule {
             *sum = sum.saturating_add(iterations);
             if *steps >= IDLE && *sum > MANY * *steps {
                 rule.low = [0; 2];
-                let factor = (errors.forces[index] / ruled.accuracy).max(errors.sunk[index]);
-                let factor = two_digits(factor);
-                let eps = penalties[index] * factor.clamp(LOWER, 1.0);
-                set(model, index, eps, penalties);
+                set(
+                    model,
+                    index,
+                    penalties[index] * factor.max(LOWER),
+                    penalties,
+                );
                 lowered = true;
             } else if *steps >= IDLE {
                 rule.low = [0; 2];
@@ -229,16 +268,34 @@ impl PenaltyRule {
     }
 }
 
+/// Factor, at most 1, to a penalty that makes the error asked for, where that of now makes next to none; none where it does, or
+/// where nothing touches and nothing is known.
+fn softer(pair: &PairModel, [error, sunk]: [f64; 2], penalty: f64) -> Option<f64> {
+    let ruled = pair.ruled?;
+    let aim = ruled.aim(penalty);
+    if error <= 0.0 || error >= LOW * aim {
+        return None;
+    }
+    let factor = two_digits((error / aim).max(sunk));
+    // Below it aims at more.
+    let least = match penalty > ruled.rigid {
+        true => ruled.rigid / penalty,
+        false => 0.0,
+    };
+    Some(factor.max(least).min(1.0))
+}
+
 /// Whether a penalty that was softened to get through a step is too soft to be accepted, and the error that it makes. Where
 /// smaller steps have not helped, more is accepted: what is left is told at the end.
-pub fn untenable(model: &Model, errors: &Errors, cuts: u32) -> Option<f64> {
+pub fn untenable(model: &Model, penalties: &[f64], errors: &Errors, cuts: u32) -> Option<f64> {
     let total = errors.sum();
-    let rules = model.pairs.iter().filter_map(|p| p.ruled);
+    let pairs = model.pairs.iter().zip(penalties);
+    let aims = pairs.filter_map(|(p, eps)| Some(p.ruled?.aim(*eps)));
     if cuts > 2 * RELENTS {
         return None;
     }
     let bound = UNTENABLE * f64::from(1 << cuts.min(RELENTS));
-    let allowed = rules.fold(f64::INFINITY, |a, r| a.min(bound * r.accuracy));
+    let allowed = aims.fold(f64::INFINITY, |a, aim| a.min(bound * aim));
     (total > allowed).then_some(total)
 }
 
@@ -362,6 +419,51 @@ mod tests {
         assert_eq!(penalties, [1.0, 1.0]);
     }
 
+    /// What a stage releases aims at less than others as long as its penalty is not rigid for what bends.
+    #[test]
+    fn a_clamp_is_not_raised_as_what_bends_is() {
+        let mut model = model();
+        for pair in &mut model.pairs {
+            let ruled = pair.ruled.as_mut().unwrap();
+            (ruled.accuracy, ruled.rigid) = (1e-4, 50.0);
+        }
+        let rule = PenaltyRule::new(&model);
+        let raised = |error, penalty| {
+            let mut penalties = vec![penalty; 2];
+            rule.raise(
+                &model,
+                &errors([error, 0.0], [0.0; 2]),
+                false,
+                &mut penalties,
+            );
+            (penalties[0] * 1e6).round() / 1e6
+        };
+        // By a hundred for an error of a hundredth; up to what is rigid; beyond it as far as others go, and as they do.
+        assert_eq!(raised(1e-3, 1.0), 10.0);
+        assert_eq!(raised(0.01, 1.0), 50.0);
+        assert_eq!(raised(0.4, 1.0), 100.0);
+        assert_eq!(raised(1e-3, 60.0), 60.0);
+        assert_eq!(raised(0.02, 60.0), 300.0);
+    }
+
+    /// A step that fails softens what is far stiffer than asked for, once, by what its error was at the last accepted step.
+    #[test]
+    fn a_failed_step_eases_what_is_too_stiff() {
+        let (model, mut rule) = (model(), PenaltyRule::new(&model()));
+        let mut penalties = vec![1e6, 1e6];
+        assert!(!rule.ease(&model, &mut penalties));
+        rule.remember(&errors([4e-6, 2e-3], [0.0; 2]), &[1e6, 1e6], &[1e6, 1e6]);
+        assert!(rule.ease(&model, &mut penalties));
+        assert_eq!(penalties, [1e3, 1e6]);
+        // Its error is by first order what was asked for.
+        assert!(!rule.ease(&model, &mut penalties));
+        // The error that was measured before a penalty rose by ten.
+        rule.remember(&errors([4e-4, 2e-3], [0.0; 2]), &[1e3, 1e6], &[1e4, 1e6]);
+        penalties[0] = 1e4;
+        assert!(rule.ease(&model, &mut penalties));
+        assert_eq!(penalties, [100.0, 1e6]);
+    }
+
     #[test]
     fn what_costs_iterations_for_no_error_is_lowered() {
         let model = model();
@@ -388,7 +490,8 @@ mod tests {
     #[test]
     fn what_smaller_steps_do_not_help_is_accepted_at_last() {
         let model = model();
-        let told = |error, cuts| untenable(&model, &errors([error, 0.0], [0.0; 2]), cuts);
+        let told =
+            |error, cuts| untenable(&model, &[1.0, 1.0], &errors([error, 0.0], [0.0; 2]), cuts);
         assert_eq!(told(7e-3, 0), None);
         assert_eq!(told(0.02, 0), Some(0.02));
         assert_eq!(told(0.02, 2), None);

@@ -209,12 +209,14 @@ impl Builder<'_> {
                 (suits.impact(), None)
             }
             (Penalty::Auto, None) => {
-                let usual = match self.scene.releases(name) {
-                    true => penalty::RELEASED_ACCURACY,
-                    false => penalty::ACCURACY,
+                let (accuracy, rigid) = match contact.accuracy {
+                    Some(given) => (given, f64::INFINITY),
+                    None if self.scene.releases(name) => (penalty::RELEASED_ACCURACY, suits.rigid),
+                    None => (penalty::ACCURACY, f64::INFINITY),
                 };
                 let ruled = penalty::Ruled {
-                    accuracy: contact.accuracy.unwrap_or(usual),
+                    accuracy,
+                    rigid,
                     stiffest: suits.stiffest,
                     deepest: suits.deepest,
                 };

@@ -148,7 +148,8 @@ impl<'m> March<'_, 'm> {
             let raise = raises > 0 && self.rule.raise(self.model, &ruling, rejected, &mut stiffer);
             let error = ruling.sum();
             if (converged.eased || rejected && !raise)
-                && let Some(error) = penalty_rule::untenable(self.model, &errors, cuts)
+                && let Some(error) =
+                    penalty_rule::untenable(self.model, &self.assembler.penalties, &errors, cuts)
             {
                 return Ok(Err(StepFailure::TooSoft {
                     error: error.min(1.0),
@@ -299,14 +300,35 @@ impl<'m> March<'_, 'm> {
         let model: &Model = self.model;
         let iterations = converged.iterations + self.failed;
         let mut penalties = self.assembler.penalties.clone();
+        let last = errors.clone();
         self.rule.lower(model, &errors, iterations, &mut penalties);
         let sum = errors.sum();
         if growth > sum && sum > 0.0 {
             errors.forces.iter_mut().for_each(|e| *e *= growth / sum);
             self.rule.raise(model, &errors, false, &mut penalties);
         }
+        (self.rule).remember(&last, &self.assembler.penalties, &penalties);
         self.assembler.penalties.copy_from_slice(&penalties);
         self.hold_given();
+    }
+
+    /// Softens penalties that the run may choose where a step has failed under some that are far stiffer than asked for; whether there
+    /// were any. The step is then worth another attempt before it is cut.
+    pub(super) fn eases(&mut self, step: u32, failure: &StepFailure) -> bool {
+        if !failure.finds_none() {
+            return false;
+        }
+        let mut penalties = self.assembler.penalties.clone();
+        if !self.rule.ease(self.model, &mut penalties) {
+            return false;
+        }
+        self.take_back(&penalties);
+        self.observer.event(&Event::StepRetried {
+            step,
+            start: "softer penalties of contacts that are stiffer than asked for".to_owned(),
+            reason: failure.to_string(),
+        });
+        true
     }
 
     /// Takes the penalties that there were before a raise.

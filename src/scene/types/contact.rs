@@ -28,8 +28,8 @@ pub struct Contact {
     pub passes: Passes,
     #[serde(default)]
     pub penalty: Penalty,
-    /// Relative error of forces that the automatic penalty aims at; default: 4e-3, and 1e-4 where a stage releases the contact. Only
-    /// where no penalty is given.
+    /// Relative error of forces that the automatic penalty aims at; default: 4e-3, and 1e-4 where a stage releases the contact,
+    /// until its penalty is rigid beside the thickness of the body. Only where no penalty is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<f64>,
     #[serde(default)]
