@@ -71,3 +71,35 @@ fn a_strip_between_rollers_turns_about_a_plastic_hinge() {
     assert!(summary.newton_iterations < 160 && summary.failed_iterations < 60);
     assert_eq!(summary.cuts, 0);
 }
+
+/// A sheet that lies on a plane while its punch is still on the way is in equilibrium: no iteration, and no word of what
+/// rounding makes of nothing.
+#[test]
+fn a_sheet_that_lies_untouched_is_left_alone() {
+    let outcome = solve(&json!({
+        "covact": 1,
+        "materials": { "steel": { "neo_hooke": { "E": 205000, "nu": 0.3 } } },
+        "bodies": { "sheet": {
+            "mesh": { "plate": { "size": [10, 4], "thickness": 1, "elements": [10, 4] } }, "material": "steel"
+        } },
+        "surfaces": {
+            "floor": { "plane": { "center": [5, 2, -0.5], "size": [30, 30] } },
+            "punch": {
+                "sphere": { "radius": 3, "center": [0, 0, 4.5] }, "motion": { "translation": [0, 0, "-0.5*t"] }
+            }
+        },
+        "contacts": {
+            "below": { "slave": "sheet.bottom", "master": "floor" },
+            "above": { "slave": "sheet.top", "master": "punch" }
+        },
+        "supports": {
+            "side": { "on": "sheet.x_min", "symmetry": "x" },
+            "back": { "on": "sheet.y_min", "symmetry": "y" }
+        },
+        "output": { "every": 0 }
+    }));
+    let summary = &outcome.summary;
+    assert_eq!(summary.status, RunStatus::NoContact);
+    assert_eq!(summary.newton_iterations, 0);
+    assert!(summary.warnings.is_empty(), "{:?}", summary.warnings);
+}

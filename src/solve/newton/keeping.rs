@@ -2,6 +2,7 @@
 use super::{MANY_OPENED, MOST_OPEN, Newton, SECANTS};
 use crate::assembly::{Fault, Linearization, Totals};
 use crate::model::state::{PointState, State};
+use crate::solve::convergence::Verdict;
 use crate::system::linear::LinearSolver;
 
 impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
@@ -35,7 +36,15 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             }
         };
         self.opened = opened;
-        if !(self.first.hold && opened || self.first.keep && most) {
+        let mut keeps = self.first.hold && opened || self.first.keep && most;
+        if let (true, false, Ok(totals)) = (keeps, pending, &totals) {
+            // In equilibrium without them: what lies on its master before anything moves is not to be held by rounding.
+            let verdict = self
+                .norms(trial, totals)
+                .judge(self.settings.tolerance, true);
+            keeps = verdict != Verdict::Converged;
+        }
+        if !keeps {
             return Ok((totals?, secants));
         }
         trial.points.copy_from_slice(&self.workspace.base.points);
