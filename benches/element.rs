@@ -50,6 +50,7 @@ fn element(c: &mut Criterion) {
             Formulation::Eas3,
             Formulation::Eas0,
             Formulation::Displacement,
+            Formulation::MeanDilatation,
             Formulation::Layered,
         ] {
             let Ok(block) = H8Block::new(&mesh, formulation, law) else {

@@ -214,9 +214,8 @@ impl PenaltyRule {
     pub fn ease(&mut self, model: &Model, penalties: &mut [f64]) -> bool {
         let before = penalties.to_vec();
         for (index, pair) in model.pairs.iter().enumerate() {
-            if let Some(factor) = softer(pair, self.pairs[index].last, before[index]) {
-                let eps = penalties[index].min(before[index] * factor.max(EASE));
-                set(model, index, eps, penalties);
+            if let Some(factor) = softer(pair, index, |i| self.pairs[i].last, before[index]) {
+                set(model, index, before[index] * factor.max(EASE), penalties);
             }
         }
         let all = self.pairs.iter_mut().zip(before.iter().zip(&*penalties));
@@ -240,11 +239,8 @@ impl PenaltyRule {
             if rule.remembered == 0 {
                 (rule.bad, rule.failed) = (f64::INFINITY, 0);
             }
-            let Some(factor) = softer(
-                pair,
-                [errors.forces[index], errors.sunk[index]],
-                penalties[index],
-            ) else {
+            let of = |i: usize| [errors.forces[i], errors.sunk[i]];
+            let Some(factor) = softer(pair, index, of, penalties[index]) else {
                 rule.low = [0; 2];
                 continue;
             };
@@ -253,12 +249,8 @@ impl PenaltyRule {
             *sum = sum.saturating_add(iterations);
             if *steps >= IDLE && *sum > MANY * *steps {
                 rule.low = [0; 2];
-                set(
-                    model,
-                    index,
-                    penalties[index] * factor.max(LOWER),
-                    penalties,
-                );
+                let eps = penalties[index] * factor.max(LOWER);
+                set(model, index, eps, penalties);
                 lowered = true;
             } else if *steps >= IDLE {
                 rule.low = [0; 2];
@@ -269,9 +261,17 @@ impl PenaltyRule {
 }
 
 /// Factor, at most 1, to a penalty that makes the error asked for, where that of now makes next to none; none where it does, or
-/// where nothing touches and nothing is known.
-fn softer(pair: &PairModel, [error, sunk]: [f64; 2], penalty: f64) -> Option<f64> {
-    let ruled = pair.ruled?;
+/// where nothing touches and nothing is known. Of two half passes, which have one penalty, the larger error counts, and the
+/// second goes with the first. `of` are error and depth of a pair.
+fn softer(
+    pair: &PairModel,
+    index: usize,
+    of: impl Fn(usize) -> [f64; 2],
+    penalty: f64,
+) -> Option<f64> {
+    let ruled = pair.ruled.filter(|_| pair.half.is_none_or(|h| !h.back))?;
+    let ([a, b], [c, d]) = (of(index), of(pair.half.map_or(index, |half| half.other)));
+    let (error, sunk) = (a.max(c), b.max(d));
     let aim = ruled.aim(penalty);
     if error <= 0.0 || error >= LOW * aim {
         return None;
@@ -385,20 +385,19 @@ mod tests {
         assert_eq!(raised([1e-6, 1e-6], [0.0, 2.0]), [1.0, 20.0]);
     }
 
+    /// What the first penalty becomes for an error of its pair.
+    fn raised(rule: &PenaltyRule, model: &Model, again: bool, error: f64, from: f64) -> f64 {
+        let mut penalties = vec![from; 2];
+        let errors = errors([error, 0.0], [0.0; 2]);
+        rule.raise(model, &errors, again, &mut penalties);
+        (penalties[0] * 1e6).round() / 1e6
+    }
+
     #[test]
     fn a_penalty_that_did_not_serve_is_approached_by_halves_and_forgotten() {
         let (model, mut rule) = (model(), PenaltyRule::new(&model()));
         rule.reject(&[1.0, 1.0], &[100.0, 1.0]);
-        let of = |rule: &PenaltyRule, again, error| {
-            let mut penalties = vec![1.0, 1.0];
-            rule.raise(
-                &model,
-                &errors([error, 0.0], [0.0; 2]),
-                again,
-                &mut penalties,
-            );
-            (penalties[0] * 1e6).round() / 1e6
-        };
+        let of = |rule: &PenaltyRule, again, error| raised(rule, &model, again, error, 1.0);
         // Half as far, by the logarithm; not at once in a later step, unless the error is large.
         assert_eq!(of(&rule, true, 0.02), 5.0);
         assert_eq!(of(&rule, true, 0.2), 10.0);
@@ -428,16 +427,7 @@ mod tests {
             (ruled.accuracy, ruled.rigid) = (1e-4, 50.0);
         }
         let rule = PenaltyRule::new(&model);
-        let raised = |error, penalty| {
-            let mut penalties = vec![penalty; 2];
-            rule.raise(
-                &model,
-                &errors([error, 0.0], [0.0; 2]),
-                false,
-                &mut penalties,
-            );
-            (penalties[0] * 1e6).round() / 1e6
-        };
+        let raised = |error, from| raised(&rule, &model, false, error, from);
         // By a hundred for an error of a hundredth; up to what is rigid; beyond it as far as others go, and as they do.
         assert_eq!(raised(1e-3, 1.0), 10.0);
         assert_eq!(raised(0.01, 1.0), 50.0);

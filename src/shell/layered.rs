@@ -14,7 +14,8 @@ use super::material::{Collapsed, MaterialLaw, Metric, state_of};
 use super::reference::{
     BASE, GP, LINE, PARAMETERS, TYING, WEIGHT, contravariant, det, enhanced, metric_of, sign,
 };
-use super::tangent::{Column, Sums, add_membrane, add_parameters, condense, state_len};
+use super::sums::{Column, Sums, add_membrane, add_parameters};
+use super::tangent::{condense, state_len};
 use crate::fem::quadrature::GAUSS_3;
 use num_dual::DualNum;
 

@@ -29,6 +29,7 @@ mod nurbs;
 mod q18;
 mod reference;
 mod stress;
+mod sums;
 mod tangent;
 #[cfg(test)]
 mod tests;

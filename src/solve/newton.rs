@@ -178,7 +178,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let (mut touched, mut keep, mut bends) = (false, false, false);
         // The first correction, or the motion, has opened most points.
         let mut far = self.first.keep && self.assembler.linearization.keep_active;
-        // Times that the last contact of a body that nothing else holds was kept.
+        // Contact alone holds a body: supports, or inertia, hold others, which may well leave a surface. Times that its last points
+        // were kept.
+        let alone = self.model.stabilization.is_some() && self.model.dynamics.is_none();
         let mut held_back = 0;
         let searches = self.first.search || self.model.flows();
         let (mut cycle, mut round, mut damped) = (Cycle::default(), None::<PingPong>, 0u32);
@@ -320,8 +322,6 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 totals = kept;
                 far = true;
             }
-            // Supports, or inertia, hold others, which may well leave a surface.
-            let alone = self.model.stabilization.is_some() && self.model.dynamics.is_none();
             let lost = alone
                 && (touching.iter().zip(&totals.touching)).any(|(before, now)| *before && !now);
             if lost

@@ -37,6 +37,24 @@ struct Tried {
     totals: Totals,
 }
 
+impl Tried {
+    /// Takes what the raise has changed for what is left of the error ([`RigidLimit::bound`]), by the smallest factor of the contacts
+    /// that touch: one that was not raised shows nothing.
+    fn bound(
+        &self,
+        model: &Model,
+        limit: &mut RigidLimit,
+        (state, penalties, totals): (&State, &[f64], &Totals),
+    ) {
+        let raised = penalties.iter().zip(&self.penalties).zip(&totals.touching);
+        let factors = raised.filter(|(_, touches)| **touches);
+        let factor = (factors.map(|((now, was), _)| now / was)).fold(f64::INFINITY, f64::min);
+        let ways = state.u[..3 * model.body_nodes()].iter().zip(&self.state.u);
+        let moved = ways.fold(0.0f64, |most, (now, was)| most.max((now - was).abs()));
+        limit.bound(model, [&self.totals, totals], moved, factor);
+    }
+}
+
 /// Whether an equilibrium is more than what rounding leaves.
 fn reliable(converged: &Converged) -> bool {
     (converged.history.last()).is_none_or(|last| last.0 <= RELIABLE)
@@ -108,17 +126,8 @@ impl<'m> March<'_, 'm> {
                 false => None,
             };
             if let (Some(limit), Some(tried)) = (&mut limit, &tried) {
-                // What was not raised shows nothing.
-                let raised = self.assembler.penalties.iter().zip(&tried.penalties);
-                let raised = raised.zip(&converged.totals.touching);
-                let factors = raised.filter(|(_, touches)| **touches);
-                let factor =
-                    (factors.map(|((now, was), _)| now / was)).fold(f64::INFINITY, f64::min);
-                let bodies = 3 * self.model.body_nodes();
-                let ways = trial.u[..bodies].iter().zip(&tried.state.u);
-                let moved = ways.fold(0.0f64, |most, (now, was)| most.max((now - was).abs()));
-                let totals = [&tried.totals, &converged.totals];
-                limit.bound(self.model, totals, moved, factor);
+                let penalties = &self.assembler.penalties;
+                tried.bound(self.model, limit, (trial, penalties, &converged.totals));
             }
             let Some(fields) = &fields else {
                 let sticking = self.sticking(limit.is_some(), trial, &histories, bearings, end)?;
