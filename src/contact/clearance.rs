@@ -56,7 +56,7 @@ impl Clearance {
 mod tests {
     use super::*;
     use crate::contact::law::{Penalty, Shifted};
-    use crate::contact::rigid::{Exact, RigidMaster};
+    use crate::contact::rigid::{Exact, Hanging, RigidMaster};
     use covact_geometry::PatchSet;
     use covact_geometry::primitives::{plane, sphere};
     use nalgebra::{Isometry3, UnitQuaternion};
@@ -93,12 +93,20 @@ mod tests {
             };
             let placed = master.placed();
             let known = placed.proves_open(&x, &clear, &law);
-            let fresh = master.touch(&x, &mut None, &law, &Exact).unwrap();
+            let fresh = master
+                .touch(&x, (&mut None, Hanging::default()), &law, &Exact)
+                .unwrap();
             left_out += u32::from(known);
             closed += u32::from(fresh.is_some());
             assert!(!(known && fresh.is_some()), "step {step}");
             let mut out = Ok(None);
-            placed.touch_into(&x, (&mut hint, &mut clear), &law, &Exact, &mut out);
+            placed.touch_into(
+                &x,
+                (&mut hint, &mut clear, Hanging::default()),
+                &law,
+                &Exact,
+                &mut out,
+            );
             assert_eq!(out.unwrap().is_some(), fresh.is_some(), "step {step}");
         }
         assert!(left_out > 500 && closed > 500, "{left_out} {closed}");

@@ -6,8 +6,8 @@
 //! past its border by a little, as long as this changes its gap by less than contact gives way anyhow. A point in the zone of a
 //! valley of a deforming master is left alone: the edge holds it from both sides.
 //!
-//! At a free border the same holds: a point of which Poisson's ratio makes the last digit hang over would lose all of its
-//! pressure at once, come back, and lose it again.
+//! At a free border of a body the same holds: a point of which Poisson's ratio makes the last digit hang over would lose all of
+//! its pressure at once, come back, and lose it again.
 use super::law::NormalLaw;
 use covact_geometry::{Hint, Vec3};
 
@@ -43,15 +43,4 @@ pub(super) fn held(hint: Hint) -> Hint {
         }),
         ..hint
     }
-}
-
-/// How far a point may hang over a free border of a rigid surface, in terms of the penetration that its traction stands for.
-/// Patches of CAD may be of any size, so that their width says nothing.
-const HANG: f64 = 10.0;
-
-/// Whether a point that was inside of a free border may stay in contact with normal coordinate `kept`, `overhang` past it.
-#[inline]
-pub(super) fn may_hang<L: NormalLaw>(law: &L, kept: f64, overhang: f64) -> bool {
-    let response = law.response(kept);
-    law.closes(kept) && overhang * response.dn <= HANG * response.n.abs()
 }

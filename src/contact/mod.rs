@@ -3,7 +3,8 @@
 //! - [`kernel`]: face points in nine slots, [`corner`]: edges and vertices, [`published`]: the published tangent;
 //! - [`point`]: one response for all of them, [`law`]: what the traction is;
 //! - [`rigid`], [`moving`]: closest points on masters that do not move or whose nodes do, [`meeting`]: what both give,
-//!   [`placed`]: many points on a rigid one, [`clearance`]: those that are open without a search;
+//!   [`placed`]: many points on a rigid one, [`clearance`]: those that are open without a search, `overhang`: those past a free
+//!   border;
 //! - [`kind`]: what a batch of points is compiled for;
 //! - [`friction`]: slip, its laws and its history;
 //! - [`spin`]: a rigid body's translation and spin in the slots, [`averaged`]: the gap in the mean of slave nodes.
@@ -44,6 +45,7 @@ pub mod law;
 pub mod lever;
 pub mod meeting;
 pub mod moving;
+mod overhang;
 pub mod placed;
 pub mod point;
 pub mod points;

@@ -4,6 +4,7 @@ use super::closest::ClosestPoint;
 use super::keep;
 use super::kernel::Normal;
 use super::law::NormalLaw;
+use super::overhang::{Hanging, Overhang};
 use super::point::PointGeometry;
 use super::rigid::{
     Piece, PointFault, RigidMaster, RigidTangent, Touch, free, respond_rigid, respond_steady,
@@ -57,19 +58,20 @@ impl<P> Placed<'_, P> {
 impl<P: ClosestPoint> Placed<'_, P> {
     /// Evaluates one slave point; `None` where it is open.
     ///
-    /// `hint` is where the search starts, and is set to where it ended.
+    /// `hint` is where the search starts, and is set to where it ended; `may` is what it may do past a free border.
     ///
     /// # Errors
     /// [`PointFault`] where the point has no reliable closest point.
     pub fn touch<L: NormalLaw, T: RigidTangent>(
         &self,
         x: &Vec3,
-        hint: &mut Option<Hint>,
+        (hint, may): (&mut Option<Hint>, Hanging),
         law: &L,
         tangent: &T,
     ) -> Result<Option<Touch>, PointFault> {
         let mut out = Ok(None);
-        self.touch_into(x, (hint, &mut Clearance::default()), law, tangent, &mut out);
+        let known = (hint, &mut Clearance::default(), may);
+        self.touch_into(x, known, law, tangent, &mut out);
         out
     }
 
@@ -85,7 +87,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
     pub fn touch_into<L: NormalLaw, T: RigidTangent>(
         &self,
         x: &Vec3,
-        (hint, clear): (&mut Option<Hint>, &mut Clearance),
+        (hint, clear, may): (&mut Option<Hint>, &mut Clearance, Hanging),
         law: &L,
         tangent: &T,
         out: &mut Result<Option<Touch>, PointFault>,
@@ -124,7 +126,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
             self.keep(&local, on, law, foot, hint);
         }
         if free(foot) {
-            *out = Ok(None);
+            *out = Ok(self.past_border(x, &local, foot, law, may));
             return;
         }
         let xi3 = foot.signed_distance;
@@ -149,6 +151,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
             xi3,
             gap: law.gap(xi3),
             n: normal.n,
+            weight: 1.0,
         }));
     }
 
@@ -178,8 +181,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
         Ok(law.closes(xi3) && xi3 >= -self.master.depth)
     }
 
-    /// Puts the foot on the patch `on` in the place of the closest point, where it may stand for it: across a fold, and at a free
-    /// border that the point has not left yet.
+    /// Puts the foot on the patch `on` in the place of the closest point, where it may stand for it across a fold.
     #[cold]
     #[inline(never)]
     fn keep<L: NormalLaw>(
@@ -190,28 +192,14 @@ impl<P: ClosestPoint> Placed<'_, P> {
         foot: &mut Foot,
         hint: &mut Option<Hint>,
     ) {
-        let border = free(foot);
-        // One that was outside stays there.
-        if border && (on.patch != foot.patch || (0..2).any(|k| on.xi[k] == foot.xi[k])) {
-            return;
-        }
         let Some(kept) = self.master.surface.project_on(local, on, keep::BEYOND) else {
             return;
         };
         let xi3 = foot.signed_distance;
-        let stands = if border {
-            keep::may_hang(
-                law,
-                kept.signed_distance,
-                (kept.jet.rho - foot.jet.rho).norm(),
-            )
-        } else {
-            // Below the surface the force acts along the distance.
-            let towards = (foot.jet.rho - local) * -xi3.signum();
-            let towards = towards.try_normalize(0.0).unwrap_or(foot.normal);
-            keep::may_stand(law, (kept.signed_distance, &kept.normal), (xi3, &towards))
-        };
-        if stands {
+        // Below the surface the force acts along the distance.
+        let towards = (foot.jet.rho - local) * -xi3.signum();
+        let towards = towards.try_normalize(0.0).unwrap_or(foot.normal);
+        if keep::may_stand(law, (kept.signed_distance, &kept.normal), (xi3, &towards)) {
             *foot = kept;
             *hint = Some(kept.hint());
         }
@@ -234,7 +222,40 @@ impl<P: ClosestPoint> Placed<'_, P> {
             None => respond_rigid(&geometry, &normal, tangent),
             Some(steady) => respond_steady(&steady, &normal),
         };
-        Ok(self.in_space(x, &geometry, law, &normal, residual, k))
+        Ok(self.in_space(x, geometry.xi3(), law, &normal, residual, k))
+    }
+
+    /// [`Self::touch`] of a point whose foot lies on a free border; `None` where it is open.
+    #[cold]
+    #[inline(never)]
+    fn past_border<L: NormalLaw>(
+        &self,
+        x: &Vec3,
+        local: &Vec3,
+        foot: &Foot,
+        law: &L,
+        may: Hanging,
+    ) -> Option<Touch> {
+        let (over, normal) = self.hanging(local, foot, law)?;
+        let (gap, psi) = (law.gap(over.xi3), law.energy(over.xi3));
+        let faded = over.fade_by_energy(may, gap, &normal, psi)?;
+        let (residual, tangent) = (faded.residual, faded.tangent);
+        Some(Touch {
+            weight: faded.weight,
+            ..self.in_space(x, over.xi3, law, &normal, residual, tangent)
+        })
+    }
+
+    /// How a point at `local` hangs over the free border at its foot, and the whole of its normal traction; `None` where it is
+    /// not below the surface.
+    pub(super) fn hanging<L: NormalLaw>(
+        &self,
+        local: &Vec3,
+        foot: &Foot,
+        law: &L,
+    ) -> Option<(Overhang, Normal)> {
+        let over = self.master.overhang(foot, &(local - foot.jet.rho));
+        (law.closes(over.xi3)).then(|| (over, law.response(over.xi3)))
     }
 
     /// Searches for the foot of a slave point at `x`, and gives the point in the surface's own coordinates and its foot to
@@ -245,7 +266,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
         x: &Vec3,
         (hint, clear): (&mut Option<Hint>, &mut Clearance),
         law: &L,
-        then: impl FnOnce(&Vec3, &Foot) -> Result<R, PointFault>,
+        then: impl FnOnce(&Vec3, &Foot) -> Result<Option<R>, PointFault>,
     ) -> Result<Option<R>, PointFault> {
         if !(x.x.is_finite() && x.y.is_finite() && x.z.is_finite()) {
             return Err(PointFault::NotFinite);
@@ -269,10 +290,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
         if let Some(on) = before.filter(|on| self.master.keep && leaves(foot, on)) {
             self.keep(&local, on, law, foot, hint);
         }
-        if free(foot) {
-            return Ok(None);
-        }
-        then(&local, foot).map(Some)
+        then(&local, foot)
     }
 
     /// What the surface looks like at the foot of a point at `local`, which must be the closest.
@@ -288,7 +306,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
     pub(super) fn in_space<L: NormalLaw>(
         &self,
         x: &Vec3,
-        geometry: &PointGeometry,
+        xi3: f64,
         law: &L,
         normal: &Normal,
         residual: Vec3,
@@ -298,17 +316,18 @@ impl<P: ClosestPoint> Placed<'_, P> {
             x: *x,
             residual: self.turned(&residual),
             tangent: self.turned_tangent(&tangent),
-            xi3: geometry.xi3(),
-            gap: law.gap(geometry.xi3()),
+            xi3,
+            gap: law.gap(xi3),
             n: normal.n,
+            weight: 1.0,
         }
     }
 }
 
-/// Whether a foot has left the patch that it was on, or lies on its border or a crease.
+/// Whether a foot has left the patch that it was on, or lies on its border or a crease, and not on a free one.
 #[inline(always)]
 fn leaves(foot: &Foot, on: &Hint) -> bool {
-    foot.patch != on.patch || !matches!(foot.location, Location::Face)
+    (foot.patch != on.patch || !matches!(foot.location, Location::Face)) && !free(foot)
 }
 
 /// The frame of a foot on a face that no pole is next to.
@@ -369,7 +388,11 @@ mod tests {
             assert_eq!(foot.status, Status::NonUnique, "{z}");
             let mut hint = None;
             for _ in 0..2 {
-                assert_eq!(master.touch(&x, &mut hint, &law, &Exact), Ok(None), "{z}");
+                assert_eq!(
+                    master.touch(&x, (&mut hint, Hanging::default()), &law, &Exact),
+                    Ok(None),
+                    "{z}"
+                );
                 assert!(hint.is_some());
             }
         }

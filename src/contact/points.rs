@@ -1,4 +1,8 @@
 //! Slave points: where contact is sampled on the slave surface.
+use super::overhang::Hanging;
+
+/// Part of the narrower side of what a point stands for by which it may hang over a free border of a rigid surface.
+pub const PAST: f64 = 0.25;
 
 /// A slave point: a fixed combination of at most nine nodes, standing for a piece of the undeformed slave area. Where it has
 /// none it is at a height above a surface: the model holds its [`Lever`](super::lever::Lever), whose number is in the place of the
@@ -12,16 +16,19 @@ pub struct SlavePoint {
     pub count: u8,
     /// Tributary area on the undeformed surface (length^2).
     pub area: f64,
+    /// How far past a free border of a rigid surface the point is carried on: [`PAST`] of the narrower side of that piece (length).
+    pub width: f64,
 }
 
 impl SlavePoint {
-    /// A point at a node.
+    /// A point at a node, whose piece is as wide as it is long.
     pub fn at_node(node: u32, area: f64) -> Self {
         SlavePoint {
             nodes: [node, 0, 0, 0, 0, 0, 0, 0, 0],
             shape: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             count: 1,
             area,
+            width: PAST * area.sqrt(),
         }
     }
 
@@ -30,6 +37,15 @@ impl SlavePoint {
         SlavePoint {
             count: 0,
             ..SlavePoint::at_node(number, area)
+        }
+    }
+
+    /// What it may do past a free border of a rigid surface, having been `closed` or not.
+    #[inline]
+    pub fn hanging(&self, closed: bool) -> Hanging {
+        Hanging {
+            width: self.width,
+            closed,
         }
     }
 

@@ -6,6 +6,8 @@ use super::kernel::{self, Normal};
 use super::kind::TangentForm;
 use super::law::NormalLaw;
 use super::meeting::Meeting;
+pub use super::overhang::Hanging;
+use super::overhang::Overhang;
 use super::point::PointGeometry;
 use super::published::{self, Parts};
 use covact_geometry::{EdgeKind, Foot, Frame, Hint, Jet, Location, PatchSet, Status, Vec3};
@@ -75,6 +77,8 @@ pub struct Touch {
     pub gap: f64,
     /// Normal traction, negative.
     pub n: f64,
+    /// Part of the point's area that the traction acts on: 1, but for a point that hangs over a free border.
+    pub weight: f64,
 }
 
 impl<P: ClosestPoint> RigidMaster<'_, P> {
@@ -84,20 +88,29 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         self.surface.project(&local, hint, reach)
     }
 
+    /// Normal coordinate of a point at `x` that hangs over the free border at its foot, and the part of its traction that is left,
+    /// where its gap is measured from `z0`; none where it is open.
+    pub fn hanging(&self, x: &Vec3, foot: &Foot, z0: f64, may: Hanging) -> Option<(f64, f64)> {
+        let local = self.pose.inverse_transform_point(&Point3::from(*x)).coords;
+        let over = self.overhang(foot, &(local - foot.jet.rho));
+        Some((over.xi3, over.weight(may, over.xi3 - z0)?))
+    }
+
     /// Evaluates one slave point; `None` where it is open. For many points make [`Self::placed`] once.
     ///
-    /// `hint` is where the search starts, and is set to where it ended.
+    /// `hint` is where the search starts, and is set to where it ended; `may` is what it may do past
+    /// a free border.
     ///
     /// # Errors
     /// [`PointFault`] where the point has no reliable closest point.
     pub fn touch<L: NormalLaw, T: RigidTangent>(
         &self,
         x: &Vec3,
-        hint: &mut Option<Hint>,
+        (hint, may): (&mut Option<Hint>, Hanging),
         law: &L,
         tangent: &T,
     ) -> Result<Option<Touch>, PointFault> {
-        self.placed().touch(x, hint, law, tangent)
+        self.placed().touch(x, (hint, may), law, tangent)
     }
 
     /// The closest point within `reach` on either side, for what needs more than [`Self::touch`]: a rigid surface with
@@ -153,11 +166,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
                 edge,
                 kind: EdgeKind::Sharp,
             } => {
-                let line = if edge < 4 {
-                    along_side(foot, 1 - edge as usize / 2)
-                } else {
-                    (self.surface.edge_derivatives(patch, edge, xi)).ok_or(degenerate)?
-                };
+                let line = self.along_edge(foot, edge).ok_or(degenerate)?;
                 Ok(self.on_line(foot, line, d))
             }
             Location::Crease { dir } => {
@@ -219,10 +228,35 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         Some(corner::steady(d, xi3, line, &foot.normal, &m_turn, radius))
     }
 
+    /// First and second derivative along the edge that a foot lies on.
+    fn along_edge(&self, foot: &Foot, edge: u32) -> Option<[Vec3; 2]> {
+        match edge {
+            0..4 => Some(along_side(foot, 1 - edge as usize / 2)),
+            _ => self.surface.edge_derivatives(foot.patch, edge, foot.xi),
+        }
+    }
+
+    /// How a point hangs over the free border that its foot lies on, at `d` from there.
+    pub(super) fn overhang(&self, foot: &Foot, d: &Vec3) -> Overhang {
+        let line = match foot.location {
+            Location::Edge { edge, .. } => self.along_edge(foot, edge),
+            _ => None,
+        };
+        // Where another line crosses this one, the foot may be held along it too.
+        let border = (line.filter(|[rho_s, _]| !self.leans(d, rho_s)))
+            .map(|[rho_s, rho_ss]| [rho_s, rho_ss, self.surface.normal_along(foot, &rho_s)]);
+        Overhang::new(d, foot.normal, border)
+    }
+
+    /// Whether a distance vector leans along a line.
+    fn leans(&self, d: &Vec3, rho_s: &Vec3) -> bool {
+        d.dot(rho_s).abs() > HELD * self.surface.size() * rho_s.norm()
+    }
+
     fn on_line(&self, foot: &Foot, [rho_s, rho_ss]: [Vec3; 2], d: &Vec3) -> PointGeometry {
         let (d, xi3) = (*d, foot.signed_distance);
         // Where another line crosses this one, the foot may be held along it too.
-        if d.dot(&rho_s).abs() > HELD * self.surface.size() * rho_s.norm() {
+        if self.leans(&d, &rho_s) {
             PointGeometry::Vertex { d, xi3 }
         } else {
             PointGeometry::Edge {
@@ -356,7 +390,9 @@ mod tests {
             for turn in [0.0f64, 0.7, 2.0, 4.0] {
                 let beside = Vec3::new(turn.cos(), turn.sin(), 0.0) * away;
                 let x = at + beside - Vec3::z() * (radius - 1e-3);
-                let touch = master.touch(&x, &mut None, &law, &Exact).unwrap();
+                let touch = master
+                    .touch(&x, (&mut None, Hanging::default()), &law, &Exact)
+                    .unwrap();
                 let touch = touch.expect("contact");
                 let n = (x - at).normalize();
                 let gap = (x - at).norm() - radius;
@@ -383,7 +419,7 @@ mod tests {
             law: Penalty { eps_n: 5.0 },
             z0: 0.5,
         };
-        let touch = |x: Vec3| master.touch(&x, &mut None, &law, &Exact);
+        let touch = |x: Vec3| master.touch(&x, (&mut None, Hanging::default()), &law, &Exact);
         // Above the peak, a ridge and a face: pushed away from the vertex, the ridge, the face.
         for (x, n) in [
             (Vec3::new(0.32, 0.01, 0.4), Vec3::new(0.02, 0.01, 0.4)),
@@ -429,7 +465,14 @@ mod tests {
         };
         let normal = Vec3::new(1.0, 1.0, 1.0).normalize();
         let foot = Vec3::new(0.4, 0.3, -0.7);
-        let touch = |gap: f64| master.touch(&(foot + normal * gap), &mut None, &law, &Exact);
+        let touch = |gap: f64| {
+            master.touch(
+                &(foot + normal * gap),
+                (&mut None, Hanging::default()),
+                &law,
+                &Exact,
+            )
+        };
         let at = touch(0.019).unwrap().expect("held up to 0.1 / 5");
         assert!((at.n + 0.005).abs() < 1e-12 && (at.gap - 0.019).abs() < 1e-12);
         assert_eq!(touch(0.0201), Ok(None));
@@ -448,7 +491,7 @@ mod tests {
         };
         let law = Penalty { eps_n: 5.0 };
         let touch = |x: Vec3| {
-            (master.touch(&x, &mut None, &law, &Exact))
+            (master.touch(&x, (&mut None, Hanging::default()), &law, &Exact))
                 .unwrap()
                 .expect("contact")
         };

@@ -171,6 +171,17 @@ impl Quad {
         sum
     }
 
+    /// Shortest distance of neighbouring nodes (length).
+    pub fn spacing(&self) -> f64 {
+        let [nu, nv] = self.count.map(usize::from);
+        let between = |a: usize, b: usize| (self.nodes[a] - self.nodes[b]).norm();
+        let along_u = (0..nu * nv)
+            .filter(|k| k % nu > 0)
+            .map(|k| between(k, k - 1));
+        let along_v = (nu..nu * nv).map(|k| between(k, k - nu));
+        along_u.chain(along_v).fold(f64::INFINITY, f64::min)
+    }
+
     /// Area (length^2).
     pub fn area(&self) -> f64 {
         self.weights().iter().sum()

@@ -70,12 +70,13 @@ fn initial_gaps(
     let normals = pair.body_master().map(|_| slave_normals(model, pair));
     for (i, p) in pair.points.iter().enumerate() {
         let x = model.point_position(p, &zero);
-        let Some(seen) = master.see(i, &x, hint) else {
+        let z0 = offsets.map_or(0.0, |o| o.at(i));
+        let may = (z0, p.hanging(false));
+        let Some(seen) = master.see_hanging((i, &x), hint, f64::INFINITY, may) else {
             gaps.push(f64::NAN);
             continue;
         };
         hint = Some(seen.hint);
-        let z0 = offsets.map_or(0.0, |o| o.at(i));
         let distance = seen.gap(z0);
         if distance < gap.smallest {
             gap.smallest = distance;

@@ -4,10 +4,10 @@ use super::state::heap;
 use super::surface::SurfaceSet;
 use super::{Model, PairModel};
 use crate::contact::moving;
-use crate::contact::rigid::{self, RigidMaster};
+use crate::contact::rigid::{self, Hanging, RigidMaster};
 use crate::mesh::{Face, Mesh};
 use crate::scene::ValueError;
-use covact_geometry::{Hint, MovingError, MovingFacets, Vec3};
+use covact_geometry::{Foot, Hint, MovingError, MovingFacets, Vec3};
 
 /// What the slave points of a pair meet. Chosen once, when the model is built.
 #[derive(Debug)]
@@ -185,6 +185,8 @@ pub struct Seen {
     pub free: bool,
     /// Below the surface and deeper than its depth: not in contact, though not outside either.
     pub behind: bool,
+    /// Part of the point's area that may be in contact: 1, but for a point that hangs over a free border.
+    pub weight: f64,
 }
 
 impl Master {
@@ -198,6 +200,18 @@ impl Master {
 }
 
 impl Seen {
+    fn rigid(master: &RigidMaster<'_, SurfaceSet>, foot: &Foot) -> Self {
+        Seen {
+            hint: foot.hint(),
+            distance: foot.distance,
+            signed_distance: foot.signed_distance,
+            normal: master.pose.rotation * foot.normal,
+            free: rigid::free(foot),
+            behind: rigid::behind(foot, master.depth),
+            weight: 1.0,
+        }
+    }
+
     /// Whether the point faces the surface from the front, or from no deeper below it than its depth.
     pub fn counts(&self) -> bool {
         !self.free && !self.behind
@@ -232,6 +246,31 @@ impl MasterNow<'_> {
         self.see_within(point, x, hint, f64::INFINITY)
     }
 
+    /// [`MasterNow::see_within`] of a point that may hang over a free border of a rigid surface, where its gap is measured from
+    /// `z0`: such a one counts.
+    pub fn see_hanging(
+        &self,
+        (point, x): (usize, &Vec3),
+        hint: Option<Hint>,
+        reach: f64,
+        (z0, may): (f64, Hanging),
+    ) -> Option<Seen> {
+        let MasterNow::Rigid(master) = self else {
+            return self.see_within(point, x, hint, reach);
+        };
+        let foot = master.foot(x, hint, reach)?;
+        let seen = Seen::rigid(master, &foot);
+        let over = (seen.free)
+            .then(|| master.hanging(x, &foot, z0, may))
+            .flatten();
+        Some(over.map_or(seen, |(signed_distance, weight)| Seen {
+            signed_distance,
+            free: false,
+            weight,
+            ..seen
+        }))
+    }
+
     /// [`MasterNow::see`] up to a distance.
     pub fn see_within(
         &self,
@@ -243,18 +282,7 @@ impl MasterNow<'_> {
         match self {
             MasterNow::Rigid(master) => {
                 let foot = master.foot(x, hint, reach)?;
-                let behind = rigid::behind(&foot, master.depth);
-                Some(Seen {
-                    hint: Hint {
-                        patch: foot.patch,
-                        xi: foot.xi,
-                    },
-                    distance: foot.distance,
-                    signed_distance: foot.signed_distance,
-                    normal: master.pose.rotation * foot.normal,
-                    free: rigid::free(&foot),
-                    behind,
-                })
+                Some(Seen::rigid(master, &foot))
             }
             MasterNow::Body {
                 model,
@@ -284,6 +312,7 @@ impl MasterNow<'_> {
                     normal: foot.normal,
                     free: moving::free(&foot, x),
                     behind,
+                    weight: 1.0,
                 })
             }
         }

@@ -1,6 +1,6 @@
 //! Slave points of a contact pair from the faces of a body.
 use super::state::PointState;
-use crate::contact::points::SlavePoint;
+use crate::contact::points::{PAST, SlavePoint};
 use crate::fem::Quad;
 use crate::fem::face::shape;
 use crate::fem::quadrature::{self, QuadratureError, Rule};
@@ -9,6 +9,7 @@ use crate::mesh::tributary_areas;
 use crate::mesh::{Face, Mesh};
 use crate::scene::Points;
 use crate::shell::STATES;
+use std::collections::BTreeMap;
 
 /// Bytes of a slave point beside its own and those of its states: its place in the system, its last touch, what is written.
 pub const POINT: u64 = 600;
@@ -35,17 +36,34 @@ pub fn slave_points(
     offset: u32,
 ) -> Result<Vec<SlavePoint>, QuadratureError> {
     let rule = match points {
-        Points::Nodes => {
-            return Ok((tributary_areas(mesh, faces).into_iter())
-                .map(|(n, area)| SlavePoint::at_node(n + offset, area))
-                .collect());
-        }
+        Points::Nodes => return Ok(nodes(mesh, faces, offset)),
         Points::Gauss(n) => quadrature::gauss(n as usize)?,
         Points::Lobatto(n) => quadrature::lobatto(n as usize)?,
         // Not cut by anything: the rule of as high a degree.
         Points::Segments(n) => quadrature::gauss(n as usize / 2 + 1)?,
     };
     Ok(sampled(mesh, faces, &rule, offset))
+}
+
+fn nodes(mesh: &Mesh, faces: &[Face], offset: u32) -> Vec<SlavePoint> {
+    let mut spacing = BTreeMap::<u32, f64>::new();
+    for face in faces {
+        let Some(quad) = mesh.quad(*face) else {
+            continue;
+        };
+        for node in mesh.face_nodes(*face).nodes() {
+            let narrowest = spacing.entry(*node).or_insert(f64::INFINITY);
+            *narrowest = narrowest.min(quad.spacing());
+        }
+    }
+    let point = |(n, area)| SlavePoint {
+        width: spacing.get(&n).map_or(0.0, |s| PAST * s),
+        ..SlavePoint::at_node(n + offset, area)
+    };
+    tributary_areas(mesh, faces)
+        .into_iter()
+        .map(point)
+        .collect()
 }
 
 fn sampled(mesh: &Mesh, faces: &[Face], rule: &Rule, offset: u32) -> Vec<SlavePoint> {
@@ -57,11 +75,13 @@ fn sampled(mesh: &Mesh, faces: &[Face], rule: &Rule, offset: u32) -> Vec<SlavePo
         let face = local.shifted(offset);
         for (v, wv) in rule.iter() {
             for (u, wu) in rule.iter() {
+                let [a, b] = quad.tangents(u, v);
                 out.push(SlavePoint {
                     nodes: face.nodes,
                     shape: shape(face.count, u, v),
                     count: face.nodes().len() as u8,
-                    area: wu * wv * quad.area_vector(u, v).norm(),
+                    area: wu * wv * a.cross(&b).norm(),
+                    width: PAST * (wu * a.norm()).min(wv * b.norm()),
                 });
             }
         }

@@ -10,7 +10,7 @@ use crate::contact::points::SlavePoint;
 use crate::contact::rigid::RigidMaster;
 use crate::model::friction::with_law;
 use crate::model::master::{Master, Masters};
-use crate::model::state::State;
+use crate::model::state::{PointState, State};
 use crate::model::surface::SurfaceSet;
 use crate::model::{Model, PairModel};
 use covact_geometry::{Hint, Vec3};
@@ -175,7 +175,7 @@ pub fn commit<L: PairLaw>(
                     (histories.par_iter_mut().zip(hints).enumerate())
                         .with_min_len(64)
                         .try_for_each(|(i, (history, point))| {
-                            batch.accept(i, point.hint, &friction, &limited, history)
+                            batch.accept(i, point, &friction, &limited, history)
                         })?;
                 });
             }
@@ -223,16 +223,23 @@ impl<L: PairLaw> Batch<'_, L> {
     fn accept<F: FrictionLaw>(
         &self,
         i: usize,
-        mut hint: Option<Hint>,
+        state: &PointState,
         friction: &Friction<F>,
         limited: &impl Fn(&Vec3, &Vec3, f64) -> Vec3,
         history: &mut PointHistory,
     ) -> Result<(), Fault> {
-        let x = (self.model).point_position(&self.pair.points[i], self.u);
+        let (mut hint, point) = (state.hint, &self.pair.points[i]);
+        let x = (self.model).point_position(point, self.u);
         let z0 = self.offsets.map_or(0.0, |o| o.at(i));
         let law = history.law(self.law, z0);
         let touch = (self.master)
-            .touch_with_friction(&x, &mut hint, &law, friction, history)
+            .touch_with_friction(
+                &x,
+                (&mut hint, point.hanging(state.closed)),
+                &law,
+                friction,
+                history,
+            )
             .map_err(|fault| Fault::contact(self.pair, i, &x, fault))?;
         match touch {
             Some(touch) => {

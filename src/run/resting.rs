@@ -35,7 +35,12 @@ pub fn close(model: &Model, masters: &Masters, state: &mut State) -> Result<(), 
         {
             let x = model.point_position(point, &state.u);
             let z0 = offsets.map_or(0.0, |o| o.at(i));
-            let seen = master.see_within(i, &x, now.hint, z0.abs() + reach);
+            let seen = master.see_hanging(
+                (i, &x),
+                now.hint,
+                z0.abs() + reach,
+                (z0, point.hanging(false)),
+            );
             let rests = seen.filter(|seen| seen.counts() && seen.gap(z0).abs() <= reach);
             if let Some(seen) = rests {
                 (now.closed, now.hint) = (true, Some(seen.hint));

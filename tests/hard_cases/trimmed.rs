@@ -23,8 +23,8 @@ fn scene(size: [f64; 2], origin: [f64; 2], n: [u32; 2]) -> Value {
     })
 }
 
-/// A quarter of a plate sags into the opening under pressure: it rests on the face and nowhere below the opening, though
-/// the plane of the face goes on there, and what the face bears is the pressure less what the clamped border bears.
+/// A quarter of a plate sags into the opening under pressure: it rests on the face and nowhere over the opening, but at nodes
+/// that hang over by less than a quarter of an element, though the plane of the face goes on there, and what the face bears is the pressure less what the clamped border bears.
 #[test]
 fn nothing_is_in_contact_over_the_opening() {
     let mut scene = scene([38.0, 38.0], [0.0, 0.0], [19, 19]);
@@ -46,7 +46,11 @@ fn nothing_is_in_contact_over_the_opening() {
         if x[0].hypot(x[1]) < OPENING {
             over += 1;
             lowest = lowest.min(x[2]);
-            assert!(!touches, "node {n} at {x:?} touches what is not there");
+            let carried = x[0].hypot(x[1]) > OPENING - 0.5;
+            assert!(
+                carried || !touches,
+                "node {n} at {x:?} touches what is not there"
+            );
         } else {
             closed += usize::from(touches);
             assert!(x[2] > -0.02, "node {n} at {x:?} sank through the face");
@@ -64,7 +68,7 @@ fn nothing_is_in_contact_over_the_opening() {
 }
 
 /// A small plate, pressed on the face by a hundredth, is carried over the opening: at every step just those nodes are in
-/// contact that lie outside of the circle, and none is left at the end.
+/// contact that lie outside of the circle, or hang over it by less than a quarter of an element, and none is left at the end.
 #[test]
 fn points_slide_off_at_the_trim_curve() {
     let mut scene = scene([6.0, 4.0], [27.5, 1.0], [12, 8]);
@@ -87,12 +91,12 @@ fn points_slide_off_at_the_trim_curve() {
                     27.5 + 0.5 * f64::from(i) - 9.0 * t,
                     1.0 + 0.5 * f64::from(j),
                 );
-                expected += u32::from(x.hypot(y) > OPENING);
+                expected += u32::from(x.hypot(y) > OPENING - 0.125);
             }
         }
         assert!(
             (active - f64::from(expected)).abs() <= 2.0,
-            "t = {t}: {active} in contact, {expected} outside of the circle"
+            "t = {t}: {active} in contact, {expected} no more than a quarter of an element inside of the circle"
         );
         seen.insert(expected);
     }

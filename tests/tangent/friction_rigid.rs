@@ -166,7 +166,7 @@ fn neither_the_parametrisation_nor_the_pose_matters() {
 #[test]
 fn rigid_motions_of_the_pair_turn_residual_and_tangent() {
     use covact::contact::friction::rigid::Friction;
-    use covact::contact::rigid::RigidMaster;
+    use covact::contact::rigid::{Hanging, RigidMaster};
     let p = support::patch(Shape::Saddle);
     let set = set(vec![nurbs(&p)]);
     let x = support::slave_at(&p, XI, -0.05 * p.radius);
@@ -185,10 +185,16 @@ fn rigid_motions_of_the_pair_turn_residual_and_tangent() {
                     depth: 3.0,
                     keep: false,
                 };
-                (master.touch_with_friction(x, &mut None, &case.law(), &friction, &history))
-                    .unwrap()
-                    .unwrap()
-                    .touch
+                (master.touch_with_friction(
+                    x,
+                    (&mut None, Hanging::default()),
+                    &case.law(),
+                    &friction,
+                    &history,
+                ))
+                .unwrap()
+                .unwrap()
+                .touch
             };
             let still = at(nalgebra::Isometry3::identity(), &x);
             let moved = at(pose(), &(pose() * Point3::from(x)).coords);

@@ -5,7 +5,7 @@ use covact::contact::friction::history::PointHistory;
 use covact::contact::friction::law::FrictionLaw;
 use covact::contact::friction::rigid::{Friction, FrictionTouch};
 use covact::contact::law::{Augmented, Penalty};
-use covact::contact::rigid::RigidMaster;
+use covact::contact::rigid::{Hanging, RigidMaster};
 use covact_geometry::{NurbsPatch, PatchSet};
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
 use num_dual::{Dual64, DualNum};
@@ -169,9 +169,15 @@ pub fn touch<F: FrictionLaw>(
     };
     let friction = Friction { law, eps_t: EPS_T };
     let at = (master.pose * Point3::from(*x)).coords;
-    (master.touch_with_friction(&at, &mut None, &case.law(), &friction, history))
-        .expect("a reliable foot")
-        .expect("contact")
+    (master.touch_with_friction(
+        &at,
+        (&mut None, Hanging::default()),
+        &case.law(),
+        &friction,
+        history,
+    ))
+    .expect("a reliable foot")
+    .expect("contact")
 }
 
 /// Compares a touch with a reference in the coordinates of the surface.

@@ -3,7 +3,7 @@
 use crate::cases::*;
 use crate::support::{self, Shape, V};
 use crate::surface::{Held, Surface};
-use covact::contact::rigid::{Exact, RigidMaster};
+use covact::contact::rigid::{Exact, Hanging, RigidMaster};
 use covact_geometry::{MovingFacets, NurbsPatch, PatchSet};
 use nalgebra::{DMatrix, Isometry3};
 
@@ -179,9 +179,14 @@ fn rigid_patches_give_the_first_block() {
             for (point, at) in case.points.iter().zip(case.evaluate()) {
                 let q = combine(&case.slave, &point.shape);
                 let x = pose * nalgebra::Point3::from(q);
-                let touch = (master.touch(&x.coords, &mut None, &Hardening, &Exact))
-                    .unwrap()
-                    .expect("contact");
+                let touch = (master.touch(
+                    &x.coords,
+                    (&mut None, Hanging::default()),
+                    &Hardening,
+                    &Exact,
+                ))
+                .unwrap()
+                .expect("contact");
                 let k = turn * at.tangent.fixed_view::<3, 3>(0, 0) * turn.transpose();
                 let r = turn * at.residual.fixed_rows::<3>(0);
                 assert!(k.norm() > 1.0 && r.norm() > 1e-2);

@@ -289,8 +289,13 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
                     ..history.law(*self.law, offsets.map_or(0.0, |o| o.at(i)))
                 };
                 let secant = friction.secant(secants.all, slip);
-                let touch =
-                    placed.touch_with_friction(&x, (&mut s.hint, clear), &law, &secant, history);
+                let touch = placed.touch_with_friction(
+                    &x,
+                    (&mut s.hint, clear, p.hanging(s.closed)),
+                    &law,
+                    &secant,
+                    history,
+                );
                 if secants.keep {
                     *slip = touched::of(&touch).map_or_else(Vec3::zeros, |t| t.traction.slip.t);
                 }
@@ -341,7 +346,13 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
             .for_each(|(i, (((p, s), out), clear))| {
                 let x = self.model.position_of(p, self.u);
                 let law = offset.law(i, self.law);
-                placed.touch_into(&x, (&mut s.hint, clear), &law, tangent, out);
+                placed.touch_into(
+                    &x,
+                    (&mut s.hint, clear, p.hanging(s.closed)),
+                    &law,
+                    tangent,
+                    out,
+                );
             });
         (O::KIND, tangent.kind())
     }

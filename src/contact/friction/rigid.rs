@@ -9,8 +9,10 @@ use crate::contact::fault::PointFault;
 use crate::contact::kernel::Normal;
 use crate::contact::law::{Augmented, NormalLaw, PairLaw};
 use crate::contact::placed::Placed;
-use crate::contact::rigid::{Exact, RigidMaster, Touch, respond_rigid, respond_steady};
-use covact_geometry::{Hint, Vec3};
+use crate::contact::rigid::{
+    Exact, Hanging, RigidMaster, Touch, free, respond_rigid, respond_steady,
+};
+use covact_geometry::{Foot, Hint, Vec3};
 
 /// Friction of a pair at the present time: a type per law, so that the law is chosen outside the loop over points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,14 +73,14 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
     pub fn touch_with_friction<L: PairLaw, F: FrictionLaw>(
         &self,
         x: &Vec3,
-        hint: &mut Option<Hint>,
+        (hint, may): (&mut Option<Hint>, Hanging),
         law: &Augmented<L>,
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Result<Option<FrictionTouch>, PointFault> {
         (self.placed()).touch_with_friction(
             x,
-            (hint, &mut Clearance::default()),
+            (hint, &mut Clearance::default(), may),
             law,
             friction,
             history,
@@ -87,7 +89,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
 }
 
 impl<P: ClosestPoint> Placed<'_, P> {
-    /// Evaluates a slave point with friction; `None` where it is open. Hint and clearance as for [`Placed::touch_into`].
+    /// Evaluates a slave point with friction; `None` where it is open. What is known of it as for [`Placed::touch_into`].
     ///
     /// # Errors
     /// [`PointFault`] as there.
@@ -95,12 +97,16 @@ impl<P: ClosestPoint> Placed<'_, P> {
     pub fn touch_with_friction<L: PairLaw, F: FrictionLaw>(
         &self,
         x: &Vec3,
-        known: (&mut Option<Hint>, &mut Clearance),
+        (hint, clear, may): (&mut Option<Hint>, &mut Clearance, Hanging),
         law: &Augmented<L>,
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Result<Option<FrictionTouch>, PointFault> {
-        self.at_foot(x, known, law, |local, foot| {
+        self.at_foot(x, (hint, clear), law, |local, foot| {
+            let attraction = history.attraction(friction.eps_t);
+            if free(foot) {
+                return Ok(self.slide_past(x, local, foot, (law, may), friction, history));
+            }
             let geometry = self.geometry(local, foot)?;
             let xi3 = geometry.xi3();
             let normal = law.response(xi3);
@@ -112,7 +118,6 @@ impl<P: ClosestPoint> Placed<'_, P> {
                 },
                 false => normal,
             };
-            let attraction = history.attraction(friction.eps_t);
             let gap = law.gap(xi3);
             let (mut residual, mut k, n, traction) = match self.master.steady(foot, &geometry, law)
             {
@@ -140,12 +145,51 @@ impl<P: ClosestPoint> Placed<'_, P> {
             };
             residual += traction.slip.t;
             k += traction.tangent;
-            Ok(FrictionTouch {
-                touch: self.in_space(x, &geometry, law, &normal, residual, k),
+            Ok(Some(FrictionTouch {
+                touch: self.in_space(x, xi3, law, &normal, residual, k),
                 traction,
                 local: *local,
                 normal: n,
-            })
+            }))
+        })
+    }
+
+    /// [`Self::touch_with_friction`] of a point whose foot lies on a free border: what limits friction fades with the pressure.
+    #[cold]
+    #[inline(never)]
+    fn slide_past<L: PairLaw, F: FrictionLaw>(
+        &self,
+        x: &Vec3,
+        local: &Vec3,
+        foot: &Foot,
+        (law, may): (&Augmented<L>, Hanging),
+        friction: &Friction<F>,
+        history: &PointHistory,
+    ) -> Option<FrictionTouch> {
+        let (over, normal) = self.hanging(local, foot, law)?;
+        let faded = over.fade(may, law.gap(over.xi3), &normal)?;
+        let limit = Normal {
+            n: if law.held { history.n } else { faded.n },
+            dn: 0.0,
+        };
+        let gap = law.gap(over.xi3);
+        let attraction = history.attraction(friction.eps_t);
+        let (n, n_x, gradient) = (&over.n, &over.n_x, &over.xi3_x);
+        let mut traction =
+            attraction.traction_towards(&friction.law, local, n, gradient, n_x, gap, &limit);
+        if !law.held {
+            traction.tangent -= traction.slip.d_pressure * faded.n_x.transpose();
+        }
+        let residual = faded.residual + traction.slip.t;
+        let k = faded.tangent + traction.tangent;
+        Some(FrictionTouch {
+            touch: Touch {
+                weight: faded.weight,
+                ..self.in_space(x, over.xi3, law, &normal, residual, k)
+            },
+            traction,
+            local: *local,
+            normal: over.n,
         })
     }
 }

@@ -27,7 +27,8 @@ impl Builder<'_> {
             let [one, other] = gap.edges.map(|e| label(e.0));
             self.warnings.push(format!(
                 "surface `{name}`: {} gap(s) between edges too far apart to be joined, the widest {} at {} between {one} and \
-                 {other}: slave points over it touch nothing; close it in the file, or set `cad.tolerance` above it (now {})",
+                 {other}: slave points over it touch nothing where they are farther from its sides than a quarter of their spacing; close it \
+                 in the file, or set `cad.tolerance` above it (now {})",
                 edges.open_gaps.len(),
                 number(gap.gap),
                 at(&gap.at),
