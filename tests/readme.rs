@@ -1,5 +1,6 @@
 //! What README and the pages of docs state is what the program does.
 use covact::output::column_table;
+use serde_json::{Value, json};
 
 #[test]
 fn docs_lists_the_columns_of_the_history() {
@@ -50,6 +51,48 @@ fn scenes_in_readme_and_docs_are_well_formed() {
             "{name}: {problems:?}"
         );
     }
+}
+
+/// Every fragment of the reference is read, with what a scene needs beside it where it is none by itself.
+#[test]
+fn fragments_of_the_reference_are_read() {
+    let page = include_str!("../docs/scene_format.md");
+    let base = json!({
+        "covact": 1,
+        "materials": { "rubber": { "neo_hooke": { "E": 10, "nu": 0.45 } } },
+        "bodies": { "sheet": {
+            "mesh": { "plate": { "size": [50, 40], "thickness": 1, "elements": [40, 32] } }, "material": "rubber"
+        } },
+        "surfaces": { "punch": { "sphere": { "radius": 20, "center": [25, 20, 20.6] } } },
+        "contacts": { "press": { "slave": "sheet.top", "master": "punch" } },
+        "supports": { "held": { "on": ["sheet.x_min"], "fixed": true } }
+    });
+    let mut fragments = 0;
+    for block in page.split("```json\n").skip(1) {
+        let text = block.split("```").next().expect("its end");
+        let fragment: serde_json::Map<String, Value> =
+            serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"));
+        let whole = fragment.contains_key("covact");
+        let mut scene = if whole { json!({}) } else { base.clone() };
+        for (key, value) in fragment {
+            match (scene.get_mut(&key).and_then(Value::as_object_mut), value) {
+                (Some(named), Value::Object(more)) => named.extend(more),
+                (_, value) => scene[key] = value,
+            }
+        }
+        let scene = scene.to_string();
+        let read = covact::scene::parse(&scene, "docs/scene_format.md");
+        let read = read.unwrap_or_else(|e| panic!("{e:?}: {text}"));
+        // Files that are named do not lie beside the page.
+        let problems = covact::scene::check(&read);
+        let files = |p: &str| p.contains("/cad") || p.contains("/mesh") || p.contains("/nurbs");
+        assert!(
+            problems.iter().all(|p| files(&p.pointer)),
+            "{problems:?}: {text}"
+        );
+        fragments += 1;
+    }
+    assert!(fragments >= 30, "{fragments}");
 }
 
 #[test]

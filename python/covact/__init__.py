@@ -1,7 +1,7 @@
 """Contact between finite-element shells and CAD surfaces.
 
 A scene says what is solved: bodies, rigid surfaces, contacts, supports, loads. It is a dict of the same form as a scene file
-(``covact schema`` prints the form, the reference in docs/scenes.md explains it), a path of such a file, or its text. Meshes
+(``covact schema`` prints the form, the reference in docs/scene_format.md explains it), a path of such a file, or its text. Meshes
 and surfaces may be arrays: :class:`Mesh` and :class:`covact.geometry.Surface` stand in a scene wherever a file may.
 
 >>> import covact

@@ -28,7 +28,7 @@ class Mesh:
     """A mesh for a body of a scene: hexahedra, or a surface that `thickness` makes a body of.
 
     It stands where a scene has ``{"file": {...}}``, is read as a mesh file of the same content would be, and its sets are
-    named as those of such a file (docs/scenes.md, "Mesh files").
+    named as those of such a file (docs/scene_format.md, "Mesh files").
 
     Parameters
     ----------
