@@ -10,7 +10,7 @@
 //! f = w N n,    w = 1 - p^3 (10 - 15 p + 6 p^2),   p = (q - q0) / (1 - q0),   q = s / width
 //! ```
 //!
-//! with the law's traction `N` and a small `q0` ([`WHOLE`]). It ends at a part of the width that the point stands for
+//! with the law's traction `N` and a small `q0` ([`WHOLE`]). It ends at the `width` of the point
 //! ([`SlavePoint::width`](super::points::SlavePoint::width)), which moves a border by less than what nodes resolve. What comes from
 //! beside the surface, deep below it, does not lie on it and is open.
 //!
@@ -24,7 +24,7 @@ use covact_geometry::Vec3;
 use nalgebra::Matrix3;
 
 /// Deepest penetration of a point that was open, as a share of its width.
-const SHALLOW: f64 = 0.25;
+const SHALLOW: f64 = 0.5;
 /// Overhang up to which the whole traction is left, as a share of the width: between patches whose gap was not closed.
 const WHOLE: f64 = 0.05;
 /// Part of its own length that is left of the derivative of a border that is not hollow, but for rounding.
@@ -402,12 +402,12 @@ mod tests {
         }
         assert_eq!(force(0.01, 0.001), 0.0);
         // Deep below: in contact where it was.
-        assert!(force(0.001, -0.26 * WIDTH) < 0.0);
+        assert!(force(0.001, -0.51 * WIDTH) < 0.0);
         let new = Hanging {
             closed: false,
             ..MAY
         };
-        for (gap, closes) in [(-0.24, true), (-0.26, false)] {
+        for (gap, closes) in [(-0.49, true), (-0.51, false)] {
             let x = Vec3::new(1.001, 0.2, gap * WIDTH);
             let touch = master.touch(&x, (&mut None, new), &LAW, &Exact);
             assert_eq!(touch.unwrap().is_some(), closes, "{gap}");

@@ -1,7 +1,8 @@
 //! Slave points: where contact is sampled on the slave surface.
 use super::overhang::Hanging;
 
-/// Part of the narrower side of what a point stands for by which it may hang over a free border of a rigid surface.
+/// Part of the distance of neighbouring nodes by which a point may hang over a free border of a rigid surface. Twice as much would
+/// be easier for Newton's method, but carry nodes that a finer mesh would show to be off the surface.
 pub const PAST: f64 = 0.25;
 
 /// A slave point: a fixed combination of at most nine nodes, standing for a piece of the undeformed slave area. Where it has
@@ -16,7 +17,8 @@ pub struct SlavePoint {
     pub count: u8,
     /// Tributary area on the undeformed surface (length^2).
     pub area: f64,
-    /// How far past a free border of a rigid surface the point is carried on: [`PAST`] of the narrower side of that piece (length).
+    /// How far past a free border of a rigid surface the point is carried on: [`PAST`] of the shortest distance of neighbouring nodes there
+    /// (length).
     pub width: f64,
 }
 

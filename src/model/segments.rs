@@ -88,7 +88,7 @@ fn sample(face: &FaceNodes, quad: &Quad, pieces: &[Polygon], degree: u8) -> Vec<
                 shape: shape(face.count, u, v),
                 count: face.nodes().len() as u8,
                 area: w * quad.area_vector(u, v).norm(),
-                width: 0.0,
+                width: PAST * quad.spacing(),
             });
         });
     }
@@ -96,9 +96,6 @@ fn sample(face: &FaceNodes, quad: &Quad, pieces: &[Polygon], degree: u8) -> Vec<
     if sum > 0.0 {
         let factor = quad.area() / sum;
         out.iter_mut().for_each(|p| p.area *= factor);
-    }
-    for point in &mut out {
-        point.width = PAST * point.area.sqrt();
     }
     out
 }

@@ -73,15 +73,15 @@ fn sampled(mesh: &Mesh, faces: &[Face], rule: &Rule, offset: u32) -> Vec<SlavePo
         let local = mesh.face_nodes(f);
         let quad = Quad::new(&local, |n| mesh.nodes[n as usize]);
         let face = local.shifted(offset);
+        let spacing = quad.spacing();
         for (v, wv) in rule.iter() {
             for (u, wu) in rule.iter() {
-                let [a, b] = quad.tangents(u, v);
                 out.push(SlavePoint {
                     nodes: face.nodes,
                     shape: shape(face.count, u, v),
                     count: face.nodes().len() as u8,
-                    area: wu * wv * a.cross(&b).norm(),
-                    width: PAST * (wu * a.norm()).min(wv * b.norm()),
+                    area: wu * wv * quad.area_vector(u, v).norm(),
+                    width: PAST * spacing,
                 });
             }
         }
