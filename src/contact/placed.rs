@@ -4,7 +4,7 @@ use super::closest::ClosestPoint;
 use super::keep;
 use super::kernel::Normal;
 use super::law::NormalLaw;
-use super::overhang::{Hanging, Overhang};
+use super::overhang::{Hanging, Rounded};
 use super::point::PointGeometry;
 use super::rigid::{
     Piece, PointFault, RigidMaster, RigidTangent, Touch, free, respond_rigid, respond_steady,
@@ -103,7 +103,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
         }
         *clear = Clearance::default();
         let before = *hint;
-        let mut found = self.search(&local, before, law);
+        let mut found = self.search(&local, before, law, may);
         let Some(foot) = &mut found else {
             *hint = None;
             *out = Ok(None);
@@ -151,22 +151,31 @@ impl<P: ClosestPoint> Placed<'_, P> {
             xi3,
             gap: law.gap(xi3),
             n: normal.n,
-            weight: 1.0,
         }));
     }
 
     /// The foot of a point at `local`. Outside, beyond the reach of the law, it need not be certain: such a point is open.
     #[inline(always)]
-    fn search<L: NormalLaw>(&self, local: &Vec3, hint: Option<Hint>, law: &L) -> Option<Foot> {
-        let reach = self.master.depth.max(law.reach());
+    fn search<L: NormalLaw>(
+        &self,
+        local: &Vec3,
+        hint: Option<Hint>,
+        law: &L,
+        may: Hanging,
+    ) -> Option<Foot> {
+        // Beside a border by no more than its rounding.
+        let beyond = 2.0 * may.rounding;
+        let reach = self.master.depth.max(law.reach()) + beyond;
         let above = match law.closes(reach) {
             true => reach,
-            false => law.reach().max(0.0),
+            // Where contact begins in front of the surface it goes around borders as well.
+            false if law.reach() > 0.0 => law.reach() + beyond,
+            false => 0.0,
         };
         (self.master.surface).project_above(local, hint, reach, above)
     }
 
-    /// Whether a foot means contact, unless it lies on a free border.
+    /// Whether a foot may mean contact.
     #[inline(always)]
     fn closes<L: NormalLaw>(&self, foot: &Foot, law: &L) -> Result<bool, PointFault> {
         // On either side: an uncertain foot must not pass for an open point. Beyond the reach of the law the search says
@@ -177,8 +186,9 @@ impl<P: ClosestPoint> Placed<'_, P> {
                 xi: foot.xi,
             });
         }
+        // What is past a free border is judged by the rounding of that.
         let xi3 = foot.signed_distance;
-        Ok(law.closes(xi3) && xi3 >= -self.master.depth)
+        Ok(free(foot) || law.closes(xi3) && xi3 >= -self.master.depth)
     }
 
     /// Puts the foot on the patch `on` in the place of the closest point, where it may stand for it across a fold.
@@ -236,26 +246,24 @@ impl<P: ClosestPoint> Placed<'_, P> {
         law: &L,
         may: Hanging,
     ) -> Option<Touch> {
-        let (over, normal) = self.hanging(local, foot, law)?;
-        let (gap, psi) = (law.gap(over.xi3), law.energy(over.xi3));
-        let faded = over.fade_by_energy(may, gap, &normal, psi)?;
-        let (residual, tangent) = (faded.residual, faded.tangent);
-        Some(Touch {
-            weight: faded.weight,
-            ..self.in_space(x, over.xi3, law, &normal, residual, tangent)
-        })
+        let rounded = self.rounded(local, foot, law, may)?;
+        let normal = law.response(rounded.xi3);
+        let (residual, k) = respond_steady(&rounded.at, &normal);
+        // A border that twists leaves a little that no energy has.
+        let k = (k + k.transpose()) * 0.5;
+        Some(self.in_space(x, rounded.xi3, law, &normal, residual, k))
     }
 
-    /// How a point at `local` hangs over the free border at its foot, and the whole of its normal traction; `None` where it is
-    /// not below the surface.
-    pub(super) fn hanging<L: NormalLaw>(
+    /// The rounding of the free border at the foot of a point at `local`; none where the point is open.
+    pub(super) fn rounded<L: NormalLaw>(
         &self,
         local: &Vec3,
         foot: &Foot,
         law: &L,
-    ) -> Option<(Overhang, Normal)> {
-        let over = self.master.overhang(foot, &(local - foot.jet.rho));
-        (law.closes(over.xi3)).then(|| (over, law.response(over.xi3)))
+        may: Hanging,
+    ) -> Option<Rounded> {
+        let rounded = (self.master).rounded(foot, &(local - foot.jet.rho), may)?;
+        (law.closes(rounded.xi3) && may.allows(law.gap(rounded.xi3))).then_some(rounded)
     }
 
     /// Searches for the foot of a slave point at `x`, and gives the point in the surface's own coordinates and its foot to
@@ -264,7 +272,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
     pub(super) fn at_foot<L: NormalLaw, R>(
         &self,
         x: &Vec3,
-        (hint, clear): (&mut Option<Hint>, &mut Clearance),
+        (hint, clear, may): (&mut Option<Hint>, &mut Clearance, Hanging),
         law: &L,
         then: impl FnOnce(&Vec3, &Foot) -> Result<Option<R>, PointFault>,
     ) -> Result<Option<R>, PointFault> {
@@ -277,7 +285,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
         }
         *clear = Clearance::default();
         let before = *hint;
-        let mut found = self.search(&local, before, law);
+        let mut found = self.search(&local, before, law, may);
         let Some(foot) = &mut found else {
             *hint = None;
             return Ok(None);
@@ -319,7 +327,6 @@ impl<P: ClosestPoint> Placed<'_, P> {
             xi3,
             gap: law.gap(xi3),
             n: normal.n,
-            weight: 1.0,
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Slave points: where contact is sampled on the slave surface.
 use super::overhang::Hanging;
 
-/// Part of the distance of neighbouring nodes by which a point may hang over a free border of a rigid surface. Twice as much would
-/// be easier for Newton's method, but carry nodes that a finer mesh would show to be off the surface.
-pub const PAST: f64 = 0.25;
+/// Radius by which a free border of a rigid surface is rounded off for a point, as a part of the distance of neighbouring nodes.
+/// Twice as much would be easier for Newton's method, but carry nodes that a finer mesh would show to be off the surface.
+pub const ROUNDING: f64 = 0.25;
 
 /// A slave point: a fixed combination of at most nine nodes, standing for a piece of the undeformed slave area. Where it has
 /// none it is at a height above a surface: the model holds its [`Lever`](super::lever::Lever), whose number is in the place of the
@@ -17,9 +17,9 @@ pub struct SlavePoint {
     pub count: u8,
     /// Tributary area on the undeformed surface (length^2).
     pub area: f64,
-    /// How far past a free border of a rigid surface the point is carried on: [`PAST`] of the shortest distance of neighbouring nodes there
-    /// (length).
-    pub width: f64,
+    /// Radius by which free borders of rigid surfaces are rounded off for the point: [`ROUNDING`] of the shortest distance of
+    /// neighbouring nodes there (length).
+    pub rounding: f64,
 }
 
 impl SlavePoint {
@@ -30,7 +30,7 @@ impl SlavePoint {
             shape: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             count: 1,
             area,
-            width: PAST * area.sqrt(),
+            rounding: ROUNDING * area.sqrt(),
         }
     }
 
@@ -46,7 +46,7 @@ impl SlavePoint {
     #[inline]
     pub fn hanging(&self, closed: bool) -> Hanging {
         Hanging {
-            width: self.width,
+            rounding: self.rounding,
             closed,
         }
     }

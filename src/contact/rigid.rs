@@ -7,7 +7,7 @@ use super::kind::TangentForm;
 use super::law::NormalLaw;
 use super::meeting::Meeting;
 pub use super::overhang::Hanging;
-use super::overhang::Overhang;
+use super::overhang::Rounded;
 use super::point::PointGeometry;
 use super::published::{self, Parts};
 use covact_geometry::{EdgeKind, Foot, Frame, Hint, Jet, Location, PatchSet, Status, Vec3};
@@ -77,8 +77,6 @@ pub struct Touch {
     pub gap: f64,
     /// Normal traction, negative.
     pub n: f64,
-    /// Part of the point's area that the traction acts on: 1, but for a point that hangs over a free border.
-    pub weight: f64,
 }
 
 impl<P: ClosestPoint> RigidMaster<'_, P> {
@@ -88,12 +86,13 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         self.surface.project(&local, hint, reach)
     }
 
-    /// Normal coordinate of a point at `x` that hangs over the free border at its foot, and the part of its traction that is left,
-    /// where its gap is measured from `z0`; none where it is open.
-    pub fn hanging(&self, x: &Vec3, foot: &Foot, z0: f64, may: Hanging) -> Option<(f64, f64)> {
+    /// Normal coordinate of a point at `x` over the rounding of the free border at its foot, and the normal there, where its gap is
+    /// measured from `z0`; none where it is open.
+    pub fn hanging(&self, x: &Vec3, foot: &Foot, z0: f64, may: Hanging) -> Option<(f64, Vec3)> {
         let local = self.pose.inverse_transform_point(&Point3::from(*x)).coords;
-        let over = self.overhang(foot, &(local - foot.jet.rho));
-        Some((over.xi3, over.weight(may, over.xi3 - z0)?))
+        let rounded = self.rounded(foot, &(local - foot.jet.rho), may)?;
+        let closes = rounded.xi3 < z0 && may.allows(rounded.xi3 - z0);
+        closes.then(|| (rounded.xi3, self.pose.rotation * rounded.at.n))
     }
 
     /// Evaluates one slave point; `None` where it is open. For many points make [`Self::placed`] once.
@@ -236,8 +235,9 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         }
     }
 
-    /// How a point hangs over the free border that its foot lies on, at `d` from there.
-    pub(super) fn overhang(&self, foot: &Foot, d: &Vec3) -> Overhang {
+    /// The rounding of the free border that a foot lies on, next to a point at `d` from there; none where the point is deeper below
+    /// it than the surface reaches.
+    pub(super) fn rounded(&self, foot: &Foot, d: &Vec3, may: Hanging) -> Option<Rounded> {
         let line = match foot.location {
             Location::Edge { edge, .. } => self.along_edge(foot, edge),
             _ => None,
@@ -245,7 +245,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         // Where another line crosses this one, the foot may be held along it too.
         let border = (line.filter(|[rho_s, _]| !self.leans(d, rho_s)))
             .map(|[rho_s, rho_ss]| [rho_s, rho_ss, self.surface.normal_along(foot, &rho_s)]);
-        Overhang::new(d, foot.normal, border)
+        (may.rounded(d, &foot.normal, border)).filter(|r| r.xi3 >= -self.depth)
     }
 
     /// Whether a distance vector leans along a line.
@@ -330,8 +330,7 @@ pub fn behind(foot: &Foot, depth: f64) -> bool {
     presses(foot) && foot.distance > depth
 }
 
-/// Whether a foot means contact. A foot on a free border is not: the point hangs past the border, beside the surface
-/// or below it, and nothing of the surface stands in its way.
+/// Whether a foot means contact. A foot on a free border does not by itself: what is there is the rounding of the border.
 fn presses(foot: &Foot) -> bool {
     foot.signed_distance < 0.0 && !free(foot)
 }

@@ -181,12 +181,10 @@ pub struct Seen {
     pub signed_distance: f64,
     /// Outward unit normal there, in space.
     pub normal: Vec3,
-    /// The foot lies on a free border and does not count.
+    /// The foot lies on a free border, whose rounding does not reach the point.
     pub free: bool,
     /// Below the surface and deeper than its depth: not in contact, though not outside either.
     pub behind: bool,
-    /// Part of the point's area that may be in contact: 1, but for a point that hangs over a free border.
-    pub weight: f64,
 }
 
 impl Master {
@@ -208,7 +206,6 @@ impl Seen {
             normal: master.pose.rotation * foot.normal,
             free: rigid::free(foot),
             behind: rigid::behind(foot, master.depth),
-            weight: 1.0,
         }
     }
 
@@ -263,10 +260,10 @@ impl MasterNow<'_> {
         let over = (seen.free)
             .then(|| master.hanging(x, &foot, z0, may))
             .flatten();
-        Some(over.map_or(seen, |(signed_distance, weight)| Seen {
+        Some(over.map_or(seen, |(signed_distance, normal)| Seen {
             signed_distance,
+            normal,
             free: false,
-            weight,
             ..seen
         }))
     }
@@ -312,7 +309,6 @@ impl MasterNow<'_> {
                     normal: foot.normal,
                     free: moving::free(&foot, x),
                     behind,
-                    weight: 1.0,
                 })
             }
         }

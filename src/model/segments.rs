@@ -8,7 +8,7 @@
 use super::Model;
 use super::state::{PointState, State};
 use crate::contact::clip::{self, Point, Polygon};
-use crate::contact::points::{PAST, SlavePoint};
+use crate::contact::points::{ROUNDING, SlavePoint};
 use crate::fem::FaceNodes;
 use crate::fem::Quad;
 use crate::fem::face::shape;
@@ -88,7 +88,7 @@ fn sample(face: &FaceNodes, quad: &Quad, pieces: &[Polygon], degree: u8) -> Vec<
                 shape: shape(face.count, u, v),
                 count: face.nodes().len() as u8,
                 area: w * quad.area_vector(u, v).norm(),
-                width: PAST * quad.spacing(),
+                rounding: ROUNDING * quad.spacing(),
             });
         });
     }

@@ -1,6 +1,6 @@
 //! Slave points of a contact pair from the faces of a body.
 use super::state::PointState;
-use crate::contact::points::{PAST, SlavePoint};
+use crate::contact::points::{ROUNDING, SlavePoint};
 use crate::fem::Quad;
 use crate::fem::face::shape;
 use crate::fem::quadrature::{self, QuadratureError, Rule};
@@ -51,13 +51,14 @@ fn nodes(mesh: &Mesh, faces: &[Face], offset: u32) -> Vec<SlavePoint> {
         let Some(quad) = mesh.quad(*face) else {
             continue;
         };
+        let own = quad.spacing();
         for node in mesh.face_nodes(*face).nodes() {
             let narrowest = spacing.entry(*node).or_insert(f64::INFINITY);
-            *narrowest = narrowest.min(quad.spacing());
+            *narrowest = narrowest.min(own);
         }
     }
     let point = |(n, area)| SlavePoint {
-        width: spacing.get(&n).map_or(0.0, |s| PAST * s),
+        rounding: spacing.get(&n).map_or(0.0, |s| ROUNDING * s),
         ..SlavePoint::at_node(n + offset, area)
     };
     tributary_areas(mesh, faces)
@@ -81,7 +82,7 @@ fn sampled(mesh: &Mesh, faces: &[Face], rule: &Rule, offset: u32) -> Vec<SlavePo
                     shape: shape(face.count, u, v),
                     count: face.nodes().len() as u8,
                     area: wu * wv * quad.area_vector(u, v).norm(),
-                    width: PAST * spacing,
+                    rounding: ROUNDING * spacing,
                 });
             }
         }

@@ -231,7 +231,6 @@ impl Fields {
             for (i, ((p, s), front)) in points.iter().zip(states).zip(fronts).enumerate() {
                 let z0 = offsets.map_or(0.0, |o| o.at(i));
                 let place;
-                let mut weight = 1.0;
                 // A point with no foot at all keeps the gap unknown.
                 let gap = if let Some((own, motion)) = &small {
                     place = own.points[i].map(|at| (at.foot, at.hint, at.normal));
@@ -242,7 +241,6 @@ impl Fields {
                     let x = model.point_position(p, &state.u);
                     let may = (z0, p.hanging(s.closed));
                     let seen = master.see_hanging((i, &x), s.hint, f64::INFINITY, may);
-                    weight = seen.map_or(1.0, |s| s.weight);
                     place = seen.map(|s| (x, s.hint, s.normal));
                     let sunk = seen.is_some_and(|s| s.behind);
                     self.sunk[index] += usize::from(*front && sunk);
@@ -259,7 +257,6 @@ impl Fields {
                     None if gap < 0.0 => (true, -law.response(gap).n),
                     None => (false, 0.0),
                 };
-                let pressure = pressure * weight;
                 let status = match history {
                     Some(history) => friction_fields::status(history),
                     None if closed => CLOSED,
@@ -285,11 +282,11 @@ impl Fields {
                     };
                     self.bearings.add(index, &carrier);
                 }
-                if gap * weight < self.smallest_gap {
-                    self.smallest_gap = gap * weight;
+                if gap < self.smallest_gap {
+                    self.smallest_gap = gap;
                 }
                 self.largest_pressure = self.largest_pressure.max(pressure);
-                self.area += if closed { share * p.area * weight } else { 0.0 };
+                self.area += if closed { share * p.area } else { 0.0 };
                 if let Some(z0) = shrinking {
                     self.pressed[index] -= share * pressure * z0[i] * p.area;
                 }

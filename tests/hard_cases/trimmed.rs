@@ -24,7 +24,7 @@ fn scene(size: [f64; 2], origin: [f64; 2], n: [u32; 2]) -> Value {
 }
 
 /// A quarter of a plate sags into the opening under pressure: it rests on the face and nowhere over the opening, but at nodes
-/// that hang over by less than a quarter of an element, though the plane of the face goes on there, and what the face bears is the pressure less what the clamped border bears.
+/// that hang over by less than a quarter of an element, where the border is rounded off, though the plane of the face goes on there, and what the face bears is the pressure less what the clamped border bears.
 #[test]
 fn nothing_is_in_contact_over_the_opening() {
     let mut scene = scene([38.0, 38.0], [0.0, 0.0], [19, 19]);
@@ -67,8 +67,9 @@ fn nothing_is_in_contact_over_the_opening() {
     assert!(outcome.at("force.die.z", 1.0) > 0.3 * load);
 }
 
-/// A small plate, pressed on the face by a hundredth, is carried over the opening: at every step just those nodes are in
-/// contact that lie outside of the circle, or hang over it by less than a quarter of an element, and none is left at the end.
+/// A small plate, pressed on the face by a hundredth, is carried over the opening: at every step those nodes are in contact that
+/// lie outside of the circle, and none is left at the end. Of those that hang over it by less than a quarter of an element, where
+/// the border is rounded off, some are.
 #[test]
 fn points_slide_off_at_the_trim_curve() {
     let mut scene = scene([6.0, 4.0], [27.5, 1.0], [12, 8]);
@@ -82,7 +83,7 @@ fn points_slide_off_at_the_trim_curve() {
     let (times, active) = (outcome.column("time"), outcome.column("points.active"));
     let mut seen = std::collections::BTreeSet::new();
     for (t, active) in times.iter().zip(active) {
-        let mut expected = 0;
+        let (mut outside, mut rounded) = (0, 0);
         for i in 0..=12 {
             for j in 0..=8 {
                 // The bottom keeps its grid but for what a hundredth of pressing changes, far less than the distance of
@@ -91,14 +92,16 @@ fn points_slide_off_at_the_trim_curve() {
                     27.5 + 0.5 * f64::from(i) - 9.0 * t,
                     1.0 + 0.5 * f64::from(j),
                 );
-                expected += u32::from(x.hypot(y) > OPENING - 0.125);
+                outside += u32::from(x.hypot(y) > OPENING);
+                rounded += u32::from(x.hypot(y) > OPENING - 0.125);
             }
         }
+        let [least, most] = [f64::from(outside) - 2.0, f64::from(rounded) + 2.0];
         assert!(
-            (active - f64::from(expected)).abs() <= 2.0,
-            "t = {t}: {active} in contact, {expected} no more than a quarter of an element inside of the circle"
+            (least..=most).contains(&active),
+            "t = {t}: {active} in contact, {outside} outside of the circle, {rounded} with its rounding"
         );
-        seen.insert(expected);
+        seen.insert(outside);
     }
     assert!(seen.len() > 8 && seen.contains(&117), "{seen:?}");
     assert_eq!(seen.first(), Some(&0));

@@ -116,8 +116,8 @@ impl<L: NormalLaw> Pressed<'_, L> {
         let force = touch.residual * p.area;
         let sums = &mut self.sums;
         sums.active += 1;
-        sums.deepest = sums.deepest.max(-touch.gap * touch.weight);
-        sums.energy += self.law.energy(touch.gap) * p.area * touch.weight;
+        sums.deepest = sums.deepest.max(-touch.gap);
+        sums.energy += self.law.energy(touch.gap) * p.area;
         sums.on.force -= force;
         sums.on.moment -= touch.x.cross(&force);
         force

@@ -102,7 +102,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Result<Option<FrictionTouch>, PointFault> {
-        self.at_foot(x, (hint, clear), law, |local, foot| {
+        self.at_foot(x, (hint, clear, may), law, |local, foot| {
             let attraction = history.attraction(friction.eps_t);
             if free(foot) {
                 return Ok(self.slide_past(x, local, foot, (law, may), friction, history));
@@ -110,14 +110,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
             let geometry = self.geometry(local, foot)?;
             let xi3 = geometry.xi3();
             let normal = law.response(xi3);
-            // The pressure of a point that is held is nothing to go by: it is far from the surface.
-            let limit = match law.held {
-                true => Normal {
-                    n: history.n,
-                    dn: 0.0,
-                },
-                false => normal,
-            };
+            let limit = limit(law, &normal, history);
             let gap = law.gap(xi3);
             let (mut residual, mut k, n, traction) = match self.master.steady(foot, &geometry, law)
             {
@@ -154,7 +147,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
         })
     }
 
-    /// [`Self::touch_with_friction`] of a point whose foot lies on a free border: what limits friction fades with the pressure.
+    /// [`Self::touch_with_friction`] of a point whose foot lies on a free border.
     #[cold]
     #[inline(never)]
     fn slide_past<L: PairLaw, F: FrictionLaw>(
@@ -166,30 +159,33 @@ impl<P: ClosestPoint> Placed<'_, P> {
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Option<FrictionTouch> {
-        let (over, normal) = self.hanging(local, foot, law)?;
-        let faded = over.fade(may, law.gap(over.xi3), &normal)?;
-        let limit = Normal {
-            n: if law.held { history.n } else { faded.n },
-            dn: 0.0,
-        };
-        let gap = law.gap(over.xi3);
+        let rounded = self.rounded(local, foot, law, may)?;
+        let xi3 = rounded.xi3;
+        let normal = law.response(xi3);
+        let limit = limit(law, &normal, history);
         let attraction = history.attraction(friction.eps_t);
-        let (n, n_x, gradient) = (&over.n, &over.n_x, &over.xi3_x);
-        let mut traction =
-            attraction.traction_towards(&friction.law, local, n, gradient, n_x, gap, &limit);
-        if !law.held {
-            traction.tangent -= traction.slip.d_pressure * faded.n_x.transpose();
-        }
-        let residual = faded.residual + traction.slip.t;
-        let k = faded.tangent + traction.tangent;
+        let (residual, k) = respond_steady(&rounded.at, &normal);
+        let Steady { n, turn, gradient } = &rounded.at;
+        let gap = law.gap(xi3);
+        let traction =
+            attraction.traction_towards(&friction.law, local, n, gradient, turn, gap, &limit);
+        let (residual, k) = (residual + traction.slip.t, k + traction.tangent);
         Some(FrictionTouch {
-            touch: Touch {
-                weight: faded.weight,
-                ..self.in_space(x, over.xi3, law, &normal, residual, k)
-            },
+            touch: self.in_space(x, xi3, law, &normal, residual, k),
             traction,
             local: *local,
-            normal: over.n,
+            normal: *n,
         })
+    }
+}
+
+/// What limits friction. The pressure of a point that is held is nothing to go by: it is far from the surface.
+fn limit<L: PairLaw>(law: &Augmented<L>, normal: &Normal, history: &PointHistory) -> Normal {
+    match law.held {
+        true => Normal {
+            n: history.n,
+            dn: 0.0,
+        },
+        false => *normal,
     }
 }

@@ -196,7 +196,7 @@ impl<'m, L: PairLaw> Presser<'m, L> {
                 let c = carried(&r, &k, &(p.x - center));
                 out.active += 1;
                 // Its derivative is the traction.
-                out.energy += law_of(point, p).energy(touch.xi3) * p.area * touch.weight;
+                out.energy += law_of(point, p).energy(touch.xi3) * p.area;
                 add(&mut out.residual, &-r, &c.spin);
                 add_tangent(&mut out.tangent, &k, &c);
             }

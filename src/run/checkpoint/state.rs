@@ -231,14 +231,14 @@ fn put_slave(point: &SlavePoint, out: &mut Writer) {
         shape,
         count,
         area,
-        width,
+        rounding,
     } = point;
     let used = usize::from(*count).min(nodes.len());
     out.u8(*count);
     nodes[..used].iter().for_each(|n| out.u32(*n));
     out.f64s(&shape[..used]);
     out.f64(*area);
-    out.f64(*width);
+    out.f64(*rounding);
 }
 
 fn take_slave(model: &Model, from: &mut Reader) -> Result<SlavePoint, Malformed> {
@@ -256,6 +256,6 @@ fn take_slave(model: &Model, from: &mut Reader) -> Result<SlavePoint, Malformed>
     }
     from.f64s(&mut point.shape[..used])?;
     point.area = from.f64()?;
-    point.width = from.f64()?;
+    point.rounding = from.f64()?;
     Ok(point)
 }
