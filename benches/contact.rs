@@ -6,7 +6,7 @@ use covact::contact::friction::rigid::Friction;
 use covact::contact::kernel::{Normal, normal_tangent, normal_tangent_rigid};
 use covact::contact::law::{NormalLaw, Penalty};
 use covact::contact::published::{self, Parts};
-use covact::contact::rigid::{Exact, Hanging, RigidMaster, RigidTangent};
+use covact::contact::rigid::{Exact, Overhang, RigidMaster, RigidTangent};
 use covact_geometry::{Frame, Hint, PatchSet, Vec3, primitives};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use nalgebra::Isometry3;
@@ -54,7 +54,12 @@ fn queries(set: &PatchSet, height: f64) -> Vec<Query> {
 fn touch_all<T: RigidTangent>(master: &RigidMaster, queries: &[Query], tangent: &T) -> usize {
     let touch = |(x, hint): &Query| {
         let mut hint = *hint;
-        let touch = master.touch(black_box(x), (&mut hint, Hanging::default()), &LAW, tangent);
+        let touch = master.touch(
+            black_box(x),
+            (&mut hint, Overhang::default()),
+            &LAW,
+            tangent,
+        );
         black_box(touch).is_ok_and(|t| t.is_some())
     };
     queries.iter().filter(|q| touch(q)).count()
@@ -75,7 +80,7 @@ fn slide_all(master: &RigidMaster, queries: &[Query], chord: f64) -> usize {
         let law = history.law(LAW, 0.0);
         let touch = master.touch_with_friction(
             black_box(x),
-            (&mut hint, Hanging::default()),
+            (&mut hint, Overhang::default()),
             &law,
             &friction,
             &history,

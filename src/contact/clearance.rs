@@ -56,7 +56,7 @@ impl Clearance {
 mod tests {
     use super::*;
     use crate::contact::law::{Penalty, Shifted};
-    use crate::contact::rigid::{Exact, Hanging, RigidMaster};
+    use crate::contact::rigid::{Exact, Overhang, RigidMaster};
     use covact_geometry::PatchSet;
     use covact_geometry::primitives::{plane, sphere};
     use nalgebra::{Isometry3, UnitQuaternion};
@@ -94,7 +94,7 @@ mod tests {
             let placed = master.placed();
             let known = placed.proves_open(&x, &clear, &law);
             let fresh = master
-                .touch(&x, (&mut None, Hanging::default()), &law, &Exact)
+                .touch(&x, (&mut None, Overhang::default()), &law, &Exact)
                 .unwrap();
             left_out += u32::from(known);
             closed += u32::from(fresh.is_some());
@@ -102,7 +102,7 @@ mod tests {
             let mut out = Ok(None);
             placed.touch_into(
                 &x,
-                (&mut hint, &mut clear, Hanging::default()),
+                (&mut hint, &mut clear, Overhang::default()),
                 &law,
                 &Exact,
                 &mut out,

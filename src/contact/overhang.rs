@@ -21,13 +21,16 @@ use nalgebra::Matrix3;
 const FLAT: f64 = 0.05;
 /// Deepest penetration of a point that was open, as a share of the radius: what is deeper has come from beside the surface.
 const SHALLOW: f64 = 0.5;
+/// Distance from the foot on a border up to which the rounding may be touched, in terms of the radius, beside what contact begins in
+/// front of it: that is `|(R, (1 + FLAT) R + reach)|` at most, and over a hole that goes on flat `|(R, 2 R)|`.
+const BEYOND: f64 = 2.5;
 /// Smallest part of its own length that is left of a border's derivative: nearer to the centre of its curvature, where the foot
 /// runs along it ever faster, the foot counts as fixed.
 const FOCAL: f64 = 0.1;
 
 /// What is asked of a slave point where it hangs over a free border.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Hanging {
+pub struct Overhang {
     /// Radius by which borders are rounded off for the point ([`SlavePoint::rounding`](super::points::SlavePoint::rounding)); with 0
     /// they are sharp, and the point is open past them.
     pub rounding: f64,
@@ -44,7 +47,7 @@ pub(super) struct Rounded {
     pub at: Steady,
 }
 
-impl Hanging {
+impl Overhang {
     /// The rounding next to a point at `d` from its foot on a border with outward normal `n`; none where it lies below all of it.
     /// `border`: first and second derivative of the border and derivative of the normal along it; none at its corners.
     pub(super) fn rounded(&self, d: &Vec3, n: &Vec3, border: Option<[Vec3; 3]>) -> Option<Rounded> {
@@ -70,7 +73,7 @@ impl Hanging {
             }
         }
         let a = xi3 + radius;
-        if a <= 0.0 || s > 2.0 * radius + radius * FLAT {
+        if a <= 0.0 {
             return None;
         }
         let mut along = *n * a;
@@ -97,6 +100,12 @@ impl Hanging {
         })
     }
 
+    /// Distance from the foot on a border up to which a point may be in contact that begins at `reach` in front of the surface.
+    #[inline]
+    pub(super) fn within(&self, reach: f64) -> f64 {
+        reach.max(0.0) + BEYOND * self.rounding
+    }
+
     /// Whether a point may hang over with a gap: anyhow where it was in contact.
     pub(super) fn allows(&self, gap: f64) -> bool {
         self.closed || gap >= -SHALLOW * self.rounding
@@ -105,7 +114,7 @@ impl Hanging {
 
 #[cfg(test)]
 mod tests {
-    use super::Hanging;
+    use super::Overhang;
     use crate::contact::friction::history::PointHistory;
     use crate::contact::friction::law::Coulomb;
     use crate::contact::friction::rigid::Friction;
@@ -116,7 +125,7 @@ mod tests {
 
     const LAW: Penalty = Penalty { eps_n: 5.0 };
     const RADIUS: f64 = 0.2;
-    const MAY: Hanging = Hanging {
+    const MAY: Overhang = Overhang {
         rounding: RADIUS,
         closed: true,
     };
@@ -279,9 +288,11 @@ mod tests {
             pose: Isometry3::identity(),
             ..master(&set)
         };
-        let touch = |over: f64, height: f64, may: Hanging| {
+        let touch = |over: f64, height: f64, overhang: Overhang| {
             let x = Vec3::new(1.0 + over, 0.2, height);
-            master.touch(&x, (&mut None, may), &LAW, &Exact).unwrap()
+            master
+                .touch(&x, (&mut None, overhang), &LAW, &Exact)
+                .unwrap()
         };
         let center = Vec3::new(1.0 + 0.05 * RADIUS, 0.2, -RADIUS);
         for (over, height) in [(-1e-9, -0.01), (0.0, -0.01), (1e-9, -0.01), (0.01, -0.01)] {
@@ -300,18 +311,19 @@ mod tests {
         // Beside it, above it, and deeper than it reaches; deep within where the point was open.
         assert!(touch(0.1, -0.02, MAY).is_none() && touch(0.22, -0.1, MAY).is_none());
         assert!(touch(0.01, -0.21, MAY).is_none());
-        let open = Hanging {
+        let open = Overhang {
             closed: false,
             ..MAY
         };
         assert!(touch(0.01, -0.09, open).is_some() && touch(0.01, -0.11, open).is_none());
         // Without a rounding the point is open.
-        assert!(touch(1e-9, -0.01, Hanging::default()).is_none());
+        assert!(touch(1e-9, -0.01, Overhang::default()).is_none());
         // An offset begins in front of the rounding as it does in front of the plane.
         let offset = Shifted { law: LAW, z0: 0.5 };
-        let x = Vec3::new(1.1, 0.2, 0.4);
-        let at = master.touch(&x, (&mut None, MAY), &offset, &Exact).unwrap();
-        let gap = (x - center).norm() - RADIUS - 0.5;
-        assert!(gap < -0.05 && (at.expect("in contact").gap - gap).abs() < 1e-12);
+        for x in [Vec3::new(1.1, 0.2, 0.4), Vec3::new(1.56, 0.2, 0.0)] {
+            let at = master.touch(&x, (&mut None, MAY), &offset, &Exact).unwrap();
+            let gap = (x - center).norm() - RADIUS - 0.5;
+            assert!(gap < -0.05 && (at.expect("in contact").gap - gap).abs() < 1e-12);
+        }
     }
 }

@@ -4,7 +4,7 @@ use super::closest::ClosestPoint;
 use super::keep;
 use super::kernel::Normal;
 use super::law::NormalLaw;
-use super::overhang::{Hanging, Rounded};
+use super::overhang::{Overhang, Rounded};
 use super::point::PointGeometry;
 use super::rigid::{
     Piece, PointFault, RigidMaster, RigidTangent, Touch, free, respond_rigid, respond_steady,
@@ -58,19 +58,19 @@ impl<P> Placed<'_, P> {
 impl<P: ClosestPoint> Placed<'_, P> {
     /// Evaluates one slave point; `None` where it is open.
     ///
-    /// `hint` is where the search starts, and is set to where it ended; `may` is what it may do past a free border.
+    /// `hint` is where the search starts, and is set to where it ended; `overhang` says how borders are rounded off for it.
     ///
     /// # Errors
     /// [`PointFault`] where the point has no reliable closest point.
     pub fn touch<L: NormalLaw, T: RigidTangent>(
         &self,
         x: &Vec3,
-        (hint, may): (&mut Option<Hint>, Hanging),
+        (hint, overhang): (&mut Option<Hint>, Overhang),
         law: &L,
         tangent: &T,
     ) -> Result<Option<Touch>, PointFault> {
         let mut out = Ok(None);
-        let known = (hint, &mut Clearance::default(), may);
+        let known = (hint, &mut Clearance::default(), overhang);
         self.touch_into(x, known, law, tangent, &mut out);
         out
     }
@@ -87,7 +87,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
     pub fn touch_into<L: NormalLaw, T: RigidTangent>(
         &self,
         x: &Vec3,
-        (hint, clear, may): (&mut Option<Hint>, &mut Clearance, Hanging),
+        (hint, clear, overhang): (&mut Option<Hint>, &mut Clearance, Overhang),
         law: &L,
         tangent: &T,
         out: &mut Result<Option<Touch>, PointFault>,
@@ -103,14 +103,14 @@ impl<P: ClosestPoint> Placed<'_, P> {
         }
         *clear = Clearance::default();
         let before = *hint;
-        let mut found = self.search(&local, before, law, may);
+        let mut found = self.search(&local, before, law, overhang);
         let Some(foot) = &mut found else {
             *hint = None;
             *out = Ok(None);
             return;
         };
         *hint = Some(foot.hint());
-        match self.closes(foot, law) {
+        match self.closes(foot, law, overhang) {
             Ok(true) => {}
             Ok(false) => {
                 *clear = Clearance::of(&local, foot);
@@ -126,7 +126,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
             self.keep(&local, on, law, foot, hint);
         }
         if free(foot) {
-            *out = Ok(self.past_border(x, &local, foot, law, may));
+            *out = Ok(self.past_border(x, &local, foot, law, overhang));
             return;
         }
         let xi3 = foot.signed_distance;
@@ -161,15 +161,13 @@ impl<P: ClosestPoint> Placed<'_, P> {
         local: &Vec3,
         hint: Option<Hint>,
         law: &L,
-        may: Hanging,
+        overhang: Overhang,
     ) -> Option<Foot> {
-        // Beside a border by no more than its rounding.
-        let beyond = 2.0 * may.rounding;
-        let reach = self.master.depth.max(law.reach()) + beyond;
+        let reach = self.master.depth.max(overhang.within(law.reach()));
         let above = match law.closes(reach) {
             true => reach,
             // Where contact begins in front of the surface it goes around borders as well.
-            false if law.reach() > 0.0 => law.reach() + beyond,
+            false if law.reach() > 0.0 => overhang.within(law.reach()),
             false => 0.0,
         };
         (self.master.surface).project_above(local, hint, reach, above)
@@ -177,7 +175,12 @@ impl<P: ClosestPoint> Placed<'_, P> {
 
     /// Whether a foot may mean contact.
     #[inline(always)]
-    fn closes<L: NormalLaw>(&self, foot: &Foot, law: &L) -> Result<bool, PointFault> {
+    fn closes<L: NormalLaw>(
+        &self,
+        foot: &Foot,
+        law: &L,
+        overhang: Overhang,
+    ) -> Result<bool, PointFault> {
         // On either side: an uncertain foot must not pass for an open point. Beyond the reach of the law the search says
         // so only where it has not even proved that.
         if foot.status == Status::NotConverged {
@@ -186,9 +189,12 @@ impl<P: ClosestPoint> Placed<'_, P> {
                 xi: foot.xi,
             });
         }
-        // What is past a free border is judged by the rounding of that.
         let xi3 = foot.signed_distance;
-        Ok(free(foot) || law.closes(xi3) && xi3 >= -self.master.depth)
+        Ok(match free(foot) {
+            // The rounding of the border says more.
+            true => foot.distance <= overhang.within(law.reach()),
+            false => law.closes(xi3) && xi3 >= -self.master.depth,
+        })
     }
 
     /// Puts the foot on the patch `on` in the place of the closest point, where it may stand for it across a fold.
@@ -244,9 +250,9 @@ impl<P: ClosestPoint> Placed<'_, P> {
         local: &Vec3,
         foot: &Foot,
         law: &L,
-        may: Hanging,
+        overhang: Overhang,
     ) -> Option<Touch> {
-        let rounded = self.rounded(local, foot, law, may)?;
+        let rounded = self.rounded(local, foot, law, overhang)?;
         let normal = law.response(rounded.xi3);
         let (residual, k) = respond_steady(&rounded.at, &normal);
         // A border that twists leaves a little that no energy has.
@@ -260,10 +266,10 @@ impl<P: ClosestPoint> Placed<'_, P> {
         local: &Vec3,
         foot: &Foot,
         law: &L,
-        may: Hanging,
+        overhang: Overhang,
     ) -> Option<Rounded> {
-        let rounded = (self.master).rounded(foot, &(local - foot.jet.rho), may)?;
-        (law.closes(rounded.xi3) && may.allows(law.gap(rounded.xi3))).then_some(rounded)
+        let rounded = (self.master).rounded(foot, &(local - foot.jet.rho), overhang)?;
+        (law.closes(rounded.xi3) && overhang.allows(law.gap(rounded.xi3))).then_some(rounded)
     }
 
     /// Searches for the foot of a slave point at `x`, and gives the point in the surface's own coordinates and its foot to
@@ -272,7 +278,7 @@ impl<P: ClosestPoint> Placed<'_, P> {
     pub(super) fn at_foot<L: NormalLaw, R>(
         &self,
         x: &Vec3,
-        (hint, clear, may): (&mut Option<Hint>, &mut Clearance, Hanging),
+        (hint, clear, overhang): (&mut Option<Hint>, &mut Clearance, Overhang),
         law: &L,
         then: impl FnOnce(&Vec3, &Foot) -> Result<Option<R>, PointFault>,
     ) -> Result<Option<R>, PointFault> {
@@ -285,13 +291,13 @@ impl<P: ClosestPoint> Placed<'_, P> {
         }
         *clear = Clearance::default();
         let before = *hint;
-        let mut found = self.search(&local, before, law, may);
+        let mut found = self.search(&local, before, law, overhang);
         let Some(foot) = &mut found else {
             *hint = None;
             return Ok(None);
         };
         *hint = Some(foot.hint());
-        if !self.closes(foot, law)? {
+        if !self.closes(foot, law, overhang)? {
             *clear = Clearance::of(&local, foot);
             return Ok(None);
         }
@@ -396,7 +402,7 @@ mod tests {
             let mut hint = None;
             for _ in 0..2 {
                 assert_eq!(
-                    master.touch(&x, (&mut hint, Hanging::default()), &law, &Exact),
+                    master.touch(&x, (&mut hint, Overhang::default()), &law, &Exact),
                     Ok(None),
                     "{z}"
                 );

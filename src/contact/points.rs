@@ -1,5 +1,5 @@
 //! Slave points: where contact is sampled on the slave surface.
-use super::overhang::Hanging;
+use super::overhang::Overhang;
 
 /// Radius by which a free border of a rigid surface is rounded off for a point, as a part of the distance of neighbouring nodes.
 /// Twice as much would be easier for Newton's method, but carry nodes that a finer mesh would show to be off the surface.
@@ -44,8 +44,8 @@ impl SlavePoint {
 
     /// What it may do past a free border of a rigid surface, having been `closed` or not.
     #[inline]
-    pub fn hanging(&self, closed: bool) -> Hanging {
-        Hanging {
+    pub fn overhang(&self, closed: bool) -> Overhang {
+        Overhang {
             rounding: self.rounding,
             closed,
         }

@@ -6,7 +6,7 @@ use super::kernel::{self, Normal};
 use super::kind::TangentForm;
 use super::law::NormalLaw;
 use super::meeting::Meeting;
-pub use super::overhang::Hanging;
+pub use super::overhang::Overhang;
 use super::overhang::Rounded;
 use super::point::PointGeometry;
 use super::published::{self, Parts};
@@ -86,30 +86,49 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         self.surface.project(&local, hint, reach)
     }
 
-    /// Normal coordinate of a point at `x` over the rounding of the free border at its foot, and the normal there, where its gap is
-    /// measured from `z0`; none where it is open.
-    pub fn hanging(&self, x: &Vec3, foot: &Foot, z0: f64, may: Hanging) -> Option<(f64, Vec3)> {
+    /// Normal coordinate of a point at `x` over the rounding of the free border that its foot lies on, and the normal there in the
+    /// surface's own coordinates; none where it is deeper below the border than the rounding, or the surface, reaches.
+    pub fn over_border(&self, x: &Vec3, foot: &Foot, overhang: Overhang) -> Option<(f64, Vec3)> {
         let local = self.pose.inverse_transform_point(&Point3::from(*x)).coords;
-        let rounded = self.rounded(foot, &(local - foot.jet.rho), may)?;
-        let closes = rounded.xi3 < z0 && may.allows(rounded.xi3 - z0);
-        closes.then(|| (rounded.xi3, self.pose.rotation * rounded.at.n))
+        let rounded = self.rounded(foot, &(local - foot.jet.rho), overhang)?;
+        Some((rounded.xi3, rounded.at.n))
+    }
+
+    /// Gap of a point at `x` over its foot, measured from `z0`, and the normal there in the surface's own coordinates: past a free
+    /// border that over the rounding.
+    pub fn gap(&self, x: &Vec3, foot: &Foot, z0: f64, overhang: Overhang) -> (f64, Vec3) {
+        let over = free(foot).then(|| self.over_border(x, foot, overhang));
+        let (xi3, normal) = (over.flatten()).unwrap_or((foot.signed_distance, foot.normal));
+        (xi3 - z0, normal)
+    }
+
+    /// [`Self::over_border`] of a point in contact there, where its gap is measured from `z0`.
+    pub fn hanging(
+        &self,
+        x: &Vec3,
+        foot: &Foot,
+        z0: f64,
+        overhang: Overhang,
+    ) -> Option<(f64, Vec3)> {
+        let near = free(foot) && foot.distance <= overhang.within(z0);
+        let over = near.then(|| self.over_border(x, foot, overhang)).flatten();
+        over.filter(|(xi3, _)| *xi3 < z0 && overhang.allows(*xi3 - z0))
     }
 
     /// Evaluates one slave point; `None` where it is open. For many points make [`Self::placed`] once.
     ///
-    /// `hint` is where the search starts, and is set to where it ended; `may` is what it may do past
-    /// a free border.
+    /// `hint` is where the search starts, and is set to where it ended; `overhang` says how borders are rounded off for it.
     ///
     /// # Errors
     /// [`PointFault`] where the point has no reliable closest point.
     pub fn touch<L: NormalLaw, T: RigidTangent>(
         &self,
         x: &Vec3,
-        (hint, may): (&mut Option<Hint>, Hanging),
+        (hint, overhang): (&mut Option<Hint>, Overhang),
         law: &L,
         tangent: &T,
     ) -> Result<Option<Touch>, PointFault> {
-        self.placed().touch(x, (hint, may), law, tangent)
+        self.placed().touch(x, (hint, overhang), law, tangent)
     }
 
     /// The closest point within `reach` on either side, for what needs more than [`Self::touch`]: a rigid surface with
@@ -237,7 +256,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
 
     /// The rounding of the free border that a foot lies on, next to a point at `d` from there; none where the point is deeper below
     /// it than the surface reaches.
-    pub(super) fn rounded(&self, foot: &Foot, d: &Vec3, may: Hanging) -> Option<Rounded> {
+    pub(super) fn rounded(&self, foot: &Foot, d: &Vec3, overhang: Overhang) -> Option<Rounded> {
         let line = match foot.location {
             Location::Edge { edge, .. } => self.along_edge(foot, edge),
             _ => None,
@@ -245,7 +264,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
         // Where another line crosses this one, the foot may be held along it too.
         let border = (line.filter(|[rho_s, _]| !self.leans(d, rho_s)))
             .map(|[rho_s, rho_ss]| [rho_s, rho_ss, self.surface.normal_along(foot, &rho_s)]);
-        (may.rounded(d, &foot.normal, border)).filter(|r| r.xi3 >= -self.depth)
+        (overhang.rounded(d, &foot.normal, border)).filter(|r| r.xi3 >= -self.depth)
     }
 
     /// Whether a distance vector leans along a line.
@@ -390,7 +409,7 @@ mod tests {
                 let beside = Vec3::new(turn.cos(), turn.sin(), 0.0) * away;
                 let x = at + beside - Vec3::z() * (radius - 1e-3);
                 let touch = master
-                    .touch(&x, (&mut None, Hanging::default()), &law, &Exact)
+                    .touch(&x, (&mut None, Overhang::default()), &law, &Exact)
                     .unwrap();
                 let touch = touch.expect("contact");
                 let n = (x - at).normalize();
@@ -418,7 +437,7 @@ mod tests {
             law: Penalty { eps_n: 5.0 },
             z0: 0.5,
         };
-        let touch = |x: Vec3| master.touch(&x, (&mut None, Hanging::default()), &law, &Exact);
+        let touch = |x: Vec3| master.touch(&x, (&mut None, Overhang::default()), &law, &Exact);
         // Above the peak, a ridge and a face: pushed away from the vertex, the ridge, the face.
         for (x, n) in [
             (Vec3::new(0.32, 0.01, 0.4), Vec3::new(0.02, 0.01, 0.4)),
@@ -467,7 +486,7 @@ mod tests {
         let touch = |gap: f64| {
             master.touch(
                 &(foot + normal * gap),
-                (&mut None, Hanging::default()),
+                (&mut None, Overhang::default()),
                 &law,
                 &Exact,
             )
@@ -490,7 +509,7 @@ mod tests {
         };
         let law = Penalty { eps_n: 5.0 };
         let touch = |x: Vec3| {
-            (master.touch(&x, (&mut None, Hanging::default()), &law, &Exact))
+            (master.touch(&x, (&mut None, Overhang::default()), &law, &Exact))
                 .unwrap()
                 .expect("contact")
         };

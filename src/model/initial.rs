@@ -71,8 +71,8 @@ fn initial_gaps(
     for (i, p) in pair.points.iter().enumerate() {
         let x = model.point_position(p, &zero);
         let z0 = offsets.map_or(0.0, |o| o.at(i));
-        let may = (z0, p.hanging(false));
-        let Some(seen) = master.see_hanging((i, &x), hint, f64::INFINITY, may) else {
+        let from = (z0, p.overhang(false));
+        let Some(seen) = master.see_hanging((i, &x), hint, f64::INFINITY, from) else {
             gaps.push(f64::NAN);
             continue;
         };

@@ -4,7 +4,7 @@ use super::state::heap;
 use super::surface::SurfaceSet;
 use super::{Model, PairModel};
 use crate::contact::moving;
-use crate::contact::rigid::{self, Hanging, RigidMaster};
+use crate::contact::rigid::{self, Overhang, RigidMaster};
 use crate::mesh::{Face, Mesh};
 use crate::scene::ValueError;
 use covact_geometry::{Foot, Hint, MovingError, MovingFacets, Vec3};
@@ -250,19 +250,17 @@ impl MasterNow<'_> {
         (point, x): (usize, &Vec3),
         hint: Option<Hint>,
         reach: f64,
-        (z0, may): (f64, Hanging),
+        (z0, overhang): (f64, Overhang),
     ) -> Option<Seen> {
         let MasterNow::Rigid(master) = self else {
             return self.see_within(point, x, hint, reach);
         };
         let foot = master.foot(x, hint, reach)?;
         let seen = Seen::rigid(master, &foot);
-        let over = (seen.free)
-            .then(|| master.hanging(x, &foot, z0, may))
-            .flatten();
+        let over = master.hanging(x, &foot, z0, overhang);
         Some(over.map_or(seen, |(signed_distance, normal)| Seen {
             signed_distance,
-            normal,
+            normal: master.pose.rotation * normal,
             free: false,
             ..seen
         }))

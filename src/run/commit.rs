@@ -97,7 +97,7 @@ pub fn start(
         .for_each(|(i, ((history, p), point))| {
             let z0 = offsets.map_or(0.0, |o| o.at(i));
             let x = model.point_position(p, u);
-            release(&master, &x, point.hint, z0, history);
+            release(&master, (p, &x), point.hint, z0, history);
         });
     }
     Ok(())
@@ -106,14 +106,15 @@ pub fn start(
 /// History of an open point: slip is measured from where it is now.
 fn release(
     master: &RigidMaster<'_, SurfaceSet>,
-    x: &Vec3,
+    (point, x): (&SlavePoint, &Vec3),
     hint: Option<Hint>,
     z0: f64,
     history: &mut PointHistory,
 ) {
     let local = (master.pose.inverse_transform_point(&Point3::from(*x))).coords;
     let foot = master.foot(x, hint, f64::INFINITY);
-    history.release(&local, foot.map(|f| f.signed_distance - z0));
+    let gap = foot.map(|f| master.gap(x, &f, z0, point.overhang(false)).0);
+    history.release(&local, gap);
 }
 
 /// Takes the state at the end of a step, which began at time `start` with displacements `before`, into the histories.
@@ -235,7 +236,7 @@ impl<L: PairLaw> Batch<'_, L> {
         let touch = (self.master)
             .touch_with_friction(
                 &x,
-                (&mut hint, point.hanging(state.closed)),
+                (&mut hint, point.overhang(state.closed)),
                 &law,
                 friction,
                 history,
@@ -256,7 +257,7 @@ impl<L: PairLaw> Batch<'_, L> {
                 let pose = &self.master.pose;
                 let local = (pose.inverse_transform_point(&Point3::from(x))).coords;
                 let foot = self.master.foot(&x, hint, f64::INFINITY);
-                let foot = foot.map(|f| (f.signed_distance - z0, f.normal));
+                let foot = foot.map(|f| self.master.gap(&x, &f, z0, point.overhang(false)));
                 history.leave(&local, foot, &self.law, friction.eps_t, &self.turn);
             }
         }

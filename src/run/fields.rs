@@ -239,8 +239,8 @@ impl Fields {
                     })
                 } else {
                     let x = model.point_position(p, &state.u);
-                    let may = (z0, p.hanging(s.closed));
-                    let seen = master.see_hanging((i, &x), s.hint, f64::INFINITY, may);
+                    let from = (z0, p.overhang(s.closed));
+                    let seen = master.see_hanging((i, &x), s.hint, f64::INFINITY, from);
                     place = seen.map(|s| (x, s.hint, s.normal));
                     let sunk = seen.is_some_and(|s| s.behind);
                     self.sunk[index] += usize::from(*front && sunk);
@@ -386,13 +386,17 @@ impl Fields {
             first = range.end;
             let master = masters.at(model, index, &state.u, time)?;
             let fronts = self.front[range.clone()].iter_mut();
+            let offsets = model.pairs[index].offsets(time);
             for (i, ((p, s), front)) in points
                 .iter()
                 .zip(&state.points[range])
                 .zip(fronts)
                 .enumerate()
             {
-                let seen = master.see(i, &model.point_position(p, &state.u), s.hint);
+                let x = model.point_position(p, &state.u);
+                let z0 = offsets.map_or(0.0, |o| o.at(i));
+                let from = (z0, p.overhang(s.closed));
+                let seen = master.see_hanging((i, &x), s.hint, f64::INFINITY, from);
                 *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
             }
         }

@@ -39,7 +39,7 @@ pub fn close(model: &Model, masters: &Masters, state: &mut State) -> Result<(), 
                 (i, &x),
                 now.hint,
                 z0.abs() + reach,
-                (z0, point.hanging(false)),
+                (z0, point.overhang(false)),
             );
             let rests = seen.filter(|seen| seen.counts() && seen.gap(z0).abs() <= reach);
             if let Some(seen) = rests {

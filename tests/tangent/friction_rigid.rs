@@ -166,7 +166,7 @@ fn neither_the_parametrisation_nor_the_pose_matters() {
 #[test]
 fn rigid_motions_of_the_pair_turn_residual_and_tangent() {
     use covact::contact::friction::rigid::Friction;
-    use covact::contact::rigid::{Hanging, RigidMaster};
+    use covact::contact::rigid::{Overhang, RigidMaster};
     let p = support::patch(Shape::Saddle);
     let set = set(vec![nurbs(&p)]);
     let x = support::slave_at(&p, XI, -0.05 * p.radius);
@@ -187,7 +187,7 @@ fn rigid_motions_of_the_pair_turn_residual_and_tangent() {
                 };
                 (master.touch_with_friction(
                     x,
-                    (&mut None, Hanging::default()),
+                    (&mut None, Overhang::default()),
                     &case.law(),
                     &friction,
                     &history,

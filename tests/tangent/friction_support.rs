@@ -5,7 +5,7 @@ use covact::contact::friction::history::PointHistory;
 use covact::contact::friction::law::FrictionLaw;
 use covact::contact::friction::rigid::{Friction, FrictionTouch};
 use covact::contact::law::{Augmented, Penalty};
-use covact::contact::rigid::{Hanging, RigidMaster};
+use covact::contact::rigid::{Overhang, RigidMaster};
 use covact_geometry::{NurbsPatch, PatchSet};
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
 use num_dual::{Dual64, DualNum};
@@ -171,7 +171,7 @@ pub fn touch<F: FrictionLaw>(
     let at = (master.pose * Point3::from(*x)).coords;
     (master.touch_with_friction(
         &at,
-        (&mut None, Hanging::default()),
+        (&mut None, Overhang::default()),
         &case.law(),
         &friction,
         history,

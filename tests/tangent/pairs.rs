@@ -3,7 +3,7 @@
 use crate::cases::*;
 use crate::support::{self, Shape, V};
 use crate::surface::{Held, Surface};
-use covact::contact::rigid::{Exact, Hanging, RigidMaster};
+use covact::contact::rigid::{Exact, Overhang, RigidMaster};
 use covact_geometry::{MovingFacets, NurbsPatch, PatchSet};
 use nalgebra::{DMatrix, Isometry3};
 
@@ -181,7 +181,7 @@ fn rigid_patches_give_the_first_block() {
                 let x = pose * nalgebra::Point3::from(q);
                 let touch = (master.touch(
                     &x.coords,
-                    (&mut None, Hanging::default()),
+                    (&mut None, Overhang::default()),
                     &Hardening,
                     &Exact,
                 ))

@@ -6,7 +6,7 @@ use covact::contact::friction::law::{Coulomb, FrictionLaw};
 use covact::contact::friction::orthotropic::Orthotropic;
 use covact::contact::friction::rigid::Friction;
 use covact::contact::law::{Augmented, Penalty};
-use covact::contact::rigid::{Hanging, RigidMaster};
+use covact::contact::rigid::{Overhang, RigidMaster};
 use covact_geometry::{Frame, Hint, Jet, NurbsPatch, PatchSet, Vec3, primitives};
 use nalgebra::{Isometry3, Matrix2, Rotation3, SMatrix, SVector, Unit};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -46,7 +46,7 @@ impl<'a, F: FrictionLaw> Driver<'a, F> {
         let touch = (self.master)
             .touch_with_friction(
                 x,
-                (&mut self.hint, Hanging::default()),
+                (&mut self.hint, Overhang::default()),
                 &self.law,
                 &self.friction,
                 &self.history,

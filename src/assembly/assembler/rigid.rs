@@ -291,7 +291,7 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
                 let secant = friction.secant(secants.all, slip);
                 let touch = placed.touch_with_friction(
                     &x,
-                    (&mut s.hint, clear, p.hanging(s.closed)),
+                    (&mut s.hint, clear, p.overhang(s.closed)),
                     &law,
                     &secant,
                     history,
@@ -348,7 +348,7 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
                 let law = offset.law(i, self.law);
                 placed.touch_into(
                     &x,
-                    (&mut s.hint, clear, p.hanging(s.closed)),
+                    (&mut s.hint, clear, p.overhang(s.closed)),
                     &law,
                     tangent,
                     out,

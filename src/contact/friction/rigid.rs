@@ -10,7 +10,7 @@ use crate::contact::kernel::Normal;
 use crate::contact::law::{Augmented, NormalLaw, PairLaw};
 use crate::contact::placed::Placed;
 use crate::contact::rigid::{
-    Exact, Hanging, RigidMaster, Touch, free, respond_rigid, respond_steady,
+    Exact, Overhang, RigidMaster, Touch, free, respond_rigid, respond_steady,
 };
 use covact_geometry::{Foot, Hint, Vec3};
 
@@ -73,14 +73,14 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
     pub fn touch_with_friction<L: PairLaw, F: FrictionLaw>(
         &self,
         x: &Vec3,
-        (hint, may): (&mut Option<Hint>, Hanging),
+        (hint, overhang): (&mut Option<Hint>, Overhang),
         law: &Augmented<L>,
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Result<Option<FrictionTouch>, PointFault> {
         (self.placed()).touch_with_friction(
             x,
-            (hint, &mut Clearance::default(), may),
+            (hint, &mut Clearance::default(), overhang),
             law,
             friction,
             history,
@@ -97,15 +97,15 @@ impl<P: ClosestPoint> Placed<'_, P> {
     pub fn touch_with_friction<L: PairLaw, F: FrictionLaw>(
         &self,
         x: &Vec3,
-        (hint, clear, may): (&mut Option<Hint>, &mut Clearance, Hanging),
+        (hint, clear, overhang): (&mut Option<Hint>, &mut Clearance, Overhang),
         law: &Augmented<L>,
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Result<Option<FrictionTouch>, PointFault> {
-        self.at_foot(x, (hint, clear, may), law, |local, foot| {
+        self.at_foot(x, (hint, clear, overhang), law, |local, foot| {
             let attraction = history.attraction(friction.eps_t);
             if free(foot) {
-                return Ok(self.slide_past(x, local, foot, (law, may), friction, history));
+                return Ok(self.slide_past(x, local, foot, (law, overhang), friction, history));
             }
             let geometry = self.geometry(local, foot)?;
             let xi3 = geometry.xi3();
@@ -155,11 +155,11 @@ impl<P: ClosestPoint> Placed<'_, P> {
         x: &Vec3,
         local: &Vec3,
         foot: &Foot,
-        (law, may): (&Augmented<L>, Hanging),
+        (law, overhang): (&Augmented<L>, Overhang),
         friction: &Friction<F>,
         history: &PointHistory,
     ) -> Option<FrictionTouch> {
-        let rounded = self.rounded(local, foot, law, may)?;
+        let rounded = self.rounded(local, foot, law, overhang)?;
         let xi3 = rounded.xi3;
         let normal = law.response(xi3);
         let limit = limit(law, &normal, history);

@@ -5,7 +5,7 @@ use super::{Driven, Model, SurfaceModel};
 use crate::contact::carried::{Carried, carried, cross_matrix};
 use crate::contact::friction::history::PointHistory;
 use crate::contact::law::{Augmented, NormalLaw, PairLaw, Penalty};
-use crate::contact::rigid::{Exact, Hanging, PointFault, RigidMaster, behind, free};
+use crate::contact::rigid::{Exact, Overhang, PointFault, RigidMaster, behind, free};
 use crate::model::PairModel;
 use crate::model::surface::SurfaceSet;
 use crate::scene::ValueError;
@@ -69,7 +69,7 @@ struct PairAtRest<'m, L> {
 struct PointAtRest {
     x: Vec3,
     area: f64,
-    may: Hanging,
+    overhang: Overhang,
     /// Multiplier of its traction.
     lambda_n: f64,
     hint: Option<Hint>,
@@ -106,7 +106,7 @@ impl<'m, L: PairLaw> Presser<'m, L> {
                 .map(|(i, p)| PointAtRest {
                     x: model.point_position(p, u),
                     area: p.area,
-                    may: p.hanging(false),
+                    overhang: p.overhang(false),
                     lambda_n: (pair.first_history)
                         .and_then(|first| histories.get(first + i))
                         .map_or(0.0, |h| h.lambda_n),
@@ -181,7 +181,7 @@ impl<'m, L: PairLaw> Presser<'m, L> {
                 .with_min_len(64)
                 .map(|(i, p)| {
                     let law = law_of(i, p);
-                    master.touch(&p.x, (&mut p.hint, p.may), &law, &Exact)
+                    master.touch(&p.x, (&mut p.hint, p.overhang), &law, &Exact)
                 })
                 .collect();
             for (point, (touch, p)) in touches.into_iter().zip(&pair.points).enumerate() {
