@@ -204,7 +204,7 @@ impl March<'_, '_> {
             {
                 result = Err(failure);
             }
-            let passing = walk.jump.is_some();
+            let passing = walk.jump;
             if let Ok(converged) = &mut result
                 && let Err(failure) =
                     self.let_go((step, end), (&*committed, walk), trial, converged)
@@ -288,7 +288,7 @@ impl March<'_, '_> {
                     committed.stabilized += drag.work;
                     // Augmentations say nothing of how far a step may go.
                     let iterations = converged.iterations - converged.augmenting;
-                    match (passing, &moved) {
+                    match (passing.is_some(), &moved) {
                         (true, _) => walk.stepping.set_size(dt),
                         (false, None) => walk.stepping.accepted(iterations),
                         (false, Some(moved)) => {
@@ -298,6 +298,9 @@ impl March<'_, '_> {
                         }
                     }
                     walk.stepping.flowed(dt, flow);
+                    if let Some(jump) = passing.filter(|_| walk.jump.is_none()) {
+                        self.tell_jump(&jump, committed);
+                    }
                     if walk.stepping.at_kink(end) {
                         walk.before = None;
                     }
@@ -351,6 +354,8 @@ impl March<'_, '_> {
                     squeezed: Vec::new(),
                 }));
             }
+            // Let go of, it was not found or is not taken: larger ones may hold it.
+            walk.jump = walk.jump.or(passing);
             if self.passes((step, dt), &failure, committed, walk) {
                 continue;
             }

@@ -161,7 +161,6 @@ impl March<'_, '_> {
             Ok(next) if way(&held, trial) <= far => {
                 converged.stiffened(next);
                 walk.jump = None;
-                self.tell_jump(&jump, committed);
             }
             Err(StepFailure::Interrupted) => return Err(StepFailure::Interrupted),
             // Not found, or another one far away.
@@ -177,7 +176,7 @@ impl March<'_, '_> {
     }
 
     /// Tells of a jump that is over; of several in one warning, with all of their times.
-    fn tell_jump(&mut self, jump: &Jump, committed: &State) {
+    pub(super) fn tell_jump(&mut self, jump: &Jump, committed: &State) {
         let work = self.watch.turned_over();
         let taken = committed.stabilized - jump.taken;
         if taken <= TOLD * work {
