@@ -331,6 +331,67 @@ fn askew_box(half: Vec3) -> (PatchSet, [Vec3; 3]) {
 }
 
 #[test]
+fn rims_are_borders_and_convex_edges_in_pieces() {
+    let half = Vec3::new(1.0, 1.3, 1.7);
+    let (solid, axes) = askew_box(half);
+    // Every edge once, in pieces as long as asked for at most, whose middles lie on it.
+    let rims = solid.rims(0.5, 0.4);
+    assert_eq!(rims.len(), 12);
+    let mut length = 0.0;
+    for rim in &rims {
+        assert!(!rim.free && rim.piece <= 0.4);
+        length += rim.piece * rim.points.len() as f64;
+        for point in &rim.points {
+            let (x, along) = (&point.x, &point.along);
+            let at: [f64; 3] = std::array::from_fn(|k| axes[k].dot(x) / half[k]);
+            let on = at.iter().filter(|a| (a.abs() - 1.0).abs() < 1e-12).count();
+            assert_eq!(on, 2, "{at:?}");
+            let free = (0..3)
+                .find(|k| at[*k].abs() < 1.0 - 1e-9)
+                .expect("on an edge");
+            assert!(axes[free].cross(along).norm() < 1e-12 * along.norm());
+            // Those of the two faces.
+            for k in (0..3).filter(|k| *k != free) {
+                let is = |n: &Vec3| (n - axes[k] * at[k].signum()).norm() < 1e-12;
+                assert!(point.normals.iter().any(is), "{point:?}");
+            }
+        }
+    }
+    assert!((length - 8.0 * (1.0 + 1.3 + 1.7)).abs() < 1e-12, "{length}");
+    assert!(solid.rims(2.0, 0.4).is_empty());
+    // Seen from inside the edges are hollow.
+    let mut hollow = solid;
+    hollow.set_sides_outward(true).unwrap();
+    assert!(hollow.rims(0.5, 0.4).is_empty());
+    // Of a cylinder the circles at its ends: its seam is none.
+    let tube = set(vec![cylinder(1.0, 3.0, Vec3::zeros(), Vec3::z()).unwrap()]);
+    let rims = tube.rims(0.5, 0.25);
+    assert_eq!(rims.len(), 2);
+    for rim in &rims {
+        let length = rim.piece * rim.points.len() as f64;
+        assert!(
+            rim.free && (length / std::f64::consts::TAU - 1.0).abs() < 0.02,
+            "{length}"
+        );
+        for point in &rim.points {
+            let (x, along) = (&point.x, &point.along);
+            assert_eq!(point.normals[0], point.normals[1]);
+            assert!((x.xy().norm() - 1.0).abs() < 1e-12 && (x.z.abs() - 1.5).abs() < 1e-12);
+            assert!(along.dot(x).abs() < 1e-12 * along.norm());
+        }
+        // Evenly along it.
+        for pair in rim.points.windows(2) {
+            let apart = (pair[1].x - pair[0].x).norm();
+            assert!(
+                (apart / rim.piece - 1.0).abs() < 0.05,
+                "{apart} {}",
+                rim.piece
+            );
+        }
+    }
+}
+
+#[test]
 fn feet_as_near_as_each_other_are_not_unique() {
     let mut random = Random(71);
     let check = |set: &PatchSet, tie: Vec3, off: Vec3, what: &str| {

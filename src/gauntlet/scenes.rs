@@ -36,3 +36,9 @@ pub fn block_under(tool: Value, n: u32, steps: u32) -> Value {
         "output": { "every": 0 }
     })
 }
+
+/// Leaves the contact of a scene to the slave's points alone, where edges of the tool would become slaves as well: what is compared
+/// is how the points see them.
+pub fn alone(scene: &mut Value) {
+    scene["contacts"]["press"]["passes"] = "one".into();
+}

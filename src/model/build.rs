@@ -4,10 +4,11 @@ mod contact_faces;
 mod contacts;
 mod facets;
 mod fibres;
-mod master_faces;
+pub(crate) mod master_faces;
 mod meshes;
 mod nurbs_bodies;
 mod probes;
+mod rims;
 mod seams;
 mod sets;
 mod sheet_supports;
@@ -22,6 +23,7 @@ use meshes::{extent, mesh_error, place, room};
 use super::driven::Driven;
 use super::error::{At, number, text};
 use super::loads::{DeadLoad, FollowerPressure, LoadPoint, load_points, sheet_load_points};
+use super::rims::RimNodes;
 use super::sheet_pressure::{FollowingSpan, PressedSpan};
 use super::stages::{self, StageStart};
 use super::symmetry::Unsymmetric;
@@ -90,8 +92,9 @@ pub fn build_stage(
     };
     let (surfaces, wrong) = builder.surfaces();
     ModelError::all(bodies.err().into_iter().chain(sets).chain(wrong))?;
-    let (pairs, mut surfaces) = builder.contacts(surfaces)?;
-    let held = builder.drive(&mut surfaces)?;
+    let (pairs, mut surfaces, rims) = builder.contacts(surfaces)?;
+    let mut held = builder.drive(&mut surfaces)?;
+    held.extend(rims.iter().flat_map(RimNodes::dofs));
     // Those of later stages, so that a contradiction is told before anything is solved.
     for later in (0..scene.stages.len()).filter(|stage| *stage > start.index) {
         builder.stage = later;
@@ -109,6 +112,7 @@ pub fn build_stage(
         bodies: builder.bodies,
         surfaces,
         pairs,
+        rims,
         supports: supports.names,
         prescribed: supports.prescribed,
         means: supports.means,

@@ -14,6 +14,9 @@ const ANGLE: f64 = 0.5;
 /// it: both sides end there together, and nothing sinks in.
 const FLUSH: f64 = 0.3;
 
+/// Cosine of the angle between a line and the way out of a border from which on the line crosses it.
+const CROSSES: f64 = 0.7;
+
 /// A node on such an edge lies on the slave where it is no farther from it than this part of the slave's elements.
 const NEAR: f64 = 0.5;
 
@@ -52,8 +55,9 @@ fn sides(mesh: &Mesh, face: Face) -> [Vec<u32>; 4] {
     ]
 }
 
-/// Whether a place is at the free border of the slave's faces, within [`FLUSH`] of their elements either way along them.
-fn flush_with(place: &Vec3, slave: &MovingFacets, size: f64) -> bool {
+/// Whether a place on a line is at the free border of the slave's faces, within [`FLUSH`] of their elements either way along them,
+/// and the line does not cross the border; `line` is its direction.
+pub(super) fn flush_with(place: &Vec3, line: &Vec3, slave: &MovingFacets, size: f64) -> bool {
     let foot = |q: &Vec3| slave.project(q, None, f64::INFINITY, |_| true);
     let Some(at) = foot(place) else {
         return false;
@@ -65,16 +69,31 @@ fn flush_with(place: &Vec3, slave: &MovingFacets, size: f64) -> bool {
     if along.norm() > FLUSH * size {
         return false;
     }
-    let beyond = |foot: MovingFoot| match foot.place {
-        MovingPlace::Face => false,
-        MovingPlace::Edge { kind, .. } | MovingPlace::Corner { kind } => kind == EdgeKind::Free,
-    };
     // An element is two long in its parameters.
     let ways = rho_i
         .iter()
         .flat_map(|t| [2.0 * FLUSH, -2.0 * FLUSH].map(|by| t * by));
     let mut places = ways.map(|way| place + way);
-    places.any(|q| foot(&q).is_some_and(beyond))
+    let beside = |foot: &MovingFoot| match foot.place {
+        MovingPlace::Face => false,
+        MovingPlace::Corner { kind } => kind == EdgeKind::Free,
+        MovingPlace::Edge { direction, kind } => {
+            let [a, b] = &foot.jet.rho_i;
+            let border = a * direction[0] + b * direction[1];
+            let out = border.cross(&a.cross(b));
+            let crosses = out.dot(line).abs() > CROSSES * out.norm() * line.norm();
+            kind == EdgeKind::Free && !crosses
+        }
+    };
+    places.any(|q| foot(&q).is_some_and(|foot| beside(&foot)))
+}
+
+/// Whether a foot lies on the free border of its faces.
+pub fn at_border(foot: &MovingFoot) -> bool {
+    match foot.place {
+        MovingPlace::Face => false,
+        MovingPlace::Edge { kind, .. } | MovingPlace::Corner { kind } => kind == EdgeKind::Free,
+    }
 }
 
 /// Nodes of the mesh on the sharp convex edges of some of its faces, without the edges that are flush with the border of the
@@ -109,8 +128,9 @@ pub fn sharp_nodes(
     }
     let beside = |edge: &&Edge| {
         let ends = [edge.nodes[0], edge.nodes[edge.nodes.len() - 1]];
-        let middle = (position(ends[0]) + position(ends[1])) * 0.5;
-        !flush_with(&middle, slave, size)
+        let ends = ends.map(&position);
+        let middle = (ends[0] + ends[1]) * 0.5;
+        !flush_with(&middle, &(ends[1] - ends[0]), slave, size)
     };
     (edges.values())
         .filter(|edge| edge.of_master && edge.sharp())

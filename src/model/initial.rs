@@ -67,7 +67,8 @@ fn initial_gaps(
     let mut nearest = None;
     let mut nearest_distance = f64::INFINITY;
     let mut facing: Vec<(f64, f64)> = Vec::new();
-    let normals = pair.body_master().map(|_| slave_normals(model, pair));
+    let rim = model.of_rims(pair);
+    let normals = (pair.body_master().filter(|_| !rim)).map(|_| slave_normals(model, pair));
     for (i, p) in pair.points.iter().enumerate() {
         let x = model.point_position(p, &zero);
         let z0 = offsets.map_or(0.0, |o| o.at(i));
@@ -110,6 +111,7 @@ fn initial_gaps(
     // Faces of one body that see each other do so from opposite sides, maybe at a right angle: nothing to be judged there.
     if let Some((node, x, n)) = nearest
         && pair.body_master().is_none_or(|m| m.own.is_none())
+        && !rim
     {
         gap.turned_away = turned_away(model, pair.body, node, &x, &n);
     }
@@ -200,6 +202,19 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
             )
             .help("take the faces on the other side of that body, whose outward normals point at the other faces"));
         }
+        let overlaps = gap.smallest < -1e-9 * pair.element_size;
+        let deepest = Deepest {
+            gap: gap.smallest,
+            at: gap.place,
+        };
+        if model.of_rims(pair) {
+            // What there is to say of it is said of the contact itself.
+            if overlaps {
+                let overclosures = gaps.iter().map(|gap| gap.min(0.0)).collect();
+                treat(model, index, choice(scene, pair), overclosures, deepest)?;
+            }
+            continue;
+        }
         let (name, points) = (&pair.name, pair.points.len());
         notes.push(match gap.smallest.is_finite() {
             true => format!(
@@ -269,12 +284,8 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
                 notes.push(edges.note(&pair.name, name, sharp::spacing(model, pair)));
             }
         }
-        if gap.smallest < -1e-9 * pair.element_size {
+        if overlaps {
             let choice = choice(scene, pair);
-            let deepest = Deepest {
-                gap: gap.smallest,
-                at: gap.place,
-            };
             let overclosures = gaps.iter().map(|gap| gap.min(0.0)).collect();
             let told = treat(model, index, choice, overclosures, deepest)?;
             match choice {

@@ -22,6 +22,7 @@ pub(crate) mod overclosure;
 pub(crate) mod pace;
 pub(crate) mod penalty;
 pub(crate) mod probe;
+pub(crate) mod rims;
 mod sagitta;
 pub mod segments;
 pub(crate) mod self_contact;
@@ -51,6 +52,7 @@ use friction::FrictionModel;
 use loads::{DeadLoad, FollowerPressure};
 use master::Master;
 use overclosure::Overclosure;
+use rims::RimNodes;
 use small::SmallModel;
 use stabilization::StabilizationModel;
 use stages::StageModel;
@@ -64,12 +66,14 @@ pub use surface::SurfaceModel;
 #[derive(Debug)]
 pub struct Model {
     pub title: String,
-    /// Undeformed positions of all nodes, body after body, then two for every surface driven by force: its centre, and
-    /// the origin for its rotation.
+    /// Undeformed positions of all nodes, body after body, then those on rims of rigid surfaces, then two for every surface driven
+    /// by force: its centre, and the origin for its rotation.
     pub nodes: Vec<Vec3>,
     pub bodies: Vec<BodyModel>,
     pub surfaces: Vec<SurfaceModel>,
     pub pairs: Vec<PairModel>,
+    /// Nodes on the rims of rigid surfaces that are slaves.
+    pub rims: Vec<RimNodes>,
     /// Names of the supports.
     pub supports: Vec<String>,
     pub prescribed: Vec<Prescribed>,
@@ -137,7 +141,8 @@ pub struct PairModel {
     pub segments: Option<u8>,
     /// One of the two passes of a contact whose sides are both slaves.
     pub half: Option<HalfPass>,
-    /// The points are the sharp edges of the master of this pair, and the master is its slave.
+    /// The points are on the sharp edges of the master of this pair, and the master is its slave. Those of a rigid surface belong
+    /// to no body ([`rims`]): `body` is then that of the master, and there are no slave faces.
     pub edges_of: Option<usize>,
     /// Penalty (force / length^3).
     pub eps_n: f64,
@@ -232,9 +237,9 @@ impl Model {
         terms.reduce(|x, y| x + y).unwrap_or_else(Vec3::zeros)
     }
 
-    /// Number of nodes that belong to bodies; those of driven surfaces come after them.
+    /// Number of nodes that belong to bodies; those on rims and of driven surfaces come after them.
     pub fn body_nodes(&self) -> usize {
-        self.nodes.len() - 2 * self.driven().count()
+        self.nodes.len() - self.rim_nodes() - 2 * self.driven().count()
     }
 
     /// By how much of their distance displacements `u` move neighbouring nodes of bodies against each other, at most.

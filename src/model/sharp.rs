@@ -40,6 +40,20 @@ impl SharpEdges {
         (halves > 0).then_some(edges)
     }
 
+    /// The free borders of a surface in the same way, however its sides meet elsewhere.
+    pub fn borders(surface: &SurfaceModel) -> SharpEdges {
+        let mut lines = vec![Vec::new(); surface.set.count()];
+        let found = with_patches!(&surface.set, set => set.free_borders());
+        for (patch, points) in &found {
+            lines[*patch as usize].extend(points.windows(2).map(|p| [p[0], p[1]]));
+        }
+        SharpEdges {
+            lines,
+            count: found.len(),
+            angle: 180.0,
+        }
+    }
+
     /// Whether a point of a patch lies within `reach` of one of its sharp convex edges; `x` in the surface's coordinates.
     pub fn near(&self, patch: u32, x: &Vec3, reach: f64) -> bool {
         let lines = self.lines.get(patch as usize).map_or(&[][..], |l| l);

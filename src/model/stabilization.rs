@@ -157,6 +157,8 @@ fn piece(model: &Model, motion: FreeMotion) -> Result<FreePiece, ModelError> {
     let body = (model.bodies.iter()).position(|b| b.name == motion.body);
     let meets = (model.pairs.iter())
         .filter(|p| Some(p.body) == body || p.body_master().is_some_and(|m| Some(m.body) == body))
+        // The surface itself says how far a body may go past it, not its rims.
+        .filter(|p| !model.of_rims(p))
         // Contacts that do not act in a stage have none.
         .filter(|p| !p.points.is_empty());
     let depth = meets

@@ -34,6 +34,8 @@ pub struct Bearing {
     pub area: f64,
     /// The part of it near sharp convex edges of the master (force).
     pub at_edges: f64,
+    /// The part of it near these or near free borders of the master (force).
+    pub at_rims: f64,
     /// The part of it at points whose penetration is prescribed (force).
     pub prescribed: f64,
     /// Points in contact, or nodes where gaps are averaged.
@@ -100,8 +102,10 @@ pub struct Bearings {
     prescribed: Vec<u8>,
     /// Per pair: the master moves as prescribed.
     given: Vec<bool>,
-    /// Per pair, the sharp convex edges of a rigid master and the distance of slave points.
-    edges: Vec<Option<(SharpEdges, f64)>>,
+    /// Per pair, the sharp convex edges of a rigid master.
+    edges: Vec<Option<SharpEdges>>,
+    /// Per pair, the free borders of a rigid master, and the distance of slave points.
+    borders: Vec<Option<(SharpEdges, f64)>>,
 }
 
 impl Bearings {
@@ -124,10 +128,13 @@ impl Bearings {
             given: (pairs.clone())
                 .map(|p| surface(p).is_some_and(|s| s.driven.is_none()))
                 .collect(),
-            edges: pairs
+            edges: (pairs.clone())
+                .map(|p| SharpEdges::of(surface(p)?))
+                .collect(),
+            borders: pairs
                 .map(|p| {
-                    let edges = SharpEdges::of(surface(p)?)?;
-                    Some((edges, sharp::spacing(model, p)))
+                    let borders = SharpEdges::borders(surface(p)?);
+                    Some((borders, sharp::spacing(model, p)))
                 })
                 .collect(),
         }
@@ -156,10 +163,15 @@ impl Bearings {
             sum.energy += energy;
             return;
         };
-        if let Some((edges, reach)) = &self.edges[pair]
-            && edges.near(place.hint.patch, &place.local, *reach)
-        {
-            sum.at_edges += force;
+        if let Some((borders, reach)) = &self.borders[pair] {
+            let near = |lines: &SharpEdges| lines.near(place.hint.patch, &place.local, *reach);
+            let sharp = self.edges[pair].as_ref().is_some_and(near);
+            if sharp {
+                sum.at_edges += force;
+            }
+            if sharp || near(borders) {
+                sum.at_rims += force;
+            }
         }
         if self.given[pair] && is_prescribed(&self.prescribed, place.point, &place.normal) {
             sum.prescribed += force;

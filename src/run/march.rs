@@ -16,6 +16,7 @@ use settle::Settled;
 pub(super) use start::{Problem, RunState};
 
 use super::RunError;
+use super::bearing::Bearing;
 use super::commit::FrictionTotals;
 use super::compliance::Compliance;
 use super::fields::Fields;
@@ -25,6 +26,7 @@ use super::motion_fields::MotionFields;
 use super::peaks::Peaks;
 use super::penalty_rule::PenaltyRule;
 use super::progress::Progress;
+use super::rim_watch::RimWatch;
 use super::watch::{Span, Watch};
 use crate::assembly::{Assembler, Fault, Totals};
 use crate::contact::law::Penalty;
@@ -68,6 +70,8 @@ pub(super) struct Ending {
     pub reason: Option<String>,
     /// Numbers of the bodies whose enhanced strains are what the run could not go on with.
     pub squeezed: Vec<usize>,
+    /// It was given up since edges of rigid surfaces lie in slaves.
+    pub on_rims: bool,
 }
 
 /// What a caller lends to a run while it goes on.
@@ -100,6 +104,10 @@ pub(super) struct March<'a, 'm> {
     replaceable: &'a [String],
     /// Whether another variant may exchange the sides of a contact.
     exchangeable: bool,
+    /// Edges of rigid surfaces that are no slaves.
+    rims: &'a mut RimWatch,
+    /// Steps that are cut again and again end the run: another one stands ready.
+    impatient: bool,
     pub peaks: &'a mut Peaks,
 }
 
@@ -339,6 +347,21 @@ impl March<'_, '_> {
                         iterations: converged.iterations,
                         cuts,
                     };
+                    let by = (
+                        &converged.totals.penetration[..],
+                        &outputs.fields.bearings.pairs[..],
+                    );
+                    if ending.is_none() && self.sinks(committed, by) {
+                        ending = Some(Ending {
+                            status: RunStatus::NotConverged,
+                            reason: Some(
+                                "an edge of a rigid surface sinks in between slave points"
+                                    .to_owned(),
+                            ),
+                            squeezed: Vec::new(),
+                            on_rims: true,
+                        });
+                    }
                     let ending = ending.or_else(|| {
                         let held = walk.jump.map(|jump| self.on_viscous_forces(&jump));
                         done.then(|| held.unwrap_or_else(|| self.ending()))
@@ -352,6 +375,7 @@ impl March<'_, '_> {
                     status: RunStatus::Interrupted,
                     reason: Some("stopped by the user".to_owned()),
                     squeezed: Vec::new(),
+                    on_rims: false,
                 }));
             }
             // Let go of, it was not found or is not taken: larger ones may hold it.
@@ -386,7 +410,9 @@ impl March<'_, '_> {
                 (_, None) => 1.0 / self.workspace.bend,
                 _ => 0.5,
             };
-            let hopeless = hopeless || self.exchangeable && self.crawls();
+            let hopeless = hopeless
+                || self.impatient && self.cut_often()
+                || self.exchangeable && self.crawls();
             let next = walk.stepping.failed(dt, part).filter(|_| !hopeless);
             let Some(next_dt) = next else {
                 let unstable = self.workspace.unstable.map_or_else(String::new, |u| {
@@ -408,6 +434,7 @@ impl March<'_, '_> {
                         true => walk.turned.iter().copied().collect(),
                         false => lost,
                     },
+                    on_rims: false,
                     status: RunStatus::NotConverged,
                     reason: Some(format!(
                         "step {step} from time {} failed {}: {reason}{squeezed}{unstable}",
@@ -462,6 +489,7 @@ impl March<'_, '_> {
                 status: RunStatus::Done,
                 reason: None,
                 squeezed: Vec::new(),
+                on_rims: false,
             };
         }
         Ending {
@@ -472,6 +500,7 @@ impl March<'_, '_> {
                 never.join("`, `")
             )),
             squeezed: Vec::new(),
+            on_rims: false,
         }
     }
 
@@ -504,13 +533,30 @@ impl March<'_, '_> {
         out
     }
 
+    /// Whether an edge of a rigid surface has sunk into its slave and may be a slave in another run; of others the user is told.
+    fn sinks(&mut self, state: &State, by: (&[f64], &[Bearing])) -> bool {
+        let time = self.progress.time;
+        let sunk = (self.rims).sunk(self.model, &state.u, time, by);
+        for sunk in sunk.iter().filter(|s| !s.may) {
+            let head = sunk.head(self.model);
+            if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
+                self.warn(sunk.told(self.model, time));
+            }
+        }
+        sunk.iter().any(|s| s.may)
+    }
+
+    /// Whether steps are cut again and again.
+    fn cut_often(&self) -> bool {
+        let (cuts, steps) = (self.progress.cuts, self.progress.steps);
+        cuts >= CRAWLS && MANY_CUTS * cuts > steps
+    }
+
     /// Whether steps in contact with a body are cut again and again.
     fn crawls(&self) -> bool {
-        let (cuts, steps) = (self.progress.cuts, self.progress.steps);
         let mut pairs = self.model.pairs.iter().zip(&*self.touching);
-        cuts >= CRAWLS
-            && MANY_CUTS * cuts > steps
-            && pairs.any(|(pair, touching)| *touching && pair.body_master().is_some())
+        self.cut_often()
+            && pairs.any(|(pair, touching)| *touching && self.model.between_bodies(pair))
     }
 
     /// Whether a flag is set for pair `i`, or for another pass of its contact: of two curved sides one may have no slave

@@ -31,6 +31,7 @@ mod reaction_fields;
 mod remedy;
 mod resting;
 mod resultants;
+mod rim_watch;
 mod sheet_fields;
 mod simulation;
 mod sink;

@@ -42,6 +42,7 @@ impl March<'_, '_> {
                 status: RunStatus::NotConverged,
                 reason: Some(failure.to_string()),
                 squeezed: Vec::new(),
+                on_rims: false,
             });
         }
         if !last {

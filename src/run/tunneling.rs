@@ -26,6 +26,10 @@ pub(super) fn none_passed(
         let slaves = to.slaves(model, index);
         let offset = first;
         first += slaves.len();
+        // Of a surface whose rims are slaves the slave's own points tell.
+        if model.of_rims(pair) {
+            continue;
+        }
         let depth = pair.master.depth(model);
         let (way, poses) = match &pair.master {
             Master::Rigid(surface) => {

@@ -348,6 +348,38 @@ fn averaged_gaps() {
     assert_eq!(found.status, RunStatus::Done);
 }
 
+/// A sheet bent over the border of a table and drawn back, with nodes of the border as slaves.
+#[test]
+fn edges_of_a_rigid_surface() {
+    let scene = json!({
+        "covact": 1,
+        "materials": {"m": {"neo_hooke": {"E": 100, "nu": 0.3}}},
+        "bodies": {"sheet": {
+            "mesh": {"plate": {"size": [4, 0.5], "thickness": 0.2, "elements": [16, 1], "origin": [-2, 0, 0.1]}},
+            "material": "m"
+        }},
+        "surfaces": {"table": {
+            "plane": {"center": [-1.9, 0, 0], "size": [4, 4]},
+            "motion": {"translation": [{"table": [[0, 0], [0.5, 0], [1, -0.2]]}, 0, 0]}
+        }},
+        "contacts": {"rest": {"slave": "sheet.bottom", "master": "table", "passes": "edges", "friction": 0.2}},
+        "supports": {
+            "clamp": {"on": "sheet.x_min", "fixed": true},
+            "plane": {"on": ["sheet.y_min", "sheet.y_max"], "symmetry": "y"},
+            "end": {"on": "sheet.x_max", "mid_surface": true, "displacement": {"z": {"table": [[0, 0], [0.5, -0.8], [1, -0.8]]}}}
+        },
+        "solution": {"step": {"initial": 0.1, "max": 0.1}},
+        "output": {"every": 3, "contact_points": true}
+    });
+    let found = in_pieces(&scene);
+    assert_eq!(found.status, RunStatus::Done);
+    assert!(
+        found.effects.iter().any(|e| *e == "contact.passes.edges"),
+        "{:?}",
+        found.effects
+    );
+}
+
 /// A surface driven by force with friction, whose motion is among the unknowns.
 #[test]
 fn a_driven_surface() {

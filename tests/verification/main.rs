@@ -29,6 +29,7 @@ mod plate_under_ball;
 mod punch;
 mod quadratic;
 mod resolution;
+mod rigid_edges;
 mod springback;
 mod strip_over_cylinder;
 mod support;

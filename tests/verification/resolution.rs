@@ -79,7 +79,12 @@ fn run_beside_box(scene: &Value) -> Outcome {
 
 #[test]
 fn a_sharp_edge_between_slave_points_is_warned_of() {
-    let outcomes = [21, 42].map(|n| run_beside_box(&over_an_edge(n, 4.0)));
+    let alone = |n| {
+        let mut scene = over_an_edge(n, 4.0);
+        scene["contacts"]["c"]["passes"] = json!("one");
+        run_beside_box(&scene)
+    };
+    let outcomes = [21, 42].map(alone);
     let [coarse, fine] = outcomes.each_ref().map(|o| o.at("force.box.z", 1.0));
     // What the warning says: the force is that of the mesh.
     assert!((coarse / fine - 1.0).abs() > 0.01, "{coarse} {fine}");
@@ -92,6 +97,23 @@ fn a_sharp_edge_between_slave_points_is_warned_of() {
         let share = outcome.summary.accuracy.contacts[0].edge_share;
         assert!(share > 0.5, "{share}");
         assert!(told[0].contains(&format!("{:.0} % of its force", 100.0 * share)));
+    }
+}
+
+/// With the edges as slaves, which they become by themselves, the force is hardly that of the mesh.
+#[test]
+fn a_sharp_edge_between_slave_points_becomes_a_slave() {
+    let outcomes = [21, 42].map(|n| run_beside_box(&over_an_edge(n, 4.0)));
+    let [coarse, fine] = outcomes.each_ref().map(|o| o.at("force.box.z", 1.0));
+    assert!(
+        fine > 0.1 && (coarse / fine - 1.0).abs() < 2e-3,
+        "{coarse} {fine}"
+    );
+    for outcome in &outcomes {
+        assert_eq!(
+            told(&outcome.summary.warnings, "with such edges as slaves").len(),
+            1
+        );
     }
 }
 

@@ -44,7 +44,7 @@ pub use ray::{Hit, RayError};
 pub use report::{CurvatureExtreme, CurvatureRange};
 pub use separation::{Separation, SeparationError};
 pub use set::{Joining, PatchSet, PatchSetError};
-pub use sharp::SharpEdge;
+pub use sharp::{Rim, RimPoint, SharpEdge};
 pub use sides::{ComponentSide, SideError, SideOutcome};
 pub use topology::{Border, EdgeReport, Gap, Joint, Overlap, PartialJoint};
 

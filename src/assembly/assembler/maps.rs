@@ -151,7 +151,7 @@ pub(super) fn pattern(
     let driven = driven::groups(model, |nodes, out| dofs.extend_nodes(nodes, out));
     let groups = starts.windows(2).map(|w| &nodes[w[0]..w[1]]);
     let groups = groups.chain(driven.iter().map(Vec::as_slice));
-    let border = (model.nodes.len() - model.body_nodes()) as u32;
+    let border = 2 * model.driven().count() as u32;
     Ok(Pattern::new(model.nodes.len(), groups)?.with_border(border))
 }
 

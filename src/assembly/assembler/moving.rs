@@ -185,6 +185,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         if self.couplings.is_empty() {
             return Ok(());
         }
+        self.model.move_rims(&mut state.u, time)?;
         self.masters.update(self.model, &state.u);
         let mut first = 0;
         let mut missing = false;
@@ -550,6 +551,6 @@ impl<L: PairLaw> Assembler<'_, L> {
             }
         }
         let touching = !touched.active.is_empty();
-        totals.end_pair((index, pair), force, deepest, touching);
+        totals.end_pair(self.model, index, force, deepest, touching);
     }
 }

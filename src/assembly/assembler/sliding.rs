@@ -368,7 +368,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             }
         }
         let touching = !touched.active.is_empty();
-        totals.end_pair((index, pair), force, deepest, touching);
+        totals.end_pair(self.model, index, force, deepest, touching);
     }
 }
 

@@ -2,7 +2,7 @@
 use super::{Fault, PairForce, Totals};
 use crate::contact::rigid::PointFault;
 use crate::model::state::{PointState, heap};
-use crate::model::{HalfPass, PairModel};
+use crate::model::{HalfPass, Model, PairModel};
 use covact_geometry::Vec3;
 
 /// What every point of a pair met, and which of them touch.
@@ -85,16 +85,21 @@ impl Totals {
     /// each tells the force on its own slave; what acts at the edges of a master acts on the sides of its contact.
     pub(super) fn end_pair(
         &mut self,
-        (index, pair): (usize, &PairModel),
+        model: &Model,
+        index: usize,
         force: PairForce,
         deepest: f64,
         touching: bool,
     ) {
         self.penetration.push(deepest);
         self.touching.push(touching);
+        let pair = &model.pairs[index];
         if let Some(of) = pair.edges_of {
             self.pairs[of].slave.join(&force.master);
-            self.pairs[of].master.join(&force.slave);
+            match model.pairs[of].rigid_master() {
+                Some(surface) => self.surfaces[surface].join(&force.master),
+                None => self.pairs[of].master.join(&force.slave),
+            }
             return;
         }
         match pair.half {

@@ -1,5 +1,5 @@
 //! Where a surface ends: gaps between patches, trims, free edges.
-use super::super::scenes::block_under;
+use super::super::scenes::{alone, block_under};
 use super::{Case, CaseError, Trial, difference, tool};
 use covact_geometry::curve::NurbsCurve;
 use covact_geometry::primitives::{cylinder, plane};
@@ -146,7 +146,9 @@ fn trim(trial: &mut Trial) -> Result<(), CaseError> {
         trial.holds("trimmed", trimmed.trim().is_some());
         let mut run = |name: &str, patch: NurbsPatch| {
             let tool = tool(trial, name, vec![patch], DOWN)?;
-            trial.done(&block_under(tool, 6, 2))
+            let mut scene = block_under(tool, 6, 2);
+            alone(&mut scene);
+            trial.done(&scene)
         };
         let (trimmed, cut) = (run("trimmed", trimmed)?, run("cut", cut)?);
         let (points, area) = (
@@ -174,7 +176,9 @@ fn free_edge(trial: &mut Trial) -> Result<(), CaseError> {
     let side = face([[a, -1.0, 0.5], [a, -1.0, 1.5], [a, 1.0, 0.5], [a, 1.0, 1.5]])?;
     let mut run = |name: &str, patches: Vec<NurbsPatch>| {
         let tool = tool(trial, name, patches, DOWN)?;
-        trial.done(&block_under(tool, 6, 3))
+        let mut scene = block_under(tool, 6, 3);
+        alone(&mut scene);
+        trial.done(&scene)
     };
     let open = run("open", vec![lower.clone()])?;
     let closed = run("closed", vec![lower, side])?;

@@ -1,5 +1,5 @@
 //! Creases, edges and corners.
-use super::super::scenes::{block_under, solution};
+use super::super::scenes::{alone, block_under, solution};
 use super::{Case, CaseError, Trial, difference, tool};
 use covact_geometry::{NurbsPatch, Vec3};
 use serde_json::{Value, json};
@@ -76,6 +76,7 @@ fn crease(trial: &mut Trial) -> Result<(), CaseError> {
             let tool = tool(trial, name, patches, DOWN)?;
             let mut scene = block_under(tool, 6, 4);
             scene["contacts"]["press"]["points"] = points.clone();
+            alone(&mut scene);
             trial.done(&scene)
         };
         let (one, two) = (run("one", vec![one])?, run("two", two)?);
@@ -115,6 +116,7 @@ fn convex_edge(trial: &mut Trial) -> Result<(), CaseError> {
         tool["motion"]["translation"][0] = shift.into();
         let mut scene = block_under(tool, 6, 4);
         scene["contacts"]["press"]["points"] = points;
+        alone(&mut scene);
         trial.done(&scene)
     };
     let gauss = json!({ "gauss": 2 });

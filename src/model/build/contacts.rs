@@ -5,6 +5,7 @@ use super::super::edges;
 use super::super::error::{At, number, text};
 use super::super::friction::{self, FrictionModel, LawModel};
 use super::super::master::{BodyMaster, Master, moving_facets};
+use super::super::rims::RimNodes;
 use super::super::self_contact::OwnFacets;
 use super::super::slave::slave_points;
 use super::super::{HalfPass, ModelError, PairModel, SurfaceModel, penalty, segments, slave};
@@ -21,6 +22,19 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Part of the slave's stiffness below which a master is much softer.
 const MUCH_SOFTER: f64 = 0.1;
 
+/// What the slave points of a pair are on.
+pub(super) enum Side<'a> {
+    /// The slave faces.
+    Faces,
+    /// Those of them that are at these nodes of the body.
+    Nodes(&'a BTreeSet<u32>),
+    /// The rims of a rigid surface, with the faces of this body as their master.
+    Rim {
+        body: usize,
+        points: Vec<SlavePoint>,
+    },
+}
+
 impl Builder<'_> {
     /// All rigid surfaces with the names of their patches, as far as they can be read, and what is wrong with the others.
     pub(super) fn surfaces(&mut self) -> (Vec<(SurfaceModel, Vec<String>)>, Vec<ModelError>) {
@@ -35,11 +49,11 @@ impl Builder<'_> {
         (surfaces, errors)
     }
 
-    /// All contact pairs, and all rigid surfaces with their sides.
+    /// All contact pairs, all rigid surfaces with their sides, and the nodes on their rims.
     pub(super) fn contacts(
         &mut self,
         surfaces: Vec<(SurfaceModel, Vec<String>)>,
-    ) -> Result<(Vec<PairModel>, Vec<SurfaceModel>), ModelError> {
+    ) -> Result<(Vec<PairModel>, Vec<SurfaceModel>, Vec<RimNodes>), ModelError> {
         let (mut surfaces, labels): (Vec<_>, Vec<_>) = surfaces.into_iter().unzip();
         let names = self.scene.surfaces.keys().enumerate();
         let surface_index: BTreeMap<&str, usize> = names.map(|(i, n)| (n.as_str(), i)).collect();
@@ -47,8 +61,8 @@ impl Builder<'_> {
         for (name, contact) in &self.scene.contacts {
             let rigid = surface_index.get(contact.master.as_str()).copied();
             let first = pairs.len();
-            pairs.push(self.pair(name, contact, rigid, None)?);
-            if contact.passes == Passes::Edges {
+            pairs.push(self.pair(name, contact, rigid, Side::Faces)?);
+            if contact.passes == Passes::Edges && rigid.is_none() {
                 pairs.extend(self.edge_pass(name, contact, first)?);
             }
             if contact.passes == Passes::TwoHalf {
@@ -61,7 +75,7 @@ impl Builder<'_> {
                 }
                 let mut back = contact.clone();
                 std::mem::swap(&mut back.slave, &mut back.master);
-                pairs.push(self.pair(name, &back, None, None)?);
+                pairs.push(self.pair(name, &back, None, Side::Faces)?);
                 for (index, pair) in pairs[first..].iter_mut().enumerate() {
                     pair.half = Some(HalfPass {
                         other: first + 1 - index,
@@ -78,7 +92,14 @@ impl Builder<'_> {
             let model = (&mut surfaces[index], labels[index].as_slice());
             self.orient(name, surface, model, &own)?;
         }
-        Ok((pairs, surfaces))
+        let (on_rims, rims) = self.rims(&pairs, &surfaces)?;
+        for pair in &on_rims {
+            // What comes past a border meets the nodes on that.
+            let of = pair.edges_of.map(|of| &mut pairs[of].points);
+            of.into_iter().flatten().for_each(|p| p.rounding = 0.0);
+        }
+        pairs.extend(on_rims);
+        Ok((pairs, surfaces, rims))
     }
 
     /// The sharp edges of the master of pair `of` as slaves; nothing where it has none, which is told.
@@ -123,21 +144,20 @@ impl Builder<'_> {
             depth: None,
             ..contact.clone()
         };
-        let pair = self.pair(name, &back, None, Some(&nodes))?;
+        let pair = self.pair(name, &back, None, Side::Nodes(&nodes))?;
         Ok(Some(PairModel {
             edges_of: Some(of),
             ..pair
         }))
     }
 
-    /// A contact pair; of its slave points only those at some nodes of the body where `only` names them.
-    fn pair(
+    /// The slave faces of a contact with its slave points: the body, the faces and the points.
+    fn slave_side(
         &mut self,
         name: &str,
         contact: &Contact,
         rigid: Option<usize>,
-        only: Option<&BTreeSet<u32>>,
-    ) -> Result<PairModel, ModelError> {
+    ) -> Result<(usize, Vec<Face>, Vec<SlavePoint>), ModelError> {
         let pointer = |field: &str| format!("/contacts/{name}/{field}");
         let (body, faces) = self.contact_faces(name, &contact.slave, &pointer("slave"))?;
         self.sheet_contact(name, contact, rigid)?;
@@ -157,21 +177,53 @@ impl Builder<'_> {
             text(pointer("points"), message).help("take fewer points per face, or fewer elements")
         })?;
         let of_sheet = model.block.sheet().is_some();
-        let mut points = match of_sheet {
+        let points = match of_sheet {
             true => self.sheet_points(body, &faces, contact.points),
             false => slave_points(&model.mesh, &faces, contact.points, first_node),
         }
         .at(|| pointer("points"))?;
-        if let Some(only) = only {
-            points.retain(|p| only.contains(&(p.nodes[0] - first_node)));
-        }
-        let (size, mut suits) = self.stiffness(body, &faces);
-        let mut softer = "the slave's";
+        Ok((body, faces, points))
+    }
+
+    /// A contact pair.
+    pub(super) fn pair(
+        &mut self,
+        name: &str,
+        contact: &Contact,
+        rigid: Option<usize>,
+        side: Side,
+    ) -> Result<PairModel, ModelError> {
+        let pointer = |field: &str| format!("/contacts/{name}/{field}");
+        let (body, faces, mut points) = match side {
+            Side::Rim { body, points } => (body, Vec::new(), points),
+            Side::Faces => self.slave_side(name, contact, rigid)?,
+            Side::Nodes(only) => {
+                let (body, faces, mut points) = self.slave_side(name, contact, rigid)?;
+                let first_node = self.bodies[body].first_node;
+                points.retain(|p| only.contains(&(p.nodes[0] - first_node)));
+                (body, faces, points)
+            }
+        };
+        // A rim has no elements of its own: it is as stiff as what it meets.
+        let rim = faces.is_empty();
+        let first_node = self.bodies[body].first_node;
+        let of = match rim {
+            false => faces.clone(),
+            true => {
+                self.contact_faces(name, &contact.master, &pointer("master"))?
+                    .1
+            }
+        };
+        let (size, mut suits) = self.stiffness(body, &of);
+        let mut softer = match rim {
+            false => "the slave's",
+            true => "the master's",
+        };
         let master = match rigid {
             Some(surface) => Master::Rigid(surface),
             None => {
                 let (mut master, of_master) = self.body_master(name, contact)?;
-                if master.body == body {
+                if master.body == body && !rim {
                     self.own_body(name, contact, &faces, &mut points, &mut master)?;
                 }
                 if let Points::Segments(degree) = contact.points {
@@ -184,7 +236,7 @@ impl Builder<'_> {
                     let facets = &master.facets;
                     points = segments::segments(&nodes, facets, position, position, degree, reach);
                 }
-                if of_master.automatic < suits.automatic {
+                if of_master.automatic < suits.automatic && !rim {
                     softer = "the master's, which are softer than the slave's,";
                 }
                 let much = of_master.automatic < MUCH_SOFTER * suits.automatic;
@@ -195,7 +247,9 @@ impl Builder<'_> {
                         contact.master, contact.slave
                     ));
                 }
-                suits = suits.both(&of_master);
+                if !rim {
+                    suits = suits.both(&of_master);
+                }
                 Master::Body(Box::new(master))
             }
         };
@@ -460,7 +514,7 @@ impl Builder<'_> {
     }
 
     /// [`moving_facets`] of a body of the model, where they start.
-    fn moving_facets(
+    pub(super) fn moving_facets(
         &self,
         body: usize,
         faces: &[Face],

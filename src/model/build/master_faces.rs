@@ -9,7 +9,7 @@ const EDGES: [[usize; 2]; 4] = [[0, 1], [1, 3], [3, 2], [2, 0]];
 
 /// Refuses faces on both sides of a layer, and edges at which more than two faces meet or which two faces run along in
 /// the same direction; returns what is wrong and what to do about it.
-pub(super) fn check(mesh: &Mesh, faces: &[Face], name: &str) -> Result<(), (String, &'static str)> {
+pub(crate) fn check(mesh: &Mesh, faces: &[Face], name: &str) -> Result<(), (String, &'static str)> {
     let mut edges: BTreeMap<[u32; 2], Vec<bool>> = BTreeMap::new();
     let mut corners: BTreeMap<[u32; 4], Face> = BTreeMap::new();
     let middle = |nodes: &[u32]| {

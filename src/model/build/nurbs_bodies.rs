@@ -252,7 +252,7 @@ impl Builder<'_> {
         if contact.gap == Gap::Averaged {
             return refuse("gap", "averaged gaps", "leave `gap` out");
         }
-        if contact.passes != Passes::One {
+        if matches!(contact.passes, Passes::TwoHalf | Passes::Edges) {
             return refuse("passes", "two passes", "leave `passes` out");
         }
         Ok(())
@@ -304,7 +304,7 @@ impl Builder<'_> {
             );
             Err(text(at(field), message).help(help.to_owned()))
         };
-        if contact.passes != Passes::One {
+        if matches!(contact.passes, Passes::TwoHalf | Passes::Edges) {
             return refuse("passes", "two passes", "leave `passes` out");
         }
         if matches!(contact.points, Points::Segments(_)) {

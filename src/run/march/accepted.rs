@@ -120,7 +120,7 @@ impl March<'_, '_> {
         let (step, time) = (self.progress.steps, self.progress.time);
         self.phases.start("output");
         for (pair, sunk) in self.model.pairs.iter().zip(&outputs.fields.sunk) {
-            if *sunk > 0 {
+            if *sunk > 0 && !self.model.of_rims(pair) {
                 self.warn(format!(
                     "contact `{}`: {sunk} point(s) passed through {} at step {step}, deeper than its `depth` {}, and are \
                      not in contact: take smaller steps or a larger `depth`",

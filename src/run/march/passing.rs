@@ -220,6 +220,7 @@ impl March<'_, '_> {
                 number(jump.time)
             )),
             squeezed: Vec::new(),
+            on_rims: false,
         }
     }
 }

@@ -40,6 +40,7 @@ impl March<'_, '_> {
                 status: RunStatus::NotConverged,
                 reason: Some(text),
                 squeezed,
+                on_rims: false,
             });
         }
         // Once for a body, wherever its elements do so later.

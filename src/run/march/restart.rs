@@ -154,6 +154,8 @@ impl RunState<'_> {
             compliance,
             rule,
             peaks,
+            // Given by the model.
+            rims: _,
             cost,
             course,
             // Of the checkpoint that the run went on from.

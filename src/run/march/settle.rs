@@ -112,8 +112,11 @@ impl<'m> March<'_, 'm> {
         loop {
             let mut histories = trial.histories.clone();
             let was = (&committed.u[..], start);
-            let sliding = commit::commit(self.model, self.assembler, trial, was, end)
-                .map_err(|e| RunError::internal(&e))?;
+            let sliding = match commit::commit(self.model, self.assembler, trial, was, end) {
+                Ok(sliding) => sliding,
+                // A foot that is looked for anew may not be found on faces that are much distorted.
+                Err(fault) => return Ok(Err(fault.into())),
+            };
             self.gather(outputs, trial, end)?;
             let last = walk.stepping.done(end);
             let bearings = &outputs.fields.bearings;

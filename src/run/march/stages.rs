@@ -19,6 +19,7 @@ use crate::run::memory;
 use crate::run::peaks::Peaks;
 use crate::run::penalty_rule::PenaltyRule;
 use crate::run::progress::Progress;
+use crate::run::rim_watch::RimWatch;
 use crate::run::watch::Watch;
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
@@ -414,6 +415,7 @@ impl<'m> RunState<'m> {
             compliance,
             rule,
             peaks,
+            rims: RimWatch::new(model, &problem.rims_may),
             cost,
             course: Course {
                 trial: committed.clone(),

@@ -17,6 +17,7 @@ use crate::run::habit::Habit;
 use crate::run::peaks::Peaks;
 use crate::run::penalty_rule::PenaltyRule;
 use crate::run::progress::Progress;
+use crate::run::rim_watch::RimWatch;
 use crate::run::watch::Watch;
 use crate::run::{RunError, memory, resting};
 use crate::scene::{LoadedScene, Scene};
@@ -37,6 +38,10 @@ pub(crate) struct Problem {
     pub replaceable: Vec<String>,
     /// Whether another variant may exchange the sides of a contact.
     pub exchangeable: bool,
+    /// Pairs whose masters may have their rims as slaves in another variant.
+    pub rims_may: Vec<usize>,
+    /// Steps that are cut again and again end the run: another one stands ready.
+    pub impatient: bool,
 }
 
 /// Everything of a run that lasts from one step to the next.
@@ -53,6 +58,7 @@ pub(crate) struct RunState<'m> {
     pub(super) compliance: Compliance,
     pub(super) rule: PenaltyRule,
     pub(super) peaks: Peaks,
+    pub(super) rims: RimWatch,
     pub(super) cost: Cost,
     pub(in crate::run) course: Course,
     /// The files of the checkpoint that the run went on from.
@@ -68,10 +74,22 @@ impl<'m> RunState<'m> {
         (model.pairs.iter()).any(|pair| edges::on_slave(model, pair, u))
     }
 
+    /// Whether an edge of a rigid surface has sunk into its slave in the last accepted state, between slave points, and may be a
+    /// slave in another run.
+    pub(in crate::run) fn rims_sunk(&mut self) -> bool {
+        let (model, u) = (&self.problem.model, &self.course.committed.u);
+        let penetration = vec![0.0; model.pairs.len()];
+        let bearings = &self.course.outputs.fields.bearings.pairs;
+        let by = (&penetration[..], &bearings[..]);
+        let sunk = (self.rims).sunk(model, u, self.progress.time, by);
+        sunk.iter().any(|s| s.may)
+    }
+
     /// Whether a contact with the faces of a body is closed.
     pub(in crate::run) fn on_bodies(&self) -> bool {
-        let mut pairs = self.problem.model.pairs.iter().zip(&self.touching);
-        pairs.any(|(pair, touching)| *touching && pair.body_master().is_some())
+        let model = &self.problem.model;
+        let mut pairs = model.pairs.iter().zip(&self.touching);
+        pairs.any(|(pair, touching)| *touching && model.between_bodies(pair))
     }
 
     /// A run at time 0, or as it was when its checkpoint was written.
@@ -126,6 +144,7 @@ impl<'m> RunState<'m> {
             compliance: Compliance::new(model).map_err(|e| RunError::internal(&e))?,
             rule: PenaltyRule::new(model),
             peaks: Peaks::new(model),
+            rims: RimWatch::new(model, &problem.rims_may),
             cost,
             course: Course {
                 trial: committed.clone(),
@@ -248,6 +267,7 @@ impl<'m> RunState<'m> {
             compliance,
             rule,
             peaks,
+            rims,
             cost: _,
             course,
             files: _,
@@ -271,6 +291,8 @@ impl<'m> RunState<'m> {
             rule,
             replaceable: &problem.replaceable,
             exchangeable: problem.exchangeable,
+            rims,
+            impatient: problem.impatient,
             peaks,
         };
         (march, course)

@@ -21,7 +21,10 @@ use crate::scene::{self, Element, LoadedScene};
 use crate::solve::event::{Event, Observer, Silent};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use variant::{Safe, names_element, safe_variant, with_edges, with_exchanged, with_smooth};
+use variant::{
+    Safe, names_element, rims_may, safe_variant, with_edges, with_exchanged, with_rims,
+    with_smooth, without_rims,
+};
 
 /// Nobody interrupts.
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -90,6 +93,17 @@ pub enum StepError {
     Run(#[from] RunError),
 }
 
+/// Whether rims of rigid surfaces have become slaves by themselves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Rims {
+    /// They have not.
+    Out,
+    /// In a run that stands for one that was given up while it might have gone on.
+    Instead,
+    /// What the run is repeated with next is no question of theirs.
+    Settled,
+}
+
 /// A run of a scene: it starts at time 0 and goes on a step at a time ([`Self::step`]) or to its end ([`Self::run`]).
 /// Whatever it computes is read in memory; files are written by [sinks](super::Sink) alone. `'o` is the life of its observer.
 pub struct Simulation<'o> {
@@ -97,6 +111,7 @@ pub struct Simulation<'o> {
     scene: LoadedScene,
     /// The scene in its place, once elements had to be replaced.
     safe: Option<Safe>,
+    rims: Rims,
     running: Running,
     pool: Arc<rayon::ThreadPool>,
     options: Options<'o>,
@@ -155,7 +170,7 @@ impl<'o> Simulation<'o> {
             .map_err(|e| RunError::scene(&scene, "/solution/threads", e.to_string()))?;
         let observer = &mut *options.observer;
         let (running, fingerprint) =
-            pool.install(|| running(&scene, safe.as_ref(), sections, observer))?;
+            pool.install(|| running(&scene, safe.as_ref(), sections, false, observer))?;
         let run = running.borrow_dependent();
         let history = Table {
             columns: run.columns(),
@@ -165,6 +180,7 @@ impl<'o> Simulation<'o> {
             whole: sections.is_none(),
             scene,
             safe,
+            rims: Rims::Out,
             running,
             pool: Arc::new(pool),
             options,
@@ -191,6 +207,7 @@ impl<'o> Simulation<'o> {
             status: RunStatus::Failed,
             reason: Some(error.to_string()),
             squeezed: Vec::new(),
+            on_rims: false,
         });
     }
 
@@ -209,9 +226,12 @@ impl<'o> Simulation<'o> {
     /// Begins again at time 0 where other elements may replace those that gave way, where the run stopped while an edge of a
     /// master lay on its slave, or in contact with a body that is softer than its slave, or with flat faces that may be smooth.
     fn begin_again(&mut self) -> Result<bool, RunError> {
-        let Some(ending) = &self.ended else {
+        let Some(ending) = self.ended.clone() else {
             return Ok(false);
         };
+        let rims_sunk = ending.on_rims
+            || ending.status == RunStatus::NotConverged
+                && (self.running).with_dependent_mut(|_, run| run.rims_sunk());
         let bodies = &self.running.borrow_owner().model.bodies;
         let squeezed = (ending.squeezed.iter()).map(|&body| bodies[body].name.as_str());
         let before = self.safe.as_ref();
@@ -232,18 +252,41 @@ impl<'o> Simulation<'o> {
             let found = stopped && run.on_bodies();
             found.then(|| with_smooth(&self.scene, before, Some(time)))?
         };
-        let safe = safe_variant(&self.scene, before, squeezed, time);
+        let rims = || {
+            let found = rims_sunk && (stopped || ending.on_rims);
+            found.then(|| with_rims(&self.scene, before, Some(time)))?
+        };
+        let safe = || safe_variant(&self.scene, before, squeezed, time);
         let contacts = || edges().or_else(exchanged).or_else(smooth);
-        let Some(safe) = safe.or_else(contacts) else {
+        let found = match self.rims {
+            Rims::Out if ending.on_rims => rims().map(|safe| (safe, Rims::Instead)),
+            Rims::Out => (safe().map(|safe| (safe, Rims::Out)))
+                .or_else(|| Some((rims()?, Rims::Settled)))
+                .or_else(|| Some((contacts()?, Rims::Out))),
+            // A run that was given up for their sake may come to its end without them.
+            Rims::Instead if stopped => {
+                without_rims(&self.scene, before, Some(time)).map(|safe| (safe, Rims::Settled))
+            }
+            Rims::Instead => None,
+            Rims::Settled => (safe().or_else(contacts)).map(|safe| (safe, Rims::Settled)),
+        };
+        let Some((safe, rims)) = found else {
             return Ok(false);
         };
         let observer = &mut *self.options.observer;
         // What cannot be built in another way stays as it ended.
-        let Ok((running, fingerprint)) = running(&self.scene, Some(&safe), None, observer) else {
+        let made = running(
+            &self.scene,
+            Some(&safe),
+            None,
+            rims == Rims::Instead,
+            observer,
+        );
+        let Ok((running, fingerprint)) = made else {
             return Ok(false);
         };
         (self.running, self.fingerprint) = (running, fingerprint);
-        self.safe = Some(safe);
+        (self.safe, self.rims) = (Some(safe), rims);
         self.history.rows.clear();
         (self.whole, self.ended, self.concluded) = (true, None, false);
         (self.begun, self.closed) = (false, None);
@@ -317,11 +360,12 @@ impl<'o> Simulation<'o> {
     }
 }
 
-/// The model of a scene with its run, and the checksums of both.
+/// The model of a scene with its run, and the checksums of both; `impatient`: it is given up where steps are cut again and again.
 fn running(
     scene: &LoadedScene,
     safe: Option<&Safe>,
     sections: Option<&Sections>,
+    impatient: bool,
     observer: &mut (dyn Observer + Send),
 ) -> Result<(Running, Fingerprint), RunError> {
     let cost = Cost::start();
@@ -355,12 +399,23 @@ fn running(
         .filter(|(name, body)| body.element == Element::H8 && !names_element(loaded, name))
         .map(|(name, _)| name.clone())
         .collect();
+    let may = |name: &str| {
+        let contact = loaded.scene.contacts.get(name);
+        contact.is_some_and(|contact| rims_may(loaded, contact))
+    };
+    let pairs = model.pairs.iter().enumerate();
+    let rims_may = pairs
+        .filter(|(_, p)| may(&p.name))
+        .map(|(i, _)| i)
+        .collect();
     let problem = Box::new(Problem {
         loaded: loaded.clone(),
         model,
         plan,
         replaceable,
         exchangeable: with_exchanged(loaded, None, None).is_some(),
+        rims_may,
+        impatient,
     });
     let threads = rayon::current_num_threads();
     let running = Running::try_new(problem, |problem| {

@@ -122,7 +122,7 @@ impl Simulation<'_> {
     /// [`ReadError`]; contact with a rigid surface has its [`force`](Self::force).
     pub fn contact_force(&self, contact: &str) -> Result<[Force; 2], ReadError> {
         let pairs = self.model().pairs.iter();
-        let between = pairs.filter(|p| p.body_master().is_some());
+        let between = pairs.filter(|p| self.model().between_bodies(p));
         let names = between.map(|p| p.name.as_str());
         if !names.clone().any(|n| n == contact) {
             return Err(unknown("contact between bodies", contact, names));

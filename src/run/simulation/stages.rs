@@ -19,6 +19,8 @@ impl Simulation<'_> {
             plan,
             replaceable,
             exchangeable,
+            rims_may,
+            impatient,
             ..
         } = &**self.running.borrow_owner();
         let (mut model, state) = hand.next(loaded)?;
@@ -33,6 +35,8 @@ impl Simulation<'_> {
             plan: plan.clone(),
             replaceable: replaceable.clone(),
             exchangeable: *exchangeable,
+            rims_may: rims_may.clone(),
+            impatient: *impatient,
         });
         let (threads, observer) = (rayon::current_num_threads(), &mut *self.options.observer);
         self.running = Running::try_new(problem, |problem| {

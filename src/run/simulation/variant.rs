@@ -3,7 +3,9 @@
 //! where the master is the softer one, or with smooth masters.
 use crate::model::error::number;
 use crate::run::checkpoint::{self, Fingerprint};
-use crate::scene::{Contact, Element, LoadedScene, MasterSurface, Passes, Points, pointer};
+use crate::scene::{
+    Contact, Element, Kinematics, LoadedScene, MasterSurface, Passes, Points, pointer,
+};
 use std::path::Path;
 
 /// A scene with other elements or passes than the default ones, and what is told of the change.
@@ -60,13 +62,79 @@ pub(super) fn with_edges(
     time: Option<f64>,
 ) -> Option<Safe> {
     let change = |contact: &mut Contact| {
-        let default = contact.passes == Passes::One;
+        let default = contact.passes == Passes::Auto;
         contact.passes = Passes::Edges;
         default
     };
     let text = "while a sharp edge of the master lay on the slave, between its points; it was repeated with such edges as slaves \
                 too (`\"passes\": \"edges\"`; `\"one\"` leaves them out, and the side with the edge as slave needs none)";
     with_contacts(scene, before, time, ("passes", change, text))
+}
+
+/// Whether the rims of the master of a contact may become slaves by themselves: those of a rigid surface whose motion is prescribed,
+/// in a contact that leaves its passes to the default.
+pub(super) fn rims_may(scene: &LoadedScene, contact: &Contact) -> bool {
+    let Some(surface) = scene.scene.surfaces.get(&contact.master) else {
+        return false;
+    };
+    let solution = &scene.scene.solution;
+    contact.passes == Passes::Auto
+        && surface.motion.free.is_none()
+        && solution.kinematics != Kinematics::Small
+        && solution.dynamics.is_none()
+}
+
+/// The scene with the rims of rigid surfaces as slaves, in every contact that may have them.
+pub(super) fn with_rims(
+    scene: &LoadedScene,
+    before: Option<&Safe>,
+    time: Option<f64>,
+) -> Option<Safe> {
+    let text = "while an edge of the surface had sunk into the slave, between its points; it was repeated with such edges as slaves \
+                too (`\"passes\": \"edges\"`; `\"one\"` leaves them out)";
+    let may = |contact: &Contact| rims_may(scene, contact);
+    with_these(scene, before, time, (may, Passes::Edges, text))
+}
+
+/// The scene without the rims of rigid surfaces as slaves, where a run with them stopped as well.
+pub(super) fn without_rims(
+    scene: &LoadedScene,
+    before: Option<&Safe>,
+    time: Option<f64>,
+) -> Option<Safe> {
+    let text = "with edges of the surface as slaves, too; it was repeated without them, in smaller steps than they were given \
+                before (`\"passes\": \"one\"` has that from the start): what the edges carry is wrong by what they sink in";
+    let may = |contact: &Contact| rims_may(scene, contact);
+    with_these(scene, before, time, (may, Passes::One, text))
+}
+
+/// The scene with other passes of some contacts.
+fn with_these(
+    scene: &LoadedScene,
+    before: Option<&Safe>,
+    time: Option<f64>,
+    (may, passes, text): (impl Fn(&Contact) -> bool, Passes, &str),
+) -> Option<Safe> {
+    let mut safe = match before {
+        Some(before) => before.clone(),
+        None => Safe {
+            loaded: scene.clone(),
+            changed: Vec::new(),
+        },
+    };
+    let mut found = Vec::new();
+    for (name, contact) in &scene.scene.contacts {
+        let key = pointer(&["contacts", name, "passes"]);
+        if may(contact) && !scene.has(&key) {
+            safe.loaded.scene.contacts.get_mut(name)?.passes = passes;
+            found.push(format!("`{name}`"));
+        }
+    }
+    if found.is_empty() {
+        return None;
+    }
+    safe.changed.push(stopped(&found, time, text));
+    Some(safe)
 }
 
 /// The scene with smooth masters, in every contact with another body that leaves the surface of its master to the default: a
@@ -102,7 +170,7 @@ pub(super) fn with_exchanged(
     let change = |contact: &mut Contact| {
         let stiffer = young(&contact.slave).zip(young(&contact.master));
         std::mem::swap(&mut contact.slave, &mut contact.master);
-        contact.passes == Passes::One && stiffer.is_some_and(|(slave, master)| slave > master)
+        contact.passes == Passes::Auto && stiffer.is_some_and(|(slave, master)| slave > master)
     };
     let text = "in steps cut again and again, its master softer than its slave; it was repeated with the softer side as the slave, \
                 of which now is what is told of a slave (`\"passes\": \"one\"` keeps the sides as they are)";
@@ -135,13 +203,18 @@ fn with_contacts(
     if found.is_empty() {
         return None;
     }
-    let space = if text.starts_with(';') { "" } else { " " };
-    changed.push(format!(
-        "contact {}: the run stopped{}{space}{text}",
-        found.join(", "),
-        time.map_or(String::new(), |t| format!(" at time {}", number(t)))
-    ));
+    changed.push(stopped(&found, time, text));
     Some(Safe { loaded, changed })
+}
+
+/// What is told of contacts with which a run stopped.
+fn stopped(contacts: &[String], time: Option<f64>, text: &str) -> String {
+    let space = if text.starts_with(';') { "" } else { " " };
+    format!(
+        "contact {}: the run stopped{}{space}{text}",
+        contacts.join(", "),
+        time.map_or(String::new(), |t| format!(" at time {}", number(t)))
+    )
 }
 
 /// Bodies of a scene up to which all choices of them are looked through.
@@ -172,7 +245,13 @@ pub(in crate::run) fn variant_in(out: &Path, scene: &LoadedScene) -> Option<Safe
     });
     let elements: Vec<Safe> = elements.collect();
     let mut all: Vec<Option<Safe>> = elements.into_iter().map(Some).chain([None]).collect();
-    for with in [with_edges, with_exchanged, with_smooth] {
+    for with in [
+        with_edges,
+        with_rims,
+        without_rims,
+        with_exchanged,
+        with_smooth,
+    ] {
         let more = all
             .iter()
             .filter_map(|before| with(scene, before.as_ref(), None));

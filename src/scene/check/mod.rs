@@ -94,14 +94,27 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
             check_segments(c, &format!("{at}/points/segments"), n, contact, scene)
         }
     }
-    if contact.passes != Passes::One && scene.surfaces.contains_key(&contact.master) {
+    if contact.passes == Passes::TwoHalf && scene.surfaces.contains_key(&contact.master) {
         c.add(
             &format!("{at}/passes"),
             format!(
                 "the master `{}` is a rigid surface, which has no pass of its own",
                 contact.master
             ),
-            Some("`two_half` and `edges` are for masters that are faces of a body".into()),
+            Some("`two_half` is for masters that are faces of a body".into()),
+        );
+    }
+    let rigid = scene.surfaces.contains_key(&contact.master);
+    let solution = &scene.solution;
+    let large = solution.kinematics != Kinematics::Small && solution.dynamics.is_none();
+    if contact.passes == Passes::Edges && rigid && !large {
+        c.add(
+            &format!("{at}/passes"),
+            format!(
+                "the edges of the rigid surface `{}` are slaves in static runs with large displacements only",
+                contact.master
+            ),
+            Some("leave `passes` out".into()),
         );
     }
     if contact.gap == Gap::Averaged && contact.points == Points::Nodes {

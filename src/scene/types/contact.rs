@@ -153,19 +153,20 @@ pub enum Points {
     Segments(u8),
 }
 
-/// Which side of a contact is the slave; other than `one` only for masters that are bodies.
+/// Which side of a contact is the slave; `two_half` only for masters that are bodies.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Passes {
-    /// The slave: its traction acts on the master with the opposite sign, and forces and moments balance.
+    /// `one`, and where a run stops while an edge of the master lies on the slave, between its points, it is repeated with `edges`.
     #[default]
+    Auto,
+    /// The slave: its traction acts on the master with the opposite sign, and forces and moments balance.
     One,
     /// Each side in turn, and the traction of a pass acts on its slave alone: no side is preferred, forces balance as far as
     /// both sides find the same gaps (`imbalance` in the history), and the system is unsymmetric.
     TwoHalf,
-    /// The slave, and with it the sharp convex edges of the master's faces: their nodes are slave points too, on the faces of
-    /// the slave, into which such an edge otherwise sinks between two points. Where nothing is said, a run that stops while
-    /// such an edge lies on the slave is repeated with it.
+    /// The slave, and with it the sharp convex edges of the master and, of a rigid one, its free borders: nodes on them are slave
+    /// points too, on the faces of the slave, into which such an edge otherwise sinks between two points.
     Edges,
 }
 
