@@ -61,6 +61,8 @@ struct Builder<'s> {
     histories: usize,
     /// Of slave points at a height above a mid-surface so far.
     levers: Vec<Lever>,
+    /// On rims of rigid surfaces so far.
+    rims: Vec<RimNodes>,
 }
 
 /// Reads every mesh and CAD file of the scene and resolves all names.
@@ -92,9 +94,9 @@ pub fn build_stage(
     };
     let (surfaces, wrong) = builder.surfaces();
     ModelError::all(bodies.err().into_iter().chain(sets).chain(wrong))?;
-    let (pairs, mut surfaces, rims) = builder.contacts(surfaces)?;
+    let (pairs, mut surfaces) = builder.contacts(surfaces)?;
     let mut held = builder.drive(&mut surfaces)?;
-    held.extend(rims.iter().flat_map(RimNodes::dofs));
+    held.extend(builder.rims.iter().flat_map(RimNodes::dofs));
     // Those of later stages, so that a contradiction is told before anything is solved.
     for later in (0..scene.stages.len()).filter(|stage| *stage > start.index) {
         builder.stage = later;
@@ -112,7 +114,7 @@ pub fn build_stage(
         bodies: builder.bodies,
         surfaces,
         pairs,
-        rims,
+        rims: builder.rims,
         supports: supports.names,
         prescribed: supports.prescribed,
         means: supports.means,
@@ -183,6 +185,7 @@ impl<'s> Builder<'s> {
             averaged: 0,
             histories: 0,
             levers: Vec::new(),
+            rims: Vec::new(),
         }
     }
 }

@@ -5,7 +5,6 @@ use super::super::edges;
 use super::super::error::{At, number, text};
 use super::super::friction::{self, FrictionModel, LawModel};
 use super::super::master::{BodyMaster, Master, moving_facets};
-use super::super::rims::RimNodes;
 use super::super::self_contact::OwnFacets;
 use super::super::slave::slave_points;
 use super::super::{HalfPass, ModelError, PairModel, SurfaceModel, penalty, segments, slave};
@@ -49,11 +48,11 @@ impl Builder<'_> {
         (surfaces, errors)
     }
 
-    /// All contact pairs, all rigid surfaces with their sides, and the nodes on their rims.
+    /// All contact pairs, those of rims last, and all rigid surfaces with their sides.
     pub(super) fn contacts(
         &mut self,
         surfaces: Vec<(SurfaceModel, Vec<String>)>,
-    ) -> Result<(Vec<PairModel>, Vec<SurfaceModel>, Vec<RimNodes>), ModelError> {
+    ) -> Result<(Vec<PairModel>, Vec<SurfaceModel>), ModelError> {
         let (mut surfaces, labels): (Vec<_>, Vec<_>) = surfaces.into_iter().unzip();
         let names = self.scene.surfaces.keys().enumerate();
         let surface_index: BTreeMap<&str, usize> = names.map(|(i, n)| (n.as_str(), i)).collect();
@@ -92,14 +91,14 @@ impl Builder<'_> {
             let model = (&mut surfaces[index], labels[index].as_slice());
             self.orient(name, surface, model, &own)?;
         }
-        let (on_rims, rims) = self.rims(&pairs, &surfaces)?;
+        let on_rims = self.rims(&pairs, &surfaces)?;
         for pair in &on_rims {
             // What comes past a border meets the nodes on that.
             let of = pair.edges_of.map(|of| &mut pairs[of].points);
             of.into_iter().flatten().for_each(|p| p.rounding = 0.0);
         }
         pairs.extend(on_rims);
-        Ok((pairs, surfaces, rims))
+        Ok((pairs, surfaces))
     }
 
     /// The sharp edges of the master of pair `of` as slaves; nothing where it has none, which is told.

@@ -37,13 +37,13 @@ impl Near {
 }
 
 impl Builder<'_> {
-    /// The pairs of rims of rigid surfaces with the slaves of contacts, and the nodes on them.
+    /// The pairs of rims of rigid surfaces with the slaves of contacts; adds the nodes on them.
     pub(super) fn rims(
         &mut self,
         pairs: &[PairModel],
         surfaces: &[SurfaceModel],
-    ) -> Result<(Vec<PairModel>, Vec<RimNodes>), ModelError> {
-        let (mut out, mut rims) = (Vec::new(), Vec::new());
+    ) -> Result<Vec<PairModel>, ModelError> {
+        let mut out = Vec::new();
         for (of, pair) in pairs.iter().enumerate() {
             let contact = &self.scene.contacts[&pair.name];
             let asked = contact.passes == Passes::Edges;
@@ -75,11 +75,9 @@ impl Builder<'_> {
             if found.is_empty() {
                 continue;
             }
-            let (rim, made) = self.rim_pair(of, pair, index, (surface, found))?;
-            rims.push(rim);
-            out.push(made);
+            out.push(self.rim_pair(of, pair, index, (surface, found))?);
         }
-        Ok((out, rims))
+        Ok(out)
     }
 
     /// Points on the rims of a surface that are slaves of a contact, with the length of rim around each; in the surface's own
@@ -121,7 +119,7 @@ impl Builder<'_> {
         pair: &PairModel,
         index: usize,
         (surface, found): (&SurfaceModel, Vec<(Vec3, f64)>),
-    ) -> Result<(RimNodes, PairModel), ModelError> {
+    ) -> Result<PairModel, ModelError> {
         let contact = &self.scene.contacts[&pair.name];
         let pose =
             (surface.motion.pose(0.0)).at(|| format!("/surfaces/{}/motion", surface.name))?;
@@ -148,15 +146,14 @@ impl Builder<'_> {
             points,
         };
         let made = self.pair(&pair.name, &back, None, side)?;
-        let rim = RimNodes {
+        self.rims.push(RimNodes {
             surface: index,
             first_node,
             points: found.into_iter().map(|(x, _)| x).collect(),
-        };
-        let made = PairModel {
+        });
+        Ok(PairModel {
             edges_of: Some(of),
             ..made
-        };
-        Ok((rim, made))
+        })
     }
 }

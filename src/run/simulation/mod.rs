@@ -213,6 +213,10 @@ impl<'o> Simulation<'o> {
 
     /// Tells once what is known when a run has ended.
     fn conclude(&mut self) {
+        // What is repeated has nothing to say of the answer.
+        if self.rims == Rims::Out && self.ended.as_ref().is_some_and(|e| e.on_rims) {
+            return;
+        }
         if std::mem::replace(&mut self.concluded, true) {
             return;
         }
@@ -369,9 +373,9 @@ fn running(
     observer: &mut (dyn Observer + Send),
 ) -> Result<(Running, Fingerprint), RunError> {
     let cost = Cost::start();
-    let (loaded, changed) = match safe {
-        None => (scene, &[][..]),
-        Some(Safe { loaded, changed }) => (loaded, &changed[..]),
+    let (loaded, changed, notes) = match safe {
+        None => (scene, &[][..], &[][..]),
+        Some(safe) => (&safe.loaded, &safe.changed[..], &safe.notes[..]),
     };
     let fingerprint = Fingerprint::new(loaded);
     let mut phases = Phases::new();
@@ -384,6 +388,7 @@ fn running(
     let mut model =
         model::build::build_stage(loaded, stage, None).map_err(|e| RunError::model(loaded, e))?;
     model.warnings.extend_from_slice(changed);
+    model.notes.extend_from_slice(notes);
     let plan = Plan::new(loaded, &model);
     phases.stop("model");
     observer.event(&Event::Model {

@@ -13,6 +13,19 @@ use std::path::Path;
 pub(in crate::run) struct Safe {
     pub loaded: LoadedScene,
     pub changed: Vec<String>,
+    /// What is told of it where it leaves no doubt about the answer.
+    pub notes: Vec<String>,
+}
+
+impl Safe {
+    /// The one before, or the scene as it is.
+    fn of(scene: &LoadedScene, before: Option<&Safe>) -> Self {
+        before.cloned().unwrap_or_else(|| Safe {
+            loaded: scene.clone(),
+            changed: Vec::new(),
+            notes: Vec::new(),
+        })
+    }
 }
 
 /// The scene with bricks of one change of volume each for the bodies whose default elements a run could not go on with: enhanced
@@ -38,10 +51,11 @@ fn replaced(scene: &LoadedScene, before: Option<&Safe>, body: &str, when: &str) 
     if names_element(scene, body) {
         return None;
     }
-    let (mut loaded, mut changed) = match before {
-        Some(Safe { loaded, changed }) => (loaded.clone(), changed.clone()),
-        None => (scene.clone(), Vec::new()),
-    };
+    let Safe {
+        mut loaded,
+        mut changed,
+        notes,
+    } = Safe::of(scene, before);
     let element = &mut loaded.scene.bodies.get_mut(body)?.element;
     if *element != Element::H8 {
         return None;
@@ -52,7 +66,11 @@ fn replaced(scene: &LoadedScene, before: Option<&Safe>, body: &str, when: &str) 
          `h8_mean_dilatation` for it, which is stiffer in bending: refine it where it bends, and name the `element` to have one of \
          them from the start"
     ));
-    Some(Safe { loaded, changed })
+    Some(Safe {
+        loaded,
+        changed,
+        notes,
+    })
 }
 
 /// The scene with the edges of masters as slaves, in every contact with another body that leaves its passes to the default.
@@ -115,13 +133,7 @@ fn with_these(
     time: Option<f64>,
     (may, passes, text): (impl Fn(&Contact) -> bool, Passes, &str),
 ) -> Option<Safe> {
-    let mut safe = match before {
-        Some(before) => before.clone(),
-        None => Safe {
-            loaded: scene.clone(),
-            changed: Vec::new(),
-        },
-    };
+    let mut safe = Safe::of(scene, before);
     let mut found = Vec::new();
     for (name, contact) in &scene.scene.contacts {
         let key = pointer(&["contacts", name, "passes"]);
@@ -133,7 +145,15 @@ fn with_these(
     if found.is_empty() {
         return None;
     }
-    safe.changed.push(stopped(&found, time, text));
+    let told = stopped(&found, time, text);
+    match passes {
+        // Of what the edges carry there is no doubt any more.
+        Passes::Edges => safe.notes.push(told),
+        _ => {
+            safe.notes.clear();
+            safe.changed.push(told);
+        }
+    }
     Some(safe)
 }
 
@@ -184,10 +204,11 @@ fn with_contacts(
     time: Option<f64>,
     (key, change, text): (&str, impl Fn(&mut Contact) -> bool, &str),
 ) -> Option<Safe> {
-    let (mut loaded, mut changed) = match before {
-        Some(Safe { loaded, changed }) => (loaded.clone(), changed.clone()),
-        None => (scene.clone(), Vec::new()),
-    };
+    let Safe {
+        mut loaded,
+        mut changed,
+        notes,
+    } = Safe::of(scene, before);
     let mut found = Vec::new();
     let body = |set: &str| set.split('.').next().map(str::to_owned);
     for (name, contact) in &mut loaded.scene.contacts {
@@ -204,7 +225,11 @@ fn with_contacts(
         return None;
     }
     changed.push(stopped(&found, time, text));
-    Some(Safe { loaded, changed })
+    Some(Safe {
+        loaded,
+        changed,
+        notes,
+    })
 }
 
 /// What is told of contacts with which a run stopped.
