@@ -13,6 +13,11 @@ const ANGLE: f64 = 0.5;
 /// Distance of neighbouring nodes on a rim, as a part of the slave's elements: every element that it crosses has two.
 const SPACING: f64 = 0.5;
 
+/// How far from the box around the slave's faces a rim may come near them, as a part of its diagonal: bodies move as well.
+const NEAR: f64 = 0.5;
+/// Places of a motion that are looked at, besides its kinks.
+const PLACES: usize = 64;
+
 /// Nodes of the model on the rims of a rigid surface.
 #[derive(Debug, Clone)]
 pub struct RimNodes {
@@ -65,22 +70,63 @@ impl Model {
     }
 }
 
-/// Points on the rims of a surface, in its own coordinates, with the length of rim around each; without those that are flush with
-/// the border of the slave's faces where `pose` puts them. `slave`: these faces at the start; `size`: that of their elements
-/// (length).
+/// The surroundings of a slave: its box, and as much around it as it may move.
+#[derive(Debug, Clone)]
+pub struct Near {
+    low: Vec3,
+    high: Vec3,
+}
+
+impl Near {
+    /// Around places of the slave's nodes, where contact begins at `offset` (length).
+    pub fn new(places: impl Iterator<Item = Vec3>, offset: f64) -> Self {
+        let start = [f64::INFINITY, f64::NEG_INFINITY].map(Vec3::repeat);
+        let [low, high] = places.fold(start, |[low, high], x| [low.inf(&x), high.sup(&x)]);
+        let grown = Vec3::repeat(NEAR * (high - low).norm() + offset);
+        Near {
+            low: low - grown,
+            high: high + grown,
+        }
+    }
+
+    /// Whether a place is in it.
+    pub fn holds(&self, x: &Point3<f64>) -> bool {
+        (0..3).all(|c| self.low[c] <= x[c] && x[c] <= self.high[c])
+    }
+}
+
+/// Where the motion of a surface that ends at the time `end` puts it, at the start first.
+///
+/// # Errors
+/// A motion without a value at some time.
+pub fn poses(surface: &SurfaceModel, end: f64) -> Result<Vec<Isometry3<f64>>, ValueError> {
+    let even = (0..=PLACES).map(|i| end * i as f64 / PLACES as f64);
+    let functions = surface.motion.functions();
+    let kinks = functions.flat_map(|f| f.breakpoints());
+    let times = even.chain(kinks.filter(|t| (0.0..=end).contains(t)));
+    times.map(|t| surface.motion.pose(t)).collect()
+}
+
+/// Points on the rims of a surface, in its own coordinates, with the length of rim around each: those that one of `poses` brings
+/// near the slave, without those that are flush with the border of its faces where the first puts them. `slave`: these faces at the
+/// start; `size`: that of their elements (length).
 pub fn points(
     surface: &SurfaceModel,
-    pose: &Isometry3<f64>,
+    (poses, near): (&[Isometry3<f64>], &Near),
     slave: &MovingFacets,
     size: f64,
 ) -> Vec<(RimPoint, f64)> {
     let rims = with_patches!(&surface.set, set => set.rims(ANGLE, SPACING * size));
+    let comes_near = |p: &RimPoint| {
+        let x = Point3::from(p.x);
+        poses.iter().any(|pose| near.holds(&(pose * x)))
+    };
     let flush = |p: &RimPoint| {
-        let at = (pose * Point3::from(p.x)).coords;
-        edges::flush_with(&at, &(pose * p.along), slave, size)
+        let at = (poses[0] * Point3::from(p.x)).coords;
+        edges::flush_with(&at, &(poses[0] * p.along), slave, size)
     };
     (rims.iter())
         .flat_map(|rim| rim.points.iter().map(|p| (*p, rim.piece)))
-        .filter(|(p, _)| !flush(p))
+        .filter(|(p, _)| comes_near(p) && !flush(p))
         .collect()
 }

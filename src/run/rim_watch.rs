@@ -3,7 +3,8 @@ use super::bearing::Bearing;
 use crate::model::build::master_faces;
 use crate::model::error::number;
 use crate::model::master::moving_facets;
-use crate::model::{Model, edges, penalty, rims};
+use crate::model::rims::{self, Near};
+use crate::model::{Model, edges, penalty};
 use covact_geometry::project::RimPoint;
 use covact_geometry::{MovingFacets, Vec3};
 use nalgebra::Point3;
@@ -51,7 +52,7 @@ pub(super) struct Sunk {
 
 impl Watched {
     /// The edges of the master of pair `index`; none where it has no such edges, or they are slaves already.
-    fn new(model: &Model, index: usize, may: bool) -> Option<Self> {
+    fn new(model: &Model, index: usize, (end, may): (f64, bool)) -> Option<Self> {
         let pair = &model.pairs[index];
         let surface = &model.surfaces[pair.rigid_master()?];
         let slave = &model.bodies[pair.body];
@@ -61,8 +62,10 @@ impl Watched {
         }
         let start = |n: u32| model.nodes[n as usize];
         let faces = moving_facets(&slave.mesh, slave.first_node, &pair.faces, false, start).ok()?;
-        let pose = surface.pose(0.0, &vec![0.0; 3 * model.nodes.len()]).ok()?;
-        let points = rims::points(surface, &pose, &faces, pair.element_size);
+        let places = (pair.faces.iter()).flat_map(|f| slave.mesh.face_corners(*f));
+        let near = Near::new(places.map(|n| start(n + slave.first_node)), pair.offset);
+        let poses = rims::poses(surface, end).ok()?;
+        let points = rims::points(surface, (&poses, &near), &faces, pair.element_size);
         let points: Vec<RimPoint> = points.into_iter().map(|(p, _)| p).collect();
         let master = master_faces::check(&slave.mesh, &pair.faces, &pair.slave);
         (!points.is_empty()).then(|| Watched {
@@ -133,13 +136,14 @@ impl Watched {
 }
 
 impl RimWatch {
-    /// The edges of all rigid surfaces of a model that may sink in; those of the pairs `may` may become slaves in another run.
-    pub fn new(model: &Model, may: &[usize]) -> Self {
+    /// The edges of all rigid surfaces of a model that may sink in until the time `end`; those of the pairs `may` may become slaves in
+    /// another run.
+    pub fn new(model: &Model, end: f64, may: &[usize]) -> Self {
         if model.small.is_some() || model.dynamics.is_some() {
             return RimWatch::default();
         }
         let pairs = 0..model.pairs.len();
-        let watched = pairs.filter_map(|i| Watched::new(model, i, may.contains(&i)));
+        let watched = pairs.filter_map(|i| Watched::new(model, i, (end, may.contains(&i))));
         RimWatch(watched.collect())
     }
 

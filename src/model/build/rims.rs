@@ -1,40 +1,13 @@
 //! The pairs of the rims of rigid surfaces, where contacts ask for them.
 use super::super::error::{At, text};
-use super::super::rims::{self, RimNodes};
+use super::super::rims::{self, Near, RimNodes};
 use super::super::{ModelError, PairModel, SurfaceModel};
 use super::Builder;
 use super::contacts::Side;
 use crate::contact::points::SlavePoint;
 use crate::scene::{Contact, Gap, MasterSurface, Passes, Points};
 use covact_geometry::Vec3;
-use nalgebra::{Isometry3, Point3};
-
-/// How far from the box around the slave's faces a rim may come near them, as a part of its diagonal: bodies move as well.
-const NEAR: f64 = 0.5;
-/// Places of a motion that are looked at, besides its kinks.
-const PLACES: usize = 64;
-
-/// The surroundings of a slave: its box, and as much around it as it may move.
-struct Near {
-    low: Vec3,
-    high: Vec3,
-}
-
-impl Near {
-    fn new(places: impl Iterator<Item = Vec3>, offset: f64) -> Self {
-        let start = [f64::INFINITY, f64::NEG_INFINITY].map(Vec3::repeat);
-        let [low, high] = places.fold(start, |[low, high], x| [low.inf(&x), high.sup(&x)]);
-        let grown = Vec3::repeat(NEAR * (high - low).norm() + offset);
-        Near {
-            low: low - grown,
-            high: high + grown,
-        }
-    }
-
-    fn holds(&self, x: &Point3<f64>) -> bool {
-        (0..3).all(|c| self.low[c] <= x[c] && x[c] <= self.high[c])
-    }
-}
+use nalgebra::Point3;
 
 impl Builder<'_> {
     /// The pairs of rims of rigid surfaces with the slaves of contacts; adds the nodes on them.
@@ -94,22 +67,10 @@ impl Builder<'_> {
         let nodes = pair.faces.iter().flat_map(|f| body.mesh.face_corners(*f));
         let places = nodes.map(|n| self.nodes[(n + body.first_node) as usize]);
         let near = Near::new(places, contact.offset);
-        let poses = self.poses(surface)?;
-        let mut found = rims::points(surface, &poses[0], &slave, pair.element_size);
-        found.retain(|(p, _)| (poses.iter()).any(|pose| near.holds(&(pose * Point3::from(p.x)))));
+        let poses = rims::poses(surface, self.scene.solution.end_time)
+            .at(|| format!("/surfaces/{}/motion", surface.name))?;
+        let found = rims::points(surface, (&poses, &near), &slave, pair.element_size);
         Ok(found.into_iter().map(|(p, piece)| (p.x, piece)).collect())
-    }
-
-    /// Where the motion of a surface puts it, at the start first.
-    fn poses(&self, surface: &SurfaceModel) -> Result<Vec<Isometry3<f64>>, ModelError> {
-        let end = self.scene.solution.end_time;
-        let even = (0..=PLACES).map(|i| end * i as f64 / PLACES as f64);
-        let functions = surface.motion.functions();
-        let kinks = functions.flat_map(|f| f.breakpoints());
-        let times = even.chain(kinks.filter(|t| (0.0..=end).contains(t)));
-        let pose = |t: f64| surface.motion.pose(t);
-        (times.map(pose).collect::<Result<_, _>>())
-            .at(|| format!("/surfaces/{}/motion", surface.name))
     }
 
     /// The pair of a rim with the slave of pair `of`.

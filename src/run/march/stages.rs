@@ -415,7 +415,11 @@ impl<'m> RunState<'m> {
             compliance,
             rule,
             peaks,
-            rims: RimWatch::new(model, &problem.rims_may),
+            rims: RimWatch::new(
+                model,
+                problem.loaded.scene.solution.end_time,
+                &problem.rims_may,
+            ),
             cost,
             course: Course {
                 trial: committed.clone(),

@@ -144,7 +144,11 @@ impl<'m> RunState<'m> {
             compliance: Compliance::new(model).map_err(|e| RunError::internal(&e))?,
             rule: PenaltyRule::new(model),
             peaks: Peaks::new(model),
-            rims: RimWatch::new(model, &problem.rims_may),
+            rims: RimWatch::new(
+                model,
+                problem.loaded.scene.solution.end_time,
+                &problem.rims_may,
+            ),
             cost,
             course: Course {
                 trial: committed.clone(),
