@@ -49,8 +49,7 @@ use std::sync::atomic::AtomicBool;
 const RELIABLE: f64 = 1e-4;
 /// Cuts of a step after which one that gained energy out of nothing is taken, and told.
 const GIVES_IN: u32 = 4;
-/// Cuts of a run from which on it crawls, where there are more than one in so many steps. Half of them do where another run stands
-/// ready.
+/// Cuts of a run from which on it crawls, where there are more than one in so many steps.
 const CRAWLS: u32 = 10;
 const MANY_CUTS: u32 = 5;
 
@@ -550,11 +549,7 @@ impl March<'_, '_> {
     /// Whether steps are cut again and again.
     fn cut_often(&self) -> bool {
         let (cuts, steps) = (self.progress.cuts, self.progress.steps);
-        let patience = match self.impatient {
-            true => CRAWLS / 2,
-            false => CRAWLS,
-        };
-        cuts >= patience && MANY_CUTS * cuts > steps
+        cuts >= CRAWLS && MANY_CUTS * cuts > steps
     }
 
     /// Whether steps in contact with a body are cut again and again.
