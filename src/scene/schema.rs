@@ -12,6 +12,7 @@ pub fn schema() -> String {
 pub(crate) fn printed(schema: Schema) -> String {
     let mut schema = schema.to_value();
     short_forms(&mut schema);
+    other_names(&mut schema);
     let definitions = schema["$defs"].as_object().cloned().unwrap_or_default();
     describe(&mut schema, &definitions);
     // Serialising a tree of JSON values into memory cannot fail.
@@ -46,6 +47,30 @@ fn short_forms(schema: &mut Json) {
             let description = long.as_object_mut().and_then(|l| l.remove("description"));
             *definition = json!({ "description": description, "anyOf": [long, short] });
         }
+    }
+}
+
+/// What the description of a key says before its other name.
+const ALSO: &str = "also written `";
+
+/// Allows the other names of keys, by what their descriptions say: one of the two may be given.
+fn other_names(schema: &mut Json) {
+    let own = |(key, member): (&String, &Json)| {
+        let (_, after) = member["description"].as_str()?.split_once(ALSO)?;
+        let other = after.split('`').next()?.to_owned();
+        Some((key.clone(), other, member.clone()))
+    };
+    let properties = schema["properties"].as_object();
+    let found: Vec<_> = properties.into_iter().flatten().filter_map(own).collect();
+    for (key, other, mut member) in found {
+        member["description"] = json!(format!("The same as `{key}`."));
+        schema["properties"][&other] = member;
+        schema["not"] = json!({ "required": [key, other] });
+    }
+    match schema {
+        Json::Object(members) => members.values_mut().for_each(other_names),
+        Json::Array(items) => items.iter_mut().for_each(other_names),
+        _ => {}
     }
 }
 
@@ -85,5 +110,32 @@ fn describe(schema: &mut Json, definitions: &Map<String, Json>) {
         Json::Object(members) => members.values_mut().for_each(|m| describe(m, definitions)),
         Json::Array(items) => items.iter_mut().for_each(|m| describe(m, definitions)),
         _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::schema;
+    use serde_json::{Value as Json, json};
+
+    #[test]
+    fn other_names_of_keys_are_allowed() {
+        let schema: Json = serde_json::from_str(&schema()).expect("JSON");
+        for (name, key, other) in [
+            ("CylinderPanel", "origin", "center"),
+            ("SpherePanel", "origin", "center"),
+            ("SphereShape", "center", "origin"),
+            ("CylinderShape", "center", "origin"),
+        ] {
+            let of = &schema["$defs"][name];
+            let [a, b] = [key, other].map(|k| &of["properties"][k]);
+            assert_eq!(a["type"], "array", "{name}");
+            assert_eq!(
+                (&a["type"], &a["items"]),
+                (&b["type"], &b["items"]),
+                "{name}"
+            );
+            assert_eq!(of["not"], json!({ "required": [key, other] }), "{name}");
+        }
     }
 }
