@@ -72,14 +72,14 @@ impl Model {
 
 /// The surroundings of a slave: its box, and as much around it as it may move.
 #[derive(Debug, Clone)]
-pub struct Near {
+struct Near {
     low: Vec3,
     high: Vec3,
 }
 
 impl Near {
     /// Around places of the slave's nodes, where contact begins at `offset` (length).
-    pub fn new(places: impl Iterator<Item = Vec3>, offset: f64) -> Self {
+    fn new(places: impl Iterator<Item = Vec3>, offset: f64) -> Self {
         let start = [f64::INFINITY, f64::NEG_INFINITY].map(Vec3::repeat);
         let [low, high] = places.fold(start, |[low, high], x| [low.inf(&x), high.sup(&x)]);
         let grown = Vec3::repeat(NEAR * (high - low).norm() + offset);
@@ -90,7 +90,7 @@ impl Near {
     }
 
     /// Whether a place is in it.
-    pub fn holds(&self, x: &Point3<f64>) -> bool {
+    fn holds(&self, x: &Point3<f64>) -> bool {
         (0..3).all(|c| self.low[c] <= x[c] && x[c] <= self.high[c])
     }
 }
@@ -99,7 +99,7 @@ impl Near {
 ///
 /// # Errors
 /// A motion without a value at some time.
-pub fn poses(surface: &SurfaceModel, end: f64) -> Result<Vec<Isometry3<f64>>, ValueError> {
+fn poses(surface: &SurfaceModel, end: f64) -> Result<Vec<Isometry3<f64>>, ValueError> {
     let even = (0..=PLACES).map(|i| end * i as f64 / PLACES as f64);
     let functions = surface.motion.functions();
     let kinks = functions.flat_map(|f| f.breakpoints());
@@ -107,26 +107,41 @@ pub fn poses(surface: &SurfaceModel, end: f64) -> Result<Vec<Isometry3<f64>>, Va
     times.map(|t| surface.motion.pose(t)).collect()
 }
 
-/// Points on the rims of a surface, in its own coordinates, with the length of rim around each: those that one of `poses` brings
-/// near the slave, without those that are flush with the border of its faces where the first puts them. `slave`: these faces at the
-/// start; `size`: that of their elements (length).
+/// The faces of a slave where they start.
+pub struct SlaveFaces<'a> {
+    pub facets: &'a MovingFacets,
+    /// Places of its nodes in the model.
+    pub position: &'a dyn Fn(u32) -> Vec3,
+    /// Size of the elements (length).
+    pub size: f64,
+    /// Where contact begins in front of the other side (length).
+    pub offset: f64,
+}
+
+/// Points on the rims of a surface, in its own coordinates, with the length of rim around each: those that its motion until the time
+/// `end` brings near the slave, without those that are flush with the border of the slave's faces at the start.
+///
+/// # Errors
+/// A motion without a value at some time.
 pub fn points(
     surface: &SurfaceModel,
-    (poses, near): (&[Isometry3<f64>], &Near),
-    slave: &MovingFacets,
-    size: f64,
-) -> Vec<(RimPoint, f64)> {
-    let rims = with_patches!(&surface.set, set => set.rims(ANGLE, SPACING * size));
+    slave: &SlaveFaces,
+    end: f64,
+) -> Result<Vec<(RimPoint, f64)>, ValueError> {
+    let nodes = (0..slave.facets.len() as u32).flat_map(|f| slave.facets.nodes(f));
+    let near = Near::new(nodes.map(|n| (slave.position)(*n)), slave.offset);
+    let poses = poses(surface, end)?;
     let comes_near = |p: &RimPoint| {
         let x = Point3::from(p.x);
         poses.iter().any(|pose| near.holds(&(pose * x)))
     };
     let flush = |p: &RimPoint| {
         let at = (poses[0] * Point3::from(p.x)).coords;
-        edges::flush_with(&at, &(poses[0] * p.along), slave, size)
+        edges::flush_with(&at, &(poses[0] * p.along), slave.facets, slave.size)
     };
-    (rims.iter())
+    let rims = with_patches!(&surface.set, set => set.rims(ANGLE, SPACING * slave.size));
+    Ok((rims.iter())
         .flat_map(|rim| rim.points.iter().map(|p| (*p, rim.piece)))
         .filter(|(p, _)| comes_near(p) && !flush(p))
-        .collect()
+        .collect())
 }

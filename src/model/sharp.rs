@@ -9,11 +9,47 @@ use covact_geometry::Vec3;
 /// widest spacing of points that suits it, half of its radius.
 const ANGLE: f64 = 0.5;
 
+/// Lines on the patches of a surface, in its own coordinates.
+#[derive(Debug)]
+pub struct Lines(Vec<Vec<[Vec3; 2]>>);
+
+impl Lines {
+    /// The free borders of a surface.
+    pub fn borders(surface: &SurfaceModel) -> Lines {
+        let found = with_patches!(&surface.set, set => set.free_borders());
+        let mut lines = Lines(vec![Vec::new(); surface.set.count()]);
+        for (patch, points) in &found {
+            lines.add(*patch, points);
+        }
+        lines
+    }
+
+    fn add(&mut self, patch: u32, points: &[Vec3]) {
+        let lines = points.windows(2).map(|p| [p[0], p[1]]);
+        self.0[patch as usize].extend(lines);
+    }
+
+    /// Whether a point of a patch lies within `reach` of one of the lines on it.
+    pub fn near(&self, patch: u32, x: &Vec3, reach: f64) -> bool {
+        let lines = self.0.get(patch as usize).map_or(&[][..], |l| l);
+        lines.iter().any(|[a, b]| {
+            let along = b - a;
+            let t = (x - a).dot(&along) / along.norm_squared();
+            let t = if t.is_finite() {
+                t.clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
+            (x - (a + along * t)).norm_squared() <= reach * reach
+        })
+    }
+}
+
 /// Sharp convex edges of a surface, in its own coordinates.
 #[derive(Debug)]
 pub struct SharpEdges {
-    /// Per patch, the lines that follow its sharp convex edges.
-    lines: Vec<Vec<[Vec3; 2]>>,
+    /// Lines that follow them.
+    lines: Lines,
     /// Number of edges; that of two patches is one.
     pub count: usize,
     /// Largest angle between the normals of both sides (degrees).
@@ -25,14 +61,13 @@ impl SharpEdges {
     pub fn of(surface: &SurfaceModel) -> Option<SharpEdges> {
         let found = with_patches!(&surface.set, set => set.sharp_edges(ANGLE));
         let mut edges = SharpEdges {
-            lines: vec![Vec::new(); surface.set.count()],
+            lines: Lines(vec![Vec::new(); surface.set.count()]),
             count: 0,
             angle: 0.0,
         };
         let mut halves = 0usize;
         for edge in found.iter().filter(|e| e.convex) {
-            let lines = edge.points.windows(2).map(|p| [p[0], p[1]]);
-            edges.lines[edge.patch as usize].extend(lines);
+            edges.lines.add(edge.patch, &edge.points);
             edges.angle = edges.angle.max(edge.angle.to_degrees());
             halves += 1;
         }
@@ -40,33 +75,9 @@ impl SharpEdges {
         (halves > 0).then_some(edges)
     }
 
-    /// The free borders of a surface in the same way, however its sides meet elsewhere.
-    pub fn borders(surface: &SurfaceModel) -> SharpEdges {
-        let mut lines = vec![Vec::new(); surface.set.count()];
-        let found = with_patches!(&surface.set, set => set.free_borders());
-        for (patch, points) in &found {
-            lines[*patch as usize].extend(points.windows(2).map(|p| [p[0], p[1]]));
-        }
-        SharpEdges {
-            lines,
-            count: found.len(),
-            angle: 180.0,
-        }
-    }
-
     /// Whether a point of a patch lies within `reach` of one of its sharp convex edges; `x` in the surface's coordinates.
     pub fn near(&self, patch: u32, x: &Vec3, reach: f64) -> bool {
-        let lines = self.lines.get(patch as usize).map_or(&[][..], |l| l);
-        lines.iter().any(|[a, b]| {
-            let along = b - a;
-            let t = (x - a).dot(&along) / along.norm_squared();
-            let t = if t.is_finite() {
-                t.clamp(0.0, 1.0)
-            } else {
-                0.0
-            };
-            (x - (a + along * t)).norm_squared() <= reach * reach
-        })
+        self.lines.near(patch, x, reach)
     }
 
     /// What `check` notes of a contact with the surface whose slave points are `spacing` apart.

@@ -1,7 +1,7 @@
 //! Which slave points carry the force of a contact, and what its penalty stores: sums over the points of a pair that
 //! [`super::fields::Fields::gather`] makes of what it knows of every point.
 use crate::contact::points::SlavePoint;
-use crate::model::sharp::SharpEdges;
+use crate::model::sharp::{Lines, SharpEdges};
 use crate::model::{Model, sharp};
 use covact_geometry::{Hint, Vec3};
 
@@ -105,7 +105,7 @@ pub struct Bearings {
     /// Per pair, the sharp convex edges of a rigid master.
     edges: Vec<Option<SharpEdges>>,
     /// Per pair, the free borders of a rigid master, and the distance of slave points.
-    borders: Vec<Option<(SharpEdges, f64)>>,
+    borders: Vec<Option<(Lines, f64)>>,
 }
 
 impl Bearings {
@@ -133,7 +133,7 @@ impl Bearings {
                 .collect(),
             borders: pairs
                 .map(|p| {
-                    let borders = SharpEdges::borders(surface(p)?);
+                    let borders = Lines::borders(surface(p)?);
                     Some((borders, sharp::spacing(model, p)))
                 })
                 .collect(),
@@ -164,12 +164,12 @@ impl Bearings {
             return;
         };
         if let Some((borders, reach)) = &self.borders[pair] {
-            let near = |lines: &SharpEdges| lines.near(place.hint.patch, &place.local, *reach);
-            let sharp = self.edges[pair].as_ref().is_some_and(near);
+            let (patch, x) = (place.hint.patch, &place.local);
+            let sharp = (self.edges[pair].as_ref()).is_some_and(|e| e.near(patch, x, *reach));
             if sharp {
                 sum.at_edges += force;
             }
-            if sharp || near(borders) {
+            if sharp || borders.near(patch, x, *reach) {
                 sum.at_rims += force;
             }
         }

@@ -3,7 +3,7 @@ use super::bearing::Bearing;
 use crate::model::build::master_faces;
 use crate::model::error::number;
 use crate::model::master::moving_facets;
-use crate::model::rims::{self, Near};
+use crate::model::rims::{self, SlaveFaces};
 use crate::model::{Model, edges, penalty};
 use covact_geometry::project::RimPoint;
 use covact_geometry::{MovingFacets, Vec3};
@@ -62,10 +62,13 @@ impl Watched {
         }
         let start = |n: u32| model.nodes[n as usize];
         let faces = moving_facets(&slave.mesh, slave.first_node, &pair.faces, false, start).ok()?;
-        let places = (pair.faces.iter()).flat_map(|f| slave.mesh.face_corners(*f));
-        let near = Near::new(places.map(|n| start(n + slave.first_node)), pair.offset);
-        let poses = rims::poses(surface, end).ok()?;
-        let points = rims::points(surface, (&poses, &near), &faces, pair.element_size);
+        let at_start = SlaveFaces {
+            facets: &faces,
+            position: &start,
+            size: pair.element_size,
+            offset: pair.offset,
+        };
+        let points = rims::points(surface, &at_start, end).ok()?;
         let points: Vec<RimPoint> = points.into_iter().map(|(p, _)| p).collect();
         let master = master_faces::check(&slave.mesh, &pair.faces, &pair.slave);
         (!points.is_empty()).then(|| Watched {

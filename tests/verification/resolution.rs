@@ -1,6 +1,6 @@
 //! Where the geometry of tool and mesh decides about a force, it is told with numbers: sharp edges between slave points,
 //! facets beside an interference fit, few points under a force, the side that a tube is shrunk onto.
-use crate::support::{Outcome, scene_json, solve};
+use crate::support::{Outcome, scene_json, solve, stl_box};
 use covact::model::{Model, build::build};
 use covact::solve::event::Event;
 use serde_json::{Value, json};
@@ -18,30 +18,6 @@ fn model(scene: &Value) -> Model {
 
 fn told<'a>(all: &'a [String], words: &str) -> Vec<&'a String> {
     all.iter().filter(|w| w.contains(words)).collect()
-}
-
-/// Triangles of a box from `min` to `max`, as an STL file.
-fn stl_box(min: [f64; 3], max: [f64; 3]) -> String {
-    let corner = |k: usize| [0, 1, 2].map(|c| if k >> c & 1 == 1 { max[c] } else { min[c] });
-    let faces = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let mut text = "solid box\n".to_owned();
-    for [a, b, c, d] in faces {
-        for triangle in [[a, b, c], [a, c, d]] {
-            text += "facet normal 0 0 0\nouter loop\n";
-            for [x, y, z] in triangle.map(corner) {
-                text += &format!("vertex {x} {y} {z}\n");
-            }
-            text += "endloop\nendfacet\n";
-        }
-    }
-    text + "endsolid box\n"
 }
 
 /// A strip that is bent down over the edge x = 0 of a box, with `n` elements along it.

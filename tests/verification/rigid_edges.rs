@@ -1,5 +1,5 @@
 //! Edges of rigid surfaces between slave points, as slaves (`"passes": "edges"`).
-use crate::support::{Outcome, solve, solve_in};
+use crate::support::{Outcome, solve, solve_in, stl_box};
 use covact::solve::event::Event;
 use serde_json::{Value, json};
 
@@ -24,35 +24,6 @@ fn cantilever(surface: Value) -> Value {
     })
 }
 
-/// A box from `x = at` on and from `z = 0` up, as the triangles of a file.
-fn cuboid(at: f64) -> String {
-    let corner = |k: usize| {
-        let pick = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
-        format!(
-            "vertex {} {} {}",
-            pick(0, at, 60.0),
-            pick(1, -3.0, 7.0),
-            pick(2, 0.0, 5.0)
-        )
-    };
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let mut out = "solid box\n".to_owned();
-    for [a, b, c, d] in quads {
-        for triangle in [[a, b, c], [a, c, d]] {
-            let [a, b, c] = triangle.map(corner);
-            out += &format!("facet normal 0 0 0\nouter loop\n{a}\n{b}\n{c}\nendloop\nendfacet\n");
-        }
-    }
-    out + "endsolid box\n"
-}
-
 /// A cantilever that is pushed down by `d` at a distance `a` from its wall: `F = 3 E I d / a^3`, with the moment `F a` at the wall.
 /// The edge lies in the middle between two nodes, 1.25 from either, each of which would have the force wrong by 15 %. On this mesh a
 /// linear element bends too little by `1/(4 n^2)` for `n` elements up to the edge. The edge is the free border of a plane, and that
@@ -61,7 +32,11 @@ fn cuboid(at: f64) -> String {
 fn an_edge_between_two_nodes_bears_where_it_is() {
     for a in [26.25, 28.75] {
         let folder = tempfile::tempdir().expect("temporary folder");
-        std::fs::write(folder.path().join("box.stl"), cuboid(a)).expect("written");
+        std::fs::write(
+            folder.path().join("box.stl"),
+            stl_box([a, -3.0, 0.0], [60.0, 7.0, 5.0]),
+        )
+        .expect("written");
         let plane =
             json!({"plane": {"center": [a + 20.0, 2, 0], "size": [40, 10], "normal": [0, 0, -1]}});
         for tool in [plane, json!({"cad": "box.stl"})] {
@@ -274,6 +249,14 @@ fn edges_are_asked_of_surfaces_that_may_have_them() {
     assert!(
         driven.contains("which is driven by force, cannot be slaves yet"),
         "{driven}"
+    );
+    let friction = told(&|s| {
+        s["contacts"]["c"]["friction"] =
+            json!({"orthotropic": {"mu": [0.1, 0.3], "direction": [1, 0, 0]}});
+    });
+    assert!(
+        friction.contains("do not go with orthotropic friction"),
+        "{friction}"
     );
     let half = told(&|s| s["contacts"]["c"]["passes"] = json!("two_half"));
     assert!(half.contains("which has no pass of its own"), "{half}");

@@ -164,3 +164,27 @@ impl BodyFile {
             .collect()
     }
 }
+
+/// Triangles of a box from `min` to `max`, as an STL file.
+pub fn stl_box(min: [f64; 3], max: [f64; 3]) -> String {
+    let corner = |k: usize| [0, 1, 2].map(|c| if k >> c & 1 == 1 { max[c] } else { min[c] });
+    let faces = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let mut text = "solid box\n".to_owned();
+    for [a, b, c, d] in faces {
+        for triangle in [[a, b, c], [a, c, d]] {
+            text += "facet normal 0 0 0\nouter loop\n";
+            for [x, y, z] in triangle.map(corner) {
+                text += &format!("vertex {x} {y} {z}\n");
+            }
+            text += "endloop\nendfacet\n";
+        }
+    }
+    text + "endsolid box\n"
+}

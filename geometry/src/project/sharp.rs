@@ -105,9 +105,9 @@ impl<S: Surface> PatchSet<S> {
             }
             let sharp = edge.links.iter().filter(|l| {
                 // The other patch has it as well.
-                let once = (edge.patch, index) <= (self.topology.edges[l.edge].patch, l.edge);
+                let first = l.kind == EdgeKind::Sharp && index <= l.edge;
                 let sharp = |turn: Turn| turn.convex && turn.angle > angle;
-                l.kind == EdgeKind::Sharp && once && sharp(self.turn(index, l))
+                first && sharp(self.turn(index, l))
             });
             let sharp = sharp.map(|l| (l.own, false));
             let free = edge.free_parts().into_iter().map(|part| (part, true));

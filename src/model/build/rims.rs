@@ -1,6 +1,6 @@
 //! The pairs of the rims of rigid surfaces, where contacts ask for them.
 use super::super::error::{At, text};
-use super::super::rims::{self, Near, RimNodes};
+use super::super::rims::{self, RimNodes, SlaveFaces};
 use super::super::{ModelError, PairModel, SurfaceModel};
 use super::Builder;
 use super::contacts::Side;
@@ -63,13 +63,14 @@ impl Builder<'_> {
     ) -> Result<Vec<(Vec3, f64)>, ModelError> {
         let slave = (self.moving_facets(pair.body, &pair.faces, false))
             .at(|| format!("/contacts/{}/slave", pair.name))?;
-        let body = &self.bodies[pair.body];
-        let nodes = pair.faces.iter().flat_map(|f| body.mesh.face_corners(*f));
-        let places = nodes.map(|n| self.nodes[(n + body.first_node) as usize]);
-        let near = Near::new(places, contact.offset);
-        let poses = rims::poses(surface, self.scene.solution.end_time)
+        let slave = SlaveFaces {
+            facets: &slave,
+            position: &|n| self.nodes[n as usize],
+            size: pair.element_size,
+            offset: contact.offset,
+        };
+        let found = rims::points(surface, &slave, self.scene.solution.end_time)
             .at(|| format!("/surfaces/{}/motion", surface.name))?;
-        let found = rims::points(surface, (&poses, &near), &slave, pair.element_size);
         Ok(found.into_iter().map(|(p, piece)| (p.x, piece)).collect())
     }
 

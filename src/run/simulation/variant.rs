@@ -4,7 +4,7 @@
 use crate::model::error::number;
 use crate::run::checkpoint::{self, Fingerprint};
 use crate::scene::{
-    Contact, Element, Kinematics, LoadedScene, MasterSurface, Passes, Points, pointer,
+    Contact, Element, Friction, Kinematics, LoadedScene, MasterSurface, Passes, Points, pointer,
 };
 use std::path::Path;
 
@@ -97,6 +97,7 @@ pub(super) fn rims_may(scene: &LoadedScene, contact: &Contact) -> bool {
     };
     let solution = &scene.scene.solution;
     contact.passes == Passes::Auto
+        && !matches!(contact.friction, Some(Friction::Orthotropic { .. }))
         && surface.motion.free.is_none()
         && solution.kinematics != Kinematics::Small
         && solution.dynamics.is_none()
