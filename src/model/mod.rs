@@ -142,7 +142,7 @@ pub struct PairModel {
     /// One of the two passes of a contact whose sides are both slaves.
     pub half: Option<HalfPass>,
     /// The points are on the sharp edges of the master of this pair, and the master is its slave. Those of a rigid surface belong
-    /// to no body ([`rims`]): `body` is then that of the master, and there are no slave faces.
+    /// to no body (module `rims`): `body` is then that of the master, and there are no slave faces.
     pub edges_of: Option<usize>,
     /// Penalty (force / length^3).
     pub eps_n: f64,
