@@ -21,6 +21,14 @@ pub enum StepFailure {
         /// What is not finite, in words: an element, a slave point, a load.
         place: String,
     },
+    #[error(
+        "increments grow without bounds: that of iteration {iteration} moves neighbouring nodes by {stretch:.0e} times their distance"
+    )]
+    Diverges {
+        iteration: u32,
+        /// Relative motion of neighbouring nodes by their distance, at most.
+        stretch: f64,
+    },
     /// Something in the scene has no value.
     #[error("`{pointer}`: {error}")]
     NoValue {
@@ -64,6 +72,9 @@ pub enum StepFailure {
          solution is another, folded one"
     )]
     GainedEnergy { part: f64 },
+    /// The path jumped in the step, or the step is too large for what happens in it: energy went nowhere.
+    #[error("an energy of {:.1} % of the work so far went nowhere, more than the size of the step explains", 100.0 * part)]
+    Jumped { part: f64 },
     #[error(
         "the time integration errs by {error:.1e} of the largest displacement within the step, more than {allowed:.1e}"
     )]
@@ -151,6 +162,7 @@ impl StepFailure {
             StepFailure::Fault(fault) => !matches!(fault, Fault::Value(_)),
             StepFailure::TooManyIterations { .. }
             | StepFailure::NotFinite { .. }
+            | StepFailure::Diverges { .. }
             | StepFailure::Solve { .. }
             | StepFailure::Singular { .. }
             | StepFailure::RunsAway { .. }

@@ -140,6 +140,9 @@ const UNTIL_GIVEN_UP: u32 = 9;
 /// Part of their distance by which an increment has to move neighbouring nodes against each other for mixed integration points to take
 /// part from there on: what turns less is not stretched enough to spoil the tangent.
 const BENDS: f64 = 0.5;
+/// Multiple of their distance by which an increment that is larger than the one before may move neighbouring nodes against each
+/// other: iterates of elements that do not turn inside out grow without bounds otherwise, and contact is searched over all of it.
+const WILD: f64 = 1e3;
 /// Iterations after which mixed integration points have not helped, and may go round.
 const MIXED: u32 = 12;
 /// Part of an increment, by its square, that has to be a rigid motion for a body to run away.
@@ -176,6 +179,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let mut energy = 0.0;
         let (mut totals, secants) = self.begin(trial, time, pending)?;
         let (mut touched, mut keep, mut bends) = (false, false, false);
+        // By how much the last increment moved neighbouring nodes: a thin shell may come down from a wild first one.
+        let mut moved = f64::INFINITY;
         // The first correction, or the motion, has opened most points.
         let mut far = self.first.keep && self.assembler.linearization.keep_active;
         // Contact alone holds a body: supports, or inertia, hold others, which may well leave a surface. Times that its last points
@@ -287,12 +292,20 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             }
             factorization = Some(self.solve_linear(pending)?);
             self.iterations += 1;
-            if iteration < MIXED {
-                let bend = self.model.largest_stretch(&self.workspace.du);
-                bends |= bend > BENDS;
-                if iteration == 0 {
-                    self.workspace.bend = bend;
-                }
+            let bend = self.model.largest_stretch(&self.workspace.du);
+            bends |= bend > BENDS && iteration < MIXED;
+            if iteration == 0 {
+                self.workspace.bend = bend;
+            }
+            // A body that nothing holds yet goes a part of it only.
+            let free = self.model.stabilization.as_ref();
+            let part = free.map_or(1.0, |s| s.stride(&self.workspace.du).0);
+            let before = std::mem::replace(&mut moved, part * bend);
+            if moved > WILD && moved > before {
+                return Err(StepFailure::Diverges {
+                    iteration,
+                    stretch: moved,
+                });
             }
             let keep_active = far && held && iteration < KEPT && norms.relative() > NEAR;
             self.assembler.linearization = Linearization {

@@ -65,3 +65,41 @@ fn sheet_bent_over_rollers_keeps_its_points() {
         .fold(0.0, f64::max);
     assert!(deepest > 0.0 && deepest < 0.01, "{deepest:e}");
 }
+
+/// A sheet of rubber blown up by a pressure that follows it, in elements that do not turn inside out: from a flat start the first
+/// increments are thousands of times as large as the sheet. Such attempts end after a few iterations, and a smaller step starts.
+#[test]
+fn increments_that_grow_without_bounds_end_an_attempt() {
+    let outcome = solve(&json!({
+        "covact": 1,
+        "materials": { "rubber": { "neo_hooke": { "E": 5, "nu": 0.45 } } },
+        "bodies": { "sheet": {
+            "element": "h8_mean_dilatation",
+            "mesh": { "plate": { "size": [20, 20], "thickness": 1, "elements": [10, 10] } }, "material": "rubber"
+        } },
+        "supports": {
+            "sx": { "on": "sheet.x_min", "symmetry": "x" }, "sy": { "on": "sheet.y_min", "symmetry": "y" },
+            "cx": { "on": "sheet.x_max", "fixed": true }, "cy": { "on": "sheet.y_max", "fixed": true }
+        },
+        "loads": { "p": { "on": "sheet.top", "pressure": "0.12*t", "follower": true } },
+        "output": { "every": 0 }
+    }));
+    assert_eq!(outcome.summary.status.name(), "done");
+    let failures: Vec<&str> = (outcome.events.iter())
+        .filter_map(|e| match e {
+            Event::StepRetried { reason, .. } | Event::StepCut { reason, .. } => {
+                Some(reason.as_str())
+            }
+            _ => None,
+        })
+        .collect();
+    println!("{failures:?}");
+    let wild = failures
+        .iter()
+        .filter(|r| r.starts_with("increments grow without bounds"));
+    assert!(wild.count() > 0, "{failures:?}");
+    assert!(!failures.iter().any(|r| r.contains("not a finite number")));
+    // Few iterations each: an attempt used to go on for ten and more.
+    let failed = outcome.summary.failed_iterations;
+    assert!(failed <= 8 * failures.len() as u64, "{failed}");
+}
