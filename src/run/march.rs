@@ -49,6 +49,12 @@ use std::sync::atomic::AtomicBool;
 const RELIABLE: f64 = 1e-4;
 /// Cuts of a step after which one that gained energy out of nothing is taken, and told.
 const GIVES_IN: u32 = 4;
+/// Cuts of a step after which one that was solved from a softened penalty only is taken where its energies tell of a jump, and told: a
+/// large step may have come to another equilibrium than the one on its path. What snaps does so in smaller steps, too. A run that may
+/// be given up for its jumps cuts all of them.
+const JUMPS: u32 = 2;
+/// Iterations of failed attempts from which on a run works in vain, where they are twice those of steps.
+const IN_VAIN: u64 = 100;
 /// Cuts of a run from which on it crawls, where there are more than one in so many steps.
 const CRAWLS: u32 = 10;
 const MANY_CUTS: u32 = 5;
@@ -278,6 +284,16 @@ impl March<'_, '_> {
                         self.take_back(&penalties);
                         break 'solved StepFailure::GainedEnergy { part };
                     }
+                    if cuts < JUMPS
+                        && (converged.softened || self.impatient)
+                        && walk.stepping.large(dt)
+                        && passing.is_none()
+                        && self.model.dynamics.is_none()
+                        && let Some(part) = self.watch.jumped(self.model, step, &work, energy)
+                    {
+                        self.take_back(&penalties);
+                        break 'solved StepFailure::Jumped { part };
+                    }
                     (self.watch).accept(self.assembler, residual, &converged.totals, &span);
                     match &mut walk.before {
                         Some((state, size)) => {
@@ -405,13 +421,14 @@ impl March<'_, '_> {
                 !lost.is_empty() || cuts >= hold::HOPELESS && turned.is_some_and(squeezed);
             let part = match (&failure, &walk.before) {
                 (StepFailure::TooLong { part, .. }, _) => *part,
+                (StepFailure::Jumped { .. }, _) => 0.5,
                 // From rest the first increment is proportional to the step: one that moves neighbouring nodes by as much as
                 // their distance is what may be followed.
                 (_, None) => 1.0 / self.workspace.bend,
                 _ => 0.5,
             };
             let hopeless = hopeless
-                || self.impatient && self.cut_often()
+                || self.impatient && (self.cut_often() || self.fails_often())
                 || self.exchangeable && self.crawls();
             let next = walk.stepping.failed(dt, part).filter(|_| !hopeless);
             let Some(next_dt) = next else {
@@ -544,6 +561,17 @@ impl March<'_, '_> {
             }
         }
         sunk.iter().any(|s| s.may)
+    }
+
+    /// Whether most of the work is done in attempts that fail.
+    fn fails_often(&self) -> bool {
+        let Progress {
+            iterations,
+            accepted,
+            ..
+        } = &*self.progress;
+        let failed = iterations - accepted;
+        failed > IN_VAIN.max(2 * accepted)
     }
 
     /// Whether steps are cut again and again.

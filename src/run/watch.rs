@@ -52,6 +52,8 @@ pub struct Watch {
     pub speed: [f64; 2],
     /// Start and end of the last step; both zero before the first.
     pub span: [f64; 2],
+    /// A step from a softened penalty jumped in spite of its size: the path snaps, and others will.
+    snaps: bool,
     /// Reactions and loads, 3 per node of the bodies (force); no loads where the scene has none.
     reactions: Vec<f64>,
     loads: Vec<f64>,
@@ -209,6 +211,7 @@ impl Watch {
             worst_step,
             speed,
             span,
+            snaps,
             reactions,
             loads,
             surfaces,
@@ -217,6 +220,7 @@ impl Watch {
             pressed,
             tractions,
         } = self;
+        out.bool(*snaps);
         out.f64s(&[*external, *adjusted, *imbalance, *turnover, *worst]);
         out.u32(*worst_step);
         out.f64s(speed);
@@ -237,6 +241,7 @@ impl Watch {
     /// [`Self::put`], read back for the same model.
     pub(super) fn take(model: &Model, from: &mut Reader) -> Result<Self, Malformed> {
         let mut watch = Watch::new(model);
+        watch.snaps = from.bool()?;
         let mut sums = [0.0; 5];
         from.f64s(&mut sums)?;
         [
@@ -344,6 +349,19 @@ impl Watch {
         (known && gained > work.coarse && part > limit).then_some(part)
     }
 
+    /// What a step loses or gains out of nothing, as a part of the work turned over so far, where its size does not explain it: `energy` as for [`Self::close`], which tells it once the step is accepted. Not known of a
+    /// first step, of overclosures, and where penalties have changed; nothing once the path snaps however small steps are.
+    pub fn jumped(&self, model: &Model, step: u32, work: &Work, energy: f64) -> Option<f64> {
+        let known = step > 1
+            && !self.snaps
+            && !work.changed
+            && model.pairs.iter().all(|p| p.overclosure.is_none());
+        let put_in = self.external + work.external + self.adjusted + work.adjusted;
+        let lost = (put_in - energy - self.imbalance).abs();
+        let part = lost / (self.turnover + work.turnover).max(energy.abs());
+        (known && lost > work.coarse && part > JUMP).then_some(part)
+    }
+
     /// Closes the balance of a step. `pressed` are the sums of this name at its end, `energy` what is stored and what has been
     /// dissipated since the start; the step went from time `from` to `to`.
     pub fn close(
@@ -383,6 +401,7 @@ impl Watch {
         let part = lost.abs() / self.turnover.max(energy.abs());
         let limit = if softened { OTHER } else { JUMP };
         if lost.abs() > work.coarse && part > limit {
+            self.snaps |= softened;
             return Some(Jump { lost, part }.told(model, (step, [from, to]), softened));
         }
         let [speed, last] = self.speed;
@@ -473,33 +492,35 @@ mod tests {
     use crate::scene;
     use serde_json::json;
 
+    /// A block on the floor below a plane that touches it, or that is pushed into it at the start.
+    fn pressed(overclosure: bool) -> Model {
+        let mut scene = json!({
+            "covact": 1,
+            "materials": { "m": { "st_venant_kirchhoff": { "E": 1e4, "nu": 0.3 } } },
+            "bodies": { "block": {
+                "mesh": { "block": { "min": [0, 0, 0], "max": [1, 1, 1], "elements": [1, 1, 1] } }, "material": "m"
+            } },
+            "surfaces": { "tool": {
+                "plane": { "center": [0.5, 0.5, 1], "size": [4, 4] }, "side": { "point": [0.5, 0.5, 0.5] }
+            } },
+            "contacts": { "press": { "slave": "block.top", "master": "tool" } },
+            "supports": { "floor": { "on": "block.bottom", "fixed": true } }
+        });
+        if overclosure {
+            scene["surfaces"]["tool"]["plane"]["center"][2] = json!(0.99);
+            scene["contacts"]["press"]["initial_overclosure"] =
+                json!({ "shrink": { "until": 0.5 } });
+        }
+        let loaded =
+            scene::parse(&scene.to_string(), "scene.json").unwrap_or_else(|e| panic!("{e}"));
+        build(&loaded).unwrap_or_else(|e| panic!("{e}"))
+    }
+
     /// What nobody put in is too much above half of the work, or of what was stored before; above twice that where penalties
     /// change, which put in energy of their own. A first step, an overclosure and what a large step explains are not judged.
     #[test]
     fn energy_out_of_nothing_is_told_from_that_of_large_steps() {
-        let model = |overclosure: bool| {
-            let mut scene = json!({
-                "covact": 1,
-                "materials": { "m": { "st_venant_kirchhoff": { "E": 1e4, "nu": 0.3 } } },
-                "bodies": { "block": {
-                    "mesh": { "block": { "min": [0, 0, 0], "max": [1, 1, 1], "elements": [1, 1, 1] } }, "material": "m"
-                } },
-                "surfaces": { "tool": {
-                    "plane": { "center": [0.5, 0.5, 1], "size": [4, 4] }, "side": { "point": [0.5, 0.5, 0.5] }
-                } },
-                "contacts": { "press": { "slave": "block.top", "master": "tool" } },
-                "supports": { "floor": { "on": "block.bottom", "fixed": true } }
-            });
-            if overclosure {
-                scene["surfaces"]["tool"]["plane"]["center"][2] = json!(0.99);
-                scene["contacts"]["press"]["initial_overclosure"] =
-                    json!({ "shrink": { "until": 0.5 } });
-            }
-            let loaded =
-                scene::parse(&scene.to_string(), "scene.json").unwrap_or_else(|e| panic!("{e}"));
-            build(&loaded).unwrap_or_else(|e| panic!("{e}"))
-        };
-        let [open, closed] = [false, true].map(model);
+        let [open, closed] = [false, true].map(pressed);
         let watch = Watch {
             external: 10.0,
             turnover: 10.0,
@@ -528,5 +549,45 @@ mod tests {
         assert_eq!(gained(2, &changed, 23.9), None);
         assert!(gained(2, &changed, 24.1).is_some());
         assert_eq!(watch.gained(&closed, 2, &work, 18.6), None);
+    }
+
+    /// What a step from a softened penalty loses or gains beside what its size explains is a jump from a hundredth of the work on. A
+    /// first step, changed penalties and overclosures are not judged.
+    #[test]
+    fn energy_that_a_jump_loses_is_told_from_that_of_large_steps() {
+        let [open, closed] = [false, true].map(pressed);
+        let watch = Watch {
+            external: 8.0,
+            turnover: 8.0,
+            ..Watch::new(&open)
+        };
+        let work = Work {
+            external: 2.0,
+            turnover: 2.0,
+            coarse: 0.005,
+            ..Work::default()
+        };
+        let jumped = |step, work: &Work, lost: f64| watch.jumped(&open, step, work, 10.0 - lost);
+        assert_eq!(jumped(2, &work, 0.09), None);
+        let part = jumped(2, &work, 0.2).expect("a jump");
+        assert!((part - 0.02).abs() < 1e-12, "{part}");
+        assert!(jumped(2, &work, -0.2).is_some());
+        assert_eq!(jumped(1, &work, 0.2), None);
+        let coarse = Work {
+            coarse: 0.3,
+            ..work
+        };
+        assert_eq!(jumped(2, &coarse, 0.2), None);
+        let changed = Work {
+            changed: true,
+            ..work
+        };
+        assert_eq!(jumped(2, &changed, 0.2), None);
+        assert_eq!(watch.jumped(&closed, 2, &work, 9.8), None);
+        let snaps = Watch {
+            snaps: true,
+            ..watch
+        };
+        assert_eq!(snaps.jumped(&open, 2, &work, 9.8), None);
     }
 }

@@ -22,6 +22,8 @@ const LARGER: f64 = 1.6;
 const SMALLER: f64 = 0.7;
 /// Equivalent plastic strain that a step may bring: stresses follow the flow of one step along one direction.
 const FLOW: f64 = 0.02;
+/// Part of the largest step from which on a step counts as large.
+const LARGE: f64 = 1.0 / 8.0;
 /// Least part that is left of a step that is cut.
 const MOST_CUT: f64 = 1.0 / 64.0;
 
@@ -54,6 +56,11 @@ impl Stepping {
         } else {
             time + left / count
         }
+    }
+
+    /// Whether a step is not yet small beside the largest one that may be taken.
+    pub fn large(&self, dt: f64) -> bool {
+        dt > LARGE * self.settings.max
     }
 
     /// Whether what is prescribed has a kink at `time`: the path so far says nothing about what follows.
