@@ -1,9 +1,9 @@
 //! The folder of a run: collections, history, summary.
 use covact::mesh::{ElementKind, Mesh};
 use covact::output::{
-    Accuracy, BodyFields, COLUMNS, History, OutputError, PartNames, Results, RunStatus, Summary,
-    SurfaceOutput, SurfacePiece, SurfaceState, Versions, column_table, documented, file_stem,
-    read_csv,
+    Accuracy, BodyFields, COLUMNS, GivenUp, History, OutputError, PartNames, Results, RunStatus,
+    Summary, SurfaceOutput, SurfacePiece, SurfaceState, Versions, column_table, documented,
+    file_stem, read_csv,
 };
 use covact_geometry::Vec3;
 use nalgebra::Isometry3;
@@ -271,6 +271,10 @@ fn a_summary_reads_back() {
         contact_points: 676,
         newton_iterations: 41,
         failed_iterations: 5,
+        given_up: GivenUp {
+            runs: 1,
+            newton_iterations: 3,
+        },
         factorizations: BTreeMap::from([("llt".to_string(), 40), ("ldlt".to_string(), 1)]),
         steps: 3,
         cuts: 1,
@@ -292,6 +296,10 @@ fn a_summary_reads_back() {
     };
     summary.write(&path).unwrap();
     assert_eq!(Summary::read(&path).unwrap(), summary);
+    assert_eq!(
+        summary.in_vain(),
+        " (2 in attempts that failed, 3 in a run that was given up)"
+    );
     let json: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
     assert_eq!(json["status"], "not_converged");

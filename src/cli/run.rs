@@ -85,14 +85,11 @@ pub(super) fn run(args: &RunArgs) -> u8 {
         );
         report::error(&format!("{status}{reason}; {kept}"));
     } else if !args.quiet && !args.json {
-        let failed = match summary.failed_iterations {
-            0 => String::new(),
-            n => format!(" ({n} of them in attempts that failed)"),
-        };
         report::stderr(&format!(
-            "{status}: {} steps, {} iterations{failed}, {:.2} s; results in {}\n",
+            "{status}: {} steps, {} iterations{}, {:.2} s; results in {}\n",
             summary.steps,
             summary.newton_iterations,
+            summary.in_vain(),
             summary.wall_s,
             args.out.display()
         ));

@@ -51,7 +51,9 @@ pub use results::{PartNames, Results, SurfaceState, file_stem};
 /// Name of the file in the folder of the results that tells of every iteration.
 pub const RUN_LOG: &str = "run.log";
 
-pub use summary::{ProbeSummary, RunStatus, SUMMARY_FORMAT, StageSummary, Summary, Versions};
+pub use summary::{
+    GivenUp, ProbeSummary, RunStatus, SUMMARY_FORMAT, StageSummary, Summary, Versions,
+};
 pub use surface::{SurfaceOutput, Tessellation, flat_bytes};
 pub(crate) use vtu::escaped;
 pub use vtu::{Field, Place};

@@ -61,11 +61,15 @@ pub struct Summary {
     pub dofs: usize,
     /// Slave points of all contact pairs.
     pub contact_points: usize,
-    /// Iterations of all steps, of failed attempts too.
+    /// Iterations of all steps, of failed attempts too, and of runs that were given up.
     pub newton_iterations: u64,
-    /// Those of them that failed attempts took.
+    /// Those of them that failed attempts took, and runs that were given up.
     #[serde(default)]
     pub failed_iterations: u64,
+    /// Runs that were given up before this one took their place, with what they say in the warnings; seconds and phases have
+    /// what they cost, too.
+    #[serde(default, skip_serializing_if = "GivenUp::is_none")]
+    pub given_up: GivenUp,
     /// Factorizations by method, `llt`, `ldlt` or `lu`, of failed attempts too.
     #[serde(default)]
     pub factorizations: BTreeMap<String, u64>,
@@ -105,6 +109,47 @@ pub struct Summary {
     pub scene: String,
     /// Versions that made this file.
     pub versions: Versions,
+}
+
+/// Runs that were given up before another one, with other elements or other slaves, took their place.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GivenUp {
+    /// How many.
+    pub runs: u32,
+    /// Their iterations.
+    pub newton_iterations: u64,
+}
+
+impl GivenUp {
+    fn is_none(&self) -> bool {
+        self.runs == 0
+    }
+}
+
+impl Summary {
+    /// The iterations that lead to no accepted step, in words and brackets; nothing where there are none.
+    pub fn in_vain(&self) -> String {
+        let GivenUp {
+            runs,
+            newton_iterations,
+        } = self.given_up;
+        let failed = match self.failed_iterations.saturating_sub(newton_iterations) {
+            0 => None,
+            n => Some(format!("{n} in attempts that failed")),
+        };
+        let given_up = match runs {
+            0 => None,
+            1 => Some(format!("{newton_iterations} in a run that was given up")),
+            n => Some(format!(
+                "{newton_iterations} in {n} runs that were given up"
+            )),
+        };
+        let parts: Vec<String> = failed.into_iter().chain(given_up).collect();
+        match parts.is_empty() {
+            true => String::new(),
+            false => format!(" ({})", parts.join(", ")),
+        }
+    }
 }
 
 /// How a stage of a run ended.

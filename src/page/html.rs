@@ -272,14 +272,13 @@ fn cost(out: &mut String, of: &str, s: &Summary) {
     let mut fact = |name: &str, text: String| {
         let _ = writeln!(out, "<dt>{name}</dt><dd>{}</dd>", escaped(&text));
     };
-    let failed = match s.failed_iterations {
-        0 => String::new(),
-        n => format!(" ({n} in attempts that failed)"),
-    };
     fact("Unknowns", s.dofs.to_string());
     fact("Slave points", s.contact_points.to_string());
     fact("Steps", format!("{}, {} cut", s.steps, s.cuts));
-    fact("Iterations", format!("{}{failed}", s.newton_iterations));
+    fact(
+        "Iterations",
+        format!("{}{}", s.newton_iterations, s.in_vain()),
+    );
     let cpu = s.cpu_s.map_or(String::new(), |cpu| {
         format!(", {} s of processors", number(cpu))
     });

@@ -2,6 +2,7 @@
 use super::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::machine::clock::{Phases, cpu_seconds};
 use crate::machine::memory::peak_memory_mb;
+use crate::output::GivenUp;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
@@ -15,6 +16,8 @@ pub(super) struct ResourceUse {
     pub peak_memory_mb: Option<f64>,
     /// Times that the run was continued.
     pub resumed: u32,
+    /// Runs that were given up before this one took their place; what they cost is in the seconds above.
+    pub given_up: GivenUp,
 }
 
 /// Measures a run.
@@ -43,6 +46,7 @@ impl Cost {
             phases: by_phase,
             peak_memory_mb: peak,
             resumed,
+            given_up,
         } = &self.earlier;
         let cpu = cpu_seconds().zip(self.cpu).map(|(now, then)| now - then);
         let mut all = phases.seconds();
@@ -59,6 +63,7 @@ impl Cost {
                 (now, before) => now.or(before),
             },
             resumed: *resumed,
+            given_up: *given_up,
         }
     }
 }
@@ -71,6 +76,7 @@ impl ResourceUse {
             phases,
             peak_memory_mb,
             resumed,
+            given_up,
         } = self;
         out.f64(*wall_s);
         out.option(*cpu_s, Writer::f64);
@@ -81,6 +87,8 @@ impl ResourceUse {
         }
         out.option(*peak_memory_mb, Writer::f64);
         out.u32(*resumed);
+        out.u32(given_up.runs);
+        out.u64(given_up.newton_iterations);
     }
 
     pub fn take(from: &mut Reader) -> Result<Self, Malformed> {
@@ -97,6 +105,10 @@ impl ResourceUse {
             phases,
             peak_memory_mb: from.option(|r| r.f64())?,
             resumed: from.u32()?,
+            given_up: GivenUp {
+                runs: from.u32()?,
+                newton_iterations: from.u64()?,
+            },
         })
     }
 }

@@ -348,7 +348,7 @@ fn failed_starts_are_counted_and_told_calmly() {
     assert_eq!(number("newton_iterations"), good + failed);
     assert_eq!(number("failed_iterations"), failed);
     let parts = format!(
-        "{} iterations ({failed} of them in attempts that failed)",
+        "{} iterations ({failed} in attempts that failed)",
         good + failed
     );
     assert!(told.contains(&parts), "{told}");

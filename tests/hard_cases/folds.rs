@@ -61,8 +61,8 @@ fn a_gasket_between_blocks_needs_one_force_wherever_its_nodes_lie() {
         let force = outcome.at("force.press.z", 1.0);
         println!("{across} across, shifted by {shift}: {force}, {off}");
         assert!(off < -1000.0 && (force / off - 1.0).abs() < 1e-3);
-        // A regression, no verification.
-        assert!(outcome.summary.newton_iterations <= 70);
+        // A regression, no verification; what was given up for other elements is counted.
+        assert!(outcome.summary.newton_iterations <= 90);
     }
 }
 

@@ -286,6 +286,7 @@ pub fn sharp_corner(trial: &mut Trial) -> Result<(), CaseError> {
     let mean = late.iter().sum::<f64>() / late.len() as f64;
     let what = "mean pull over two elements against the tension";
     trial.equal(what, mean, TENSION, 0.04);
-    trial.iterations(400);
+    // A run with the edge as a slave is given up on the way.
+    trial.iterations(600);
     Ok(())
 }

@@ -8,6 +8,19 @@ use crate::run::progress::Progress;
 use std::collections::BTreeMap;
 
 impl RunState<'_> {
+    /// What was spent by now, where the run is given up.
+    pub fn give_up(&self) -> ResourceUse {
+        let mut spent = self.cost.spent(&self.phases);
+        spent.given_up.runs += 1;
+        spent.given_up.newton_iterations += self.progress.iterations;
+        spent
+    }
+
+    /// Takes what was spent on runs that were given up before this one.
+    pub fn charge(&mut self, spent: ResourceUse) {
+        self.cost.earlier = spent;
+    }
+
     /// How the run went so far, and what it cost. Probes and the checksum of the scene are the caller's to add.
     pub fn summary(&self, threads: usize, status: RunStatus, reason: Option<String>) -> Summary {
         let ResourceUse {
@@ -16,6 +29,7 @@ impl RunState<'_> {
             phases,
             peak_memory_mb,
             resumed,
+            given_up,
         } = self.cost.spent(&self.phases);
         let Progress {
             warnings,
@@ -41,8 +55,9 @@ impl RunState<'_> {
             threads,
             dofs: model.unknowns(),
             contact_points: model.contact_points(),
-            newton_iterations: *iterations,
-            failed_iterations: iterations.saturating_sub(*accepted),
+            newton_iterations: iterations + given_up.newton_iterations,
+            failed_iterations: iterations.saturating_sub(*accepted) + given_up.newton_iterations,
+            given_up,
             factorizations: factorizations
                 .map(|(method, count)| (method.name().to_owned(), *count))
                 .collect(),

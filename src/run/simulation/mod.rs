@@ -267,16 +267,22 @@ impl<'o> Simulation<'o> {
             Rims::Out => (safe().map(|safe| (safe, Rims::Out)))
                 .or_else(|| Some((rims()?, Rims::Settled)))
                 .or_else(|| Some((contacts()?, Rims::Out))),
-            // A run that was given up for their sake may come to its end without them.
-            Rims::Instead if stopped => {
-                without_rims(&self.scene, before, Some(time)).map(|safe| (safe, Rims::Settled))
+            // In a block elements that give way do so without them as well; a shell of other elements would bend too little,
+            // and a run that was given up for their sake may come to its end without them.
+            Rims::Instead => {
+                let block = |b: &usize| bodies[*b].mesh.opposite_nodes().contains(&None);
+                let found = ending.squeezed.iter().all(block).then(safe).flatten();
+                (found.map(|safe| (safe, Rims::Instead))).or_else(|| {
+                    let found = stopped.then(|| without_rims(&self.scene, before, Some(time)));
+                    Some((found??, Rims::Settled))
+                })
             }
-            Rims::Instead => None,
             Rims::Settled => (safe().or_else(contacts)).map(|safe| (safe, Rims::Settled)),
         };
         let Some((safe, rims)) = found else {
             return Ok(false);
         };
+        let spent = run.give_up();
         let observer = &mut *self.options.observer;
         // What cannot be built in another way stays as it ended.
         let made = running(
@@ -290,6 +296,7 @@ impl<'o> Simulation<'o> {
             return Ok(false);
         };
         (self.running, self.fingerprint) = (running, fingerprint);
+        (self.running).with_dependent_mut(|_, run| run.charge(spent));
         (self.safe, self.rims) = (Some(safe), rims);
         self.history.rows.clear();
         (self.whole, self.ended, self.concluded) = (true, None, false);
