@@ -570,7 +570,7 @@ impl March<'_, '_> {
             accepted,
             ..
         } = &*self.progress;
-        let failed = iterations - accepted;
+        let failed = iterations.saturating_sub(*accepted);
         failed > IN_VAIN.max(2 * accepted)
     }
 

@@ -301,7 +301,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             let free = self.model.stabilization.as_ref();
             let part = free.map_or(1.0, |s| s.stride(&self.workspace.du).0);
             let before = std::mem::replace(&mut moved, part * bend);
-            if moved > WILD && moved > before {
+            if moved > WILD && moved > before && moved.is_finite() {
                 return Err(StepFailure::Diverges {
                     iteration,
                     stretch: moved,
