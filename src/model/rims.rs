@@ -68,6 +68,11 @@ impl Model {
         let of = pair.edges_of.map(|of| &self.pairs[of]);
         of.is_some_and(|of| of.rigid_master().is_some())
     }
+
+    /// Whether edges of rigid surfaces are slaves of any contact.
+    pub fn has_rims(&self) -> bool {
+        self.pairs.iter().any(|pair| self.of_rims(pair))
+    }
 }
 
 /// The surroundings of a slave: its box, and as much around it as it may move.

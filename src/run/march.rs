@@ -1,5 +1,7 @@
 //! The march through time: one accepted step after another, with cuts, retries and roll-back inside.
 mod accepted;
+mod ending;
+mod giving_up;
 mod motion;
 pub(in crate::run) mod passing;
 mod released;
@@ -10,13 +12,13 @@ mod slip;
 mod stages;
 mod start;
 mod summary;
+mod telling;
 
-pub(super) use restart::{Kept, KeptFiles};
+pub(super) use restart::{Kept, KeptFiles, take_variant};
 use settle::Settled;
 pub(super) use start::{Problem, RunState};
 
 use super::RunError;
-use super::bearing::Bearing;
 use super::commit::FrictionTotals;
 use super::compliance::Compliance;
 use super::fields::Fields;
@@ -31,9 +33,8 @@ use super::watch::{Span, Watch};
 use crate::assembly::{Assembler, Fault, Totals};
 use crate::contact::law::Penalty;
 use crate::machine::clock::Phases;
-use crate::model::master::Master;
 use crate::model::state::State;
-use crate::model::{BodyModel, Model, PairModel, segments};
+use crate::model::{BodyModel, Model, segments};
 use crate::output::RunStatus;
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
@@ -50,24 +51,10 @@ const RELIABLE: f64 = 1e-4;
 /// Cuts of a step after which one that gained energy out of nothing is taken, and told.
 const GIVES_IN: u32 = 4;
 /// Cuts of a step after which one that was solved from a softened penalty only is taken where its energies tell of a jump, and told: a
-/// large step may have come to another equilibrium than the one on its path. What snaps does so in smaller steps, too. A run that may
-/// be given up for its jumps cuts all of them.
+/// large step may have come to another equilibrium than the one on its path. What snaps does so in smaller steps, too. Where
+/// edges of rigid surfaces are slaves every step that jumps is cut: a slave that catches on an edge in a large step slides over it in
+/// small ones.
 const JUMPS: u32 = 2;
-/// Iterations of failed attempts from which on a run works in vain, where they are twice those of steps.
-const IN_VAIN: u64 = 100;
-/// Cuts of a run from which on it crawls, where there are more than one in so many steps.
-const CRAWLS: u32 = 10;
-const MANY_CUTS: u32 = 5;
-
-/// The first of the steps that the head of a warning names, `step 3: ` or `steps 3 to 9 (4 of them): `, and how many they are.
-fn steps_told(head: &str) -> Option<(u32, u32)> {
-    if let Some(step) = head.strip_prefix("step ") {
-        return Some((step.strip_suffix(": ")?.parse().ok()?, 1));
-    }
-    let (first, rest) = head.strip_prefix("steps ")?.split_once(" to ")?;
-    let (_, count) = rest.strip_suffix(" of them): ")?.split_once(" (")?;
-    Some((first.parse().ok()?, count.parse().ok()?))
-}
 
 /// How a run ended.
 #[derive(Debug, Clone)]
@@ -285,7 +272,7 @@ impl March<'_, '_> {
                         break 'solved StepFailure::GainedEnergy { part };
                     }
                     if cuts < JUMPS
-                        && (converged.softened || self.impatient)
+                        && (converged.softened || self.model.has_rims())
                         && walk.stepping.large(dt)
                         && passing.is_none()
                         && self.model.dynamics.is_none()
@@ -427,9 +414,7 @@ impl March<'_, '_> {
                 (_, None) => 1.0 / self.workspace.bend,
                 _ => 0.5,
             };
-            let hopeless = hopeless
-                || self.impatient && (self.cut_often() || self.fails_often())
-                || self.exchangeable && self.crawls();
+            let hopeless = hopeless || self.gives_up();
             let next = walk.stepping.failed(dt, part).filter(|_| !hopeless);
             let Some(next_dt) = next else {
                 let unstable = self.workspace.unstable.map_or_else(String::new, |u| {
@@ -498,145 +483,11 @@ impl March<'_, '_> {
         }
     }
 
-    /// How a run that reached its end time ended.
-    fn ending(&self) -> Ending {
-        let (never, _) = self.untouched();
-        if never.is_empty() {
-            return Ending {
-                status: RunStatus::Done,
-                reason: None,
-                squeezed: Vec::new(),
-                on_rims: false,
-            };
-        }
-        Ending {
-            status: RunStatus::NoContact,
-            reason: Some(format!(
-                "the surfaces of contact `{}` never touched: check the motion, the `side` and the `depth` of the \
-                 surface",
-                never.join("`, `")
-            )),
-            squeezed: Vec::new(),
-            on_rims: false,
-        }
-    }
-
-    /// Contacts that never touched: those that were to, and those that only might have. A body in contact with itself guards against
-    /// what need not happen, and so does a contact of which both sides have touched in others; where nothing has touched at all, every
-    /// contact was to.
-    fn untouched(&self) -> (Vec<&str>, Vec<&str>) {
-        let pairs = &self.model.pairs;
-        let sides = |pair: &PairModel| match &pair.master {
-            Master::Rigid(surface) => [(false, pair.body), (true, *surface)],
-            Master::Body(master) => [(false, pair.body), (false, master.body)],
-        };
-        let touched = |i: usize| self.either(self.touched, i);
-        let met: BTreeSet<(bool, usize)> = (pairs.iter().enumerate())
-            .filter(|(i, _)| touched(*i))
-            .flat_map(|(_, pair)| sides(pair))
-            .collect();
-        let mut out = (Vec::new(), Vec::new());
-        for (i, pair) in pairs.iter().enumerate() {
-            if touched(i) || pair.is_second() {
-                continue;
-            }
-            let own = sides(pair);
-            let guards = own[0] == own[1] || own.iter().all(|side| met.contains(side));
-            match guards && !met.is_empty() {
-                true => out.1.push(pair.name.as_str()),
-                false => out.0.push(pair.name.as_str()),
-            }
-        }
-        out
-    }
-
-    /// Whether an edge of a rigid surface has sunk into its slave and may be a slave in another run; of others the user is told.
-    fn sinks(&mut self, state: &State, by: (&[f64], &[Bearing])) -> bool {
-        let time = self.progress.time;
-        let sunk = (self.rims).sunk(self.model, &state.u, time, by);
-        for sunk in sunk.iter().filter(|s| !s.may) {
-            let head = sunk.head(self.model);
-            if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
-                self.warn(sunk.told(self.model, time));
-            }
-        }
-        sunk.iter().any(|s| s.may)
-    }
-
-    /// Whether most of the work is done in attempts that fail.
-    fn fails_often(&self) -> bool {
-        let Progress {
-            iterations,
-            accepted,
-            ..
-        } = &*self.progress;
-        let failed = iterations.saturating_sub(*accepted);
-        failed > IN_VAIN.max(2 * accepted)
-    }
-
-    /// Whether steps are cut again and again.
-    fn cut_often(&self) -> bool {
-        let (cuts, steps) = (self.progress.cuts, self.progress.steps);
-        cuts >= CRAWLS && MANY_CUTS * cuts > steps
-    }
-
-    /// Whether steps in contact with a body are cut again and again.
-    fn crawls(&self) -> bool {
-        let mut pairs = self.model.pairs.iter().zip(&*self.touching);
-        self.cut_often()
-            && pairs.any(|(pair, touching)| *touching && self.model.between_bodies(pair))
-    }
-
-    /// Whether a flag is set for pair `i`, or for another pass of its contact: of two curved sides one may have no slave
-    /// point where they touch, and an edge may bear all.
-    fn either(&self, flags: &[bool], i: usize) -> bool {
-        let edges = |j: usize| self.model.pairs[j].edges_of == Some(i) && flags[j];
-        flags[i]
-            || self.model.pairs[i].half.is_some_and(|h| flags[h.other])
-            || (0..flags.len()).any(edges)
-    }
-
     /// Gathers the fields of a state.
     fn gather(&mut self, outputs: &mut Outputs, state: &State, time: f64) -> Result<(), RunError> {
         let assembler = &mut *self.assembler;
         outputs.fields.motion = MotionFields::new(self.model, assembler, &state.u);
         let masters = &mut assembler.masters;
         (outputs.fields).gather::<Penalty>(self.model, &assembler.penalties, masters, state, time)
-    }
-
-    /// Reports a warning of a step. What is told of several steps in the same words is reported when it is first, and kept as
-    /// one warning that counts them.
-    pub(super) fn warn_of_step(&mut self, step: u32, text: &str) {
-        let counted = (self.progress.warnings.iter_mut()).find_map(|told| {
-            let (first, count) = steps_told(told.strip_suffix(text)?)?;
-            Some((told, first, count + 1))
-        });
-        match counted {
-            Some((told, first, count)) => {
-                *told = format!("steps {first} to {step} ({count} of them): {text}");
-            }
-            None => self.warn(format!("step {step}: {text}")),
-        }
-    }
-
-    /// Reports a warning once.
-    pub(super) fn warn(&mut self, text: String) {
-        if !self.progress.warnings.contains(&text) {
-            self.observer.event(&Event::Warning { text: text.clone() });
-            self.progress.warnings.push(text);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::steps_told;
-
-    #[test]
-    fn steps_of_a_warning_are_counted() {
-        assert_eq!(steps_told("step 3: "), Some((3, 1)));
-        assert_eq!(steps_told("steps 3 to 19 (4 of them): "), Some((3, 4)));
-        assert_eq!(steps_told("contact `c`: "), None);
-        assert_eq!(steps_told("step 3"), None);
     }
 }

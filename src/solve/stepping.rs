@@ -58,9 +58,9 @@ impl Stepping {
         }
     }
 
-    /// Whether a step is not yet small beside the largest one that may be taken.
+    /// Whether a step is not yet small beside the largest one that may be taken; those of a scene that fixes them are as they are to be.
     pub fn large(&self, dt: f64) -> bool {
-        dt > LARGE * self.settings.max
+        self.settings.adaptive && dt > LARGE * self.settings.max
     }
 
     /// Whether what is prescribed has a kink at `time`: the path so far says nothing about what follows.

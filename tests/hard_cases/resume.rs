@@ -1,5 +1,6 @@
 //! A run that is stopped after every step, and in the middle of steps, and continued each time by a program that knows
 //! nothing but the files, ends as one that was never stopped: to the last bit of every file.
+use crate::support::stl_box;
 use covact::output::{RunStatus, Summary};
 use covact::run::{RunError, RunOptions, run};
 use covact::scene::{self, LoadedScene};
@@ -26,12 +27,15 @@ enum Stop {
     Retried,
     /// After the first step of a repetition of the run.
     Repeated,
+    /// After the first step of a run with edges of rigid surfaces as slaves.
+    OnEdges,
 }
 
 struct Stopper<'a> {
     stop: Stop,
     steps: u32,
     repeated: bool,
+    on_edges: bool,
     flag: &'a AtomicBool,
     notes: Vec<String>,
 }
@@ -49,11 +53,16 @@ impl Observer for Stopper<'_> {
                     Stop::Accepted => true,
                     Stop::Retried => self.steps == 2,
                     Stop::Repeated => self.repeated,
+                    Stop::OnEdges => self.on_edges,
                     Stop::Never | Stop::Iteration(_) => false,
                 }
             }
             (Stop::Iteration(n), Event::Iteration { iteration, .. }) => {
                 self.steps > 0 && *iteration >= n
+            }
+            (Stop::OnEdges, Event::Model { effects, .. }) => {
+                self.on_edges = effects.iter().any(|e| *e == "contact.passes.edges");
+                false
             }
             (Stop::Repeated, Event::Warning { text }) => {
                 self.repeated |= text.contains("it was repeated");
@@ -79,6 +88,7 @@ fn part(
         stop,
         steps: 0,
         repeated: false,
+        on_edges: false,
         flag: &flag,
         notes: Vec::new(),
     };
@@ -519,4 +529,48 @@ fn a_repetition_with_edges() {
     assert_eq!(resumed.status, RunStatus::Done);
     let table = |folder: &Path| std::fs::read_to_string(folder.join("history.csv")).unwrap();
     assert_eq!(table(whole.path()), table(parts.path()));
+}
+
+/// A sharp wedge is pressed deep into rubber: the run is repeated with its edge as a slave, with other elements, and at last without the
+/// edge. Interrupted while the edge is tried for the first time, it goes the same way to the same end, and counts all runs.
+#[test]
+fn a_repetition_that_is_given_up() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = stl_box([-4.0, -3.0, -4.0], [4.0, 3.0, 4.0]);
+    std::fs::write(folder.path().join("box.stl"), text).unwrap();
+    let scene = json!({
+        "covact": 1,
+        "materials": {"rubber": {"neo_hooke": {"E": 5, "nu": 0.45}}},
+        "bodies": {"block": {
+            "mesh": {"block": {"min": [-5, -0.25, -4], "max": [5, 0.25, 0], "elements": [15, 1, 5]}}, "material": "rubber"
+        }},
+        "surfaces": {"wedge": {
+            "cad": "box.stl",
+            "placement": {"axis": [0, 1, 0], "angle": 45, "translation": [0.1, 0, 5.707]},
+            "motion": {"translation": [0, 0, "-1.5*t"]}
+        }},
+        "contacts": {"c": {"slave": "block.top", "master": "wedge", "friction": 0.3}},
+        "supports": {
+            "below": {"on": "block.bottom", "fixed": true},
+            "plane": {"on": ["block.y_min", "block.y_max"], "symmetry": "y"}
+        },
+        "output": {"every": 0}
+    });
+    let mut scene = covact::scene::parse(&scene.to_string(), "scene.json").expect("a scene");
+    scene.dir = folder.path().to_path_buf();
+    let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let (ended, _) = part(&scene, whole.path(), false, 1, Stop::Never).unwrap();
+    println!("{:?} {:?}", ended.given_up, ended.warnings);
+    assert_eq!((ended.status, ended.given_up.runs), (RunStatus::Done, 3));
+    let (broken, _) = part(&scene, parts.path(), false, 1, Stop::OnEdges).unwrap();
+    assert_eq!(
+        (broken.status, broken.given_up.runs),
+        (RunStatus::Interrupted, 1)
+    );
+    let (resumed, _) = part(&scene, parts.path(), true, 1, Stop::Never).unwrap();
+    assert_eq!(resumed.status, RunStatus::Done);
+    let table = |folder: &Path| std::fs::read_to_string(folder.join("history.csv")).unwrap();
+    assert_eq!(table(whole.path()), table(parts.path()));
+    assert_eq!(resumed.given_up, ended.given_up);
+    assert_eq!(resumed.newton_iterations, ended.newton_iterations);
 }

@@ -7,6 +7,7 @@ use super::{Course, Outputs, RunState, StepControl};
 use crate::assembly::{AssemblerMemory, CouplingMemory, Factored};
 use crate::effects::inertia::{Motion, MotionEnergy};
 use crate::model::Model;
+use crate::model::stages::StageStart;
 use crate::model::state::State;
 use crate::output::{HistoryMark, OutputError, StageSummary};
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
@@ -67,7 +68,7 @@ impl Kept {
 
     fn take(model: &Model, sections: &Sections, from: &mut Reader) -> Result<Self, Malformed> {
         // The model is that of its stage.
-        let (_, stages) = from.section("stages", stages::take)?;
+        let ((_, stages), _) = from.section("stages", take_variant)?;
         let (progress, spent) = from.section("progress", |r| {
             Ok((take_progress(r)?, ResourceUse::take(r)?))
         })?;
@@ -189,7 +190,10 @@ impl RunState<'_> {
         let memory = assembler.memory();
         keeper.keep(|out| {
             // First, since the model that reads the others depends on it.
-            out.section("stages", |out| stages::put(model, stages, out));
+            out.section("stages", |out| {
+                stages::put(model, stages, out);
+                out.bool(problem.impatient);
+            });
             out.section("progress", |out| {
                 put_progress(progress, out);
                 spent.put(out);
@@ -272,6 +276,13 @@ fn take_progress(from: &mut Reader) -> Result<Progress, Malformed> {
         ping_pongs: from.u32()?,
         measured: from.f64()?,
     })
+}
+
+/// Stages, and whether the run is given up where steps are cut again and again.
+pub(in crate::run) fn take_variant(
+    from: &mut Reader,
+) -> Result<((StageStart, Vec<StageSummary>), bool), Malformed> {
+    Ok((stages::take(from)?, from.bool()?))
 }
 
 fn put_flags(flags: &[bool], out: &mut Writer) {

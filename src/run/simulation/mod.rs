@@ -9,7 +9,7 @@ pub use read::{Force, NodalField, ReadError};
 use super::RunError;
 use super::checkpoint::{self, Fingerprint, Sections};
 use super::cost::Cost;
-use super::march::{Caller, Ending, KeptFiles, Problem, RunState};
+use super::march::{Caller, Ending, KeptFiles, Problem, RunState, take_variant};
 use super::probes;
 use crate::machine;
 use crate::machine::clock::Phases;
@@ -180,7 +180,11 @@ impl<'o> Simulation<'o> {
             whole: sections.is_none(),
             scene,
             safe,
-            rims: Rims::Out,
+            // One that goes on knows of the run that it stands for.
+            rims: match running.borrow_owner().impatient {
+                true => Rims::Instead,
+                false => Rims::Out,
+            },
             running,
             pool: Arc::new(pool),
             options,
@@ -388,9 +392,12 @@ fn running(
     let mut phases = Phases::new();
     phases.start("model");
     // A run that goes on does so in the stage where it was.
-    let stage = match sections {
-        Some(sections) => sections.read_first("stages", checkpoint::stages::take)?.0,
-        None => StageStart::default(),
+    let (stage, impatient) = match sections {
+        Some(sections) => {
+            let ((stage, _), impatient) = sections.read_first("stages", take_variant)?;
+            (stage, impatient)
+        }
+        None => (StageStart::default(), impatient),
     };
     let mut model =
         model::build::build_stage(loaded, stage, None).map_err(|e| RunError::model(loaded, e))?;

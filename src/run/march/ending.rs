@@ -1,0 +1,69 @@
+//! How a run that reached its end time ended, and which contacts have touched by then.
+use super::{Ending, March};
+use crate::model::PairModel;
+use crate::model::master::Master;
+use crate::output::RunStatus;
+use std::collections::BTreeSet;
+
+impl March<'_, '_> {
+    /// How a run that reached its end time ended.
+    pub(super) fn ending(&self) -> Ending {
+        let (never, _) = self.untouched();
+        if never.is_empty() {
+            return Ending {
+                status: RunStatus::Done,
+                reason: None,
+                squeezed: Vec::new(),
+                on_rims: false,
+            };
+        }
+        Ending {
+            status: RunStatus::NoContact,
+            reason: Some(format!(
+                "the surfaces of contact `{}` never touched: check the motion, the `side` and the `depth` of the \
+                 surface",
+                never.join("`, `")
+            )),
+            squeezed: Vec::new(),
+            on_rims: false,
+        }
+    }
+
+    /// Contacts that never touched: those that were to, and those that only might have. A body in contact with itself guards against
+    /// what need not happen, and so does a contact of which both sides have touched in others; where nothing has touched at all, every
+    /// contact was to.
+    pub(super) fn untouched(&self) -> (Vec<&str>, Vec<&str>) {
+        let pairs = &self.model.pairs;
+        let sides = |pair: &PairModel| match &pair.master {
+            Master::Rigid(surface) => [(false, pair.body), (true, *surface)],
+            Master::Body(master) => [(false, pair.body), (false, master.body)],
+        };
+        let touched = |i: usize| self.either(self.touched, i);
+        let met: BTreeSet<(bool, usize)> = (pairs.iter().enumerate())
+            .filter(|(i, _)| touched(*i))
+            .flat_map(|(_, pair)| sides(pair))
+            .collect();
+        let mut out = (Vec::new(), Vec::new());
+        for (i, pair) in pairs.iter().enumerate() {
+            if touched(i) || pair.is_second() {
+                continue;
+            }
+            let own = sides(pair);
+            let guards = own[0] == own[1] || own.iter().all(|side| met.contains(side));
+            match guards && !met.is_empty() {
+                true => out.1.push(pair.name.as_str()),
+                false => out.0.push(pair.name.as_str()),
+            }
+        }
+        out
+    }
+
+    /// Whether a flag is set for pair `i`, or for another pass of its contact: of two curved sides one may have no slave
+    /// point where they touch, and an edge may bear all.
+    pub(super) fn either(&self, flags: &[bool], i: usize) -> bool {
+        let edges = |j: usize| self.model.pairs[j].edges_of == Some(i) && flags[j];
+        flags[i]
+            || self.model.pairs[i].half.is_some_and(|h| flags[h.other])
+            || (0..flags.len()).any(edges)
+    }
+}

@@ -1,0 +1,57 @@
+//! When a run is given up, since another one stands ready to take its place.
+use super::March;
+use crate::model::state::State;
+use crate::run::bearing::Bearing;
+use crate::run::progress::Progress;
+
+/// Iterations of failed attempts from which on a run works in vain, where they are twice those of steps.
+const IN_VAIN: u64 = 100;
+/// Cuts of a run from which on it crawls, where there are more than one in so many steps.
+const CRAWLS: u32 = 10;
+const MANY_CUTS: u32 = 5;
+
+impl March<'_, '_> {
+    /// Whether a run that goes on badly is given up for one without the edges of rigid surfaces as slaves, or with the sides of contacts
+    /// between bodies exchanged.
+    pub(super) fn gives_up(&self) -> bool {
+        self.impatient && (self.cut_often() || self.fails_often())
+            || self.exchangeable && self.crawls()
+    }
+
+    /// Whether an edge of a rigid surface has sunk into its slave and may be a slave in another run; of others the user is told.
+    pub(super) fn sinks(&mut self, state: &State, by: (&[f64], &[Bearing])) -> bool {
+        let time = self.progress.time;
+        let sunk = (self.rims).sunk(self.model, &state.u, time, by);
+        for sunk in sunk.iter().filter(|s| !s.may) {
+            let head = sunk.head(self.model);
+            if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
+                self.warn(sunk.told(self.model, time));
+            }
+        }
+        sunk.iter().any(|s| s.may)
+    }
+
+    /// Whether most of the work is done in attempts that fail.
+    fn fails_often(&self) -> bool {
+        let Progress {
+            iterations,
+            accepted,
+            ..
+        } = &*self.progress;
+        let failed = iterations.saturating_sub(*accepted);
+        failed > IN_VAIN.max(2 * accepted)
+    }
+
+    /// Whether steps are cut again and again.
+    fn cut_often(&self) -> bool {
+        let (cuts, steps) = (self.progress.cuts, self.progress.steps);
+        cuts >= CRAWLS && MANY_CUTS * cuts > steps
+    }
+
+    /// Whether steps in contact with a body are cut again and again.
+    fn crawls(&self) -> bool {
+        let mut pairs = self.model.pairs.iter().zip(&*self.touching);
+        self.cut_often()
+            && pairs.any(|(pair, touching)| *touching && self.model.between_bodies(pair))
+    }
+}

@@ -1,0 +1,51 @@
+//! Warnings of a run: each is told once, and counted where it comes with several steps.
+use super::March;
+use crate::solve::event::Event;
+
+/// The first of the steps that the head of a warning names, `step 3: ` or `steps 3 to 9 (4 of them): `, and how many they are.
+fn steps_told(head: &str) -> Option<(u32, u32)> {
+    if let Some(step) = head.strip_prefix("step ") {
+        return Some((step.strip_suffix(": ")?.parse().ok()?, 1));
+    }
+    let (first, rest) = head.strip_prefix("steps ")?.split_once(" to ")?;
+    let (_, count) = rest.strip_suffix(" of them): ")?.split_once(" (")?;
+    Some((first.parse().ok()?, count.parse().ok()?))
+}
+
+impl March<'_, '_> {
+    /// Reports a warning of a step. What is told of several steps in the same words is reported when it is first, and kept as
+    /// one warning that counts them.
+    pub(in crate::run) fn warn_of_step(&mut self, step: u32, text: &str) {
+        let counted = (self.progress.warnings.iter_mut()).find_map(|told| {
+            let (first, count) = steps_told(told.strip_suffix(text)?)?;
+            Some((told, first, count + 1))
+        });
+        match counted {
+            Some((told, first, count)) => {
+                *told = format!("steps {first} to {step} ({count} of them): {text}");
+            }
+            None => self.warn(format!("step {step}: {text}")),
+        }
+    }
+
+    /// Reports a warning once.
+    pub(in crate::run) fn warn(&mut self, text: String) {
+        if !self.progress.warnings.contains(&text) {
+            self.observer.event(&Event::Warning { text: text.clone() });
+            self.progress.warnings.push(text);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::steps_told;
+
+    #[test]
+    fn steps_of_a_warning_are_counted() {
+        assert_eq!(steps_told("step 3: "), Some((3, 1)));
+        assert_eq!(steps_told("steps 3 to 19 (4 of them): "), Some((3, 4)));
+        assert_eq!(steps_told("contact `c`: "), None);
+        assert_eq!(steps_told("step 3"), None);
+    }
+}
