@@ -259,6 +259,7 @@ fn a_summary_reads_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("summary.json");
     let summary = Summary {
+        title: "a tray".into(),
         status: RunStatus::NotConverged,
         reason: Some("step 4 would have to be smaller than 1e-5".into()),
         time: 0.3,

@@ -41,6 +41,9 @@ impl RunStatus {
 /// `summary.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
+    /// The scene's `title`; empty where it has none.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub title: String,
     /// How the run ended.
     pub status: RunStatus,
     /// Why the run ended early, in words.

@@ -87,6 +87,9 @@ pub(super) fn page(runs: &[Run], comparison: Option<&Comparison>, pack: &Pack) -
         if runs.len() > 1 {
             let _ = writeln!(out, "<h2>{}</h2>", escaped(&run.name));
         }
+        if !run.summary.title.is_empty() {
+            let _ = writeln!(out, "<p>{}</p>", escaped(&run.summary.title));
+        }
         status(&mut out, &run.summary);
         let _ = writeln!(
             out,

@@ -59,6 +59,7 @@ fn a_run_leaves_a_page_that_holds_its_results() {
         &page.text,
         &[
             "<h1>out</h1>",
+            "<p>plate under a ball</p>",
             "Done",
             "Accuracy of forces",
             "Plan",

@@ -45,6 +45,7 @@ impl RunState<'_> {
         let Problem { model, plan, .. } = self.problem;
         let factorizations = self.workspace.factorizations.iter();
         Summary {
+            title: self.problem.loaded.scene.title.clone(),
             status,
             reason,
             time: *time,
