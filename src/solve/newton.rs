@@ -134,6 +134,8 @@ const MOST_OPEN: usize = 2;
 const MANY_OPENED: usize = 4;
 /// Iterations without headway after which the line search is switched on.
 const UNTIL_SEARCH: u32 = 6;
+/// Iterations without headway, and since the last time, after which points that slide to and fro are taken to stick.
+const UNTIL_STUCK: u32 = 2;
 /// Iterations without headway after which a start is given up where another is at hand. A thin shell may take six to
 /// come down from the jump of its first iterate.
 const UNTIL_GIVEN_UP: u32 = 9;
@@ -189,6 +191,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let mut held_back = 0;
         let searches = self.first.search || self.model.flows();
         let (mut cycle, mut round, mut damped) = (Cycle::default(), None::<PingPong>, 0u32);
+        // When points that slide to and fro were taken to stick last.
+        let mut stuck_at = 0;
         for iteration in 0.. {
             if self.interrupt.load(Ordering::Relaxed) {
                 return Err(StepFailure::Interrupted);
@@ -290,6 +294,13 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 cycle.clear();
                 round = Some(found);
             }
+            if totals.changed == 0
+                && !(pending || held)
+                && since_best.min(iteration - stuck_at) >= UNTIL_STUCK
+                && let Some(sticking) = self.stick(trial, time)?
+            {
+                (totals, stuck_at) = (sticking, iteration);
+            }
             factorization = Some(self.solve_linear(pending)?);
             self.iterations += 1;
             let bend = self.model.largest_stretch(&self.workspace.du);
@@ -312,6 +323,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 keep_active,
                 secant_slip: iteration + 1 < secants || keep_active,
                 keep_facets: keep,
+                stick_oscillating: false,
             };
             let search =
                 self.settings.line_search && !pending && (searches || since_best >= UNTIL_SEARCH);

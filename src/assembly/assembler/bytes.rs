@@ -21,13 +21,13 @@ pub(crate) mod sizes {
     use super::super::sliding::Sliding;
     use super::super::small::Linear;
     use crate::contact::clearance::Clearance;
+    use crate::contact::friction::turning::Turning;
     use crate::contact::points::SlavePoint;
     use crate::contact::rigid::{PointFault, Touch};
     pub use crate::effects::inertia::{Inertia, Mass};
     use crate::model::kernel::Kernel;
     use crate::model::master::BodySurface;
     use crate::model::{Model, PairModel};
-    use covact_geometry::Vec3;
     use std::collections::BTreeSet;
     use std::sync::Arc;
 
@@ -47,7 +47,7 @@ pub(crate) mod sizes {
     /// What an augmentation makes of a point.
     pub const ANSWER: usize = size_of::<Option<PointAnswer>>();
     /// The last traction of a point with history.
-    pub const SLIP: usize = size_of::<Vec3>();
+    pub const SLIP: usize = size_of::<Turning>();
     /// The segments of a pair, but for the points that states share.
     pub const CUT: usize = size_of::<Option<Arc<[SlavePoint]>>>();
     /// What small displacements are computed with, but for what it holds.

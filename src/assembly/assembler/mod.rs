@@ -27,6 +27,7 @@ mod touched;
 use crate::system::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
 use crate::contact::clearance::Clearance;
+use crate::contact::friction::turning::Turning;
 use crate::contact::law::{PairLaw, Penalty};
 use crate::contact::rigid::{PointFault, Touch};
 use crate::effects::Effects;
@@ -204,6 +205,8 @@ pub struct Linearization {
     ///
     /// [`MovingMaster::keep`]: crate::contact::moving::MovingMaster::keep
     pub keep_facets: bool,
+    /// Points that slide to and fro are taken to stick. The residual is then not that of the state.
+    pub stick_oscillating: bool,
 }
 
 /// Evaluates the model into a sparse system. The law of normal contact is a type, chosen where the assembler is made: every
@@ -228,8 +231,8 @@ pub struct Assembler<'m, L = Penalty> {
     held: Vec<bool>,
     /// Per point with history, of pairs with friction or augmentation; nothing where it is open. Empty without augmentation.
     answers: Vec<Option<PointAnswer>>,
-    /// Tangential traction of every point with history at the last linearisation since [`Assembler::begin_solution`].
-    slips: Vec<Vec3>,
+    /// How every point with history slid at the linearisations since [`Assembler::begin_solution`].
+    slips: Vec<Turning>,
     /// The surfaces of masters that are bodies, at the last state evaluated.
     pub masters: Masters,
     /// Per pair whose master is a body: the nodes that the pattern couples, and the points at the last state.
@@ -321,7 +324,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
             clearances: vec![Clearance::default(); rigid::cleared(model)],
             held: Vec::new(),
             answers: vec![None; answer::count(model)],
-            slips: vec![Vec3::zeros(); sliding::slips(model)],
+            slips: vec![Turning::default(); sliding::slips(model)],
             masters,
             couplings,
             meetings: PerPair::new(pairs().map(Meetings::new)),

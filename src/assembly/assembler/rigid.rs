@@ -9,6 +9,7 @@ use crate::contact::closest::ClosestPoint;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::{Friction, FrictionTouch};
+use crate::contact::friction::turning::Turning;
 use crate::contact::kind::{FrictionKind, LawKind, TangentKind};
 use crate::contact::law::{
     Augmented, Held, Multipliers, NoOffset, NormalLaw, Offsets, PairLaw, PointLaw,
@@ -85,6 +86,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 keep_active: hold,
                 secant_slip: secant,
                 keep_facets: keep,
+                stick_oscillating,
             } = self.linearization;
             self.held.clear();
             if hold && pair.friction.is_none() {
@@ -148,6 +150,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                         let slips = &mut self.slips[pair.history().unwrap_or(0..0)];
                         let slips = (slips, Secants {
                             all: secant,
+                            stick: stick_oscillating,
                             keep: TANGENT && planned != LawKind::Multipliers,
                         });
                         let ran = match planned {
@@ -266,7 +269,7 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
         clear: &mut [Clearance],
         touches: &mut [Result<Option<Touch>, PointFault>],
         answers: &mut [A],
-        (slips, secants): (&mut [Vec3], Secants),
+        (slips, secants): (&mut [Turning], Secants),
         friction: &Friction<F>,
         histories: &[PointHistory],
         offsets: Option<Offsets>,
@@ -288,7 +291,7 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
                     held: hold && s.closed,
                     ..history.law(*self.law, offsets.map_or(0.0, |o| o.at(i)))
                 };
-                let secant = friction.secant(secants.all, slip);
+                let secant = friction.secant((secants.all, secants.stick), slip);
                 let touch = placed.touch_with_friction(
                     &x,
                     (&mut s.hint, clear, p.overhang(s.closed)),
@@ -296,8 +299,8 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
                     &secant,
                     history,
                 );
-                if secants.keep {
-                    *slip = touched::of(&touch).map_or_else(Vec3::zeros, |t| t.traction.slip.t);
+                if secants.keep && !secants.stick {
+                    slip.note(touched::of(&touch).map(|t| &t.traction.slip));
                 }
                 answer.tell(touched::of(&touch), history, friction.eps_t);
                 *out = touch.map(|t| t.map(|t| t.touch));

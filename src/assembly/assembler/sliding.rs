@@ -13,6 +13,7 @@ use crate::contact::friction::moving::{Form, Full, Reduced};
 use crate::contact::friction::rigid::Friction;
 use crate::contact::friction::scatter::{MOST, PointNodes};
 use crate::contact::friction::touch::MovingFrictionTouch;
+use crate::contact::friction::turning::Turning;
 use crate::contact::kind::{LawKind, TangentKind};
 use crate::contact::law::{Augmented, Offsets, PairLaw};
 use crate::contact::lever;
@@ -133,7 +134,7 @@ impl Sliding {
         u: &[f64],
         time: f64,
         states: &mut [PointState],
-        (histories, slips, tangent): (&[PointHistory], &mut [Vec3], bool),
+        (histories, slips, tangent): (&[PointHistory], &mut [Turning], bool),
     ) -> Result<Kernel, Fault> {
         let batch = Batch {
             model,
@@ -149,6 +150,7 @@ impl Sliding {
             histories,
             secants: Secants {
                 all: linearization.secant_slip,
+                stick: linearization.stick_oscillating,
                 keep: tangent && kernel.law != LawKind::Multipliers,
             },
             hold: linearization.keep_active,
@@ -183,8 +185,13 @@ impl<L: PairLaw> Assembler<'_, L> {
     /// Begins a solution: no point has a traction to turn from, or is known to be open. What was known before would change
     /// the last bits of where searches end, and a run that is continued does not know it.
     pub fn begin_solution(&mut self) {
-        self.slips.fill(Vec3::zeros());
+        self.slips.fill(Turning::default());
         self.clearances.fill(Clearance::default());
+    }
+
+    /// Whether points slide to and fro from one linearisation to the next.
+    pub fn oscillates(&self) -> bool {
+        self.slips.iter().any(Turning::oscillates)
     }
 
     /// Sums up a pair with friction that [`Assembler::meet`] has evaluated.
@@ -385,6 +392,8 @@ pub(super) fn slips(model: &Model) -> usize {
 pub(super) struct Secants {
     /// At every point that slides, and not only where one has turned.
     pub all: bool,
+    /// Points that slide to and fro are taken to stick.
+    pub stick: bool,
     /// Whether the tractions found are those that the next linearisation compares with. Not so with multipliers: they hold a
     /// point already, and the secant, which knows nothing of them, leads to other equilibria.
     pub keep: bool,
@@ -412,7 +421,7 @@ impl<L: PairLaw> Batch<'_, L> {
     fn choose<F: FrictionLaw, A: Accept>(
         &self,
         states: &mut [PointState],
-        found: (&mut Touches, &mut [Vec3]),
+        found: (&mut Touches, &mut [Turning]),
         friction: &Friction<F>,
         accept: &A,
     ) -> Kernel {
@@ -426,7 +435,7 @@ impl<L: PairLaw> Batch<'_, L> {
     fn evaluate<F: FrictionLaw, A: Accept, M: Form>(
         &self,
         states: &mut [PointState],
-        (touches, slips): (&mut Touches, &mut [Vec3]),
+        (touches, slips): (&mut Touches, &mut [Turning]),
         friction: &Friction<F>,
         accept: &A,
         form: &M,
@@ -447,11 +456,11 @@ impl<L: PairLaw> Batch<'_, L> {
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
                 let hint = &mut s.hint;
-                let secant = friction.secant(self.secants.all, slip);
+                let secant = friction.secant((self.secants.all, self.secants.stick), slip);
                 *out = (self.master)
                     .touch_with_friction(&x, hint, &law, &secant, history, form, facet);
-                if self.secants.keep {
-                    *slip = touched::of(out).map_or_else(Vec3::zeros, |t| t.response.slip.t);
+                if self.secants.keep && !self.secants.stick {
+                    slip.note(touched::of(out).map(|t| &t.response.slip));
                 }
             });
         Kernel {

@@ -89,6 +89,8 @@ pub struct Secant<F> {
     pub law: F,
     /// Every point that slides.
     pub on: bool,
+    /// As if the point stuck: its traction is its trial traction, whatever the law allows.
+    pub stuck: bool,
     /// Traction at the last linearisation (force / length^2): a point that slides the other way now has gone too far. Zero where
     /// there is none.
     pub last: Vector3<f64>,
@@ -102,12 +104,15 @@ impl<F: FrictionLaw> FrictionLaw for Secant<F> {
         normal: &Vector3<D>,
         pressure: D,
     ) -> Slip<D> {
+        if self.stuck {
+            return Slip::stick(trial);
+        }
         let slip = self.law.slip(trial, normal, pressure);
         let turned = || slip.t.map(|x| x.re()).dot(&self.last) < 0.0;
+        let norm = |v: &Vector3<D>| v.map(|x| x.re()).norm();
         if !slip.slides || !(self.on || turned()) {
             return slip;
         }
-        let norm = |v: &Vector3<D>| v.map(|x| x.re()).norm();
         Slip {
             d_trial: diagonal(D::from(norm(&slip.t) / norm(trial))),
             ..slip
@@ -128,6 +133,7 @@ mod tests {
         let secant = |on, last: f64| Secant {
             law,
             on,
+            stuck: false,
             last: exact.t * last,
         };
         assert_eq!(secant(false, 0.0).slip(&trial, &n, 2.0), exact);

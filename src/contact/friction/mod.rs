@@ -32,3 +32,4 @@ pub mod scatter;
 pub mod shear_limited;
 pub mod touch;
 pub mod trial;
+pub mod turning;

@@ -2,6 +2,7 @@
 use super::history::PointHistory;
 use super::law::{FrictionLaw, Secant};
 use super::trial::{Attraction, Traction};
+use super::turning::Turning;
 use crate::contact::clearance::Clearance;
 use crate::contact::closest::ClosestPoint;
 use crate::contact::corner::Steady;
@@ -36,8 +37,8 @@ pub struct FrictionTouch {
 }
 
 impl<F> Friction<F> {
-    /// The law of a point whose traction was `last` at the last linearisation; `on`: with the secant wherever it slides.
-    pub fn secant(&self, on: bool, last: &Vec3) -> Friction<Secant<F>>
+    /// The law of a point that slid as told before; `on`: with the secant wherever it slides.
+    pub fn secant(&self, (on, stick): (bool, bool), turning: &Turning) -> Friction<Secant<F>>
     where
         F: Copy,
     {
@@ -45,7 +46,8 @@ impl<F> Friction<F> {
             law: Secant {
                 law: self.law,
                 on,
-                last: *last,
+                stuck: stick && turning.oscillates(),
+                last: *turning.last(),
             },
             eps_t: self.eps_t,
         }

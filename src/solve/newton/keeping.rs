@@ -1,4 +1,5 @@
-//! Points that are kept in contact where an iterate opens them, for the linearisation that follows.
+//! Points that are kept in contact where an iterate opens them, or taken to stick where they slide to and fro, for the linearisation
+//! that follows.
 use super::{MANY_OPENED, MOST_OPEN, Newton, SECANTS};
 use crate::assembly::{Fault, Linearization, Totals};
 use crate::model::state::{PointState, State};
@@ -18,6 +19,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             keep_active: false,
             secant_slip: secants > 0,
             keep_facets: false,
+            stick_oscillating: false,
         };
         self.workspace.base.points.clone_from(&trial.points);
         self.assembler.begin_solution();
@@ -52,6 +54,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             keep_active: true,
             secant_slip: true,
             keep_facets: false,
+            stick_oscillating: false,
         };
         Ok((self.linearize(trial, time, (pending, false))?, SECANTS))
     }
@@ -81,11 +84,26 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             keep_active: true,
             secant_slip: true,
             keep_facets: false,
+            stick_oscillating: false,
         };
         let kept = self.linearize(trial, time, (false, false)).ok();
         if kept.is_none() {
             self.assembler.linearization = linearization;
         }
         kept
+    }
+
+    /// Linearises with the points that slide to and fro taken to stick; none where there is none. Between its two directions a point
+    /// sticks, over a way so short under a stiff penalty that full steps pass it each time. One that does not stick in the end
+    /// slides on from there in its own direction.
+    pub(super) fn stick(&mut self, trial: &mut State, time: f64) -> Result<Option<Totals>, Fault> {
+        if !self.assembler.oscillates() {
+            return Ok(None);
+        }
+        self.assembler.linearization = Linearization {
+            stick_oscillating: true,
+            ..Linearization::default()
+        };
+        self.linearize(trial, time, (false, false)).map(Some)
     }
 }
