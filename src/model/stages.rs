@@ -244,8 +244,11 @@ pub fn stabilized(model: &mut Model) -> Result<(), ModelError> {
                 "in the stage `{}` body `{body}` can move freely {motion}: no active support hinders it",
                 stage.name
             );
-            let help =
-                format!("add `{AUTOMATIC}` to the `supports` of the stage, or keep a support");
+            let help = format!(
+                "where the body is free of forces, add `{AUTOMATIC}` to the `supports` of the stage, which holds it without any; where \
+                 friction drives or holds it, keep a support that acts along another direction, or write the stages as tables over \
+                 time in one run, where contact may hold a body"
+            );
             return Err(text(format!("/stages/{index}/supports"), message).help(help));
         }
     }

@@ -22,6 +22,11 @@ const STOCKY: f64 = 0.5;
 /// Most elements of a body that are looked into: those that are squeezed most.
 const LOOKED_INTO: usize = 48;
 
+/// Part of the volume that an element's material feels by which the one between its corners may fall short of it, in bodies of
+/// several layers and in others: a shell that is bent round a few of its elements shows a tenth.
+const UNFELT: f64 = 0.05;
+const UNFELT_SHELL: f64 = 0.15;
+
 /// What helps where an element with enhanced strains cannot follow; empty for other failures.
 pub(super) fn remedy(turned: Option<&BodyModel>) -> &'static str {
     match turned {
@@ -109,12 +114,72 @@ pub(super) fn lost(model: &Model, state: &State) -> Vec<(usize, Vec3)> {
             (block.loses_hold(e, &u, &states[e * len..][..len])).unwrap_or(true)
         };
         let (_, e) = squeezed.into_iter().find(|(_, e)| gives(*e))?;
-        let nodes = ElementBlock::nodes_of(block, e);
-        let middle = nodes
-            .iter()
-            .map(|n| body.mesh.nodes[*n as usize])
-            .sum::<Vec3>();
-        Some((number, middle / nodes.len() as f64))
+        Some((number, middle(body, &ElementBlock::nodes_of(block, e))))
     });
     found.collect()
+}
+
+/// Elements whose material does not feel how far they are pressed.
+pub(super) struct Unfelt {
+    /// The body.
+    pub body: usize,
+    /// It has several layers: elements that bend too little may stand in for these.
+    pub layers: bool,
+    /// Middle of the one that is farthest from it, before anything moved.
+    pub at: Vec3,
+    /// Part of its volume that it has lost between its corners, and of which its strains know.
+    pub lost: [f64; 2],
+}
+
+/// The bodies with such elements. Assumed shear strains leave out that nodes go to and fro from layer to
+/// layer, while the assumed thickness strains count the longer way between them: elements then keep the volume that their
+/// material resists, and lose the one that they have. What is bent round a radius of few elements shows the same, but less of it.
+pub(super) fn unfelt(model: &Model, state: &State) -> Vec<Unfelt> {
+    // What is linear in displacements says nothing of volumes.
+    if model.small.is_some() {
+        return Vec::new();
+    }
+    let mut first = 0;
+    let bodies = model.bodies.iter().enumerate();
+    let found = bodies.filter_map(|(number, body)| {
+        let len = body.block.state_len();
+        let states = first..first + len * body.block.elements();
+        first = states.end;
+        let Block::H8(block) = &body.block else {
+            return None;
+        };
+        if body.block.alpha_len() == 0 {
+            return None;
+        }
+        let states = &state.elements[states];
+        let worst = (0..block.elements()).filter_map(|e| {
+            let u = body.displacements(block, e, &state.u);
+            let (before, now) = (block.volume(e), block.volume_between(e, &u));
+            if now >= (1.0 - UNFELT) * before {
+                return None;
+            }
+            // One that cannot be evaluated fails where it is assembled.
+            let felt = (block.volume_felt(e, &u, &states[e * len..][..len])).ok()?;
+            (now < (1.0 - UNFELT) * felt).then_some((
+                now / felt,
+                [now, felt].map(|v| 1.0 - v / before),
+                e,
+            ))
+        });
+        let (ratio, lost, e) = worst.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let layers = body.mesh.opposite_nodes().contains(&None);
+        (layers || ratio < 1.0 - UNFELT_SHELL).then(|| Unfelt {
+            body: number,
+            layers,
+            at: middle(body, &ElementBlock::nodes_of(block, e)),
+            lost,
+        })
+    });
+    found.collect()
+}
+
+/// Middle of an element before anything moved.
+fn middle(body: &BodyModel, nodes: &[u32]) -> Vec3 {
+    let sum: Vec3 = nodes.iter().map(|n| body.mesh.nodes[*n as usize]).sum();
+    sum / nodes.len() as f64
 }

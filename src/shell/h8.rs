@@ -1,4 +1,5 @@
 //! The elements of one body: what assembly calls.
+mod felt;
 mod flow;
 mod linear;
 

@@ -1,11 +1,20 @@
 //! Scenes written as one writes them first, without a penalty, a step or a stabilisation: they end, and are right.
-use crate::support::{Outcome, solve};
+use crate::support::{Outcome, solve, solve_in};
 use covact::output::RunStatus;
 use covact::solve::event::Event;
 use serde_json::{Value, json};
+use std::path::Path;
 
 fn done(scene: &Value) -> Outcome {
-    let outcome = solve(scene);
+    ended(solve(scene))
+}
+
+/// The same of one whose files lie in `dir`.
+fn done_in(scene: &Value, dir: &Path) -> Outcome {
+    ended(solve_in(scene, dir))
+}
+
+fn ended(outcome: Outcome) -> Outcome {
     assert_eq!(
         outcome.summary.status,
         RunStatus::Done,
@@ -257,6 +266,62 @@ fn a_ball_pressed_into_rubber_with_friction_has_its_force() {
     let force = run.at("force.ball.z", 1.0);
     println!("{force}");
     assert!((force / -40.9 - 1.0).abs() < 0.05, "{force}");
+}
+
+/// A metal block in a closed cavity, pressed by a punch with a step: once the cavity is full, what the punch goes on displaces is the
+/// volume that the block has to lose, and the mean pressure is that volume times the bulk modulus. The default elements go to and
+/// fro from layer to layer below the step and would carry a fifth of it, in steps that converge.
+#[test]
+fn metal_that_fills_its_die_has_its_pressure() {
+    let dir = tempfile::tempdir().unwrap();
+    let face = |number: usize, (from, to): ([f64; 2], [f64; 2])| {
+        let points: Vec<Value> = [(from, -1.0), (to, -1.0), (from, 3.0), (to, 3.0)]
+            .map(|([x, z], y)| json!([x, y, z, 1.0]))
+            .into();
+        json!({"entity": number, "degree": [1, 1], "knots": [[0, 0, 1, 1], [0, 0, 1, 1]], "points": points})
+    };
+    let line = [[-1.0, 0.0], [4.25, 0.0], [4.75, -0.5], [11.0, -0.5]];
+    let faces: Vec<Value> = (line.windows(2).enumerate())
+        .map(|(number, w)| face(number, (w[0], w[1])))
+        .collect();
+    let punch = json!({"covact_geometry": 1, "unit": "mm", "resolution": null, "patches": faces});
+    std::fs::write(dir.path().join("punch.json"), punch.to_string()).unwrap();
+    let (e, nu) = (117e3, 0.34);
+    let mut scene = json!({
+        "covact": 1,
+        "materials": { "copper": { "j2": {
+            "E": e, "nu": nu, "hardening": { "linear": { "yield_stress": 100, "slope": 100 } }
+        } } },
+        "bodies": { "block": {
+            "mesh": { "block": { "min": [0, 0, 0], "max": [10, 1, 4], "elements": [20, 1, 8] } }, "material": "copper"
+        } },
+        "surfaces": { "punch": {
+            "cad": "punch.json", "placement": { "translation": [0, 0, 4.51] },
+            "motion": { "translation": [0, 0, "-0.3*t"] }
+        } },
+        "contacts": { "press": { "slave": "block.top", "master": "punch", "friction": 0.1 } },
+        "supports": {
+            "x": { "on": ["block.x_min", "block.x_max"], "symmetry": "x" },
+            "y": { "on": ["block.y_min", "block.y_max"], "symmetry": "y" },
+            "z": { "on": "block.bottom", "symmetry": "z" }
+        },
+        "output": { "every": 0 }
+    });
+    // Volume above the punch's faces, which cover the cavity, and the cavity's own.
+    let displaced = 10.0 * (4.0 - (4.51 - 0.3)) + 0.5 * (0.5 * 0.5 + 5.25);
+    let pressure = -e / (3.0 * (1.0 - 2.0 * nu)) * (1.0 - displaced / 40.0_f64).ln();
+    let run = done_in(&scene, dir.path());
+    assert!(told(&run, "repeated with `h8_mean_dilatation`"));
+    let force = run.at("force.punch.z", 1.0) / (-10.0 * pressure);
+    println!("{displaced} {pressure} {force}");
+    assert!((force - 1.0).abs() < 0.02);
+    // Who names the element keeps it, and is told.
+    scene["bodies"]["block"]["element"] = json!("h8");
+    let named = done_in(&scene, dir.path());
+    assert!(told(
+        &named,
+        "lose more of their volume than their material feels"
+    ));
 }
 
 /// A block of rubber pressed onto a floor and pushed, with friction 1: it rolls over its edge, and near the end of its way some of

@@ -21,9 +21,9 @@ const SMALL: f64 = 1e-8;
 /// Part of the time of a run below which no step is too long in which the largest displacement more than doubles: at the start of
 /// a motion from rest all errors are as large as what they are compared with, however short the step.
 const BEGINS: f64 = 1e-4;
-/// Part of the greatest energy that the integration may gain without a word, and that it may take.
+/// Part of the greatest energy that the integration may gain without a word, and that it may take: of the speeds it is half.
 const GAINS: f64 = 0.01;
-const TAKES: f64 = 0.1;
+const TAKES: f64 = 0.04;
 
 /// Steps, times the circular frequency of a penalty on the lightest node, above which contact must not be weighted.
 const WEIGHTED: f64 = 0.3;

@@ -7,6 +7,9 @@ use crate::run::hold;
 use crate::solve::newton::Converged;
 use covact_geometry::Vec3;
 
+/// What helps a block.
+const HOLDS: &str = "`h8_mean_dilatation` holds";
+
 impl March<'_, '_> {
     /// Looks into squeezed elements after a step whose tangent has negative pivots (a negative determinant, where that is all that
     /// is known), or whose energies tell of a jump: at its end, and where it jumped also at its start, since what gave way may
@@ -18,6 +21,9 @@ impl March<'_, '_> {
         converged: &Converged,
         jumped: bool,
     ) -> Option<Ending> {
+        if let Some(ending) = self.unfelt(committed) {
+            return Some(ending);
+        }
         let unstable = converged.factorization?.negative_pivots > 0;
         if !unstable && !jumped {
             return None;
@@ -34,7 +40,46 @@ impl March<'_, '_> {
             number(at.y),
             number(at.z)
         );
-        let squeezed = self.may_be_replaced(&lost);
+        self.gave_way(&lost, (body, text, "lose their hold"), HOLDS)
+    }
+
+    /// Looks for blocks whose elements have lost more volume than their material feels: what they answer is too soft, and nothing
+    /// else tells of it. As [`Self::lost_hold`] from there on.
+    fn unfelt(&mut self, committed: &State) -> Option<Ending> {
+        let unfelt = hold::unfelt(self.model, committed);
+        let worst = unfelt.first()?;
+        let text = format!(
+            "body `{}`: elements with enhanced strains near ({}, {}, {}) lose more of their volume than their material feels, {:.1} % \
+             and {:.1} %, where they are pressed",
+            self.model.bodies[worst.body].name,
+            number(worst.at.x),
+            number(worst.at.y),
+            number(worst.at.z),
+            100.0 * worst.lost[0],
+            100.0 * worst.lost[1],
+        );
+        let blocks = unfelt.iter().filter(|h| h.layers);
+        let lost: Vec<_> = blocks.map(|h| (h.body, h.at)).collect();
+        let helps = match worst.layers {
+            true => HOLDS,
+            false => "a finer mesh follows farther",
+        };
+        self.gave_way(
+            &lost,
+            (worst.body, text, "lose more of their volume"),
+            helps,
+        )
+    }
+
+    /// Ends the run where other elements may replace those of the bodies, else tells of the first of them once, wherever its elements
+    /// do so later. `what` they do is a part of the text, and `helps` ends it.
+    fn gave_way(
+        &mut self,
+        lost: &[(usize, Vec3)],
+        (body, text, what): (usize, String, &str),
+        helps: &str,
+    ) -> Option<Ending> {
+        let squeezed = self.may_be_replaced(lost);
         if !squeezed.is_empty() {
             return Some(Ending {
                 status: RunStatus::NotConverged,
@@ -43,10 +88,16 @@ impl March<'_, '_> {
                 on_rims: false,
             });
         }
-        // Once for a body, wherever its elements do so later.
-        let head = format!("body `{name}`: elements with enhanced strains near");
-        if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
-            self.warn(format!("{text}, from time {} on: what the body answers may be far off; `h8_mean_dilatation` holds", number(self.progress.time)));
+        let head = format!(
+            "body `{}`: elements with enhanced strains near",
+            self.model.bodies[body].name
+        );
+        let told = |w: &String| w.starts_with(&head) && w.contains(what);
+        if !self.progress.warnings.iter().any(told) {
+            self.warn(format!(
+                "{text}, from time {} on: what the body answers may be far off; {helps}",
+                number(self.progress.time)
+            ));
         }
         None
     }
