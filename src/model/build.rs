@@ -232,7 +232,12 @@ fn symmetry(scene: &Scene, model: &mut Model) -> Result<Vec<Unsymmetric>, ModelE
     let asked = match scene.solution.linear_solver {
         scene::LinearSolver::Llt => "llt",
         scene::LinearSolver::Ldlt => "ldlt",
-        scene::LinearSolver::Auto | scene::LinearSolver::Lu => "",
+        scene::LinearSolver::Cudss if cfg!(not(feature = "cudss")) => {
+            let message = "this program was built without `cudss`";
+            let help = "build it with `cargo install covact --features cudss`, or take `auto`";
+            return Err(text("/solution/linear_solver", message.to_owned()).help(help));
+        }
+        _ => "",
     };
     match reasons.first().map(|r| &r.why) {
         Some(reason) if !asked.is_empty() => {

@@ -51,6 +51,10 @@ pub(super) fn analysis(loaded: &LoadedScene, error: &LinearError) -> RunError {
         LinearError::Memory(_) | LinearError::OutOfMemory { .. } | LinearError::TooLarge => {
             at(loaded, &largest(loaded), error.to_string(), FEWER)
         }
+        LinearError::Device(_) => {
+            let help = "take `auto`, which solves on the processor";
+            at(loaded, "/solution/linear_solver", error.to_string(), help)
+        }
         other => RunError::internal(other),
     }
 }

@@ -68,6 +68,46 @@ fn a_symmetric_factorization_of_an_unsymmetric_system() {
     }
 }
 
+/// A program that was built without it is asked to factorize on a graphics processor.
+#[cfg(not(feature = "cudss"))]
+#[test]
+fn a_factorization_that_the_program_does_not_have() {
+    plate_refused(
+        &[("/solution/linear_solver", json!("cudss"))],
+        "/solution/linear_solver",
+        &[
+            "this program was built without `cudss`",
+            "help: build it with `cargo install covact --features cudss`, or take `auto`",
+        ],
+    );
+}
+
+/// Where there is no cuDSS, or no graphics processor, a run that asks for it says which.
+#[cfg(feature = "cudss")]
+#[test]
+fn a_factorization_without_a_device() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene = plate_scene();
+    scene["solution"]["linear_solver"] = json!("cudss");
+    std::fs::write(folder.path().join("scene.json"), scene.to_string()).unwrap();
+    let run = covact(
+        folder.path(),
+        &["run", "scene.json", "-o", "out", "--quiet"],
+    );
+    if run.status.success() {
+        println!("skipped: there is a device");
+        return;
+    }
+    assert_eq!(run.status.code(), Some(3), "{}", stderr(&run));
+    assert_parts(
+        &unfolded(&stderr(&run)),
+        &[
+            "cuDSS: ",
+            "help: take `auto`, which solves on the processor",
+        ],
+    );
+}
+
 #[test]
 fn two_supports_that_contradict_each_other() {
     for mid_surface in [false, true] {

@@ -70,6 +70,10 @@ impl March<'_, '_> {
                 ));
             }
         }
+        if let Some(why) = self.solver.take_handover() {
+            let text = format!("{why}; `auto` solves the systems from here on");
+            self.warn_of_step(step, &text);
+        }
         if let Some(last) = converged.factorization {
             let negative = last.negative_pivots;
             if negative > 0 && last.method == Method::Lu {

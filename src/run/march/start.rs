@@ -342,7 +342,7 @@ pub(super) fn analysed(
     Ok(solver)
 }
 
-/// The solver that the scene asks for; an unsymmetric system has only one, which the model has checked.
+/// The solver that the scene asks for; on the processor an unsymmetric system has only one, which the model has checked.
 fn solver(scene: &Scene, symmetric: bool, threads: usize) -> Box<dyn LinearSolver + Send> {
     use crate::scene::LinearSolver as Choice;
     use crate::system::linear::Mode;
@@ -352,9 +352,17 @@ fn solver(scene: &Scene, symmetric: bool, threads: usize) -> Box<dyn LinearSolve
         ..SolverOptions::default()
     };
     let mode = match scene.solution.linear_solver {
+        #[cfg(feature = "cudss")]
+        Choice::Cudss => {
+            use crate::system::linear::ForeignSolver;
+            return Box::new(ForeignSolver::cudss(symmetric, options(Mode::Auto)));
+        }
         _ if !symmetric => return Box::new(LuSolver::new(options(Mode::Auto))),
         Choice::Lu => return Box::new(LuSolver::new(options(Mode::Auto))),
         Choice::Auto => Mode::Auto,
+        // The model has refused it.
+        #[cfg(not(feature = "cudss"))]
+        Choice::Cudss => Mode::Auto,
         Choice::Llt => Mode::Llt,
         Choice::Ldlt => Mode::Ldlt,
     };

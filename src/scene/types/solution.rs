@@ -79,6 +79,8 @@ pub enum LinearSolver {
     Ldlt,
     /// LU, for symmetric matrices too (about twice the cost).
     Lu,
+    /// LDL^T or LU on a graphics processor, by NVIDIA's cuDSS; needs a program that was built with the feature `cudss`.
+    Cudss,
 }
 
 /// Stabilisation, written `"auto"`, `"none"` or `{"viscous": {"factor": 1e-3, "until": 0.5}}`.

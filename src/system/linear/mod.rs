@@ -1,9 +1,14 @@
 //! Direct solution of the system of a Newton iteration: [`DirectSolver`] where it is symmetric, [`LuSolver`] where only
-//! its structure is.
+//! its structure is; either by another library with `ForeignSolver` (feature `cudss`).
 //!
 //! The symbolic work (ordering, structure of the factor, memory) is done once for a pattern, the numeric factorization
 //! as often as the values change, without allocating.
 mod cholesky;
+#[cfg(feature = "cudss")]
+mod cudss;
+mod device;
+#[cfg(feature = "cudss")]
+mod foreign;
 mod lu;
 mod metis;
 mod ordering;
@@ -11,6 +16,9 @@ mod permuted;
 mod symbolic;
 
 pub use cholesky::DirectSolver;
+pub use device::DeviceFault;
+#[cfg(feature = "cudss")]
+pub use foreign::ForeignSolver;
 pub use lu::LuSolver;
 
 use crate::machine::memory::Shortage;
@@ -61,6 +69,12 @@ pub trait LinearSolver {
 
     /// Sets [`expects_indefinite`](Self::expects_indefinite), after the pattern was analysed.
     fn expect_indefinite(&mut self, _expected: bool) {}
+
+    /// Why another solver than the one that was asked for has taken over since this was last called: what was asked for has
+    /// failed on the way.
+    fn take_handover(&mut self) -> Option<LinearError> {
+        None
+    }
 
     /// Solves and improves the solution once with the residual in working precision: `x = A^-1 b` and then
     /// `x += A^-1 (b - A x)`. It makes the backward error small where pivoting was poor (indefinite matrices); it does
@@ -299,6 +313,9 @@ pub enum LinearError {
     TooLarge,
     #[error("not enough memory for {bytes} bytes of the factorization")]
     OutOfMemory { bytes: usize },
+    /// A graphics processor was asked for.
+    #[error("cuDSS: {0}")]
+    Device(#[from] DeviceFault),
     /// Found out before the factorization took anything.
     #[error("the factorization of the system: {0}")]
     Memory(Shortage),
@@ -328,6 +345,14 @@ pub enum LinearError {
     /// The solution overflowed; the dof is the first that is affected, not always the one where it began.
     #[error("the solution is not finite: {dof}")]
     NonFiniteSolution { dof: DofName },
+}
+
+impl LinearError {
+    /// Whether it is of a library that was asked for, not of the matrix.
+    #[cfg(feature = "cudss")]
+    fn is_fault(&self) -> bool {
+        matches!(self, LinearError::Device(_))
+    }
 }
 
 fn same_pattern(a: &Arc<Pattern>, b: &Arc<Pattern>) -> bool {
