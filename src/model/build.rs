@@ -229,14 +229,10 @@ fn stabilize(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
 fn symmetry(scene: &Scene, model: &mut Model) -> Result<Vec<Unsymmetric>, ModelError> {
     let reasons = super::symmetry::unsymmetric_effects(model);
     model.symmetric = reasons.is_empty();
+    super::foreign_solver::check(scene, model)?;
     let asked = match scene.solution.linear_solver {
         scene::LinearSolver::Llt => "llt",
         scene::LinearSolver::Ldlt => "ldlt",
-        scene::LinearSolver::Cudss if cfg!(not(feature = "cudss")) => {
-            let message = "this program was built without `cudss`";
-            let help = "build it with `cargo install covact --features cudss`, or take `auto`";
-            return Err(text("/solution/linear_solver", message.to_owned()).help(help));
-        }
         _ => "",
     };
     match reasons.first().map(|r| &r.why) {

@@ -9,6 +9,7 @@ pub(crate) mod edge_couple;
 pub(crate) mod edges;
 mod effect;
 pub(crate) mod error;
+mod foreign_solver;
 mod found_supports;
 pub(crate) mod free_motion;
 pub(crate) mod friction;

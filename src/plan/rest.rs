@@ -3,7 +3,7 @@ use super::{Effect, Held, Per, Reporter, why};
 use crate::assembly::sizes;
 use crate::model::EffectKind;
 use crate::model::error::number;
-use crate::scene::{Stabilization, pointer};
+use crate::scene::{LinearSolver, Stabilization, pointer};
 
 impl Reporter<'_> {
     pub(super) fn surfaces(&self) -> Vec<Effect> {
@@ -216,7 +216,11 @@ impl Reporter<'_> {
             )
             .costs("a force and an entry of the diagonal for each unknown of a body")
             .holds(held);
-        let why_not = "no effect takes the symmetry: Cholesky, or LDL^T where it is indefinite";
+        let why_not = match self.loaded.scene.solution.linear_solver {
+            LinearSolver::Cudss => "no effect takes the symmetry: LDL^T by cuDSS",
+            LinearSolver::Mumps(_) => "no effect takes the symmetry: LDL^T by MUMPS",
+            _ => "no effect takes the symmetry: Cholesky, or LDL^T where it is indefinite",
+        };
         let reasons: Vec<&str> = self
             .model
             .unsymmetric

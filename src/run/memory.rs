@@ -51,8 +51,8 @@ pub(super) fn analysis(loaded: &LoadedScene, error: &LinearError) -> RunError {
         LinearError::Memory(_) | LinearError::OutOfMemory { .. } | LinearError::TooLarge => {
             at(loaded, &largest(loaded), error.to_string(), FEWER)
         }
-        LinearError::Device(_) => {
-            let help = "take `auto`, which solves on the processor";
+        LinearError::Device(_) | LinearError::Mumps(_) => {
+            let help = "take `auto`, which needs no other library";
             at(loaded, "/solution/linear_solver", error.to_string(), help)
         }
         other => RunError::internal(other),
@@ -105,7 +105,12 @@ pub(super) fn estimate(loaded: &LoadedScene, model: &Model) -> Result<Estimate, 
         output.tessellation
     };
     let estimate = Estimate::new(model, &elements, &pattern_, &found, divisions);
-    let rest = estimate.matrix.saturating_add(estimate.factor);
+    // Factors that another library keeps, on a device or on the disk, are not known.
+    use scene::LinearSolver::{Cudss, Mumps};
+    let rest = match loaded.scene.solution.linear_solver {
+        Cudss | Mumps(_) => estimate.matrix,
+        _ => estimate.matrix.saturating_add(estimate.factor),
+    };
     match memory::ask(rest) {
         Ok(()) => Ok(estimate),
         Err(shortage) => analysis_short(loaded, shortage),

@@ -1,5 +1,5 @@
 //! The JSON schema of scenes, made from the types and their documentation.
-use super::types::{STANDS_FOR, Scene};
+use super::types::{STANDS_FOR, Scene, WITH_DEFAULTS};
 use schemars::Schema;
 use serde_json::{Map, Value as Json, json};
 
@@ -36,6 +36,8 @@ fn short_forms(schema: &mut Json) {
                 }
             }
         }
+        let variants = definition.get_mut("oneOf").and_then(Json::as_array_mut);
+        variants.into_iter().for_each(names_alone);
         if let Some(form) = STANDS_FOR.iter().find(|f| f.name == name) {
             let short = match form.numbers {
                 true => json!({ "type": ["number", "string"] }),
@@ -46,6 +48,18 @@ fn short_forms(schema: &mut Json) {
             let mut long = definition.take();
             let description = long.as_object_mut().and_then(|l| l.remove("description"));
             *definition = json!({ "description": description, "anyOf": [long, short] });
+        }
+    }
+}
+
+/// Lets the names of choices whose settings have defaults stand alone.
+fn names_alone(variants: &mut Vec<Json>) {
+    for name in WITH_DEFAULTS {
+        let has_settings = |v: &Json| v["properties"][name].is_object();
+        if let Some(at) = variants.iter().position(has_settings) {
+            let description = format!("Stands for `{{\"{name}\": {{}}}}`.");
+            let short = json!({ "const": name, "description": description, "type": "string" });
+            variants.insert(at, short);
         }
     }
 }

@@ -68,18 +68,64 @@ fn a_symmetric_factorization_of_an_unsymmetric_system() {
     }
 }
 
-/// A program that was built without it is asked to factorize on a graphics processor.
-#[cfg(not(feature = "cudss"))]
+/// A program that was built without it is asked to factorize on a graphics processor, or by MUMPS.
 #[test]
 fn a_factorization_that_the_program_does_not_have() {
-    plate_refused(
-        &[("/solution/linear_solver", json!("cudss"))],
-        "/solution/linear_solver",
-        &[
-            "this program was built without `cudss`",
-            "help: build it with `cargo install covact --features cudss`, or take `auto`",
-        ],
-    );
+    let solvers = [
+        ("cudss", json!("cudss"), cfg!(feature = "cudss")),
+        ("mumps", json!("mumps"), cfg!(feature = "mumps")),
+        (
+            "mumps",
+            json!({ "mumps": { "ordering": "amd" } }),
+            cfg!(feature = "mumps"),
+        ),
+    ];
+    for (name, solver, built) in solvers {
+        if built {
+            continue;
+        }
+        plate_refused(
+            &[("/solution/linear_solver", solver)],
+            "/solution/linear_solver",
+            &[
+                &format!("this program was built without `{name}`"),
+                &format!(
+                    "help: build it with `cargo install covact --features {name}`, or take `auto`"
+                ),
+            ],
+        );
+    }
+}
+
+/// Settings of MUMPS that cannot be meant.
+#[test]
+fn settings_of_a_library() {
+    for (settings, pointer, parts) in [
+        (
+            json!({ "out_of_core": "nowhere" }),
+            "out_of_core",
+            [
+                "there is no folder `./nowhere`",
+                "help: paths are relative to the scene file",
+            ],
+        ),
+        (
+            json!({ "out_of_core": 3 }),
+            "out_of_core",
+            ["`true`, `false` or a folder", ""],
+        ),
+        (
+            json!({ "ordering": "metiss" }),
+            "ordering",
+            ["unknown name `metiss`", "`metis`"],
+        ),
+    ] {
+        plate_refused(
+            &[("/solution/linear_solver", json!({ "mumps": settings }))],
+            &format!("/solution/linear_solver/mumps/{pointer}"),
+            &parts,
+        );
+    }
 }
 
 /// Where there is no cuDSS, or no graphics processor, a run that asks for it says which.
@@ -101,10 +147,7 @@ fn a_factorization_without_a_device() {
     assert_eq!(run.status.code(), Some(3), "{}", stderr(&run));
     assert_parts(
         &unfolded(&stderr(&run)),
-        &[
-            "cuDSS: ",
-            "help: take `auto`, which solves on the processor",
-        ],
+        &["cuDSS: ", "help: take `auto`, which needs no other library"],
     );
 }
 

@@ -20,7 +20,7 @@ use crate::run::progress::Progress;
 use crate::run::rim_watch::RimWatch;
 use crate::run::watch::Watch;
 use crate::run::{RunError, memory, resting};
-use crate::scene::{LoadedScene, Scene};
+use crate::scene::LoadedScene;
 use crate::solve::event::{Event, Observer};
 use crate::solve::newton::Workspace;
 use crate::solve::stepping::Stepping;
@@ -333,7 +333,7 @@ pub(super) fn analysed(
     assembler: &mut Assembler,
     threads: usize,
 ) -> Result<Box<dyn LinearSolver + Send>, RunError> {
-    let mut solver = solver(&loaded.scene, model.symmetric, threads);
+    let mut solver = solver(loaded, model.symmetric, threads);
     if let Some(pattern) = assembler.take_new_pattern() {
         let analysis = solver.analyze(&pattern);
         let factorizing = analysis.map_err(|e| memory::analysis(loaded, &e))?.threads;
@@ -343,7 +343,7 @@ pub(super) fn analysed(
 }
 
 /// The solver that the scene asks for; on the processor an unsymmetric system has only one, which the model has checked.
-fn solver(scene: &Scene, symmetric: bool, threads: usize) -> Box<dyn LinearSolver + Send> {
+fn solver(loaded: &LoadedScene, symmetric: bool, threads: usize) -> Box<dyn LinearSolver + Send> {
     use crate::scene::LinearSolver as Choice;
     use crate::system::linear::Mode;
     let options = |mode| SolverOptions {
@@ -351,11 +351,21 @@ fn solver(scene: &Scene, symmetric: bool, threads: usize) -> Box<dyn LinearSolve
         threads,
         ..SolverOptions::default()
     };
-    let mode = match scene.solution.linear_solver {
+    let mode = match &loaded.scene.solution.linear_solver {
         #[cfg(feature = "cudss")]
         Choice::Cudss => {
             use crate::system::linear::ForeignSolver;
             return Box::new(ForeignSolver::cudss(symmetric, options(Mode::Auto)));
+        }
+        #[cfg(feature = "mumps")]
+        Choice::Mumps(settings) => {
+            use crate::system::linear::ForeignSolver;
+            let options = options(Mode::Auto);
+            return Box::new(ForeignSolver::mumps(
+                symmetric,
+                options,
+                mumps(loaded, settings),
+            ));
         }
         _ if !symmetric => return Box::new(LuSolver::new(options(Mode::Auto))),
         Choice::Lu => return Box::new(LuSolver::new(options(Mode::Auto))),
@@ -363,8 +373,36 @@ fn solver(scene: &Scene, symmetric: bool, threads: usize) -> Box<dyn LinearSolve
         // The model has refused it.
         #[cfg(not(feature = "cudss"))]
         Choice::Cudss => Mode::Auto,
+        #[cfg(not(feature = "mumps"))]
+        Choice::Mumps(_) => Mode::Auto,
         Choice::Llt => Mode::Llt,
         Choice::Ldlt => Mode::Ldlt,
     };
     Box::new(DirectSolver::new(options(mode)))
+}
+
+/// The settings of MUMPS, with the folder that is meant.
+#[cfg(feature = "mumps")]
+fn mumps(
+    loaded: &LoadedScene,
+    settings: &crate::scene::Mumps,
+) -> crate::system::linear::MumpsOptions {
+    use crate::scene::{MumpsOrdering as Asked, OutOfCore};
+    use crate::system::linear::{MumpsOptions, MumpsOrdering};
+    MumpsOptions {
+        ordering: match settings.ordering {
+            Asked::Auto => MumpsOrdering::Auto,
+            Asked::Metis => MumpsOrdering::Metis,
+            Asked::Amd => MumpsOrdering::Amd,
+            Asked::Scotch => MumpsOrdering::Scotch,
+            Asked::Pord => MumpsOrdering::Pord,
+            Asked::Amf => MumpsOrdering::Amf,
+            Asked::Qamd => MumpsOrdering::Qamd,
+        },
+        out_of_core: match &settings.out_of_core {
+            OutOfCore::Temporary(false) => None,
+            OutOfCore::Temporary(true) => Some(std::env::temp_dir()),
+            OutOfCore::Folder(folder) => Some(loaded.resolve(folder)),
+        },
+    }
 }

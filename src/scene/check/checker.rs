@@ -196,6 +196,17 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// The folder exists.
+    pub fn folder(&mut self, at: &str, path: &Path) {
+        let full = self.loaded.resolve(path);
+        if !full.is_dir() {
+            let what = self.loaded.what;
+            let help = format!("paths are relative to the {what} file");
+            let message = format!("there is no folder `{}`", shorten_path(&full));
+            self.add(at, message, Some(help));
+        }
+    }
+
     /// The file exists and can be opened; its extension is one of `extensions` (none: any).
     pub fn file(&mut self, at: &str, path: &Path, extensions: &[&str]) {
         let full = self.loaded.resolve(path);

@@ -7,6 +7,7 @@ mod material;
 mod names;
 mod shapes;
 mod small;
+mod solver;
 mod stages;
 
 use super::document::Document;
@@ -499,6 +500,7 @@ fn check_solution(c: &mut Checker, solution: &Solution) {
         let help = "a part of the largest force: between 0 and 1, usually 1e-8";
         c.add("/solution/newton/tolerance", message, Some(help.into()));
     }
+    solver::check(c, &solution.linear_solver);
     if let Stabilization::Viscous { factor, until } = solution.stabilization {
         let at = "/solution/stabilization/viscous";
         c.positive(&format!("{at}/factor"), "the factor", factor);

@@ -3,6 +3,8 @@ use super::Decoder;
 use super::placeholder::Placeholder;
 use super::stop::Stop;
 use crate::scene::json::{Kind, Member, Node};
+use crate::scene::types::WITH_DEFAULTS;
+use serde::de::value::MapDeserializer;
 use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 use std::ops::Range;
 
@@ -113,6 +115,10 @@ impl<'de> de::VariantAccess<'de> for Variant<'de, '_> {
         }
     }
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Stop> {
+        if self.content.is_none() && WITH_DEFAULTS.contains(&self.name) {
+            let nothing = std::iter::empty::<(&str, &str)>();
+            return seed.deserialize(MapDeserializer::new(nothing));
+        }
         let content = self.content("...")?;
         (seed.deserialize(content)).map_err(|e| e.within(content.node))
     }

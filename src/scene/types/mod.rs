@@ -11,6 +11,7 @@ mod mesh;
 mod mesh_file;
 mod metal;
 mod motion;
+mod mumps;
 mod nurbs;
 mod probe;
 mod set_names;
@@ -30,6 +31,7 @@ pub use mesh::*;
 pub use mesh_file::*;
 pub use metal::*;
 pub use motion::*;
+pub use mumps::*;
 pub use nurbs::*;
 pub use probe::*;
 pub use set_names::*;
@@ -76,6 +78,9 @@ pub(in crate::scene) const STANDS_FOR: [StandsFor; 4] = [
         numbers: false,
     },
 ];
+
+/// Choices with settings that all have defaults: the name alone will do, `"mumps"` for `{"mumps": {}}`.
+pub(in crate::scene) const WITH_DEFAULTS: [&str; 1] = ["mumps"];
 
 /// A contact problem: bodies of finite elements, rigid CAD surfaces, what presses on what, and how to solve it.
 /// Units are the user's: any consistent set, e.g. N, mm, MPa.

@@ -1,5 +1,6 @@
 //! How the problem is solved, and what is written.
 use super::dynamics::Dynamics;
+use super::mumps::Mumps;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -67,7 +68,7 @@ pub struct Newton {
 }
 
 /// Factorization.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LinearSolver {
     /// Cholesky, and LDL^T where the matrix turns out indefinite; LU where an effect makes it unsymmetric.
@@ -81,6 +82,8 @@ pub enum LinearSolver {
     Lu,
     /// LDL^T or LU on a graphics processor, by NVIDIA's cuDSS; needs a program that was built with the feature `cudss`.
     Cudss,
+    /// LDL^T or LU by MUMPS; needs a program that was built with the feature `mumps`.
+    Mumps(Mumps),
 }
 
 /// Stabilisation, written `"auto"`, `"none"` or `{"viscous": {"factor": 1e-3, "until": 0.5}}`.

@@ -1,5 +1,5 @@
 //! Direct solution of the system of a Newton iteration: [`DirectSolver`] where it is symmetric, [`LuSolver`] where only
-//! its structure is; either by another library with `ForeignSolver` (feature `cudss`).
+//! its structure is; either by another library with `ForeignSolver` (features `cudss` and `mumps`).
 //!
 //! The symbolic work (ordering, structure of the factor, memory) is done once for a pattern, the numeric factorization
 //! as often as the values change, without allocating.
@@ -7,19 +7,25 @@ mod cholesky;
 #[cfg(feature = "cudss")]
 mod cudss;
 mod device;
-#[cfg(feature = "cudss")]
+#[cfg(any(feature = "cudss", feature = "mumps"))]
 mod foreign;
 mod lu;
 mod metis;
+#[cfg(feature = "mumps")]
+mod mumps;
+mod mumps_fault;
 mod ordering;
 mod permuted;
 mod symbolic;
 
 pub use cholesky::DirectSolver;
 pub use device::DeviceFault;
-#[cfg(feature = "cudss")]
+#[cfg(any(feature = "cudss", feature = "mumps"))]
 pub use foreign::ForeignSolver;
 pub use lu::LuSolver;
+#[cfg(feature = "mumps")]
+pub use mumps::{MumpsOptions, MumpsOrdering};
+pub use mumps_fault::MumpsFault;
 
 use crate::machine::memory::Shortage;
 use crate::system::{Pattern, SystemMatrix};
@@ -194,6 +200,8 @@ impl Default for SolverOptions {
 pub enum Ordering {
     Amd,
     Metis,
+    /// One of another library.
+    Other,
 }
 
 /// What the symbolic analysis found.
@@ -316,6 +324,9 @@ pub enum LinearError {
     /// A graphics processor was asked for.
     #[error("cuDSS: {0}")]
     Device(#[from] DeviceFault),
+    /// MUMPS was asked for.
+    #[error("MUMPS: {0}")]
+    Mumps(#[from] MumpsFault),
     /// Found out before the factorization took anything.
     #[error("the factorization of the system: {0}")]
     Memory(Shortage),
@@ -349,9 +360,9 @@ pub enum LinearError {
 
 impl LinearError {
     /// Whether it is of a library that was asked for, not of the matrix.
-    #[cfg(feature = "cudss")]
+    #[cfg(any(feature = "cudss", feature = "mumps"))]
     fn is_fault(&self) -> bool {
-        matches!(self, LinearError::Device(_))
+        matches!(self, LinearError::Device(_) | LinearError::Mumps(_))
     }
 }
 

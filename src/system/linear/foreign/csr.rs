@@ -96,6 +96,21 @@ impl Csr {
         &self.columns
     }
 
+    /// Takes the structure out as rows and columns of entries, from one on, in the order of [`gather`](Self::gather).
+    #[cfg(feature = "mumps")]
+    pub fn take_triplets(&mut self) -> (Vec<i32>, Vec<i32>) {
+        let (starts, mut columns) = (
+            std::mem::take(&mut self.starts),
+            std::mem::take(&mut self.columns),
+        );
+        let mut rows = Vec::with_capacity(columns.len());
+        for (row, range) in starts.windows(2).enumerate() {
+            rows.resize(range[1] as usize, row as i32 + 1);
+        }
+        columns.iter_mut().for_each(|column| *column += 1);
+        (rows, columns)
+    }
+
     /// Bytes of heap that it holds.
     pub fn bytes(&self) -> usize {
         4 * (self.starts.capacity() + self.columns.capacity() + self.places.capacity())

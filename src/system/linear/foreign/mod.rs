@@ -8,8 +8,8 @@ mod csr;
 pub(super) use csr::Csr;
 
 use super::{
-    Analysis, DirectSolver, Factorization, LinearError, LinearSolver, LuSolver, SolverOptions,
-    first_not_finite, reserved, same_pattern,
+    Analysis, DirectSolver, DofName, Factorization, LinearError, LinearSolver, LuSolver,
+    SolverOptions, first_not_finite, reserved, same_pattern,
 };
 use crate::system::{Pattern, SystemMatrix};
 use std::fmt;
@@ -33,11 +33,6 @@ pub(super) trait Backend: Send {
 
     /// Frees everything.
     fn clear(&mut self);
-
-    /// Refinements of a solution at most.
-    fn refinements(&self) -> u32 {
-        1
-    }
 
     /// Whether the host takes over where a solution stays inaccurate.
     fn leaves_hard_cases(&self) -> bool {
@@ -102,6 +97,40 @@ impl ForeignSolver {
         }
     }
 
+    /// The pattern that was analysed.
+    pub fn pattern(&self) -> Option<&Arc<Pattern>> {
+        self.prepared.as_ref().map(|p| &p.pattern)
+    }
+
+    /// Overwrites right-hand sides, one after the other, with their solutions, as [`solve_in_place`](LinearSolver::solve_in_place)
+    /// does with one.
+    ///
+    /// # Errors
+    /// Those of one.
+    pub fn solve_columns_in_place(&mut self, columns: &mut [f64]) -> Result<(), LinearError> {
+        let prepared = self.prepared.as_ref().ok_or(LinearError::NotAnalyzed)?;
+        let expected = prepared.rhs.len();
+        if !columns.len().is_multiple_of(expected.max(1)) {
+            let given = columns.len();
+            return Err(LinearError::Length { given, expected });
+        }
+        if prepared.at != At::Backend {
+            let mut columns = columns.chunks_exact_mut(expected.max(1));
+            return columns.try_for_each(|column| self.solve_in_place(column));
+        }
+        if let Some(dof) = first_not_finite(columns) {
+            let dof = DofName::new(dof.dof() % expected);
+            return Err(LinearError::NonFiniteRightHandSide { dof });
+        }
+        self.backend.solve(columns)?;
+        match first_not_finite(columns) {
+            Some(dof) => Err(LinearError::NonFiniteSolution {
+                dof: DofName::new(dof.dof() % expected),
+            }),
+            None => Ok(()),
+        }
+    }
+
     /// Leaves everything from here on to the host.
     fn give_up(&mut self, fault: LinearError) {
         self.fault = self.fault.or(Some(fault));
@@ -141,19 +170,12 @@ impl ForeignSolver {
         prepared.rhs.copy_from_slice(x);
         self.backend.solve(x)?;
         let mut error = prepared.backward_error(matrix, x);
-        for _ in 0..self.backend.refinements() {
-            if error <= ROUND_OFF || !error.is_finite() {
-                break;
-            }
-            let before = error;
+        if error > ROUND_OFF && error.is_finite() {
             self.backend.solve(&mut prepared.residual)?;
             for (x, c) in x.iter_mut().zip(&prepared.residual) {
                 *x += c;
             }
             error = prepared.backward_error(matrix, x);
-            if error > 0.5 * before {
-                break;
-            }
         }
         Ok(error)
     }
@@ -241,7 +263,7 @@ impl LinearSolver for ForeignSolver {
         }
     }
 
-    /// Solves, and improves the solution unless its backward error is that of round-off already.
+    /// Solves, and improves the solution once unless its backward error is that of round-off already.
     fn solve_with(&mut self, matrix: &SystemMatrix, rhs: &mut [f64]) -> Result<(), LinearError> {
         let prepared = self.prepared(matrix)?;
         match prepared.at {
