@@ -3,9 +3,10 @@
 use crate::assembly::Fault;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
-use crate::shell::{Block, ElementBlock};
+use crate::shell::{Block, ElementBlock, H8Block};
 use crate::solve::newton::StepFailure;
 use covact_geometry::Vec3;
+use std::collections::BTreeMap;
 
 /// Cuts of a step after which elements that turn inside out are given up where others may replace them.
 pub(super) const HOPELESS: u32 = 3;
@@ -22,10 +23,15 @@ const STOCKY: f64 = 0.5;
 /// Most elements of a body that are looked into: those that are squeezed most.
 const LOOKED_INTO: usize = 48;
 
-/// Part of the volume that an element's material feels by which the one between its corners may fall short of it, in bodies of
-/// several layers and in others: a shell that is bent round a few of its elements shows a tenth.
+/// Part of the volume that an element's material feels by which the one between its corners may fall short of it where it goes to
+/// and fro from layer to layer, and elsewhere: a shell that is bent round a few of its elements shows a tenth.
 const UNFELT: f64 = 0.05;
 const UNFELT_SHELL: f64 = 0.15;
+
+/// Difference of the directions of two edges along the thickness by which they turn against each other, of about .6 where an element
+/// loses 5 % by that; and the part of it that those of an element that lies on it have to turn the other way.
+const TURNS: f64 = 0.3;
+const OTHERS: f64 = 0.25;
 
 /// What helps where an element with enhanced strains cannot follow; empty for other failures.
 pub(super) fn remedy(turned: Option<&BodyModel>) -> &'static str {
@@ -123,7 +129,7 @@ pub(super) fn lost(model: &Model, state: &State) -> Vec<(usize, Vec3)> {
 pub(super) struct Unfelt {
     /// The body.
     pub body: usize,
-    /// It has several layers: elements that bend too little may stand in for these.
+    /// It goes to and fro from layer to layer: elements that bend too little may stand in for these.
     pub layers: bool,
     /// Middle of the one that is farthest from it, before anything moved.
     pub at: Vec3,
@@ -152,7 +158,7 @@ pub(super) fn unfelt(model: &Model, state: &State) -> Vec<Unfelt> {
             return None;
         }
         let states = &state.elements[states];
-        let worst = (0..block.elements()).filter_map(|e| {
+        let all = (0..block.elements()).filter_map(|e| {
             let u = body.displacements(block, e, &state.u);
             let (before, now) = (block.volume(e), block.volume_between(e, &u));
             if now >= (1.0 - UNFELT) * before {
@@ -166,13 +172,18 @@ pub(super) fn unfelt(model: &Model, state: &State) -> Vec<Unfelt> {
                 e,
             ))
         });
-        let (ratio, lost, e) = worst.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let layers = body.mesh.opposite_nodes().contains(&None);
-        (layers || ratio < 1.0 - UNFELT_SHELL).then(|| Unfelt {
+        let mut worst: Vec<_> = all.collect();
+        worst.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let (ratio, ..) = worst.first()?;
+        let stack = Stack::new(body, block, &state.u);
+        let layers = worst.iter().find(|w| stack.goes_to_and_fro(w.2));
+        let bent = worst.first().filter(|_| *ratio < 1.0 - UNFELT_SHELL);
+        let (_, lost, e) = layers.or(bent)?;
+        Some(Unfelt {
             body: number,
-            layers,
-            at: middle(body, &ElementBlock::nodes_of(block, e)),
-            lost,
+            layers: layers.is_some(),
+            at: middle(body, &ElementBlock::nodes_of(block, *e)),
+            lost: *lost,
         })
     });
     found.collect()
@@ -182,4 +193,70 @@ pub(super) fn unfelt(model: &Model, state: &State) -> Vec<Unfelt> {
 fn middle(body: &BodyModel, nodes: &[u32]) -> Vec3 {
     let sum: Vec3 = nodes.iter().map(|n| body.mesh.nodes[*n as usize]).sum();
     sum / nodes.len() as f64
+}
+
+/// Which elements of a body lie on each other, along their thickness.
+struct Stack<'a> {
+    block: &'a H8Block,
+    /// Elements by the nodes of their lower and upper faces, in ascending order.
+    faces: BTreeMap<[u32; 4], Vec<usize>>,
+    /// Where its nodes are.
+    nodes: Vec<Vec3>,
+}
+
+impl<'a> Stack<'a> {
+    fn new(body: &BodyModel, block: &'a H8Block, u: &[f64]) -> Self {
+        let mut faces: BTreeMap<[u32; 4], Vec<usize>> = BTreeMap::new();
+        for e in 0..block.elements() {
+            for face in Self::faces_of(block, e) {
+                faces.entry(face).or_default().push(e);
+            }
+        }
+        let first = 3 * body.first_node as usize;
+        let moved = u[first..].as_chunks::<3>().0.iter();
+        let nodes = body.mesh.nodes.iter().zip(moved);
+        Stack {
+            block,
+            faces,
+            nodes: nodes.map(|(x, u)| x + Vec3::from(*u)).collect(),
+        }
+    }
+
+    fn faces_of(block: &H8Block, e: usize) -> [[u32; 4]; 2] {
+        let nodes = block.nodes_of(e);
+        [0, 4].map(|first| {
+            let mut face: [u32; 4] = std::array::from_fn(|a| nodes[first + a]);
+            face.sort_unstable();
+            face
+        })
+    }
+
+    /// Whether the edges of an element along the thickness turn against each other one way, and those of one that lies on it the
+    /// other way. What is bent turns the same way in all of its layers.
+    fn goes_to_and_fro(&self, e: usize) -> bool {
+        Self::faces_of(self.block, e).iter().any(|face| {
+            let others = self.faces.get(face).into_iter().flatten();
+            others.filter(|f| **f != e).any(|f| {
+                let [own, other] = [e, *f].map(|e| self.into(e, face));
+                let mut pairs = (0..4).flat_map(|a| (0..a).map(move |b| (a, b)));
+                pairs.any(|(a, b)| {
+                    let along = self.nodes[face[a] as usize] - self.nodes[face[b] as usize];
+                    let turn = |into: &[Vec3; 4]| (into[a] - into[b]).dot(&along) / along.norm();
+                    let [own, other] = [turn(&own), turn(&other)];
+                    // Into one element is out of the other.
+                    own.abs() > TURNS && own * other > OTHERS * own * own
+                })
+            })
+        })
+    }
+
+    /// The edges of an element that leave the nodes of one of its faces along the thickness, of unit length.
+    fn into(&self, e: usize, face: &[u32; 4]) -> [Vec3; 4] {
+        let nodes = self.block.nodes_of(e);
+        face.map(|n| {
+            let a = nodes.iter().position(|m| *m == n).unwrap_or(0);
+            let edge = self.nodes[nodes[a ^ 4] as usize] - self.nodes[n as usize];
+            edge.try_normalize(0.0).unwrap_or_default()
+        })
+    }
 }

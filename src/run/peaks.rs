@@ -11,6 +11,8 @@ use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 /// Part of a force at sharp convex edges above which the user is warned.
 const AT_EDGES: f64 = 0.1;
 
+/// Part of the largest force of all contacts below which that of one is rounding.
+const ROUNDING: f64 = 1e-9;
 /// Part of a force at points whose penetration is prescribed above which the user is warned.
 const PRESCRIBED: f64 = 0.01;
 
@@ -144,7 +146,10 @@ impl Peaks {
 
     /// What the user is warned of at the end of a run.
     pub fn warnings(&self, model: &Model) -> Vec<String> {
+        let largest = self.0.iter().fold(0.0f64, |most, p| most.max(p.force));
         let pairs = model.pairs.iter().zip(&self.0);
+        // Shares of what rounding makes of a contact say nothing.
+        let pairs = pairs.filter(|(_, peak)| peak.force > ROUNDING * largest);
         let of = |(pair, peak): (&PairModel, &Peak)| {
             [
                 peak.at_edges(model, pair),
