@@ -119,15 +119,15 @@ fn text_and_binary_give_the_same_mesh() {
     }
 }
 
-/// Shortest edges: radial, one of three different lengths; the sense is the same everywhere.
+/// The shortest way: radial, one of three different lengths; the sense is the same everywhere.
 #[test]
-fn ring_without_a_top_takes_its_shortest_edges() {
+fn ring_without_a_top_takes_its_shortest_way() {
     let (mesh, report) = read("cylinder.msh");
     mesh.check().unwrap();
-    assert_eq!(report.thickness, ThicknessRule::ShortestEdge);
+    assert_eq!(report.thickness, ThicknessRule::ShortestWay);
     assert_eq!(report.notes.len(), 2, "{:?}", report.notes);
     assert!(report.notes[0].contains("physical volume 7 has no name; its set is `volume_7`"));
-    assert!(report.notes[1].contains("shortest edges"));
+    assert!(report.notes[1].contains("shortest way"));
     assert_eq!(mesh.node_set("volume_7").unwrap().len(), 2 * 9 * 4);
     close(report.size.thickness.min, 1.0);
     close(report.size.thickness.max, 1.0);
@@ -544,14 +544,31 @@ fn shuffled_elements_get_one_thickness() {
         mesh.check().unwrap();
         (mesh, report)
     };
-    // Thin layers: by the shortest edges, the sense the same everywhere.
+    // Thin layers: by the shortest way, the sense the same everywhere.
     let (mesh, report) = read(shuffled(&plate_of([4.0, 3.0], 0.3), None));
     let t = thickness(&mesh);
-    assert_eq!(report.thickness, ThicknessRule::ShortestEdge);
+    assert_eq!(report.thickness, ThicknessRule::ShortestWay);
     assert!(
         t.iter()
             .all(|v| (v - t[0]).norm() < 1e-14 && v.z.abs() > 0.09),
         "{t:?}"
+    );
+    // Elements that are shorter in the plane than the one layer is thick.
+    let strip = covact::scene::Plate {
+        size: [4.0, 3.0],
+        thickness: 0.3,
+        elements: [40, 30],
+        layers: 1,
+        origin: [0.0; 3],
+        spacing: Default::default(),
+    };
+    let strip = covact::mesh::plate(&strip, ElementKind::H8).unwrap();
+    let (mesh, report) = read(shuffled(&strip, None));
+    assert_eq!(report.thickness, ThicknessRule::ShortestWay);
+    let t = thickness(&mesh);
+    assert!(
+        t.iter()
+            .all(|v| (v - t[0]).norm() < 1e-13 && v.z.abs() > 0.29)
     );
     // Cubes: by the surface, through three layers.
     for (set, name) in [("top", "top"), ("bottom", "bottom")] {
@@ -565,18 +582,18 @@ fn shuffled_elements_get_one_thickness() {
         assert_eq!(mesh.opposite_nodes().iter().flatten().count(), 40);
         assert!(report.notes.is_empty(), "{:?}", report.notes);
     }
-    // A surface on the side turns the columns along y, against the shortest edges.
+    // A surface on the side turns the columns along y, against the shortest way.
     let (mesh, _) = read(shuffled(&plate_of([4.0, 3.0], 0.3), Some(("y_max", "top"))));
     assert!(
         thickness(&mesh)
             .iter()
             .all(|v| (v - Vec3::y()).norm() < 1e-14)
     );
-    // The top of some elements only: the others follow their neighbours where these have the shortest edges.
+    // The top of some elements only: the others follow their neighbours where these have a shortest way.
     let mut part = plate_of([4.0, 3.0], 0.3);
     part.face_sets.get_mut("bottom").unwrap().truncate(2);
     let (mesh, report) = read(shuffled(&part, Some(("bottom", "top"))));
-    assert_eq!(report.thickness, ThicknessRule::ShortestEdge);
+    assert_eq!(report.thickness, ThicknessRule::ShortestWay);
     assert!(
         thickness(&mesh)
             .iter()

@@ -88,7 +88,7 @@ fn sets_and_surfaces_are_read() {
         "{all}"
     );
     assert!(
-        all.contains("2 of 2 elements have no clearly shortest edges"),
+        all.contains("2 of 2 elements have no clearly shortest way"),
         "{all}"
     );
 }

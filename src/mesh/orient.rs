@@ -1,8 +1,10 @@
 //! Which local direction of a hexahedron is the thickness? Mesh files do not say, shells must know.
 //!
 //! 1. A surface `top` (or `bottom`): from the opposite face to it, through all elements of the column below.
-//! 2. Otherwise along the shortest edges, thinnest elements first, each passing its direction on through its column.
-//! 3. Elements without a clearly shortest direction follow their neighbours, and keep the file's order when no
+//! 2. Otherwise along the shortest way through the body, from face to opposite face through all elements on it: a layer may
+//!    have elements that are shorter in its plane than it is thick. Clearest elements first, each passing its direction on through
+//!    its column.
+//! 3. Elements without a clearly shortest way follow their neighbours, and keep the file's order when no
 //!    neighbour knows either.
 //!
 //! The sense of t is carried from neighbour to neighbour, so that bottom and top are the same side everywhere.
@@ -11,7 +13,7 @@ use super::raw::ThicknessRule;
 use super::topology::FaceTable;
 use super::{Face, Mesh};
 
-/// An edge direction counts as shortest when it is shorter than this part of the next one.
+/// A way counts as shortest when it is shorter than this part of the next one.
 const CLEARLY_SHORTER: f64 = 0.9;
 
 const NO_FACE: Face = Face {
@@ -60,19 +62,19 @@ pub(super) fn orient(
         ));
     }
     if choice.top.contains(&None) {
-        rule = ThicknessRule::ShortestEdge;
+        rule = ThicknessRule::ShortestWay;
         choice.shortest();
         let kept = choice.keep_order();
         if kept > 0 {
             rule = ThicknessRule::FileOrder;
             notes.push(format!(
-                "thickness direction: {kept} of {} elements have no clearly shortest edges; the file's order is kept \
-                 (t = local direction 3). Name a surface `top` to choose it",
+                "thickness direction: {kept} of {} elements have no clearly shortest way through the body; the file's order is \
+                 kept (t = local direction 3). Name a surface `top` to choose it",
                 mesh.elements()
             ));
         } else {
             notes.push(
-                "thickness direction: along the shortest edges. Name a surface `top` to choose it"
+                "thickness direction: along the shortest way through the body. Name a surface `top` to choose it"
                     .to_string(),
             );
         }
@@ -136,9 +138,9 @@ impl Choice<'_> {
     fn shortest(&mut self) {
         // Directions first, with the file's sense; the sense follows in a second pass over the neighbours.
         let mut thin: Vec<(f64, u32, u8)> = Vec::new();
-        for e in 0..self.mesh.elements() {
+        for (e, ways) in self.ways().into_iter().enumerate() {
             if self.top[e].is_none() {
-                let (ratio, axis) = shortest_direction(self.mesh, e);
+                let (ratio, axis) = shortest(ways);
                 if ratio < CLEARLY_SHORTER {
                     thin.push((ratio, e as u32, 2 * axis + 1));
                 }
@@ -150,6 +152,44 @@ impl Choice<'_> {
             self.column(e, face, false);
         }
         self.spread(&free);
+    }
+
+    /// For every element the ways through the body along its three directions: the sum of the mean lengths of the elements that one
+    /// goes through, once round where it comes back.
+    fn ways(&self) -> Vec<[f64; 3]> {
+        let mut ways = vec![[0.0; 3]; self.mesh.elements()];
+        let mut column = Vec::new();
+        for e in 0..self.mesh.elements() as u32 {
+            for axis in 0..3 {
+                if ways[e as usize][axis as usize] > 0.0 {
+                    continue;
+                }
+                let start = (e, 2 * axis);
+                column.clear();
+                column.push(start);
+                for first in [start, (e, 2 * axis + 1)] {
+                    let mut at = first;
+                    loop {
+                        let next = self.beyond[at.0 as usize][at.1 as usize];
+                        if next == NO_FACE || next.element == e && next.face >> 1 == axis {
+                            break;
+                        }
+                        at = (next.element, next.face ^ 1);
+                        column.push(at);
+                    }
+                    // Once round: there is no other way to go.
+                    if self.beyond[at.0 as usize][at.1 as usize] != NO_FACE {
+                        break;
+                    }
+                }
+                let length = |&(e, face): &(u32, u8)| mean_edge(self.mesh, e as usize, face >> 1);
+                let way: f64 = column.iter().map(length).sum();
+                for (e, face) in &column {
+                    ways[*e as usize][(face >> 1) as usize] = way;
+                }
+            }
+        }
+        ways
     }
 
     /// Elements still without a direction keep the file's, column by column; returns their number.
@@ -248,15 +288,19 @@ impl Choice<'_> {
     }
 }
 
-/// Ratio of the shortest mean edge to the next one, and its local direction.
-fn shortest_direction(mesh: &Mesh, e: usize) -> (f64, u8) {
+/// Mean length of the edges of an element along a local direction.
+fn mean_edge(mesh: &Mesh, e: usize, axis: u8) -> f64 {
     let x = mesh.element_positions(e);
-    let mut length = [(0.0, 0u8), (0.0, 1), (0.0, 2)];
-    for (i, [a, b]) in H8_EDGES.iter().enumerate() {
-        length[i / 4].0 += (x[*b as usize] - x[*a as usize]).norm();
-    }
-    length.sort_by(|a, b| a.0.total_cmp(&b.0));
-    (length[0].0 / length[1].0, length[0].1)
+    let edges = H8_EDGES[4 * axis as usize..][..4].iter();
+    let length = |[a, b]: &[u8; 2]| (x[*b as usize] - x[*a as usize]).norm();
+    0.25 * edges.map(length).sum::<f64>()
+}
+
+/// Ratio of the shortest of three ways to the next one, and its direction.
+fn shortest(ways: [f64; 3]) -> (f64, u8) {
+    let mut ways = [(ways[0], 0), (ways[1], 1), (ways[2], 2)];
+    ways.sort_by(|a, b| a.0.total_cmp(&b.0));
+    (ways[0].0 / ways[1].0, ways[0].1)
 }
 
 /// The rotation that makes a local face the top: old local directions along the new r, s and t, and whether t turns over.

@@ -21,8 +21,8 @@ pub enum ThicknessRule {
     Extruded,
     /// From the file's surface `top` (or `bottom`) through the layers below (above) it.
     Surface,
-    /// Along the shortest edges.
-    ShortestEdge,
+    /// Along the shortest way through the body.
+    ShortestWay,
     /// Local direction 3 of the file's elements.
     FileOrder,
 }

@@ -186,6 +186,11 @@ impl ThicknessColumns {
         std::iter::successors(Some(bottom), next)
     }
 
+    /// The nodes above and below one in its column, as far as there is one.
+    pub fn neighbours(&self, node: u32) -> [Option<u32>; 2] {
+        [&self.up, &self.down].map(|side| side.get(node as usize).copied().filter(|n| *n < BRANCH))
+    }
+
     /// [`ThicknessColumns::partner`] of every node.
     pub fn partners(&self) -> Vec<Option<u32>> {
         (0..self.up.len() as u32).map(|n| self.partner(n)).collect()

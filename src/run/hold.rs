@@ -1,12 +1,13 @@
 //! Bodies whose elements with assumed and enhanced strains give way where they are squeezed: the elements do, not the structure,
 //! and what they give may be far off.
 use crate::assembly::Fault;
+use crate::mesh::ThicknessColumns;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
-use crate::shell::{Block, ElementBlock, H8Block};
+use crate::shell::{Block, H8Block};
 use crate::solve::newton::StepFailure;
 use covact_geometry::Vec3;
-use std::collections::BTreeMap;
+use rayon::prelude::*;
 
 /// Cuts of a step after which elements that turn inside out are given up where others may replace them.
 pub(super) const HOPELESS: u32 = 3;
@@ -96,18 +97,30 @@ fn worth_a_look(body: &BodyModel, e: usize) -> f64 {
     }
 }
 
+/// The bodies of H8 elements: their numbers, and the states of their elements.
+fn h8_bodies<'a>(
+    model: &'a Model,
+    state: &'a State,
+) -> impl Iterator<Item = (usize, &'a BodyModel, &'a H8Block, &'a [f64])> {
+    let mut first = 0;
+    model
+        .bodies
+        .iter()
+        .enumerate()
+        .filter_map(move |(number, body)| {
+            let own = first..first + body.block.state_len() * body.block.elements();
+            first = own.end;
+            match &body.block {
+                Block::H8(block) => Some((number, body, block, &state.elements[own])),
+                _ => None,
+            }
+        })
+}
+
 /// The bodies that have squeezed elements which give way in a shape that the plain brick resists, and where one of them is.
 pub(super) fn lost(model: &Model, state: &State) -> Vec<(usize, Vec3)> {
-    let mut first = 0;
-    let bodies = model.bodies.iter().enumerate();
-    let found = bodies.filter_map(|(number, body)| {
-        let len = body.block.state_len();
-        let states = first..first + len * body.block.elements();
-        first = states.end;
-        let Block::H8(block) = &body.block else {
-            return None;
-        };
-        let states = &state.elements[states];
+    let found = h8_bodies(model, state).filter_map(|(number, body, block, states)| {
+        let len = block.state_len();
         let mut squeezed: Vec<(f64, usize)> = (0..block.elements())
             .map(|e| (shortened(body, &state.u, e), e))
             .filter(|(part, e)| len > 0 && *part > worth_a_look(body, *e))
@@ -120,7 +133,7 @@ pub(super) fn lost(model: &Model, state: &State) -> Vec<(usize, Vec3)> {
             (block.loses_hold(e, &u, &states[e * len..][..len])).unwrap_or(true)
         };
         let (_, e) = squeezed.into_iter().find(|(_, e)| gives(*e))?;
-        Some((number, middle(body, &ElementBlock::nodes_of(block, e))))
+        Some((number, middle(body, block, e)))
     });
     found.collect()
 }
@@ -130,35 +143,25 @@ pub(super) struct Unfelt {
     /// The body.
     pub body: usize,
     /// It goes to and fro from layer to layer: elements that bend too little may stand in for these.
-    pub layers: bool,
+    pub layered: bool,
     /// Middle of the one that is farthest from it, before anything moved.
     pub at: Vec3,
     /// Part of its volume that it has lost between its corners, and of which its strains know.
     pub lost: [f64; 2],
 }
 
-/// The bodies with such elements. Assumed shear strains leave out that nodes go to and fro from layer to
-/// layer, while the assumed thickness strains count the longer way between them: elements then keep the volume that their
-/// material resists, and lose the one that they have. What is bent round a radius of few elements shows the same, but less of it.
+/// The bodies with such elements. Assumed shear strains leave out that nodes go to and fro from layer to layer, while the assumed
+/// thickness strains count the longer way between them: elements then keep the volume that their material resists, and lose the
+/// one that they have. What is bent round a radius of few elements shows the same, but less of it.
 pub(super) fn unfelt(model: &Model, state: &State) -> Vec<Unfelt> {
     // What is linear in displacements says nothing of volumes.
     if model.small.is_some() {
         return Vec::new();
     }
-    let mut first = 0;
-    let bodies = model.bodies.iter().enumerate();
-    let found = bodies.filter_map(|(number, body)| {
-        let len = body.block.state_len();
-        let states = first..first + len * body.block.elements();
-        first = states.end;
-        let Block::H8(block) = &body.block else {
-            return None;
-        };
-        if body.block.alpha_len() == 0 {
-            return None;
-        }
-        let states = &state.elements[states];
-        let all = (0..block.elements()).filter_map(|e| {
+    let enhanced = h8_bodies(model, state).filter(|(_, _, block, _)| block.alpha_len() > 0);
+    let found = enhanced.filter_map(|(number, body, block, states)| {
+        let len = block.state_len();
+        let lost = |e: usize| {
             let u = body.displacements(block, e, &state.u);
             let (before, now) = (block.volume(e), block.volume_between(e, &u));
             if now >= (1.0 - UNFELT) * before {
@@ -166,23 +169,23 @@ pub(super) fn unfelt(model: &Model, state: &State) -> Vec<Unfelt> {
             }
             // One that cannot be evaluated fails where it is assembled.
             let felt = (block.volume_felt(e, &u, &states[e * len..][..len])).ok()?;
-            (now < (1.0 - UNFELT) * felt).then_some((
-                now / felt,
-                [now, felt].map(|v| 1.0 - v / before),
-                e,
-            ))
-        });
-        let mut worst: Vec<_> = all.collect();
+            let lost = [now, felt].map(|v| 1.0 - v / before);
+            (now < (1.0 - UNFELT) * felt).then_some((now / felt, lost, e))
+        };
+        let elements = (0..block.elements()).into_par_iter().with_min_len(256);
+        let mut worst: Vec<_> = elements.filter_map(lost).collect();
         worst.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let (ratio, ..) = worst.first()?;
-        let stack = Stack::new(body, block, &state.u);
-        let layers = worst.iter().find(|w| stack.goes_to_and_fro(w.2));
-        let bent = worst.first().filter(|_| *ratio < 1.0 - UNFELT_SHELL);
-        let (_, lost, e) = layers.or(bent)?;
+        let least = worst.first()?.0;
+        let columns = ThicknessColumns::new(&body.mesh);
+        let position = |n: u32| model.position((body.first_node + n) as usize, &state.u);
+        let layered =
+            (worst.iter()).find(|(.., e)| goes_to_and_fro(&block.nodes_of(*e), &columns, position));
+        let bent = worst.first().filter(|_| least < 1.0 - UNFELT_SHELL);
+        let (_, lost, e) = layered.or(bent)?;
         Some(Unfelt {
             body: number,
-            layers: layers.is_some(),
-            at: middle(body, &ElementBlock::nodes_of(block, *e)),
+            layered: layered.is_some(),
+            at: middle(body, block, *e),
             lost: *lost,
         })
     });
@@ -190,73 +193,36 @@ pub(super) fn unfelt(model: &Model, state: &State) -> Vec<Unfelt> {
 }
 
 /// Middle of an element before anything moved.
-fn middle(body: &BodyModel, nodes: &[u32]) -> Vec3 {
-    let sum: Vec3 = nodes.iter().map(|n| body.mesh.nodes[*n as usize]).sum();
-    sum / nodes.len() as f64
+fn middle(body: &BodyModel, block: &H8Block, e: usize) -> Vec3 {
+    let nodes = block.nodes_of(e).map(|n| body.mesh.nodes[n as usize]);
+    nodes.iter().sum::<Vec3>() / 8.0
 }
 
-/// Which elements of a body lie on each other, along their thickness.
-struct Stack<'a> {
-    block: &'a H8Block,
-    /// Elements by the nodes of their lower and upper faces, in ascending order.
-    faces: BTreeMap<[u32; 4], Vec<usize>>,
-    /// Where its nodes are.
-    nodes: Vec<Vec3>,
-}
-
-impl<'a> Stack<'a> {
-    fn new(body: &BodyModel, block: &'a H8Block, u: &[f64]) -> Self {
-        let mut faces: BTreeMap<[u32; 4], Vec<usize>> = BTreeMap::new();
-        for e in 0..block.elements() {
-            for face in Self::faces_of(block, e) {
-                faces.entry(face).or_default().push(e);
-            }
-        }
-        let first = 3 * body.first_node as usize;
-        let moved = u[first..].as_chunks::<3>().0.iter();
-        let nodes = body.mesh.nodes.iter().zip(moved);
-        Stack {
-            block,
-            faces,
-            nodes: nodes.map(|(x, u)| x + Vec3::from(*u)).collect(),
-        }
-    }
-
-    fn faces_of(block: &H8Block, e: usize) -> [[u32; 4]; 2] {
-        let nodes = block.nodes_of(e);
-        [0, 4].map(|first| {
-            let mut face: [u32; 4] = std::array::from_fn(|a| nodes[first + a]);
-            face.sort_unstable();
-            face
-        })
-    }
-
-    /// Whether the edges of an element along the thickness turn against each other one way, and those of one that lies on it the
-    /// other way. What is bent turns the same way in all of its layers.
-    fn goes_to_and_fro(&self, e: usize) -> bool {
-        Self::faces_of(self.block, e).iter().any(|face| {
-            let others = self.faces.get(face).into_iter().flatten();
-            others.filter(|f| **f != e).any(|f| {
-                let [own, other] = [e, *f].map(|e| self.into(e, face));
-                let mut pairs = (0..4).flat_map(|a| (0..a).map(move |b| (a, b)));
-                pairs.any(|(a, b)| {
-                    let along = self.nodes[face[a] as usize] - self.nodes[face[b] as usize];
-                    let turn = |into: &[Vec3; 4]| (into[a] - into[b]).dot(&along) / along.norm();
-                    let [own, other] = [turn(&own), turn(&other)];
-                    // Into one element is out of the other.
-                    own.abs() > TURNS && own * other > OTHERS * own * own
-                })
-            })
-        })
-    }
-
-    /// The edges of an element that leave the nodes of one of its faces along the thickness, of unit length.
-    fn into(&self, e: usize, face: &[u32; 4]) -> [Vec3; 4] {
-        let nodes = self.block.nodes_of(e);
-        face.map(|n| {
-            let a = nodes.iter().position(|m| *m == n).unwrap_or(0);
-            let edge = self.nodes[nodes[a ^ 4] as usize] - self.nodes[n as usize];
-            edge.try_normalize(0.0).unwrap_or_default()
-        })
-    }
+/// Whether the edges of an element along the thickness turn against each other one way, and those that go on from them in the next
+/// layer the other way. What is bent turns the same way in all of its layers.
+fn goes_to_and_fro(
+    nodes: &[u32; 8],
+    columns: &ThicknessColumns,
+    position: impl Fn(u32) -> Vec3,
+) -> bool {
+    let way = |[from, to]: [u32; 2]| (position(to) - position(from)).try_normalize(0.0);
+    let own: [_; 4] = std::array::from_fn(|a| way([nodes[a], nodes[a + 4]]));
+    let above = std::array::from_fn(|a| {
+        let [up, _] = columns.neighbours(nodes[a + 4]);
+        way([nodes[a + 4], up?])
+    });
+    let below = std::array::from_fn(|a| {
+        let [_, down] = columns.neighbours(nodes[a]);
+        way([down?, nodes[a]])
+    });
+    let against = |next: &[Option<Vec3>; 4], a: usize, b: usize| {
+        let along = (position(nodes[a]) - position(nodes[b])).try_normalize(0.0)?;
+        let turn = |ways: &[Option<Vec3>; 4]| Some((ways[a]? - ways[b]?).dot(&along));
+        let (own, next) = (turn(&own)?, turn(next)?);
+        Some(own.abs() > TURNS && -own * next > OTHERS * own * own)
+    };
+    [above, below].iter().any(|next| {
+        let mut pairs = (0..4).flat_map(|a| (0..a).map(move |b| (a, b)));
+        pairs.any(|(a, b)| against(next, a, b).unwrap_or(false))
+    })
 }

@@ -74,8 +74,8 @@ fn unstable(system: &H8System, x: &[Vec3; 8]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::super::Law;
+    use super::super::tests::mesh;
     use super::*;
-    use crate::mesh::{ElementKind, Mesh};
     use crate::scene::{Elastic, Material};
 
     /// One element of the given height on a unit square, shortened along z by a part of its height, the rest free to widen.
@@ -84,21 +84,14 @@ mod tests {
             let bit = |k: usize| f64::from(u8::from(a >> k & 1 == 1));
             Vec3::new(x * bit(0), y * bit(1), z * bit(2))
         };
-        let nodes: Vec<Vec3> = (0..8).map(|a| at(a, [1.0, 1.0, height])).collect();
-        let mesh = Mesh {
-            kind: ElementKind::H8,
-            nodes: nodes.clone(),
-            connectivity: (0..8).collect(),
-            node_sets: Default::default(),
-            face_sets: Default::default(),
-        };
+        let nodes = std::array::from_fn(|a| at(a, [1.0, 1.0, height]));
         let law = Law::new(&Material::NeoHooke(Elastic {
             e: 5.0,
             nu,
             density: None,
         }))
         .unwrap();
-        let block = H8Block::new(&mesh, Formulation::Eas7, law).unwrap();
+        let block = H8Block::new(&mesh(&nodes), Formulation::Eas7, law).unwrap();
         let wide = (1.0 - part).powf(-nu);
         let now = |a: usize| at(a, [wide, wide, height * (1.0 - part)]);
         let u = std::array::from_fn(|a| now(a) - nodes[a]);

@@ -27,6 +27,7 @@ pub use super::failure::StepFailure;
 use super::place;
 use super::unstable::{Unstable, singular};
 use crate::assembly::{Assembler, Fault, Linearization, Totals};
+use crate::contact::friction::law::Slide;
 use crate::machine::clock::Phases;
 use crate::model::Model;
 use crate::model::state::State;
@@ -321,9 +322,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             let keep_active = far && held && iteration < KEPT && norms.relative() > NEAR;
             self.assembler.linearization = Linearization {
                 keep_active,
-                secant_slip: iteration + 1 < secants || keep_active,
+                slide: Slide::secant(iteration + 1 < secants || keep_active),
                 keep_facets: keep,
-                stick_oscillating: false,
             };
             let search =
                 self.settings.line_search && !pending && (searches || since_best >= UNTIL_SEARCH);

@@ -27,6 +27,7 @@ mod touched;
 use crate::system::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
 
 use crate::contact::clearance::Clearance;
+use crate::contact::friction::law::Slide;
 use crate::contact::friction::turning::Turning;
 use crate::contact::law::{PairLaw, Penalty};
 use crate::contact::rigid::{PointFault, Touch};
@@ -199,14 +200,12 @@ enum Kind {
 pub struct Linearization {
     /// Points that are closed in the state stay so wherever they are. The residual is then not that of the state.
     pub keep_active: bool,
-    /// Sliding points have the tangent of their secant. The residual is that of the state.
-    pub secant_slip: bool,
+    /// How points slide. Where some are taken to stick, the residual is not that of the state.
+    pub slide: Slide,
     /// Points keep the facet that they were on across folds of nearly flat facets ([`MovingMaster::keep`]).
     ///
     /// [`MovingMaster::keep`]: crate::contact::moving::MovingMaster::keep
     pub keep_facets: bool,
-    /// Points that slide to and fro are taken to stick. The residual is then not that of the state.
-    pub stick_oscillating: bool,
 }
 
 /// Evaluates the model into a sparse system. The law of normal contact is a type, chosen where the assembler is made: every

@@ -2,12 +2,12 @@
 use super::answer::PointAnswer;
 use super::maps::PointMaps;
 use super::pressed::{Pressed, PressedSums};
-use super::sliding::Secants;
+use super::sliding::Slides;
 use super::{Assembler, Fault, Linearization, PairForce, SurfaceForce, Totals, touched};
 use crate::contact::clearance::Clearance;
 use crate::contact::closest::ClosestPoint;
 use crate::contact::friction::history::PointHistory;
-use crate::contact::friction::law::FrictionLaw;
+use crate::contact::friction::law::{FrictionLaw, Slide};
 use crate::contact::friction::rigid::{Friction, FrictionTouch};
 use crate::contact::friction::turning::Turning;
 use crate::contact::kind::{FrictionKind, LawKind, TangentKind};
@@ -84,9 +84,8 @@ impl<L: PairLaw> Assembler<'_, L> {
             let points = &mut state.points[first..first + n];
             let Linearization {
                 keep_active: hold,
-                secant_slip: secant,
+                slide,
                 keep_facets: keep,
-                stick_oscillating,
             } = self.linearization;
             self.held.clear();
             if hold && pair.friction.is_none() {
@@ -148,10 +147,9 @@ impl<L: PairLaw> Assembler<'_, L> {
                     (planned, Some((now, eps_t, histories))) => with_law!(*now, law => {
                         let friction = Friction { law, eps_t: *eps_t };
                         let slips = &mut self.slips[pair.history().unwrap_or(0..0)];
-                        let slips = (slips, Secants {
-                            all: secant,
-                            stick: stick_oscillating,
-                            keep: TANGENT && planned != LawKind::Multipliers,
+                        let slips = (slips, Slides {
+                            slide,
+                            note: TANGENT && slide != Slide::Stick && planned != LawKind::Multipliers,
                         });
                         let ran = match planned {
                             LawKind::Multipliers => {
@@ -269,7 +267,7 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
         clear: &mut [Clearance],
         touches: &mut [Result<Option<Touch>, PointFault>],
         answers: &mut [A],
-        (slips, secants): (&mut [Turning], Secants),
+        (slips, slides): (&mut [Turning], Slides),
         friction: &Friction<F>,
         histories: &[PointHistory],
         offsets: Option<Offsets>,
@@ -291,7 +289,7 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
                     held: hold && s.closed,
                     ..history.law(*self.law, offsets.map_or(0.0, |o| o.at(i)))
                 };
-                let secant = friction.secant((secants.all, secants.stick), slip);
+                let secant = friction.sliding(slides.slide, slip);
                 let touch = placed.touch_with_friction(
                     &x,
                     (&mut s.hint, clear, p.overhang(s.closed)),
@@ -299,7 +297,7 @@ impl<P: ClosestPoint, L: PairLaw> Batch<'_, P, L> {
                     &secant,
                     history,
                 );
-                if secants.keep && !secants.stick {
+                if slides.note {
                     slip.note(touched::of(&touch).map(|t| &t.traction.slip));
                 }
                 answer.tell(touched::of(&touch), history, friction.eps_t);

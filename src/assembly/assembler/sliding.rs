@@ -8,7 +8,7 @@ use super::touched::{self, Touched};
 use super::{Assembler, Fault, Linearization, PairForce, SurfaceForce, Totals, put};
 use crate::contact::clearance::Clearance;
 use crate::contact::friction::history::PointHistory;
-use crate::contact::friction::law::FrictionLaw;
+use crate::contact::friction::law::{FrictionLaw, Slide};
 use crate::contact::friction::moving::{Form, Full, Reduced};
 use crate::contact::friction::rigid::Friction;
 use crate::contact::friction::scatter::{MOST, PointNodes};
@@ -148,10 +148,11 @@ impl Sliding {
             law: L::of(penalty),
             u,
             histories,
-            secants: Secants {
-                all: linearization.secant_slip,
-                stick: linearization.stick_oscillating,
-                keep: tangent && kernel.law != LawKind::Multipliers,
+            slides: Slides {
+                slide: linearization.slide,
+                note: tangent
+                    && linearization.slide != Slide::Stick
+                    && kernel.law != LawKind::Multipliers,
             },
             hold: linearization.keep_active,
             offsets: pair.offsets(time),
@@ -387,16 +388,13 @@ pub(super) fn slips(model: &Model) -> usize {
     }
 }
 
-/// Where friction is linearised by its secant.
+/// How friction is linearised.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Secants {
-    /// At every point that slides, and not only where one has turned.
-    pub all: bool,
-    /// Points that slide to and fro are taken to stick.
-    pub stick: bool,
+pub(super) struct Slides {
+    pub slide: Slide,
     /// Whether the tractions found are those that the next linearisation compares with. Not so with multipliers: they hold a
     /// point already, and the secant, which knows nothing of them, leads to other equilibria.
-    pub keep: bool,
+    pub note: bool,
 }
 
 /// The slave points of a pair at one trial state.
@@ -408,7 +406,7 @@ struct Batch<'a, L> {
     law: L,
     u: &'a [f64],
     histories: &'a [PointHistory],
-    secants: Secants,
+    slides: Slides,
     /// Points that are closed stay so.
     hold: bool,
     offsets: Option<Offsets<'a>>,
@@ -456,10 +454,10 @@ impl<L: PairLaw> Batch<'_, L> {
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
                 let hint = &mut s.hint;
-                let secant = friction.secant((self.secants.all, self.secants.stick), slip);
+                let secant = friction.sliding(self.slides.slide, slip);
                 *out = (self.master)
                     .touch_with_friction(&x, hint, &law, &secant, history, form, facet);
-                if self.secants.keep && !self.secants.stick {
+                if self.slides.note {
                     slip.note(touched::of(out).map(|t| &t.response.slip));
                 }
             });

@@ -80,6 +80,25 @@ impl FrictionLaw for Coulomb {
     }
 }
 
+/// How sliding is linearised.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Slide {
+    /// By its tangent, but by the secant where a point has turned.
+    #[default]
+    Tangent,
+    /// By the secant.
+    Secant,
+    /// Not at all: the traction is the trial traction, whatever the law allows.
+    Stick,
+}
+
+impl Slide {
+    /// By the secant, or not.
+    pub const fn secant(on: bool) -> Slide {
+        if on { Slide::Secant } else { Slide::Tangent }
+    }
+}
+
 /// A law with the tangent of its secant where a point slides: `dT/dT_tr = |T| / |T_tr|` in all directions. A traction that slides
 /// offers no resistance along its direction, so that Newton's method overshoots points that should stick, whose range is as
 /// small as the penalty is stiff, and sends them to and fro. The secant holds all points until it shows which way they go, and
@@ -87,10 +106,7 @@ impl FrictionLaw for Coulomb {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Secant<F> {
     pub law: F,
-    /// Every point that slides.
-    pub on: bool,
-    /// As if the point stuck: its traction is its trial traction, whatever the law allows.
-    pub stuck: bool,
+    pub slide: Slide,
     /// Traction at the last linearisation (force / length^2): a point that slides the other way now has gone too far. Zero where
     /// there is none.
     pub last: Vector3<f64>,
@@ -104,13 +120,13 @@ impl<F: FrictionLaw> FrictionLaw for Secant<F> {
         normal: &Vector3<D>,
         pressure: D,
     ) -> Slip<D> {
-        if self.stuck {
+        if self.slide == Slide::Stick {
             return Slip::stick(trial);
         }
         let slip = self.law.slip(trial, normal, pressure);
         let turned = || slip.t.map(|x| x.re()).dot(&self.last) < 0.0;
         let norm = |v: &Vector3<D>| v.map(|x| x.re()).norm();
-        if !slip.slides || !(self.on || turned()) {
+        if !slip.slides || !(self.slide == Slide::Secant || turned()) {
             return slip;
         }
         Slip {
@@ -130,18 +146,19 @@ mod tests {
         let (n, trial) = (Vector3::z(), Vector3::new(3.0, 4.0, 0.0));
         let exact = law.slip(&trial, &n, 2.0);
         // A point that was drawn the other way has turned; one that was drawn as now, or not at all, has not.
-        let secant = |on, last: f64| Secant {
+        let secant = |slide, last: f64| Secant {
             law,
-            on,
-            stuck: false,
+            slide,
             last: exact.t * last,
         };
-        assert_eq!(secant(false, 0.0).slip(&trial, &n, 2.0), exact);
-        assert_eq!(secant(false, 0.7).slip(&trial, &n, 2.0), exact);
-        let turned = secant(false, -0.1).slip(&trial, &n, 2.0);
-        assert_eq!(turned, secant(true, 0.0).slip(&trial, &n, 2.0));
+        assert_eq!(secant(Slide::Tangent, 0.0).slip(&trial, &n, 2.0), exact);
+        assert_eq!(secant(Slide::Tangent, 0.7).slip(&trial, &n, 2.0), exact);
+        let turned = secant(Slide::Tangent, -0.1).slip(&trial, &n, 2.0);
+        assert_eq!(turned, secant(Slide::Secant, 0.0).slip(&trial, &n, 2.0));
         assert_ne!(turned.d_trial, exact.d_trial);
-        let secant = secant(true, 0.0);
+        let stuck = secant(Slide::Stick, -0.1).slip(&trial, &n, 2.0);
+        assert_eq!((stuck, stuck.t), (Slip::stick(&trial), trial));
+        let secant = secant(Slide::Secant, 0.0);
         let slip = secant.slip(&trial, &n, 2.0);
         assert_eq!((slip.t, slip.d_pressure), (exact.t, exact.d_pressure));
         assert!((exact.d_trial * trial).norm() < 1e-15);

@@ -1,6 +1,6 @@
 //! Contact with friction on a rigid master.
 use super::history::PointHistory;
-use super::law::{FrictionLaw, Secant};
+use super::law::{FrictionLaw, Secant, Slide};
 use super::trial::{Attraction, Traction};
 use super::turning::Turning;
 use crate::contact::clearance::Clearance;
@@ -37,16 +37,18 @@ pub struct FrictionTouch {
 }
 
 impl<F> Friction<F> {
-    /// The law of a point that slid as told before; `on`: with the secant wherever it slides.
-    pub fn secant(&self, (on, stick): (bool, bool), turning: &Turning) -> Friction<Secant<F>>
+    /// The law of a point that slid as told before. Only points that slide to and fro are taken to stick.
+    pub fn sliding(&self, slide: Slide, turning: &Turning) -> Friction<Secant<F>>
     where
         F: Copy,
     {
         Friction {
             law: Secant {
                 law: self.law,
-                on,
-                stuck: stick && turning.oscillates(),
+                slide: match slide {
+                    Slide::Stick if !turning.oscillates() => Slide::Tangent,
+                    slide => slide,
+                },
                 last: *turning.last(),
             },
             eps_t: self.eps_t,

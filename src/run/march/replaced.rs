@@ -58,9 +58,9 @@ impl March<'_, '_> {
             100.0 * worst.lost[0],
             100.0 * worst.lost[1],
         );
-        let blocks = unfelt.iter().filter(|h| h.layers);
+        let blocks = unfelt.iter().filter(|h| h.layered);
         let lost: Vec<_> = blocks.map(|h| (h.body, h.at)).collect();
-        let helps = match worst.layers {
+        let helps = match worst.layered {
             true => HOLDS,
             false => "a finer mesh follows farther",
         };

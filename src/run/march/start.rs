@@ -387,18 +387,9 @@ fn mumps(
     loaded: &LoadedScene,
     settings: &crate::scene::Mumps,
 ) -> crate::system::linear::MumpsOptions {
-    use crate::scene::{MumpsOrdering as Asked, OutOfCore};
-    use crate::system::linear::{MumpsOptions, MumpsOrdering};
-    MumpsOptions {
-        ordering: match settings.ordering {
-            Asked::Auto => MumpsOrdering::Auto,
-            Asked::Metis => MumpsOrdering::Metis,
-            Asked::Amd => MumpsOrdering::Amd,
-            Asked::Scotch => MumpsOrdering::Scotch,
-            Asked::Pord => MumpsOrdering::Pord,
-            Asked::Amf => MumpsOrdering::Amf,
-            Asked::Qamd => MumpsOrdering::Qamd,
-        },
+    use crate::scene::OutOfCore;
+    crate::system::linear::MumpsOptions {
+        ordering: settings.ordering,
         out_of_core: match &settings.out_of_core {
             OutOfCore::Temporary(false) => None,
             OutOfCore::Temporary(true) => Some(std::env::temp_dir()),

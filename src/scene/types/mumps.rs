@@ -36,6 +36,21 @@ pub enum MumpsOrdering {
     Qamd,
 }
 
+impl MumpsOrdering {
+    /// The name in scenes.
+    pub const fn name(self) -> &'static str {
+        match self {
+            MumpsOrdering::Auto => "auto",
+            MumpsOrdering::Metis => "metis",
+            MumpsOrdering::Amd => "amd",
+            MumpsOrdering::Scotch => "scotch",
+            MumpsOrdering::Pord => "pord",
+            MumpsOrdering::Amf => "amf",
+            MumpsOrdering::Qamd => "qamd",
+        }
+    }
+}
+
 /// Whether factors are kept on the disk, and where.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(untagged)]

@@ -60,30 +60,21 @@ fn ratio(metric: &Metric, strain: &[f64; 6]) -> Result<f64, Collapsed> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{ElementKind, Mesh};
     use crate::scene::{Elastic, Material};
     use crate::shell::Law;
+    use crate::shell::tests::mesh;
 
     /// A unit cube about the origin whose corners `at` moves: the volume between them, and the one that it feels.
     fn volumes(formulation: Formulation, at: impl Fn(Vec3) -> Vec3) -> [f64; 2] {
         let half = |a: usize, bit: usize| f64::from(u8::from(a >> bit & 1 == 1)) - 0.5;
-        let nodes: Vec<Vec3> = (0..8)
-            .map(|a| Vec3::new(half(a, 0), half(a, 1), half(a, 2)))
-            .collect();
-        let mesh = Mesh {
-            kind: ElementKind::H8,
-            nodes: nodes.clone(),
-            connectivity: (0..8).collect(),
-            node_sets: Default::default(),
-            face_sets: Default::default(),
-        };
+        let nodes = std::array::from_fn(|a| Vec3::new(half(a, 0), half(a, 1), half(a, 2)));
         let law = Law::new(&Material::NeoHooke(Elastic {
             e: 1.0,
             nu: 0.3,
             density: None,
         }))
         .unwrap();
-        let block = H8Block::new(&mesh, formulation, law).unwrap();
+        let block = H8Block::new(&mesh(&nodes), formulation, law).unwrap();
         let u = std::array::from_fn(|a| at(nodes[a]) - nodes[a]);
         let state = vec![0.0; block.state_len()];
         let felt = block.volume_felt(0, &u, &state).unwrap();

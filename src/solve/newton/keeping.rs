@@ -2,6 +2,7 @@
 //! that follows.
 use super::{MANY_OPENED, MOST_OPEN, Newton, SECANTS};
 use crate::assembly::{Fault, Linearization, Totals};
+use crate::contact::friction::law::Slide;
 use crate::model::state::{PointState, State};
 use crate::solve::convergence::Verdict;
 use crate::system::linear::LinearSolver;
@@ -17,9 +18,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let secants = if self.first.secants { SECANTS } else { 0 };
         self.assembler.linearization = Linearization {
             keep_active: false,
-            secant_slip: secants > 0,
+            slide: Slide::secant(secants > 0),
             keep_facets: false,
-            stick_oscillating: false,
         };
         self.workspace.base.points.clone_from(&trial.points);
         self.assembler.begin_solution();
@@ -52,9 +52,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         trial.points.copy_from_slice(&self.workspace.base.points);
         self.assembler.linearization = Linearization {
             keep_active: true,
-            secant_slip: true,
+            slide: Slide::Secant,
             keep_facets: false,
-            stick_oscillating: false,
         };
         Ok((self.linearize(trial, time, (pending, false))?, SECANTS))
     }
@@ -82,9 +81,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let linearization = self.assembler.linearization;
         self.assembler.linearization = Linearization {
             keep_active: true,
-            secant_slip: true,
+            slide: Slide::Secant,
             keep_facets: false,
-            stick_oscillating: false,
         };
         let kept = self.linearize(trial, time, (false, false)).ok();
         if kept.is_none() {
@@ -101,7 +99,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             return Ok(None);
         }
         self.assembler.linearization = Linearization {
-            stick_oscillating: true,
+            slide: Slide::Stick,
             ..Linearization::default()
         };
         self.linearize(trial, time, (false, false)).map(Some)

@@ -24,7 +24,7 @@ pub use device::DeviceFault;
 pub use foreign::ForeignSolver;
 pub use lu::LuSolver;
 #[cfg(feature = "mumps")]
-pub use mumps::{MumpsOptions, MumpsOrdering};
+pub use mumps::MumpsOptions;
 pub use mumps_fault::MumpsFault;
 
 use crate::machine::memory::Shortage;

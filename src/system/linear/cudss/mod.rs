@@ -84,11 +84,7 @@ impl Backend for Cudss {
 
     fn solve(&mut self, x: &mut [f64]) -> Result<(), LinearError> {
         let prepared = self.prepared.as_mut().ok_or(LinearError::NotFactorized)?;
-        let n = prepared.csr.rows().max(1);
-        for column in x.chunks_exact_mut(n) {
-            prepared.device.solve(column)?;
-        }
-        Ok(())
+        Ok(prepared.device.solve(x)?)
     }
 
     fn clear(&mut self) {

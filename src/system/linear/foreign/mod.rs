@@ -8,8 +8,8 @@ mod csr;
 pub(super) use csr::Csr;
 
 use super::{
-    Analysis, DirectSolver, DofName, Factorization, LinearError, LinearSolver, LuSolver,
-    SolverOptions, first_not_finite, reserved, same_pattern,
+    Analysis, DirectSolver, Factorization, LinearError, LinearSolver, LuSolver, SolverOptions,
+    first_not_finite, reserved, same_pattern,
 };
 use crate::system::{Pattern, SystemMatrix};
 use std::fmt;
@@ -28,7 +28,7 @@ pub(super) trait Backend: Send {
     /// Factorizes a matrix on the analysed pattern, whose values are finite. None where the host does it better.
     fn factorize(&mut self, matrix: &SystemMatrix) -> Result<Option<Factorization>, LinearError>;
 
-    /// Overwrites right-hand sides of the right length, one after the other, with their solutions.
+    /// Overwrites a right-hand side of the right length with the solution.
     fn solve(&mut self, x: &mut [f64]) -> Result<(), LinearError>;
 
     /// Frees everything.
@@ -100,35 +100,6 @@ impl ForeignSolver {
     /// The pattern that was analysed.
     pub fn pattern(&self) -> Option<&Arc<Pattern>> {
         self.prepared.as_ref().map(|p| &p.pattern)
-    }
-
-    /// Overwrites right-hand sides, one after the other, with their solutions, as [`solve_in_place`](LinearSolver::solve_in_place)
-    /// does with one.
-    ///
-    /// # Errors
-    /// Those of one.
-    pub fn solve_columns_in_place(&mut self, columns: &mut [f64]) -> Result<(), LinearError> {
-        let prepared = self.prepared.as_ref().ok_or(LinearError::NotAnalyzed)?;
-        let expected = prepared.rhs.len();
-        if !columns.len().is_multiple_of(expected.max(1)) {
-            let given = columns.len();
-            return Err(LinearError::Length { given, expected });
-        }
-        if prepared.at != At::Backend {
-            let mut columns = columns.chunks_exact_mut(expected.max(1));
-            return columns.try_for_each(|column| self.solve_in_place(column));
-        }
-        if let Some(dof) = first_not_finite(columns) {
-            let dof = DofName::new(dof.dof() % expected);
-            return Err(LinearError::NonFiniteRightHandSide { dof });
-        }
-        self.backend.solve(columns)?;
-        match first_not_finite(columns) {
-            Some(dof) => Err(LinearError::NonFiniteSolution {
-                dof: DofName::new(dof.dof() % expected),
-            }),
-            None => Ok(()),
-        }
     }
 
     /// Leaves everything from here on to the host.

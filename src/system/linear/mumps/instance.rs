@@ -2,7 +2,8 @@
 use super::super::MumpsFault;
 use super::layout::{self, Layout};
 use super::library::Api;
-use super::settings::{MumpsOptions, MumpsOrdering};
+use super::settings::MumpsOptions;
+use crate::scene::MumpsOrdering;
 use std::ptr;
 use tempfile::TempDir;
 
@@ -139,7 +140,7 @@ impl Instance {
         match &self.entries.places {
             Some(_) => self.control(icntl::ORDERING, GIVEN),
             None => {
-                self.control(icntl::ORDERING, asked.number());
+                self.control(icntl::ORDERING, number(asked));
                 // Three unknowns a node: the ordering sees nodes.
                 self.control(icntl::BLOCKS, -3);
             }
@@ -165,7 +166,7 @@ impl Instance {
             write(at, layout::PERM_IN, places);
         }
         self.call(Job::Analysis)?;
-        if self.entries.places.is_none() && self.infog(7) != asked.number() {
+        if self.entries.places.is_none() && self.infog(7) != number(asked) {
             let asked = asked.name();
             return Err(MumpsFault::NoOrdering { asked });
         }
@@ -209,24 +210,23 @@ impl Instance {
         }
     }
 
-    /// Overwrites right-hand sides, one after the other, with their solutions.
+    /// Overwrites a right-hand side with the solution.
     ///
     /// # Errors
     /// [`MumpsFault::Code`]
     pub fn solve(&mut self, x: &mut [f64]) -> Result<(), MumpsFault> {
         let n = self.entries.order;
-        assert_eq!(x.len() % n.max(1), 0);
-        let columns = x.len() / n.max(1);
+        assert_eq!(x.len(), n);
         let at = (&raw mut self.raw.0).cast::<u8>();
-        // SAFETY: the layout is that of the library, and the right-hand sides are as long as is stated.
+        // SAFETY: the layout is that of the library, and the right-hand side is as long as is stated.
         unsafe {
-            write(at, self.layout.nrhs, columns as i32);
+            write(at, self.layout.nrhs, 1i32);
             write(at, self.layout.lrhs, n as i32);
             write(at, self.layout.rhs, x.as_mut_ptr());
         }
         let solved = self.call(Job::Solution);
         let at = (&raw mut self.raw.0).cast::<u8>();
-        // SAFETY: as above. The right-hand sides are not the instance's.
+        // SAFETY: as above. The right-hand side is not the instance's.
         unsafe { write(at, self.layout.rhs, ptr::null_mut::<f64>()) };
         solved
     }
@@ -374,18 +374,16 @@ impl Job {
     }
 }
 
-impl MumpsOrdering {
-    /// As MUMPS's `ICNTL(7)`.
-    fn number(self) -> i32 {
-        match self {
-            MumpsOrdering::Amd => 0,
-            MumpsOrdering::Amf => 2,
-            MumpsOrdering::Scotch => 3,
-            MumpsOrdering::Pord => 4,
-            MumpsOrdering::Metis => 5,
-            MumpsOrdering::Qamd => 6,
-            MumpsOrdering::Auto => 7,
-        }
+/// MUMPS's `ICNTL(7)`.
+fn number(ordering: MumpsOrdering) -> i32 {
+    match ordering {
+        MumpsOrdering::Amd => 0,
+        MumpsOrdering::Amf => 2,
+        MumpsOrdering::Scotch => 3,
+        MumpsOrdering::Pord => 4,
+        MumpsOrdering::Metis => 5,
+        MumpsOrdering::Qamd => 6,
+        MumpsOrdering::Auto => 7,
     }
 }
 

@@ -10,7 +10,7 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
-pub use settings::{MumpsOptions, MumpsOrdering};
+pub use settings::MumpsOptions;
 
 use super::foreign::{Backend, Csr, ForeignSolver};
 use super::{
@@ -18,6 +18,7 @@ use super::{
     SolverOptions, ordering, reserved,
 };
 use crate::machine::memory;
+use crate::scene::MumpsOrdering;
 use crate::system::{Pattern, SystemMatrix};
 use instance::{Entries, Instance, Kind};
 

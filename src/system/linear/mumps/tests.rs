@@ -301,29 +301,6 @@ fn settings_change_no_solution() {
     }
 }
 
-/// Several right-hand sides at once have the solutions that they have alone.
-#[test]
-fn several_right_hand_sides() {
-    if !present() {
-        return;
-    }
-    let matrix = matrix([6, 5, 3], Like::Indefinite(40.0), 2);
-    let n = matrix.pattern().dofs();
-    let mut solver = mumps(true, MumpsOptions::default());
-    solver.analyze(matrix.pattern()).expect("analysed");
-    solver.factorize(&matrix).expect("regular");
-    let mut all = Numbers(1).vector(5 * n);
-    let given = all.clone();
-    solver.solve_columns_in_place(&mut all).expect("solved");
-    for (x, rhs) in all.chunks(n).zip(given.chunks(n)) {
-        let mut alone = rhs.to_vec();
-        solver.solve_in_place(&mut alone).expect("solved");
-        assert!(difference(x, &alone) < 1e-13);
-    }
-    let odd = solver.solve_columns_in_place(&mut all[1..]);
-    assert!(matches!(odd, Err(LinearError::Length { .. })), "{odd:?}");
-}
-
 /// A folder that is not there, and one whose name is too long, are refused before anything is factorized.
 #[test]
 fn folders_that_cannot_be_used() {
