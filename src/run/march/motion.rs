@@ -155,7 +155,7 @@ impl March<'_, '_> {
             return;
         };
         let (greatest, lost) = (inertia.motion().greatest, self.watch.imbalance);
-        let greatest = greatest.max(self.watch.turned_over());
+        let greatest = greatest.max(self.watch.external.abs());
         if -lost > GAINS * greatest {
             let part = format!("{:.0} %", 100.0 * GAINS);
             self.warn_of_step(
