@@ -2,7 +2,7 @@
 use super::Model;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::points::SlavePoint;
-use crate::shell::{ElementBlock, ElementFault, PlasticWork, with_block};
+use crate::shell::{ElementBlock, ElementFault, Flow, PlasticWork, with_block};
 use covact_geometry::Hint;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -110,13 +110,13 @@ impl State {
         out.stabilized = self.stabilized;
     }
 
-    /// Takes the displacements and enhanced strains of an accepted step into what material laws remember; returns by how much the
-    /// equivalent plastic strain of a point grew at most.
+    /// Takes the displacements and enhanced strains of an accepted step into what material laws remember; returns how these
+    /// flowed.
     ///
     /// # Errors
     /// The body and the element whose strain is impossible.
-    pub fn remember(&mut self, model: &Model) -> Result<f64, (String, ElementFault)> {
-        let (mut first, mut most) = (0, 0.0);
+    pub fn remember(&mut self, model: &Model) -> Result<Flow, (String, ElementFault)> {
+        let (mut first, mut all) = (0, Flow::default());
         for body in &model.bodies {
             let len = model.state_len(body);
             let own = first..first + len * body.block.elements();
@@ -125,18 +125,20 @@ impl State {
                 continue;
             }
             let (u, states) = (&self.u, &mut self.elements[own]);
-            let flow = with_block!(&body.block, block => {
+            // Collected, and summed one after the other: the same bits on any number of threads.
+            let flows: Result<Vec<Flow>, _> = with_block!(&body.block, block => {
                 (states.par_chunks_mut(len).enumerate())
                     .with_min_len(64)
                     .map(|(e, state)| {
                         let u = body.displacements(block, e, u);
                         ElementBlock::remember(block, e, &u, state)
                     })
-                    .try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
+                    .collect()
             });
-            most = flow.map_err(|fault| (body.name.clone(), fault))?.max(most);
+            let flows = flows.map_err(|fault| (body.name.clone(), fault))?;
+            all = std::iter::once(all).chain(flows).sum();
         }
-        Ok(most)
+        Ok(all)
     }
 
     /// Work that plastic flow has taken since the start; zero where no law flows.

@@ -308,7 +308,9 @@ impl March<'_, '_> {
                             self.move_on(moved, end, work, &mut walk.stepping);
                         }
                     }
-                    walk.stepping.flowed(dt, flow);
+                    let turns = walk.stepping.at_kink(start);
+                    let lag = (self.watch).flowed(flow, &work, turns);
+                    walk.stepping.flowed(dt, flow.most, lag);
                     if let Some(jump) = passing.filter(|_| walk.jump.is_none()) {
                         self.tell_jump(&jump, committed);
                     }
@@ -463,6 +465,9 @@ impl March<'_, '_> {
         if self.model.dynamics.is_none()
             && let Some(text) = self.watch.drift(self.model)
         {
+            self.warn(text);
+        }
+        if let Some(text) = self.watch.lagging() {
             self.warn(text);
         }
         let soft = (self.compliance).warning(self.model, &self.assembler.penalties);

@@ -10,6 +10,7 @@
 //! change counts as that. A point with a multiplier does the work of its tractions; what of that the penalty does not hold counts, with its sign.
 //!
 //! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
+mod lag;
 #[cfg(test)]
 mod tests;
 mod twist;
@@ -21,6 +22,7 @@ use crate::model::Model;
 use crate::model::error::number;
 use crate::model::state::State;
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
+use crate::shell::Flow;
 use twist::Twist;
 
 /// Share of the work turned over so far above which a step that no trapezoid explains is told.
@@ -47,6 +49,8 @@ pub struct Watch {
     pub imbalance: f64,
     /// Sum of the sizes of all works, whatever their signs (energy).
     pub turnover: f64,
+    /// How materials have flowed.
+    flow: Flow,
     /// The largest change of the imbalance in one step, and that step.
     pub worst: f64,
     pub worst_step: u32,
@@ -192,6 +196,7 @@ impl Watch {
             adjusted: self.adjusted + changed,
             imbalance: self.imbalance,
             turnover: self.turnover,
+            flow: self.flow,
             worst: self.worst,
             worst_step: self.worst_step,
             speed: self.speed,
@@ -209,6 +214,7 @@ impl Watch {
             adjusted,
             imbalance,
             turnover,
+            flow: Flow { most, work, lag },
             worst,
             worst_step,
             speed,
@@ -224,6 +230,7 @@ impl Watch {
         } = self;
         out.bool(*snaps);
         out.f64s(&[*external, *adjusted, *imbalance, *turnover, *worst]);
+        out.f64s(&[*most, *work, *lag]);
         out.u32(*worst_step);
         out.f64s(speed);
         out.f64s(span);
@@ -253,6 +260,10 @@ impl Watch {
             watch.turnover,
             watch.worst,
         ] = sums;
+        let mut flow = [0.0; 3];
+        from.f64s(&mut flow)?;
+        let [most, work, lag] = flow;
+        watch.flow = Flow { most, work, lag };
         watch.worst_step = from.u32()?;
         from.f64s(&mut watch.speed)?;
         from.f64s(&mut watch.span)?;

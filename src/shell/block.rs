@@ -1,7 +1,7 @@
 //! The elements of a body, whatever their shape: one trait for the loops, one enum for the body.
 use super::error::{ElementFault, ShellError};
 use super::h8::{Formulation, H8Block, H8System};
-use super::history::PlasticWork;
+use super::history::{Flow, PlasticWork};
 use super::material::{J2State, Law, LawState};
 use super::nurbs::{self, NurbsBlock, NurbsSystem};
 use super::q18::{DOFS, Q18Block, Q18System};
@@ -50,7 +50,7 @@ pub trait ElementBlock<const N: usize>: Sync {
     /// Numbers that the law remembers per element, at the end of its state.
     fn history_len(&self) -> usize;
     /// Takes an accepted step into the states of the law; see [`H8Block::remember`].
-    fn remember(&self, e: usize, u: &[Vec3; N], state: &mut [f64]) -> Result<f64, ElementFault>;
+    fn remember(&self, e: usize, u: &[Vec3; N], state: &mut [f64]) -> Result<Flow, ElementFault>;
     /// Equivalent plastic strain, and equivalent stress over yield stress, at the nodes.
     fn flow_measures(&self, e: usize, state: &[f64]) -> [[f64; 2]; N];
     /// What flow has taken of the work on element `e`.
@@ -156,7 +156,7 @@ macro_rules! delegate {
             e: usize,
             u: &[Vec3; $n],
             state: &mut [f64],
-        ) -> Result<f64, ElementFault> {
+        ) -> Result<Flow, ElementFault> {
             self.remember(e, u, state)
         }
         fn flow_measures(&self, e: usize, state: &[f64]) -> [[f64; 2]; $n] {
@@ -303,8 +303,8 @@ impl ElementBlock<{ nurbs::NODES }> for NurbsBlock {
         _: usize,
         _: &[Vec3; nurbs::NODES],
         _: &mut [f64],
-    ) -> Result<f64, ElementFault> {
-        Ok(0.0)
+    ) -> Result<Flow, ElementFault> {
+        Ok(Flow::default())
     }
     fn flow_measures(&self, _: usize, _: &[f64]) -> [[f64; 2]; nurbs::NODES] {
         [[0.0; 2]; nurbs::NODES]

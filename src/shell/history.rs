@@ -4,27 +4,54 @@ use super::material::{Collapsed, LawState, MaterialLaw, Metric, state_of};
 use super::stress;
 use std::iter::Sum;
 
-/// Advances the states of the law at all points of an element, whose metric and strain `at` gives; returns by how much the
-/// equivalent plastic strain grew at most.
+/// How a material flowed over a step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Flow {
+    /// By how much the equivalent plastic strain of a point grew at most.
+    pub most: f64,
+    /// Work of the yield stress (energy).
+    pub work: f64,
+    /// Plastic work that a step leaves out because flow turns within it (energy): a step flows all along the direction of its
+    /// end, while flow turns there from that of its start. Half of the chord between both directions, times the work: of first
+    /// order in the step.
+    pub lag: f64,
+}
+
+impl Sum for Flow {
+    fn sum<I: Iterator<Item = Flow>>(all: I) -> Flow {
+        all.fold(Flow::default(), |sum, one| Flow {
+            most: sum.most.max(one.most),
+            work: sum.work + one.work,
+            lag: sum.lag + one.lag,
+        })
+    }
+}
+
+/// Advances the states of the law at all points of an element, whose metric and strain `at` gives; returns how it flowed there.
 pub(super) fn advance<L: MaterialLaw>(
     law: &L,
     at: impl Fn(usize) -> (Metric, [f64; 6]),
+    volumes: impl Iterator<Item = f64>,
     states: &mut [f64],
-) -> Result<f64, (u8, Collapsed)> {
-    let mut most = 0.0;
+) -> Result<Flow, (u8, Collapsed)> {
+    let mut all = Flow::default();
     if L::State::LEN == 0 {
-        return Ok(most);
+        return Ok(all);
     }
-    for (g, state) in states.chunks_exact_mut(L::State::LEN).enumerate() {
+    let states = states.chunks_exact_mut(L::State::LEN);
+    for (g, (state, volume)) in states.zip(volumes).enumerate() {
         let (metric, strain) = at(g);
         let old = L::State::read(state);
         let new = law
             .advance(&metric, &strain, &old)
             .map_err(|c| (g as u8, c))?;
-        most = f64::max(most, law.flow(&old, &new));
+        let Flow { most, work, lag } = law.flow(&metric, &old, &new);
+        all.most = all.most.max(most);
+        all.work += volume * work;
+        all.lag += volume * lag;
         new.write(state);
     }
-    Ok(most)
+    Ok(all)
 }
 
 /// [`stress::cauchy`] at a point of an element with the states of its law.

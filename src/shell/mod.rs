@@ -38,7 +38,7 @@ pub(crate) use block::with_block;
 pub use block::{Block, ElementBlock, ElementSystem, STATES, bytes_per_element};
 pub use error::{ElementFault, FaultCause, ShellError};
 pub use h8::{Formulation, H8Block, H8System};
-pub use history::PlasticWork;
+pub use history::{Flow, PlasticWork};
 pub use material::{Law, MaterialLaw, Metric, NeoHooke, Response, StVenantKirchhoff};
 pub use nurbs::{
     HeldNormal, NurbsBlock, NurbsSystem, SEAM_DOFS, SEAM_NODES, SeamSpan, SheetResultants,

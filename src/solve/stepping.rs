@@ -22,6 +22,8 @@ const LARGER: f64 = 1.6;
 const SMALLER: f64 = 0.7;
 /// Equivalent plastic strain that a step may bring: stresses follow the flow of one step along one direction.
 const FLOW: f64 = 0.02;
+/// Part of its work that a step may leave out because flow turns within it.
+const LAG: f64 = 0.08;
 /// Part of the largest step from which on a step counts as large.
 const LARGE: f64 = 1.0 / 8.0;
 /// Least part that is left of a step that is cut.
@@ -116,10 +118,12 @@ impl Stepping {
         self.dt = (factor * dt).max(self.settings.min).min(self.settings.max);
     }
 
-    /// An accepted step of size `dt` brought a plastic strain of at most `flow`: the next one is no larger than what brings [`FLOW`].
-    pub fn flowed(&mut self, dt: f64, flow: f64) {
-        if self.settings.adaptive && flow > 0.0 {
-            let most = (FLOW / flow * dt).max(self.settings.min);
+    /// An accepted step of size `dt` brought a plastic strain of at most `flow` and left out a part `lag` of its work: the next one
+    /// is no larger than what brings [`FLOW`] and [`LAG`].
+    pub fn flowed(&mut self, dt: f64, flow: f64, lag: f64) {
+        let times = (flow / FLOW).max(lag / LAG);
+        if self.settings.adaptive && times > 0.0 {
+            let most = (dt / times).max(self.settings.min);
             self.dt = self.dt.min(most);
         }
     }

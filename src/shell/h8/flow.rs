@@ -1,7 +1,7 @@
 //! Elements whose law remembers: what a step leaves in the states of their points, and what these say.
 use super::{Formulation, H8Block, arrays, fault, head};
 use crate::shell::error::ElementFault;
-use crate::shell::history::{PlasticWork, advance, cauchy, measures, plastic_work};
+use crate::shell::history::{Flow, PlasticWork, advance, cauchy, measures, plastic_work};
 use crate::shell::kinematics::Fields;
 use crate::shell::material::with_law;
 use crate::shell::{layered, stress};
@@ -31,8 +31,8 @@ impl H8Block {
         Ok(out)
     }
 
-    /// Takes a step that is accepted at displacements `u` and the enhanced strains in `state` into the states of the law; returns by how
-    /// much the equivalent plastic strain grew at most.
+    /// Takes a step that is accepted at displacements `u` and the enhanced strains in `state` into the states of the law; returns how it
+    /// flowed.
     ///
     /// # Errors
     /// [`ElementFault`] where the strain is impossible.
@@ -41,9 +41,9 @@ impl H8Block {
         e: usize,
         u: &[Vec3; 8],
         state: &mut [f64],
-    ) -> Result<f64, ElementFault> {
+    ) -> Result<Flow, ElementFault> {
         if self.law.state_len() == 0 {
-            return Ok(0.0);
+            return Ok(Flow::default());
         }
         let u = arrays(u);
         let re = &self.reference[e];
@@ -54,14 +54,16 @@ impl H8Block {
                 let (place, _, strain) = strains.at(g);
                 (place.metric, strain)
             };
-            return with_law!(&self.law, law => advance(law, at, states))
+            let volumes = layered::volumes(&re.nodes);
+            return with_law!(&self.law, law => advance(law, at, volumes, states))
                 .map_err(|(point, c)| fault(e, point, c));
         }
         let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
         let strain = self
             .strains(re, (&big, &du), condensation)
             .map_err(|(point, c)| fault(e, point, c))?;
-        with_law!(&self.law, law => advance(law, |g| (re.metric[g], strain[g]), states))
+        let at = |g: usize| (re.metric[g], strain[g]);
+        with_law!(&self.law, law => advance(law, at, re.volume.into_iter(), states))
             .map_err(|(point, c)| fault(e, point, c))
     }
 

@@ -13,7 +13,7 @@ use super::hardening::Hardening;
 use super::logarithm::{Logarithm, sandwich};
 use super::tensor::{isotropic, raise};
 use super::{Collapsed, LawState, MaterialLaw, Metric, Response};
-use crate::shell::PlasticWork;
+use crate::shell::{Flow, PlasticWork};
 use num_dual::DualNum;
 
 /// Elastic constants and hardening.
@@ -72,6 +72,8 @@ impl LawState for J2State {
 /// yield surface, but for rounding, wherever the material flowed. Its first tangent is the elastic one there, which holds for
 /// unloading; that of flow would let a body that unloads give way without end, and rounding would choose between them.
 const AT_YIELD: f64 = 1e-9;
+/// Part of the yield stress from which on a point counts as flowing where a step starts.
+const YIELDS: f64 = 0.98;
 
 /// The end of a step.
 struct Returned<D> {
@@ -90,6 +92,20 @@ fn contract<D: DualNum<f64> + Copy>(metric: &Metric, a: &[D; 6], b: &[D; 6]) -> 
     let lower = sandwich(&metric.lower.map(D::from), a);
     let normal = lower[0] * b[0] + lower[1] * b[1] + lower[2] * b[2];
     normal + (lower[3] * b[3] + lower[4] * b[4] + lower[5] * b[5]) * 2.0
+}
+
+impl J2State {
+    /// Deviator of the stress.
+    fn deviator(&self, metric: &Metric) -> [f64; 6] {
+        let trace = lowered_trace(metric, &self.stress);
+        std::array::from_fn(|v| self.stress[v] - trace / 3.0 * metric.upper[v])
+    }
+
+    /// Equivalent stress (von Mises).
+    fn equivalent(&self, metric: &Metric) -> f64 {
+        let s = self.deviator(metric);
+        (1.5 * contract(metric, &s, &s)).sqrt()
+    }
 }
 
 /// `G_ij a^ij`.
@@ -244,16 +260,33 @@ impl MaterialLaw for J2 {
         Ok(new)
     }
 
-    fn flow(&self, old: &J2State, new: &J2State) -> f64 {
-        new.p - old.p
+    fn flow(&self, metric: &Metric, old: &J2State, new: &J2State) -> Flow {
+        let most = new.p - old.p;
+        let work = self.hardening.at(new.p).1 - self.hardening.at(old.p).1;
+        let [q, yields] = [old.equivalent(metric), self.hardening.at(old.p).0];
+        // From an elastic state flow starts along the direction it is found to have.
+        if most <= 0.0 || q < YIELDS * yields {
+            return Flow {
+                most,
+                work,
+                lag: 0.0,
+            };
+        }
+        let [from, to] = [old, new].map(|s| s.deviator(metric));
+        let cosine = contract(metric, &from, &to) * 1.5 / (q * new.equivalent(metric));
+        let chord = (2.0 - 2.0 * cosine).max(0.0).sqrt();
+        Flow {
+            most,
+            work,
+            lag: 0.5 * chord * work,
+        }
     }
 
     fn flow_measures(&self, metric: &Metric, state: &J2State) -> [f64; 2] {
-        let trace = lowered_trace(metric, &state.stress);
-        let deviator: [f64; 6] =
-            std::array::from_fn(|v| state.stress[v] - trace / 3.0 * metric.upper[v]);
-        let q = (1.5 * contract(metric, &deviator, &deviator)).sqrt();
-        [state.p, q / self.hardening.at(state.p).0]
+        [
+            state.p,
+            state.equivalent(metric) / self.hardening.at(state.p).0,
+        ]
     }
 
     fn plastic_work(&self, state: &J2State) -> PlasticWork {
@@ -385,5 +418,29 @@ pub(super) mod tests {
         assert_eq!(flowed(&unloaded), flowed(&loaded));
         assert_ne!(unloaded.stress, loaded.stress);
         assert!(advance(0.02 - 1.05 * width, &loaded).p > loaded.p);
+    }
+
+    /// What a step leaves out where flow turns in it: nothing along one direction and from an elastic state, half of the chord of
+    /// the turn times the work else.
+    #[test]
+    fn flow_that_turns_lags() {
+        let law = law(CASES[0]);
+        let advance = |strain: [f64; 6], old: &J2State| {
+            let new = law.advance(&Metric::CARTESIAN, &strain, old).unwrap();
+            (new, MaterialLaw::flow(&law, &Metric::CARTESIAN, old, &new))
+        };
+        let (first, flow) = advance([0.0, 0.0, 0.0, 0.02, 0.0, 0.0], &J2State::UNUSED);
+        assert!(flow.work > 1.0 && flow.lag == 0.0, "{flow:?}");
+        // The axes of large shears turn a little, and so does flow.
+        let (_, on) = advance([0.0, 0.0, 0.0, 0.03, 0.0, 0.0], &first);
+        assert!(on.work > 0.5 && on.lag < 0.01 * on.work, "{on:?}");
+        let (_, across) = advance([0.0, 0.0, 0.0, 0.02, 0.2, 0.0], &first);
+        let right = 0.5 * 2f64.sqrt() * across.work;
+        assert!((across.lag / right - 1.0).abs() < 0.05, "{across:?}");
+        let (_, back) = advance([0.0, 0.0, 0.0, -0.02, 0.0, 0.0], &first);
+        assert!(
+            back.work > 1.0 && (back.lag / back.work - 1.0).abs() < 1e-3,
+            "{back:?}"
+        );
     }
 }

@@ -15,7 +15,7 @@ mod st_venant_kirchhoff;
 mod tensor;
 
 use super::error::ShellError;
-use super::history::PlasticWork;
+use super::history::{Flow, PlasticWork};
 use crate::scene::{Elastic, Material};
 pub use hardening::Hardening;
 pub use hencky::Hencky;
@@ -144,9 +144,9 @@ pub trait MaterialLaw: Copy + Send + Sync {
         Ok(*old)
     }
 
-    /// By how much the equivalent plastic strain grew from one state to the next.
-    fn flow(&self, _old: &Self::State, _new: &Self::State) -> f64 {
-        0.0
+    /// How a point flowed from one state to the next, per undeformed volume.
+    fn flow(&self, _metric: &Metric, _old: &Self::State, _new: &Self::State) -> Flow {
+        Flow::default()
     }
 
     /// Equivalent plastic strain, and equivalent stress over yield stress, of a point.

@@ -12,7 +12,7 @@ mod tangent;
 mod tests;
 
 use super::error::{ElementFault, FaultCause, ShellError};
-use super::history::{PlasticWork, advance, cauchy, measures, plastic_work};
+use super::history::{Flow, PlasticWork, advance, cauchy, measures, plastic_work};
 use super::kinematics::V;
 use super::material::{Collapsed, Law, with_law};
 use super::stress;
@@ -274,11 +274,12 @@ impl Q18Block {
         e: usize,
         u: &[Vec3; 18],
         state: &mut [f64],
-    ) -> Result<f64, ElementFault> {
+    ) -> Result<Flow, ElementFault> {
         let (u, re) = (arrays(u), &self.reference[e]);
         let strain = strain::strains(re, &split(&u), &head(state));
         let states = &mut state[tangent::STATE..];
-        with_law!(&self.law, law => advance(law, |g| (re.metric[g], strain[g]), states))
+        let at = |g: usize| (re.metric[g], strain[g]);
+        with_law!(&self.law, law => advance(law, at, re.volume.into_iter(), states))
             .map_err(|(point, c)| fault(e, point, c))
     }
 
