@@ -8,6 +8,7 @@ mod claim;
 mod commit;
 mod compliance;
 mod cost;
+mod crest;
 mod error;
 mod estimate;
 mod fields;

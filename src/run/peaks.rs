@@ -1,6 +1,7 @@
 //! Where geometry decides about a contact force: how many slave points carried it, and how much of it acted at sharp convex
 //! edges of the tool, each at the step in which the contact's force was the largest.
 use super::bearing::{Bearing, Bearings, FEW};
+use super::crest::Crest;
 use crate::assembly::PairForce;
 use crate::model::error::number;
 use crate::model::initial::point_spacing;
@@ -15,6 +16,9 @@ const AT_EDGES: f64 = 0.1;
 const ROUNDING: f64 = 1e-9;
 /// Part of a force at points whose penetration is prescribed above which the user is warned.
 const PRESCRIBED: f64 = 0.01;
+
+/// Part of the largest force of all contacts from which on the peak of one is looked at.
+const LARGE: f64 = 0.1;
 
 /// Part of a force by which the two half passes of a contact may disagree without a word.
 const UNBALANCED: f64 = 0.02;
@@ -33,6 +37,8 @@ struct Peak {
     /// Points that carried most of it, where these were few; else 0.
     few: usize,
     step: u32,
+    /// What the steps show of its peak.
+    crest: Crest,
 }
 
 /// The largest force of every pair so far, and the largest stress of every body of a metal of known strength.
@@ -68,6 +74,7 @@ impl Peaks {
             active,
             few,
             step,
+            crest,
         } in &self.0
         {
             out.f64s(&[*force, *at_edges, *prescribed, *unbalanced]);
@@ -75,6 +82,7 @@ impl Peaks {
             out.u64(*few as u64);
             out.u32(*step);
             out.u32(*unbalanced_step);
+            crest.put(out);
         }
         for Stress { stress, step } in &self.1 {
             out.f64s(&[*stress]);
@@ -91,6 +99,7 @@ impl Peaks {
             [peak.force, peak.at_edges, peak.prescribed, peak.unbalanced] = sums;
             (peak.active, peak.few) = (from.u64()? as usize, from.u64()? as usize);
             (peak.step, peak.unbalanced_step) = (from.u32()?, from.u32()?);
+            peak.crest = Crest::take(from)?;
         }
         for highest in &mut self.1 {
             let mut stress = [0.0];
@@ -103,8 +112,15 @@ impl Peaks {
         Ok(())
     }
 
-    /// Takes an accepted step, in which `forces` act on both sides of every pair.
-    pub fn step(&mut self, model: &Model, step: u32, bearings: &Bearings, forces: &[PairForce]) {
+    /// Takes an accepted step and its end, at which `forces` act on both sides of every pair.
+    pub fn step(
+        &mut self,
+        model: &Model,
+        (step, time): (u32, f64),
+        bearings: &Bearings,
+        forces: &[PairForce],
+    ) {
+        let kink = (model.kinks.iter()).any(|k| (k - time).abs() <= 1e-9 * time);
         for (highest, stress) in self.1.iter_mut().zip(&bearings.stress) {
             if *stress > highest.stress {
                 *highest = Stress {
@@ -134,6 +150,7 @@ impl Peaks {
                     ..*peak
                 };
             }
+            peak.crest.step(step, time, force, kink);
             let unbalanced = match pair.half {
                 Some(half) if !half.back => (slave.force + master.force).norm(),
                 _ => 0.0,
@@ -157,7 +174,25 @@ impl Peaks {
                 peak.unbalanced(pair),
             ]
         };
-        pairs.flat_map(of).flatten().collect()
+        let told = pairs.flat_map(of).flatten();
+        told.chain(self.between_steps(model)).collect()
+    }
+
+    /// The contact whose largest force is known least of those that carry much.
+    fn between_steps(&self, model: &Model) -> Option<String> {
+        let largest = (self.0.iter()).fold(0.0f64, |most, p| most.max(p.crest.force()));
+        let pairs = model.pairs.iter().zip(&self.0);
+        let large = pairs.filter(|(_, p)| p.crest.force() > LARGE * largest);
+        let missing = large.filter_map(|(pair, p)| Some((pair, p.crest, p.crest.missing()?)));
+        let (pair, crest, part) = missing.max_by(|a, b| a.2.total_cmp(&b.2))?;
+        Some(format!(
+            "contact `{}`: its force is largest at step {} (time {}), and changes so much from there to the steps beside it that it \
+             may have been {:.0} % larger between them: take a smaller `solution.step.max` to see its peak",
+            pair.name,
+            crest.step,
+            number(crest.time()),
+            100.0 * part
+        ))
     }
 
     /// What else is said at the end of a run.

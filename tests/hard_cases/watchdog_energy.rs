@@ -137,6 +137,40 @@ fn changing_penalties_and_multipliers_are_accounted_for() {
     );
 }
 
+/// The force of a ball that presses an arch down grows, and falls before the arch is flat. In large steps its peak lies between
+/// them, which is told with about what is missing of that of small ones, of which nothing is.
+#[test]
+fn a_peak_between_the_steps_is_told() {
+    let run = |dt: f64| {
+        let mut scene = arch(20.0, 20, dt);
+        scene["surfaces"] = json!({ "ball": {
+            "sphere": { "radius": 5, "center": [0, 0, 105.6] }, "motion": { "translation": [0, 0, "-14*t"] }
+        } });
+        scene["contacts"] = json!({ "press": { "slave": "arch.outer", "master": "ball" } });
+        scene["solution"]["end_time"] = json!(0.6);
+        let outcome = done(&scene);
+        let force = outcome.column("force.ball.z");
+        let largest = force.iter().fold(0.0f64, |a, f| a.max(f.abs()));
+        let mut told = outcome.summary.warnings.into_iter();
+        (
+            largest,
+            told.find(|w| w.contains("its force is largest at step")),
+        )
+    };
+    let [(coarse, told), (fine, none)] = [run(0.1), run(0.01)];
+    assert_eq!(none, None);
+    let told = told.expect("a warning");
+    println!("{coarse} {fine} {told}");
+    let part: f64 = (told.split("may have been ").nth(1))
+        .and_then(|t| t.split(' ').next()?.parse().ok())
+        .expect("a number");
+    let missing = 100.0 * (fine / coarse - 1.0);
+    assert!(
+        missing > 1.0 && (0.4..4.0).contains(&(part / missing)),
+        "{part} {missing}"
+    );
+}
+
 /// A cube of metal whose top goes round a circle: flow turns all the time. Work that steps leave out because of it is told in
 /// steps of 30 degrees, where it is 8 % of that of steps of 2 degrees, and not in these. Steps that may change are taken smaller.
 #[test]

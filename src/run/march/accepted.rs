@@ -161,7 +161,7 @@ impl March<'_, '_> {
         };
         self.adapt(errors, growth, converged);
         let bearings = &outputs.fields.bearings;
-        (self.peaks).step(self.model, step, bearings, &totals.pairs);
+        (self.peaks).step(self.model, (step, time), bearings, &totals.pairs);
         let doubts = linearity_check::doubts(self.model, &mut self.assembler.masters, state, time);
         for doubt in doubts.map_err(|e| RunError::internal(&e))? {
             self.doubt(doubt);

@@ -1,0 +1,167 @@
+//! How much larger the largest force of a contact may have been between the steps.
+//!
+//! Of a force that goes up and down again steps show the top where they happen to lie. Where it is smooth it stands above its
+//! chord over a step of length h by up to `|f''| h^2 / 8`, with the bend `f''` as it is both at the largest force and at the nearer
+//! of the forces beside it: a force that rises and stays has none there. Where it rises and drops, as friction does that gives
+//! way, it may have gone on as it rose; a quarter of that is counted, which is the same for a parabola with its top at a step.
+use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
+
+/// Part of a force from which on it is told.
+const TOLD: f64 = 0.02;
+
+/// A time and the force then.
+type At = [f64; 2];
+
+/// The largest force so far.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Crest {
+    /// Its end and its force.
+    top: At,
+    pub step: u32,
+    /// What is prescribed had a kink there, so that the force may have another slope from there on.
+    kink: bool,
+    /// The two steps before it, and what is known of those after it.
+    before: [At; 2],
+    after: [Option<At>; 2],
+    /// The last two steps.
+    last: [At; 2],
+}
+
+impl Crest {
+    /// Takes the force of an accepted step, whose end is a `kink` of what is prescribed or not.
+    pub fn step(&mut self, step: u32, time: f64, force: f64, kink: bool) {
+        let now = [time, force];
+        if force >= self.force() {
+            *self = Crest {
+                top: now,
+                step,
+                kink,
+                before: self.last,
+                after: [None; 2],
+                ..*self
+            };
+        } else if let Some(free) = self.after.iter_mut().find(|a| a.is_none()) {
+            *free = Some(now);
+        }
+        self.last = [self.last[1], now];
+    }
+
+    /// The largest force.
+    pub fn force(&self) -> f64 {
+        self.top[1]
+    }
+
+    pub fn time(&self) -> f64 {
+        self.top[0]
+    }
+
+    /// What part of the largest force is missing, where it is to be told.
+    pub fn missing(&self) -> Option<f64> {
+        let [Some(next), beyond] = self.after else {
+            return None;
+        };
+        if self.kink {
+            return None;
+        }
+        let slope = |[a, f]: At, [b, g]: At| (g - f) / (b - a);
+        // How much it bends down.
+        let bend =
+            |a: At, b: At, c: At| (2.0 * (slope(a, b) - slope(b, c)) / (c[0] - a[0])).max(0.0);
+        let ([first, second], top) = (self.before, self.top);
+        let (rise, fall) = (top[1] - second[1], top[1] - next[1]);
+        let beside = match (rise < fall, beyond) {
+            (true, _) if second[0] > first[0] => bend(first, second, top),
+            (false, Some(beyond)) => bend(top, next, beyond),
+            _ => 0.0,
+        };
+        let longest = (next[0] - top[0]).max(top[0] - second[0]);
+        let smooth = bend(second, top, next).min(beside) * longest * longest / 8.0;
+        let part = smooth.max(0.25 * rise.min(fall)) / top[1];
+        (part > TOLD).then_some(part)
+    }
+
+    /// Into a checkpoint.
+    pub fn put(&self, out: &mut Writer) {
+        let Crest {
+            top,
+            step,
+            kink,
+            before,
+            after,
+            last,
+        } = self;
+        for at in [*top].iter().chain(before).chain(last) {
+            out.f64s(at);
+        }
+        out.u32(*step);
+        out.bool(*kink);
+        for at in after {
+            out.bool(at.is_some());
+            out.f64s(&at.unwrap_or_default());
+        }
+    }
+
+    /// [`Self::put`], read back.
+    pub fn take(from: &mut Reader) -> Result<Self, Malformed> {
+        let mut crest = Crest::default();
+        let [before, last] = [&mut crest.before, &mut crest.last];
+        for at in [&mut crest.top].into_iter().chain(before).chain(last) {
+            from.f64s(at)?;
+        }
+        crest.step = from.u32()?;
+        crest.kink = from.bool()?;
+        for at in &mut crest.after {
+            let (known, mut value) = (from.bool()?, At::default());
+            from.f64s(&mut value)?;
+            *at = known.then_some(value);
+        }
+        Ok(crest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Forces at times 1, 2, 3, ...
+    fn crest(forces: &[f64]) -> Crest {
+        let mut crest = Crest::default();
+        for (i, force) in forces.iter().enumerate() {
+            crest.step(i as u32 + 1, (i + 1) as f64, *force, false);
+        }
+        crest
+    }
+
+    /// A sine whose top is 5 % above the steps beside it, one whose top is at a step, and one in small steps.
+    #[test]
+    fn a_smooth_top() {
+        let sine = |from: f64, h: f64| {
+            let force = |i| (std::f64::consts::PI * (from + h * f64::from(i))).sin();
+            crest(&(0..7).map(force).collect::<Vec<_>>())
+        };
+        let between = sine(0.0, 0.2);
+        assert!([3, 4].contains(&between.step));
+        let above = between.missing().unwrap() * between.force();
+        let exact = 1.0 - between.force();
+        assert!((0.6..1.3).contains(&(above / exact)), "{above} {exact}");
+        assert!(sine(0.0, 0.25).missing().unwrap() < 0.08);
+        assert_eq!(sine(0.3, 0.05).missing(), None);
+    }
+
+    /// Forces that end at their largest, that stay there (from the step on or from one before), and that drop.
+    #[test]
+    fn other_tops() {
+        assert_eq!(crest(&[1.0, 2.0, 3.0]).missing(), None);
+        assert_eq!(crest(&[1.0, 2.0, 3.0, 2.99, 2.98, 2.97]).missing(), None);
+        assert_eq!(crest(&[1.0, 3.0, 3.0, 3.0, 0.1, 0.1]).missing(), None);
+        let drops = crest(&[1.0, 2.0, 3.0, 0.0, 0.1]).missing().unwrap();
+        assert!((drops - 0.25 / 3.0).abs() < 1e-12, "{drops}");
+        let mut turns = crest(&[1.0, 2.0]);
+        turns.step(3, 3.0, 3.0, true);
+        turns.step(4, 4.0, 2.0, false);
+        assert_eq!(
+            (turns.force(), turns.time(), turns.missing()),
+            (3.0, 3.0, None)
+        );
+    }
+}
