@@ -110,7 +110,7 @@ fn initial_gaps(
     }
     // Faces of one body that see each other do so from opposite sides, maybe at a right angle: nothing to be judged there.
     if let Some((node, x, n)) = nearest
-        && pair.body_master().is_none_or(|m| m.own.is_none())
+        && !pair.master.is_own()
         && !rim
     {
         gap.turned_away = turned_away(model, pair.body, node, &x, &n);
@@ -263,11 +263,16 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
             ));
         }
         if gap.behind > 0 {
+            let own = pair.master.is_own();
             let help = match &pair.master {
+                _ if own => {
+                    "they see the other side of a fold there, or the mesh goes through itself"
+                }
                 Master::Rigid(_) => "move the surface with `placement`, or choose the other `side`",
                 Master::Body(_) => "move one of the bodies, or take the faces that face each other",
             };
-            warnings.push(format!(
+            let told = if own { &mut notes } else { &mut warnings };
+            told.push(format!(
                 "contact `{}`: {} point(s) start behind {master}, deeper than its `depth` {}, and are not in contact: \
                  {help}",
                 pair.name,

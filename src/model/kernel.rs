@@ -57,7 +57,7 @@ impl Kernel {
             },
             master: match &pair.master {
                 Master::Rigid(surface) => model.surfaces[*surface].kind(),
-                Master::Body(body) if body.own.is_some() => MasterKind::OwnFaces,
+                own if own.is_own() => MasterKind::OwnFaces,
                 Master::Body(_) => MasterKind::Faces,
             },
             law: match pair.augmentation {

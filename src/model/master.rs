@@ -188,6 +188,11 @@ pub struct Seen {
 }
 
 impl Master {
+    /// Whether these are faces of the slave's own body.
+    pub fn is_own(&self) -> bool {
+        matches!(self, Master::Body(body) if body.own.is_some())
+    }
+
     /// Depth below which a point does not count (length).
     pub fn depth(&self, model: &Model) -> f64 {
         match self {
@@ -217,6 +222,12 @@ impl Seen {
     /// Whether the point is in contact that begins at the normal coordinate `z0`.
     pub fn closed(&self, z0: f64) -> bool {
         self.counts() && self.signed_distance < z0
+    }
+
+    /// Whether the point would pass through the surface if it were found deep below it next. Of its `own` body a point may see the
+    /// other side of a fold, from behind, without having passed anything: there it counts from contact only.
+    pub fn in_front(&self, own: bool) -> bool {
+        self.closed(0.0) || !own && self.signed_distance >= 0.0
     }
 
     /// Distance of a point as it is told, from the normal coordinate `z0`: negative in contact only.

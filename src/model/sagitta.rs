@@ -157,7 +157,7 @@ impl Sides {
     /// None where no side is curved and faceted, and for self contact.
     pub fn new(model: &Model, index: usize) -> Option<Sides> {
         let pair = &model.pairs[index];
-        if pair.edges_of.is_some() || pair.body_master().is_some_and(|m| m.own.is_some()) {
+        if pair.edges_of.is_some() || pair.master.is_own() {
             return None;
         }
         // What bends as a CAD surface is that surface.

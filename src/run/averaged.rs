@@ -58,7 +58,7 @@ pub(super) fn nodes_now<L: NormalLaw>(
         let x = model.point_position(p, &state.u);
         let seen = master.see(i, &x, state.points[first + i].hint);
         sunk += usize::from(*front && seen.is_some_and(|s| s.behind));
-        *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
+        *front = seen.is_some_and(|s| s.in_front(pair.master.is_own()));
         let found = seen.map(|s| (s.signed_distance, s.free));
         let share = Share::new(found, z0, master.depth(), reach);
         let shown = match (share, &seen) {

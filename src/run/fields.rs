@@ -209,6 +209,7 @@ impl Fields {
             }
             // Both passes of two see the same area.
             let share = if pair.half.is_some() { 0.5 } else { 1.0 };
+            let own = pair.master.is_own();
             let offsets = pair.offsets(time);
             let shrinking = pair.resolved(&start, first);
             let histories = pair.history().map(|range| &state.histories[range]);
@@ -244,7 +245,7 @@ impl Fields {
                     place = seen.map(|s| (x, s.hint, s.normal));
                     let sunk = seen.is_some_and(|s| s.behind);
                     self.sunk[index] += usize::from(*front && sunk);
-                    *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
+                    *front = seen.is_some_and(|s| s.in_front(own));
                     seen.map_or(f64::NAN, |s| s.gap(z0))
                 };
                 if let Some(kept) = self.gaps.get_mut(first + i) {
@@ -386,7 +387,10 @@ impl Fields {
             first = range.end;
             let master = masters.at(model, index, &state.u, time)?;
             let fronts = self.front[range.clone()].iter_mut();
-            let offsets = model.pairs[index].offsets(time);
+            let (own, offsets) = {
+                let pair = &model.pairs[index];
+                (pair.master.is_own(), pair.offsets(time))
+            };
             for (i, ((p, s), front)) in points
                 .iter()
                 .zip(&state.points[range])
@@ -397,7 +401,7 @@ impl Fields {
                 let z0 = offsets.map_or(0.0, |o| o.at(i));
                 let from = (z0, p.overhang(s.closed));
                 let seen = master.see_hanging((i, &x), s.hint, f64::INFINITY, from);
-                *front = seen.is_some_and(|s| s.closed(0.0) || s.signed_distance >= 0.0);
+                *front = seen.is_some_and(|s| s.in_front(own));
             }
         }
         Ok(())
