@@ -1,4 +1,6 @@
 //! Derivatives of laws and elements against dual numbers, and the rank of the element.
+mod laws;
+mod refused;
 use super::h8::{Formulation, H8Block, H8System};
 use super::kinematics::{self, V};
 use super::material::{Collapsed, Hardening, J2, Law, LawState, MaterialLaw, Metric, with_law};
@@ -94,79 +96,6 @@ fn unused<L: MaterialLaw>(_: &L, points: usize) -> Vec<f64> {
 
 /// A strain at which a step ends before the one that is looked at.
 const BEFORE: [f64; 6] = [0.05, -0.02, 0.03, 0.2, 0.1, -0.05];
-
-/// Errors of the derivatives at a strain, at the beginning and after a step that is accepted at `before`.
-fn check_law<L: MaterialLaw>(
-    law: &L,
-    metric: &Metric,
-    strain: &[f64; 6],
-    before: &[f64; 6],
-) -> (f64, f64) {
-    let later = law.advance(metric, before, &L::State::UNUSED).unwrap();
-    let first = check_step(law, metric, strain, &L::State::UNUSED);
-    let second = check_step(law, metric, strain, &later);
-    (first.0.max(second.0), first.1.max(second.1))
-}
-
-fn check_step<L: MaterialLaw>(
-    law: &L,
-    metric: &Metric,
-    strain: &[f64; 6],
-    old: &L::State,
-) -> (f64, f64) {
-    let response = law.response(metric, strain, old).unwrap();
-    let (mut stress, mut tangent) = ([0.0; 6], [[0.0; 6]; 6]);
-    for v in 0..6 {
-        let mut e = strain.map(Dual64::from);
-        e[v] = e[v].derivative();
-        stress[v] = law.energy(metric, &e, old).unwrap().eps;
-        let (energy, s) = law.stress(metric, &e, old).unwrap();
-        assert!((energy.re - response.energy).abs() <= 1e-14 * response.energy.abs());
-        tangent[v] = s.map(|s| s.eps);
-    }
-    (
-        relative(&response.stress, &stress),
-        relative(response.tangent.as_flattened(), tangent.as_flattened()),
-    )
-}
-
-#[test]
-fn energy_gives_stress_gives_tangent() {
-    let skew = Metric::new([1.3, 0.8, 0.05, 0.2, -0.03, 0.04]);
-    let strains = [
-        [0.1, -0.15, 0.2, 0.12, -0.1, 0.08],
-        [0.02, 0.3, -0.01, -0.05, 0.02, 0.01],
-    ];
-    for law in laws() {
-        for metric in [Metric::CARTESIAN, skew] {
-            for strain in &strains {
-                let errors = with_law!(&law, law => check_law(law, &metric, strain, &BEFORE));
-                println!("{law:?}: {errors:?}");
-                assert!(errors.0 < 1e-12 && errors.1 < 1e-12, "{law:?} {errors:?}");
-            }
-        }
-    }
-}
-
-/// Neo-Hooke in uniaxial stretch along x without lateral strain: S_xx = mu (1 - 1/s^2) + lambda ln s / s^2.
-#[test]
-fn neo_hooke_keeps_its_digits_at_small_strain() {
-    let Law::NeoHooke(law) = laws()[1] else {
-        unreachable!()
-    };
-    for strain in [1e-12, 1e-3, 0.5] {
-        let mut e = [0.0; 6];
-        e[0] = strain;
-        let s2: f64 = 1.0 + 2.0 * strain;
-        // mu (1 - 1/s^2) = mu 2 e / s^2.
-        let exact = (law.mu * 2.0 * strain + law.lambda * 0.5 * (2.0 * strain).ln_1p()) / s2;
-        let found = law.response(&Metric::CARTESIAN, &e, &()).unwrap().stress[0];
-        assert!(
-            (found / exact - 1.0).abs() < 1e-14,
-            "{strain}: {found} {exact}"
-        );
-    }
-}
 
 /// Energy, forces and forces on the enhanced strains; eight of these are those of the layered element.
 fn forces<D: num_dual::DualNum<f64> + Copy, L: MaterialLaw, const NE: usize>(
@@ -529,96 +458,6 @@ fn residual_repeats_the_assembly_and_alpha_follows_it() {
         }
         assert!(errors[1] > 0.0 && errors[0] / errors[1] > 3.5, "{errors:?}");
     }
-}
-
-#[test]
-fn impossible_strain_is_a_typed_fault() {
-    let x = nodes();
-    // Pressed flat and through: det F < 0 at all Gauss points, and NaN.
-    let mut out = H8System::default();
-    for law in laws() {
-        let block = H8Block::new(&mesh(&x), Formulation::Eas7, law).unwrap();
-        let mut state = vec![0.0; block.state_len()];
-        state[0] = 50.0;
-        let fault = block
-            .evaluate(0, &[Vec3::zeros(); 8], &mut state, &mut out)
-            .unwrap_err();
-        assert!(matches!(
-            fault,
-            ElementFault { element: 0, cause: FaultCause::Collapsed { point: 0, ratio } } if ratio < 0.0
-        ));
-        assert!(
-            fault
-                .to_string()
-                .starts_with("element 0: det C / det G = -"),
-            "{fault}"
-        );
-        state[0] = 0.0;
-        let mut u = [Vec3::zeros(); 8];
-        u[3].y = f64::NAN;
-        assert!(block.evaluate(0, &u, &mut state, &mut out).is_err());
-        let mut stress = [[0.0; 6]; 8];
-        assert!(block.stresses(0, &u, &state, &mut stress).is_err());
-    }
-    // Two stretches turned inside out give a positive determinant, which must not pass.
-    let mut e = [0.0; 6];
-    e[1] = -0.8;
-    e[2] = -0.8;
-    let Law::NeoHooke(law) = laws()[1] else {
-        unreachable!()
-    };
-    assert!(
-        matches!(law.energy(&Metric::CARTESIAN, &e, &()), Err(Collapsed { ratio }) if ratio > 0.0)
-    );
-}
-
-#[test]
-fn bad_meshes_and_constants_are_refused() {
-    let law = laws()[0];
-    let mut bad = mesh(&nodes());
-    bad.nodes.swap(0, 4);
-    bad.nodes.swap(1, 5);
-    bad.nodes.swap(2, 6);
-    bad.nodes.swap(3, 7);
-    let error = H8Block::new(&bad, Formulation::Eas7, law).unwrap_err();
-    assert!(
-        matches!(error, ShellError::Inverted { element: 0, jacobian, count: 1 } if jacobian < 0.0)
-    );
-    assert!(
-        error
-            .to_string()
-            .starts_with("element 0 is inverted or flat: Jacobian determinant -")
-    );
-    let mut bad = mesh(&nodes());
-    bad.connectivity[5] = 99;
-    assert_eq!(
-        H8Block::new(&bad, Formulation::Eas7, law).unwrap_err(),
-        ShellError::Node {
-            element: 0,
-            node: 99,
-            nodes: 8
-        }
-    );
-    let soft = |nu| {
-        Law::new(&Material::NeoHooke(Elastic {
-            e: 1.0,
-            nu,
-            density: None,
-        }))
-    };
-    assert!(soft(0.5).is_err() && soft(f64::NAN).is_err() && soft(-1.0).is_err());
-    assert!(
-        Law::new(&Material::NeoHooke(Elastic {
-            e: 0.0,
-            nu: 0.3,
-            density: None
-        }))
-        .is_err()
-    );
-    assert!(matches!(
-        H8Block::new(&mesh(&nodes()), Formulation::Eas3, soft(0.49).unwrap()),
-        Err(ShellError::TooFewEnhanced { .. })
-    ));
 }
 
 /// Neo-Hooke loses its shear stiffness mu - lambda ln J where J > exp(mu / lambda), here 1.95: in an element blown up to

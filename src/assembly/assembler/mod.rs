@@ -10,6 +10,7 @@ mod drag;
 mod driven;
 mod effects;
 mod elements;
+mod fault;
 mod links;
 mod loads;
 mod maps;
@@ -22,6 +23,7 @@ mod rigid;
 mod seams;
 mod sliding;
 mod small;
+mod totals;
 mod touched;
 
 use crate::system::{ConstrainedScatter, DofMap, Pattern, PatternError, SystemMatrix};
@@ -32,23 +34,21 @@ use crate::contact::friction::turning::Turning;
 use crate::contact::law::{PairLaw, Penalty};
 use crate::contact::rigid::{PointFault, Touch};
 use crate::effects::Effects;
-use crate::effects::inertia::MotionEnergy;
-use crate::model::driven::press::PressFault;
+use crate::model::Model;
 use crate::model::kernel::Kernel;
 use crate::model::master::Masters;
 use crate::model::state::State;
-use crate::model::{Model, PairModel};
-use crate::scene::ValueError;
-use crate::shell::ElementFault;
 use averaged::Averaged;
 use couplings::Couplings;
-use covact_geometry::Vec3;
+pub use fault::Fault;
+use fault::element_fault;
 use maps::{Maps, PointMaps};
 use moving::Meetings;
 use per_pair::PerPair;
 use seams::Seams;
 use sliding::Sliding;
 use small::Linear;
+pub use totals::{PairForce, SurfaceForce, Totals};
 
 use driven::DrivenBlock;
 use elements::Systems;
@@ -58,135 +58,10 @@ use std::sync::Arc;
 pub use answer::PointAnswer;
 pub(crate) use bytes::sizes;
 pub use drag::Drag;
-pub use driven::UnresistedMotion;
 pub use effects::StartError;
 pub use elements::Quadratic;
 pub use memory::{AssemblerMemory, CouplingMemory, MemoryError};
 pub use small::{Factored, Line, Needed};
-
-/// What kept the model from being evaluated at a trial state. The step is cut.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Fault {
-    #[error("body `{body}`: {fault}")]
-    Element { body: String, fault: ElementFault },
-    #[error("contact `{pair}`, slave point {point} near ({:.6e}, {:.6e}, {:.6e}): {fault}", at[0], at[1], at[2])]
-    Contact {
-        pair: String,
-        point: usize,
-        at: [f64; 3],
-        fault: PointFault,
-    },
-    /// A surface driven by force touches no slave point.
-    #[error(
-        "surface `{surface}`, which forces drive {free}, has lost all contact: nothing holds it. Forces act on the \
-         surface: check their sign and size over time, the components that are free, and what supports the bodies under \
-         it{friction}"
-    )]
-    Untouched {
-        surface: String,
-        free: String,
-        /// Empty, or a word on friction that was to hold it.
-        friction: String,
-    },
-    /// A surface driven by force moves in a direction in which nothing resists it.
-    #[error(
-        "nothing resists the motion of surface `{surface}` {motion}, and its forces drive it on: take the component out \
-         of `free`, or give its force another direction"
-    )]
-    Unresisted { surface: String, motion: String },
-    /// A surface driven by force could not be placed.
-    #[error(transparent)]
-    Press(#[from] PressFault),
-    /// A tangent was asked for of a model whose displacements are small.
-    #[error(
-        "displacements are small: the system has an assembly of its own, without a tangent at a state"
-    )]
-    Small,
-    #[error(transparent)]
-    Value(#[from] ValueError),
-    /// The system has grown too large.
-    #[error(transparent)]
-    Pattern(#[from] PatternError),
-}
-
-impl Fault {
-    /// Of slave point `point` of a pair, which is at `x`.
-    pub(crate) fn contact(pair: &PairModel, point: usize, x: &Vec3, fault: PointFault) -> Self {
-        Fault::Contact {
-            pair: pair.name.clone(),
-            point,
-            at: [x.x, x.y, x.z],
-            fault,
-        }
-    }
-}
-
-/// What acts on one side of a contact: that of a rigid surface on the bodies, or of one body on the other.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct SurfaceForce {
-    /// Force on the bodies.
-    pub force: Vec3,
-    /// Moment of that force about the origin.
-    pub moment: Vec3,
-}
-
-impl SurfaceForce {
-    fn join(&mut self, more: &SurfaceForce) {
-        self.force += more.force;
-        self.moment += more.moment;
-    }
-}
-
-/// What a contact pair does to its two bodies, summed over the nodes of each.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct PairForce {
-    pub slave: SurfaceForce,
-    pub master: SurfaceForce,
-}
-
-impl PairForce {
-    fn sides(&mut self) -> [&mut SurfaceForce; 2] {
-        [&mut self.slave, &mut self.master]
-    }
-}
-
-/// Totals of one evaluation.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Totals {
-    /// Strain energy; of a step that is not accepted yet it contains what plastic flow takes.
-    pub internal_energy: f64,
-    /// Work that plastic flow has taken up to the last accepted step.
-    pub plastic_work: f64,
-    /// What motion has taken, of an accepted step.
-    pub motion: MotionEnergy,
-    /// Energy stored in the penalty.
-    pub contact_energy: f64,
-    /// Per surface of the model.
-    pub surfaces: Vec<SurfaceForce>,
-    /// Per pair; zero where its master is rigid.
-    pub pairs: Vec<PairForce>,
-    /// Points in contact, or nodes where gaps are averaged.
-    pub active: usize,
-    /// Points or nodes whose status differs from the one in the state when the evaluation began.
-    pub changed: usize,
-    /// Number of points on rigid masters that opened during this evaluation; not of averaged gaps.
-    pub opened: usize,
-    /// The same of points on bodies.
-    pub opened_on_bodies: usize,
-    /// Deepest penetration, >= 0, per pair.
-    pub penetration: Vec<f64>,
-    /// Whether any point or node is in contact, per pair.
-    pub touching: Vec<bool>,
-    /// Norm of the contact forces on nodes.
-    pub contact_norm: f64,
-    /// Largest norm of the forces of effects that the residual has to be small beside; zero without them.
-    pub effects_norm: f64,
-    /// What rounding of the positions leaves of them: the norm of penalty times area times the rounding of a position, over
-    /// the points in contact.
-    pub contact_rounding: f64,
-    /// Motions of driven surfaces that the contact does not resist, found with the tangent.
-    pub loose: Vec<UnresistedMotion>,
-}
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
@@ -549,11 +424,4 @@ fn put(
     matrix
         .scatter_constrained(nodes, ke, dofs, work)
         .expect("the pattern holds faces, which lie in elements, and what contact couples");
-}
-
-fn element_fault(body: &str, fault: ElementFault) -> Fault {
-    Fault::Element {
-        body: body.to_owned(),
-        fault,
-    }
 }

@@ -1,5 +1,7 @@
 //! Contact with bodies: the slave points of a pair are evaluated in parallel, their matrices formed in parallel, and all
 //! is summed in order.
+mod meetings;
+
 use super::answer::PointAnswer;
 use super::couplings::Couplings;
 use super::driven::DrivenBlock;
@@ -7,120 +9,27 @@ use super::links;
 use super::per_pair::PerPair;
 use super::pressing::{Batch, Measured};
 use super::rigid::rounding;
-use super::touched::{self, Touched};
+use super::touched::{self};
 use super::{Assembler, Fault, PairForce, PatternError, SurfaceForce, Totals, maps, put};
 use crate::contact::kernel::assemble_force;
 use crate::contact::kind::{FrictionKind, LawKind, MasterKind};
 use crate::contact::law::PairLaw;
 use crate::contact::lever;
-use crate::contact::moving::{MovingMaster, MovingTouch};
+use crate::contact::moving::MovingMaster;
 use crate::contact::points::SlavePoint;
-use crate::contact::rigid::PointFault;
 use crate::contact::scatter::{assemble_point, keep_slave_rows};
+use crate::model::Model;
 use crate::model::kernel::{GapKind, Kernel, SideKind};
 use crate::model::master::{MasterNow, Masters};
 use crate::model::self_contact::{Accept, All, Opposing};
-use crate::model::state::{PointState, State, heap, slaves};
-use crate::model::{Model, PairModel};
-use covact_geometry::{ShapeRows, Vec3};
+use crate::model::state::{PointState, State, slaves};
+use covact_geometry::Vec3;
+pub(super) use meetings::{Meetings, room};
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::Arc;
 
 /// Points whose matrices are formed before they are summed.
 const CHUNK: usize = 64;
-
-/// The slave points of a pair at the state evaluated last, and room for their matrices.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Meetings {
-    touched: Touched<MovingTouch>,
-    rows: Vec<ShapeRows>,
-    matrices: Vec<f64>,
-    /// Numbers that the largest matrix has.
-    stride: usize,
-    /// The segments that the points are of.
-    cut: Option<Arc<[SlavePoint]>>,
-}
-
-impl Meetings {
-    /// Bytes of heap for each point of a pair, and for all of it.
-    pub fn sizes(pair: &PairModel) -> Option<[usize; 2]> {
-        let stride = Meetings::stride(pair)?;
-        let most = CHUNK.min(pair.points.len());
-        let point = size_of::<Result<Option<MovingTouch>, PointFault>>() + size_of::<u32>();
-        let room = most * (size_of::<ShapeRows>() + stride * size_of::<f64>());
-        Some([point, PerPair::<Meetings>::HEAD + room])
-    }
-
-    /// Numbers that the largest matrix of a pair has; none where this is not for the pair.
-    fn stride(pair: &PairModel) -> Option<usize> {
-        let (Some(master), None, None) = (pair.body_master(), &pair.averaged, &pair.friction)
-        else {
-            return None;
-        };
-        let facets = 0..master.facets.len() as u32;
-        let facet = facets.map(|f| master.facets.nodes(f).len()).max();
-        Some(room(pair, facet.unwrap_or(0)))
-    }
-
-    /// Bytes of heap that it holds.
-    pub fn bytes(&self) -> usize {
-        let Meetings {
-            touched,
-            rows,
-            matrices,
-            stride: _,
-            // Shared with the states.
-            cut: _,
-        } = self;
-        touched.bytes() + heap(rows) + heap(matrices)
-    }
-
-    /// Room for a pair; nothing where the master is rigid, gaps are averaged, or there is friction
-    /// ([`super::sliding::Sliding`]).
-    pub fn new(pair: &PairModel) -> Option<Self> {
-        let mut out = Meetings {
-            stride: Meetings::stride(pair)?,
-            ..Meetings::default()
-        };
-        out.resize(pair.points.len());
-        Some(out)
-    }
-
-    /// Room for another number of points.
-    fn resize(&mut self, points: usize) {
-        let most = CHUNK.min(points);
-        self.touched.resize(points);
-        self.rows.resize(most, ShapeRows::default());
-        self.matrices.resize(most * self.stride, 0.0);
-    }
-
-    /// Points in contact, with the facets at their feet.
-    fn touched(&self) -> impl Iterator<Item = (usize, u32)> + '_ {
-        let facet = |i: u32| Some((i as usize, self.touched.get(i)?.facet));
-        self.touched.active.iter().filter_map(move |&i| facet(i))
-    }
-
-    /// Whether the points are those of `cut`.
-    fn holds(&self, cut: &Option<Arc<[SlavePoint]>>) -> bool {
-        match (&self.cut, cut) {
-            (None, None) => true,
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            _ => false,
-        }
-    }
-}
-
-/// Numbers of the largest matrix of a point of a pair with so many other nodes: of a point at a height above a mid-surface that of
-/// the nodes below it, and besides that of the point itself.
-pub(super) fn room(pair: &PairModel, others: usize) -> usize {
-    let size = |nodes: usize| (3 * (nodes + others)).pow(2);
-    let own = |p: &SlavePoint| match p.count {
-        0 => size(lever::NODES) + size(1),
-        n => size(n as usize),
-    };
-    pair.points.iter().map(own).max().unwrap_or(size(0))
-}
 
 /// Couplings of all pairs before anything has moved.
 pub(super) fn first_couplings(model: &Model, masters: &Masters) -> PerPair<Couplings> {

@@ -1,20 +1,20 @@
 //! Contact pairs: slave points, masters, penalties.
+mod friction;
+mod masters;
+
 use super::super::augmentation::AugmentationModel;
 use super::super::averaged::SlaveNodes;
 use super::super::edges;
 use super::super::error::{At, number, text};
-use super::super::friction::{self, FrictionModel, LawModel};
-use super::super::master::{BodyMaster, Master, moving_facets};
-use super::super::self_contact::OwnFacets;
+use super::super::master::Master;
 use super::super::slave::slave_points;
 use super::super::{HalfPass, ModelError, PairModel, SurfaceModel, penalty, segments, slave};
+use super::Builder;
 use super::nurbs_bodies::sheet_size;
-use super::{Builder, master_faces};
 use crate::contact::points::SlavePoint;
 use crate::machine::memory;
 use crate::mesh::Face;
 use crate::scene::{Contact, Gap, MasterSurface, Passes, Penalty, Points};
-use covact_geometry::{MovingError, MovingFacets};
 use penalty::{FaceSize, Suitable};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -392,116 +392,6 @@ impl Builder<'_> {
         }
     }
 
-    /// Friction of a contact with the normal penalty `eps_n`; none where the scene asks for none, or the coefficient is zero
-    /// throughout.
-    fn friction(
-        &mut self,
-        name: &str,
-        contact: &Contact,
-        (body, size): (usize, &FaceSize),
-        eps_n: f64,
-        suitable: f64,
-    ) -> Result<Option<FrictionModel>, ModelError> {
-        let Some(friction) = &contact.friction else {
-            return Ok(None);
-        };
-        let law = LawModel::new(friction).at(|| format!("/contacts/{name}/friction"))?;
-        if law.is_none() {
-            self.notes.push(format!(
-                "contact `{name}`: the coefficient of friction is zero, so that there is no friction"
-            ));
-            return Ok(None);
-        }
-        let automatic = friction::automatic_ratio(&self.bodies[body].material);
-        let ratio = match contact.tangential_penalty {
-            Penalty::Auto => automatic,
-            Penalty::Value(v) => v / eps_n,
-            Penalty::Scaled(f) => f * automatic,
-        };
-        if contact.tangential_penalty != Penalty::Auto {
-            // Of a ruled normal penalty nothing is known yet but where it starts.
-            let normal = match contact.penalty {
-                Penalty::Auto => suitable,
-                _ => eps_n,
-            };
-            let given = match contact.tangential_penalty {
-                Penalty::Value(v) => v,
-                _ => ratio * normal,
-            };
-            let suitable = automatic * suitable;
-            let bounded = size.bounded();
-            self.limit(
-                name,
-                contact,
-                "tangential_penalty",
-                given,
-                (suitable, bounded),
-            )?;
-        }
-        // The back pass of two has the friction of the first.
-        if self.scene.contacts.get(name) == Some(contact) {
-            self.notes.push(format!(
-                "contact `{name}`: tangential penalty {} (traction per elastic slip), {} of the normal one",
-                number(ratio * eps_n),
-                number(ratio)
-            ));
-        }
-        let ruled = contact.tangential_penalty == Penalty::Auto && contact.augmentation.is_none();
-        let given = match contact.tangential_penalty {
-            Penalty::Value(v) => Some(v),
-            Penalty::Auto | Penalty::Scaled(_) => None,
-        };
-        Ok(Some(FrictionModel {
-            law,
-            ratio,
-            ruled,
-            given,
-        }))
-    }
-
-    /// Warns of a given penalty that costs too many digits, and refuses one that leaves none. Compared with are the automatic
-    /// one and how many times smaller that is for the body being slender.
-    fn limit(
-        &mut self,
-        name: &str,
-        contact: &Contact,
-        field: &str,
-        given: f64,
-        (automatic, bounded): (f64, f64),
-    ) -> Result<(), ModelError> {
-        let what = field.replace('_', " ");
-        match penalty::judge(given, automatic * bounded) {
-            penalty::Given::Fine => {}
-            // The back pass of two has the penalty of the first.
-            penalty::Given::Stiff(multiple) => {
-                if self.scene.contacts.get(name) == Some(contact) {
-                    self.warnings.push(format!(
-                        "contact `{name}`: the {what} {} is {multiple:.1e} times the stiffness of the elements: it costs \
-                         digits and iterations; with `augmentation` a {what} near the automatic {} gives the same gaps",
-                        number(given),
-                        number(automatic)
-                    ));
-                }
-            }
-            penalty::Given::TooStiff(multiple) => {
-                return Err(text(
-                    format!("/contacts/{name}/{field}"),
-                    format!(
-                        "the {what} {} is {multiple:.1e} times the stiffness of the elements: rounding would be all that is \
-                         left of the pressures (at most {:.0e} times are possible)",
-                        number(given),
-                        penalty::REFUSED
-                    ),
-                )
-                .help(format!(
-                    "leave it out (the automatic one is {}), and take `augmentation` where gaps are to be smaller",
-                    number(automatic)
-                )));
-            }
-        }
-        Ok(())
-    }
-
     /// Size of the elements under some faces of a body, and the penalties that suit them.
     fn stiffness(&self, body: usize, faces: &[Face]) -> (FaceSize, Suitable) {
         let model = &self.bodies[body];
@@ -510,121 +400,5 @@ impl Builder<'_> {
             None => penalty::face_size(&model.mesh, faces),
         };
         (size, Suitable::new(&model.material, &size))
-    }
-
-    /// [`moving_facets`] of a body of the model, where they start.
-    pub(super) fn moving_facets(
-        &self,
-        body: usize,
-        faces: &[Face],
-        smooth: bool,
-    ) -> Result<MovingFacets, MovingError> {
-        let body = &self.bodies[body];
-        moving_facets(&body.mesh, body.first_node, faces, smooth, |n| {
-            self.nodes[n as usize]
-        })
-    }
-
-    /// Faces of a body as a master, and the penalties that suit them.
-    fn body_master(
-        &mut self,
-        name: &str,
-        contact: &Contact,
-    ) -> Result<(BodyMaster, Suitable), ModelError> {
-        let pointer = || format!("/contacts/{name}/master");
-        let (body, faces) = self.contact_faces(name, &contact.master, &pointer())?;
-        let (size, suits) = self.stiffness(body, &faces);
-        let smooth = contact.master_surface == Some(MasterSurface::Smooth);
-        let (facets, height) = match self.sheet_facets(body, &faces) {
-            Some(facets) => facets.at(pointer)?,
-            None => {
-                master_faces::check(&self.bodies[body].mesh, &faces, &contact.master)
-                    .map_err(|(message, help)| text(pointer(), message).help(help))?;
-                (self.moving_facets(body, &faces, smooth).at(pointer)?, 0.0)
-            }
-        };
-        let depth = contact.depth.unwrap_or(size.depth);
-        self.notes.push(format!(
-            "contact `{name}`: a point deeper than {} below `{}` is not in contact (`depth`)",
-            number(depth),
-            contact.master
-        ));
-        let master = BodyMaster {
-            name: contact.master.clone(),
-            body,
-            faces,
-            facets,
-            smooth,
-            depth,
-            element_size: size.edge,
-            own: None,
-            height,
-        };
-        Ok((master, suits))
-    }
-
-    /// Slave and master on one body: what is connected is no contact.
-    fn own_body(
-        &mut self,
-        name: &str,
-        contact: &Contact,
-        slave: &[Face],
-        points: &mut [SlavePoint],
-        master: &mut BodyMaster,
-    ) -> Result<(), ModelError> {
-        let body = &self.bodies[master.body];
-        let faces = &master.faces;
-        let common = slave.iter().filter(|f| faces.contains(f)).count();
-        let equal = common == slave.len() && common == faces.len();
-        if common > 0 && !equal {
-            let message = format!(
-                "`{}` and `{}` have {common} face(s) in common, {} and {} in all: these would be in contact with \
-                 themselves",
-                contact.slave,
-                contact.master,
-                slave.len(),
-                faces.len()
-            );
-            return Err(text(format!("/contacts/{name}/master"), message).help(
-                "for self contact give the same set as slave and as master, else two sets without a common face",
-            ));
-        }
-        if equal && contact.passes == Passes::TwoHalf {
-            return Err(text(
-                format!("/contacts/{name}/passes"),
-                format!(
-                    "`{}` is slave and master at once: both sides of self contact are slaves already, with half of their \
-                     areas",
-                    contact.slave
-                ),
-            )
-            .help("leave `passes` out, or give two sets without a common face"));
-        }
-        // As far as a point may sink in, through the wall and one more face.
-        let distance = 2.0 * master.depth + master.element_size + contact.offset;
-        master.own = Some(OwnFacets::new(
-            &body.mesh,
-            body.first_node,
-            points,
-            slave,
-            faces,
-            &master.facets,
-            distance,
-        ));
-        self.notes.push(format!(
-            "contact `{name}`: self contact of body `{}`; what is nearer than {} along its undeformed mesh is left out, \
-             and faces whose normals do not oppose each other",
-            body.name,
-            number(distance)
-        ));
-        if equal {
-            // Where two faces meet, the points of both push, half each.
-            points.iter_mut().for_each(|p| p.area *= 0.5);
-            self.notes.push(format!(
-                "contact `{name}`: its faces are slave and master at once, so that of two that meet each carries half of \
-                 the pressure with half of its area"
-            ));
-        }
-        Ok(())
     }
 }

@@ -1,5 +1,7 @@
 //! A driven surface against bodies that stand still: how hard it presses, when it touches first, where its forces hold
 //! it. This is where a step starts from that the surface enters without contact; six unknowns, no system.
+mod stiffness;
+
 use super::turn;
 use super::{Driven, Model, SurfaceModel};
 use crate::contact::carried::{Carried, carried, cross_matrix};
@@ -10,8 +12,9 @@ use crate::model::PairModel;
 use crate::model::surface::SurfaceSet;
 use crate::scene::ValueError;
 use covact_geometry::{Hint, Vec3};
-use nalgebra::{Isometry3, Matrix6, SymmetricEigen, Vector6};
+use nalgebra::{Isometry3, Matrix6, Vector6};
 use rayon::prelude::*;
+use stiffness::{modified_step, resisted};
 
 /// A slave point that could not be evaluated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -374,45 +377,6 @@ impl<'m, L: PairLaw> Presser<'m, L> {
         }
         Ok(Placed::RunsAway(last.into()))
     }
-}
-
-/// Step against the forces `f` with the magnitudes of the stiffness's eigenvalues: downhill also where it is indefinite
-/// or zero.
-fn modified_step(tangent: &Matrix6<f64>, free: &[bool; 6], f: &Vector6<f64>) -> Vector6<f64> {
-    let k = Matrix6::from_fn(|i, j| {
-        if free[i] && free[j] {
-            tangent[(i, j)]
-        } else {
-            0.0
-        }
-    });
-    let eigen = SymmetricEigen::new(k);
-    let largest = eigen.eigenvalues.amax();
-    if largest <= 0.0 {
-        // No contact: any length, the caller bounds it.
-        return f * (1e100 / f.norm());
-    }
-    let mut step = Vector6::zeros();
-    for i in 0..6 {
-        let v = eigen.eigenvectors.column(i);
-        step += v * (v.dot(f) / eigen.eigenvalues[i].abs().max(1e-8 * largest));
-    }
-    step
-}
-
-/// The part of forces that works along directions which have stiffness.
-fn resisted(tangent: &Matrix6<f64>, free: &[bool; 6], f: &Vector6<f64>) -> Vector6<f64> {
-    let masked = |i: usize, j: usize| match free[i] && free[j] {
-        true => tangent[(i, j)],
-        false => 0.0,
-    };
-    let eigen = SymmetricEigen::new(Matrix6::from_fn(masked));
-    let smallest = 1e-6 * eigen.eigenvalues.amax();
-    let stiff = (0..6).filter(|&i| eigen.eigenvalues[i].abs() > smallest);
-    stiff.fold(Vector6::zeros(), |sum, i| {
-        let v = eigen.eigenvectors.column(i);
-        sum + v * v.dot(f)
-    })
 }
 
 /// Adds translation and spin parts.
