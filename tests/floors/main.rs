@@ -37,6 +37,35 @@ fn upwards<'a>(arrows: &'a [Arrow], floors: &[String]) -> Vec<&'a Arrow> {
         .collect()
 }
 
+/// Lines of the longest file of the sources: beyond, it holds two ideas.
+const LONGEST: usize = 500;
+
+#[test]
+fn no_file_of_the_sources_is_too_long() {
+    fn longer(folder: &Path, found: &mut Vec<String>) -> usize {
+        let mut read = 0;
+        for entry in fs::read_dir(folder).expect("a folder of sources") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                read += longer(&path, found);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let lines = fs::read_to_string(&path).expect("a source").lines().count();
+                if lines > LONGEST {
+                    found.push(format!("{}: {lines}", path.display()));
+                }
+                read += 1;
+            }
+        }
+        read
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut found = Vec::new();
+    let read =
+        longer(&root.join("src"), &mut found) + longer(&root.join("geometry/src"), &mut found);
+    assert!(read > 300, "{read} files");
+    assert_eq!(found, Vec::<String>::new());
+}
+
 #[test]
 fn every_module_uses_lower_floors_only() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
