@@ -172,7 +172,7 @@ fn a_peak_between_the_steps_is_told() {
 }
 
 /// A cube of metal whose top goes round a circle: flow turns all the time. Work that steps leave out because of it is told in
-/// steps of 30 degrees, where it is 8 % of that of steps of 2 degrees, and not in these. Steps that may change are taken smaller.
+/// steps of 30 degrees, where it is 12 % of that of steps of 2 degrees, and not in these. Steps that may change are taken smaller.
 #[test]
 fn flow_that_turns_within_the_steps_is_told() {
     let run = |degrees: f64, adaptive: bool| {

@@ -262,24 +262,21 @@ impl MaterialLaw for J2 {
 
     fn flow(&self, metric: &Metric, old: &J2State, new: &J2State) -> Flow {
         let most = new.p - old.p;
-        let work = self.hardening.at(new.p).1 - self.hardening.at(old.p).1;
-        let [q, yields] = [old.equivalent(metric), self.hardening.at(old.p).0];
+        if most <= 0.0 {
+            return Flow::default();
+        }
+        let (yields, done) = self.hardening.at(old.p);
+        let work = self.hardening.at(new.p).1 - done;
+        let [q, end] = [old, new].map(|s| s.equivalent(metric));
         // From an elastic state flow starts along the direction it is found to have.
-        if most <= 0.0 || q < YIELDS * yields {
-            return Flow {
-                most,
-                work,
-                lag: 0.0,
-            };
-        }
-        let [from, to] = [old, new].map(|s| s.deviator(metric));
-        let cosine = contract(metric, &from, &to) * 1.5 / (q * new.equivalent(metric));
-        let chord = (2.0 - 2.0 * cosine).max(0.0).sqrt();
-        Flow {
-            most,
-            work,
-            lag: 0.5 * chord * work,
-        }
+        let lag = if q < YIELDS * yields {
+            0.0
+        } else {
+            let [from, to] = [old, new].map(|s| s.deviator(metric));
+            let cosine = 1.5 * contract(metric, &from, &to) / (q * end);
+            0.5 * (2.0 - 2.0 * cosine).max(0.0).sqrt() * work
+        };
+        Flow { most, work, lag }
     }
 
     fn flow_measures(&self, metric: &Metric, state: &J2State) -> [f64; 2] {
