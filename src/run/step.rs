@@ -300,7 +300,7 @@ impl Attempts<'_, '_> {
             let penalties = &self.assembler.penalties;
             let mut presser =
                 Presser::<Penalty>::new(self.model, entry, penalties, &trial.histories, &trial.u);
-            if presser.only_friction_resists() || touches && presser.press(end, &q)?.active > 0 {
+            if driven.by_friction || touches && presser.press(end, &q)?.active > 0 {
                 continue;
             }
             let mut u = trial.u.clone();

@@ -32,6 +32,8 @@ pub struct Driven {
     pub loads: [Option<TimeFunction>; 6],
     /// Degrees of freedom before the first step: moved until the surface first touches.
     pub start: [f64; 6],
+    /// Friction alone works against what drives it, as against a pulley: nothing is pressed however it turns.
+    pub by_friction: bool,
 }
 
 /// What the six components are called.
@@ -81,6 +83,7 @@ impl Driven {
             node,
             loads,
             start: [0.0; 6],
+            by_friction: false,
         })
     }
 

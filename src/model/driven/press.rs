@@ -84,6 +84,9 @@ const STRIDE: f64 = 0.25;
 const GRAZE: f64 = 0.01;
 /// Steps of a search.
 const STEPS: usize = 400;
+/// Stiffness against turning, at the lever of the surface, over that against being moved straight on, above which normal tractions
+/// resist. Facets of a pulley have as much as the square of the sine of half the angle between them.
+const RESISTS: f64 = 0.05;
 
 impl<'m, L: PairLaw> Presser<'m, L> {
     /// The slave points of surface `index` at displacements `u`; penalties per pair of the model, histories of all points
@@ -136,9 +139,25 @@ impl<'m, L: PairLaw> Presser<'m, L> {
         self.pairs.iter().all(|p| p.points.is_empty())
     }
 
-    /// Whether friction alone works against what drives the surface: no translation is free.
-    pub fn only_friction_resists(&self) -> bool {
+    /// Whether friction may be all that works against what drives the surface: no translation is free.
+    pub fn turns_with_friction(&self) -> bool {
         self.slides && self.driven.free()[..3].iter().all(|free| !free)
+    }
+
+    /// Whether normal tractions resist a motion in direction `e` one stride beyond `q`, as a lid that closes and no pulley is
+    /// resisted: what turns does not press on what it turns past.
+    ///
+    /// # Errors
+    /// A motion without a value, or a point that cannot be evaluated.
+    pub fn resists(
+        &mut self,
+        t: f64,
+        q: &Vector6<f64>,
+        e: &Vector6<f64>,
+    ) -> Result<bool, PressFault> {
+        let press = self.press(t, &(q + e * self.stride))?;
+        let straight = press.tangent.fixed_view::<3, 3>(0, 0).trace();
+        Ok(e.dot(&(press.tangent * e)) > RESISTS * straight)
     }
 
     fn parts(&self, q: &Vector6<f64>) -> (Vec3, Vec3) {

@@ -46,15 +46,10 @@ fn resolved(
 /// # Errors
 /// [`ModelError`] where it would never touch, has no contact at all, or nothing drives it at the end of the first step.
 pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
-    let step = &scene.solution.step;
-    let stops = model.kinks.iter().chain(&scene.solution.stops);
-    let first = (stops.copied().filter(|t| *t > 0.0)).fold(
-        step.initial.min(step.max).min(scene.solution.end_time),
-        f64::min,
-    );
+    let first = first_step(model, scene);
     let penalties: Vec<f64> = model.pairs.iter().map(|p| p.eps_n).collect();
     let u = vec![0.0; 3 * model.nodes.len()];
-    let mut starts = Vec::new();
+    let (mut starts, mut frictional) = (Vec::new(), Vec::new());
     for entry in model.driven() {
         let (index, surface, driven) = entry;
         let name = &surface.name;
@@ -67,11 +62,14 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
             return Err(text(pointer(), message)
                 .help("name it as `master` of a contact, or leave `free` out"));
         }
-        if presser.only_friction_resists() {
-            continue;
-        }
         let driving = driven.driving(first, &u).at(pointer)?;
-        let Some(e) = Presser::<Penalty>::direction(&driving) else {
+        let e = Presser::<Penalty>::direction(&driving);
+        let turns = presser.turns_with_friction();
+        let Some(e) = e else {
+            if turns {
+                frictional.push(index);
+                continue;
+            }
             let message = format!(
                 "surface `{name}` is driven by force {}, but the force is zero at the end of the first step \
                  (t = {first}): nothing presses it against a body",
@@ -82,6 +80,17 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
         };
         let q = Vector6::zeros();
         let found = (presser.advance(0.0, &q, &e)).map_err(|f| text(pointer(), f.to_string()))?;
+        if turns {
+            let resisted = match &found {
+                Some(s) => (presser.resists(0.0, &(e * *s), &e))
+                    .map_err(|f| text(pointer(), f.to_string()))?,
+                None => false,
+            };
+            if !resisted {
+                frictional.push(index);
+                continue;
+            }
+        }
         let Some(s) = found else {
             let message = format!(
                 "surface `{name}` is driven by force {}, but no slave point lies in its way {}",
@@ -93,6 +102,11 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
             ));
         };
         starts.push((index, e * s));
+    }
+    for index in frictional {
+        if let Some(driven) = &mut model.surfaces[index].driven {
+            driven.by_friction = true;
+        }
     }
     for (index, start) in starts {
         let surface = &mut model.surfaces[index];
@@ -106,4 +120,43 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
         }
     }
     Ok(())
+}
+
+/// The end of the first step.
+fn first_step(model: &Model, scene: &Scene) -> f64 {
+    let step = &scene.solution.step;
+    let stops = model.kinks.iter().chain(&scene.solution.stops);
+    (stops.copied().filter(|t| *t > 0.0)).fold(
+        step.initial.min(step.max).min(scene.solution.end_time),
+        f64::min,
+    )
+}
+
+/// Which surfaces friction alone resists, in a stage after the first: seen from where they start, so that a run that is continued
+/// knows the same.
+pub fn resisted(model: &mut Model, scene: &Scene) {
+    let first = first_step(model, scene);
+    let penalties: Vec<f64> = model.pairs.iter().map(|p| p.eps_n).collect();
+    let u = vec![0.0; 3 * model.nodes.len()];
+    let mut frictional = Vec::new();
+    for entry in model.driven() {
+        let (index, _, driven) = entry;
+        let mut presser = Presser::<Penalty>::new(model, entry, &penalties, &[], &u);
+        if !presser.turns_with_friction() {
+            continue;
+        }
+        let mut pressed = || {
+            let e = Presser::<Penalty>::direction(&driven.driving(first, &u).ok()?)?;
+            let s = presser.advance(0.0, &Vector6::zeros(), &e).ok()??;
+            presser.resists(0.0, &(e * s), &e).ok()
+        };
+        if pressed() != Some(true) {
+            frictional.push(index);
+        }
+    }
+    for index in frictional {
+        if let Some(driven) = &mut model.surfaces[index].driven {
+            driven.by_friction = true;
+        }
+    }
 }
