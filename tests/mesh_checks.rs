@@ -112,6 +112,7 @@ fn stray_and_coincident_nodes_are_named() {
     mesh.connectivity[1] = mesh.nodes.len() as u32 - 1;
     let error = mesh.check().unwrap_err();
     assert!(matches!(error, MeshError::DuplicateNodes { .. }), "{error}");
+    assert!(error.to_string().contains("`\"slits\": true`"), "{error}");
 
     let mut mesh = sheet();
     mesh.nodes[3].y = f64::NAN;

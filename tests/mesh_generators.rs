@@ -53,6 +53,7 @@ fn a_block() -> Block {
                 length: 0.5,
                 fine: 2,
                 from_end: true,
+                from_middle: false,
             },
         ],
     }
@@ -305,6 +306,7 @@ fn spacings_fill_the_axis() {
             length: 1.0,
             fine: 5,
             from_end,
+            from_middle: false,
         };
         let s = positions(&fine, 10.0, 12, "x").unwrap();
         assert_eq!((s[0], s[12]), (0.0, 10.0));
@@ -327,14 +329,66 @@ fn spacings_fill_the_axis() {
         length: 2.0,
         fine: 2,
         from_end: false,
+        from_middle: false,
     };
     close(positions(&even, 5.0, 5, "x").unwrap()[3], 3.0, 1e-9);
     let all = Spacing::Fine {
         length: 5.0,
         fine: 5,
         from_end: false,
+        from_middle: false,
     };
     close(positions(&all, 5.0, 5, "x").unwrap()[3], 3.0, 1e-13);
+}
+
+/// The same on both sides of the middle, with an element there where their number is odd.
+#[test]
+fn spacings_grow_from_the_middle() {
+    let lengths = |s: &[f64]| s.windows(2).map(|w| w[1] - w[0]).collect::<Vec<_>>();
+    for (ratio, n) in [
+        (1.3, 7u32),
+        (1.3, 8),
+        (0.7, 7),
+        (1.0, 6),
+        (1.5, 1),
+        (4.0, 9),
+    ] {
+        let spacing = Spacing::FromMiddle { ratio };
+        let h = lengths(&positions(&spacing, 7.0, n, "x").unwrap());
+        close(h.iter().sum(), 7.0, 1e-13);
+        let half = n as usize / 2;
+        for k in 0..half {
+            assert!((h[k] - h[n as usize - 1 - k]).abs() < 1e-14, "{h:?}");
+        }
+        let first = if n % 2 == 1 { half } else { half.max(1) };
+        for pair in h[first..].windows(2) {
+            close(pair[1] / pair[0], ratio, 1e-9);
+        }
+    }
+    let fine = |length, fine, from_end| Spacing::Fine {
+        length,
+        fine,
+        from_end,
+        from_middle: true,
+    };
+    let s = positions(&fine(2.0, 5, false), 10.0, 11, "x").unwrap();
+    let h = lengths(&s);
+    close(s[3], 4.0, 1e-12);
+    close(s[8], 6.0, 1e-12);
+    for k in 0..3 {
+        close(h[k], h[10 - k], 1e-12);
+    }
+    let growth = h[8] / h[7];
+    assert!(growth > 1.3, "the rest must grow: {growth}");
+    close(h[9] / h[8], growth, 1e-9);
+    close(h[10] / h[9], growth, 1e-9);
+    for (spacing, elements, part) in [
+        (fine(2.0, 5, false), 12, "cannot be shared"),
+        (fine(2.0, 5, true), 11, "at one place"),
+    ] {
+        let error = positions(&spacing, 10.0, elements, "x").unwrap_err();
+        assert!(error.to_string().contains(part), "{error}");
+    }
 }
 
 #[test]
@@ -343,6 +397,7 @@ fn spacings_that_cannot_fill_are_refused() {
         length,
         fine,
         from_end: false,
+        from_middle: false,
     };
     for (spacing, elements, part) in [
         (fine(1.0, 5), 5, "unfilled"),

@@ -123,9 +123,9 @@ fn names_that_do_not_exist() {
             "14:32: the body `sheet` has no set `tops` (did you mean `top`? sets of `sheet`: `bottom`, `mid`, `top`,",
         ),
         (
-            "sheet.x_min",
+            "sheet.top",
             "sheet",
-            "15:31: `sheet` does not name a set (write body and set, as in `sheet.bottom`)",
+            "14:32: `sheet` does not name a set (write body and set, as in `sheet.bottom`)",
         ),
         (
             "sheet.top",

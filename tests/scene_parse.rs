@@ -395,6 +395,7 @@ fn other_forms_are_read() {
         length: 2.0,
         fine: 3,
         from_end: false,
+        from_middle: false,
     };
     assert_eq!(plate.spacing[1], fine);
     let sets = r#""material": "steel", "sets": {"mid": {"nodes_near_point": {"point": [0, 0, 0], "tolerance": 1e-6}}}"#;

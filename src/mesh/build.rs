@@ -192,10 +192,11 @@ fn finish(
             layers: file.layers.unwrap_or(1).max(1),
             kind,
             scale: file.scale,
+            slits: file.slits,
         };
         return raw.into_shell(path, &how);
     }
-    let (mesh, report) = raw.into_mesh(path, file.scale)?;
+    let (mesh, report) = raw.into_mesh(path, file.scale, file.slits)?;
     if mesh.kind == kind {
         return Ok((mesh, report));
     }

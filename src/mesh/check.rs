@@ -19,9 +19,14 @@ impl Mesh {
     ///
     /// Returns the first kind of trouble found, in that order, with the number of cases of it.
     pub fn check(&self) -> Result<(), MeshError> {
+        self.check_with(false)
+    }
+
+    /// [`check`](Self::check) of a mesh whose nodes at the same place are the two sides of `slits`, where that is so.
+    pub(crate) fn check_with(&self, slits: bool) -> Result<(), MeshError> {
         self.check_numbers()?;
         self.check_elements()?;
-        self.check_nodes()?;
+        self.check_nodes(slits)?;
         self.check_faces()
     }
 
@@ -99,7 +104,7 @@ impl Mesh {
         }
     }
 
-    fn check_nodes(&self) -> Result<(), MeshError> {
+    fn check_nodes(&self, slits: bool) -> Result<(), MeshError> {
         let mut used = vec![false; self.nodes.len()];
         for &n in &self.connectivity {
             used[n as usize] = true;
@@ -121,7 +126,7 @@ impl Mesh {
         let pairs = close_pairs(&self.nodes, shortest);
         let wrong = match pairs.is_empty() {
             true => Vec::new(),
-            false => self.wrong_pairs(&pairs),
+            false => self.wrong_pairs(&pairs, slits),
         };
         match wrong.first() {
             None => Ok(()),
@@ -135,9 +140,9 @@ impl Mesh {
         }
     }
 
-    /// Pairs of nodes at the same place that cannot be meant: within one part, or of two elements that fill the same place.
-    /// Parts that only touch are kept apart: they may be partners in contact.
-    fn wrong_pairs(&self, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    /// Pairs of nodes at the same place that cannot be meant: within one part, unless it has `slits`, or of two elements that fill
+    /// the same place. Parts that only touch are kept apart: they may be partners in contact.
+    fn wrong_pairs(&self, pairs: &[[u32; 2]], slits: bool) -> Vec<[u32; 2]> {
         let part = self.parts();
         let mut twin: Vec<u32> = (0..self.nodes.len() as u32).collect();
         for &[a, b] in pairs {
@@ -160,7 +165,8 @@ impl Mesh {
             }
         }
         let wrong = |[a, b]: &&[u32; 2]| {
-            part[*a as usize] == part[*b as usize] || (doubled[*a as usize] && doubled[*b as usize])
+            !slits && part[*a as usize] == part[*b as usize]
+                || (doubled[*a as usize] && doubled[*b as usize])
         };
         pairs.iter().filter(wrong).copied().collect()
     }

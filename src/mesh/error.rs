@@ -200,7 +200,8 @@ pub enum MeshError {
     },
     /// Two nodes lie at the same place: parts that touch but are not joined.
     #[error(
-        "nodes {first} and {second}{} lie at the same place ({:.6}, {:.6}, {:.6}); {count} such pair(s) in all: join them in the mesher",
+        "nodes {first} and {second}{} lie at the same place ({:.6}, {:.6}, {:.6}); {count} such pair(s) in all: join them in the mesher, or \
+         say `\"slits\": true` of the file where a slit is meant",
         tags.map(|[a, b]| format!(" (numbers {a} and {b} in the file)")).unwrap_or_default(),
         position[0], position[1], position[2]
     )]

@@ -12,6 +12,10 @@ pub(super) const NONE: u32 = u32::MAX;
 pub(super) const KEPT_APART: &str = "pair(s) of nodes of unconnected parts lie at the same place and are kept apart; join \
                                      them in the mesher where the parts are to hold together";
 
+/// The same of pairs within a part, where they are meant.
+pub(super) const SLITS: &str =
+    "pair(s) of nodes at the same place are the two sides of slits (`slits`)";
+
 /// How the thickness direction t of the elements was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ThicknessRule {

@@ -20,6 +20,7 @@ impl RawMesh {
         mut self,
         path: &Path,
         scale: f64,
+        slits: bool,
     ) -> Result<(Mesh, MeshReport), MeshError> {
         if let Some(refused) = self.refused.take() {
             return Err(refused);
@@ -57,7 +58,7 @@ impl RawMesh {
         let tagged = |error, nodes: &[u64]| with_tags(error, &self.element_tags, nodes);
         let linear = self.quadratic.is_empty();
         let checked = if linear {
-            mesh.check()
+            mesh.check_with(slits)
         } else {
             mesh.check_elements()
         };
@@ -81,7 +82,8 @@ impl RawMesh {
                 &mut self.node_tags,
                 &mut notes,
             );
-            mesh.check().map_err(|e| tagged(e, &self.node_tags))?;
+            mesh.check_with(slits)
+                .map_err(|e| tagged(e, &self.node_tags))?;
         }
         for faces in mesh.face_sets.values_mut() {
             faces.sort_unstable();

@@ -29,24 +29,46 @@ pub fn positions(
     }
     let mut s = match *spacing {
         Spacing::Uniform => (0..=n).map(|i| length * i as f64 / n as f64).collect(),
-        Spacing::Geometric { ratio } => {
+        Spacing::Geometric { ratio } | Spacing::FromMiddle { ratio } => {
             if !(ratio.is_finite() && ratio > 0.0) {
                 return Err(error(format!(
                     "ratio is {ratio}, expected a positive number"
                 )));
             }
-            geometric(ratio, length, n)
+            match spacing {
+                Spacing::FromMiddle { .. } => from_the_middle(ratio, length, n),
+                _ => geometric(ratio, length, n),
+            }
         }
         Spacing::Fine {
             length: part,
             fine,
             from_end,
+            from_middle,
         } => {
-            let s = fine_part(part, fine, length, elements).map_err(error)?;
-            if from_end {
-                s.iter().rev().map(|x| length - x).collect()
+            let sides = match (from_end, from_middle) {
+                (true, true) => {
+                    let both = "`from_end` and `from_middle` are both asked for: the fine part lies at one place";
+                    return Err(error(both.to_owned()));
+                }
+                (_, middle) => 1 + u32::from(middle),
+            };
+            let (equal, grown) = fine_part(part, fine, length, (elements, sides)).map_err(error)?;
+            if from_middle {
+                let rest = 0.5 * (length - part);
+                let before = grown.iter().rev().map(|x| rest - x);
+                let middle = equal.iter().map(|x| rest + x);
+                let after = grown.iter().map(|x| rest + part + x);
+                before.chain(middle).chain(after).collect()
+            } else if from_end {
+                let all = equal.iter().copied().chain(grown.iter().map(|x| part + x));
+                let all: Vec<f64> = all.collect();
+                all.iter().rev().map(|x| length - x).collect()
             } else {
-                s
+                equal
+                    .into_iter()
+                    .chain(grown.iter().map(|x| part + x))
+                    .collect()
             }
         }
     };
@@ -78,8 +100,34 @@ fn geometric(ratio: f64, length: f64, n: usize) -> Vec<f64> {
     }
 }
 
-/// `fine` equal elements over `part`, then `elements - fine` growing ones over the rest.
-fn fine_part(part: f64, fine: u32, length: f64, elements: u32) -> Result<Vec<f64>, String> {
+/// Lengths that grow by `ratio` from the middle to both ends, with one element in the middle where `n` is odd; positions of their
+/// ends.
+fn from_the_middle(ratio: f64, length: f64, n: usize) -> Vec<f64> {
+    // Powers of the distance from the middle, the largest of them 1, so that none overflows.
+    let most = (n - 1) / 2;
+    let power = |i: usize| {
+        let out = i.abs_diff(n - 1 - i) / 2;
+        match ratio > 1.0 {
+            true => -((most - out) as f64) * ratio.ln(),
+            false => out as f64 * ratio.ln(),
+        }
+    };
+    let ends = (0..n).scan(0.0, |sum, i| {
+        *sum += power(i).exp();
+        Some(*sum)
+    });
+    let ends: Vec<f64> = std::iter::once(0.0).chain(ends).collect();
+    ends.iter().map(|x| length * (x / ends[n])).collect()
+}
+
+/// Ends of `fine` equal elements over `part`, from 0 on, and those of the growing ones on each of the `sides` of it that have the
+/// rest of `elements` and of `length`, counted from the fine part.
+fn fine_part(
+    part: f64,
+    fine: u32,
+    length: f64,
+    (elements, sides): (u32, u32),
+) -> Result<(Vec<f64>, Vec<f64>), String> {
     let slack = 1e-9 * length;
     if !(part.is_finite() && part > 0.0 && part <= length + slack) {
         return Err(format!(
@@ -91,11 +139,20 @@ fn fine_part(part: f64, fine: u32, length: f64, elements: u32) -> Result<Vec<f64
             "{fine} fine elements, expected 1 to {elements} (all elements of the axis)"
         ));
     }
-    let (rest, m) = (length - part, (elements - fine) as usize);
+    if (elements - fine) % sides != 0 {
+        return Err(format!(
+            "the {} elements beside the fine part cannot be shared between both of its sides: give one more or one less",
+            elements - fine
+        ));
+    }
+    let (rest, m) = (
+        (length - part) / f64::from(sides),
+        ((elements - fine) / sides) as usize,
+    );
     let h = part / f64::from(fine);
-    let equal = (0..=fine).map(|i| h * f64::from(i));
+    let equal = (0..=fine).map(|i| h * f64::from(i)).collect();
     match (rest <= slack, m) {
-        (true, 0) => return Ok(equal.collect()),
+        (true, 0) => return Ok((equal, Vec::new())),
         (true, _) => {
             return Err(format!(
                 "{fine} fine elements fill the axis, but {m} more are asked for"
@@ -138,6 +195,7 @@ fn fine_part(part: f64, fine: u32, length: f64, elements: u32) -> Result<Vec<f64
             high = middle;
         }
     }
-    let grown = geometric((0.5 * (low + high)).exp(), rest, m);
-    Ok(equal.chain(grown[1..].iter().map(|x| part + x)).collect())
+    let mut grown = geometric((0.5 * (low + high)).exp(), rest, m);
+    grown.remove(0);
+    Ok((equal, grown))
 }

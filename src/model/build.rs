@@ -144,8 +144,9 @@ pub fn build_stage(
     stabilize(scene, &mut model)?;
     stages::stabilized(&mut model)?;
     super::initial::check(&mut model, scene)?;
-    if first {
-        super::driven::start::approach(&mut model, scene)?;
+    match first {
+        true => super::driven::start::approach(&mut model, scene)?,
+        false => super::driven::start::resisted(&mut model, scene),
     }
     Ok(model)
 }
@@ -278,7 +279,12 @@ impl<'s> Builder<'s> {
                 .at(|| format!("/bodies/{name}/sets/{set}"))
                 .map_err(|e| e.help(extent(name, &mesh)))?;
         }
-        mesh.check().at(at)?;
+        let slits = match &body.mesh {
+            MeshSource::File(file) => file.slits,
+            MeshSource::Cells(cells) => cells.file.slits,
+            _ => false,
+        };
+        mesh.check_with(slits).at(at)?;
         (self.notes).extend(report.notes.iter().map(|n| format!("body `{name}`: {n}")));
         let law = Law::new(&material).at(|| format!("/bodies/{name}/material"))?;
         let elements = mesh.elements() as u64;

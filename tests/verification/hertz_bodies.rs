@@ -108,6 +108,7 @@ fn positions(fine: u32, coarse: u32) -> Vec<f64> {
         length: FINE,
         fine,
         from_end: false,
+        from_middle: false,
     };
     covact::mesh::positions(&spacing, SIDE, fine + coarse, "r").unwrap()
 }

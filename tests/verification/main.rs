@@ -30,6 +30,7 @@ mod punch;
 mod quadratic;
 mod resolution;
 mod rigid_edges;
+mod slit;
 mod springback;
 mod strip_over_cylinder;
 mod support;

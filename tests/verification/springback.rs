@@ -48,8 +48,7 @@ fn wrapped(radius: f64, [length, way]: [f64; 2], elements: u32) -> Value {
         "contacts": { "wrap": { "slave": "strip.bottom", "master": "cylinder" } },
         "supports": {
             "middle": { "on": "strip.x_min", "symmetry": "x" },
-            "front": { "on": "strip.y_min", "symmetry": "y" },
-            "back": { "on": "strip.y_max", "symmetry": "y" },
+            "flat": { "on": "strip", "plane_strain": "y" },
             "end": {
                 "on": "strip.x_max", "mid_surface": true,
                 "displacement": { "z": { "table": [[0, 0], [1, -way * radius]] } }
@@ -57,7 +56,7 @@ fn wrapped(radius: f64, [length, way]: [f64; 2], elements: u32) -> Value {
         },
         "stages": [
             { "name": "wrap", "until": 1 },
-            { "name": "release", "release": "forces", "supports": ["middle", "front", "back", "automatic"] }
+            { "name": "release", "release": "forces", "supports": ["middle", "flat", "automatic"] }
         ],
         "solution": { "end_time": 1.3 }
     })

@@ -42,7 +42,7 @@ pub enum SurfaceError {
     /// Borders of one part touch, but are not joined.
     #[error(
         "nodes {} and {} lie at the same place {}; {count} such pair(s) in all: the surface has a slit there, join them in \
-         the mesher",
+         the mesher, or say `\"slits\": true` of the file where it is meant",
         nodes[0], nodes[1], at(position)
     )]
     Unjoined {

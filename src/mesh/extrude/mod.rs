@@ -29,6 +29,8 @@ pub(super) struct Extrusion<'s> {
     pub kind: ElementKind,
     /// Factor of all coordinates of the file.
     pub scale: f64,
+    /// Borders of one part that touch are slits.
+    pub slits: bool,
 }
 
 impl RawMesh {
@@ -68,7 +70,7 @@ impl RawMesh {
         let mut edges = Edges::new(&surface.facets);
         surface.check().map_err(fail)?;
         edges.check(&surface).map_err(fail)?;
-        seams::check(&surface, &edges, &mut notes).map_err(fail)?;
+        seams::check(&surface, &edges, how.slits, &mut notes).map_err(fail)?;
         surface.set_thickness(how.thickness, path)?;
         let turned = sense::unify(&mut surface, &edges).map_err(fail)?;
         if turned > 0 {
@@ -117,7 +119,7 @@ impl RawMesh {
         let layers = how.layers as usize;
         let element_tags = cells.tags.repeat(layers);
         let node_tags = surface.node_tags.repeat(layers + 1);
-        mesh.check()
+        mesh.check_with(how.slits)
             .map_err(|e| with_tags(e, &element_tags, &node_tags))?;
         let mut report = report(&mesh, notes, ThicknessRule::Extruded)?;
         report.element_tags = element_tags;

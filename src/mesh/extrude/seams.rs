@@ -3,15 +3,16 @@ use super::SurfaceError;
 use super::edges::{Edges, corners};
 use super::surface::Surface;
 use crate::mesh::check::close_pairs;
-use crate::mesh::raw::KEPT_APART;
+use crate::mesh::raw::{KEPT_APART, SLITS};
 use crate::mesh::topology::root;
 
-/// Refuses borders of one part that touch: the body would gape there, and nothing else would tell, because its sides go
-/// apart along different normals. Parts that touch each other stay apart, which `notes` tells: they may be partners in
-/// contact.
+/// Refuses borders of one part that touch, unless they are `meant` as slits: the body would gape there, and nothing else would
+/// tell, because its sides go apart along different normals. Parts that touch each other stay apart, which `notes` tells: they may
+/// be partners in contact.
 pub(super) fn check(
     surface: &Surface,
     edges: &Edges,
+    meant: bool,
     notes: &mut Vec<String>,
 ) -> Result<(), SurfaceError> {
     let length = |ends: [u32; 2]| {
@@ -42,6 +43,13 @@ pub(super) fn check(
     let mut joined = |pair: &&[u32; 2]| root(&mut parent, pair[0]) == root(&mut parent, pair[1]);
     let slits: Vec<&[u32; 2]> = pairs.iter().filter(|pair| joined(pair)).collect();
     match slits.first() {
+        Some(_) if meant => {
+            notes.push(format!("{} {SLITS}", slits.len()));
+            if pairs.len() > slits.len() {
+                notes.push(format!("{} {KEPT_APART}", pairs.len() - slits.len()));
+            }
+            Ok(())
+        }
         Some(&&[a, b]) => Err(SurfaceError::Unjoined {
             nodes: [a, b].map(|n| surface.node_tags[n as usize]),
             position: surface.nodes[a as usize].into(),

@@ -28,7 +28,7 @@ const EXTRUDE: &str = "give the shell its thickness by extruding its surface in 
 
 /// Reads the mesh of hexahedra from the bytes of a file; `path` is for messages, `scale` multiplies every coordinate.
 pub fn read_gmsh(bytes: &[u8], path: &Path, scale: f64) -> Result<(Mesh, MeshReport), MeshError> {
-    parse(bytes, path)?.into_mesh(path, scale)
+    parse(bytes, path)?.into_mesh(path, scale, false)
 }
 
 /// Everything of use in a file.

@@ -38,7 +38,7 @@ const NOT_A_SET: &str = "gmsh:bounding_entities";
 
 /// Reads the mesh of hexahedra from the bytes of a file; `path` is for messages, `scale` multiplies every coordinate.
 pub fn read_inp(bytes: &[u8], path: &Path, scale: f64) -> Result<(Mesh, MeshReport), MeshError> {
-    parse(bytes, path)?.into_mesh(path, scale)
+    parse(bytes, path)?.into_mesh(path, scale, false)
 }
 
 /// Everything of use in a file.

@@ -24,7 +24,8 @@ impl Builder<'_> {
         let (body, faces) = self.faces(reference, pointer)?;
         let mut cut: HashSet<Face> = HashSet::new();
         for (name, support) in &self.scene.supports {
-            let held = support.symmetry.map(|_| components(support));
+            let plane = support.symmetry.or(support.plane_strain);
+            let held = plane.map(|_| components(support));
             let Some(&[(axis, _)]) = held.as_deref() else {
                 continue;
             };

@@ -7,7 +7,7 @@ use crate::model::BodyModel;
 use crate::model::error::At;
 use crate::scene::{POSITION_AND_TIME, TimeFunction};
 use covact_geometry::Vec3;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// Thickness over the size of the body up to which it is a shell.
 const SHELL: f64 = 0.1;
@@ -27,6 +27,7 @@ impl Builder<'_> {
     pub(super) fn held_fibres(&mut self) -> Result<(), ModelError> {
         let scene = self.scene;
         let (mut warnings, mut notes) = (Vec::new(), Vec::new());
+        let flat = self.held_along()?;
         for (name, support) in &scene.supports {
             let pointer = |field: &str| format!("/supports/{name}/{field}");
             let held = components(support);
@@ -50,7 +51,7 @@ impl Builder<'_> {
                 if body.block.sheet().is_some() {
                     continue;
                 }
-                let fibres = border_fibres(body, &set, &values, scene.solution.end_time);
+                let fibres = border_fibres(body, (&set, &flat), &values, scene.solution.end_time);
                 if fibres == 0 {
                     continue;
                 }
@@ -87,11 +88,32 @@ impl Builder<'_> {
     }
 }
 
+impl Builder<'_> {
+    /// Nodes that supports hold where they are along an axis, with its number.
+    ///
+    /// # Errors
+    /// A set that there is not.
+    fn held_along(&self) -> Result<HashSet<(u32, usize)>, ModelError> {
+        let mut held = HashSet::new();
+        for (name, support) in &self.scene.supports {
+            let plane = support.symmetry.or(support.plane_strain);
+            let Some(&[(axis, _)]) = plane.map(|_| components(support)).as_deref() else {
+                continue;
+            };
+            for (at, reference) in support.on.places(&format!("/supports/{name}/on")) {
+                let (_, nodes) = self.set_nodes(reference, &at)?;
+                held.extend(nodes.into_iter().map(|node| (node, axis as usize)));
+            }
+        }
+        Ok(held)
+    }
+}
+
 /// The number of fibres at the border of a thin body both of whose ends are in the set and alike held in the direction that points
 /// into the body, by components with their prescribed values.
 fn border_fibres(
     body: &BodyModel,
-    set: &BTreeSet<u32>,
+    (set, flat): (&BTreeSet<u32>, &HashSet<(u32, usize)>),
     values: &[(usize, Option<TimeFunction>)],
     end: f64,
 ) -> usize {
@@ -119,6 +141,14 @@ fn border_fibres(
             return false;
         }
         let along = along.normalize();
+        // A slice in plane strain is thin, and no shell.
+        let axis = along.iamax();
+        if [bottom, top]
+            .iter()
+            .all(|n| flat.contains(&(n + body.first_node, axis)))
+        {
+            return false;
+        }
         let middle = (ends[0] + ends[1]) * 0.5;
         let inward = beside[&bottom].iter().fold(Vec3::zeros(), |sum, e| {
             let way = body.mesh.element_center(*e) - middle;

@@ -67,7 +67,7 @@ impl Builder<'_> {
         Ok((index, faces.to_vec()))
     }
 
-    /// Nodes of a node set, or of a face set where there is no node set of that name.
+    /// Nodes of a node set, of a face set where there is no node set of that name, or of a whole body.
     pub(super) fn set_nodes(
         &self,
         reference: &str,
@@ -76,6 +76,7 @@ impl Builder<'_> {
         let (index, mesh, first) = self.body(reference, pointer)?;
         let set = split(reference).1;
         let local = match mesh.face_sets.get(set) {
+            _ if !reference.contains('.') => (0..mesh.nodes.len() as u32).collect(),
             Some(faces) if !mesh.node_sets.contains_key(set) => mesh.nodes_of(faces),
             _ => mesh.node_set(set).at(|| pointer.to_owned())?.to_vec(),
         };

@@ -41,21 +41,14 @@ impl Builder<'_> {
             let (body, nodes) = self.set_nodes(reference, &at)?;
             let (_, set) = reference.split_once('.').unwrap_or((reference, ""));
             let Some(sheet) = self.bodies[body].block.sheet() else {
-                let (field, help) = match (support.clamped, support.plane_strain) {
-                    (true, _) => (
-                        "clamped",
-                        "take `fixed`, which holds both faces of a shell made of elements",
-                    ),
-                    (_, Some(_)) => (
-                        "plane_strain",
-                        "hold the displacement along the axis with `symmetry`",
-                    ),
-                    _ => continue,
-                };
+                if !support.clamped {
+                    continue;
+                }
                 let message = format!(
                     "`{reference}` belongs to a body of elements, not to one of kind `nurbs`"
                 );
-                return Err(text(pointer(field), message).help(help));
+                return Err(text(pointer("clamped"), message)
+                    .help("take `fixed`, which holds both faces of a shell made of elements"));
             };
             if support.mid_surface {
                 let message = format!(

@@ -212,12 +212,16 @@ impl<'a> Sets<'a> {
         c.add(at, message, Some(help));
     }
 
-    /// `reference` is `body.set` of a body and, where that is known, of one of its sets; `user` needs faces.
+    /// `reference` is `body.set` of a body and, where that is known, of one of its sets, or a body where no faces are needed; `user`
+    /// is who needs it.
     pub fn check(&self, c: &mut Checker, at: &str, reference: &str, faces: bool, user: &str) {
         if c.full() {
             return;
         }
         let Some((body, set)) = reference.split_once('.') else {
+            if !faces && self.bodies.contains_key(reference) {
+                return;
+            }
             return c.add(
                 at,
                 format!("`{}` does not name a set", shorten(reference)),

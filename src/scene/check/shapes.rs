@@ -191,10 +191,35 @@ fn check_spacing(c: &mut Checker, at: &str, spacing: &Spacing, length: f64, elem
         Spacing::Geometric { ratio } => {
             c.positive(&format!("{at}/geometric/ratio"), "the ratio", ratio)
         }
+        Spacing::FromMiddle { ratio } => {
+            c.positive(&format!("{at}/from_middle/ratio"), "the ratio", ratio)
+        }
         Spacing::Fine {
-            length: part, fine, ..
+            length: part,
+            fine,
+            from_end,
+            from_middle,
         } => {
             let at = format!("{at}/fine");
+            if from_end && from_middle {
+                let message = "`from_end` and `from_middle` are both asked for";
+                c.add(
+                    &at,
+                    message,
+                    Some("the fine part lies at one place: leave one out".into()),
+                );
+            }
+            if from_middle && fine < elements && (elements - fine) % 2 == 1 {
+                let message = format!(
+                    "the {} elements beside the fine part cannot be shared between both of its sides",
+                    elements - fine
+                );
+                c.add(
+                    &format!("{at}/fine"),
+                    message,
+                    Some("give one more or one less".into()),
+                );
+            }
             c.positive(&format!("{at}/length"), "the length of the fine part", part);
             if part >= length && length > 0.0 {
                 let message = format!("the fine part {part} is not shorter than the axis {length}");

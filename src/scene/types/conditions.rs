@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
-    /// Node or face set, `body.set`, or a list of them.
+    /// Node or face set, `body.set`, a whole body, `body`, or a list of them.
     pub on: SetNames,
     /// All three components are zero.
     #[serde(default)]
@@ -21,8 +21,8 @@ pub struct Support {
     /// plane.
     #[serde(default)]
     pub symmetry: Option<Axis>,
-    /// The displacement along this axis is zero, and the others do not change along it; only for bodies of kind `nurbs` whose
-    /// face is extruded along the axis.
+    /// The displacement along this axis is zero. Of whole bodies: what they do is the same at all places along it. A body of kind
+    /// `nurbs` is extruded along the axis, and its other displacements do not change along it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plane_strain: Option<Axis>,
     /// Prescribed components.

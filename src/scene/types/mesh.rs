@@ -179,8 +179,13 @@ pub enum Spacing {
         /// Length of an element over that of the one before it.
         ratio: f64,
     },
-    /// `fine` equal elements over `length` at the start of the axis (`from_end: true`: at its end), the rest growing
-    /// geometrically with the ratio that fills the axis.
+    /// From the middle of the axis to both ends every element is `ratio` times as long as the one before it, the same on both sides.
+    FromMiddle {
+        /// Length of an element over that of the one before it.
+        ratio: f64,
+    },
+    /// `fine` equal elements over `length` at the start of the axis (`from_end: true`: at its end; `from_middle: true`: around its
+    /// middle), the rest growing geometrically with the ratio that fills the axis.
     Fine {
         /// Length of the fine part.
         length: f64,
@@ -189,6 +194,9 @@ pub enum Spacing {
         /// The fine part lies at the end of the axis.
         #[serde(default)]
         from_end: bool,
+        /// The fine part lies around the middle of the axis; as many elements lie on either side of it.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        from_middle: bool,
     },
 }
 

@@ -37,6 +37,10 @@ pub struct MeshFile {
     /// Takes only the elements of this set, part or instance of the file, so that two bodies can come from one file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub only: Option<String>,
+    /// Nodes of one part of the file that lie at the same place are the two sides of a slit, and are kept apart. Without it such a
+    /// mesh is refused, since most of them are borders that were not joined.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub slits: bool,
 }
 
 impl MeshFile {
@@ -49,6 +53,7 @@ impl MeshFile {
             offset: None,
             layers: None,
             only: None,
+            slits: false,
         }
     }
 }
