@@ -211,15 +211,12 @@ fn a_tube_shrinks_onto_a_pin_and_check_says_how_it_was_taken() {
     scene["surfaces"] = json!({ "pin": { "cylinder": { "radius": 10.01, "length": 4 } } });
     scene["contacts"]["fit"]["slave"] = json!("outer.inner");
     scene["contacts"]["fit"]["master"] = json!("pin");
-    let model = model(&scene);
-    assert_eq!(
-        told(
-            &model.notes,
-            "surface `pin`: the slave points start on one side"
-        )
-        .len(),
-        1
-    );
+    // Points this near say nothing, and the elements behind them decide; those of a thicker pin contradict them.
+    let words = "surface `pin`: the slave points start on one side";
+    assert!(told(&model(&scene).notes, words).is_empty());
+    let mut thicker = scene.clone();
+    thicker["surfaces"]["pin"]["cylinder"]["radius"] = json!(10.1);
+    assert_eq!(told(&model(&thicker).notes, words).len(), 1);
     let auto = run(&scene);
     // Lame, plane strain, inner displacement .01 at a = 10, b = 11: p = u E / ((1 + nu) a (1 - 2 nu + (b/a)^2) / ((b/a)^2 - 1)).
     let ratio = 1.21;

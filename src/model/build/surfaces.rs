@@ -6,10 +6,10 @@ use super::super::{ModelError, PairModel, SurfaceModel};
 use super::Builder;
 use super::cad_bodies::Bodies;
 use super::facets::Source;
-use super::sides::both_sides;
+use super::sides::{NEAR, both_sides, undecided, vote};
 use crate::contact::closest::ClosestPoint;
 use crate::scene::{self, InitialOverclosure, Side};
-use covact_geometry::project::{ComponentSide, Joining, PatchSetError, SideOutcome};
+use covact_geometry::project::{ComponentSide, Joining, PatchSetError};
 use covact_geometry::{NurbsPatch, PatchSet, Surface, Vec3, io, primitives};
 
 /// Patches of a surface as its source gives them.
@@ -334,37 +334,25 @@ impl Builder<'_> {
     ) -> Result<(), ModelError> {
         let pose = (model.motion.pose(0.0)).at(|| format!("/surfaces/{name}/motion"))?;
         let local = |x: Vec3| pose.inverse_transform_point(&x.into()).coords;
-        // Facets lie on either side of the surface that they stand for: points as near as that say nothing.
+        // Facets lie on either side of the surface that they stand for, on either side of this contact: points as near as that say
+        // nothing.
         let chord = (model.facets.as_ref()).and_then(|f| f.chord).unwrap_or(0.0);
-        let clear = |x: &Vec3| chord == 0.0 || model.set.project(x, None, 2.0 * chord).is_none();
-        let points: Vec<Vec3> = (pairs.iter().flat_map(|pair| pair.points.iter()))
-            .map(|p| local(self.start(p)))
-            .filter(clear)
-            .collect();
-        // The elements below the faces tell where the faces themselves do not: faces that lie on the surface have no
-        // side, and a few that start with a small overclosure contradict the rest.
+        let mut points = [Vec::new(), Vec::new()];
+        for pair in pairs {
+            let near = (2.0 * chord).max(NEAR * pair.element_size);
+            for p in &pair.points {
+                let x = local(self.start(p));
+                let clear = model.set.project(&x, None, near).is_none();
+                points[usize::from(!clear)].push(x);
+            }
+        }
+        let [clear, near] = points;
+        // The elements below the faces tell where the faces themselves do not.
         let centers = self.slave_element_centers(name)?;
         let centers: Vec<Vec3> = centers.into_iter().map(local).collect();
-        let found = match model.set.orient_towards(&points) {
-            Ok(found) if !found.iter().any(undecided) => found,
-            Ok(mut found) => {
-                let sides = model.set.sides().to_vec();
-                let second = model.set.orient_towards(&centers);
-                for (first, second) in found.iter_mut().zip(second.unwrap_or_default()) {
-                    if undecided(first) {
-                        *first = second;
-                    } else {
-                        let patch = model.set.components()[first.component][0];
-                        (model.set).set_component_side(first.component, sides[patch]);
-                    }
-                }
-                found
-            }
-            Err(contradiction) => match model.set.orient_towards(&centers) {
-                Ok(found) => found,
-                Err(_) => return Err(both_sides(name, labels, &contradiction)),
-            },
-        };
+        let near = if chord > 0.0 { Vec::new() } else { near };
+        let found = vote(&mut model.set, [&clear, &centers, &near])
+            .map_err(|e| both_sides(name, labels, &e))?;
         self.undecided(name, (model, labels), &found, "where the slave starts");
         self.shrunk_on(name, model, &found, &centers);
         Ok(())
@@ -485,8 +473,4 @@ pub(super) fn joined<S: Surface>(facets: Vec<S>) -> Result<PatchSet<S>, PatchSet
     let set = PatchSet::new(facets, None)?;
     set.two_sided()?;
     Ok(set)
-}
-
-fn undecided(found: &ComponentSide) -> bool {
-    matches!(found.outcome, SideOutcome::Undecided { .. })
 }
