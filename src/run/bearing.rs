@@ -4,6 +4,7 @@ use crate::contact::points::SlavePoint;
 use crate::model::sharp::{Lines, SharpEdges};
 use crate::model::{Model, sharp};
 use covact_geometry::{Hint, Vec3};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Points that carry most of a force are few up to one less than this number.
 pub const FEW: usize = 5;
@@ -47,10 +48,8 @@ pub struct Bearing {
 }
 
 impl Bearing {
-    /// Adds the force of a point.
-    fn add(&mut self, mut force: f64) {
-        self.active += 1;
-        self.force += force;
+    /// Takes the force of a point, or of points side by side, to the largest ones.
+    fn rank(&mut self, mut force: f64) {
         for largest in &mut self.largest {
             if force > *largest {
                 std::mem::swap(&mut force, largest);
@@ -73,6 +72,8 @@ impl Bearing {
 
 /// A slave point or node in contact at an accepted state.
 pub struct Carrier<'a> {
+    /// Its number among those of the pair.
+    pub index: usize,
     pub pressure: f64,
     pub gap: f64,
     pub area: f64,
@@ -106,6 +107,53 @@ pub struct Bearings {
     edges: Vec<Option<SharpEdges>>,
     /// Per pair, the free borders of a rigid master, and the distance of slave points.
     borders: Vec<Option<(Lines, f64)>>,
+    /// Per pair, the rows of its points across a strip.
+    rows: Vec<Option<Rows>>,
+}
+
+/// Points of a slave that is one or two elements wide, as plane strain is modelled: those side by side stand for one place.
+struct Rows {
+    /// The row of every point.
+    of: Vec<u32>,
+    /// What the points of every row carry (force).
+    forces: Vec<f64>,
+}
+
+impl Rows {
+    /// Places along a direction of a strip.
+    const WIDE: usize = 3;
+
+    /// None where the points lie side by side in no direction.
+    fn of(points: &[Vec3], spacing: f64) -> Option<Self> {
+        let near = 1e-3 * spacing;
+        let key = |x: &Vec3, k: usize| (x[k] / near).round() as i64;
+        let (axis, _) = (0..3)
+            .map(|k| {
+                (
+                    k,
+                    points
+                        .iter()
+                        .map(|x| key(x, k))
+                        .collect::<BTreeSet<_>>()
+                        .len(),
+                )
+            })
+            .filter(|(_, places)| (2..=Self::WIDE).contains(places))
+            .min_by_key(|(_, places)| *places)?;
+        let mut numbers = BTreeMap::new();
+        let row = |x: &Vec3| {
+            let place = [(axis + 1) % 3, (axis + 2) % 3].map(|k| key(x, k));
+            let next = numbers.len() as u32;
+            *numbers.entry(place).or_insert(next)
+        };
+        let of: Vec<u32> = points.iter().map(row).collect();
+        // Points that have nobody beside them make no strip.
+        let rows = numbers.len();
+        (2 * rows <= of.len()).then(|| Rows {
+            of,
+            forces: vec![0.0; rows],
+        })
+    }
 }
 
 impl Bearings {
@@ -121,6 +169,7 @@ impl Bearings {
         }
         let pairs = model.pairs.iter();
         let surface = |p: &crate::model::PairModel| p.rigid_master().map(|s| &model.surfaces[s]);
+        let start = vec![0.0; 3 * model.nodes.len()];
         Bearings {
             stress: Vec::new(),
             pairs: vec![Bearing::default(); model.pairs.len()],
@@ -131,12 +180,31 @@ impl Bearings {
             edges: (pairs.clone())
                 .map(|p| SharpEdges::of(surface(p)?))
                 .collect(),
-            borders: pairs
+            borders: (pairs.clone())
                 .map(|p| {
                     let borders = Lines::borders(surface(p)?);
                     Some((borders, sharp::spacing(model, p)))
                 })
                 .collect(),
+            rows: pairs
+                .map(|p| {
+                    let at = |point| model.point_position(point, &start);
+                    let places: Vec<Vec3> = match &p.averaged {
+                        Some(_) => Vec::new(),
+                        None => p.points.iter().map(at).collect(),
+                    };
+                    Rows::of(&places, sharp::spacing(model, p))
+                })
+                .collect(),
+        }
+    }
+
+    /// Ends a gathering: what rows of points carry.
+    pub fn end(&mut self) {
+        for (sum, rows) in self.pairs.iter_mut().zip(&mut self.rows) {
+            for force in rows.iter_mut().flat_map(|rows| &mut rows.forces) {
+                sum.rank(std::mem::take(force));
+            }
         }
     }
 
@@ -148,6 +216,7 @@ impl Bearings {
     /// Adds a point or node of a pair that is in contact.
     pub fn add(&mut self, pair: usize, carrier: &Carrier) {
         let Carrier {
+            index,
             pressure,
             gap,
             area,
@@ -156,7 +225,13 @@ impl Bearings {
         } = carrier;
         let sum = &mut self.pairs[pair];
         let force = pressure * area;
-        sum.add(force);
+        sum.active += 1;
+        sum.force += force;
+        match &mut self.rows[pair] {
+            // Segments are cut anew in every step, and their points are not those of the model.
+            Some(rows) if *index < rows.of.len() => rows.forces[rows.of[*index] as usize] += force,
+            _ => sum.rank(force),
+        }
         sum.area += area;
         let energy = 0.5 * share * (force * gap).abs();
         let Some(place) = place else {
@@ -205,7 +280,10 @@ mod tests {
     fn few_points_are_counted_by_what_they_carry() {
         let of = |forces: &[f64]| {
             let mut sum = Bearing::default();
-            forces.iter().for_each(|f| sum.add(*f));
+            for force in forces {
+                sum.force += force;
+                sum.rank(*force);
+            }
             sum.few()
         };
         assert_eq!(of(&[]), None);
@@ -215,5 +293,22 @@ mod tests {
         assert_eq!(of(&[1.0; 4]), Some(4));
         assert_eq!(of(&[1.0; 5]), None);
         assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 0.4]), Some(4));
+    }
+
+    /// A strip of two rows is one of places; a face of as many points along both directions is none.
+    #[test]
+    fn points_side_by_side_are_one_place() {
+        let grid = |n: usize, m: usize| -> Vec<Vec3> {
+            let at = |i: usize| Vec3::new((i % n) as f64, (i / n) as f64, 0.1 * (i % n) as f64);
+            (0..n * m).map(at).collect()
+        };
+        let strip = Rows::of(&grid(9, 2), 1.0).expect("rows");
+        assert_eq!(
+            (strip.forces.len(), strip.of[3], strip.of[9 + 3]),
+            (9, 3, 3)
+        );
+        assert!(Rows::of(&grid(9, 5), 1.0).is_none());
+        assert!(Rows::of(&grid(1, 9), 1.0).is_none());
+        assert!(Rows::of(&[], 1.0).is_none());
     }
 }

@@ -4,6 +4,7 @@ mod bodies;
 use super::RunError;
 use super::averaged::{NodeNow, nodes_now};
 use super::bearing::{Bearings, Carrier, Place as BearingPlace};
+use super::edge_fields::{self, EdgeForce};
 use super::friction_fields::{self, FrictionFields};
 use super::motion_fields::MotionFields;
 use super::sheet_fields::{mid_surface, sheet_name};
@@ -194,8 +195,9 @@ impl Fields {
                     }
                 }
                 now.iter().for_each(|n| self.take(n));
-                for n in now.iter().filter(|n| n.closed) {
+                for (i, n) in now.iter().enumerate().filter(|(_, n)| n.closed) {
                     let carrier = Carrier {
+                        index: i,
                         pressure: n.pressure,
                         gap: n.gap,
                         area: n.area,
@@ -229,6 +231,7 @@ impl Fields {
                 Some(pose) => pose.inverse_transform_point(&x.into()).coords,
                 None => x,
             };
+            let mut on_edges = Vec::new();
             for (i, ((p, s), front)) in points.iter().zip(states).zip(fronts).enumerate() {
                 let z0 = offsets.map_or(0.0, |o| o.at(i));
                 let place;
@@ -268,7 +271,15 @@ impl Fields {
                 let friction = history.filter(|_| closed).map_or(Vec3::zeros(), |h| -h.t);
                 self.traction.add(model, p, pressure * normal + friction);
                 if closed && let Some((x, hint, normal)) = place {
+                    if pair.edges_of.is_some() {
+                        on_edges.push(EdgeForce {
+                            at: hint,
+                            force: -(pressure * normal + friction) * p.area,
+                            normal: pressure * p.area,
+                        });
+                    }
                     let carrier = Carrier {
+                        index: i,
                         pressure,
                         gap,
                         area: p.area,
@@ -304,6 +315,14 @@ impl Fields {
                 }
             }
             self.traction.end(model, points);
+            if let MasterNow::Body {
+                surface: Some(surface),
+                ..
+            } = &master
+            {
+                let fields = (&mut self.pressure[..], &mut self.traction);
+                edge_fields::spread((model, state), pair, surface, &on_edges, fields);
+            }
             if let (Some(_), Some(histories)) = (&pair.friction, histories) {
                 self.friction.gather(model, points, histories);
             }
@@ -318,6 +337,7 @@ impl Fields {
             }
             first += points.len();
         }
+        self.bearings.end();
         if !self.von_mises.is_empty() {
             self.follow_stress(model, state);
         }

@@ -9,6 +9,7 @@ mod commit;
 mod compliance;
 mod cost;
 mod crest;
+mod edge_fields;
 mod error;
 mod estimate;
 mod fields;

@@ -39,6 +39,13 @@ impl TractionFields {
         }
     }
 
+    /// Adds a traction at a node.
+    pub fn add_at(&mut self, node: usize, traction: Vec3) {
+        if let Some(at) = self.traction.get_mut(3 * node..3 * node + 3) {
+            at.iter_mut().zip(&traction).for_each(|(at, t)| *at += t);
+        }
+    }
+
     /// Ends a pair: tractions of several surfaces on the same face add up.
     pub fn end(&mut self, model: &Model, points: &[SlavePoint]) {
         if self.sums.is_empty() {

@@ -1,5 +1,6 @@
 //! Edges of rigid surfaces between slave points, as slaves (`"passes": "edges"`).
 use crate::support::{Outcome, solve, solve_in, stl_box};
+use covact::run::{Options, Simulation};
 use covact::solve::event::Event;
 use serde_json::{Value, json};
 
@@ -57,6 +58,57 @@ fn an_edge_between_two_nodes_bears_where_it_is() {
             assert!((work / (0.5 * force * d) - 1.0).abs() < 2e-3, "{work}");
         }
     }
+}
+
+/// Pressures and tractions at the nodes of the beam's face sum over their areas to the force, most of which an edge bears.
+#[test]
+fn fields_hold_what_an_edge_bears() {
+    let plane = json!({"plane": {"center": [46.25, 2, 0], "size": [40, 10], "normal": [0, 0, -1]}});
+    let mut scene = cantilever(plane);
+    scene["contacts"]["c"]["friction"] = json!(0.2);
+    let loaded = covact::scene::parse(&scene.to_string(), "scene.json").expect("a scene");
+    let mut run = Simulation::new(loaded, Options::default()).expect("a model");
+    while run.step().expect("an equilibrium").is_some() {}
+    let force = run.force("tool").expect("a surface").force;
+    assert!(force.z.abs() > 0.01, "{force}");
+    let nodes = run
+        .field("beam", "displacement")
+        .expect("a field")
+        .data
+        .len()
+        / 3;
+    let [pressure, traction] = ["contact_pressure", "contact_traction"]
+        .map(|name| run.field("beam", name).expect("a field").data);
+    // Of the columns of nodes along the beam, 2.5 apart and 2 wide on either side; those at its ends have half of it.
+    let x = |node: usize| run.model().bodies[0].mesh.nodes[node].x;
+    let area = |node: usize| {
+        if (1.0..39.0).contains(&x(node)) {
+            5.0
+        } else {
+            2.5
+        }
+    };
+    let normal: f64 = (0..nodes).map(|n| pressure[n] * area(n)).sum();
+    let along = |k: usize| {
+        (0..nodes)
+            .map(|n| traction[3 * n + k] * area(n))
+            .sum::<f64>()
+    };
+    assert!(
+        (along(2) - force.z).abs() < 1e-9 * force.z.abs(),
+        "{} {force}",
+        along(2)
+    );
+    assert!(
+        (along(0) - force.x).abs() < 1e-9 * force.z.abs(),
+        "{} {force}",
+        along(0)
+    );
+    // The face has turned by some degrees where the edge presses.
+    assert!(
+        (normal / force.z.abs() - 1.0).abs() < 0.02,
+        "{normal} {force}"
+    );
 }
 
 fn warned(outcome: &Outcome, text: &str) -> bool {
