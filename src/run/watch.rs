@@ -10,12 +10,14 @@
 //! change counts as that. A point with a multiplier does the work of its tractions; what of that the penalty does not hold counts, with its sign.
 //!
 //! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
+mod eased;
+mod faint;
+mod jump;
 mod lag;
 #[cfg(test)]
 mod tests;
 mod twist;
 
-use super::remedy::smoother;
 use crate::assembly::{Assembler, Fault, PointAnswer, SurfaceForce, Totals};
 use crate::contact::law::PairLaw;
 use crate::model::Model;
@@ -23,6 +25,8 @@ use crate::model::error::number;
 use crate::model::state::State;
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::shell::Flow;
+use faint::faint;
+pub use jump::Jump;
 use twist::Twist;
 
 /// Share of the work turned over so far above which a step that no trapezoid explains is told.
@@ -72,6 +76,10 @@ pub struct Watch {
     pressed: Vec<f64>,
     /// Normal traction and gap per point with multipliers.
     tractions: Vec<[f64; 2]>,
+    /// What penalties stored at the end of the last accepted step (energy).
+    stored: f64,
+    /// Energy that rounding makes of displacements, and far less than any load (energy).
+    faint: f64,
 }
 
 /// Work of one step.
@@ -83,7 +91,9 @@ pub struct Work {
     pub coarse: f64,
     turnover: f64,
     /// Penalties changed in the step, or before it.
-    changed: bool,
+    pub changed: bool,
+    /// The largest ratio of a penalty to what it was, or the other way round.
+    eased: f64,
 }
 
 impl Work {
@@ -92,39 +102,6 @@ impl Work {
         self.external += 0.5 * (a + b);
         self.turnover += 0.5 * (a + b).abs();
         self.coarse += 0.5 * (b - a).abs();
-    }
-}
-
-/// A step whose energies do not balance.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Jump {
-    /// Energy that the step lost, negative where it gained some.
-    pub lost: f64,
-    /// The same as a part of the work turned over so far.
-    pub part: f64,
-}
-
-impl Jump {
-    /// What the user is told; `softened` says that the step was solved from a softened penalty only.
-    fn told(&self, model: &Model, (step, [from, to]): (u32, [f64; 2]), softened: bool) -> String {
-        let (did, what) = match self.lost > 0.0 {
-            true => ("lost", "went"),
-            false => ("gained", "came"),
-        };
-        let why = match softened {
-            true => {
-                "it was solved from a softened penalty only, and may have come to another equilibrium"
-            }
-            false => "the path jumped (snap-through, or contact lost)",
-        };
-        format!(
-            "step {step} (time {}) {did} an energy of {:.3e} that {what} nowhere, {:.1} % of the work so far and more than the \
-             size of the step explains: {why}. {}; otherwise what follows is one of several states that are possible after the jump",
-            number(to),
-            self.lost.abs(),
-            100.0 * self.part,
-            smoother(model, from)
-        )
     }
 }
 
@@ -148,6 +125,7 @@ impl Watch {
                 .map(|p| p.friction.as_ref().map_or(0.0, |f| f.ratio))
                 .collect(),
             pressed: vec![0.0; model.pairs.len()],
+            faint: faint(model),
             tractions: vec![
                 [0.0; 2];
                 if augmented(model) {
@@ -196,6 +174,7 @@ impl Watch {
             adjusted: self.adjusted + changed,
             imbalance: self.imbalance,
             turnover: self.turnover,
+            stored: self.stored + changed,
             flow: self.flow,
             worst: self.worst,
             worst_step: self.worst_step,
@@ -227,9 +206,11 @@ impl Watch {
             ratios,
             pressed,
             tractions,
+            stored,
+            faint: _,
         } = self;
         out.bool(*snaps);
-        out.f64s(&[*external, *adjusted, *imbalance, *turnover, *worst]);
+        out.f64s(&[*external, *adjusted, *imbalance, *turnover, *worst, *stored]);
         out.f64s(&[*most, *work, *lag]);
         out.u32(*worst_step);
         out.f64s(speed);
@@ -251,7 +232,7 @@ impl Watch {
     pub(super) fn take(model: &Model, from: &mut Reader) -> Result<Self, Malformed> {
         let mut watch = Watch::new(model);
         watch.snaps = from.bool()?;
-        let mut sums = [0.0; 5];
+        let mut sums = [0.0; 6];
         from.f64s(&mut sums)?;
         [
             watch.external,
@@ -259,6 +240,7 @@ impl Watch {
             watch.imbalance,
             watch.turnover,
             watch.worst,
+            watch.stored,
         ] = sums;
         let mut flow = [0.0; 3];
         from.f64s(&mut flow)?;
@@ -300,7 +282,7 @@ impl Watch {
         totals: &Totals,
         span: &Span,
     ) -> Result<Work, Fault> {
-        let mut work = Work::default();
+        let mut work = Work::beyond(self.faint);
         let (from, to) = (span.from.0, span.to.0);
         let n = self.reactions.len();
         let (was, now) = (&from.u[..n], &to.u[..n]);
@@ -324,6 +306,7 @@ impl Watch {
         }
         work.adjusted += self.multipliers(model, assembler);
         work.changed = self.penalties != assembler.penalties || self.ratios != assembler.ratios;
+        work.eased = self.eased([&assembler.penalties, &assembler.ratios]);
         Ok(work)
     }
 
@@ -369,21 +352,26 @@ impl Watch {
             && !self.snaps
             && !work.changed
             && model.pairs.iter().all(|p| p.overclosure.is_none());
-        let put_in = self.external + work.external + self.adjusted + work.adjusted;
-        let lost = (put_in - energy - self.imbalance).abs();
+        let lost = self.lost(work, energy).abs();
         let part = lost / (self.turnover + work.turnover).max(energy.abs());
         (known && lost > work.coarse && part > JUMP).then_some(part)
     }
 
+    /// Energy that a step loses, negative where it gains some: `energy` as for [`Self::close`].
+    pub fn lost(&self, work: &Work, energy: f64) -> f64 {
+        let put_in = self.external + work.external + self.adjusted + work.adjusted;
+        put_in - energy - self.imbalance
+    }
+
     /// Closes the balance of a step. `pressed` are the sums of this name at its end, `energy` what is stored and what has been
-    /// dissipated since the start; the step went from time `from` to `to`.
+    /// dissipated since the start, `stored` the part of it that penalties store; the step went from time `from` to `to`.
     pub fn close(
         &mut self,
         model: &Model,
         (step, [from, to]): (u32, [f64; 2]),
         mut work: Work,
         pressed: &[f64],
-        energy: f64,
+        [energy, stored]: [f64; 2],
         softened: bool,
     ) -> Option<String> {
         for ((pair, was), now) in model.pairs.iter().zip(&mut self.pressed).zip(pressed) {
@@ -400,8 +388,10 @@ impl Watch {
         self.external += work.external;
         if work.changed {
             let put_in = self.external + self.adjusted + work.adjusted;
-            work.adjusted += energy + self.imbalance - put_in;
+            work.adjusted +=
+                self.put_in_by_penalties(step, &work, energy + self.imbalance - put_in);
         }
+        self.stored = stored;
         self.adjusted += work.adjusted;
         self.turnover += work.turnover;
         let before = self.imbalance;
