@@ -203,6 +203,7 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
             .help("take the faces on the other side of that body, whose outward normals point at the other faces"));
         }
         let overlaps = gap.smallest < -1e-9 * pair.element_size;
+        let in_front = gap.smallest.is_finite() && !overlaps && gap.behind == 0;
         let deepest = Deepest {
             gap: gap.smallest,
             at: gap.place,
@@ -215,6 +216,8 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
             }
             continue;
         }
+        model.pairs[index].starts_in_front = in_front;
+        let pair = &model.pairs[index];
         let (name, points) = (&pair.name, pair.points.len());
         notes.push(match gap.smallest.is_finite() {
             true => format!(

@@ -145,6 +145,8 @@ pub struct PairModel {
     /// The points are on the sharp edges of the master of this pair, and the master is its slave. Those of a rigid surface belong
     /// to no body (module `rims`): `body` is then that of the master, and there are no slave faces.
     pub edges_of: Option<usize>,
+    /// All of its points that see the master at the start lie in front of it or on it, and some do.
+    pub starts_in_front: bool,
     /// Penalty (force / length^3).
     pub eps_n: f64,
     /// What the run may choose the penalty by; nothing where it is given, or tractions are augmented.

@@ -3,6 +3,7 @@ mod accepted;
 mod ending;
 mod giving_up;
 mod motion;
+mod outcome;
 pub(in crate::run) mod passing;
 mod released;
 mod replaced;
@@ -14,6 +15,7 @@ mod start;
 mod summary;
 mod telling;
 
+pub(super) use outcome::{AcceptedStep, Outcome};
 pub(super) use restart::{Kept, KeptFiles, take_variant};
 use settle::Settled;
 pub(super) use start::{Problem, RunState};
@@ -134,21 +136,6 @@ pub(super) struct Course {
     pub outputs: Outputs,
 }
 
-/// What came of a step.
-pub(super) enum Outcome {
-    /// It was accepted; with an ending where the run does not go on from there.
-    Accepted(AcceptedStep, Option<Ending>),
-    /// It was not.
-    Stopped(Ending),
-}
-
-/// An accepted step.
-pub(super) struct AcceptedStep {
-    pub dt: f64,
-    pub iterations: u32,
-    pub cuts: u32,
-}
-
 /// What is stored, and what friction, plastic flow and motion have taken since the start.
 fn energy(totals: &Totals, sliding: &FrictionTotals) -> f64 {
     let stored = totals.internal_energy + totals.contact_energy + sliding.stored;
@@ -165,6 +152,7 @@ impl March<'_, '_> {
             outputs,
         } = course;
         let (mut cuts, mut eased) = (0, false);
+        let mut damping = None;
         let model = self.model;
         let number_of = |body: &BodyModel| {
             let mut bodies = model.bodies.iter();
@@ -212,7 +200,7 @@ impl March<'_, '_> {
             {
                 result = Err(failure);
             }
-            let moved = match result.is_ok() {
+            let mut moved = match result.is_ok() {
                 true => self.moved(committed, trial),
                 false => None,
             };
@@ -264,6 +252,17 @@ impl March<'_, '_> {
                         - flowed.in_energy
                         + committed.stabilized
                         + drag.work;
+                    if let Some(moved) = &mut moved
+                        && let Some(failure) = self.damped(
+                            moved,
+                            (dt, cuts, &mut damping),
+                            (&work, energy, &converged.totals.touching),
+                            &walk.stepping,
+                        )
+                    {
+                        self.take_back(&penalties);
+                        break 'solved failure;
+                    }
                     if cuts < GIVES_IN
                         && moved.is_none()
                         && let Some(part) = self.watch.gained(self.model, step, &work, energy)
@@ -409,7 +408,7 @@ impl March<'_, '_> {
             let hopeless =
                 !lost.is_empty() || cuts >= hold::HOPELESS && turned.is_some_and(squeezed);
             let part = match (&failure, &walk.before) {
-                (StepFailure::TooLong { part, .. }, _) => *part,
+                (StepFailure::TooLong { part, .. } | StepFailure::Damped { part, .. }, _) => *part,
                 (StepFailure::Jumped { .. }, _) => 0.5,
                 // From rest the first increment is proportional to the step: one that moves neighbouring nodes by as much as
                 // their distance is what may be followed.
@@ -478,11 +477,7 @@ impl March<'_, '_> {
         for text in all.chain(self.peaks.warnings(self.model)) {
             self.warn(text);
         }
-        let (_, guards) = self.untouched();
-        if !guards.is_empty() {
-            let text = format!("contact `{}` never touched", guards.join("`, `"));
-            self.observer.event(&Event::Note { text });
-        }
+        self.tell_untouched();
         for text in self.peaks.notes(self.model) {
             self.observer.event(&Event::Note { text });
         }

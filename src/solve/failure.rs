@@ -84,6 +84,16 @@ pub enum StepFailure {
         /// Part of the step that would err by what is asked for.
         part: f64,
     },
+    /// An impact is over within less than the step, whose integration takes its energy.
+    #[error(
+        "the time integration would take {:.1} % of the greatest energy within the step, in which bodies touch",
+        100.0 * taken
+    )]
+    Damped {
+        taken: f64,
+        /// Part of the step that would take what is allowed.
+        part: f64,
+    },
     #[error(
         "contact `{pair}`: {points} point(s) that were in contact sank deeper than the `depth` {depth:.6e} of \
          {master}: the penalty is too soft for it, or the step too large"

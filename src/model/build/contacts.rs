@@ -345,6 +345,7 @@ impl Builder<'_> {
             },
             half: None,
             edges_of: None,
+            starts_in_front: false,
             eps_n,
             ruled,
             tangent: contact.tangent,

@@ -3,6 +3,7 @@ use super::{Ending, March};
 use crate::model::PairModel;
 use crate::model::master::Master;
 use crate::output::RunStatus;
+use crate::solve::event::Event;
 use std::collections::BTreeSet;
 
 impl March<'_, '_> {
@@ -29,10 +30,11 @@ impl March<'_, '_> {
         }
     }
 
-    /// Contacts that never touched: those that were to, and those that only might have. A body in contact with itself guards against
-    /// what need not happen, and so does a contact of which both sides have touched in others; where nothing has touched at all, every
-    /// contact was to.
-    pub(super) fn untouched(&self) -> (Vec<&str>, Vec<&str>) {
+    /// Contacts that never touched: those that were to, and those that only might have, with whether that is to be a warning. A body
+    /// in contact with itself guards against what need not happen, and so does a contact of which both sides have touched in others;
+    /// a surface that stands still, in front of which a slave starts that has touched elsewhere, may be a stop that was not reached,
+    /// or one that was to be: a warning. Where nothing has touched at all, every contact was to.
+    pub(super) fn untouched(&self) -> (Vec<&str>, Vec<(&str, bool)>) {
         let pairs = &self.model.pairs;
         let sides = |pair: &PairModel| match &pair.master {
             Master::Rigid(surface) => [(false, pair.body), (true, *surface)],
@@ -49,13 +51,45 @@ impl March<'_, '_> {
                 continue;
             }
             let own = sides(pair);
+            let name = pair.name.as_str();
             let guards = own[0] == own[1] || own.iter().all(|side| met.contains(side));
-            match guards && !met.is_empty() {
-                true => out.1.push(pair.name.as_str()),
-                false => out.0.push(pair.name.as_str()),
+            let still = pair.rigid_master().is_some_and(|surface| {
+                let surface = &self.model.surfaces[surface];
+                !surface.motion.moves() && surface.driven.is_none()
+            });
+            let stop = still && pair.starts_in_front && met.contains(&own[0]);
+            match (guards && !met.is_empty(), stop) {
+                (true, _) => out.1.push((name, false)),
+                (false, true) => out.1.push((name, true)),
+                (false, false) => out.0.push(name),
             }
         }
         out
+    }
+
+    /// Tells which contacts never touched that only might have.
+    pub(super) fn tell_untouched(&mut self) {
+        let (_, guards) = self.untouched();
+        let of = |warned: bool| -> Vec<&str> {
+            let chosen = guards.iter().filter(|(_, w)| *w == warned);
+            chosen.map(|(name, _)| *name).collect()
+        };
+        let [notes, stops] = [of(false), of(true)];
+        let text = |names: &[&str]| format!("contact `{}` never touched", names.join("`, `"));
+        let note = (!notes.is_empty()).then(|| text(&notes));
+        let warning = (!stops.is_empty()).then(|| {
+            format!(
+                "{}: what stands still there may be a stop that was not reached; where it was to be, check the motion of the rest \
+                 and the `side` of the surface",
+                text(&stops)
+            )
+        });
+        if let Some(text) = note {
+            self.observer.event(&Event::Note { text });
+        }
+        if let Some(text) = warning {
+            self.warn(text);
+        }
     }
 
     /// Whether a flag is set for pair `i`, or for another pass of its contact: of two curved sides one may have no slave

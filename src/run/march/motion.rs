@@ -3,6 +3,7 @@ use super::March;
 use crate::effects::inertia::MotionEnergy;
 use crate::model::error::number;
 use crate::model::state::State;
+use crate::run::watch::Work;
 use crate::scene::ContactTiming;
 use crate::solve::newton::StepFailure;
 use crate::solve::stepping::Stepping;
@@ -16,6 +17,12 @@ const NEXT: [f64; 2] = [0.3, 2.0];
 const EVENT: f64 = 0.05;
 /// Times that a step in which contact opens or closes is shortened for its error: in contact that lasts, and at a first touch.
 const CUTS: [u32; 2] = [1, 6];
+/// Part of the greatest energy that the integration may take in a step in which bodies touch: an impact is over within a few steps.
+/// One that is cut and then takes as much in the same time, but for the factor, is not made better by shorter ones: what it damps are
+/// vibrations of the mesh.
+const TAKEN: f64 = 0.01;
+const HELPS: f64 = 0.7;
+const SHORTER: [f64; 2] = [0.25, 0.7];
 /// Part of the size of the model that the largest displacement counts as at least: below it rounding is all there is.
 const SMALL: f64 = 1e-8;
 /// Part of the time of a run below which no step is too long in which the largest displacement more than doubles: at the start of
@@ -41,6 +48,10 @@ pub(super) struct Moved {
     error: f64,
     /// The largest displacement has more than doubled.
     begins: bool,
+    /// Part of the greatest energy that its integration takes while bodies touch.
+    taken: f64,
+    /// No longer than a wave takes along an element.
+    short: bool,
 }
 
 impl Moved {
@@ -48,6 +59,17 @@ impl Moved {
     fn next(&self) -> f64 {
         match self.error > 0.0 {
             true => (SAFETY / self.error.cbrt()).clamp(NEXT[0], NEXT[1]),
+            false => NEXT[1],
+        }
+    }
+}
+
+impl Moved {
+    /// The same, by the energy that is taken while bodies touch.
+    fn paced(&self) -> f64 {
+        let least = if self.short { 1.0 } else { NEXT[0] };
+        match self.taken > 0.0 {
+            true => (SAFETY * (TAKEN / self.taken).cbrt()).clamp(least, NEXT[1]),
             false => NEXT[1],
         }
     }
@@ -81,6 +103,8 @@ impl March<'_, '_> {
             touches,
             error: error / allowed,
             begins: farthest > 2.0 * inertia.motion().farthest,
+            taken: 0.0,
+            short: false,
         })
     }
 
@@ -106,6 +130,44 @@ impl March<'_, '_> {
         })
     }
 
+    /// Why a step of size `dt` that is solved, after so many `cuts`, takes too much energy while bodies touch: accelerations turn within
+    /// less than the step there, and displacements, which fell for long before, hardly tell. `before` is what the last attempt took by
+    /// the time it took.
+    pub(super) fn damped(
+        &self,
+        moved: &mut Moved,
+        (dt, cuts, before): (f64, u32, &mut Option<f64>),
+        (work, energy, touching): (&Work, f64, &[bool]),
+        stepping: &Stepping,
+    ) -> Option<StepFailure> {
+        let own = self.model.dynamics.as_ref()?;
+        let greatest = self.assembler.effects.inertia.as_ref()?.motion().greatest;
+        let greatest = greatest.max(self.watch.external.abs());
+        let touch = |i: &usize| touching[*i] || self.touching[*i];
+        let touch = (0..own.waves.len()).filter(touch);
+        let wave = touch.map(|i| own.waves[i]).fold(f64::INFINITY, f64::min);
+        if work.changed || greatest <= 0.0 || wave == f64::INFINITY {
+            return None;
+        }
+        moved.taken = (self.watch.lost(work, energy) / greatest).max(0.0);
+        moved.short = dt <= wave;
+        let adaptive = self.scene.solution.step.adaptive;
+        if moved.taken <= TAKEN
+            || moved.short
+            || cuts >= CUTS[1]
+            || !adaptive
+            || stepping.smallest(dt)
+        {
+            return None;
+        }
+        let rate = moved.taken / dt;
+        let helps = before.replace(rate).is_none_or(|last| rate < HELPS * last);
+        helps.then(|| StepFailure::Damped {
+            taken: moved.taken,
+            part: moved.paced().clamp(SHORTER[0], SHORTER[1]),
+        })
+    }
+
     /// Accepts a step of size `dt` to `u`, with this strain energy at its end, and chooses the size of the next one.
     pub(super) fn move_on(
         &mut self,
@@ -120,6 +182,7 @@ impl March<'_, '_> {
             true => moved.next().max(1.0),
             false => moved.next(),
         };
+        let factor = factor.min(moved.paced());
         stepping.paced(dt, factor, iterations);
         if let Some(inertia) = &mut self.assembler.effects.inertia {
             inertia.commit(u, moved.energy, internal, event);
