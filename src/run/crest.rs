@@ -1,10 +1,11 @@
-//! How much larger the largest force of a contact may have been between the steps.
+//! How much larger the largest forces of a contact may have been between the steps.
 //!
 //! Of a force that goes up and down again steps show the top where they happen to lie. Where it is smooth it stands above its
 //! chord over a step of length h by up to `|f''| h^2 / 8`, with the bend `f''` as it is both at the largest force and at the nearer
 //! of the forces beside it: a force that rises and stays has none there. Where it rises and drops, as friction does that gives
 //! way, it may have gone on as it rose; a quarter of that is counted, which is the same for a parabola with its top at a step.
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
+use covact_geometry::Vec3;
 
 /// Part of a force from which on it is told.
 const TOLD: f64 = 0.02;
@@ -119,6 +120,63 @@ impl Crest {
     }
 }
 
+/// What the largest of a contact's forces are called: the sum of its normal forces, and the parts along the axes of the sum of all
+/// of them, both ways.
+const NAMES: [&str; 7] = [
+    "force",
+    "force along +x",
+    "force along -x",
+    "force along +y",
+    "force along -y",
+    "force along +z",
+    "force along -z",
+];
+
+/// The largest of a contact's forces so far, in the order of [`NAMES`].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Crests([Crest; 7]);
+
+impl Crests {
+    /// Takes the `normal` forces of an accepted step as one sum, and the force on the slave, as [`Crest::step`].
+    pub fn step(&mut self, step: u32, time: f64, (normal, force): (f64, Vec3), kink: bool) {
+        let [x, y, z] = force.into();
+        let forces = [normal, x, -x, y, -y, z, -z];
+        for (crest, force) in self.0.iter_mut().zip(forces) {
+            crest.step(step, time, force, kink);
+        }
+    }
+
+    /// The largest sum of normal forces.
+    pub fn force(&self) -> f64 {
+        self.0[0].force()
+    }
+
+    /// The one that steps show least of, of those above `large`: what it is called, and what part of it is missing.
+    pub fn worst(&self, large: f64) -> Option<(&'static str, Crest, f64)> {
+        let crests = NAMES.iter().zip(&self.0);
+        let large = crests.filter(|(_, crest)| crest.force() > large);
+        large
+            .filter_map(|(name, crest)| Some((*name, *crest, crest.missing()?)))
+            .max_by(|a, b| a.2.total_cmp(&b.2))
+    }
+
+    /// Into a checkpoint.
+    pub fn put(&self, out: &mut Writer) {
+        for crest in &self.0 {
+            crest.put(out);
+        }
+    }
+
+    /// [`Self::put`], read back.
+    pub fn take(from: &mut Reader) -> Result<Self, Malformed> {
+        let mut crests = Crests::default();
+        for crest in &mut crests.0 {
+            *crest = Crest::take(from)?;
+        }
+        Ok(crests)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -163,5 +221,23 @@ mod tests {
             (turns.force(), turns.time(), turns.missing()),
             (3.0, 3.0, None)
         );
+    }
+
+    /// A pin that is pushed in under a spring: what holds it back along its way has its top long before the spring's force.
+    #[test]
+    fn a_force_along_an_axis_has_a_top_of_its_own() {
+        let mut crests = Crests::default();
+        for (i, back) in [0.0, 2.0, 4.0, 1.0, 1.0, 1.0].into_iter().enumerate() {
+            let normal = 5.0 + i as f64;
+            let force = Vec3::new(-back, 0.0, normal);
+            crests.step(i as u32 + 1, (i + 1) as f64, (normal, force), false);
+        }
+        let (name, crest, part) = crests.worst(1.0).unwrap();
+        assert_eq!(
+            (name, crest.step, crest.force()),
+            ("force along -x", 3, 4.0)
+        );
+        assert!((part - 0.125).abs() < 1e-12, "{part}");
+        assert_eq!(crests.worst(4.5), None);
     }
 }

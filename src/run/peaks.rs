@@ -1,7 +1,7 @@
 //! Where geometry decides about a contact force: how many slave points carried it, and how much of it acted at sharp convex
 //! edges of the tool, each at the step in which the contact's force was the largest.
 use super::bearing::{Bearing, Bearings, FEW};
-use super::crest::Crest;
+use super::crest::Crests;
 use crate::assembly::PairForce;
 use crate::model::error::number;
 use crate::model::initial::point_spacing;
@@ -16,6 +16,9 @@ const AT_EDGES: f64 = 0.1;
 const ROUNDING: f64 = 1e-9;
 /// Part of a force at points whose penetration is prescribed above which the user is warned.
 const PRESCRIBED: f64 = 0.01;
+
+/// Part of the largest forces of contact that may be without balance without a word.
+const RELIABLE: f64 = 1e-4;
 
 /// Part of the largest force of all contacts from which on the peak of one is looked at.
 const LARGE: f64 = 0.1;
@@ -37,13 +40,22 @@ struct Peak {
     /// Points that carried most of it, where these were few; else 0.
     few: usize,
     step: u32,
-    /// What the steps show of its peak.
-    crest: Crest,
+    /// What the steps show of the peaks of its forces.
+    crests: Crests,
 }
 
 /// The largest force of every pair so far, and the largest stress of every body of a metal of known strength.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Peaks(Vec<Peak>, Vec<Stress>);
+pub struct Peaks(Vec<Peak>, Vec<Stress>, Rounded);
+
+/// Where rounding left most of the forces of contact without balance (force), and that step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Rounded {
+    force: f64,
+    step: u32,
+    /// Most that contacts carried in a step (force).
+    carried: f64,
+}
 
 /// The largest von Mises stress of a body, and its step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -59,6 +71,7 @@ impl Peaks {
         Peaks(
             vec![Peak::default(); model.pairs.len()],
             vec![Stress::default(); bodies],
+            Rounded::default(),
         )
     }
 
@@ -74,7 +87,7 @@ impl Peaks {
             active,
             few,
             step,
-            crest,
+            crests,
         } in &self.0
         {
             out.f64s(&[*force, *at_edges, *prescribed, *unbalanced]);
@@ -82,12 +95,14 @@ impl Peaks {
             out.u64(*few as u64);
             out.u32(*step);
             out.u32(*unbalanced_step);
-            crest.put(out);
+            crests.put(out);
         }
         for Stress { stress, step } in &self.1 {
             out.f64s(&[*stress]);
             out.u32(*step);
         }
+        out.f64s(&[self.2.force, self.2.carried]);
+        out.u32(self.2.step);
     }
 
     /// [`Self::put`], read back for the same model.
@@ -99,7 +114,7 @@ impl Peaks {
             [peak.force, peak.at_edges, peak.prescribed, peak.unbalanced] = sums;
             (peak.active, peak.few) = (from.u64()? as usize, from.u64()? as usize);
             (peak.step, peak.unbalanced_step) = (from.u32()?, from.u32()?);
-            peak.crest = Crest::take(from)?;
+            peak.crests = Crests::take(from)?;
         }
         for highest in &mut self.1 {
             let mut stress = [0.0];
@@ -109,18 +124,31 @@ impl Peaks {
                 step: from.u32()?,
             };
         }
+        let mut forces = [0.0; 2];
+        from.f64s(&mut forces)?;
+        self.2 = Rounded {
+            force: forces[0],
+            carried: forces[1],
+            step: from.u32()?,
+        };
         Ok(())
     }
 
-    /// Takes an accepted step and its end, at which `forces` act on both sides of every pair.
+    /// Takes an accepted step and its end, at which `forces` act on both sides of every pair, and all are balanced but for a part
+    /// `residual` of them.
     pub fn step(
         &mut self,
         model: &Model,
-        (step, time): (u32, f64),
+        (step, time, residual): (u32, f64, f64),
         bearings: &Bearings,
         forces: &[PairForce],
     ) {
         let kink = (model.kinks.iter()).any(|k| (k - time).abs() <= 1e-9 * time);
+        let carried = bearings.force();
+        self.2.carried = self.2.carried.max(carried);
+        if residual * carried > self.2.force {
+            (self.2.force, self.2.step) = (residual * carried, step);
+        }
         for (highest, stress) in self.1.iter_mut().zip(&bearings.stress) {
             if *stress > highest.stress {
                 *highest = Stress {
@@ -150,7 +178,7 @@ impl Peaks {
                     ..*peak
                 };
             }
-            peak.crest.step(step, time, force, kink);
+            peak.crests.step(step, time, (force, slave.force), kink);
             let unbalanced = match pair.half {
                 Some(half) if !half.back => (slave.force + master.force).norm(),
                 _ => 0.0,
@@ -175,18 +203,35 @@ impl Peaks {
             ]
         };
         let told = pairs.flat_map(of).flatten();
-        told.chain(self.between_steps(model)).collect()
+        (told.chain(self.between_steps(model)))
+            .chain(self.rounded())
+            .collect()
     }
 
-    /// The contact whose largest force is known least of those that carry much.
+    /// The step whose contact is known least for want of digits.
+    fn rounded(&self) -> Option<String> {
+        let Rounded {
+            force,
+            step,
+            carried,
+        } = self.2;
+        (force > RELIABLE * carried).then(|| {
+            format!(
+                "step {step} is balanced to {:.1e} of the forces of contact only, which is what rounding leaves: a penalty, a \
+                 stiffness or a displacement is too large for double precision",
+                force / carried
+            )
+        })
+    }
+
+    /// The largest force that is known least of those of contacts that carry much.
     fn between_steps(&self, model: &Model) -> Option<String> {
-        let largest = (self.0.iter()).fold(0.0f64, |most, p| most.max(p.crest.force()));
+        let largest = (self.0.iter()).fold(0.0f64, |most, p| most.max(p.crests.force()));
         let pairs = model.pairs.iter().zip(&self.0);
-        let large = pairs.filter(|(_, p)| p.crest.force() > LARGE * largest);
-        let missing = large.filter_map(|(pair, p)| Some((pair, p.crest, p.crest.missing()?)));
-        let (pair, crest, part) = missing.max_by(|a, b| a.2.total_cmp(&b.2))?;
+        let worst = pairs.filter_map(|(pair, p)| Some((pair, p.crests.worst(LARGE * largest)?)));
+        let (pair, (what, crest, part)) = worst.max_by(|(_, a), (_, b)| a.2.total_cmp(&b.2))?;
         Some(format!(
-            "contact `{}`: its force is largest at step {} (time {}), and changes so much from there to the steps beside it that it \
+            "contact `{}`: its {what} is largest at step {} (time {}), and changes so much from there to the steps beside it that it \
              may have been {:.0} % larger between them: take a smaller `solution.step.max` to see its peak",
             pair.name,
             crest.step,
@@ -304,9 +349,9 @@ impl Peak {
                 None => "points",
             };
             format!(
-                "contact `{}`: {} of {slaves} slave {what} carry 90 % of its force at step {}: fewer than {FEW} do not resolve how \
-                 it is spread, pressures are those of the mesh, and forces may be. Refine the slave faces there (points are {} \
-                 apart), or take more `points` a face",
+                "contact `{}`: {} of the places of its {slaves} slave {what} carry 90 % of its force at step {}: fewer than {FEW} do \
+                 not resolve how it is spread, pressures are those of the mesh, and forces may be. Refine the slave faces there \
+                 (points are {} apart), or take more `points` a face",
                 pair.name,
                 self.few,
                 self.step,

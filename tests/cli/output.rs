@@ -143,7 +143,7 @@ fn a_device_that_fills_during_a_run() {
     // The table: rows are small, and no fields are written.
     let folder = tempfile::tempdir().unwrap();
     write_plate(folder.path(), &steps(0, 0.01));
-    let output = limited(folder.path(), 9);
+    let output = limited(folder.path(), 12);
     assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
     let message =
         "error: cannot write `out/history.csv`: the file is larger than the system allows";

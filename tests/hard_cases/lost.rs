@@ -94,6 +94,50 @@ fn a_balance_that_only_rounding_accepts_is_told() {
     assert!(warnings(&near, "balanced to").is_empty());
     assert!(near.column("residual").iter().all(|r| *r < 1e-10));
     let far = done(&moved(1e10));
-    assert_eq!(warnings(&far, "balanced to").len(), 2);
+    assert_eq!(warnings(&far, "balanced to").len(), 1);
     assert!(far.column("residual").iter().all(|r| *r > 1e-4));
+}
+
+/// A plate that a punch presses towards a floor. Where the floor stands still and is not reached it may be a stop, which is told; where
+/// it moves it was to be touched.
+#[test]
+fn a_stop_that_is_not_reached_is_told() {
+    let scene = |floor: serde_json::Value| {
+        json!({
+            "covact": 1,
+            "materials": { "m": { "st_venant_kirchhoff": { "E": 1000, "nu": 0.3 } } },
+            "bodies": { "plate": {
+                "mesh": { "plate": { "size": [10, 4], "thickness": 1, "elements": [5, 2] } }, "material": "m"
+            } },
+            "surfaces": {
+                "punch": {
+                    "sphere": { "radius": 3, "center": [10, 2, 3.6] }, "motion": { "translation": [0, 0, "-0.5*t"] }
+                },
+                "floor": floor
+            },
+            "contacts": {
+                "press": { "slave": "plate.top", "master": "punch" },
+                "stop": { "slave": "plate.bottom", "master": "floor" }
+            },
+            "supports": { "clamp": { "on": "plate.x_min", "fixed": true } },
+            "output": { "every": 0 }
+        })
+    };
+    let plane = |motion: serde_json::Value| {
+        json!({
+            "plane": { "center": [5, 2, -2], "size": [30, 30] }, "motion": { "translation": motion }
+        })
+    };
+    let stop = solve(&scene(plane(json!([0, 0, 0]))));
+    assert_eq!(stop.summary.status.name(), "done");
+    let told = warnings(&stop, "contact `stop` never touched");
+    assert!(
+        told.len() == 1 && told[0].contains("may be a stop"),
+        "{told:?}"
+    );
+    assert!(warnings(&stop, "press").is_empty());
+    let missed = solve(&scene(plane(json!([0, 0, "0.2*t"]))));
+    assert_eq!(missed.summary.status.name(), "no_contact");
+    let reason = missed.summary.reason.as_deref().unwrap_or_default();
+    assert!(reason.contains("contact `stop` never touched"), "{reason}");
 }

@@ -1,5 +1,5 @@
 //! What is told of an accepted step, and its line of the history.
-use super::{March, Outputs, RELIABLE, energy};
+use super::{March, Outputs, energy};
 use crate::assembly::Drag;
 use crate::model::error::number;
 use crate::model::penalty;
@@ -13,6 +13,9 @@ use crate::run::watch::Work;
 use crate::solve::event::Event;
 use crate::solve::newton::{Converged, RigidLimit};
 use crate::system::linear::Method;
+
+/// Penetration, over the one from which on a penalty is raised whatever else, above which it is told: half of an element's layer.
+const SUNK: f64 = 5.0;
 
 impl March<'_, '_> {
     pub(super) fn accept(&mut self, step: u32, end: f64, converged: &Converged) {
@@ -46,13 +49,6 @@ impl March<'_, '_> {
                     if lasting { "given" } else { "present" }
                 ));
             }
-        }
-        let residual = converged.history.last().map_or(0.0, |last| last.0);
-        if converged.totals.active > 0 && residual > RELIABLE {
-            self.warn(format!(
-                "step {step} is balanced to {residual:.1e} of its forces only, which is what rounding leaves: a penalty, \
-                 a stiffness or a displacement is too large for double precision"
-            ));
         }
         for (index, surface, driven) in self.model.driven() {
             let mut share = [0.0f64; 6];
@@ -108,6 +104,31 @@ impl March<'_, '_> {
         });
     }
 
+    /// Tells where points lie deep in their master under a penalty that the run chooses, beside the layer of elements behind them.
+    fn tell_sunk(&mut self, errors: &Errors) {
+        if self.model.dynamics.is_some() {
+            return;
+        }
+        for (pair, sunk) in self.model.pairs.iter().zip(&errors.sunk) {
+            let Some(ruled) = pair.ruled.filter(|_| *sunk > SUNK) else {
+                continue;
+            };
+            let head = format!("contact `{}`: its points lie ", pair.name);
+            if self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
+                continue;
+            }
+            self.warn(format!(
+                "{head}{} deep in {} at step {} (time {}), more than half of an element's layer, under the softest penalty that the \
+                 step could be solved with: what contact carries there may be wrong, or belong to a path that jumps. Take a smaller \
+                 `solution.step.max`, or drive by what keeps the forces growing",
+                number(sunk * ruled.deepest),
+                pair.master_words(self.model),
+                self.progress.steps,
+                number(self.progress.time)
+            ));
+        }
+    }
+
     /// Makes the row of an accepted step; whether its energies tell of a jump.
     #[allow(clippy::too_many_arguments)]
     pub(super) fn record(
@@ -138,7 +159,8 @@ impl March<'_, '_> {
         let energy = energy(totals, sliding) + state.stabilized;
         let pressed = &outputs.fields.pressed;
         let softened = converged.softened;
-        let told = (self.watch).close(self.model, (step, span), work, pressed, energy, softened);
+        let energies = [energy, totals.contact_energy + sliding.stored];
+        let told = (self.watch).close(self.model, (step, span), work, pressed, energies, softened);
         let told = told.filter(|_| self.model.dynamics.is_none());
         let jumped = told.is_some();
         if let Some(text) = told {
@@ -159,9 +181,11 @@ impl March<'_, '_> {
             Some(_) => 0.0,
             None => (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?,
         };
+        self.tell_sunk(&errors);
         self.adapt(errors, growth, converged);
         let bearings = &outputs.fields.bearings;
-        (self.peaks).step(self.model, (step, time), bearings, &totals.pairs);
+        let residual = converged.history.last().map_or(0.0, |last| last.0);
+        (self.peaks).step(self.model, (step, time, residual), bearings, &totals.pairs);
         let doubts = linearity_check::doubts(self.model, &mut self.assembler.masters, state, time);
         for doubt in doubts.map_err(|e| RunError::internal(&e))? {
             self.doubt(doubt);
