@@ -45,7 +45,7 @@ pub(super) struct Search<'a, S: Surface> {
     kept_count: usize,
     /// Whether nothing in the block of cells around the best point is nearer.
     settled: bool,
-    pub(super) parts: usize,
+    parts: usize,
     /// False where the number of parts ran out before the proof was complete.
     pub complete: bool,
     /// Whether the proofs settled for less.

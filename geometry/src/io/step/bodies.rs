@@ -13,7 +13,6 @@ use super::schema::is_a;
 use super::scope::{Budget, Scope};
 use super::shells::{self, Found, Member};
 use super::units::Units;
-use crate::io::brep::Grant;
 use crate::io::report::{CadBody, CadPatch, CadTags, SkipKind, Skipped, TrimReport};
 use crate::io::{ReadOptions, ReadProgress};
 use std::collections::{HashMap, HashSet};
@@ -46,7 +45,6 @@ pub fn read(
     let mut reader = Reader {
         exchange,
         budget: &budget,
-        grant: Grant::of_length(exchange.bytes()),
         labels: Labels::read(exchange),
         hidden: match options.hidden {
             true => Hidden::default(),
@@ -73,7 +71,6 @@ pub fn read(
 struct Reader<'a, 'r> {
     exchange: &'r Exchange<'a>,
     budget: &'r Budget,
-    grant: Grant,
     labels: Labels,
     hidden: Hidden,
     assembly: &'r Assembly,
@@ -232,7 +229,7 @@ impl<'a> Reader<'a, '_> {
         if faces.is_empty() {
             return;
         }
-        if let Err(reason) = self.grant.body(names) {
+        if let Err(reason) = self.budget.grant.body(names) {
             return self.skip(copy.item, SkipKind::Surface, reason);
         }
         let instance = copy.instance.map_or(0, |i| number_of(self.exchange, i));
@@ -319,7 +316,7 @@ impl<'a> Reader<'a, '_> {
             near: units.uncertainty.unwrap_or(0.0),
         };
         let mut account = Account {
-            grant: &self.grant,
+            grant: &self.budget.grant,
             trims: &mut self.out.trims,
             notes: self.notes,
         };
@@ -344,7 +341,7 @@ impl<'a> Reader<'a, '_> {
         copy: &Copy,
         member: &Member,
     ) -> Result<crate::NurbsPatch, String> {
-        self.grant.patch(&face.patch)?;
+        self.budget.grant.patch(&face.patch)?;
         let map = &copy.map;
         let mut patch = match *map == Placement::identity() {
             true => face.patch.clone(),
