@@ -4,12 +4,14 @@ use super::grant::{CELL, Grant, PART, PIECE};
 use crate::bezier::BezierPiece;
 use crate::project::cells::parts;
 use crate::surface::{Jet, Surface};
+use crate::trim::Trim;
 use crate::{NurbsPatch, Vec3};
 
-/// A patch without its trim. Its evaluations and pieces are charged to a grant; searches end when no work is left.
+/// A patch, with its trim or without. Its evaluations and pieces are charged to a grant; searches end when no work is left.
 #[derive(Debug, Clone)]
 pub struct Metered<'a> {
     patch: &'a NurbsPatch,
+    trim: Option<&'a Trim>,
     grant: &'a Grant,
     /// Cost of an evaluation.
     cost: u64,
@@ -19,9 +21,22 @@ impl<'a> Metered<'a> {
     pub fn untrimmed(patch: &'a NurbsPatch, grant: &'a Grant) -> Self {
         Self {
             patch,
+            trim: None,
             grant,
             cost: Grant::evaluation(patch.degree()),
         }
+    }
+
+    pub fn trimmed(patch: &'a NurbsPatch, grant: &'a Grant) -> Self {
+        Self {
+            trim: patch.trim(),
+            ..Self::untrimmed(patch, grant)
+        }
+    }
+
+    /// The patch itself.
+    pub fn patch(&self) -> &'a NurbsPatch {
+        self.patch
     }
 }
 
@@ -70,6 +85,10 @@ impl Surface for Metered<'_> {
 
     fn sharp_knots(&self, dir: usize, angle: f64) -> Vec<f64> {
         self.patch.sharp_knots(dir, angle)
+    }
+
+    fn trim(&self) -> Option<&Trim> {
+        self.trim
     }
 
     fn may_go_on(&self) -> bool {

@@ -151,7 +151,7 @@ fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<CadFile, Fail
         healing: Healing::default(),
         notes,
     };
-    heal(&mut file);
+    heal(&mut file, &model.grant);
     Ok(file)
 }
 

@@ -13,9 +13,11 @@ use super::schema::is_a;
 use super::scope::{Budget, Scope};
 use super::shells::{self, Found, Member};
 use super::units::Units;
+use crate::io::brep::Grant;
 use crate::io::report::{CadBody, CadPatch, CadTags, SkipKind, Skipped, TrimReport};
 use crate::io::{ReadOptions, ReadProgress};
 use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 /// All bodies of a file.
 pub struct Outcome {
@@ -24,6 +26,8 @@ pub struct Outcome {
     pub bodies: Vec<CadBody>,
     pub skipped: Vec<Skipped>,
     pub trims: TrimReport,
+    /// The work and memory that are left.
+    pub grant: Rc<Grant>,
 }
 
 /// A body where it stands.
@@ -58,6 +62,7 @@ pub fn read(
             bodies: Vec::new(),
             skipped: Vec::new(),
             trims: TrimReport::default(),
+            grant: Rc::clone(&budget.grant),
         },
         assembly: &assembly,
         notes,
