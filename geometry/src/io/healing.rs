@@ -1,6 +1,6 @@
 //! Faces that harm more than they add: slivers narrower than the resolution of the file, and faces that are there twice.
 
-use super::brep::{Grant, Metered};
+use super::brep::{Grant, Metered, bytes_of_set};
 use super::report::{CadFile, CadPatch};
 use crate::surface::{Surface, Vec3};
 use crate::{NurbsPatch, PatchSet};
@@ -121,8 +121,8 @@ pub fn heal(file: &mut CadFile, grant: &Grant) {
     }
     if !duplicates(file, &outlines, (near, grant), &mut why) {
         file.notes.push(
-            "not all faces were compared with each other to find those that are there twice: that takes more work than a file \
-             of this length is granted"
+            "not all faces were compared with each other to find those that are there twice: that takes more work or memory than \
+             a file of this length is granted"
                 .to_owned(),
         );
     }
@@ -240,7 +240,7 @@ fn duplicates(
         .map(|k| middle(k).dot(&Vec3::new(0.32, 0.25, 0.29)))
         .collect();
     order.sort_by(|&a, &b| keys[a].total_cmp(&keys[b]));
-    let mut sets: Sets = HashMap::new();
+    let mut sets = Sets::default();
     let mut compared = false;
     // Of those before it a face is compared with the ones that stay.
     let mut staying: Vec<usize> = Vec::with_capacity(order.len());
@@ -274,7 +274,7 @@ fn duplicates(
                 // The first in the file stays.
                 let [stays, goes] = [staying[k].min(face), staying[k].max(face)];
                 staying[k] = stays;
-                sets.remove(&goes);
+                sets.made.remove(&goes);
                 let of = file.patches[stays].entity;
                 why[goes] = Some(LeftOutKind::Duplicate { of, distance });
             }
@@ -282,11 +282,50 @@ fn duplicates(
         }
     }
     // The last comparison may have ended for want of work.
-    !(compared && grant.is_spent())
+    !(sets.too_large || compared && grant.is_spent())
 }
 
-/// Sets of single faces, by the number of the face.
-type Sets<'f> = HashMap<usize, Option<PatchSet<Metered<'f>>>>;
+/// Sets of single faces, by the number of the face, within the memory granted.
+#[derive(Default)]
+struct Sets<'f> {
+    made: HashMap<usize, Option<PatchSet<Metered<'f>>>>,
+    /// Bytes of each, also of those that are gone.
+    bytes: HashMap<usize, u64>,
+    /// Whether some were not made, for they are too large.
+    too_large: bool,
+}
+
+impl<'f> Sets<'f> {
+    /// Makes the sets of two faces; those of other faces go where there is no room for all.
+    fn make(&mut self, file: &'f CadFile, pair: [usize; 2], grant: &'f Grant) {
+        let room = grant.passing_bytes();
+        let mut wanted = 0u64;
+        for k in pair {
+            let patch = &file.patches[k].patch;
+            let bytes = || bytes_of_set(patch, border(patch));
+            wanted = wanted.saturating_add(*self.bytes.entry(k).or_insert_with(bytes));
+        }
+        let held = self.made.keys().filter(|k| !pair.contains(k));
+        let held: u64 = held.map(|k| self.bytes[k]).sum();
+        // What was compared long ago lies elsewhere.
+        if self.made.len() > 2 * COMPARED || held.saturating_add(wanted) > room {
+            self.made.clear();
+        }
+        self.too_large |= wanted > room;
+        for k in pair {
+            let make = || match wanted > room {
+                true => None,
+                false => set_of(&file.patches[k].patch, grant),
+            };
+            self.made.entry(k).or_insert_with(make);
+        }
+    }
+}
+
+/// Number of border points of a face.
+fn border(patch: &NurbsPatch) -> usize {
+    rings(patch).iter().map(Vec::len).sum()
+}
 
 /// Largest distance between two faces, if they coincide.
 fn coincide<'f>(
@@ -295,15 +334,8 @@ fn coincide<'f>(
     (near, grant): (f64, &'f Grant),
     sets: &mut Sets<'f>,
 ) -> Option<f64> {
-    // What was compared long ago lies elsewhere.
-    if sets.len() > 2 * COMPARED {
-        sets.clear();
-    }
-    for k in pair {
-        sets.entry(k)
-            .or_insert_with(|| set_of(&file.patches[k].patch, grant));
-    }
-    let [Some(one), Some(other)] = pair.map(|k| sets[&k].as_ref()) else {
+    sets.make(file, pair, grant);
+    let [Some(one), Some(other)] = pair.map(|k| sets.made[&k].as_ref()) else {
         return None;
     };
     // Two sheets of one body may touch back to back, and so may the bodies of a file that does not list them.
@@ -319,8 +351,8 @@ fn coincide<'f>(
 
 /// A set of one face that charges searches to the grant; `None` without work left.
 fn set_of<'f>(patch: &'f NurbsPatch, grant: &'f Grant) -> Option<PatchSet<Metered<'f>>> {
-    let border: usize = rings(patch).iter().map(Vec::len).sum();
-    let granted = grant.spend(border as u64 * BORDER * Grant::evaluation(patch.degree()));
+    let points = border(patch) as u64;
+    let granted = grant.spend(points * BORDER * Grant::evaluation(patch.degree()));
     let set = || PatchSet::new(vec![Metered::trimmed(patch, grant)], None).ok();
     granted.then(set).flatten()
 }

@@ -26,6 +26,8 @@ pub const FOOT: u64 = 3;
 const PAIR: u64 = 4;
 /// Bytes granted to any file, and for each of its records (of 80 bytes).
 const BYTES: [u64; 2] = [500_000, 50 * 80];
+/// Bytes that may be in use for a while beside those, and for each record.
+const PASSING: [u64; 2] = [250_000, 25 * 80];
 /// Bytes that a control point of a patch, of a curve, and of a boundary curve in both its planes stand for: the last with the
 /// pieces and boxes by which it is searched.
 const PATCH_POINT: usize = 100;
@@ -42,6 +44,7 @@ const REFUSALS: u32 = 20;
 pub struct Grant {
     work: AtomicU64,
     bytes: AtomicU64,
+    passing: u64,
     refusals: AtomicU32,
 }
 
@@ -51,6 +54,7 @@ impl Grant {
         Self {
             work: AtomicU64::new(WORK[0] + WORK[1] * parameter as u64),
             bytes: AtomicU64::new(BYTES[0] + BYTES[1] * all as u64),
+            passing: PASSING[0] + PASSING[1] * all as u64,
             refusals: AtomicU32::new(0),
         }
     }
@@ -129,6 +133,11 @@ impl Grant {
         let curves = curves as u64;
         self.work(curves.saturating_mul(curves).saturating_mul(PAIR))?;
         self.memory(points.saturating_mul(TRIM_POINT))
+    }
+
+    /// Bytes that may be in use for a while: those granted and not taken, and some more.
+    pub fn passing_bytes(&self) -> u64 {
+        self.bytes.load(Relaxed) + self.passing
     }
 
     /// Takes the memory of a cubic piece of a fitted boundary curve.

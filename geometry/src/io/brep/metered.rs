@@ -96,6 +96,21 @@ impl Surface for Metered<'_> {
     }
 }
 
+/// Bytes that a set of one patch with so many border points takes, with the Bezier pieces that projections of as many points and
+/// some inside make.
+pub fn bytes_of_set(patch: &NurbsPatch, border: usize) -> u64 {
+    let pieces = Surface::bezier_pieces(patch);
+    let points: u64 = pieces.iter().map(|p| p.points.len() as u64).sum();
+    let [border, cells] = [border as u64, cells(&pieces)];
+    border * BORDER_POINT + cells * CELL_BYTES + points * 32 + cells.min(border + 25) * PIECE_BYTES
+}
+
+/// Bytes of the samples of an edge for each border point, while the vector of them grows; of a cell's box with its place in the
+/// tree; and of a piece with its proofs.
+const BORDER_POINT: u64 = 600;
+const CELL_BYTES: u64 = 180;
+const PIECE_BYTES: u64 = 2_000;
+
 /// Number of cells into which a set cuts the pieces of a patch.
 fn cells(pieces: &[BezierPiece]) -> u64 {
     let mut most: [Vec<usize>; 2] = [Vec::new(), Vec::new()];
