@@ -77,10 +77,21 @@ pub fn offset(
                     "an approximation of {COUNT} control points a side is still {deviation:.1e} off"
                 ));
             }
+            let mut counts = space.counts();
+            counts[d] += middles.len();
+            if bytes(counts) > grant.passing_bytes() {
+                return Err("it takes more memory than a file of this length is granted".to_owned());
+            }
             space = space.insert_knots(d, &middles).map_err(torn)?;
         }
     }
     Err(format!("its approximation is still {deviation:.1e} off"))
+}
+
+/// Bytes in use while an offset with so many control points is fitted: five nets or so, and two collocation matrices.
+fn bytes(counts: [usize; 2]) -> u64 {
+    let [m, n] = counts.map(|n| n as u64);
+    150 * m * n + 16 * (m * m + n * n)
 }
 
 /// The unit normal `rho_1 x rho_2`, at a pole that of the surface around it.
