@@ -84,6 +84,14 @@ pub trait Surface: Clone + Send + Sync + std::fmt::Debug {
     fn trim(&self) -> Option<&Trim> {
         None
     }
+
+    /// Whether a search for closest points may continue. The search asks this for each piece, and each part of a piece, that it
+    /// examines. If the answer is `false`, it returns the best point found so far as not converged. Override this to bound the
+    /// work of a search; the default costs nothing.
+    #[inline]
+    fn may_go_on(&self) -> bool {
+        true
+    }
 }
 
 /// Derivatives of `numerator / weight` from those of both, in the order 0 | 1, 2 | 11, 12, 22: the quotient rule solved

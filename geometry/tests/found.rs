@@ -227,6 +227,22 @@ fn ellipse(n: usize) -> String {
     format!("1,{},0.,{}", n + 1, points.join(","))
 }
 
+/// Two faces that nearly coincide and reach out to 2e9: comparing them takes more work than the file is granted. Both
+/// stay, and the file says that they were not compared.
+#[test]
+fn faces_that_are_not_compared_stay() {
+    let name = "duplicates_by_projection.igs";
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/found");
+    let file = iges(
+        &folder.join(name),
+        &std::fs::read(folder.join(name)).unwrap(),
+    )
+    .expect("sound");
+    assert_eq!(file.patches.len(), 2);
+    let told = file.notes.iter().any(|n| n.contains("is granted"));
+    assert!(told, "{:?}", file.notes);
+}
+
 /// 300 faces within the same boundary of 1500 points.
 #[test]
 fn boundary_of_many_faces() {

@@ -1,7 +1,8 @@
 //! Faces that harm more than they add: slivers narrower than the resolution of the file, and faces that are there twice.
 
+use super::brep::{Grant, Metered, bytes_of_set};
 use super::report::{CadFile, CadPatch};
-use crate::surface::Vec3;
+use crate::surface::{Surface, Vec3};
 use crate::{NurbsPatch, PatchSet};
 use serde::Serialize;
 use std::collections::HashMap;
@@ -14,6 +15,8 @@ const STEPS: usize = 4;
 const ALIKE: f64 = 0.02;
 /// Faces compared with one face.
 const COMPARED: usize = 32;
+/// Cost, in evaluations, of each border point of a face when a set is made of it.
+const BORDER: u64 = 4;
 
 /// A face that was read but left out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -96,8 +99,8 @@ impl Healing {
     }
 }
 
-/// Takes slivers and duplicates out of a file that was read.
-pub fn heal(file: &mut CadFile) {
+/// Takes slivers and duplicates out of a file that was read. Comparing faces is charged to the grant of the file.
+pub fn heal(file: &mut CadFile, grant: &Grant) {
     let outlines: Vec<Outline> = file.patches.iter().map(|p| Outline::of(&p.patch)).collect();
     let low = outlines.iter().map(|o| o.bounds[0]);
     let high = outlines.iter().map(|o| o.bounds[1]);
@@ -116,7 +119,13 @@ pub fn heal(file: &mut CadFile) {
     if why.iter().all(Option::is_some) {
         return;
     }
-    duplicates(file, &outlines, near, &mut why);
+    if !duplicates(file, &outlines, (near, grant), &mut why) {
+        file.notes.push(
+            "not all faces were compared with each other to find those that are there twice: that takes more work or memory than \
+             a file of this length is granted"
+                .to_owned(),
+        );
+    }
     for (patch, why) in file.patches.iter().zip(&why) {
         if let Some(why) = *why {
             file.healing.add(patch, why);
@@ -217,8 +226,13 @@ fn inside(patch: &NurbsPatch) -> impl Iterator<Item = [f64; 2]> + '_ {
     all.filter(|xi| patch.trim().is_none_or(|t| t.contains(*xi)))
 }
 
-/// Finds faces that coincide with one before them.
-fn duplicates(file: &CadFile, outlines: &[Outline], near: f64, why: &mut [Option<LeftOutKind>]) {
+/// Finds faces that coincide with one before them. Returns whether the work granted was enough for all of them.
+fn duplicates(
+    file: &CadFile,
+    outlines: &[Outline],
+    (near, grant): (f64, &Grant),
+    why: &mut [Option<LeftOutKind>],
+) -> bool {
     let mut order: Vec<usize> = (0..outlines.len()).filter(|&k| why[k].is_none()).collect();
     // Centres along a line that few directions of parts are perpendicular to.
     let middle = |k: usize| outlines[k].bounds[0] + outlines[k].bounds[1];
@@ -226,7 +240,8 @@ fn duplicates(file: &CadFile, outlines: &[Outline], near: f64, why: &mut [Option
         .map(|k| middle(k).dot(&Vec3::new(0.32, 0.25, 0.29)))
         .collect();
     order.sort_by(|&a, &b| keys[a].total_cmp(&keys[b]));
-    let mut sets: HashMap<usize, Option<PatchSet>> = HashMap::new();
+    let mut sets = Sets::default();
+    let mut compared = false;
     // Of those before it a face is compared with the ones that stay.
     let mut staying: Vec<usize> = Vec::with_capacity(order.len());
     for &face in &order {
@@ -246,8 +261,12 @@ fn duplicates(file: &CadFile, outlines: &[Outline], near: f64, why: &mut [Option
             })
             .take(COMPARED);
         let candidates: Vec<usize> = candidates.collect();
+        if !candidates.is_empty() && grant.is_spent() {
+            return false;
+        }
+        compared |= !candidates.is_empty();
         let found = candidates.into_iter().find_map(|k| {
-            let distance = coincide(file, [staying[k], face], near, &mut sets)?;
+            let distance = coincide(file, [staying[k], face], (near, grant), &mut sets)?;
             Some((k, distance))
         });
         match found {
@@ -255,31 +274,68 @@ fn duplicates(file: &CadFile, outlines: &[Outline], near: f64, why: &mut [Option
                 // The first in the file stays.
                 let [stays, goes] = [staying[k].min(face), staying[k].max(face)];
                 staying[k] = stays;
-                sets.remove(&goes);
+                sets.made.remove(&goes);
                 let of = file.patches[stays].entity;
                 why[goes] = Some(LeftOutKind::Duplicate { of, distance });
             }
             None => staying.push(face),
         }
     }
+    // The last comparison may have ended for want of work.
+    !(sets.too_large || compared && grant.is_spent())
+}
+
+/// Sets of single faces, by the number of the face, within the memory granted.
+#[derive(Default)]
+struct Sets<'f> {
+    made: HashMap<usize, Option<PatchSet<Metered<'f>>>>,
+    /// Bytes of each, also of those that are gone.
+    bytes: HashMap<usize, u64>,
+    /// Whether some were not made, for they are too large.
+    too_large: bool,
+}
+
+impl<'f> Sets<'f> {
+    /// Makes the sets of two faces; those of other faces go where there is no room for all.
+    fn make(&mut self, file: &'f CadFile, pair: [usize; 2], grant: &'f Grant) {
+        let room = grant.passing_bytes();
+        let mut wanted = 0u64;
+        for k in pair {
+            let patch = &file.patches[k].patch;
+            let bytes = || bytes_of_set(patch, border(patch));
+            wanted = wanted.saturating_add(*self.bytes.entry(k).or_insert_with(bytes));
+        }
+        let held = self.made.keys().filter(|k| !pair.contains(k));
+        let held: u64 = held.map(|k| self.bytes[k]).sum();
+        // What was compared long ago lies elsewhere.
+        if self.made.len() > 2 * COMPARED || held.saturating_add(wanted) > room {
+            self.made.clear();
+        }
+        self.too_large |= wanted > room;
+        for k in pair {
+            let make = || match wanted > room {
+                true => None,
+                false => set_of(&file.patches[k].patch, grant),
+            };
+            self.made.entry(k).or_insert_with(make);
+        }
+    }
+}
+
+/// Number of border points of a face.
+fn border(patch: &NurbsPatch) -> usize {
+    rings(patch).iter().map(Vec::len).sum()
 }
 
 /// Largest distance between two faces, if they coincide.
-fn coincide(
-    file: &CadFile,
+fn coincide<'f>(
+    file: &'f CadFile,
     pair: [usize; 2],
-    near: f64,
-    sets: &mut HashMap<usize, Option<PatchSet>>,
+    (near, grant): (f64, &'f Grant),
+    sets: &mut Sets<'f>,
 ) -> Option<f64> {
-    // What was compared long ago lies elsewhere.
-    if sets.len() > 2 * COMPARED {
-        sets.clear();
-    }
-    for k in pair {
-        sets.entry(k)
-            .or_insert_with(|| PatchSet::new(vec![file.patches[k].patch.clone()], None).ok());
-    }
-    let [Some(one), Some(other)] = pair.map(|k| sets[&k].as_ref()) else {
+    sets.make(file, pair, grant);
+    let [Some(one), Some(other)] = pair.map(|k| sets.made[&k].as_ref()) else {
         return None;
     };
     // Two sheets of one body may touch back to back, and so may the bodies of a file that does not list them.
@@ -289,15 +345,30 @@ fn coincide(
         .and_then(|k| file.bodies.get(k));
     let facing = body.is_none_or(|body| body.solid);
     let there = apart(one, other, near, facing)?;
-    Some(there.max(apart(other, one, near, facing)?))
+    let found = there.max(apart(other, one, near, facing)?);
+    (!grant.is_spent()).then_some(found)
+}
+
+/// A set of one face that charges searches to the grant; `None` without work left.
+fn set_of<'f>(patch: &'f NurbsPatch, grant: &'f Grant) -> Option<PatchSet<Metered<'f>>> {
+    let points = border(patch) as u64;
+    let granted = grant.spend(points * BORDER * Grant::evaluation(patch.degree()));
+    let set = || PatchSet::new(vec![Metered::trimmed(patch, grant)], None).ok();
+    granted.then(set).flatten()
 }
 
 /// Largest distance of points of `one` from `other`, if none is larger than `near`; with `facing`, only where the normals
 /// agree.
-fn apart(one: &PatchSet, other: &PatchSet, near: f64, facing: bool) -> Option<f64> {
+fn apart(
+    one: &PatchSet<Metered>,
+    other: &PatchSet<Metered>,
+    near: f64,
+    facing: bool,
+) -> Option<f64> {
     let mut worst = 0.0f64;
-    for xi in points(rings(&one.patches()[0]), &one.patches()[0]) {
-        let jet = one.patches()[0].jet(xi);
+    let own = &one.patches()[0];
+    for xi in points(rings(own.patch()), own.patch()) {
+        let jet = own.jet(xi);
         let foot = other.project(&jet.rho, None, 2.0 * near)?;
         worst = worst.max(foot.distance);
         let [a, b] = [&jet, &foot.jet].map(|j| j.rho_i[0].cross(&j.rho_i[1]));

@@ -21,7 +21,7 @@ const MOST_STRETCH: f64 = 4.0;
 const MOST: usize = 8;
 
 /// In how many parts a Bezier piece is to be cut in each direction.
-pub(super) fn parts(bezier: &BezierPiece) -> [usize; 2] {
+pub(crate) fn parts(bezier: &BezierPiece) -> [usize; 2] {
     let n1 = bezier.degree[0] + 1;
     let n2 = bezier.degree[1] + 1;
     let point = |k: usize| {

@@ -9,7 +9,7 @@
 
 pub(crate) mod ball;
 mod batch;
-mod cells;
+pub(crate) mod cells;
 mod convex;
 pub(crate) mod downhill;
 mod finish;

@@ -45,7 +45,7 @@ pub(super) struct Search<'a, S: Surface> {
     kept_count: usize,
     /// Whether nothing in the block of cells around the best point is nearer.
     settled: bool,
-    pub(super) parts: usize,
+    parts: usize,
     /// False where the number of parts ran out before the proof was complete.
     pub complete: bool,
     /// Whether the proofs settled for less.
@@ -204,14 +204,28 @@ impl<'a, S: Surface> Search<'a, S> {
         self.slack
     }
 
-    /// Counts a part; whether the search may go on.
-    pub fn spend(&mut self) -> bool {
+    /// Counts a part of a patch; returns whether the search may continue.
+    pub fn spend(&mut self, patch: u32) -> bool {
         self.parts += 1;
         if self.parts.is_multiple_of(GRANT) && self.above < self.reach {
             self.loosen();
         }
-        self.complete &= self.parts <= MOST_PARTS;
+        self.complete &= self.parts <= MOST_PARTS && self.may_go_on(patch);
         self.complete
+    }
+
+    /// Whether the patch allows the search to continue. Compiles to nothing for surfaces with the default answer, which indexing
+    /// with its bounds check would not.
+    #[inline(always)]
+    fn may_go_on(&self, patch: u32) -> bool {
+        (self.set.patches.get(patch as usize)).is_none_or(S::may_go_on)
+    }
+
+    /// Ends the search without a proof.
+    #[cold]
+    fn give_up(&mut self) {
+        self.complete = false;
+        (self.cut, self.wide) = (-1.0, -1.0);
     }
 
     /// Where points outside need not be certain beyond `above`, and the best one is such a point: a nearer one is only
@@ -361,6 +375,9 @@ impl<'a, S: Surface> Search<'a, S> {
             return self.curve_leaf(id as usize - set.pieces.count());
         }
         let piece = set.piece(id);
+        if !self.may_go_on(piece.patch) {
+            return self.give_up();
+        }
         if !self.centred
             && let Some(sphere) = &set.spheres[piece.patch as usize]
             && sphere.has_near_centre(&self.q)

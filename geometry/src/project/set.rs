@@ -340,20 +340,10 @@ impl<S: Surface> PatchSet<S> {
         reach: f64,
         above: f64,
     ) -> Option<Foot> {
-        self.project_counted(q, hint, (reach, above)).0
-    }
-
-    /// [`project_above`](Self::project_above), with the number of parts that the search has looked into.
-    pub(crate) fn project_counted(
-        &self,
-        q: &Vec3,
-        hint: Option<Hint>,
-        (reach, above): (f64, f64),
-    ) -> (Option<Foot>, usize) {
         if !(q.x.is_finite() && q.y.is_finite() && q.z.is_finite() && reach >= 0.0)
             || self.tree.distance2(q) > reach * reach
         {
-            return (None, 0);
+            return None;
         }
         let mut search = Search::new(self, *q, reach);
         search.above = above;
@@ -365,15 +355,12 @@ impl<S: Surface> PatchSet<S> {
         }
         search.run();
         let (complete, tied) = (search.complete, search.is_tied());
-        let parts = search.parts;
-        let Some((_, local)) = search.best else {
-            return (None, parts);
-        };
+        let (_, local) = search.best?;
         let mut foot = self.finish(q, local, complete, tied);
         if complete && foot.status == Status::NotConverged && foot.signed_distance > above {
             foot.status = Status::NonUnique;
         }
-        (Some(foot), parts)
+        Some(foot)
     }
 
     /// Number of the piece that holds `xi` of a pair of spans.

@@ -127,7 +127,7 @@ impl<S: Surface> Search<'_, S> {
             if part.depth > 0 && self.misses(own, piece.degree) {
                 continue;
             }
-            if !self.spend() {
+            if !self.spend(piece.patch) {
                 return;
             }
             let extent = extents(own, piece.degree);

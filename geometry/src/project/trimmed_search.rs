@@ -293,7 +293,7 @@ impl<S: Surface> Search<'_, S> {
             {
                 continue;
             }
-            if !self.spend() {
+            if !self.spend(leaf.patch) {
                 return;
             }
             // Where the chord is nearest.
@@ -403,7 +403,7 @@ impl<S: Surface> Search<'_, S> {
             if part.depth > 0 && trim.part(domain) == Part::Outside {
                 continue;
             }
-            if !self.spend() {
+            if !self.spend(piece.patch) {
                 return;
             }
             let middle = at(piece, part.range.map(|[a, b]| 0.5 * (a + b)));

@@ -5,6 +5,7 @@ use super::super::report::TrimReport;
 use super::chain::Chain;
 use super::face::{Part, Preference, Stretch};
 use super::fit::{Fitted, fit, smooth_breaks};
+use super::grant::Grant;
 use super::host::{Host, Xi};
 use super::poles;
 use super::sides::along_side;
@@ -302,8 +303,9 @@ fn extreme(
 /// A curve of the file's parameter plane where the patch's parameters are not a linear map of it.
 fn refitted(host: &Host, file: &NurbsCurve<2>, shift: Xi) -> Result<Fitted, String> {
     let breaks = smooth_breaks(file.basis());
+    let cost = Grant::evaluation_of_curve(file.degree()) + host.evaluation();
     let mut path = |t: f64, _: Xi| {
-        host.grant.work(1)?;
+        host.grant.work(cost)?;
         Ok(host.of_file(file.point(t) + shift))
     };
     let start = path(breaks[0], Xi::zeros())?;

@@ -4,18 +4,30 @@
 //! digits), and a few pointers for any number of copies of a long curve. Files of CAD systems stay far below both limits.
 
 use crate::{NurbsCurve, NurbsPatch};
-use std::cell::Cell;
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
-/// Evaluations of a surface granted to any file, and for each of its lines of parameter data. A span of a space curve takes a
-/// hundred projections to be followed on its surface, some 6,000 evaluations, and stands on one to three lines. Borders that
-/// are given in the parameter plane take next to nothing.
-const WORK: [u64; 2] = [1_000_000, 4_000];
-/// Evaluations that one projection counts for, and each part of the surface that the search for it looks into: mostly one or
-/// two, thousands next to a surface that is millions of times as long as wide.
-pub const FOOT: u64 = 32;
-pub const PART: u64 = 32;
+/// Work granted to any file, and for each of its lines of parameter data. The unit is a control point that an evaluation of a
+/// surface multiplies: an evaluation of a bicubic surface [costs 24](Grant::evaluation). In the fuzzing build a unit takes 30 ns,
+/// so the work granted fills less than half of the time that the fuzz targets allow.
+///
+/// Following a span of a space curve on its surface takes a hundred projections. Each takes about five evaluations, fifty next to
+/// the tip of a cone. A span stands on one to three lines. Borders that the file gives in the parameter plane cost almost nothing.
+const WORK: [u64; 2] = [4_000_000, 24_000];
+/// Cost of an evaluation in addition to its control points.
+const EVALUATION: u64 = 8;
+/// Cost, in evaluations, of each piece of a surface and each part of a piece that a search for closest points examines; of each
+/// Bezier piece made for the search; and of each cell made when the search is set up.
+pub const PART: u64 = 8;
+pub const PIECE: u64 = 16;
+pub const CELL: u64 = 4;
+/// Evaluations per projection outside of the search.
+pub const FOOT: u64 = 3;
+/// Cost of comparing two boundary curves.
+const PAIR: u64 = 4;
 /// Bytes granted to any file, and for each of its records (of 80 bytes).
 const BYTES: [u64; 2] = [500_000, 50 * 80];
+/// Bytes that may be in use for a while beside those, and for each record.
+const PASSING: [u64; 2] = [250_000, 25 * 80];
 /// Bytes that a control point of a patch, of a curve, and of a boundary curve in both its planes stand for: the last with the
 /// pieces and boxes by which it is searched.
 const PATCH_POINT: usize = 100;
@@ -27,25 +39,23 @@ const BODY: usize = 200;
 /// After so many refusals, surfaces are refused unread.
 const REFUSALS: u32 = 20;
 
-/// Evaluations granted to a file with so many lines of parameter data.
-pub fn evaluations(lines: usize) -> u64 {
-    WORK[0] + WORK[1] * lines as u64
-}
-
-/// What is left.
+/// The work and memory left to a file. Atomic, because surfaces that charge their evaluations to it must be `Sync`.
+#[derive(Debug)]
 pub struct Grant {
-    work: Cell<u64>,
-    bytes: Cell<u64>,
-    refusals: Cell<u32>,
+    work: AtomicU64,
+    bytes: AtomicU64,
+    passing: u64,
+    refusals: AtomicU32,
 }
 
 impl Grant {
     /// For a file with so many lines of 80 bytes, of which `parameter` describe geometry.
     pub fn of_lines(parameter: usize, all: usize) -> Self {
         Self {
-            work: Cell::new(evaluations(parameter)),
-            bytes: Cell::new(BYTES[0] + BYTES[1] * all as u64),
-            refusals: Cell::new(0),
+            work: AtomicU64::new(WORK[0] + WORK[1] * parameter as u64),
+            bytes: AtomicU64::new(BYTES[0] + BYTES[1] * all as u64),
+            passing: PASSING[0] + PASSING[1] * all as u64,
+            refusals: AtomicU32::new(0),
         }
     }
 
@@ -56,7 +66,7 @@ impl Grant {
 
     /// An error when more of the file is not worth reading.
     pub fn open(&self) -> Result<(), String> {
-        if self.refusals.get() < REFUSALS {
+        if self.refusals.load(Relaxed) < REFUSALS {
             return Ok(());
         }
         Err(format!(
@@ -64,11 +74,41 @@ impl Grant {
         ))
     }
 
-    /// Takes work, in evaluations of a surface.
-    pub fn work(&self, evaluations: u64) -> Result<(), String> {
-        self.take(&self.work, evaluations).ok_or_else(|| {
+    /// Takes work before it is done.
+    pub fn work(&self, work: u64) -> Result<(), String> {
+        self.take(&self.work, work).ok_or_else(|| {
             "its border curves take more work than a file of this length is granted".to_owned()
         })
+    }
+
+    /// Charges work that is being done; returns whether any work is left.
+    pub fn spend(&self, work: u64) -> bool {
+        let rest = self.work.load(Relaxed).saturating_sub(work);
+        self.work.store(rest, Relaxed);
+        rest > 0
+    }
+
+    /// Work that is left.
+    #[cfg(test)]
+    pub fn left(&self) -> u64 {
+        self.work.load(Relaxed)
+    }
+
+    /// Whether no work is left.
+    pub fn is_spent(&self) -> bool {
+        self.work.load(Relaxed) == 0
+    }
+
+    /// Cost of an evaluation of a surface.
+    pub fn evaluation(degree: [usize; 2]) -> u64 {
+        let [m, n] = degree.map(|p| p as u64 + 1);
+        EVALUATION + m * n
+    }
+
+    /// Cost of an evaluation of a curve. The recursion for its basis functions dominates.
+    pub fn evaluation_of_curve(degree: usize) -> u64 {
+        let n = degree as u64 + 1;
+        EVALUATION + n * n / 2
     }
 
     /// Takes the memory of a patch.
@@ -91,8 +131,13 @@ impl Grant {
     pub fn boundary(&self, curves: usize, points: usize) -> Result<(), String> {
         // Curves look for those that follow them, pair by pair.
         let curves = curves as u64;
-        self.work(curves.saturating_mul(curves) / 4)?;
+        self.work(curves.saturating_mul(curves).saturating_mul(PAIR))?;
         self.memory(points.saturating_mul(TRIM_POINT))
+    }
+
+    /// Bytes that may be in use for a while: those granted and not taken, and some more.
+    pub fn passing_bytes(&self) -> u64 {
+        self.bytes.load(Relaxed) + self.passing
     }
 
     /// Takes the memory of a cubic piece of a fitted boundary curve.
@@ -106,11 +151,13 @@ impl Grant {
         })
     }
 
-    fn take(&self, left: &Cell<u64>, wanted: u64) -> Option<()> {
-        let rest = left.get().checked_sub(wanted);
+    fn take(&self, left: &AtomicU64, wanted: u64) -> Option<()> {
+        let rest = left.load(Relaxed).checked_sub(wanted);
         match rest {
-            Some(rest) => left.set(rest),
-            None => self.refusals.set(self.refusals.get() + 1),
+            Some(rest) => left.store(rest, Relaxed),
+            None => {
+                self.refusals.fetch_add(1, Relaxed);
+            }
         }
         rest.map(|_| ())
     }

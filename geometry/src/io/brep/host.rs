@@ -1,6 +1,7 @@
 //! The surface under a face: its points at the file's parameters, and the parameters of points on it.
 
-use super::grant::{FOOT, Grant, PART};
+use super::grant::{FOOT, Grant};
+use super::metered::Metered;
 use super::reparametrise::Reparametrise;
 use crate::basis::MAX_DEGREE;
 use crate::{NurbsCurve, NurbsPatch, PatchSet, Vec3};
@@ -27,7 +28,7 @@ pub struct Host<'a> {
     pub bridged: f64,
     /// A parallelogram: its origin, and the rows that take `x - origin` to shares of the domain.
     flat: Option<(Vec3, [Vec3; 2])>,
-    set: OnceCell<Option<PatchSet>>,
+    set: OnceCell<Option<PatchSet<Metered<'a>>>>,
     pub grant: &'a Grant,
 }
 
@@ -60,6 +61,11 @@ impl<'a> Host<'a> {
     pub fn bridging(self, length: f64) -> Self {
         let bridged = length.min(1e-2 * self.size);
         Self { bridged, ..self }
+    }
+
+    /// Cost of an evaluation of the surface.
+    pub fn evaluation(&self) -> u64 {
+        Grant::evaluation(self.patch.degree())
     }
 
     /// Length of the domain in a direction, the period where the surface is closed.
@@ -156,24 +162,22 @@ impl<'a> Host<'a> {
 
     /// The foot of `q` on the surface, as near to the parameters `near` as periods allow, and its distance.
     pub fn foot(&self, q: &Vec3, near: Xi) -> Result<(Xi, f64), String> {
-        self.grant.work(FOOT)?;
+        self.grant.work(FOOT * self.evaluation())?;
         let set = self.set.get_or_init(|| {
             // A surface of which the coordinates hold hardly a digit is all one place: everything is nearest.
             let [low, high] = self.patch.bounds();
             if self.size <= 1e-10 * low.amax().max(high.amax()) {
                 return None;
             }
-            let patch = self.patch.clone().with_trim(None);
-            PatchSet::new(vec![patch], None).ok()
+            PatchSet::new(vec![Metered::untrimmed(self.patch, self.grant)], None).ok()
         });
         let hint = crate::Hint {
             patch: 0,
             xi: self.wrap(near),
         };
-        let (foot, parts) = set.as_ref().map_or((None, 0), |set| {
-            set.project_counted(q, Some(hint), (f64::INFINITY, f64::INFINITY))
-        });
-        self.grant.work(PART * parts as u64)?;
+        let foot = (set.as_ref()).and_then(|set| set.project(q, Some(hint), f64::INFINITY));
+        // A search that ran out of work has proved nothing.
+        self.grant.work(1)?;
         let foot = foot.ok_or("the surface has no closest points to project its border to")?;
         let xi = self.nearest_copy(Xi::from(foot.xi), near);
         Ok((xi, foot.distance))

@@ -3,11 +3,11 @@
 //! Where the patch is a plane, cylinder, cone, sphere or torus, the offset lies in the same space of rational splines, and
 //! interpolation in that space is exact. Of any other patch the space is refined until interpolation keeps a tolerance.
 
+use super::grant::Grant;
 use crate::basis::{Basis, WIDTH};
 use crate::frame::Frame;
 use crate::{NurbsPatch, Vec3};
 use nalgebra::{DMatrix, Dyn, LU};
-use std::cell::Cell;
 
 /// Offsets keep to this share of the size of the patch where they are not exact.
 const TOLERANCE: f64 = 1e-6;
@@ -24,11 +24,11 @@ const CHECKED: [f64; 3] = [0.2, 0.5, 0.8];
 const CREASE: f64 = 1e-4;
 
 /// The patch at `distance` along `rho_1 x rho_2`, with the same parameters, and its largest deviation found. Takes what it
-/// evaluates from `left`.
+/// evaluates from the grant.
 pub fn offset(
     base: &NurbsPatch,
     distance: f64,
-    left: &Cell<u64>,
+    grant: &Grant,
 ) -> Result<(NurbsPatch, f64), String> {
     let domain = base.domain();
     let torn = |e: crate::PatchError| e.to_string();
@@ -54,7 +54,7 @@ pub fn offset(
                 space = space.elevated(d, more).map_err(torn)?;
             }
         }
-        let fit = Fit::new(&space, distance, left)?;
+        let fit = Fit::new(&space, distance, grant)?;
         deviation = fit.total;
         let tolerance = if round == 0 { EXACT } else { TOLERANCE } * size;
         if deviation <= tolerance || (round == 0 && deviation <= TOLERANCE * size) {
@@ -77,10 +77,21 @@ pub fn offset(
                     "an approximation of {COUNT} control points a side is still {deviation:.1e} off"
                 ));
             }
+            let mut counts = space.counts();
+            counts[d] += middles.len();
+            if bytes(counts) > grant.passing_bytes() {
+                return Err("it takes more memory than a file of this length is granted".to_owned());
+            }
             space = space.insert_knots(d, &middles).map_err(torn)?;
         }
     }
     Err(format!("its approximation is still {deviation:.1e} off"))
+}
+
+/// Bytes in use while an offset with so many control points is fitted: five nets or so, and two collocation matrices.
+fn bytes(counts: [usize; 2]) -> u64 {
+    let [m, n] = counts.map(|n| n as u64);
+    150 * m * n + 16 * (m * m + n * n)
 }
 
 /// The unit normal `rho_1 x rho_2`, at a pole that of the surface around it.
@@ -117,7 +128,7 @@ struct Fit {
 
 impl Fit {
     /// Interpolates the offset of `space` by a surface with its knots and weights.
-    fn new(space: &NurbsPatch, distance: f64, left: &Cell<u64>) -> Result<Self, String> {
+    fn new(space: &NurbsPatch, distance: f64, grant: &Grant) -> Result<Self, String> {
         let bases = [0, 1].map(|d| space.basis(d));
         let sites = bases.map(sites);
         let checks = [0, 1].map(|d| -> Vec<f64> {
@@ -127,8 +138,9 @@ impl Fit {
                 .collect()
         });
         let evaluations = (0..2).fold(1u64, |n, d| n * (sites[d].len() + checks[d].len()) as u64);
-        let rest = left.get().checked_sub(2 * evaluations);
-        left.set(rest.ok_or("it takes more work than a file of this length is granted")?);
+        let cost = 2 * evaluations * Grant::evaluation(space.degree());
+        let granted = grant.work(cost);
+        granted.map_err(|_| "it takes more work than a file of this length is granted")?;
         let at = |xi: [f64; 2]| {
             let n = normal(space, xi).ok_or("it has no normal in some place")?;
             Ok::<_, String>(space.point(xi) + n * distance)

@@ -27,7 +27,8 @@ pub fn along_side(host: &Host, points: &[Vec3]) -> Option<(NurbsCurve<2>, f64)> 
             }
         }
     }
-    let (ends, off) = found?;
+    // Without work left, not all sides were followed to their ends: the curve may run along two.
+    let (ends, off) = found.filter(|_| !host.grant.is_spent())?;
     Some((NurbsCurve::line(ends[0], ends[1]).ok()?, off))
 }
 
@@ -62,9 +63,8 @@ impl<'h, 'p> Side<'h, 'p> {
     fn follow(&self, points: &[Vec3]) -> Option<Option<([Xi; 2], f64)>> {
         let spans = self.host.patch.spans(1 - self.dir);
         let starts = STARTS * spans.len() + 1;
-        (self.host.grant)
-            .work((starts + points.len()) as u64)
-            .ok()?;
+        let first = starts as u64 * self.host.evaluation();
+        self.host.grant.work(first).ok()?;
         let [first, rest @ ..] = points else {
             return Some(None);
         };
@@ -105,7 +105,11 @@ impl<'h, 'p> Side<'h, 'p> {
     fn nearest(&self, x: &Vec3, t: &mut f64) -> f64 {
         let along = 1 - self.dir;
         let [low, high] = self.range;
+        let cost = self.host.evaluation();
         for _ in 0..ITERATIONS {
+            if !self.host.grant.spend(cost) {
+                return f64::INFINITY;
+            }
             let jet = self.host.patch.jet(self.at(*t).into());
             let d = jet.rho - x;
             let (d1, d2) = (jet.rho_i[along], jet.rho_ij[2 * along]);

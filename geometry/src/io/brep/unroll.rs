@@ -83,8 +83,8 @@ pub(super) fn chain_of_area(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Resu
     }
     let mut best = None;
     for turns in &choices {
-        host.grant
-            .work(stretches.iter().map(Vec::len).sum::<usize>() as u64)?;
+        let curves = stretches.iter().map(Vec::len).sum::<usize>() as u64;
+        host.grant.work(curves * CURVE * host.evaluation())?;
         let made = chain(host, &stretches, turns)?;
         if bounds(&made) && plain(&made) {
             return Ok(made);
@@ -99,6 +99,8 @@ pub(super) fn chain_of_area(host: &Host, stretches: Vec<Vec<TrimCurve>>) -> Resu
     })
 }
 
+/// Cost, in evaluations, of adding a curve to a chain.
+const CURVE: u64 = 10;
 /// Poles passed by a boundary at which other ways to go on are tried.
 const PASSAGES: usize = 3;
 

@@ -74,7 +74,7 @@ fn all(model: &Model, notes: Vec<String>) -> Result<IgesGeometry, Fail> {
         notes,
     };
     let outer = Affine::identity();
-    let grant = model.grant();
+    let grant = &model.grant;
     for entry in &model.entries {
         let notes = &mut found.notes;
         let skipped = if let Err(reason) = grant.open() {

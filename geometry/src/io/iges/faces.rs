@@ -17,8 +17,8 @@ use super::tags::tags;
 use super::transform::{Affine, matrix_of};
 use super::trimmed::{self, describe};
 use crate::io::brep::{
-    Boundary, Face, GAP, Grant, Host, Stretch, Tally, add, approximation, bounds_outside,
-    by_parameters, disagreement, grown, loops, widest_gap, without_parameters,
+    Boundary, Face, GAP, Host, Stretch, Tally, add, approximation, bounds_outside, by_parameters,
+    disagreement, grown, loops, widest_gap, without_parameters,
 };
 
 /// All surfaces of a file.
@@ -37,7 +37,6 @@ pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
         model,
         edges: Edges::default(),
         out: Outcome::default(),
-        grant: model.grant(),
         bridging: Bridging::new(),
         rivals: Rivals::default(),
         notes,
@@ -85,7 +84,6 @@ struct Reader<'a, 'n> {
     model: &'a Model<'a>,
     edges: Edges,
     out: Outcome,
-    grant: Grant,
     bridging: Bridging<'a>,
     rivals: Rivals,
     notes: &'n mut Vec<String>,
@@ -146,7 +144,7 @@ impl<'a> Reader<'a, '_> {
         entry: &Entry,
         placed: &[Placement],
     ) -> Result<(Option<String>, Option<Refusal>), Fail> {
-        if let Err(reason) = self.grant.open() {
+        if let Err(reason) = self.model.grant.open() {
             return Ok((None, Some((SkipKind::Surface, reason))));
         }
         if is_solid(entry.type_number) {
@@ -173,7 +171,9 @@ impl<'a> Reader<'a, '_> {
                 false => pieces,
             };
             let pieces = pieces.and_then(|pieces| {
-                let granted = pieces.iter().try_for_each(|p| self.grant.patch(&p.patch));
+                let granted = pieces
+                    .iter()
+                    .try_for_each(|p| self.model.grant.patch(&p.patch));
                 granted.map_err(|reason| (SkipKind::Surface, reason))?;
                 Ok(pieces)
             });
@@ -353,9 +353,9 @@ impl<'a> Reader<'a, '_> {
             points if points.is_empty() => self.bridging.extend(base.patch.bounds()),
             points => self.bridging.extend(points),
         }
-        let grown = grown(base, face, resolution, &self.grant);
+        let grown = grown(base, face, resolution, &self.model.grant);
         let patch = grown.as_ref().map_or(&base.patch, |g| &g.patch);
-        let host = Host::new(patch, &base.parameters, resolution, &self.grant);
+        let host = Host::new(patch, &base.parameters, resolution, &self.model.grant);
         let host = host.bridging(self.bridging.length);
         let mut tally = Tally {
             tolerance: host.agree,
@@ -365,7 +365,7 @@ impl<'a> Reader<'a, '_> {
         // A B-rep's loops do not say which of them is the outer one.
         let sort = entry.type_number != 144;
         let [curves, points] = face.extent();
-        let granted = self.grant.boundary(curves, points);
+        let granted = self.model.grant.boundary(curves, points);
         let made =
             granted.and_then(|()| loops(&host, &face.boundaries, sort, &mut tally, &mut said));
         let trimmed = made.and_then(|loops| {
@@ -408,8 +408,8 @@ impl<'a> Reader<'a, '_> {
                 let border = border_of(&trimmed.patch);
                 // The other face takes as much again.
                 let other = tally.rejected > 0
-                    && self.grant.boundary(curves, points).is_ok()
-                    && self.grant.patch(patch).is_ok();
+                    && self.model.grant.boundary(curves, points).is_ok()
+                    && self.model.grant.patch(patch).is_ok();
                 let other = other.then(|| by_parameters(&host, face, sort));
                 let rival = other.flatten().map(|(patch, other, told)| {
                     said.extend(disagreement(&trimmed.patch, &patch));

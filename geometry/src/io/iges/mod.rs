@@ -41,10 +41,10 @@ pub use write::{IgesWriteError, write_iges};
 
 use super::CadError;
 use super::ReadOptions;
+use super::brep::Grant;
 use super::error::Fail;
 use super::healing::{Healing, heal};
 use super::report::{CadFile, CadFormat, EntityCount};
-use std::cell::Cell;
 use std::collections::BTreeMap;
 
 /// What all layers above the directory look at.
@@ -54,17 +54,11 @@ struct Model<'a> {
     entries: Vec<directory::Entry>,
     /// Hidden (blanked) surfaces are read as well.
     hidden: bool,
-    /// Evaluations of surfaces that may still be spent on offsets.
-    evaluations: Cell<u64>,
+    /// The work and memory that a file of this length is granted.
+    grant: Grant,
 }
 
 impl<'a> Model<'a> {
-    /// The work and memory that a file of this length is granted.
-    fn grant(&self) -> super::brep::Grant {
-        let parameter = self.sections.parameter.len();
-        super::brep::Grant::of_lines(parameter, parameter + self.sections.directory.len())
-    }
-
     /// Smallest distance that the writer tells apart, in the file's unit; `None` where it does not say.
     fn resolution(&self) -> Option<f64> {
         self.global.resolution.map(|r| r / self.global.scale)
@@ -157,7 +151,7 @@ fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<CadFile, Fail
         healing: Healing::default(),
         notes,
     };
-    heal(&mut file);
+    heal(&mut file, &model.grant);
     Ok(file)
 }
 
@@ -166,13 +160,14 @@ fn model_of<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Result<Model<'a>, F
     let sections = records::split(bytes, notes)?;
     let global = global::read(&sections, notes)?;
     let entries = directory::read(&sections, notes)?;
-    let evaluations = super::brep::evaluations(sections.parameter.len());
+    let parameter = sections.parameter.len();
+    let grant = Grant::of_lines(parameter, parameter + sections.directory.len());
     Ok(Model {
         sections,
         global,
         entries,
         hidden: false,
-        evaluations: Cell::new(evaluations),
+        grant,
     })
 }
 

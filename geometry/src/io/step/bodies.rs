@@ -17,6 +17,7 @@ use crate::io::brep::Grant;
 use crate::io::report::{CadBody, CadPatch, CadTags, SkipKind, Skipped, TrimReport};
 use crate::io::{ReadOptions, ReadProgress};
 use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 /// All bodies of a file.
 pub struct Outcome {
@@ -25,6 +26,8 @@ pub struct Outcome {
     pub bodies: Vec<CadBody>,
     pub skipped: Vec<Skipped>,
     pub trims: TrimReport,
+    /// The work and memory that are left.
+    pub grant: Rc<Grant>,
 }
 
 /// A body where it stands.
@@ -46,7 +49,6 @@ pub fn read(
     let mut reader = Reader {
         exchange,
         budget: &budget,
-        grant: Grant::of_length(exchange.bytes()),
         labels: Labels::read(exchange),
         hidden: match options.hidden {
             true => Hidden::default(),
@@ -60,6 +62,7 @@ pub fn read(
             bodies: Vec::new(),
             skipped: Vec::new(),
             trims: TrimReport::default(),
+            grant: Rc::clone(&budget.grant),
         },
         assembly: &assembly,
         notes,
@@ -73,7 +76,6 @@ pub fn read(
 struct Reader<'a, 'r> {
     exchange: &'r Exchange<'a>,
     budget: &'r Budget,
-    grant: Grant,
     labels: Labels,
     hidden: Hidden,
     assembly: &'r Assembly,
@@ -232,7 +234,7 @@ impl<'a> Reader<'a, '_> {
         if faces.is_empty() {
             return;
         }
-        if let Err(reason) = self.grant.body(names) {
+        if let Err(reason) = self.budget.grant.body(names) {
             return self.skip(copy.item, SkipKind::Surface, reason);
         }
         let instance = copy.instance.map_or(0, |i| number_of(self.exchange, i));
@@ -319,7 +321,7 @@ impl<'a> Reader<'a, '_> {
             near: units.uncertainty.unwrap_or(0.0),
         };
         let mut account = Account {
-            grant: &self.grant,
+            grant: &self.budget.grant,
             trims: &mut self.out.trims,
             notes: self.notes,
         };
@@ -344,7 +346,7 @@ impl<'a> Reader<'a, '_> {
         copy: &Copy,
         member: &Member,
     ) -> Result<crate::NurbsPatch, String> {
-        self.grant.patch(&face.patch)?;
+        self.budget.grant.patch(&face.patch)?;
         let map = &copy.map;
         let mut patch = match *map == Placement::identity() {
             true => face.patch.clone(),

@@ -113,7 +113,7 @@ fn read(
         healing: Healing::default(),
         notes,
     };
-    heal(&mut file);
+    heal(&mut file, &read.grant);
     Ok(file)
 }
 

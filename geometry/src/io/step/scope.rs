@@ -2,7 +2,7 @@
 
 use super::entity::{Entity, Told};
 use super::exchange::Exchange;
-use crate::io::brep::evaluations;
+use crate::io::brep::Grant;
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -16,15 +16,15 @@ pub const DEPTH: usize = 16;
 /// What may still be read of a file, and computed.
 pub struct Budget {
     reads: Cell<u64>,
-    /// Evaluations of surfaces for offsets.
-    pub evaluations: Rc<Cell<u64>>,
+    /// Work and memory.
+    pub grant: Rc<Grant>,
 }
 
 impl Budget {
     pub fn of(exchange: &Exchange) -> Self {
         Self {
             reads: Cell::new(FREE + READS * exchange.len() as u64),
-            evaluations: Rc::new(Cell::new(evaluations(exchange.bytes() / 80))),
+            grant: Rc::new(Grant::of_length(exchange.bytes())),
         }
     }
 

@@ -8,9 +8,8 @@ use super::profile::{
 };
 use crate::basis::Basis;
 use crate::curve::conic::elliptic_arc;
-use crate::io::brep::{BasePatch, ParameterMap, Reparametrise, offset, revolved};
+use crate::io::brep::{BasePatch, Grant, ParameterMap, Reparametrise, offset, revolved};
 use crate::{NurbsCurve, NurbsPatch, Vec3};
-use std::cell::Cell;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::rc::Rc;
 
@@ -40,8 +39,8 @@ pub enum Shape {
     Part(Box<Surface>, [[f64; 2]; 2]),
     /// A copy.
     Moved(Box<Surface>, Placement),
-    /// The surface at a distance along the normal of another, and the evaluations that may still be spent on offsets.
-    Offset(Box<Surface>, f64, Rc<Cell<u64>>),
+    /// The surface at a distance along the normal of another, and the grant that pays for its approximation.
+    Offset(Box<Surface>, f64, Rc<Grant>),
 }
 
 /// A surface.
@@ -291,9 +290,9 @@ impl Surface {
                 })
             }
             Shape::Part(base, _) => base.patch([u, v]),
-            Shape::Offset(base, distance, left) => {
+            Shape::Offset(base, distance, grant) => {
                 let base = base.patch([u, v])?;
-                let (patch, deviation) = offset(&base.patch, *distance, left)?;
+                let (patch, deviation) = offset(&base.patch, *distance, grant)?;
                 Ok(BasePatch {
                     patch,
                     deviation: base.deviation + deviation,

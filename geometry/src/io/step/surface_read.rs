@@ -222,7 +222,7 @@ fn offset(base: Surface, distance: f64, budget: &Budget) -> Result<Surface, Stri
                 frame,
                 angle,
             };
-            Shape::Offset(Box::new(base), distance, Rc::clone(&budget.evaluations))
+            Shape::Offset(Box::new(base), distance, Rc::clone(&budget.grant))
         }
         Shape::Offset(..) => return Err("is an offset of an offset, which is not read".to_owned()),
     };

@@ -379,12 +379,29 @@ pub(crate) fn edge_point<S: Surface>(set: &PatchSet<S>, edge: &Edge, t: f64) -> 
     }
 }
 
+/// A sample with its tangent: there may be thousands, and a point with its jet takes three times the memory.
+struct Turn {
+    sample: Sample,
+    d1: Vec3,
+}
+
+impl Turn {
+    fn of(p: &EdgePoint) -> Self {
+        let sample = Sample {
+            t: p.t,
+            xi: p.xi,
+            point: p.jet.rho,
+        };
+        Self { sample, d1: p.d1 }
+    }
+}
+
 /// Fills the polyline of an edge: `parts` intervals in each of its own spans, more where it crosses spans of the surface
 /// or turns.
 fn sample<S: Surface>(set: &PatchSet<S>, edge: &mut Edge, breaks: &[f64], parts: usize) {
     let mut points = Vec::new();
     let mut last = edge_point(set, edge, breaks[0]);
-    points.push(last);
+    points.push(Turn::of(&last));
     for pair in breaks.windows(2) {
         let [a, b] = [pair[0], pair[1]];
         let end = edge_point(set, edge, b);
@@ -399,7 +416,7 @@ fn sample<S: Surface>(set: &PatchSet<S>, edge: &mut Edge, breaks: &[f64], parts:
                 edge_point(set, edge, a + (b - a) * k as f64 / n as f64)
             };
             bisect(set, edge, &last, &next, DEPTH, &mut points);
-            points.push(next);
+            points.push(Turn::of(&next));
             last = next;
         }
     }
@@ -408,20 +425,13 @@ fn sample<S: Surface>(set: &PatchSet<S>, edge: &mut Edge, breaks: &[f64], parts:
     let mut high = -low;
     let mut length = 0.0;
     for pair in points.windows(2) {
-        let (a, b) = (pair[0].jet.rho, pair[1].jet.rho);
+        let (a, b) = (pair[0].sample.point, pair[1].sample.point);
         let [l, h] = chord_box(&a, &b, edge.bulge);
         low = low.inf(&l);
         high = high.sup(&h);
         length += (b - a).norm();
     }
-    edge.samples = points
-        .iter()
-        .map(|p| Sample {
-            t: p.t,
-            xi: p.xi,
-            point: p.jet.rho,
-        })
-        .collect();
+    edge.samples = points.iter().map(|p| p.sample).collect();
     if edge.samples.len() > 2 * BLOCK {
         let around = |k: usize| {
             let end = (k + BLOCK + 1).min(edge.samples.len());
@@ -438,11 +448,11 @@ fn sample<S: Surface>(set: &PatchSet<S>, edge: &mut Edge, breaks: &[f64], parts:
 
 /// Bulge, axis and cone of an edge from the points of its polyline. Tangents are taken to turn between two points by no
 /// more than they do anywhere from one point to the next.
-fn directions(edge: &mut Edge, points: &[EdgePoint]) {
+fn directions(edge: &mut Edge, points: &[Turn]) {
     let angle = |a: &Vec3, b: &Vec3| a.cross(b).norm().atan2(a.dot(b));
     let mut turn = 0.0f64;
     for pair in points.windows(2) {
-        let chord = pair[1].jet.rho - pair[0].jet.rho;
+        let chord = pair[1].sample.point - pair[0].sample.point;
         let parts = [(&pair[0].d1, &chord), (&chord, &pair[1].d1)];
         // A tangent of no length has no direction: nothing is known.
         if pair.iter().any(|p| p.d1.norm_squared() == 0.0) {
@@ -454,7 +464,7 @@ fn directions(edge: &mut Edge, points: &[EdgePoint]) {
         turn = turn.max(angle(&pair[0].d1, &pair[1].d1));
     }
     edge.bulge = BULGE.min(BULGE / TURN * turn);
-    let run = points[points.len() - 1].jet.rho - points[0].jet.rho;
+    let run = points[points.len() - 1].sample.point - points[0].sample.point;
     if let Some(axis) = run.try_normalize(0.0)
         && turn <= 2.0 * TURN
     {
@@ -470,7 +480,7 @@ fn bisect<S: Surface>(
     a: &EdgePoint,
     b: &EdgePoint,
     depth: usize,
-    out: &mut Vec<EdgePoint>,
+    out: &mut Vec<Turn>,
 ) {
     let turn = a.d1.cross(&b.d1).norm().atan2(a.d1.dot(&b.d1));
     if depth == 0 || turn <= TURN {
@@ -479,7 +489,7 @@ fn bisect<S: Surface>(
     let middle = edge_point(set, edge, 0.5 * (a.t + b.t));
     // A kink at one end needs no smaller intervals.
     bisect(set, edge, a, &middle, depth - 1, out);
-    out.push(middle);
+    out.push(Turn::of(&middle));
     bisect(set, edge, &middle, b, depth - 1, out);
 }
 

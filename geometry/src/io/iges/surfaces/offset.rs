@@ -34,7 +34,7 @@ pub fn read(reader: SurfaceReader) -> Found {
         BaseSurface::Patches(patches) => {
             let moved = patches.into_iter().map(|base| {
                 let distance = distance * side(&base.patch, &indicator)?;
-                let (patch, deviation) = offset(&base.patch, distance, &reader.model.evaluations)?;
+                let (patch, deviation) = offset(&base.patch, distance, &reader.model.grant)?;
                 Ok(BasePatch {
                     patch,
                     deviation: base.deviation + deviation,

@@ -3,12 +3,11 @@
 use super::super::curve::{JoinedCurve, Stop};
 use super::{BasePatch, BaseSurface, Found, SurfaceReader};
 use crate::basis::Basis;
-use crate::curve::fit::fit;
+use crate::curve::fit::{FitError, fit};
 use crate::curve::join::inner_knots;
 use crate::curve::{CurveError, CurveJet};
-use crate::io::brep::{ParameterMap, Reparametrise};
+use crate::io::brep::{Grant, ParameterMap, Reparametrise};
 use crate::{NurbsCurve, NurbsPatch, Vec3};
-use std::cell::Cell;
 
 /// Largest deviation of a rail that must be given a new parameter, as a share of the surface's size.
 const TOLERANCE: f64 = 1e-9;
@@ -70,16 +69,16 @@ pub fn read(mut reader: SurfaceReader) -> Found {
             if !by_length && rail.map.as_affine().is_some() && !is_rational(&rail.curve) {
                 continue;
             }
-            let left = &reader.model.evaluations;
+            let grant = &reader.model.grant;
             let fitted = if by_length {
-                by_relative_length(&rail.curve, TOLERANCE * size, left)
+                by_relative_length(&rail.curve, TOLERANCE * size, grant)
             } else {
                 by_file_parameter(rail, TOLERANCE * size)
             };
-            let (curve, off) = fitted.map_err(|e| match left.get() {
-                0 => "its rails by length take more work than a file of this length is granted"
+            let (curve, off) = fitted.map_err(|e| match grant.is_spent() {
+                true => "its rails by length take more work than a file of this length is granted"
                     .to_owned(),
-                _ => e.to_string(),
+                false => e.to_string(),
             })?;
             rail.curve = curve;
             deviation = deviation.max(off);
@@ -159,10 +158,7 @@ fn uniform(rail: &JoinedCurve) -> bool {
 }
 
 /// The curve with the file's relative parameter as its own.
-fn by_file_parameter(
-    rail: &JoinedCurve,
-    tolerance: f64,
-) -> Result<(NurbsCurve<3>, f64), crate::curve::fit::FitError> {
+fn by_file_parameter(rail: &JoinedCurve, tolerance: f64) -> Result<(NurbsCurve<3>, f64), FitError> {
     let basis = rail.curve.basis();
     let mut breaks: Vec<f64> = (0..basis.span_count())
         .map(|span| rail.map.to_file(basis.span_range(span)[0]))
@@ -183,19 +179,23 @@ fn by_file_parameter(
     fit(&f, &breaks, tolerance)
 }
 
-/// The curve with its relative length as parameter. Takes from the evaluations that are `left`; without any there are no
-/// finite points.
+/// The curve with its relative length as parameter. The work is charged to the grant; without any left, the curve has no finite
+/// points.
 fn by_relative_length(
     curve: &NurbsCurve<3>,
     tolerance: f64,
-    left: &Cell<u64>,
-) -> Result<(NurbsCurve<3>, f64), crate::curve::fit::FitError> {
-    let lengths = Lengths::new(curve, left);
+    grant: &Grant,
+) -> Result<(NurbsCurve<3>, f64), FitError> {
+    let spans = curve.basis().span_count();
+    let step = STEP * Grant::evaluation_of_curve(curve.degree());
+    if !grant.spend((spans * PARTS) as u64 * step) {
+        return Err(FitError::NotFinite(curve.domain()[0]));
+    }
+    let lengths = Lengths::new(curve, grant, step);
     let total = lengths.total();
     if total <= 0.0 {
         return Ok((curve.clone(), 0.0));
     }
-    let spans = curve.basis().span_count();
     // Ends of spans in relative length; spans without length are left out.
     let mut breaks = vec![0.0];
     let mut used = Vec::new();
@@ -242,15 +242,17 @@ struct Lengths<'a> {
     curve: &'a NurbsCurve<3>,
     /// At the start of each part, and at the end of the last.
     start: Vec<f64>,
-    /// Evaluations of surfaces that the work may still be worth.
-    left: &'a Cell<u64>,
+    /// Pays for the work.
+    grant: &'a Grant,
+    /// Cost of a step towards a length.
+    step: u64,
 }
 
-/// Evaluations that a step towards a length counts for.
-const STEP: u64 = 9;
+/// Evaluations of the curve in a step towards a length.
+const STEP: u64 = 2 * GAUSS.len() as u64 + 1;
 
 impl<'a> Lengths<'a> {
-    fn new(curve: &'a NurbsCurve<3>, left: &'a Cell<u64>) -> Self {
+    fn new(curve: &'a NurbsCurve<3>, grant: &'a Grant, step: u64) -> Self {
         let mut start = vec![0.0];
         let mut sum = 0.0;
         for span in 0..curve.basis().span_count() {
@@ -260,7 +262,12 @@ impl<'a> Lengths<'a> {
                 start.push(sum);
             }
         }
-        Self { curve, start, left }
+        Self {
+            curve,
+            start,
+            grant,
+            step,
+        }
     }
 
     fn total(&self) -> f64 {
@@ -282,8 +289,7 @@ impl<'a> Lengths<'a> {
         };
         // The speed is near constant in a part: a few steps of Newton's method do.
         for _ in 0..8 {
-            self.left.set(self.left.get().saturating_sub(STEP));
-            if self.left.get() == 0 {
+            if !self.grant.spend(self.step) {
                 return f64::NAN;
             }
             let rest = s - from - length(self.curve, span, a, t);
