@@ -75,8 +75,9 @@ pub(super) fn undamped_step(s: &Local) -> Option<[f64; 2]> {
 #[inline]
 pub(super) fn bounded(s: &Local, step: [f64; 2]) -> [f64; 2] {
     let clamp = |k: usize, x: f64| {
-        let [low, high] = s.region.domain[k];
-        x.clamp(low - s.xi[k], high - s.xi[k])
+        let [low, high] = s.region.domain[k].map(|bound| bound - s.xi[k]);
+        // False where the place is not a number, because squares of weights overflow: it stays.
+        if low <= high { x.clamp(low, high) } else { 0.0 }
     };
     let cut = [clamp(0, step[0]), clamp(1, step[1])];
     let mut out = cut;
