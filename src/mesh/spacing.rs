@@ -139,7 +139,7 @@ fn fine_part(
             "{fine} fine elements, expected 1 to {elements} (all elements of the axis)"
         ));
     }
-    if (elements - fine) % sides != 0 {
+    if !(elements - fine).is_multiple_of(sides) {
         return Err(format!(
             "the {} elements beside the fine part cannot be shared between both of its sides: give one more or one less",
             elements - fine

@@ -10,7 +10,6 @@
 //! change counts as that. A point with a multiplier does the work of its tractions; what of that the penalty does not hold counts, with its sign.
 //!
 //! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
-mod eased;
 mod faint;
 mod jump;
 mod lag;
@@ -76,8 +75,6 @@ pub struct Watch {
     pressed: Vec<f64>,
     /// Normal traction and gap per point with multipliers.
     tractions: Vec<[f64; 2]>,
-    /// What penalties stored at the end of the last accepted step (energy).
-    stored: f64,
     /// Energy that rounding makes of displacements, and far less than any load (energy).
     faint: f64,
 }
@@ -92,8 +89,6 @@ pub struct Work {
     turnover: f64,
     /// Penalties changed in the step, or before it.
     pub changed: bool,
-    /// The largest ratio of a penalty to what it was, or the other way round.
-    eased: f64,
 }
 
 impl Work {
@@ -174,7 +169,6 @@ impl Watch {
             adjusted: self.adjusted + changed,
             imbalance: self.imbalance,
             turnover: self.turnover,
-            stored: self.stored + changed,
             flow: self.flow,
             worst: self.worst,
             worst_step: self.worst_step,
@@ -206,11 +200,10 @@ impl Watch {
             ratios,
             pressed,
             tractions,
-            stored,
             faint: _,
         } = self;
         out.bool(*snaps);
-        out.f64s(&[*external, *adjusted, *imbalance, *turnover, *worst, *stored]);
+        out.f64s(&[*external, *adjusted, *imbalance, *turnover, *worst]);
         out.f64s(&[*most, *work, *lag]);
         out.u32(*worst_step);
         out.f64s(speed);
@@ -232,7 +225,7 @@ impl Watch {
     pub(super) fn take(model: &Model, from: &mut Reader) -> Result<Self, Malformed> {
         let mut watch = Watch::new(model);
         watch.snaps = from.bool()?;
-        let mut sums = [0.0; 6];
+        let mut sums = [0.0; 5];
         from.f64s(&mut sums)?;
         [
             watch.external,
@@ -240,7 +233,6 @@ impl Watch {
             watch.imbalance,
             watch.turnover,
             watch.worst,
-            watch.stored,
         ] = sums;
         let mut flow = [0.0; 3];
         from.f64s(&mut flow)?;
@@ -306,7 +298,6 @@ impl Watch {
         }
         work.adjusted += self.multipliers(model, assembler);
         work.changed = self.penalties != assembler.penalties || self.ratios != assembler.ratios;
-        work.eased = self.eased([&assembler.penalties, &assembler.ratios]);
         Ok(work)
     }
 
@@ -364,14 +355,14 @@ impl Watch {
     }
 
     /// Closes the balance of a step. `pressed` are the sums of this name at its end, `energy` what is stored and what has been
-    /// dissipated since the start, `stored` the part of it that penalties store; the step went from time `from` to `to`.
+    /// dissipated since the start; the step went from time `from` to `to`.
     pub fn close(
         &mut self,
         model: &Model,
         (step, [from, to]): (u32, [f64; 2]),
         mut work: Work,
         pressed: &[f64],
-        [energy, stored]: [f64; 2],
+        energy: f64,
         softened: bool,
     ) -> Option<String> {
         for ((pair, was), now) in model.pairs.iter().zip(&mut self.pressed).zip(pressed) {
@@ -388,10 +379,8 @@ impl Watch {
         self.external += work.external;
         if work.changed {
             let put_in = self.external + self.adjusted + work.adjusted;
-            work.adjusted +=
-                self.put_in_by_penalties(step, &work, energy + self.imbalance - put_in);
+            work.adjusted += energy + self.imbalance - put_in;
         }
-        self.stored = stored;
         self.adjusted += work.adjusted;
         self.turnover += work.turnover;
         let before = self.imbalance;
