@@ -15,6 +15,8 @@ stl) cp -n fuzz/seeds/stl/* "$corpus" ;;
 esac
 [ -f "fuzz/$target.dict" ] && dictionary=-dict=fuzz/$target.dict
 set -- "$corpus" -max_total_time="$seconds" -max_len=100000 -timeout=30 -print_final_stats=1 $dictionary
+# A backtrace takes memory that the target may refuse; printing it has hung, and a panic looked like a timeout.
+export RUST_BACKTRACE=0
 # Fuzzed are the readers, which are safe Rust: overflow checks and assertions find more than a sanitizer, and sooner.
 if cargo +nightly fuzz --version >/dev/null 2>&1; then
     corpus=$1
