@@ -134,3 +134,34 @@ fn a_braked_roller_rolls_as_long_as_friction_holds_the_brake() {
         assert!(turned < 0.6 && turned > 0.97 * 0.6, "{turned}");
     }
 }
+
+/// A lid that a moment turns onto a rubber buffer, with friction: nothing but the buffer resists it, so that it is turned until it
+/// touches, touching at the start or not. Its moment is the force on the buffer times the distance from the hinge, 35 to 45.
+#[test]
+fn a_moment_closes_a_lid_with_friction() {
+    for gap in [0.0, 0.5] {
+        let outcome = solve(&json!({
+            "covact": 1,
+            "materials": { "rubber": { "neo_hooke": { "E": 5, "nu": 0.45 } } },
+            "bodies": { "buffer": {
+                "mesh": { "block": { "min": [35, -5, -10], "max": [45, 5, 0], "elements": [4, 4, 4] } },
+                "material": "rubber"
+            } },
+            "surfaces": { "lid": {
+                "plane": { "size": [60, 40], "center": [30, 0, gap], "normal": [0, 0, -1] },
+                "motion": { "free": { "moment": { "y": "500*t" }, "center": [0, 0, gap] } }
+            } },
+            "contacts": { "c": { "slave": "buffer.top", "master": "lid", "friction": 0.5 } },
+            "supports": { "base": { "on": "buffer.bottom", "fixed": true } },
+            "output": { "every": 0 }
+        }));
+        assert_eq!(outcome.summary.status.name(), "done");
+        let force = outcome.at("force.base.z", 1.0);
+        let arm = 500.0 / force;
+        println!(
+            "gap {gap}: {force}, {} iterations",
+            outcome.summary.newton_iterations
+        );
+        assert!((38.0..42.0).contains(&arm), "{force} {arm}");
+    }
+}
