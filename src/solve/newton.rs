@@ -7,6 +7,7 @@
 //! slope turns by Young's modulus over the slope of hardening where it begins to flow, or ends, and full steps throw a bent sheet
 //! from one side of that to the other.
 mod advance;
+mod converged;
 mod headway;
 mod keeping;
 mod line_search;
@@ -15,7 +16,8 @@ mod small;
 mod stick_limit;
 mod workspace;
 
-use headway::{hops, nearly, oscillation};
+pub use converged::Converged;
+use headway::{hops, nearly, oscillation, round};
 pub use rigid_limit::RigidLimit;
 pub use stick_limit::StickLimit;
 pub use workspace::Workspace;
@@ -34,47 +36,6 @@ use crate::model::state::State;
 use crate::scene;
 use crate::system::linear::{Factorization, LinearError, LinearSolver, Method};
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// What a converged step took.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Converged {
-    pub iterations: u32,
-    /// Augmentations, and those of the iterations that they took.
-    pub augmentations: u32,
-    pub augmenting: u32,
-    pub totals: Totals,
-    /// Relative residual and points whose status changed, per linearisation.
-    pub history: Vec<(f64, usize)>,
-    /// Largest round-off floor met, relative to the forces.
-    pub floor: f64,
-    /// The last factorization; none if the start was in equilibrium already.
-    pub factorization: Option<Factorization>,
-    /// The step was solved from a softened penalty only.
-    pub softened: bool,
-    /// It was solved under penalties softer than those that it began with.
-    pub eased: bool,
-}
-
-impl Converged {
-    /// Goes on from the state that these are of to `next`, by an augmentation.
-    pub fn augmented(&mut self, next: Converged) {
-        self.iterations += next.iterations;
-        self.augmenting += next.iterations;
-        self.augmentations += 1;
-        self.totals = next.totals;
-        self.history.extend(next.history);
-        self.floor = self.floor.max(next.floor);
-        self.factorization = next.factorization.or(self.factorization.take());
-    }
-}
-
-impl Converged {
-    /// Goes on to the same step under a stiffer penalty, whose iterations say nothing of how far a step may go.
-    pub fn stiffened(&mut self, next: Converged) {
-        self.augmented(next);
-        self.augmentations -= 1;
-    }
-}
 
 /// How long Newton's method goes on without getting nearer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,6 +96,8 @@ const MOST_OPEN: usize = 2;
 const MANY_OPENED: usize = 4;
 /// Iterations without headway after which the line search is switched on.
 const UNTIL_SEARCH: u32 = 6;
+/// Times that iterates which go round while no point switches go half of the way.
+const ROUNDS: u32 = 3;
 /// Iterations without headway, and since the last time, after which points that slide to and fro are taken to stick.
 const UNTIL_STUCK: u32 = 2;
 /// Iterations without headway after which a start is given up where another is at hand. A thin shell may take six to
@@ -191,7 +154,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let alone = self.model.stabilization.is_some() && self.model.dynamics.is_none();
         let mut held_back = 0;
         let searches = self.first.search || self.model.flows();
-        let (mut cycle, mut round, mut damped) = (Cycle::default(), None::<PingPong>, 0u32);
+        let (mut cycle, mut broken, mut damped) = (Cycle::default(), None::<PingPong>, 0u32);
+        let mut rounds = 0;
         // When points that slide to and fro were taken to stick last.
         let mut stuck_at = 0;
         for iteration in 0.. {
@@ -270,7 +234,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 return Err(StepFailure::TooManyIterations {
                     iterations: iteration,
                     residual: norms.relative(),
-                    oscillation: round.map_or_else(|| oscillation(&history), |r| r.to_string()),
+                    oscillation: broken.map_or_else(|| oscillation(&history), |r| r.to_string()),
                 });
             }
             if held {
@@ -282,6 +246,10 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             }
             if totals.changed == 0 || held {
                 cycle.clear();
+                let again = round(&history).filter(|_| rounds < ROUNDS && damped == 0 && !held);
+                if let Some(period) = again {
+                    (damped, since_best, rounds) = (period, 0, rounds + 1);
+                }
             } else if let Some(period) = cycle.add(&trial.points, &trial.nodes)
                 && let Some(found) =
                     PingPong::find(self.model, &self.workspace.base.points, trial, period)
@@ -293,7 +261,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 self.ping_pongs += 1;
                 since_best = 0;
                 cycle.clear();
-                round = Some(found);
+                broken = Some(found);
             }
             if totals.changed == 0
                 && !(pending || held)

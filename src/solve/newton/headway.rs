@@ -7,6 +7,9 @@ const OVER: usize = 4;
 /// that hop to and fro across a fold leave it where it is, and what is far from equilibrium may well hop.
 const KEEP: usize = 3;
 const HOPS: f64 = 0.3;
+/// Longest period of residuals that come back that is looked for, and the part of them by which they may differ.
+const LONGEST: usize = 4;
+const SAME: f64 = 0.02;
 
 /// Whether an attempt is nearly done: few points are left to switch, or ever fewer. One that switches none has no more reason
 /// to go on than its iterations give.
@@ -27,6 +30,19 @@ pub fn hops(history: &[(f64, usize)]) -> bool {
     }
 }
 
+/// The number of iterations after which residuals are as they were, where none of them switched a point: iterates that go round
+/// a kink of the forces that no status tells of, at the rounded border of a surface or where feet go from facet to facet.
+pub fn round(history: &[(f64, usize)]) -> Option<u32> {
+    (2..=LONGEST).find_map(|period| {
+        let last = &history[history.len().checked_sub(2 * period)?..];
+        let (before, now) = last.split_at(period);
+        let same = |(a, b): (&(f64, usize), &(f64, usize))| {
+            a.1 == 0 && b.1 == 0 && (a.0 - b.0).abs() < SAME * a.0
+        };
+        before.iter().zip(now).all(same).then_some(period as u32)
+    })
+}
+
 /// A word on points that keep switching at the end of a failed step.
 pub fn oscillation(history: &[(f64, usize)]) -> String {
     let last = &history[history.len().saturating_sub(6)..];
@@ -35,5 +51,27 @@ pub fn oscillation(history: &[(f64, usize)]) -> String {
         format!("; at least {switching} contact point(s) switched status in each of the last 6")
     } else {
         String::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::round;
+
+    #[test]
+    fn residuals_that_come_back_are_a_round() {
+        let seen = |residuals: &[f64], switched: usize| {
+            let history: Vec<_> = residuals.iter().map(|r| (*r, switched)).collect();
+            round(&history)
+        };
+        assert_eq!(seen(&[5.0, 0.92, 4.09, 0.921, 4.091], 0), Some(2));
+        assert_eq!(seen(&[3.0, 2.0, 1.0, 3.0, 2.0, 1.0], 0), Some(3));
+        assert_eq!(
+            seen(&[4.0, 1.0, 4.0, 1.0], 1),
+            None,
+            "points that switch are told by their sets"
+        );
+        assert_eq!(seen(&[4.0, 1.0, 3.0, 0.9], 0), None, "it falls");
+        assert_eq!(seen(&[4.0, 1.0, 4.0], 0), None);
     }
 }

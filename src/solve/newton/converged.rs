@@ -1,0 +1,42 @@
+//! What Newton's method took to an equilibrium.
+use crate::assembly::Totals;
+use crate::system::linear::Factorization;
+
+/// What a converged step took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Converged {
+    pub iterations: u32,
+    /// Augmentations, and those of the iterations that they took.
+    pub augmentations: u32,
+    pub augmenting: u32,
+    pub totals: Totals,
+    /// Relative residual and points whose status changed, per linearisation.
+    pub history: Vec<(f64, usize)>,
+    /// Largest round-off floor met, relative to the forces.
+    pub floor: f64,
+    /// The last factorization; none if the start was in equilibrium already.
+    pub factorization: Option<Factorization>,
+    /// The step was solved from a softened penalty only.
+    pub softened: bool,
+    /// It was solved under penalties softer than those that it began with.
+    pub eased: bool,
+}
+
+impl Converged {
+    /// Goes on from the state that these are of to `next`, by an augmentation.
+    pub fn augmented(&mut self, next: Converged) {
+        self.iterations += next.iterations;
+        self.augmenting += next.iterations;
+        self.augmentations += 1;
+        self.totals = next.totals;
+        self.history.extend(next.history);
+        self.floor = self.floor.max(next.floor);
+        self.factorization = next.factorization.or(self.factorization.take());
+    }
+
+    /// Goes on to the same step under a stiffer penalty, whose iterations say nothing of how far a step may go.
+    pub fn stiffened(&mut self, next: Converged) {
+        self.augmented(next);
+        self.augmentations -= 1;
+    }
+}
