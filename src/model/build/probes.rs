@@ -1,30 +1,57 @@
 //! Probes of a scene: their nodes.
 use super::super::BodyModel;
-use super::super::error::text;
+use super::super::error::{number, text};
 use super::super::probe::{ProbeModel, nearest_node};
 use super::{Builder, ModelError};
 use crate::scene::{Probe, ProbeQuantity};
+use covact_geometry::Vec3;
+
+/// Part of the size of a body that the node of a probe may lie from the point that it was to be near.
+const FAR: f64 = 0.1;
 
 impl Builder<'_> {
-    /// Finds the nodes of all probes.
+    /// Finds the nodes of all probes, and warns of points that no node is near.
     ///
     /// # Errors
     /// [`ModelError`] for unknown sets and bodies.
-    pub(super) fn probes(&self) -> Result<Vec<ProbeModel>, ModelError> {
-        let probes = self.scene.probes.iter();
-        probes
-            .map(|(name, probe)| {
-                let mut nodes = self.probed(probe, &format!("/probes/{name}"))?;
-                nodes.sort_unstable();
-                nodes.dedup();
-                Ok(ProbeModel {
-                    name: name.clone(),
-                    quantity: probe.quantity,
-                    take: probe.taken(),
-                    nodes,
-                })
-            })
-            .collect()
+    pub(super) fn probes(&mut self) -> Result<Vec<ProbeModel>, ModelError> {
+        let mut found = Vec::new();
+        let scene = self.scene;
+        for (name, probe) in &scene.probes {
+            let mut nodes = self.probed(probe, &format!("/probes/{name}"))?;
+            nodes.sort_unstable();
+            nodes.dedup();
+            let missed = probe.near.and_then(|point| self.missed(point, &nodes));
+            let told = missed.map(|text| format!("probe `{name}`: {text}"));
+            self.warnings.extend(told);
+            found.push(ProbeModel {
+                name: name.clone(),
+                quantity: probe.quantity,
+                take: probe.taken(),
+                nodes,
+            });
+        }
+        Ok(found)
+    }
+
+    /// What is told of a point that even the nearest node is far from.
+    fn missed(&self, point: [f64; 3], nodes: &[u32]) -> Option<String> {
+        let node = *nodes.first()?;
+        let body = self.bodies.iter().rfind(|b| b.first_node <= node)?;
+        let at = body.mesh.nodes[(node - body.first_node) as usize];
+        let far = (at - Vec3::from(point)).norm();
+        let [low, high] = body.mesh.bounds();
+        (far > FAR * (high - low).norm()).then(|| {
+            let [x, y, z] = point.map(number);
+            format!(
+                "no node is near ({x}, {y}, {z}); it takes that of body `{}` at ({}, {}, {}), {} away",
+                body.name,
+                number(at.x),
+                number(at.y),
+                number(at.z),
+                number(far)
+            )
+        })
     }
 
     fn probed(&self, probe: &Probe, at: &str) -> Result<Vec<u32>, ModelError> {
