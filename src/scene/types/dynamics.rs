@@ -64,10 +64,13 @@ impl Default for Dynamics {
 
 /// Parts of the time of a run that its first, smallest and largest steps are in dynamics, where the scene gives none.
 const STEPS: [f64; 3] = [1e-2, 1e-7, 0.05];
+/// Times of a static run within which its steps do not depend on them, where the scene gives none: a shorter one has as many steps as
+/// one of the first, a longer one as many as one of the second.
+const USUAL: [f64; 2] = [1.0, 10.0];
 
 impl Solution {
     /// The sizes of steps: those that are not `given`, by their keys, are bounded by those that are; in dynamics they are parts of the
-    /// time of the run.
+    /// time of the run, and in statics fit to it where it is not one of the usual ones.
     pub fn steps(&self, given: impl Fn(&str) -> bool) -> Step {
         let Step {
             initial,
@@ -75,9 +78,16 @@ impl Solution {
             max,
             adaptive,
         } = self.step;
-        let part = |key: &str, own: f64, part: f64| match given(key) || self.dynamics.is_none() {
-            true => own,
-            false => part * self.end_time,
+        let [short, long] = USUAL;
+        // What is wrong with the time is told where it stands.
+        let fit = match self.end_time > 0.0 && self.end_time.is_finite() {
+            true => (self.end_time / short).min(1.0) * (self.end_time / long).max(1.0),
+            false => 1.0,
+        };
+        let part = |key: &str, own: f64, part: f64| match (given(key), &self.dynamics) {
+            (true, _) => own,
+            (false, None) => own * fit,
+            (false, Some(_)) => part * self.end_time,
         };
         let [first, smallest, largest] = STEPS;
         let mut large = part("max", max, largest);
