@@ -140,7 +140,7 @@ fn missing_keys_and_unknown_names() {
         (
             "{\"gauss\": 2}",
             "{}",
-            "14:73: expected an object with one key, found an object (one of: `nodes`,",
+            "14:73: expected an object with one key, found an object (one of: `auto`, `nodes`,",
         ),
         (
             "{\"gauss\": 2}",

@@ -57,7 +57,7 @@ fn sides(mesh: &Mesh, face: Face) -> [Vec<u32>; 4] {
 
 /// Whether a place on a line is at the free border of the slave's faces, within [`FLUSH`] of their elements either way along them,
 /// and the line does not cross the border; `line` is its direction.
-pub(super) fn flush_with(place: &Vec3, line: &Vec3, slave: &MovingFacets, size: f64) -> bool {
+pub fn flush_with(place: &Vec3, line: &Vec3, slave: &MovingFacets, size: f64) -> bool {
     let foot = |q: &Vec3| slave.project(q, None, f64::INFINITY, |_| true);
     let Some(at) = foot(place) else {
         return false;
@@ -105,6 +105,21 @@ pub fn sharp_nodes(
     slave: &MovingFacets,
     size: f64,
 ) -> BTreeSet<u32> {
+    let beside = |edge: &Vec<u32>| {
+        let ends = [edge[0], edge[edge.len() - 1]].map(&position);
+        !flush_with(
+            &((ends[0] + ends[1]) * 0.5),
+            &(ends[1] - ends[0]),
+            slave,
+            size,
+        )
+    };
+    let edges = sharp_edges(mesh, faces, &position);
+    edges.into_iter().filter(beside).flatten().collect()
+}
+
+/// The sharp convex edges of some faces of a mesh, each by its nodes in a row; `position` gives the place of a node.
+pub fn sharp_edges(mesh: &Mesh, faces: &[Face], position: impl Fn(u32) -> Vec3) -> Vec<Vec<u32>> {
     let own: BTreeSet<Face> = faces.iter().copied().collect();
     let mut edges: BTreeMap<[u32; 2], Edge> = BTreeMap::new();
     for face in mesh.outer_faces() {
@@ -126,16 +141,9 @@ pub fn sharp_nodes(
             edge.faces.push([normal, middle]);
         }
     }
-    let beside = |edge: &&Edge| {
-        let ends = [edge.nodes[0], edge.nodes[edge.nodes.len() - 1]];
-        let ends = ends.map(&position);
-        let middle = (ends[0] + ends[1]) * 0.5;
-        !flush_with(&middle, &(ends[1] - ends[0]), slave, size)
-    };
-    (edges.values())
+    (edges.into_values())
         .filter(|edge| edge.of_master && edge.sharp())
-        .filter(beside)
-        .flat_map(|edge| edge.nodes.iter().copied())
+        .map(|edge| edge.nodes)
         .collect()
 }
 

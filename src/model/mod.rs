@@ -40,7 +40,7 @@ pub(crate) mod symmetry;
 use crate::contact::lever::Lever;
 use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
-use crate::scene::{Material, Tangent, TimeFunction, ValueError};
+use crate::scene::{Material, Points, Tangent, TimeFunction, ValueError};
 use crate::shell::{Block, ElementBlock};
 use crate::system::DofMap;
 use augmentation::AugmentationModel;
@@ -138,8 +138,8 @@ pub struct PairModel {
     pub master: Master,
     /// Slave points; those of integration segments as they are before anything moves ([`state::State::slaves`]).
     pub points: Vec<SlavePoint>,
-    /// Slave faces are cut by the master's facets, with rules of this degree on the pieces.
-    pub segments: Option<u8>,
+    /// Where the slave faces are sampled; never left open.
+    pub sampled: Points,
     /// One of the two passes of a contact whose sides are both slaves.
     pub half: Option<HalfPass>,
     /// The points are on the sharp edges of the master of this pair, and the master is its slave. Those of a rigid surface belong
@@ -375,6 +375,14 @@ impl Support<'_> {
 }
 
 impl PairModel {
+    /// The degree of the rules on the pieces, where slave faces are cut by the master's facets.
+    pub fn segments(&self) -> Option<u8> {
+        match self.sampled {
+            Points::Segments(degree) => Some(degree),
+            _ => None,
+        }
+    }
+
     /// Whether another pair of the same contact is the one by which it is known: this is the second of two half passes, or
     /// holds the edges of the master.
     pub fn is_second(&self) -> bool {

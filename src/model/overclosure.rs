@@ -25,7 +25,7 @@ impl PairModel {
     /// Whether the first step resolves an overclosure at the start. (Segments are cut anew with every step: their points are
     /// others then.)
     pub fn strains(&self) -> bool {
-        self.overclosure.is_none() && self.segments.is_none()
+        self.overclosure.is_none() && self.segments().is_none()
     }
 
     /// Overclosures of the points that are being resolved: those that shrink over time, or those of the start in `start`, where
@@ -33,7 +33,7 @@ impl PairModel {
     pub fn resolved<'a>(&'a self, start: &'a [f64], first: usize) -> Option<&'a [f64]> {
         match &self.overclosure {
             Some(over) => over.until.map(|_| &over.z0[..]),
-            None if start.is_empty() || self.segments.is_some() => None,
+            None if start.is_empty() || self.segments().is_some() => None,
             None => start.get(first..first + self.points.len()),
         }
     }

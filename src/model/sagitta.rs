@@ -239,7 +239,7 @@ impl Sides {
         if deepest >= -1e-9 * pair.element_size || added.abs() <= COUNTS * true_ones {
             return None;
         }
-        let refused = match (pair.tangent, pair.segments) {
+        let refused = match (pair.tangent, pair.segments()) {
             (_, Some(_)) => Some("points of segments are others with every step"),
             (Tangent::Published { .. }, _) => {
                 Some("the published tangent holds for gaps from the master itself")

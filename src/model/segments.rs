@@ -301,7 +301,7 @@ pub fn recut(
     state: &mut State,
     time: f64,
 ) -> Result<(), ValueError> {
-    if model.pairs.iter().all(|p| p.segments.is_none()) {
+    if model.pairs.iter().all(|p| p.segments().is_none()) {
         return Ok(());
     }
     masters.update(model, &state.u);
@@ -311,7 +311,7 @@ pub fn recut(
         let range = first..first + state.slaves(model, index).len();
         first = range.end;
         let (Some(degree), Some(body), Some(surface)) =
-            (pair.segments, pair.body_master(), masters.surface(index))
+            (pair.segments(), pair.body_master(), masters.surface(index))
         else {
             points.extend_from_slice(&state.points[range]);
             continue;

@@ -36,7 +36,7 @@ pub fn slave_points(
     offset: u32,
 ) -> Result<Vec<SlavePoint>, QuadratureError> {
     let rule = match points {
-        Points::Nodes => return Ok(nodes(mesh, faces, offset)),
+        Points::Auto | Points::Nodes => return Ok(nodes(mesh, faces, offset)),
         Points::Gauss(n) => quadrature::gauss(n as usize)?,
         Points::Lobatto(n) => quadrature::lobatto(n as usize)?,
         // Not cut by anything: the rule of as high a degree.

@@ -6,7 +6,7 @@ use super::loads::DeadLoad;
 use super::motion::WayBack;
 use super::stabilization::StabilizationModel;
 use super::{Model, ModelError, found_supports};
-use crate::scene::{AUTOMATIC, Load, Scene, TIME, TimeFunction, Value};
+use crate::scene::{AUTOMATIC, Load, Points, Scene, TIME, TimeFunction, Value};
 use crate::system::{Dof, DofMapBuilder};
 use std::collections::BTreeSet;
 
@@ -165,7 +165,7 @@ fn leave_out(model: &mut Model, active: &BTreeSet<&str>) {
         if !active.contains(pair.name.as_str()) {
             pair.points.clear();
             pair.bow.clear();
-            (pair.overclosure, pair.averaged, pair.segments) = (None, None, None);
+            (pair.overclosure, pair.averaged, pair.sampled) = (None, None, Points::Nodes);
         }
         if let Some(first) = &mut pair.first_history {
             *first = histories;

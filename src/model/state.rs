@@ -55,7 +55,7 @@ impl State {
             points: vec![PointState::default(); points.sum()],
             nodes: vec![false; nodes.sum()],
             histories: vec![PointHistory::default(); model.histories()],
-            cuts: match model.pairs.iter().any(|p| p.segments.is_some()) {
+            cuts: match model.pairs.iter().any(|p| p.segments().is_some()) {
                 true => vec![None; model.pairs.len()],
                 false => Vec::new(),
             },

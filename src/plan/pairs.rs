@@ -157,7 +157,7 @@ impl Reporter<'_> {
                 let points = Held::assembler("points on bodies", Per::Point, each, told.points());
                 let room = Held::assembler("points on bodies", Per::Whole, fixed, 1);
                 // Segments are cut anew, with other numbers of points.
-                let cut = pair.segments.is_some();
+                let cut = pair.segments().is_some();
                 let grow = |h: Held| if cut { h.growing() } else { h };
                 held.extend([grow(points), grow(room)]);
             }
@@ -273,13 +273,13 @@ impl Reporter<'_> {
             .points
             .first()
             .is_some_and(|p| p.lever_number().is_some());
-        let points = match told.contact.points {
+        let points = match told.pair.sampled {
             Points::Nodes if levers => Points::Gauss(4),
             points => points,
         };
         let [n, faces] = [told.points(), told.pair.faces.len()];
         let words = match points {
-            Points::Nodes => "nodes".to_owned(),
+            Points::Auto | Points::Nodes => "nodes".to_owned(),
             Points::Gauss(n) => format!("{n} x {n} Gauss points a face"),
             Points::Lobatto(n) => format!("{n} x {n} Lobatto points a face"),
             Points::Segments(n) => format!("segments with rules of degree {n}"),
@@ -290,6 +290,9 @@ impl Reporter<'_> {
             }
             _ if levers => {
                 format!("{words}: {n} on {faces} faces, half of the thickness from the mid-surface")
+            }
+            _ if told.contact.points == Points::Auto => {
+                format!("no `points`, and coarser than the master: {words}, {n} on {faces} faces")
             }
             _ => format!("`points` are {words}: {n} on {faces} faces"),
         };

@@ -321,11 +321,11 @@ fn pair_report(
         slave: contact.slave.clone(),
         master: contact.master.clone(),
         points: pair.points.len(),
-        sampling: match contact.points {
+        sampling: match pair.sampled {
             Points::Nodes if model.bodies[pair.body].block.sheet().is_some() => {
                 "4 x 4 Gauss points a face".to_owned()
             }
-            Points::Nodes => "at the nodes of the faces".to_owned(),
+            Points::Auto | Points::Nodes => "at the nodes of the faces".to_owned(),
             Points::Gauss(n) => format!("{n} x {n} Gauss points a face"),
             Points::Lobatto(n) => format!("{n} x {n} Lobatto points a face"),
             Points::Segments(n) => format!("segments with rules of degree {n}"),

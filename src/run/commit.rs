@@ -28,6 +28,8 @@ pub struct FrictionTotals {
     pub stored: f64,
     /// Energy dissipated since the start.
     pub dissipated: f64,
+    /// The part of what the last step dissipated that a trapezoid between the forces at its ends leaves out: [`PointHistory::sudden`].
+    pub sudden: f64,
 }
 
 impl FrictionTotals {
@@ -53,6 +55,7 @@ impl FrictionTotals {
             };
             self.stored += 0.5 * share * eps_t * elastic.powi(2) * p.area;
             self.dissipated += share * history.dissipated * p.area;
+            self.sudden += share * history.sudden * p.area;
         }
     }
 }

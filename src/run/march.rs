@@ -30,7 +30,7 @@ use super::motion_fields::MotionFields;
 use super::peaks::Peaks;
 use super::penalty_rule::PenaltyRule;
 use super::progress::Progress;
-use super::rim_watch::RimWatch;
+use super::unseen::Unseen;
 use super::watch::{Span, Watch};
 use crate::assembly::{Assembler, Fault, Totals};
 use crate::contact::law::Penalty;
@@ -65,8 +65,23 @@ pub(super) struct Ending {
     pub reason: Option<String>,
     /// Numbers of the bodies whose enhanced strains are what the run could not go on with.
     pub squeezed: Vec<usize>,
-    /// It was given up since edges of rigid surfaces lie in slaves.
+    /// It was given up since edges of masters lie in slaves.
     pub on_rims: bool,
+    /// It was given up since surfaces sink into the slaves of these pairs, between their points.
+    pub between: Vec<usize>,
+}
+
+impl Ending {
+    /// One that neither elements nor edges account for.
+    pub fn new(status: RunStatus, reason: Option<String>) -> Self {
+        Ending {
+            status,
+            reason,
+            squeezed: Vec::new(),
+            on_rims: false,
+            between: Vec::new(),
+        }
+    }
 }
 
 /// What a caller lends to a run while it goes on.
@@ -99,8 +114,8 @@ pub(super) struct March<'a, 'm> {
     replaceable: &'a [String],
     /// Whether another variant may exchange the sides of a contact.
     exchangeable: bool,
-    /// Edges of rigid surfaces that are no slaves.
-    rims: &'a mut RimWatch,
+    /// What slave points do not see.
+    unseen: &'a mut Unseen,
     /// Steps that are cut again and again end the run: another one stands ready.
     impatient: bool,
     pub peaks: &'a mut Peaks,
@@ -158,7 +173,7 @@ impl March<'_, '_> {
             let mut bodies = model.bodies.iter();
             bodies.position(|b| b.name == body.name)
         };
-        let segmented = self.model.pairs.iter().any(|p| p.segments.is_some());
+        let segmented = self.model.pairs.iter().any(|p| p.segments().is_some());
         while !walk.stepping.done(self.progress.time) {
             let end = walk.stepping.next(self.progress.time);
             let dt = end - self.progress.time;
@@ -243,7 +258,8 @@ impl March<'_, '_> {
                             &converged.totals,
                             &span,
                         )
-                        .map_err(|e| RunError::internal(&e))?;
+                        .map_err(|e| RunError::internal(&e))?
+                        .with_sudden(sliding.sudden);
                     if let Some(moved) = &moved {
                         converged.totals.motion = moved.energy;
                     }
@@ -355,16 +371,8 @@ impl March<'_, '_> {
                         &converged.totals.penetration[..],
                         &outputs.fields.bearings.pairs[..],
                     );
-                    if ending.is_none() && self.sinks(committed, by) {
-                        ending = Some(Ending {
-                            status: RunStatus::NotConverged,
-                            reason: Some(
-                                "an edge of a rigid surface sinks in between slave points"
-                                    .to_owned(),
-                            ),
-                            squeezed: Vec::new(),
-                            on_rims: true,
-                        });
+                    if ending.is_none() {
+                        ending = self.sinks(committed, [start, end], by);
                     }
                     let ending = ending.or_else(|| {
                         let held = walk.jump.map(|jump| self.on_viscous_forces(&jump));
@@ -375,12 +383,11 @@ impl March<'_, '_> {
                 Err(failure) => failure,
             };
             if failure == StepFailure::Interrupted {
-                return Ok(Outcome::Stopped(Ending {
-                    status: RunStatus::Interrupted,
-                    reason: Some("stopped by the user".to_owned()),
-                    squeezed: Vec::new(),
-                    on_rims: false,
-                }));
+                let reason = Some("stopped by the user".to_owned());
+                return Ok(Outcome::Stopped(Ending::new(
+                    RunStatus::Interrupted,
+                    reason,
+                )));
             }
             // Let go of, it was not found or is not taken: larger ones may hold it.
             walk.jump = walk.jump.or(passing);
@@ -431,22 +438,21 @@ impl March<'_, '_> {
                 // All of them at once: each would end a run of its own.
                 (walk.turned).retain(|b| hold::compressed(&self.model.bodies[*b], &committed.u));
                 walk.turned.extend(suspect.and_then(number_of));
-                let squeezed = hold::remedy(turned);
+                let helps = hold::remedy(turned);
+                let reason = format!(
+                    "step {step} from time {} failed {}: {reason}{helps}{unstable}",
+                    self.progress.time,
+                    match hopeless {
+                        true => "at ever smaller step sizes",
+                        false => "at the smallest step size",
+                    }
+                );
                 return Ok(Outcome::Stopped(Ending {
                     squeezed: match lost.is_empty() {
                         true => walk.turned.iter().copied().collect(),
                         false => lost,
                     },
-                    on_rims: false,
-                    status: RunStatus::NotConverged,
-                    reason: Some(format!(
-                        "step {step} from time {} failed {}: {reason}{squeezed}{unstable}",
-                        self.progress.time,
-                        match hopeless {
-                            true => "at ever smaller step sizes",
-                            false => "at the smallest step size",
-                        }
-                    )),
+                    ..Ending::new(RunStatus::NotConverged, Some(reason))
                 }));
             };
             self.observer.event(&Event::StepCut {
@@ -474,7 +480,8 @@ impl March<'_, '_> {
         let tangential: Vec<f64> = penalties.iter().zip(ratios).map(|(p, r)| p * r).collect();
         let sticking = (self.compliance.sticking).warnings(self.model, &tangential);
         let all = soft.into_iter().chain(sticking);
-        for text in all.chain(self.peaks.warnings(self.model)) {
+        let unseen = self.unseen.between.warnings(self.model);
+        for text in all.chain(self.peaks.warnings(self.model)).chain(unseen) {
             self.warn(text);
         }
         self.tell_untouched();

@@ -33,7 +33,6 @@ mod reaction_fields;
 mod remedy;
 mod resting;
 mod resultants;
-mod rim_watch;
 mod sheet_fields;
 mod simulation;
 mod sink;
@@ -44,6 +43,7 @@ mod stresses;
 mod surface_cells;
 mod traction_fields;
 mod tunneling;
+mod unseen;
 mod validity;
 pub(crate) mod watch;
 

@@ -292,7 +292,14 @@ fn imbalance(scene: &Value, steps: u32, raise: f64) -> [f64; 2] {
         let work = watch.work(&model, &assembler, &reactions, &found.totals, &span);
         let work = work.unwrap_or_else(|e| panic!("{e}"));
         watch.accept(&assembler, &reactions, &found.totals, &span);
-        watch.close(&model, (step, [start, end]), work, &[0.0], energy, false);
+        watch.close(
+            &model,
+            (step, [start, end]),
+            work,
+            &[0.0],
+            [energy, energy],
+            false,
+        );
         commit::commit(&model, &mut assembler, &mut to, (&from.u, start), end)
             .unwrap_or_else(|e| panic!("{e}"));
         (from, start) = (to, end);

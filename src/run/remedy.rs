@@ -87,7 +87,8 @@ mod tests {
         let told = |before: [f64; 2], now: [f64; 2]| {
             let mut watch = Watch::new(&model);
             (watch.speed, watch.span) = ([52.0, 1.0], before);
-            watch.close(&model, (2, now), Work::default(), &[0.0], 0.0, true)
+            let told = watch.close(&model, (2, now), Work::default(), &[0.0], [0.0; 2], true);
+            told.map(|(text, _)| text)
         };
         assert_eq!(told([0.5, 1.0], [1.0, 1.5]), None);
         let text = told([0.25, 0.5], [0.5, 1.0]).expect("a warning");

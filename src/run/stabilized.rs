@@ -38,19 +38,16 @@ impl March<'_, '_> {
                 ),
                 loaded: self.model.loaded(),
             };
-            return Some(Ending {
-                status: RunStatus::NotConverged,
-                reason: Some(failure.to_string()),
-                squeezed: Vec::new(),
-                on_rims: false,
-            });
+            let reason = Some(failure.to_string());
+            return Some(Ending::new(RunStatus::NotConverged, reason));
         }
         if !last {
             return None;
         }
-        // What flows or is released stores little of what was done on it.
+        // What flows, slides or is released stores little of what was done on it.
         let later = self.model.stage.as_ref().is_some_and(|s| s.start.index > 0);
-        let (all, name) = match later || converged.totals.plastic_work > 0.0 {
+        let slides = self.model.pairs.iter().any(|p| p.friction.is_some());
+        let (all, name) = match later || slides || converged.totals.plastic_work > 0.0 {
             true => (self.watch.turned_over(), "work"),
             false => (converged.totals.internal_energy, "strain energy"),
         };

@@ -3,13 +3,15 @@
 //! The work done on the bodies since the start is summed over the accepted steps by the trapezoidal rule: reactions at
 //! supports and loads on the displacements of the step, the force and the moment of every rigid surface on the motion of
 //! the surface, and the pressure of contacts whose overclosure shrinks on what the offset shrinks by. Forces at the start of
-//! a step are those in equilibrium there, so that what is suddenly there with a step counts as growing evenly over it.
+//! a step are those in equilibrium there, so that what is suddenly there with a step counts as growing evenly over it, but for
+//! friction: where points begin to slide, or turn round, their tractions are at their limit in most of the step.
 //!
 //! An overclosure at the start that the first step resolves counts as one that shrinks in it. Penalties put in energy of
 //! their own where they change under points that are pressed, by any factor: what a step leaves out of balance over which they
 //! change counts as that. A point with a multiplier does the work of its tractions; what of that the penalty does not hold counts, with its sign.
 //!
 //! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
+mod eased;
 mod faint;
 mod jump;
 mod lag;
@@ -75,6 +77,8 @@ pub struct Watch {
     pressed: Vec<f64>,
     /// Normal traction and gap per point with multipliers.
     tractions: Vec<[f64; 2]>,
+    /// What penalties stored at the end of the last accepted step (energy).
+    stored: f64,
     /// Energy that rounding makes of displacements, and far less than any load (energy).
     faint: f64,
 }
@@ -89,6 +93,8 @@ pub struct Work {
     turnover: f64,
     /// Penalties changed in the step, or before it.
     pub changed: bool,
+    /// The largest ratio of a penalty to what it was, or the other way round.
+    eased: f64,
 }
 
 impl Work {
@@ -97,6 +103,13 @@ impl Work {
         self.external += 0.5 * (a + b);
         self.turnover += 0.5 * (a + b).abs();
         self.coarse += 0.5 * (b - a).abs();
+    }
+
+    /// With what the rule leaves out of the work of friction ([`PointHistory::sudden`](crate::contact::friction::history::PointHistory)).
+    pub(super) fn with_sudden(mut self, sudden: f64) -> Self {
+        self.external += sudden;
+        self.turnover += sudden.abs();
+        self
     }
 }
 
@@ -169,6 +182,7 @@ impl Watch {
             adjusted: self.adjusted + changed,
             imbalance: self.imbalance,
             turnover: self.turnover,
+            stored: self.stored + changed,
             flow: self.flow,
             worst: self.worst,
             worst_step: self.worst_step,
@@ -200,10 +214,11 @@ impl Watch {
             ratios,
             pressed,
             tractions,
+            stored,
             faint: _,
         } = self;
         out.bool(*snaps);
-        out.f64s(&[*external, *adjusted, *imbalance, *turnover, *worst]);
+        out.f64s(&[*external, *adjusted, *imbalance, *turnover, *worst, *stored]);
         out.f64s(&[*most, *work, *lag]);
         out.u32(*worst_step);
         out.f64s(speed);
@@ -225,7 +240,7 @@ impl Watch {
     pub(super) fn take(model: &Model, from: &mut Reader) -> Result<Self, Malformed> {
         let mut watch = Watch::new(model);
         watch.snaps = from.bool()?;
-        let mut sums = [0.0; 5];
+        let mut sums = [0.0; 6];
         from.f64s(&mut sums)?;
         [
             watch.external,
@@ -233,6 +248,7 @@ impl Watch {
             watch.imbalance,
             watch.turnover,
             watch.worst,
+            watch.stored,
         ] = sums;
         let mut flow = [0.0; 3];
         from.f64s(&mut flow)?;
@@ -298,6 +314,7 @@ impl Watch {
         }
         work.adjusted += self.multipliers(model, assembler);
         work.changed = self.penalties != assembler.penalties || self.ratios != assembler.ratios;
+        work.eased = self.eased([&assembler.penalties, &assembler.ratios]);
         Ok(work)
     }
 
@@ -355,16 +372,17 @@ impl Watch {
     }
 
     /// Closes the balance of a step. `pressed` are the sums of this name at its end, `energy` what is stored and what has been
-    /// dissipated since the start; the step went from time `from` to `to`.
+    /// dissipated since the start, `stored` the part of it that penalties store; the step went from time `from` to `to`. What is told
+    /// of a step that is out of balance, with whether elements that lost their hold may be why: not where penalties have changed.
     pub fn close(
         &mut self,
         model: &Model,
         (step, [from, to]): (u32, [f64; 2]),
         mut work: Work,
         pressed: &[f64],
-        energy: f64,
+        [energy, stored]: [f64; 2],
         softened: bool,
-    ) -> Option<String> {
+    ) -> Option<(String, bool)> {
         for ((pair, was), now) in model.pairs.iter().zip(&mut self.pressed).zip(pressed) {
             match &pair.overclosure {
                 Some(over) => {
@@ -379,8 +397,10 @@ impl Watch {
         self.external += work.external;
         if work.changed {
             let put_in = self.external + self.adjusted + work.adjusted;
-            work.adjusted += energy + self.imbalance - put_in;
+            work.adjusted +=
+                self.put_in_by_penalties(step, &work, energy + self.imbalance - put_in);
         }
+        self.stored = stored;
         self.adjusted += work.adjusted;
         self.turnover += work.turnover;
         let before = self.imbalance;
@@ -394,7 +414,8 @@ impl Watch {
         let limit = if softened { OTHER } else { JUMP };
         if lost.abs() > work.coarse && part > limit {
             self.snaps |= softened;
-            return Some(Jump { lost, part }.told(model, (step, [from, to]), softened));
+            let text = Jump { lost, part }.told(model, (step, [from, to]), softened);
+            return Some((text, !work.changed));
         }
         let [speed, last] = self.speed;
         if !softened || last <= 0.0 || speed <= FASTER * last {
@@ -407,12 +428,13 @@ impl Watch {
                 true => format!(", and what is prescribed {pace:.1} times as fast"),
                 false => String::new(),
             };
-            format!(
+            let text = format!(
                 "step {step} (time {}) was solved from a softened penalty only, and moved {:.0} times as fast as the step \
                  before{prescribed}: it may have come to another equilibrium. Take smaller steps",
                 number(to),
                 speed / last
-            )
+            );
+            (text, true)
         })
     }
 

@@ -195,7 +195,7 @@ fn points(choice: &PointsChoice) -> Label {
         PointsChoice::Averaged(points) => (points, true),
     };
     let (kind, count) = match points {
-        Points::Nodes => ("nodes", None),
+        Points::Auto | Points::Nodes => ("nodes", None),
         Points::Gauss(n) => ("Gauss", Some(n)),
         Points::Lobatto(n) => ("Lobatto", Some(n)),
         Points::Segments(n) => ("segments", Some(n)),

@@ -71,19 +71,14 @@ fn crossed(exchanged: bool) -> Value {
     })
 }
 
-/// With the edge on the master's side the run stops where the edge comes to lie between two nodes, and is repeated with the edges
+/// With the edge on the master's side the edge sinks in where it comes to lie between two nodes, and the run is repeated with the edges
 /// as slaves: the same force as with the sides exchanged, where the edge is the slave's from the start.
 #[test]
-fn a_run_that_stops_on_an_edge_is_repeated_with_it() {
+fn a_run_in_which_an_edge_sinks_in_is_repeated_with_it() {
     let [own, exchanged] = [false, true].map(|exchanged| {
         let outcome = done(&crossed(exchanged));
-        let repeated = |w: &String| w.contains("while a sharp edge of the master lay on the slave");
-        assert_eq!(
-            outcome.summary.warnings.iter().any(repeated),
-            !exchanged,
-            "{:?}",
-            outcome.summary.warnings
-        );
+        assert_eq!(outcome.summary.given_up.runs > 0, !exchanged);
+        assert!(outcome.summary.warnings.is_empty());
         *outcome.column("force.wall.z").last().expect("steps")
     });
     println!("{own} {exchanged}");
@@ -95,7 +90,9 @@ fn a_run_that_stops_on_an_edge_is_repeated_with_it() {
 #[test]
 fn edges_along_the_border_of_the_slave_are_left_out() {
     let points = |passes: &str| {
-        let text = under_an_edge(26.25, passes).to_string();
+        let mut scene = under_an_edge(26.25, passes);
+        scene["contacts"]["c"]["points"] = json!("nodes");
+        let text = scene.to_string();
         let loaded = scene::parse(&text, "scene.json").expect("well formed");
         let model = model::build::build(&loaded).expect("a model");
         let points = |p: &model::PairModel| (p.edges_of, p.points.len());

@@ -142,7 +142,7 @@ fn a_shrink_fit_of_facets_has_the_pressure_of_the_curved_surfaces() {
     let gauss = json!({ "points": { "gauss": 2 } });
     let averaged = json!({ "gap": "averaged", "points": { "gauss": 2 } });
     for (name, tolerance, more, fine) in [
-        ("nodes", 0.01, json!({}), 1),
+        ("nodes", 0.01, json!({ "points": "nodes" }), 1),
         ("Gauss points", 0.015, gauss.clone(), 1),
         ("averaged gaps", 0.015, averaged.clone(), 1),
         ("Gauss points, finer", 0.005, gauss, 2),

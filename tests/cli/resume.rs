@@ -388,7 +388,7 @@ fn a_scene_that_has_changed() {
     };
     with(&[("/materials/steel/st_venant_kirchhoff/nu", json!(0.2))]);
     refused(&["`/materials/steel` has changed; take the scene as it was"]);
-    with(&[("/contacts/press/points", json!("nodes"))]);
+    with(&[("/contacts/press/points", json!("auto"))]);
     std::fs::write(path.join("flat.stl"), stl("8")).unwrap();
     refused(&["file `flat.stl` has changed"]);
     // As it was, written in another way, and on another number of threads.

@@ -319,8 +319,9 @@ fn a_run_without_hangups() {
 }
 
 /// A plate that a ball dents in a single step: the first starts of the step fail, and the step ends all the same.
-fn troubled() -> [(&'static str, Value); 4] {
+fn troubled() -> [(&'static str, Value); 5] {
     [
+        ("/contacts/press/points", json!("nodes")),
         (
             "/bodies/plate/mesh/plate",
             json!({"size": [40, 40], "thickness": 0.5, "elements": [8, 8], "origin": [0, 0, 0.75]}),

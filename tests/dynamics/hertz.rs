@@ -42,7 +42,7 @@ fn a_sphere_on_a_half_space() {
             }
         },
         "contacts": { "c": {
-            "slave": "block.zone", "master": "sphere.outer", "master_surface": "smooth", "penalty": { "value": 200 }
+            "slave": "block.zone", "master": "sphere.outer", "master_surface": "smooth", "points": "nodes", "penalty": { "value": 200 }
         } },
         "supports": {
             "far": { "on": ["block.x_max", "block.y_max", "block.bottom"], "fixed": true },

@@ -20,6 +20,7 @@ mod lost;
 mod parametrisation;
 mod resume;
 mod rollback;
+mod seen;
 mod simulation;
 mod soak;
 mod stabilization;

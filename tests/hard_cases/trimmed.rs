@@ -79,8 +79,9 @@ fn points_slide_off_at_the_trim_curve() {
     // The face moves instead of the plate.
     scene["surfaces"]["die"]["motion"] = json!({ "translation": ["9*t", 0, 0] });
     scene["solution"]["step"] = json!({ "initial": 0.05, "max": 0.05 });
-    // What is counted are points of the plate.
+    // What is counted are nodes of the plate.
     scene["contacts"]["rest"]["passes"] = json!("one");
+    scene["contacts"]["rest"]["points"] = json!("nodes");
     let outcome = done(&scene);
     let (times, active) = (outcome.column("time"), outcome.column("points.active"));
     let mut seen = std::collections::BTreeSet::new();

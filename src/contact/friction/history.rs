@@ -39,6 +39,9 @@ pub struct PointHistory {
     pub slip: f64,
     /// Energy dissipated so far (force / length).
     pub dissipated: f64,
+    /// What a trapezoid between the tractions at both ends of the last step leaves of what that step dissipated (force / length):
+    /// a traction that turns, or rises to its limit before the point slides, works at its limit all the way.
+    pub sudden: f64,
 }
 
 /// What turns the coordinates of the base into those of space, at the start of a step and at its end.
@@ -84,6 +87,7 @@ impl PointHistory {
         to_space: &Turn,
     ) {
         let (t, slides) = (traction.slip.t, traction.slip.slides);
+        self.sudden = 0.0;
         if slides {
             // The mean of the tractions at both ends of the step; of a point that stuck at its start, or slid the other way, or
             // did not touch, the traction at the start is the limit there. Either is of second order in the step, and neither
@@ -93,6 +97,7 @@ impl PointHistory {
             let went_on = self.status == PointStatus::Slip && before.dot(&slid) > 0.0;
             let first = if went_on { &before } else { first };
             self.dissipated += 0.5 * (first + t).dot(&slid);
+            self.sudden = 0.5 * (first - before).dot(&slid);
             self.slip += slid.norm();
         }
         // Where it sticks nothing changes by this, but that a later penalty works on later displacements only.

@@ -1,6 +1,7 @@
 //! Contact pairs: slave points, masters, penalties.
 mod friction;
 mod masters;
+mod sampling;
 
 use super::super::augmentation::AugmentationModel;
 use super::super::averaged::SlaveNodes;
@@ -156,14 +157,15 @@ impl Builder<'_> {
         name: &str,
         contact: &Contact,
         rigid: Option<usize>,
-    ) -> Result<(usize, Vec<Face>, Vec<SlavePoint>), ModelError> {
+    ) -> Result<(usize, Vec<Face>, Vec<SlavePoint>, Points), ModelError> {
         let pointer = |field: &str| format!("/contacts/{name}/{field}");
         let (body, faces) = self.contact_faces(name, &contact.slave, &pointer("slave"))?;
         self.sheet_contact(name, contact, rigid)?;
+        let sampled = self.sampling(name, contact, (body, &faces), rigid.is_some())?;
         let model = &self.bodies[body];
         let first_node = model.first_node;
-        let per_face = match contact.points {
-            Points::Nodes => 1,
+        let per_face = match sampled {
+            Points::Auto | Points::Nodes => 1,
             Points::Gauss(n) | Points::Lobatto(n) => u64::from(n) * u64::from(n),
             Points::Segments(n) => u64::from(n / 2 + 1).pow(2),
         };
@@ -177,11 +179,11 @@ impl Builder<'_> {
         })?;
         let of_sheet = model.block.sheet().is_some();
         let points = match of_sheet {
-            true => self.sheet_points(body, &faces, contact.points),
-            false => slave_points(&model.mesh, &faces, contact.points, first_node),
+            true => self.sheet_points(body, &faces, sampled),
+            false => slave_points(&model.mesh, &faces, sampled, first_node),
         }
         .at(|| pointer("points"))?;
-        Ok((body, faces, points))
+        Ok((body, faces, points, sampled))
     }
 
     /// A contact pair.
@@ -193,14 +195,14 @@ impl Builder<'_> {
         side: Side,
     ) -> Result<PairModel, ModelError> {
         let pointer = |field: &str| format!("/contacts/{name}/{field}");
-        let (body, faces, mut points) = match side {
-            Side::Rim { body, points } => (body, Vec::new(), points),
+        let (body, faces, mut points, sampled) = match side {
+            Side::Rim { body, points } => (body, Vec::new(), points, Points::Nodes),
             Side::Faces => self.slave_side(name, contact, rigid)?,
             Side::Nodes(only) => {
-                let (body, faces, mut points) = self.slave_side(name, contact, rigid)?;
+                let (body, faces, mut points, sampled) = self.slave_side(name, contact, rigid)?;
                 let first_node = self.bodies[body].first_node;
                 points.retain(|p| only.contains(&(p.nodes[0] - first_node)));
-                (body, faces, points)
+                (body, faces, points, sampled)
             }
         };
         // A rim has no elements of its own: it is as stiff as what it meets.
@@ -225,7 +227,7 @@ impl Builder<'_> {
                 if master.body == body && !rim {
                     self.own_body(name, contact, &faces, &mut points, &mut master)?;
                 }
-                if let Points::Segments(degree) = contact.points {
+                if let Points::Segments(degree) = sampled {
                     let mesh = &self.bodies[body].mesh;
                     let nodes: Vec<_> = (faces.iter())
                         .map(|&f| mesh.face_nodes(f).shifted(first_node))
@@ -339,10 +341,7 @@ impl Builder<'_> {
             faces,
             master,
             points,
-            segments: match contact.points {
-                Points::Segments(degree) => Some(degree),
-                _ => None,
-            },
+            sampled,
             half: None,
             edges_of: None,
             starts_in_front: false,

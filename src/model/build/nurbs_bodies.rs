@@ -386,7 +386,7 @@ impl Builder<'_> {
             return Ok(Vec::new());
         };
         let rule = match points {
-            Points::Nodes | Points::Segments(_) => gauss(POINTS)?,
+            Points::Auto | Points::Nodes | Points::Segments(_) => gauss(POINTS)?,
             Points::Gauss(n) => gauss(n as usize)?,
             Points::Lobatto(n) => lobatto(n as usize)?,
         };

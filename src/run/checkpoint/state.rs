@@ -50,7 +50,7 @@ pub fn take(model: &Model, from: &mut Reader) -> Result<State, Malformed> {
                 .map(|_| take_slave(model, from))
                 .collect::<Result<Arc<[SlavePoint]>, _>>()
         })?;
-        if cut.is_some() && pair.segments.is_none() {
+        if cut.is_some() && pair.segments().is_none() {
             return Err(from.malformed("segments where the scene has none"));
         }
     }
@@ -183,6 +183,7 @@ fn put_history(history: &PointHistory, out: &mut Writer) {
         t,
         slip,
         dissipated,
+        sudden: _,
     } = history;
     put_hint(*place, out);
     for v in [base, lambda, t] {
@@ -222,6 +223,8 @@ fn take_history(from: &mut Reader) -> Result<PointHistory, Malformed> {
         t,
         slip,
         dissipated,
+        // Of a step that has been accounted for.
+        sudden: 0.0,
     })
 }
 

@@ -159,10 +159,12 @@ impl March<'_, '_> {
         let energy = energy(totals, sliding) + state.stabilized;
         let pressed = &outputs.fields.pressed;
         let softened = converged.softened;
-        let told = (self.watch).close(self.model, (step, span), work, pressed, energy, softened);
+        let energies = [energy, totals.contact_energy + sliding.stored];
+        let told = (self.watch).close(self.model, (step, span), work, pressed, energies, softened);
         let told = told.filter(|_| self.model.dynamics.is_none());
-        let jumped = told.is_some();
-        if let Some(text) = told {
+        let mut jumped = false;
+        if let Some((text, by_elements)) = told {
+            jumped = by_elements;
             self.warn(text);
         }
         let end = StepEnd {

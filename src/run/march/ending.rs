@@ -11,23 +11,13 @@ impl March<'_, '_> {
     pub(super) fn ending(&self) -> Ending {
         let (never, _) = self.untouched();
         if never.is_empty() {
-            return Ending {
-                status: RunStatus::Done,
-                reason: None,
-                squeezed: Vec::new(),
-                on_rims: false,
-            };
+            return Ending::new(RunStatus::Done, None);
         }
-        Ending {
-            status: RunStatus::NoContact,
-            reason: Some(format!(
-                "the surfaces of contact `{}` never touched: check the motion, the `side` and the `depth` of the \
-                 surface",
-                never.join("`, `")
-            )),
-            squeezed: Vec::new(),
-            on_rims: false,
-        }
+        let reason = format!(
+            "the surfaces of contact `{}` never touched: check the motion, the `side` and the `depth` of the surface",
+            never.join("`, `")
+        );
+        Ending::new(RunStatus::NoContact, Some(reason))
     }
 
     /// Contacts that never touched: those that were to, and those that only might have, with whether that is to be a warning. A body

@@ -1,6 +1,7 @@
 //! When a run is given up, since another one stands ready to take its place.
-use super::March;
+use super::{Ending, March};
 use crate::model::state::State;
+use crate::output::RunStatus;
 use crate::run::bearing::Bearing;
 use crate::run::progress::Progress;
 
@@ -18,17 +19,35 @@ impl March<'_, '_> {
             || self.exchangeable && self.crawls()
     }
 
-    /// Whether an edge of a rigid surface has sunk into its slave and may be a slave in another run; of others the user is told.
-    pub(super) fn sinks(&mut self, state: &State, by: (&[f64], &[Bearing])) -> bool {
+    /// Ends a run in which an edge of a master has sunk into its slave and may be a slave in another one, or a surface between slave
+    /// points that may be more in another one; of other edges the user is told. `by`: the deepest penetration and what the points of
+    /// every pair carry, in the step from `from` to `to`.
+    pub(super) fn sinks(
+        &mut self,
+        state: &State,
+        span: [f64; 2],
+        by: (&[f64], &[Bearing]),
+    ) -> Option<Ending> {
         let time = self.progress.time;
-        let sunk = (self.rims).sunk(self.model, &state.u, time, by);
+        let sunk = (self.unseen.rims).sunk(self.model, &state.u, time, by);
         for sunk in sunk.iter().filter(|s| !s.may) {
             let head = sunk.head(self.model);
             if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
                 self.warn(sunk.told(self.model, time));
             }
         }
-        sunk.iter().any(|s| s.may)
+        let on_rims =
+            sunk.iter().any(|s| s.may) || (self.unseen.edges).sunk(self.model, &state.u, by.0);
+        let between = (self.unseen.between).look(self.model, &state.u, span, by.0);
+        let text = match on_rims {
+            true => "an edge of a master sinks in between slave points",
+            false => "a surface sinks in between slave points",
+        };
+        (on_rims || !between.is_empty()).then(|| Ending {
+            on_rims,
+            between,
+            ..Ending::new(RunStatus::NotConverged, Some(text.to_owned()))
+        })
     }
 
     /// Whether most of the work is done in attempts that fail.

@@ -212,15 +212,11 @@ impl March<'_, '_> {
 
     /// How a run ends that has come to its end time on viscous forces.
     pub(super) fn on_viscous_forces(&self, jump: &Jump) -> Ending {
-        Ending {
-            status: RunStatus::NotConverged,
-            reason: Some(format!(
-                "from time {} on no equilibrium goes on: the path jumps there, and at the end viscous forces still carry it; \
-                 give it more time, or smaller steps",
-                number(jump.time)
-            )),
-            squeezed: Vec::new(),
-            on_rims: false,
-        }
+        let reason = format!(
+            "from time {} on no equilibrium goes on: the path jumps there, and at the end viscous forces still carry it; give it \
+             more time, or smaller steps",
+            number(jump.time)
+        );
+        Ending::new(RunStatus::NotConverged, Some(reason))
     }
 }

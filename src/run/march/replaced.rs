@@ -82,10 +82,8 @@ impl March<'_, '_> {
         let squeezed = self.may_be_replaced(lost);
         if !squeezed.is_empty() {
             return Some(Ending {
-                status: RunStatus::NotConverged,
-                reason: Some(text),
                 squeezed,
-                on_rims: false,
+                ..Ending::new(RunStatus::NotConverged, Some(text))
             });
         }
         let head = format!(

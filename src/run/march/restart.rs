@@ -156,7 +156,7 @@ impl RunState<'_> {
             rule,
             peaks,
             // Given by the model.
-            rims: _,
+            unseen: _,
             cost,
             course,
             // Of the checkpoint that the run went on from.

@@ -19,7 +19,7 @@ use crate::run::memory;
 use crate::run::peaks::Peaks;
 use crate::run::penalty_rule::PenaltyRule;
 use crate::run::progress::Progress;
-use crate::run::rim_watch::RimWatch;
+use crate::run::unseen::Unseen;
 use crate::run::watch::Watch;
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
@@ -415,10 +415,10 @@ impl<'m> RunState<'m> {
             compliance,
             rule,
             peaks,
-            rims: RimWatch::new(
+            unseen: Unseen::new(
                 model,
                 problem.loaded.scene.solution.end_time,
-                &problem.rims_may,
+                &problem.may_see,
             ),
             cost,
             course: Course {

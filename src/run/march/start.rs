@@ -17,7 +17,7 @@ use crate::run::habit::Habit;
 use crate::run::peaks::Peaks;
 use crate::run::penalty_rule::PenaltyRule;
 use crate::run::progress::Progress;
-use crate::run::rim_watch::RimWatch;
+use crate::run::unseen::{MaySee, Unseen};
 use crate::run::watch::Watch;
 use crate::run::{RunError, memory, resting};
 use crate::scene::LoadedScene;
@@ -38,8 +38,8 @@ pub(crate) struct Problem {
     pub replaceable: Vec<String>,
     /// Whether another variant may exchange the sides of a contact.
     pub exchangeable: bool,
-    /// Pairs whose masters may have their rims as slaves in another variant.
-    pub rims_may: Vec<usize>,
+    /// Pairs whose slaves may see more in another variant.
+    pub may_see: MaySee,
     /// Steps that are cut again and again end the run: another one stands ready.
     pub impatient: bool,
 }
@@ -58,7 +58,7 @@ pub(crate) struct RunState<'m> {
     pub(super) compliance: Compliance,
     pub(super) rule: PenaltyRule,
     pub(super) peaks: Peaks,
-    pub(super) rims: RimWatch,
+    pub(super) unseen: Unseen,
     pub(super) cost: Cost,
     pub(in crate::run) course: Course,
     /// The files of the checkpoint that the run went on from.
@@ -81,7 +81,7 @@ impl<'m> RunState<'m> {
         let penetration = vec![0.0; model.pairs.len()];
         let bearings = &self.course.outputs.fields.bearings.pairs;
         let by = (&penetration[..], &bearings[..]);
-        let sunk = (self.rims).sunk(model, u, self.progress.time, by);
+        let sunk = (self.unseen.rims).sunk(model, u, self.progress.time, by);
         sunk.iter().any(|s| s.may)
     }
 
@@ -144,10 +144,10 @@ impl<'m> RunState<'m> {
             compliance: Compliance::new(model).map_err(|e| RunError::internal(&e))?,
             rule: PenaltyRule::new(model),
             peaks: Peaks::new(model),
-            rims: RimWatch::new(
+            unseen: Unseen::new(
                 model,
                 problem.loaded.scene.solution.end_time,
-                &problem.rims_may,
+                &problem.may_see,
             ),
             cost,
             course: Course {
@@ -271,7 +271,7 @@ impl<'m> RunState<'m> {
             compliance,
             rule,
             peaks,
-            rims,
+            unseen,
             cost: _,
             course,
             files: _,
@@ -295,7 +295,7 @@ impl<'m> RunState<'m> {
             rule,
             replaceable: &problem.replaceable,
             exchangeable: problem.exchangeable,
-            rims,
+            unseen,
             impatient: problem.impatient,
             peaks,
         };

@@ -14,16 +14,17 @@ use super::probes;
 use crate::machine;
 use crate::machine::clock::Phases;
 use crate::model::stages::StageStart;
-use crate::model::{self, Model};
+use crate::model::{self, Model, PairModel};
 use crate::output::{RunStatus, Summary, Table};
 use crate::plan::Plan;
-use crate::scene::{self, Element, LoadedScene};
+use crate::run::unseen::MaySee;
+use crate::scene::{self, Contact, Element, LoadedScene};
 use crate::solve::event::{Event, Observer, Silent};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use variant::{
-    Safe, names_element, rims_may, safe_variant, with_edges, with_exchanged, with_rims,
-    with_smooth, without_rims,
+    Safe, edges_may, names_element, points_may, safe_variant, seeing_less, with_edges,
+    with_exchanged, with_points, with_rims, with_smooth,
 };
 
 /// Nobody interrupts.
@@ -170,7 +171,7 @@ impl<'o> Simulation<'o> {
             .map_err(|e| RunError::scene(&scene, "/solution/threads", e.to_string()))?;
         let observer = &mut *options.observer;
         let (running, fingerprint) =
-            pool.install(|| running(&scene, safe.as_ref(), sections, false, observer))?;
+            pool.install(|| running(&scene, safe.as_ref(), sections, Rims::Out, observer))?;
         let run = running.borrow_dependent();
         let history = Table {
             columns: run.columns(),
@@ -207,18 +208,14 @@ impl<'o> Simulation<'o> {
     }
 
     fn fail(&mut self, error: &RunError) {
-        self.ended = Some(Ending {
-            status: RunStatus::Failed,
-            reason: Some(error.to_string()),
-            squeezed: Vec::new(),
-            on_rims: false,
-        });
+        self.ended = Some(Ending::new(RunStatus::Failed, Some(error.to_string())));
     }
 
     /// Tells once what is known when a run has ended.
     fn conclude(&mut self) {
         // What is repeated has nothing to say of the answer.
-        if self.rims == Rims::Out && self.ended.as_ref().is_some_and(|e| e.on_rims) {
+        let unseen = |e: &Ending| e.on_rims || !e.between.is_empty();
+        if self.rims != Rims::Settled && self.ended.as_ref().is_some_and(unseen) {
             return;
         }
         if std::mem::replace(&mut self.concluded, true) {
@@ -264,10 +261,18 @@ impl<'o> Simulation<'o> {
             let found = rims_sunk && (stopped || ending.on_rims);
             found.then(|| with_rims(&self.scene, before, Some(time)))?
         };
+        let points = || {
+            let pairs = &self.running.borrow_owner().model.pairs;
+            let names = ending.between.iter().map(|&pair| pairs[pair].name.as_str());
+            with_points(&self.scene, before, Some(time), &names.collect::<Vec<_>>())
+        };
         let safe = || safe_variant(&self.scene, before, squeezed, time);
         let contacts = || edges().or_else(exchanged).or_else(smooth);
         let found = match self.rims {
-            Rims::Out if ending.on_rims => rims().map(|safe| (safe, Rims::Instead)),
+            Rims::Out | Rims::Instead if ending.on_rims => rims().map(|safe| (safe, Rims::Instead)),
+            Rims::Out | Rims::Instead if !ending.between.is_empty() => {
+                points().map(|safe| (safe, Rims::Instead))
+            }
             Rims::Out => (safe().map(|safe| (safe, Rims::Out)))
                 .or_else(|| Some((rims()?, Rims::Settled)))
                 .or_else(|| Some((contacts()?, Rims::Out))),
@@ -277,7 +282,7 @@ impl<'o> Simulation<'o> {
                 let block = |b: &usize| bodies[*b].mesh.opposite_nodes().contains(&None);
                 let found = ending.squeezed.iter().all(block).then(safe).flatten();
                 (found.map(|safe| (safe, Rims::Instead))).or_else(|| {
-                    let found = stopped.then(|| without_rims(&self.scene, before, Some(time)));
+                    let found = stopped.then(|| seeing_less(&self.scene, before, Some(time)));
                     Some((found??, Rims::Settled))
                 })
             }
@@ -289,13 +294,7 @@ impl<'o> Simulation<'o> {
         let spent = run.give_up();
         let observer = &mut *self.options.observer;
         // What cannot be built in another way stays as it ended.
-        let made = running(
-            &self.scene,
-            Some(&safe),
-            None,
-            rims == Rims::Instead,
-            observer,
-        );
+        let made = running(&self.scene, Some(&safe), None, rims, observer);
         let Ok((running, fingerprint)) = made else {
             return Ok(false);
         };
@@ -375,12 +374,13 @@ impl<'o> Simulation<'o> {
     }
 }
 
-/// The model of a scene with its run, and the checksums of both; `impatient`: it is given up where steps are cut again and again.
+/// The model of a scene with its run, and the checksums of both. One that stands for another is given up where steps are cut again
+/// and again.
 fn running(
     scene: &LoadedScene,
     safe: Option<&Safe>,
     sections: Option<&Sections>,
-    impatient: bool,
+    rims: Rims,
     observer: &mut (dyn Observer + Send),
 ) -> Result<(Running, Fingerprint), RunError> {
     let cost = Cost::start();
@@ -397,7 +397,7 @@ fn running(
             let ((stage, _), impatient) = sections.read_first("stages", take_variant)?;
             (stage, impatient)
         }
-        None => (StageStart::default(), impatient),
+        None => (StageStart::default(), rims == Rims::Instead),
     };
     let mut model =
         model::build::build_stage(loaded, stage, None).map_err(|e| RunError::model(loaded, e))?;
@@ -418,22 +418,28 @@ fn running(
         .filter(|(name, body)| body.element == Element::H8 && !names_element(loaded, name))
         .map(|(name, _)| name.clone())
         .collect();
-    let may = |name: &str| {
-        let contact = loaded.scene.contacts.get(name);
-        contact.is_some_and(|contact| rims_may(loaded, contact))
+    let may = |may: fn(&LoadedScene, &Contact) -> bool| -> Vec<usize> {
+        let of = |p: &PairModel| loaded.scene.contacts.get(&p.name);
+        let pairs = model.pairs.iter().enumerate();
+        pairs
+            .filter(|(_, p)| of(p).is_some_and(|contact| may(loaded, contact)))
+            .map(|(i, _)| i)
+            .collect()
     };
-    let pairs = model.pairs.iter().enumerate();
-    let rims_may = pairs
-        .filter(|(_, p)| may(&p.name))
-        .map(|(i, _)| i)
-        .collect();
+    let may_see = MaySee {
+        edges: may(edges_may),
+        points: match rims {
+            Rims::Settled => Vec::new(),
+            _ => may(points_may),
+        },
+    };
     let problem = Box::new(Problem {
         loaded: loaded.clone(),
         model,
         plan,
         replaceable,
         exchangeable: with_exchanged(loaded, None, None).is_some(),
-        rims_may,
+        may_see,
         impatient,
     });
     let threads = rayon::current_num_threads();

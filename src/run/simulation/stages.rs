@@ -19,7 +19,7 @@ impl Simulation<'_> {
             plan,
             replaceable,
             exchangeable,
-            rims_may,
+            may_see,
             impatient,
             ..
         } = &**self.running.borrow_owner();
@@ -35,7 +35,7 @@ impl Simulation<'_> {
             plan: plan.clone(),
             replaceable: replaceable.clone(),
             exchangeable: *exchangeable,
-            rims_may: rims_may.clone(),
+            may_see: may_see.clone(),
             impatient: *impatient,
         });
         let (threads, observer) = (rayon::current_num_threads(), &mut *self.options.observer);

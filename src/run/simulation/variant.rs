@@ -8,6 +8,9 @@ use crate::scene::{
 };
 use std::path::Path;
 
+/// Gauss points along each direction of a face that see what its nodes do not.
+const SEEING: u8 = 3;
+
 /// A scene with other elements or passes than the default ones, and what is told of the change.
 #[derive(Debug, Clone)]
 pub(in crate::run) struct Safe {
@@ -89,18 +92,52 @@ pub(super) fn with_edges(
     with_contacts(scene, before, time, ("passes", change, text))
 }
 
-/// Whether the rims of the master of a contact may become slaves by themselves: those of a rigid surface whose motion is prescribed,
-/// in a contact that leaves its passes to the default.
-pub(super) fn rims_may(scene: &LoadedScene, contact: &Contact) -> bool {
-    let Some(surface) = scene.scene.surfaces.get(&contact.master) else {
-        return false;
+/// Whether the edges of the master of a contact may become slaves by themselves: those of another body, or of a rigid surface whose
+/// motion is prescribed, in a contact that leaves its passes to the default.
+pub(super) fn edges_may(scene: &LoadedScene, contact: &Contact) -> bool {
+    let body = |set: &str| set.split('.').next().map(str::to_owned);
+    let prescribed = match scene.scene.surfaces.get(&contact.master) {
+        Some(surface) => surface.motion.free.is_none(),
+        None => body(&contact.slave) != body(&contact.master),
     };
     let solution = &scene.scene.solution;
     contact.passes == Passes::Auto
         && !matches!(contact.friction, Some(Friction::Orthotropic { .. }))
-        && surface.motion.free.is_none()
+        && prescribed
         && solution.kinematics != Kinematics::Small
         && solution.dynamics.is_none()
+}
+
+/// Whether the slave of a contact may have more points by itself: its nodes on a rigid surface, in a contact that leaves them to the
+/// default and whose tractions are those of penalties at its points.
+pub(super) fn points_may(scene: &LoadedScene, contact: &Contact) -> bool {
+    contact.points == Points::Auto
+        && contact.augmentation.is_none()
+        && scene.scene.surfaces.contains_key(&contact.master)
+}
+
+/// The scene with Gauss points as the slave points of some contacts.
+pub(super) fn with_points(
+    scene: &LoadedScene,
+    before: Option<&Safe>,
+    time: Option<f64>,
+    contacts: &[&str],
+) -> Option<Safe> {
+    let mut safe = Safe::of(scene, before);
+    let mut found = Vec::new();
+    for name in contacts {
+        let contact = safe.loaded.scene.contacts.get_mut(*name)?;
+        if contact.points == Points::Auto {
+            contact.points = Points::Gauss(SEEING);
+            found.push(format!("`{name}`"));
+        }
+    }
+    let text = format!(
+        "while the surface had sunk into the slave between its nodes; it was repeated with {SEEING} x {SEEING} Gauss points a face as \
+         slave points (`\"points\": \"nodes\"` keeps them)"
+    );
+    safe.notes.push(stopped(&found, time, &text));
+    (!found.is_empty()).then_some(safe)
 }
 
 /// The scene with the rims of rigid surfaces as slaves, in every contact that may have them.
@@ -111,20 +148,48 @@ pub(super) fn with_rims(
 ) -> Option<Safe> {
     let text = "while an edge of the surface had sunk into the slave, between its points; it was repeated with such edges as slaves \
                 too (`\"passes\": \"edges\"`; `\"one\"` leaves them out)";
-    let may = |contact: &Contact| rims_may(scene, contact);
+    let may = |contact: &Contact| edges_may(scene, contact);
     with_these(scene, before, time, (may, Passes::Edges, text))
 }
 
-/// The scene without the rims of rigid surfaces as slaves, where a run with them stopped as well.
-pub(super) fn without_rims(
+/// The scene without edges of masters and Gauss points as slaves, where a run with them stopped as well.
+pub(super) fn seeing_less(
     scene: &LoadedScene,
     before: Option<&Safe>,
     time: Option<f64>,
 ) -> Option<Safe> {
-    let text = "with edges of the surface as slaves, too; it was repeated without them, in smaller steps than they were given \
-                before (`\"passes\": \"one\"` has that from the start): what the edges carry is wrong by what they sink in";
-    let may = |contact: &Contact| rims_may(scene, contact);
-    with_these(scene, before, time, (may, Passes::One, text))
+    let edges = "with edges of the surface as slaves, too; it was repeated without them, in smaller steps than they were given \
+                 before (`\"passes\": \"one\"` has that from the start): what the edges carry is wrong by what they sink in";
+    let points = "with Gauss points as slave points, too; it was repeated with the nodes, in smaller steps than they were given before \
+                  (`\"points\": \"nodes\"` has that from the start)";
+    let mut safe = Safe::of(scene, before);
+    let [mut of_edges, mut of_points] = [Vec::new(), Vec::new()];
+    for (name, contact) in &scene.scene.contacts {
+        let now = safe.loaded.scene.contacts.get_mut(name)?;
+        let key = pointer(&["contacts", name, "passes"]);
+        if edges_may(scene, contact) && !scene.has(&key) {
+            if now.passes == Passes::Edges {
+                of_edges.push(format!("`{name}`"));
+            }
+            now.passes = Passes::One;
+        }
+        if points_may(scene, contact) {
+            if now.points != Points::Auto {
+                of_points.push(format!("`{name}`"));
+            }
+            now.points = Points::Nodes;
+        }
+    }
+    if of_edges.is_empty() && of_points.is_empty() && before.is_some() {
+        return None;
+    }
+    safe.notes.clear();
+    for (found, text) in [(of_edges, edges), (of_points, points)] {
+        if !found.is_empty() {
+            safe.changed.push(stopped(&found, time, text));
+        }
+    }
+    Some(safe)
 }
 
 /// The scene with other passes of some contacts.
@@ -146,15 +211,8 @@ fn with_these(
     if found.is_empty() {
         return None;
     }
-    let told = stopped(&found, time, text);
-    match passes {
-        // Of what the edges carry there is no doubt any more.
-        Passes::Edges => safe.notes.push(told),
-        _ => {
-            safe.notes.clear();
-            safe.changed.push(told);
-        }
-    }
+    // Of what the edges carry there is no doubt any more.
+    safe.notes.push(stopped(&found, time, text));
     Some(safe)
 }
 
@@ -243,8 +301,27 @@ fn stopped(contacts: &[String], time: Option<f64>, text: &str) -> String {
     )
 }
 
+/// The choices of contacts that may have more slave points: all choices of a few, of many all of them.
+fn with_more_points(scene: &LoadedScene) -> Vec<Vec<&str>> {
+    let contacts = scene.scene.contacts.iter();
+    let may = contacts.filter(|(_, contact)| points_may(scene, contact));
+    let names: Vec<&str> = may.map(|(name, _)| name.as_str()).collect();
+    match names.len() {
+        0 => Vec::new(),
+        n @ ..=FEW => (1..1u32 << n)
+            .map(|bits| {
+                let chosen = (0..n).filter(|k| bits >> k & 1 == 1);
+                chosen.map(|k| names[k]).collect()
+            })
+            .collect(),
+        _ => vec![names],
+    }
+}
+
 /// Bodies of a scene up to which all choices of them are looked through.
 const MANY: usize = 6;
+/// The same of contacts that may have more slave points.
+const FEW: usize = 2;
 
 /// The variant of the scene that a folder holds an unfinished run of, where it is one with other elements for some bodies, or
 /// with other contacts.
@@ -271,10 +348,17 @@ pub(in crate::run) fn variant_in(out: &Path, scene: &LoadedScene) -> Option<Safe
     });
     let elements: Vec<Safe> = elements.collect();
     let mut all: Vec<Option<Safe>> = elements.into_iter().map(Some).chain([None]).collect();
+    let base = all.clone();
+    for names in with_more_points(scene) {
+        let more = base
+            .iter()
+            .filter_map(|before| with_points(scene, before.as_ref(), None, &names));
+        all.extend(more.map(Some));
+    }
     for with in [
         with_edges,
         with_rims,
-        without_rims,
+        seeing_less,
         with_exchanged,
         with_smooth,
     ] {

@@ -1,17 +1,17 @@
 //! Edges of rigid surfaces that are no slaves, as steps are accepted: one that sinks in between slave points is seen by none of them.
-use super::bearing::Bearing;
 use crate::model::build::master_faces;
 use crate::model::error::number;
 use crate::model::master::moving_facets;
 use crate::model::rims::{self, SlaveFaces};
 use crate::model::{Model, edges, penalty};
+use crate::run::bearing::Bearing;
 use covact_geometry::project::RimPoint;
 use covact_geometry::{MovingFacets, Vec3};
 use nalgebra::Point3;
 
-/// An edge that is deeper in the slave than this part of the slave's elements, or of the slave's way where that is shorter, has sunk
-/// in. Less is what any faces that are flat between their nodes do.
-const SUNK: f64 = 0.05;
+/// An edge that is deeper in the slave than the first part of the slave's elements, or the second of the slave's way where that is less,
+/// has sunk in. Less is what any faces that are flat between their nodes do.
+const SUNK: [f64; 2] = [0.05, 0.02];
 /// Part of the slave's elements below which a depth says nothing, however short the slave's way is.
 const NOTHING: f64 = 1e-4;
 /// Cosine of the angle between the slave's normal and that of either side of an edge, about .2, above which the slave lies on that
@@ -20,7 +20,7 @@ const BENT: f64 = 0.98;
 
 /// The edges of all rigid surfaces that may sink in.
 #[derive(Debug, Default)]
-pub(super) struct RimWatch(Vec<Watched>);
+pub(in crate::run) struct RimWatch(Vec<Watched>);
 
 /// The edges of the master of a pair.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ const DECIDES: f64 = 0.5;
 
 /// An edge that has sunk in.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Sunk {
+pub(in crate::run) struct Sunk {
     /// Number of the pair.
     pub pair: usize,
     /// The edge may become a slave in another run.
@@ -128,7 +128,8 @@ impl Watched {
             nodes.map(way).fold(0.0, f64::max)
         };
         let own = depth - penetration;
-        let sunk = bent || own > NOTHING * self.size && own > SUNK * self.size.min(way());
+        let sunk =
+            bent || own > NOTHING * self.size && own > (SUNK[0] * self.size).min(SUNK[1] * way());
         sunk.then_some(Sunk {
             pair: self.pair,
             may: self.may,

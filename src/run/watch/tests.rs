@@ -99,3 +99,33 @@ fn energy_that_a_jump_loses_is_told_from_that_of_large_steps() {
     };
     assert_eq!(snaps.jumped(&open, 2, &work, 9.8), None);
 }
+
+/// A penalty that becomes three times as stiff takes out at most two thirds of what it stored, and puts in at most twice as much;
+/// what a step lacks beyond that and beyond the error of its rule is not put in by it. Nothing is known of a first step.
+#[test]
+fn a_change_of_penalties_explains_what_it_stored() {
+    let watch = Watch {
+        stored: 3.0,
+        penalties: vec![100.0],
+        ratios: vec![0.0],
+        ..Watch::new(&pressed(false))
+    };
+    let eased = watch.eased([&[300.0], &[0.0]]);
+    assert!((eased - 3.0).abs() < 1e-12, "{eased}");
+    let work = Work {
+        eased,
+        coarse: 0.5,
+        changed: true,
+        ..Work::default()
+    };
+    for (step, lacks, put_in) in [
+        (2, -1.5, -1.5),
+        (2, -2.4, -2.4),
+        (2, -9.0, -2.0),
+        (2, 9.0, 6.0),
+        (1, -9.0, -9.0),
+    ] {
+        let found = watch.put_in_by_penalties(step, &work, lacks);
+        assert!((found - put_in).abs() < 1e-12, "{step} {lacks}: {found}");
+    }
+}

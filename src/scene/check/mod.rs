@@ -90,7 +90,7 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
     sets.check(c, &format!("{at}/slave"), &contact.slave, true, "contact");
     check_master(c, at, contact, scene, sets);
     match contact.points {
-        Points::Nodes => {}
+        Points::Auto | Points::Nodes => {}
         Points::Gauss(n) => c.whole(&format!("{at}/points/gauss"), n.into(), 1, 10),
         Points::Lobatto(n) => c.whole(&format!("{at}/points/lobatto"), n.into(), 2, 10),
         Points::Segments(n) => {
@@ -131,7 +131,7 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
             Some("leave `passes` out".into()),
         );
     }
-    if contact.gap == Gap::Averaged && contact.points == Points::Nodes {
+    if contact.gap == Gap::Averaged && matches!(contact.points, Points::Auto | Points::Nodes) {
         c.add(
             &format!("{at}/gap"),
             "an averaged gap is the mean over points of the faces, but the points are the nodes"

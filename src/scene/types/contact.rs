@@ -141,8 +141,11 @@ pub enum MasterSurface {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Points {
-    /// Nodes, each with its tributary area.
+    /// Nodes, or Gauss points where the master is another body: as many as see its faces, where those of the slave are coarser and the
+    /// nodes of both sides do not meet.
     #[default]
+    Auto,
+    /// Nodes, each with its tributary area.
     Nodes,
     /// Gauss points, this many along each direction of a face (1 to 10).
     Gauss(u8),

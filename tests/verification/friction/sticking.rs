@@ -125,7 +125,7 @@ fn what_a_raise_has_shown_is_not_told_of_as_an_error() {
                 {"table": [[0, 0], [1, 0], [2, 4]]}, 0, {"table": [[0, 0], [1, -2.5], [2, -2.5]]}
             ]}
         }},
-        "contacts": {"press": {"slave": "pad.top", "master": "punch", "friction": 0.4}},
+        "contacts": {"press": {"slave": "pad.top", "master": "punch", "points": "nodes", "friction": 0.4}},
         "supports": {
             "ground": {"on": "pad.bottom", "fixed": true},
             "slice": {"on": ["pad.y_min", "pad.y_max"], "symmetry": "y"}

@@ -22,7 +22,7 @@ fn scene(die: impl FnOnce(&mut Value)) -> Value {
             "mesh": { "block": { "min": [0, 0, -3], "max": [12, 1, 0], "elements": [32, 1, 6] } },
             "material": "slab", "element": "h8_displacement"
         } },
-        "contacts": { "c": { "slave": "slab.top", "master": "die" } },
+        "contacts": { "c": { "slave": "slab.top", "master": "die", "points": "nodes" } },
         "supports": {
             "floor": { "on": "slab.bottom", "fixed": true },
             "plane": { "on": ["slab.y_min", "slab.y_max"], "symmetry": "y" }
@@ -124,7 +124,8 @@ fn a_much_softer_master_is_noted() {
 fn a_run_that_crawls_is_repeated_with_the_softer_side_as_the_slave() {
     let with_sides = |slave: &str, master: &str| {
         let mut scene = scene(deformable);
-        scene["contacts"]["c"] = json!({ "slave": slave, "master": master, "friction": 0.3 });
+        scene["contacts"]["c"] =
+            json!({ "slave": slave, "master": master, "points": "nodes", "friction": 0.3 });
         scene["solution"]["end_time"] = json!(1.5);
         solve(&scene)
     };

@@ -1,0 +1,240 @@
+//! How deep rigid surfaces sink into slave faces between the slave points, as steps are accepted.
+//!
+//! A round tool of radius `R` sinks `s^2 / (8 R)` into a flat face between two points that are `s` apart, and farther where it does not
+//! lie over one of them. Against the way by which the slave is deformed that is about the part that forces are off by, and
+//! where the tool is not over a point in the middle they point to a side, too.
+use super::deformed;
+use crate::fem::face::Quad;
+use crate::fem::quadrature::lobatto;
+use crate::mesh::{Face, Mesh};
+use crate::model::Model;
+use crate::model::error::number;
+use crate::scene::Points;
+use covact_geometry::{EdgeKind, Foot, Location, Vec3};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Part of the way by which the slave is deformed that a surface may sink in between slave points.
+const SUNK: f64 = 0.02;
+/// Part of the slave's elements below which a depth says nothing, however little the slave is deformed.
+const NOTHING: f64 = 1e-3;
+/// Angle between the normals at neighbouring places from which on an edge lies between them (radians), as of sharp edges elsewhere.
+const EDGE: f64 = 0.5;
+
+/// The pairs that are looked at.
+#[derive(Debug, Default)]
+pub(in crate::run) struct Between {
+    watched: Vec<Watched>,
+    end: f64,
+}
+
+/// A pair with a rigid master.
+#[derive(Debug)]
+struct Watched {
+    pair: usize,
+    /// It may have more slave points in another variant of the run.
+    may: bool,
+    /// Places on every face that its points see least, in its parameters.
+    places: Vec<[f64; 2]>,
+    /// Per face how far it lies off the curved surface that it stands for (length).
+    bulges: Vec<f64>,
+    /// Nodes of the slave faces.
+    nodes: Vec<u32>,
+    /// Start of the step in which it came into contact.
+    since: Option<f64>,
+    /// How deep the surface has sunk in, and the same as a part of the way, in the last accepted step.
+    last: [f64; 2],
+}
+
+/// Places on a face that slave points of a kind see least.
+fn places(points: Points) -> Option<Vec<[f64; 2]>> {
+    let n = match points {
+        Points::Auto | Points::Nodes => 5,
+        Points::Gauss(n) => n as usize + 2,
+        Points::Lobatto(n) => n as usize + 1,
+        Points::Segments(_) => return None,
+    };
+    let rule = lobatto(n).ok()?;
+    let line = rule.points();
+    Some(
+        line.iter()
+            .flat_map(|u| line.iter().map(|v| [*u, *v]))
+            .collect(),
+    )
+}
+
+/// Per face how far its middle lies off the curved surface through its nodes, by their normals: twice an edge's `L (m - n) / 8` at most.
+fn bulges(mesh: &Mesh, faces: &[Face]) -> Vec<f64> {
+    let mut normals: HashMap<u32, Vec3> = HashMap::new();
+    for face in faces {
+        let all = mesh.face_nodes(*face);
+        let normal = Quad::new(&all, |n| mesh.nodes[n as usize]).area_vector(0.0, 0.0);
+        for node in all.nodes() {
+            *normals.entry(*node).or_insert_with(Vec3::zeros) += normal;
+        }
+    }
+    let edge = |[a, b]: [u32; 2]| {
+        let [n, m] = [a, b].map(|node| normals[&node].try_normalize(0.0).unwrap_or_default());
+        let along = mesh.nodes[b as usize] - mesh.nodes[a as usize];
+        along.dot(&(m - n)).abs() / 8.0
+    };
+    (faces.iter())
+        .map(|face| {
+            let [a, b, c, d] = mesh.face_corners(*face);
+            edge([a, b]).max(edge([c, d])) + edge([a, c]).max(edge([b, d]))
+        })
+        .collect()
+}
+
+/// Whether the normals at the feet of neighbouring places on a face, which lie on a square grid, differ as at an edge.
+fn bent(feet: &[Option<Foot>]) -> bool {
+    let n = feet.len().isqrt();
+    let apart = |a: usize, b: usize| match (&feet[a], &feet[b]) {
+        (Some(a), Some(b)) => a.normal.dot(&b.normal) < EDGE.cos(),
+        _ => false,
+    };
+    (0..n * n).any(|k| k % n + 1 < n && apart(k, k + 1) || k + n < n * n && apart(k, k + n))
+}
+
+impl Watched {
+    fn new(model: &Model, pair: usize, may: bool) -> Option<Self> {
+        let own = &model.pairs[pair];
+        own.rigid_master()?;
+        let body = &model.bodies[own.body];
+        if own.faces.is_empty() || body.block.sheet().is_some() || own.edges_of.is_some() {
+            return None;
+        }
+        let mut nodes: Vec<u32> = (own.faces.iter())
+            .flat_map(|f| body.mesh.face_nodes(*f).nodes().to_vec())
+            .map(|n| n + body.first_node)
+            .collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        Some(Watched {
+            pair,
+            may,
+            places: places(own.sampled)?,
+            bulges: bulges(&body.mesh, &own.faces),
+            nodes,
+            since: None,
+            last: [0.0; 2],
+        })
+    }
+
+    /// How deep the surface is in the faces at displacements `u` and time `to` (length).
+    fn depth(&self, model: &Model, u: &[f64], to: f64) -> Option<f64> {
+        let pair = &model.pairs[self.pair];
+        let surface = &model.surfaces[pair.rigid_master()?];
+        let master = surface.at(to, u).ok()?;
+        let body = &model.bodies[pair.body];
+        let faces = pair.faces.par_iter().zip(&self.bulges);
+        let deepest = faces.map_init(Vec::new, |feet, (face, bulge)| {
+            let quad = Quad::new(&body.mesh.face_nodes(*face), |n| {
+                model.position((n + body.first_node) as usize, u)
+            });
+            let middle = quad.point(0.0, 0.0);
+            let reach = (quad.nodes[0] - middle).norm() + pair.offset + surface.depth;
+            if master.foot(&middle, None, reach).is_none() {
+                return 0.0;
+            }
+            feet.clear();
+            feet.extend(
+                (self.places.iter()).map(|[u, v]| master.foot(&quad.point(*u, *v), None, reach)),
+            );
+            // A face that lies across an edge is bent around it, which is another question.
+            if bent(feet) {
+                return 0.0;
+            }
+            let seen = feet.iter().flatten().filter(|foot| match foot.location {
+                Location::Face => true,
+                Location::Edge { kind, .. } => kind == EdgeKind::Smooth,
+                _ => false,
+            });
+            let depths = seen.map(|foot| pair.offset - foot.signed_distance);
+            let near = depths.filter(|depth| *depth < surface.depth);
+            near.fold(0.0, |most: f64, depth| most.max(depth - bulge))
+        });
+        Some(deepest.reduce(|| 0.0, f64::max))
+    }
+
+    /// Looks at an accepted step, from time `from` to `to`; whether more slave points are worth a run of their own. The way is taken to
+    /// go on as it did since contact began.
+    fn looks(
+        &mut self,
+        model: &Model,
+        u: &[f64],
+        [from, to, end]: [f64; 3],
+        penetration: f64,
+    ) -> bool {
+        let size = model.pairs[self.pair].element_size;
+        let depth = match model.pairs[self.pair].points.is_empty() {
+            true => None,
+            false => self.depth(model, u, to),
+        };
+        let own = depth.map_or(0.0, |depth| depth - penetration);
+        if own > NOTHING * size || penetration > 0.0 {
+            self.since.get_or_insert(from);
+        }
+        if own <= NOTHING * size {
+            self.last = [0.0; 2];
+            return false;
+        }
+        let way = deformed(&self.nodes, u).max(own);
+        self.last = [own, own / way];
+        let since = self.since.unwrap_or(from);
+        self.may && own / way * (to - since) > SUNK * (end - since)
+    }
+}
+
+impl Between {
+    /// The pairs with rigid masters, of which those in `may` may have more slave points in another variant of the run, until the time
+    /// `end`.
+    pub fn new(model: &Model, end: f64, may: &[usize]) -> Self {
+        if model.small.is_some() || model.dynamics.is_some() {
+            return Between::default();
+        }
+        let pairs = 0..model.pairs.len();
+        Between {
+            watched: pairs
+                .filter_map(|i| Watched::new(model, i, may.contains(&i)))
+                .collect(),
+            end,
+        }
+    }
+
+    /// Looks at an accepted step; the pairs of which more slave points are worth a run of their own.
+    pub fn look(
+        &mut self,
+        model: &Model,
+        u: &[f64],
+        [from, to]: [f64; 2],
+        penetration: &[f64],
+    ) -> Vec<usize> {
+        let end = self.end;
+        let mut found = Vec::new();
+        for watched in &mut self.watched {
+            if watched.looks(model, u, [from, to, end], penetration[watched.pair]) {
+                found.push(watched.pair);
+            }
+        }
+        found
+    }
+
+    /// What is told at the end of surfaces that have sunk in there.
+    pub fn warnings(&self, model: &Model) -> Vec<String> {
+        let sunk = self.watched.iter().filter(|w| w.last[1] > SUNK);
+        sunk.map(|w| {
+            let pair = &model.pairs[w.pair];
+            format!(
+                "contact `{}`: {} sinks {} into `{}` between its slave points, {:.0} % of what these faces are deformed by: forces may be \
+                 off by as much, and point to a side. Take more `points` a face, or a finer mesh",
+                pair.name,
+                pair.master_words(model),
+                number(w.last[0]),
+                pair.slave,
+                100.0 * w.last[1]
+            )
+        })
+        .collect()
+    }
+}

@@ -1,0 +1,47 @@
+//! What slave points do not see: edges of masters, and how deep surfaces sink in, between them.
+mod between;
+mod edges;
+mod rims;
+
+use crate::model::Model;
+use between::Between;
+use edges::EdgeWatch;
+use rims::RimWatch;
+
+/// Pairs whose slaves may see more in another variant of the run.
+#[derive(Debug, Clone, Default)]
+pub(in crate::run) struct MaySee {
+    /// Those whose masters may have their edges as slaves.
+    pub edges: Vec<usize>,
+    /// Those that may have more slave points.
+    pub points: Vec<usize>,
+}
+
+/// What is looked for in every accepted step.
+#[derive(Debug, Default)]
+pub(in crate::run) struct Unseen {
+    pub rims: RimWatch,
+    pub edges: EdgeWatch,
+    pub between: Between,
+}
+
+impl Unseen {
+    /// What may sink in unseen until the time `end`.
+    pub fn new(model: &Model, end: f64, may: &MaySee) -> Self {
+        Unseen {
+            rims: RimWatch::new(model, end, &may.edges),
+            edges: EdgeWatch::new(model, &may.edges),
+            between: Between::new(model, end, &may.points),
+        }
+    }
+}
+
+/// The farthest that a node of some faces has moved against their mean motion, at displacements `u` (length).
+fn deformed(nodes: &[u32], u: &[f64]) -> f64 {
+    let at = |n: &u32| {
+        let first = 3 * *n as usize;
+        covact_geometry::Vec3::new(u[first], u[first + 1], u[first + 2])
+    };
+    let mean = nodes.iter().map(at).sum::<covact_geometry::Vec3>() / nodes.len().max(1) as f64;
+    (nodes.iter().map(|n| (at(n) - mean).norm())).fold(0.0, f64::max)
+}
