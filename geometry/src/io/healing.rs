@@ -1,7 +1,8 @@
 //! Faces that harm more than they add: slivers narrower than the resolution of the file, and faces that are there twice.
 
-use super::brep::{Grant, Metered, bytes_of_set};
+use super::brep::{Grant, Metered, STEPS, set_of};
 use super::report::{CadFile, CadPatch};
+use crate::project::Joining;
 use crate::surface::{Surface, Vec3};
 use crate::{NurbsPatch, PatchSet};
 use serde::Serialize;
@@ -9,14 +10,10 @@ use std::collections::HashMap;
 
 /// Slivers are narrower than the file's resolution, and the resolution counts within these shares of the size.
 const NARROW: [f64; 2] = [1e-8, 1e-6];
-/// Border points in each span of a curve.
-const STEPS: usize = 4;
 /// Boxes of faces that may be one differ by this share of their diagonal at most.
 const ALIKE: f64 = 0.02;
 /// Faces compared with one face.
 const COMPARED: usize = 32;
-/// Cost, in evaluations, of each border point of a face when a set is made of it.
-const BORDER: u64 = 4;
 
 /// A face that was read but left out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -302,7 +299,7 @@ impl<'f> Sets<'f> {
         let mut wanted = 0u64;
         for k in pair {
             let patch = &file.patches[k].patch;
-            let bytes = || bytes_of_set(patch, border(patch));
+            let bytes = || Metered::trimmed(patch, grant).bytes_for_projections();
             wanted = wanted.saturating_add(*self.bytes.entry(k).or_insert_with(bytes));
         }
         let held = self.made.keys().filter(|k| !pair.contains(k));
@@ -315,16 +312,14 @@ impl<'f> Sets<'f> {
         for k in pair {
             let make = || match wanted > room {
                 true => None,
-                false => set_of(&file.patches[k].patch, grant),
+                false => {
+                    let patch = Metered::trimmed(&file.patches[k].patch, grant);
+                    set_of(vec![patch], Joining::default(), grant).ok()
+                }
             };
             self.made.entry(k).or_insert_with(make);
         }
     }
-}
-
-/// Number of border points of a face.
-fn border(patch: &NurbsPatch) -> usize {
-    rings(patch).iter().map(Vec::len).sum()
 }
 
 /// Largest distance between two faces, if they coincide.
@@ -347,14 +342,6 @@ fn coincide<'f>(
     let there = apart(one, other, near, facing)?;
     let found = there.max(apart(other, one, near, facing)?);
     (!grant.is_spent()).then_some(found)
-}
-
-/// A set of one face that charges searches to the grant; `None` without work left.
-fn set_of<'f>(patch: &'f NurbsPatch, grant: &'f Grant) -> Option<PatchSet<Metered<'f>>> {
-    let points = border(patch) as u64;
-    let granted = grant.spend(points * BORDER * Grant::evaluation(patch.degree()));
-    let set = || PatchSet::new(vec![Metered::trimmed(patch, grant)], None).ok();
-    granted.then(set).flatten()
 }
 
 /// Largest distance of points of `one` from `other`, if none is larger than `near`; with `facing`, only where the normals
