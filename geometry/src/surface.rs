@@ -93,6 +93,13 @@ pub trait Surface: Clone + Send + Sync + std::fmt::Debug {
     fn may_go_on(&self) -> bool {
         true
     }
+
+    /// Whether the polyline by which an edge is compared with others may have another point where the edge turns. Override this
+    /// to bound the memory for joining patches; the default costs nothing.
+    #[inline]
+    fn may_sample(&self) -> bool {
+        true
+    }
 }
 
 /// Derivatives of `numerator / weight` from those of both, in the order 0 | 1, 2 | 11, 12, 22: the quotient rule solved

@@ -45,7 +45,7 @@ pub fn disagreement(read: &NurbsPatch, other: &NurbsPatch, grant: &Grant) -> Opt
     let area = |patch| {
         let patch = Metered::trimmed(patch, grant);
         let work = patch.work_of_area();
-        let set = set_of(vec![patch], Joining::default(), grant)?;
+        let set = set_of(vec![patch], Joining::default(), (grant, 0))?;
         match grant.spend(work) {
             true => Ok(set.areas()[0]),
             false => Err(NoSet::Work),

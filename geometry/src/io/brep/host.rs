@@ -187,10 +187,10 @@ impl<'a> Host<'a> {
         }
         let patch = Metered::untrimmed(self.patch, self.grant);
         // A face may have two hosts at a time: its boundary is read again where its curves do not meet.
-        let wanted = patch.bytes_for_projections().saturating_mul(2);
-        let made = match wanted > self.grant.passing_bytes() {
+        let wanted = patch.bytes_for_projections();
+        let made = match wanted.saturating_mul(2) > self.grant.passing_bytes() {
             true => Err(NoSet::Memory),
-            false => set_of(vec![patch], Joining::default(), self.grant),
+            false => set_of(vec![patch], Joining::default(), (self.grant, wanted)),
         };
         match made {
             Ok(set) => Ok(Some(set)),

@@ -107,26 +107,38 @@ pub enum NoSet {
     Patches(#[from] PatchSetError),
 }
 
-/// A set of patches, as far as the grant allows.
+/// A set of patches, as far as the grant allows with so many bytes in use for other sets.
 pub fn set_of<'a>(
     patches: Vec<Metered<'a>>,
     joining: Joining,
-    grant: &Grant,
+    (grant, in_use): (&Grant, u64),
 ) -> Result<PatchSet<Metered<'a>>, NoSet> {
     let own: u64 = patches.iter().map(Metered::bytes).sum();
-    if own.saturating_add(bytes_of_pairs(&patches)) > grant.passing_bytes() {
-        return Err(NoSet::Memory);
-    }
+    let wanted = own.saturating_add(bytes_of_pairs(&patches));
+    let room = grant.passing_bytes();
+    let left = room.checked_sub(wanted.saturating_add(in_use));
+    // At least one point more: none left means that there was no room for one.
+    grant.allow_more(left.ok_or(NoSet::Memory)?.saturating_add(1));
     let work: u64 = patches.iter().map(|p| p.border() * BORDER * p.cost).sum();
     if !grant.spend(work) {
         return Err(NoSet::Work);
     }
     let set = PatchSet::join(patches, joining)?;
+    // Polylines without the points that they need are no basis to compare edges.
+    if !grant.take_more(0) {
+        return Err(NoSet::Memory);
+    }
     // Edges that were not compared for want of work are not joined.
     match grant.is_spent() {
         true => Err(NoSet::Work),
         false => Ok(set),
     }
+}
+
+/// Bytes of the polylines of a set's edges.
+pub fn bytes_of_edges(set: &PatchSet<Metered>) -> u64 {
+    let points = set.topology.edges.iter().map(|e| e.samples.len() as u64);
+    points.sum::<u64>() * KEPT_POINT
 }
 
 /// Bytes of the pairs of edges that are compared.
@@ -198,6 +210,10 @@ impl Surface for Metered<'_> {
     fn may_go_on(&self) -> bool {
         self.grant.spend(PART * self.cost)
     }
+
+    fn may_sample(&self) -> bool {
+        self.grant.take_more(TURN_POINT)
+    }
 }
 
 /// Bytes of the samples of an edge for each border point, while the vector of them grows; of a cell's box with its place in the
@@ -205,6 +221,9 @@ impl Surface for Metered<'_> {
 const BORDER_POINT: u64 = 600;
 const CELL_BYTES: u64 = 180;
 const PIECE_BYTES: u64 = 2_000;
+/// Bytes of a point of a polyline where an edge turns: while the polyline is made, and afterwards.
+const TURN_POINT: u64 = 200;
+const KEPT_POINT: u64 = 52;
 /// Bytes of a pair of edges, where patches whose boxes meet have as many pairs as edges.
 const PAIR_BYTES: u64 = 300;
 
@@ -285,7 +304,7 @@ mod tests {
             let grant = Grant::of_lines(0, 1000);
             grant.spend(grant.left() - left);
             let patches = [&one, &other].map(|p| Metered::untrimmed(p, &grant));
-            match set_of(patches.to_vec(), Joining::default(), &grant) {
+            match set_of(patches.to_vec(), Joining::default(), (&grant, 0)) {
                 Ok(set) => {
                     assert_eq!(set.edges(), plain.edges());
                     joined += 1;
@@ -301,7 +320,7 @@ mod tests {
         // Not the work, but the memory of a hundred of them is more than a file without a line may take.
         let grant = Grant::of_lines(0, 0);
         let patches = vec![Metered::untrimmed(&one, &grant); 100];
-        let refused = set_of(patches, Joining::default(), &grant);
+        let refused = set_of(patches, Joining::default(), (&grant, 0));
         assert_eq!(refused.err(), Some(NoSet::Memory));
     }
 }

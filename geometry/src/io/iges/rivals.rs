@@ -121,7 +121,8 @@ fn free_shares(
             tolerance: None,
             resolution: model.resolution(),
         };
-        let set = set_of(around.iter().map(patch).collect(), joining, grant)?;
+        let own = around.iter().map(patch).collect();
+        let set = set_of(own, joining, (grant, 0))?;
         let (mut free, mut all) = (0.0, 0.0);
         for (number, _) in (around.iter().enumerate()).filter(|(_, k)| rival(**k).is_some()) {
             let trim = set.patches()[number].trim();
