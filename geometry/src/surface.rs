@@ -86,10 +86,18 @@ pub trait Surface: Clone + Send + Sync + std::fmt::Debug {
     }
 
     /// Whether a search for closest points may continue. The search asks this for each piece, and each part of a piece, that it
-    /// examines. If the answer is `false`, it returns the best point found so far as not converged. Override this to bound the
-    /// work of a search; the default costs nothing.
+    /// examines. If the answer is `false`, it returns the best point found so far as not converged. Joining patches asks it for
+    /// each pair of edges that come near each other, and does not join those for which it is `false`. Override this to bound the
+    /// work of both; the default costs nothing.
     #[inline]
     fn may_go_on(&self) -> bool {
+        true
+    }
+
+    /// Whether the polyline by which an edge is compared with others may have another point where the edge turns. Override this
+    /// to bound the memory for joining patches; the default costs nothing.
+    #[inline]
+    fn may_sample(&self) -> bool {
         true
     }
 }

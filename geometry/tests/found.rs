@@ -296,6 +296,22 @@ fn loop_of_many_faces() {
     );
 }
 
+/// A loop that runs around the same circle 100 times: 250 points for each of its 400 quarters would take too much memory.
+#[test]
+fn loop_of_one_circle() {
+    let mut file = Builder::new();
+    let plane = file.add(128, FLAT);
+    let vertex = file.form(502, 1, "1,2.5,1.,0.");
+    let circle = file.add(100, "0.,2.,1.,2.5,1.,2.5,1.");
+    let edges = file.form(504, 1, &format!("1,{circle},{vertex},1,{vertex},1"));
+    let uses: Vec<String> = (0..100).map(|_| format!("0,{edges},1,1,0")).collect();
+    let a_loop = file.form(508, 1, &format!("100,{}", uses.join(",")));
+    file.form(510, 1, &format!("{plane},1,1,{a_loop}"));
+    let text = file.text();
+    let read = iges(Path::new("circle"), text.as_bytes()).expect("sound");
+    assert_eq!(read.patches.len(), 1, "{:?}", read.skipped);
+}
+
 /// Numbers so large that the box of every one has no width: 20 000 triangles, no two vertices alike.
 #[test]
 fn stl_far_away() {

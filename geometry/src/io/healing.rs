@@ -1,7 +1,8 @@
 //! Faces that harm more than they add: slivers narrower than the resolution of the file, and faces that are there twice.
 
-use super::brep::{Grant, Metered, bytes_of_set};
+use super::brep::{Grant, Metered, NoSet, STEPS, bytes_of_edges, set_of};
 use super::report::{CadFile, CadPatch};
+use crate::project::Joining;
 use crate::surface::{Surface, Vec3};
 use crate::{NurbsPatch, PatchSet};
 use serde::Serialize;
@@ -9,14 +10,10 @@ use std::collections::HashMap;
 
 /// Slivers are narrower than the file's resolution, and the resolution counts within these shares of the size.
 const NARROW: [f64; 2] = [1e-8, 1e-6];
-/// Border points in each span of a curve.
-const STEPS: usize = 4;
 /// Boxes of faces that may be one differ by this share of their diagonal at most.
 const ALIKE: f64 = 0.02;
 /// Faces compared with one face.
 const COMPARED: usize = 32;
-/// Cost, in evaluations, of each border point of a face when a set is made of it.
-const BORDER: u64 = 4;
 
 /// A face that was read but left out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -289,8 +286,8 @@ fn duplicates(
 #[derive(Default)]
 struct Sets<'f> {
     made: HashMap<usize, Option<PatchSet<Metered<'f>>>>,
-    /// Bytes of each, also of those that are gone.
-    bytes: HashMap<usize, u64>,
+    /// Bytes of each, also of those that are gone: those foreseen, and those of its edges.
+    bytes: HashMap<usize, [u64; 2]>,
     /// Whether some were not made, for they are too large.
     too_large: bool,
 }
@@ -299,32 +296,53 @@ impl<'f> Sets<'f> {
     /// Makes the sets of two faces; those of other faces go where there is no room for all.
     fn make(&mut self, file: &'f CadFile, pair: [usize; 2], grant: &'f Grant) {
         let room = grant.passing_bytes();
-        let mut wanted = 0u64;
+        let patch = |k: usize| Metered::trimmed(&file.patches[k].patch, grant);
         for k in pair {
-            let patch = &file.patches[k].patch;
-            let bytes = || bytes_of_set(patch, border(patch));
-            wanted = wanted.saturating_add(*self.bytes.entry(k).or_insert_with(bytes));
+            let foreseen = || [patch(k).bytes_for_projections(), 0];
+            self.bytes.entry(k).or_insert_with(foreseen);
         }
-        let held = self.made.keys().filter(|k| !pair.contains(k));
-        let held: u64 = held.map(|k| self.bytes[k]).sum();
         // What was compared long ago lies elsewhere.
-        if self.made.len() > 2 * COMPARED || held.saturating_add(wanted) > room {
+        if self.made.len() > 2 * COMPARED || self.in_use(pair) > room {
             self.made.clear();
         }
-        self.too_large |= wanted > room;
-        for k in pair {
-            let make = || match wanted > room {
-                true => None,
-                false => set_of(&file.patches[k].patch, grant),
-            };
-            self.made.entry(k).or_insert_with(make);
+        for (k, other) in [(pair[0], pair[1]), (pair[1], pair[0])] {
+            if self.made.contains_key(&k) {
+                continue;
+            }
+            let of_one = || vec![patch(k)];
+            let mut set = Err(NoSet::Memory);
+            if self.in_use(pair) <= room {
+                let in_use = self.in_use([other; 2]);
+                set = set_of(of_one(), Joining::default(), (grant, in_use));
+            }
+            let others = self.made.keys().any(|made| *made != other);
+            if others && set.as_ref().is_err_and(|e| *e == NoSet::Memory) {
+                self.made.retain(|made, _| *made == other);
+                let in_use = self.in_use([other; 2]);
+                set = set_of(of_one(), Joining::default(), (grant, in_use));
+            }
+            match &set {
+                Ok(set) => {
+                    let edges = bytes_of_edges(set);
+                    self.bytes.entry(k).and_modify(|bytes| bytes[1] = edges);
+                }
+                Err(reason) => self.too_large |= *reason == NoSet::Memory,
+            }
+            self.made.insert(k, set.ok());
         }
     }
-}
 
-/// Number of border points of a face.
-fn border(patch: &NurbsPatch) -> usize {
-    rings(patch).iter().map(Vec::len).sum()
+    /// Bytes of the sets that are there and of a pair.
+    fn in_use(&self, pair: [usize; 2]) -> u64 {
+        let others = self.made.keys().filter(|k| !pair.contains(k));
+        let [one, other] = pair;
+        let pair = [Some(one), (other != one).then_some(other)];
+        let all = others.copied().chain(pair.into_iter().flatten());
+        let bytes = all.filter_map(|k| self.bytes.get(&k));
+        bytes
+            .flatten()
+            .fold(0, |sum, &bytes| sum.saturating_add(bytes))
+    }
 }
 
 /// Largest distance between two faces, if they coincide.
@@ -347,14 +365,6 @@ fn coincide<'f>(
     let there = apart(one, other, near, facing)?;
     let found = there.max(apart(other, one, near, facing)?);
     (!grant.is_spent()).then_some(found)
-}
-
-/// A set of one face that charges searches to the grant; `None` without work left.
-fn set_of<'f>(patch: &'f NurbsPatch, grant: &'f Grant) -> Option<PatchSet<Metered<'f>>> {
-    let points = border(patch) as u64;
-    let granted = grant.spend(points * BORDER * Grant::evaluation(patch.degree()));
-    let set = || PatchSet::new(vec![Metered::trimmed(patch, grant)], None).ok();
-    granted.then(set).flatten()
 }
 
 /// Largest distance of points of `one` from `other`, if none is larger than `near`; with `facing`, only where the normals

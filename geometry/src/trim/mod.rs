@@ -7,6 +7,7 @@
 mod attach;
 mod index;
 mod monotone;
+mod polygon;
 
 pub use attach::{TrimNote, TrimNoteKind, Trimmed};
 pub use index::{BorderPoint, Part};
@@ -19,6 +20,7 @@ use index::Index;
 pub(crate) use monotone::choose;
 use monotone::monotone_pieces;
 pub(crate) use monotone::{Monotone, binomials};
+use polygon::polygon;
 
 /// Why a trim could not be made. Loops and curves count from zero, curves within their loop.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -227,16 +229,22 @@ impl Trim {
         out
     }
 
-    /// Polygons of the loops, closed (the first point is not repeated), nowhere farther than `tolerance` (a share of the
-    /// extent of the domain) from the curves.
+    /// Polygons of the loops, closed (the first point is not repeated), nowhere farther than `tolerance` from the curves, but
+    /// for rounding: a share of the extent of the domain, or of the loop in a direction in which that is larger.
     pub fn polygons(&self, tolerance: f64) -> Vec<Vec<[f64; 2]>> {
-        let mut out = vec![Vec::new(); self.loops.len()];
+        self.polygons_within(tolerance, usize::MAX)
+    }
+
+    /// The same, coarser where a polygon would have more than `most` points in addition to those at which its pieces begin.
+    pub(crate) fn polygons_within(&self, tolerance: f64, most: usize) -> Vec<Vec<[f64; 2]>> {
+        let mut pieces = vec![Vec::new(); self.loops.len()];
         for piece in &self.index.pieces {
             if let Some((number, _)) = self.place(piece.curve as usize) {
-                flatten(piece, self.extent, tolerance, &mut out[number]);
+                pieces[number].push(piece);
             }
         }
-        out
+        let polygon = |pieces: &Vec<&Monotone>| polygon(pieces, self.extent, tolerance, most);
+        pieces.iter().map(polygon).collect()
     }
 
     /// The monotone pieces, loop after loop.
@@ -358,56 +366,4 @@ fn close_chain(pieces: &mut Vec<Monotone>, start: usize, extent: [f64; 2]) {
 
 fn near(a: [f64; 2], b: [f64; 2], extent: [f64; 2]) -> bool {
     (0..2).all(|k| (a[k] - b[k]).abs() <= 1e-14 * extent[k])
-}
-
-/// Adds the first point of a piece and as many inner ones as the tolerance asks for.
-fn flatten(piece: &Monotone, extent: [f64; 2], tolerance: f64, out: &mut Vec<[f64; 2]>) {
-    out.push(piece.from);
-    if piece.net.len() == 2 {
-        return;
-    }
-    inner_points(
-        piece,
-        [0.0, 1.0],
-        [piece.from, piece.to],
-        extent,
-        tolerance,
-        0,
-        out,
-    );
-}
-
-fn inner_points(
-    piece: &Monotone,
-    [a, b]: [f64; 2],
-    [from, to]: [[f64; 2]; 2],
-    extent: [f64; 2],
-    tolerance: f64,
-    depth: u32,
-    out: &mut Vec<[f64; 2]>,
-) {
-    let scaled = |p: [f64; 2]| Vector2::new(p[0] / extent[0], p[1] / extent[1]);
-    let (u, v) = (scaled(from), scaled(to));
-    let off = |s: f64| {
-        let d = scaled(piece.point(s)) - u;
-        let run = v - u;
-        let share = (d.dot(&run) / run.norm_squared()).clamp(0.0, 1.0);
-        if share.is_nan() {
-            d.norm()
-        } else {
-            (d - run * share).norm()
-        }
-    };
-    let at = |share: f64| a + share * (b - a);
-    // A piece may bend twice between its ends, so three points are looked at.
-    let flat = [0.25, 0.5, 0.75]
-        .iter()
-        .all(|&s| off(at(s)) <= 0.5 * tolerance);
-    if flat || depth > 24 {
-        return;
-    }
-    let (s, p) = (at(0.5), piece.point(at(0.5)));
-    inner_points(piece, [a, s], [from, p], extent, tolerance, depth + 1, out);
-    out.push(p);
-    inner_points(piece, [s, b], [p, to], extent, tolerance, depth + 1, out);
 }

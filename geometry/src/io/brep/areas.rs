@@ -2,9 +2,12 @@
 
 use super::curves::Tally;
 use super::face::{Boundary, Face, Stretch};
+use super::grant::Grant;
 use super::host::Host;
 use super::loops::{GAP, loops};
-use crate::{NurbsPatch, PatchSet};
+use super::metered::{Metered, NoSet, set_of};
+use crate::NurbsPatch;
+use crate::project::Joining;
 
 /// Areas that differ by less than this share are the same face.
 const SAME: f64 = 0.01;
@@ -36,16 +39,27 @@ pub fn by_parameters(
     Some((trimmed.patch, tally, said))
 }
 
-/// Says how far the areas of a face as it was read and of the `other` one differ, if they do.
-pub fn disagreement(read: &NurbsPatch, other: &NurbsPatch) -> Option<String> {
-    let area = |patch: &NurbsPatch| {
-        let set = PatchSet::new(vec![patch.clone()], None).ok()?;
-        Some(set.areas()[0])
+/// Says how far the areas of a face as it was read and of the `other` one differ, if they do. Comparing them is charged to the
+/// grant.
+pub fn disagreement(read: &NurbsPatch, other: &NurbsPatch, grant: &Grant) -> Option<String> {
+    let area = |patch| {
+        let patch = Metered::trimmed(patch, grant);
+        let work = patch.work_of_area();
+        let set = set_of(vec![patch], Joining::default(), (grant, 0))?;
+        match grant.spend(work) {
+            true => Ok(set.areas()[0]),
+            false => Err(NoSet::Work),
+        }
     };
-    let (read, other) = (area(read)?, area(other)?);
-    ((read - other).abs() > SAME * read.max(other)).then(|| {
-        format!(
-            "as read its area is {read:.6}; its curves in the parameter plane would make it {other:.6}"
-        )
-    })
+    match area(read).and_then(|read| Ok((read, area(other)?))) {
+        Ok((read, other)) => ((read - other).abs() > SAME * read.max(other)).then(|| {
+            format!(
+                "as read its area is {read:.6}; its curves in the parameter plane would make it {other:.6}"
+            )
+        }),
+        Err(NoSet::Patches(_)) => None,
+        Err(reason) => Some(format!(
+            "its area was not compared with that which its curves in the parameter plane would make: {reason}"
+        )),
+    }
 }

@@ -45,6 +45,8 @@ pub struct Grant {
     work: AtomicU64,
     bytes: AtomicU64,
     passing: u64,
+    /// Bytes that the set which is being made may take in addition to what was foreseen.
+    more: AtomicU64,
     refusals: AtomicU32,
 }
 
@@ -55,6 +57,7 @@ impl Grant {
             work: AtomicU64::new(WORK[0] + WORK[1] * parameter as u64),
             bytes: AtomicU64::new(BYTES[0] + BYTES[1] * all as u64),
             passing: PASSING[0] + PASSING[1] * all as u64,
+            more: AtomicU64::new(0),
             refusals: AtomicU32::new(0),
         }
     }
@@ -138,6 +141,18 @@ impl Grant {
     /// Bytes that may be in use for a while: those granted and not taken, and some more.
     pub fn passing_bytes(&self) -> u64 {
         self.bytes.load(Relaxed) + self.passing
+    }
+
+    /// Lets a set that is made next take so many bytes more than was foreseen.
+    pub fn allow_more(&self, bytes: u64) {
+        self.more.store(bytes, Relaxed);
+    }
+
+    /// Takes some of these bytes; returns whether any are left.
+    pub fn take_more(&self, bytes: u64) -> bool {
+        let rest = self.more.load(Relaxed).saturating_sub(bytes);
+        self.more.store(rest, Relaxed);
+        rest > 0
     }
 
     /// Takes the memory of a cubic piece of a fitted boundary curve.

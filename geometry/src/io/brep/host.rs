@@ -1,9 +1,10 @@
 //! The surface under a face: its points at the file's parameters, and the parameters of points on it.
 
 use super::grant::{FOOT, Grant};
-use super::metered::Metered;
+use super::metered::{Metered, NoSet, set_of};
 use super::reparametrise::Reparametrise;
 use crate::basis::MAX_DEGREE;
+use crate::project::Joining;
 use crate::{NurbsCurve, NurbsPatch, PatchSet, Vec3};
 use nalgebra::Vector2;
 use std::cell::OnceCell;
@@ -28,7 +29,7 @@ pub struct Host<'a> {
     pub bridged: f64,
     /// A parallelogram: its origin, and the rows that take `x - origin` to shares of the domain.
     flat: Option<(Vec3, [Vec3; 2])>,
-    set: OnceCell<Option<PatchSet<Metered<'a>>>>,
+    set: OnceCell<Result<Option<PatchSet<Metered<'a>>>, String>>,
     pub grant: &'a Grant,
 }
 
@@ -163,14 +164,8 @@ impl<'a> Host<'a> {
     /// The foot of `q` on the surface, as near to the parameters `near` as periods allow, and its distance.
     pub fn foot(&self, q: &Vec3, near: Xi) -> Result<(Xi, f64), String> {
         self.grant.work(FOOT * self.evaluation())?;
-        let set = self.set.get_or_init(|| {
-            // A surface of which the coordinates hold hardly a digit is all one place: everything is nearest.
-            let [low, high] = self.patch.bounds();
-            if self.size <= 1e-10 * low.amax().max(high.amax()) {
-                return None;
-            }
-            PatchSet::new(vec![Metered::untrimmed(self.patch, self.grant)], None).ok()
-        });
+        let set = self.set.get_or_init(|| self.set());
+        let set = set.as_ref().map_err(String::clone)?;
         let hint = crate::Hint {
             patch: 0,
             xi: self.wrap(near),
@@ -181,6 +176,29 @@ impl<'a> Host<'a> {
         let foot = foot.ok_or("the surface has no closest points to project its border to")?;
         let xi = self.nearest_copy(Xi::from(foot.xi), near);
         Ok((xi, foot.distance))
+    }
+
+    /// A set of the surface alone; `None` where nothing can be projected onto it.
+    fn set(&self) -> Result<Option<PatchSet<Metered<'a>>>, String> {
+        // A surface of which the coordinates hold hardly a digit is all one place: everything is nearest.
+        let [low, high] = self.patch.bounds();
+        if self.size <= 1e-10 * low.amax().max(high.amax()) {
+            return Ok(None);
+        }
+        let patch = Metered::untrimmed(self.patch, self.grant);
+        // A face may have two hosts at a time: its boundary is read again where its curves do not meet.
+        let wanted = patch.bytes_for_projections();
+        let made = match wanted.saturating_mul(2) > self.grant.passing_bytes() {
+            true => Err(NoSet::Memory),
+            false => set_of(vec![patch], Joining::default(), (self.grant, wanted)),
+        };
+        match made {
+            Ok(set) => Ok(Some(set)),
+            Err(NoSet::Patches(_)) => Ok(None),
+            Err(reason) => Err(format!(
+                "its border would have to be projected onto the surface, and {reason}"
+            )),
+        }
     }
 
     /// Whether the surface has no border: it is closed in both directions, or in one between two poles.
@@ -239,4 +257,37 @@ fn flat(patch: &NurbsPatch, size: f64) -> Option<(Vec3, [Vec3; 2])> {
     }
     let rows = [(e1 * g22 - e2 * g12) / det, (e2 * g11 - e1 * g12) / det];
     Some((origin, rows))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::brep::BasePatch;
+
+    /// A wave of 60 x 60 control points, which a short file may hold in few bytes, has no place for projections in the memory
+    /// of that file, and has one in that of a long file.
+    #[test]
+    fn surfaces_too_large_for_their_file() {
+        let n = 60;
+        let points = (0..n * n).map(|k| {
+            let [x, y] = [k % n, k / n].map(|i| i as f64);
+            Vec3::new(x, y, x.sin() * y.cos())
+        });
+        let points: Vec<Vec3> = points.collect();
+        let knots: Vec<f64> = (0..n + 4).map(|i| i.clamp(3, n) as f64).collect();
+        let patch = NurbsPatch::new([3, 3], [knots.clone(), knots], [n, n], &points, None);
+        let base = BasePatch::exact(patch.unwrap());
+        let foot = |lines: usize| {
+            let grant = Grant::of_lines(lines, lines);
+            let host = Host::new(&base.patch, &base.parameters, 1e-6, &grant);
+            host.foot(
+                &Vec3::new(20.0, 30.0, 0.5),
+                host.domain.map(|[a, _]| a).into(),
+            )
+        };
+        let refused = foot(10).unwrap_err();
+        assert!(refused.contains("more memory than a file"), "{refused}");
+        let (_, distance) = foot(2_000).unwrap();
+        assert!(distance < 1.0, "{distance}");
+    }
 }

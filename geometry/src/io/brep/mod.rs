@@ -40,7 +40,7 @@ pub use grant::Grant;
 pub use host::Host;
 pub use knots::{merge_close, pieces};
 pub use loops::{GAP, loops, widest_gap};
-pub use metered::{Metered, bytes_of_set};
+pub use metered::{Metered, NoSet, STEPS, bytes_of_edges, set_of};
 pub use offset_fit::{normal, offset};
 pub use parameter_map::ParameterMap;
 pub use reparametrise::Reparametrise;

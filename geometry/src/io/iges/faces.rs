@@ -54,7 +54,7 @@ pub fn read(model: &Model, notes: &mut Vec<String>) -> Result<Outcome, Fail> {
     reader.notes.extend(drawing::external(&model.entries));
     reader.bridge()?;
     let rivals = std::mem::take(&mut reader.rivals);
-    rivals.settle(&mut reader.out, model.resolution(), reader.notes);
+    rivals.settle(&mut reader.out, model, reader.notes);
     if hidden > 0 {
         let text = format!("{hidden} hidden (blanked) surface(s) were asked for and read as well");
         reader.notes.push(text);
@@ -412,7 +412,7 @@ impl<'a> Reader<'a, '_> {
                     && self.model.grant.patch(patch).is_ok();
                 let other = other.then(|| by_parameters(&host, face, sort));
                 let rival = other.flatten().map(|(patch, other, told)| {
-                    said.extend(disagreement(&trimmed.patch, &patch));
+                    said.extend(disagreement(&trimmed.patch, &patch, host.grant));
                     Rival {
                         border: border_of(&patch),
                         patch,

@@ -4,11 +4,13 @@
 //! turned. What belongs to a part has edges in common with the faces around it.
 
 use super::super::report::CadPatch;
+use super::Model;
 use super::faces::Outcome;
-use crate::io::brep::{Tally, add};
+use crate::io::brep::{Metered, NoSet, Tally, add, set_of};
 use crate::io::report::FaceBorder;
 use crate::patch::PatchError;
 use crate::project::{Joining, PatchSet};
+use crate::surface::Surface;
 use crate::{NurbsPatch, Vec3};
 
 /// Surfaces within this share of a face's size may be its neighbours.
@@ -51,7 +53,7 @@ impl Extend<(u32, u32, Rival)> for Rivals {
 impl Rivals {
     /// Takes for all of them the kind of curves with which more of their edges have a neighbour; as they were read if none
     /// has clearly more.
-    pub fn settle(self, out: &mut Outcome, resolution: Option<f64>, notes: &mut Vec<String>) {
+    pub fn settle(self, out: &mut Outcome, model: &Model, notes: &mut Vec<String>) {
         let place = |&(entity, instance, _): &(u32, u32, Rival)| {
             let own = |p: &CadPatch| (p.entity, p.instance) == (entity, instance);
             out.patches.iter().position(own)
@@ -64,12 +66,18 @@ impl Rivals {
         if standing.is_empty() {
             return;
         }
-        let shares = free_shares(&out.patches, &standing, resolution);
-        let chosen = usize::from(shares.is_some_and(|[own, other]| other + CLEARLY < own));
-        if let Some(shares) = shares
-            && shares[0] != shares[1]
-        {
-            notes.push(told(&out.patches, &standing, shares, chosen));
+        let shares = free_shares(&out.patches, &standing, model);
+        let clearly = |[own, other]: [f64; 2]| other + CLEARLY < own;
+        let chosen = usize::from(shares.as_ref().is_ok_and(|&shares| clearly(shares)));
+        match shares {
+            Ok(shares) if shares[0] != shares[1] => {
+                notes.push(told(&out.patches, &standing, shares, chosen));
+            }
+            Ok(_) | Err(NoSet::Patches(_)) => {}
+            Err(reason) => notes.push(format!(
+                "{}; those in space were taken without a look at how either meet the faces around them: {reason}",
+                contradicting(&out.patches, &standing)
+            )),
         }
         for (place, mut rival) in standing {
             notes.append(&mut rival.notes[chosen]);
@@ -82,13 +90,14 @@ impl Rivals {
     }
 }
 
-/// Share of the edges of the faces in question that no neighbour goes on from, as they were read and as their rivals are; `None` where
+/// Share of the edges of the faces in question that no neighbour goes on from, as they were read and as their rivals are, unless
 /// that cannot be told.
 fn free_shares(
     patches: &[CadPatch],
     standing: &[(usize, Rival)],
-    resolution: Option<f64>,
-) -> Option<[f64; 2]> {
+    model: &Model,
+) -> Result<[f64; 2], NoSet> {
+    let grant = &model.grant;
     let boxes: Vec<[Vec3; 2]> = (standing.iter())
         .flat_map(|(place, rival)| [patches[*place].patch.bounds(), rival.patch.bounds()])
         .collect();
@@ -103,30 +112,30 @@ fn free_shares(
         .filter(|&k| near(&patches[k].patch))
         .collect();
     let rival = |k: usize| standing.iter().find(|s| s.0 == k).map(|s| &s.1.patch);
-    let share = |other: bool| {
-        let patch = |&k: &usize| match rival(k).filter(|_| other) {
-            Some(rival) => rival.clone(),
-            None => patches[k].patch.clone(),
+    let share = |other: bool| -> Result<f64, NoSet> {
+        let patch = |&k: &usize| {
+            let chosen = rival(k).filter(|_| other);
+            Metered::trimmed(chosen.unwrap_or(&patches[k].patch), grant)
         };
-        let own: Vec<NurbsPatch> = around.iter().map(patch).collect();
         let joining = Joining {
             tolerance: None,
-            resolution,
+            resolution: model.resolution(),
         };
-        let set = PatchSet::join(own, joining).ok()?;
+        let own = around.iter().map(patch).collect();
+        let set = set_of(own, joining, (grant, 0))?;
         let (mut free, mut all) = (0.0, 0.0);
         for (number, _) in (around.iter().enumerate()).filter(|(_, k)| rival(**k).is_some()) {
             let trim = set.patches()[number].trim();
             all += trim.map_or(4.0, |t| t.curve_count() as f64);
             free += free_edges(&set, number as u32);
         }
-        Some(free / all)
+        Ok(free / all)
     };
-    Some([share(false)?, share(true)?])
+    Ok([share(false)?, share(true)?])
 }
 
 /// Edges of a patch that no neighbour goes on from; those that one has in part count in part.
-fn free_edges(set: &PatchSet, patch: u32) -> f64 {
+fn free_edges(set: &PatchSet<Metered>, patch: u32) -> f64 {
     let report = set.edges();
     let own = report.free.iter().filter(|e| e.0 == patch);
     let shares = own.map(|edge| {
@@ -137,12 +146,8 @@ fn free_edges(set: &PatchSet, patch: u32) -> f64 {
     shares.sum::<f64>() + folded as f64
 }
 
-fn told(
-    patches: &[CadPatch],
-    standing: &[(usize, Rival)],
-    shares: [f64; 2],
-    chosen: usize,
-) -> String {
+/// Names the faces in question.
+fn contradicting(patches: &[CadPatch], standing: &[(usize, Rival)]) -> String {
     let numbers: Vec<String> = (standing.iter().take(NAMED))
         .map(|(place, _)| patches[*place].entity.to_string())
         .collect();
@@ -150,12 +155,23 @@ fn told(
         0 => String::new(),
         n => format!(" and {n} more"),
     };
+    format!(
+        "entities {}{more}: their curves in the parameter plane and in space contradict each other",
+        numbers.join(", ")
+    )
+}
+
+fn told(
+    patches: &[CadPatch],
+    standing: &[(usize, Rival)],
+    shares: [f64; 2],
+    chosen: usize,
+) -> String {
     let [own, other] = shares.map(|s| 100.0 * s);
     format!(
-        "entities {}{more}: their curves in the parameter plane and in space contradict each other; with \
-         those in space {own:.0} % of their edges have no neighbour that goes on from there, with those in the parameter plane \
-         {other:.0} %; those {} were taken",
-        numbers.join(", "),
+        "{}; with those in space {own:.0} % of their edges have no neighbour that goes on from there, with those in the parameter \
+         plane {other:.0} %; those {} were taken",
+        contradicting(patches, standing),
         ["in space", "in the parameter plane"][chosen]
     )
 }

@@ -61,6 +61,9 @@ pub(super) fn pairs<S: Surface>(
     let wide = if loose { LOOSE * tolerance } else { tolerance };
     let candidates = candidates(edges, chosen, tolerance, wide);
     let compare = |(a, b): (usize, usize)| {
+        if !set.patches[edges[a].patch as usize].may_go_on() {
+            return None;
+        }
         let tight = pair(set, edges, a, b, tolerance);
         let shorter = edges[a].length.min(edges[b].length);
         if apart(&edges[a], &edges[b], wide.min(SHORT * shorter)) {

@@ -14,6 +14,7 @@ mod nearest;
 mod orient;
 mod overlap;
 mod report;
+mod senses;
 
 pub(crate) use corners::{CornerGroup, corner_at, edges_at};
 pub(crate) use edge::{Edge, EdgeCurve, EdgePoint, Link, edge_point};

@@ -29,7 +29,8 @@ pub(super) fn overlaps<S: Surface>(set: &PatchSet<S>, topology: &Topology) -> Ve
         for [a, b] in edge.free_parts() {
             let inner = edge.samples.iter().filter(|s| s.t > a && s.t < b).count();
             let n = (2 * (inner + 1)).clamp(4, POINTS);
-            for k in 0..n {
+            let own = &set.patches[edge.patch as usize];
+            for k in (0..n).take_while(|_| own.may_go_on()) {
                 let t = a + (b - a) * (k as f64 + 0.5) / n as f64;
                 let p = edge_point(set, edge, t).jet.rho;
                 looked += 1;
