@@ -145,7 +145,7 @@ fn missing_keys_and_unknown_names() {
         (
             "{\"gauss\": 2}",
             "{\"gauss\": 2, \"lobatto\": 3}",
-            "14:86: `lobatto` is one key too many (exactly one of: `nodes`, `gauss`, `lobatto`, `segments`)",
+            "14:86: `lobatto` is one key too many (exactly one of: `auto`, `nodes`, `gauss`, `lobatto`, `segments`)",
         ),
     ]);
 }

@@ -103,6 +103,8 @@ pub(super) fn edges_may(scene: &LoadedScene, contact: &Contact) -> bool {
     let solution = &scene.scene.solution;
     contact.passes == Passes::Auto
         && !matches!(contact.friction, Some(Friction::Orthotropic { .. }))
+        // Pieces of faces end at the edges of the master.
+        && !matches!(contact.points, Points::Segments(_))
         && prescribed
         && solution.kinematics != Kinematics::Small
         && solution.dynamics.is_none()
