@@ -168,8 +168,7 @@ pub(super) fn seeing_less(
     let [mut of_edges, mut of_points] = [Vec::new(), Vec::new()];
     for (name, contact) in &scene.scene.contacts {
         let now = safe.loaded.scene.contacts.get_mut(name)?;
-        let key = pointer(&["contacts", name, "passes"]);
-        if edges_may(scene, contact) && !scene.has(&key) {
+        if edges_may(scene, contact) {
             if now.passes == Passes::Edges {
                 of_edges.push(format!("`{name}`"));
             }
@@ -204,8 +203,7 @@ fn with_these(
     let mut safe = Safe::of(scene, before);
     let mut found = Vec::new();
     for (name, contact) in &scene.scene.contacts {
-        let key = pointer(&["contacts", name, "passes"]);
-        if may(contact) && !scene.has(&key) {
+        if may(contact) {
             safe.loaded.scene.contacts.get_mut(name)?.passes = passes;
             found.push(format!("`{name}`"));
         }

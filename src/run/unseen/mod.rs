@@ -5,6 +5,7 @@ mod rims;
 
 use crate::model::Model;
 use between::Between;
+use covact_geometry::Vec3;
 use edges::EdgeWatch;
 use rims::RimWatch;
 
@@ -40,8 +41,8 @@ impl Unseen {
 fn deformed(nodes: &[u32], u: &[f64]) -> f64 {
     let at = |n: &u32| {
         let first = 3 * *n as usize;
-        covact_geometry::Vec3::new(u[first], u[first + 1], u[first + 2])
+        Vec3::new(u[first], u[first + 1], u[first + 2])
     };
-    let mean = nodes.iter().map(at).sum::<covact_geometry::Vec3>() / nodes.len().max(1) as f64;
+    let mean = nodes.iter().map(at).sum::<Vec3>() / nodes.len().max(1) as f64;
     (nodes.iter().map(|n| (at(n) - mean).norm())).fold(0.0, f64::max)
 }
