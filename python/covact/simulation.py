@@ -118,6 +118,9 @@ class Simulation:
     def step(self) -> _covact.Step | None:
         """Goes on to the next accepted step; None at the end of the run.
 
+        A run that finds its defaults unfit, slave points that miss what lies between them for instance, begins again at time 0
+        with others: what is returned then is its first step, of the next ``attempt``, and what was read before is of no use.
+
         Raises
         ------
         NotConverged
@@ -135,7 +138,7 @@ class Simulation:
         """Goes on to the end, or as far as it gets: `Result.status` says which.
 
         `callback` is called after every accepted step with the simulation and the step, and ends the run where it returns
-        False.
+        False. It sees the steps of a run that begins again (:meth:`step`) anew, with another ``step.attempt``.
         """
         if callback is None:
             self._run.run()

@@ -63,7 +63,6 @@ use crate::scene::LoadedScene;
 use crate::solve::event::{Event, Observer};
 use checkpoint::{Fingerprint, Found};
 use claim::Entry;
-use simulation::variant::variant_in;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -133,15 +132,10 @@ pub fn open<'o>(
     mut caller: Options<'o>,
 ) -> Result<Opened<'o>, RunError> {
     let entry = options.entry();
-    let safe = match entry {
-        Entry::Resume => variant_in(out, scene),
-        Entry::Start | Entry::Replace => None,
-    };
     let mut folder = ResultsFolder::open(out, entry)?;
     let mut sections = None;
     if entry == Entry::Resume {
-        let loaded = safe.as_ref().map_or(scene, |safe| &safe.loaded);
-        match folder.find(&Fingerprint::new(loaded))? {
+        match folder.find(&Fingerprint::new(scene))? {
             Found::Unfinished(found) => sections = Some(found),
             Found::Finished(summary) => {
                 let text = format!("the run in {} has reached its end already", out.display());
@@ -154,7 +148,7 @@ pub fn open<'o>(
             }
         }
     }
-    let mut simulation = Simulation::start(scene.clone(), safe, sections.as_ref(), caller)?;
+    let mut simulation = Simulation::start(scene.clone(), sections.as_ref(), caller)?;
     folder.enter(&simulation)?;
     if sections.is_some() {
         simulation.set_earlier(folder.earlier());

@@ -29,13 +29,15 @@ enum Stop {
     Repeated,
     /// After the first step of a run with edges of rigid surfaces as slaves.
     OnEdges,
+    /// The same with Gauss points.
+    OnGauss,
 }
 
 struct Stopper<'a> {
     stop: Stop,
     steps: u32,
     repeated: bool,
-    on_edges: bool,
+    chosen: bool,
     flag: &'a AtomicBool,
     notes: Vec<String>,
 }
@@ -53,15 +55,19 @@ impl Observer for Stopper<'_> {
                     Stop::Accepted => true,
                     Stop::Retried => self.steps == 2,
                     Stop::Repeated => self.repeated,
-                    Stop::OnEdges => self.on_edges,
+                    Stop::OnEdges | Stop::OnGauss => self.chosen,
                     Stop::Never | Stop::Iteration(_) => false,
                 }
             }
             (Stop::Iteration(n), Event::Iteration { iteration, .. }) => {
                 self.steps > 0 && *iteration >= n
             }
-            (Stop::OnEdges, Event::Model { effects, .. }) => {
-                self.on_edges = effects.iter().any(|e| *e == "contact.passes.edges");
+            (Stop::OnEdges | Stop::OnGauss, Event::Model { effects, .. }) => {
+                let effect = match self.stop {
+                    Stop::OnEdges => "contact.passes.edges",
+                    _ => "contact.points.gauss",
+                };
+                self.chosen = effects.iter().any(|e| e == effect);
                 false
             }
             (Stop::Repeated, Event::Warning { text }) => {
@@ -88,7 +94,7 @@ fn part(
         stop,
         steps: 0,
         repeated: false,
-        on_edges: false,
+        chosen: false,
         flag: &flag,
         notes: Vec::new(),
     };
@@ -572,4 +578,42 @@ fn a_repetition_that_is_given_up() {
     assert_eq!(table(whole.path()), table(parts.path()));
     assert_eq!(resumed.given_up, ended.given_up);
     assert_eq!(resumed.newton_iterations, ended.newton_iterations);
+}
+
+/// A ball sinks into a plate between its nodes: the run is repeated with Gauss points. Broken off then, it goes on with them, is refused by
+/// what has changed in its scene alone, and is the run of its scene once it has ended.
+#[test]
+fn a_repetition_with_more_points() {
+    let scene = |young: f64| {
+        loaded(&json!({
+            "covact": 1,
+            "materials": {"rubber": {"neo_hooke": {"E": young, "nu": 0.4}}},
+            "bodies": {"plate": {"mesh": {"plate": {"size": [10, 10], "thickness": 0.5, "elements": [8, 8]}}, "material": "rubber"}},
+            "surfaces": {"ball": {"sphere": {"radius": 3, "center": [5, 5, 3.25]}, "motion": {"translation": [0, 0, "-t"]}}},
+            "contacts": {"press": {"slave": "plate.top", "master": "ball"}},
+            "supports": {"rim": {"on": ["plate.x_min", "plate.x_max", "plate.y_min", "plate.y_max"], "fixed": true}},
+            "solution": {"end_time": 0.3}
+        }))
+    };
+    let given = scene(2.0);
+    let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let (ended, _) = part(&given, whole.path(), false, 1, Stop::Never).unwrap();
+    assert_eq!((ended.status, ended.given_up.runs), (RunStatus::Done, 1));
+    assert_eq!(ended.scene, covact::run::checksum(&given));
+    let (broken, _) = part(&given, parts.path(), false, 1, Stop::OnGauss).unwrap();
+    assert_eq!(broken.status, RunStatus::Interrupted);
+    assert_eq!((broken.steps, broken.given_up.runs), (1, 1));
+    let error = part(&scene(3.0), parts.path(), true, 1, Stop::Never).unwrap_err();
+    let words = "`/materials/rubber` has changed";
+    assert!(error.to_string().contains(words), "{error}");
+    assert!(!error.to_string().contains("press"), "{error}");
+    let (resumed, _) = part(&given, parts.path(), true, 1, Stop::Never).unwrap();
+    assert_eq!(counts(&resumed), counts(&ended));
+    assert_same(whole.path(), parts.path());
+    let (again, notes) = part(&given, parts.path(), true, 1, Stop::Never).unwrap();
+    assert_eq!(counts(&again), counts(&ended));
+    assert!(
+        notes.iter().any(|n| n.contains("reached its end already")),
+        "{notes:?}"
+    );
 }

@@ -134,6 +134,35 @@ fn a_study_goes_on() {
     assert!((0.4..0.7).contains(&ratio), "{ratio}");
 }
 
+/// A run that is repeated by itself, with more slave points here, is one of the study, and is not done again.
+#[test]
+fn a_run_that_is_repeated_by_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut small = scene();
+    small["surfaces"]["ball"]["sphere"] = json!({ "radius": 12, "center": [15, 15, 13] });
+    write(folder.path(), "scene.json", &small);
+    let shells = json!({ "shell": { "values": [{ "h8": [4, 4] }] } });
+    write(
+        folder.path(),
+        "study.json",
+        &study(json!([{ "choices": [shells] }])),
+    );
+    let output = covact(folder.path(), &STUDY);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let out = folder.path().join("out");
+    let summary = std::fs::read(
+        out.join("runs")
+            .join(RUNS[1].replace("002", "001"))
+            .join("1/summary.json"),
+    );
+    let summary: Value = serde_json::from_slice(&summary.unwrap()).unwrap();
+    assert_eq!(summary["given_up"]["runs"], 1, "{summary}");
+    let run = &record(&out).runs[0];
+    assert_eq!((&run.ending, run.dofs), (&Ending::Done, 80));
+    let output = covact(folder.path(), &STUDY);
+    assert_eq!(events(&output)[0]["before"], true);
+}
+
 /// Fields are written where one is measured, at the end only, and times of other numbers of threads are not mixed in.
 #[test]
 fn fields_and_threads() {

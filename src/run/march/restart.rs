@@ -68,7 +68,7 @@ impl Kept {
 
     fn take(model: &Model, sections: &Sections, from: &mut Reader) -> Result<Self, Malformed> {
         // The model is that of its stage.
-        let ((_, stages), _) = from.section("stages", take_variant)?;
+        let (_, (_, stages)) = from.section("variant", take_variant)?;
         let (progress, spent) = from.section("progress", |r| {
             Ok((take_progress(r)?, ResourceUse::take(r)?))
         })?;
@@ -190,9 +190,9 @@ impl RunState<'_> {
         let memory = assembler.memory();
         keeper.keep(|out| {
             // First, since the model that reads the others depends on it.
-            out.section("stages", |out| {
+            out.section("variant", |out| {
+                out.text(&problem.changes);
                 stages::put(model, stages, out);
-                out.bool(problem.impatient);
             });
             out.section("progress", |out| {
                 put_progress(progress, out);
@@ -278,11 +278,11 @@ fn take_progress(from: &mut Reader) -> Result<Progress, Malformed> {
     })
 }
 
-/// Stages, and whether the run is given up where steps are cut again and again.
-pub(in crate::run) fn take_variant(
-    from: &mut Reader,
-) -> Result<((StageStart, Vec<StageSummary>), bool), Malformed> {
-    Ok((stages::take(from)?, from.bool()?))
+/// What the run has other than its scene, and its stages.
+pub(in crate::run) fn take_variant<'b>(
+    from: &mut Reader<'b>,
+) -> Result<(&'b str, (StageStart, Vec<StageSummary>)), Malformed> {
+    Ok((from.text()?, stages::take(from)?))
 }
 
 fn put_flags(flags: &[bool], out: &mut Writer) {

@@ -42,6 +42,8 @@ pub(crate) struct Problem {
     pub may_see: MaySee,
     /// Steps that are cut again and again end the run: another one stands ready.
     pub impatient: bool,
+    /// What it has other than the scene as given, as checkpoints keep it.
+    pub changes: String,
 }
 
 /// Everything of a run that lasts from one step to the next.

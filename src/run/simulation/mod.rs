@@ -1,8 +1,9 @@
 //! A run in memory: stepped from outside or run through, with its results at hand and no file touched.
+mod changes;
 mod read;
 mod stages;
 mod stepping;
-pub(super) mod variant;
+mod variant;
 
 pub use read::{Force, NodalField, ReadError};
 
@@ -20,6 +21,8 @@ use crate::plan::Plan;
 use crate::run::unseen::MaySee;
 use crate::scene::{self, Contact, Element, LoadedScene};
 use crate::solve::event::{Event, Observer, Silent};
+use changes::Changes;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use variant::{
@@ -95,7 +98,7 @@ pub enum StepError {
 }
 
 /// Whether rims of rigid surfaces have become slaves by themselves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Rims {
     /// They have not.
     Out,
@@ -147,13 +150,12 @@ impl<'o> Simulation<'o> {
     /// ```
     pub fn new(scene: LoadedScene, options: Options<'o>) -> Result<Self, RunError> {
         RunError::of(scene::check(&scene))?;
-        Self::start(scene, None, None, options)
+        Self::start(scene, None, options)
     }
 
-    /// [`Self::new`] with other elements where they were replaced before, or from a checkpoint.
+    /// [`Self::new`], or from a checkpoint.
     pub(super) fn start(
         scene: LoadedScene,
-        safe: Option<Safe>,
         sections: Option<&Sections>,
         mut options: Options<'o>,
     ) -> Result<Self, RunError> {
@@ -170,8 +172,11 @@ impl<'o> Simulation<'o> {
             .build()
             .map_err(|e| RunError::scene(&scene, "/solution/threads", e.to_string()))?;
         let observer = &mut *options.observer;
-        let (running, fingerprint) =
-            pool.install(|| running(&scene, safe.as_ref(), sections, Rims::Out, observer))?;
+        let (safe, rims) = match sections {
+            Some(sections) => Changes::read(sections, &scene)?,
+            None => (None, Rims::Out),
+        };
+        let running = pool.install(|| running(&scene, safe.as_ref(), sections, rims, observer))?;
         let run = running.borrow_dependent();
         let history = Table {
             columns: run.columns(),
@@ -179,17 +184,13 @@ impl<'o> Simulation<'o> {
         };
         Ok(Simulation {
             whole: sections.is_none(),
+            fingerprint: Fingerprint::new(&scene),
             scene,
             safe,
-            // One that goes on knows of the run that it stands for.
-            rims: match running.borrow_owner().impatient {
-                true => Rims::Instead,
-                false => Rims::Out,
-            },
+            rims,
             running,
             pool: Arc::new(pool),
             options,
-            fingerprint,
             history,
             ended: None,
             concluded: false,
@@ -295,10 +296,10 @@ impl<'o> Simulation<'o> {
         let observer = &mut *self.options.observer;
         // What cannot be built in another way stays as it ended.
         let made = running(&self.scene, Some(&safe), None, rims, observer);
-        let Ok((running, fingerprint)) = made else {
+        let Ok(running) = made else {
             return Ok(false);
         };
-        (self.running, self.fingerprint) = (running, fingerprint);
+        self.running = running;
         (self.running).with_dependent_mut(|_, run| run.charge(spent));
         (self.safe, self.rims) = (Some(safe), rims);
         self.history.rows.clear();
@@ -374,7 +375,7 @@ impl<'o> Simulation<'o> {
     }
 }
 
-/// The model of a scene with its run, and the checksums of both. One that stands for another is given up where steps are cut again
+/// The model of a scene with its run. One that stands for another is given up where steps are cut again
 /// and again.
 fn running(
     scene: &LoadedScene,
@@ -382,22 +383,18 @@ fn running(
     sections: Option<&Sections>,
     rims: Rims,
     observer: &mut (dyn Observer + Send),
-) -> Result<(Running, Fingerprint), RunError> {
+) -> Result<Running, RunError> {
     let cost = Cost::start();
     let (loaded, changed, notes) = match safe {
         None => (scene, &[][..], &[][..]),
         Some(safe) => (&safe.loaded, &safe.changed[..], &safe.notes[..]),
     };
-    let fingerprint = Fingerprint::new(loaded);
     let mut phases = Phases::new();
     phases.start("model");
     // A run that goes on does so in the stage where it was.
-    let (stage, impatient) = match sections {
-        Some(sections) => {
-            let ((stage, _), impatient) = sections.read_first("stages", take_variant)?;
-            (stage, impatient)
-        }
-        None => (StageStart::default(), rims == Rims::Instead),
+    let stage = match sections {
+        Some(sections) => sections.read_first("variant", |from| Ok(take_variant(from)?.1.0))?,
+        None => StageStart::default(),
     };
     let mut model =
         model::build::build_stage(loaded, stage, None).map_err(|e| RunError::model(loaded, e))?;
@@ -440,11 +437,11 @@ fn running(
         replaceable,
         exchangeable: with_exchanged(loaded, None, None).is_some(),
         may_see,
-        impatient,
+        impatient: rims == Rims::Instead,
+        changes: Changes::of(scene, safe, rims).text(),
     });
     let threads = rayon::current_num_threads();
-    let running = Running::try_new(problem, |problem| {
+    Running::try_new(problem, |problem| {
         RunState::new(problem, (phases, cost), threads, sections, observer)
-    })?;
-    Ok((running, fingerprint))
+    })
 }

@@ -21,6 +21,7 @@ impl Simulation<'_> {
             exchangeable,
             may_see,
             impatient,
+            changes,
             ..
         } = &**self.running.borrow_owner();
         let (mut model, state) = hand.next(loaded)?;
@@ -37,6 +38,7 @@ impl Simulation<'_> {
             exchangeable: *exchangeable,
             may_see: may_see.clone(),
             impatient: *impatient,
+            changes: changes.clone(),
         });
         let (threads, observer) = (rayon::current_num_threads(), &mut *self.options.observer);
         self.running = Running::try_new(problem, |problem| {

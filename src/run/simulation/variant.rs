@@ -2,18 +2,16 @@
 //! compression, and contacts with the edges of their masters, where such an edge lies on the slave, with their sides exchanged,
 //! where the master is the softer one, or with smooth masters.
 use crate::model::error::number;
-use crate::run::checkpoint::{self, Fingerprint};
 use crate::scene::{
     Contact, Element, Friction, Kinematics, LoadedScene, MasterSurface, Passes, Points, pointer,
 };
-use std::path::Path;
 
 /// Gauss points along each direction of a face that see what its nodes do not.
 const SEEING: u8 = 3;
 
 /// A scene with other elements or passes than the default ones, and what is told of the change.
 #[derive(Debug, Clone)]
-pub(in crate::run) struct Safe {
+pub(super) struct Safe {
     pub loaded: LoadedScene,
     pub changed: Vec<String>,
     /// What is told of it where it leaves no doubt about the answer.
@@ -299,76 +297,6 @@ fn stopped(contacts: &[String], time: Option<f64>, text: &str) -> String {
         contacts.join(", "),
         time.map_or(String::new(), |t| format!(" at time {}", number(t)))
     )
-}
-
-/// The choices of contacts that may have more slave points: all choices of a few, of many all of them.
-fn with_more_points(scene: &LoadedScene) -> Vec<Vec<&str>> {
-    let contacts = scene.scene.contacts.iter();
-    let may = contacts.filter(|(_, contact)| points_may(scene, contact));
-    let names: Vec<&str> = may.map(|(name, _)| name.as_str()).collect();
-    match names.len() {
-        0 => Vec::new(),
-        n @ ..=FEW => (1..1u32 << n)
-            .map(|bits| {
-                let chosen = (0..n).filter(|k| bits >> k & 1 == 1);
-                chosen.map(|k| names[k]).collect()
-            })
-            .collect(),
-        _ => vec![names],
-    }
-}
-
-/// Bodies of a scene up to which all choices of them are looked through.
-const MANY: usize = 6;
-/// The same of contacts that may have more slave points.
-const FEW: usize = 2;
-
-/// The variant of the scene that a folder holds an unfinished run of, where it is one with other elements for some bodies, or
-/// with other contacts.
-pub(in crate::run) fn variant_in(out: &Path, scene: &LoadedScene) -> Option<Safe> {
-    let holds = |loaded: &LoadedScene| checkpoint::find(out, &Fingerprint::new(loaded)).is_ok();
-    if holds(scene) {
-        return None;
-    }
-    let bodies: Vec<&String> = scene.scene.bodies.keys().collect();
-    // Of many bodies one of them, or all.
-    let choices: Vec<Vec<bool>> = match bodies.len() {
-        n @ ..=MANY => (1..1u32 << n)
-            .map(|bits| (0..n).map(|k| bits >> k & 1 == 1).collect())
-            .collect(),
-        n => (0..=n)
-            .map(|one| (0..n).map(|k| one == n || k == one).collect())
-            .collect(),
-    };
-    let elements = choices.iter().filter_map(|chosen| {
-        let chosen = bodies.iter().zip(chosen).filter(|(_, chosen)| **chosen);
-        chosen.fold(None, |safe: Option<Safe>, (body, _)| {
-            replaced(scene, safe.as_ref(), body, "gave way").or(safe)
-        })
-    });
-    let elements: Vec<Safe> = elements.collect();
-    let mut all: Vec<Option<Safe>> = elements.into_iter().map(Some).chain([None]).collect();
-    let base = all.clone();
-    for names in with_more_points(scene) {
-        let more = base
-            .iter()
-            .filter_map(|before| with_points(scene, before.as_ref(), None, &names));
-        all.extend(more.map(Some));
-    }
-    for with in [
-        with_edges,
-        with_rims,
-        seeing_less,
-        with_exchanged,
-        with_smooth,
-    ] {
-        let more = all
-            .iter()
-            .filter_map(|before| with(scene, before.as_ref(), None));
-        let more: Vec<_> = more.map(Some).collect();
-        all.extend(more);
-    }
-    (all.into_iter().flatten()).find(|safe| holds(&safe.loaded))
 }
 
 /// Whether a scene names the element of a body, rather than leaving it to its default.
