@@ -18,6 +18,7 @@ use crate::run::habit::Habit;
 use crate::run::peaks::Peaks;
 use crate::run::penalty_rule::PenaltyRule;
 use crate::run::progress::Progress;
+use crate::run::unseen::Travel;
 use crate::run::watch::Watch;
 use crate::system::linear::Method;
 use std::collections::BTreeMap;
@@ -38,6 +39,7 @@ pub struct Kept {
     pub(super) compliance: Compliance,
     pub(super) rule: PenaltyRule,
     pub(super) peaks: Peaks,
+    pub(super) travels: Vec<Travel>,
     pub(super) files: KeptFiles,
     pub(super) factorizations: BTreeMap<Method, u64>,
     pub assembler: AssemblerMemory,
@@ -79,14 +81,16 @@ impl Kept {
             Ok((dt, habit, jump, touched, touching))
         })?;
         let watch = from.section("watch", |r| Watch::take(model, r))?;
-        let (compliance, rule, peaks) = from.section("accuracy", |r| {
+        let (compliance, rule, peaks, travels) = from.section("accuracy", |r| {
             let malformed = |_| r.malformed("a motion without a value at the start");
             let mut compliance = Compliance::new(model).map_err(malformed)?;
             let mut peaks = Peaks::new(model);
             compliance.take(model, r)?;
             let rule = PenaltyRule::take(model, r)?;
             peaks.take(r)?;
-            Ok((compliance, rule, peaks))
+            let travels: Result<Vec<Travel>, _> =
+                model.pairs.iter().map(|_| Travel::take(r)).collect();
+            Ok((compliance, rule, peaks, travels?))
         })?;
         let committed = from.section("state", |r| state::take(model, r))?;
         let before = from.section("before", |r| {
@@ -118,6 +122,7 @@ impl Kept {
             compliance,
             rule,
             peaks,
+            travels,
             files: KeptFiles {
                 slot: sections.slot,
                 table,
@@ -155,8 +160,7 @@ impl RunState<'_> {
             compliance,
             rule,
             peaks,
-            // Given by the model.
-            unseen: _,
+            unseen,
             cost,
             course,
             // Of the checkpoint that the run went on from.
@@ -210,6 +214,8 @@ impl RunState<'_> {
                 compliance.put(out);
                 rule.put(out);
                 peaks.put(out);
+                let travels = unseen.between.travels(model);
+                travels.iter().for_each(|travel| travel.put(out));
             });
             out.section("state", |out| state::put(model, committed, out));
             out.section("before", |out| {

@@ -19,7 +19,7 @@ use crate::run::memory;
 use crate::run::peaks::Peaks;
 use crate::run::penalty_rule::PenaltyRule;
 use crate::run::progress::Progress;
-use crate::run::unseen::Unseen;
+use crate::run::unseen::{Travel, Unseen};
 use crate::run::watch::Watch;
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
@@ -65,6 +65,7 @@ pub(in crate::run) struct HandOver {
     compliance: Compliance,
     rule: PenaltyRule,
     peaks: Peaks,
+    travels: Vec<Travel>,
     cost: Cost,
     files: Option<super::KeptFiles>,
     stages: Vec<StageSummary>,
@@ -169,6 +170,7 @@ impl RunState<'_> {
             compliance: self.compliance.clone(),
             rule: self.rule.clone(),
             peaks: self.peaks.clone(),
+            travels: self.unseen.between.travels(model),
             cost: std::mem::replace(&mut self.cost, Cost::start()),
             files: self.files.clone(),
             stages: self.stages.clone(),
@@ -380,6 +382,7 @@ impl<'m> RunState<'m> {
             compliance,
             rule,
             peaks,
+            travels,
             cost,
             files,
             stages,
@@ -430,6 +433,7 @@ impl<'m> RunState<'m> {
             files,
             stages,
         };
+        run.unseen.between.go_on(&travels);
         let never = AtomicBool::new(false);
         let (mut march, course) = run.march(Caller {
             observer,

@@ -217,6 +217,7 @@ impl<'m> RunState<'m> {
             compliance,
             rule,
             peaks,
+            travels,
             factorizations,
             // The rest was given back where the pattern is analysed.
             assembler: AssemblerMemory { motion, .. },
@@ -231,6 +232,7 @@ impl<'m> RunState<'m> {
         (self.progress, self.touched, self.touching) = (progress, touched, touching);
         (self.watch, self.compliance, self.peaks) = (watch, compliance, peaks);
         self.rule = rule;
+        self.unseen.between.go_on(&travels);
         self.cost.earlier = spent;
         self.cost.earlier.resumed += 1;
         let course = &mut self.course;

@@ -262,17 +262,21 @@ impl<'o> Simulation<'o> {
             let found = rims_sunk && (stopped || ending.on_rims);
             found.then(|| with_rims(&self.scene, before, Some(time)))?
         };
-        let points = || {
+        let points = |before: Option<&Safe>| {
             let pairs = &self.running.borrow_owner().model.pairs;
             let names = ending.between.iter().map(|&pair| pairs[pair].name.as_str());
             with_points(&self.scene, before, Some(time), &names.collect::<Vec<_>>())
         };
+        // What is seen of both in the same step is changed at once.
+        let unseen = || {
+            let safe = if ending.on_rims { rims() } else { None };
+            points(safe.as_ref().or(before)).or(safe)
+        };
         let safe = || safe_variant(&self.scene, before, squeezed, time);
         let contacts = || edges().or_else(exchanged).or_else(smooth);
         let found = match self.rims {
-            Rims::Out | Rims::Instead if ending.on_rims => rims().map(|safe| (safe, Rims::Instead)),
-            Rims::Out | Rims::Instead if !ending.between.is_empty() => {
-                points().map(|safe| (safe, Rims::Instead))
+            Rims::Out | Rims::Instead if ending.on_rims || !ending.between.is_empty() => {
+                unseen().map(|safe| (safe, Rims::Instead))
             }
             Rims::Out => (safe().map(|safe| (safe, Rims::Out)))
                 .or_else(|| Some((rims()?, Rims::Settled)))

@@ -3,12 +3,16 @@
 //! A round tool of radius `R` sinks `s^2 / (8 R)` into a flat face between two points that are `s` apart, and farther where it does not
 //! lie over one of them. Against the way by which the slave is deformed that is about the part that forces are off by, and
 //! where the tool is not over a point in the middle they point to a side, too.
+//!
+//! That way is the longest so far: where a tool is drawn back forces are small, and so is what they are off by. While it grows it is
+//! taken to go on as in the last step until the end, so that a run is not given up for its first touch.
 use super::deformed;
 use crate::fem::face::Quad;
 use crate::fem::quadrature::lobatto;
 use crate::mesh::{Face, Mesh};
 use crate::model::Model;
 use crate::model::error::number;
+use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::scene::Points;
 use covact_geometry::{EdgeKind, Foot, Location, Vec3};
 use rayon::prelude::*;
@@ -40,10 +44,68 @@ struct Watched {
     bulges: Vec<f64>,
     /// Nodes of the slave faces.
     nodes: Vec<u32>,
-    /// Start of the step in which it came into contact.
-    since: Option<f64>,
-    /// How deep the surface has sunk in, and the same as a part of the way, in the last accepted step.
+    travel: Travel,
+}
+
+/// How far a pair has got.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(in crate::run) struct Travel {
+    /// The way by which the slave is deformed at the last accepted step, and the longest so far (length).
+    way: f64,
+    longest: f64,
+    /// How deep the surface has sunk in, and the same as a part of the longest way, at the last accepted step.
     last: [f64; 2],
+    /// The same where the way was the longest.
+    at_longest: [f64; 2],
+}
+
+impl Travel {
+    pub fn put(&self, out: &mut Writer) {
+        let Travel {
+            way,
+            longest,
+            last,
+            at_longest,
+        } = self;
+        for x in [way, longest].into_iter().chain(last).chain(at_longest) {
+            out.f64(*x);
+        }
+    }
+
+    pub fn take(from: &mut Reader) -> Result<Self, Malformed> {
+        let mut x = [0.0; 6];
+        from.f64s(&mut x)?;
+        let [way, longest, a, b, c, d] = x;
+        Ok(Travel {
+            way,
+            longest,
+            last: [a, b],
+            at_longest: [c, d],
+        })
+    }
+
+    /// Goes on by a step of size `dt` to a way, where the surface has sunk in by `own`. Returns that as a part of the way that is to be
+    /// expected in the time that is `left`.
+    fn goes(&mut self, way: f64, own: f64, [dt, left]: [f64; 2]) -> f64 {
+        let growth = (way - self.way).max(0.0) / dt;
+        self.way = way;
+        let is_longest = way >= self.longest;
+        self.longest = self.longest.max(way);
+        let part = |of: f64| if own > 0.0 { own / of } else { 0.0 };
+        self.last = [own, part(self.longest)];
+        if is_longest {
+            self.at_longest = self.last;
+        }
+        part(self.longest.max(way + growth * left.max(0.0)))
+    }
+
+    /// Where it is off the most, of the last step and the one with the longest way.
+    fn worst(&self) -> [f64; 2] {
+        match self.last[1] >= self.at_longest[1] {
+            true => self.last,
+            false => self.at_longest,
+        }
+    }
 }
 
 /// Places on a face that slave points of a kind see least.
@@ -116,8 +178,7 @@ impl Watched {
             places: places(own.sampled)?,
             bulges: bulges(&body.mesh, &own.faces),
             nodes,
-            since: None,
-            last: [0.0; 2],
+            travel: Travel::default(),
         })
     }
 
@@ -157,8 +218,7 @@ impl Watched {
         Some(deepest.reduce(|| 0.0, f64::max))
     }
 
-    /// Looks at an accepted step, from time `from` to `to`; whether more slave points are worth a run of their own. The way is taken to
-    /// go on as it did since contact began.
+    /// Looks at an accepted step, from time `from` to `to`; whether more slave points are worth a run of their own.
     fn looks(
         &mut self,
         model: &Model,
@@ -172,17 +232,10 @@ impl Watched {
             false => self.depth(model, u, to),
         };
         let own = depth.map_or(0.0, |depth| depth - penetration);
-        if own > NOTHING * size || penetration > 0.0 {
-            self.since.get_or_insert(from);
-        }
-        if own <= NOTHING * size {
-            self.last = [0.0; 2];
-            return false;
-        }
+        let own = if own > NOTHING * size { own } else { 0.0 };
         let way = deformed(&self.nodes, u).max(own);
-        self.last = [own, own / way];
-        let since = self.since.unwrap_or(from);
-        self.may && own / way * (to - since) > SUNK * (end - since)
+        let part = self.travel.goes(way, own, [to - from, end - to]);
+        self.may && part > SUNK
     }
 }
 
@@ -220,19 +273,36 @@ impl Between {
         found
     }
 
+    /// How far every pair has got.
+    pub fn travels(&self, model: &Model) -> Vec<Travel> {
+        let mut travels = vec![Travel::default(); model.pairs.len()];
+        for watched in &self.watched {
+            travels[watched.pair] = watched.travel;
+        }
+        travels
+    }
+
+    /// Goes on from there.
+    pub fn go_on(&mut self, travels: &[Travel]) {
+        for watched in &mut self.watched {
+            watched.travel = travels[watched.pair];
+        }
+    }
+
     /// What is told at the end of surfaces that have sunk in there.
     pub fn warnings(&self, model: &Model) -> Vec<String> {
-        let sunk = self.watched.iter().filter(|w| w.last[1] > SUNK);
+        let sunk = self.watched.iter().filter(|w| w.travel.worst()[1] > SUNK);
         sunk.map(|w| {
             let pair = &model.pairs[w.pair];
+            let [own, part] = w.travel.worst();
             format!(
                 "contact `{}`: {} sinks {} into `{}` between its slave points, {:.0} % of what these faces are deformed by: forces may be \
                  off by as much, and point to a side. Take more `points` a face, or a finer mesh",
                 pair.name,
                 pair.master_words(model),
-                number(w.last[0]),
+                number(own),
                 pair.slave,
-                100.0 * w.last[1]
+                100.0 * part
             )
         })
         .collect()

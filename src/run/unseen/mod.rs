@@ -4,6 +4,8 @@ mod edges;
 mod rims;
 
 use crate::model::Model;
+pub(in crate::run) use between::Travel;
+
 use between::Between;
 use covact_geometry::Vec3;
 use edges::EdgeWatch;
