@@ -3,6 +3,7 @@ use super::{March, Outputs, RELIABLE, StepControl};
 use crate::assembly::Totals;
 use crate::contact::friction::history::PointHistory;
 use crate::model::Model;
+use crate::model::error::number;
 use crate::model::state::State;
 use crate::run::RunError;
 use crate::run::bearing::{Bearing, Bearings};
@@ -35,6 +36,8 @@ struct Tried {
     penalties: Vec<f64>,
     errors: Errors,
     totals: Totals,
+    /// What rigid contact would change there, where that was measured and no raise went before.
+    limit: Option<RigidLimit>,
 }
 
 impl Tried {
@@ -143,12 +146,12 @@ impl<'m> March<'_, 'm> {
             };
             let at = (step, end, last);
             let [errors, ruling] = self.errors(outputs, trial, at, limit.as_ref(), converged)?;
+            let first = tried.is_none();
             if let Some(tried) = tried.take()
-                && !PenaltyRule::helped(&tried.errors, &ruling)
+                && let Some(why) = self.fails_by(&tried, &ruling, (end, &converged.totals))
             {
-                let why = "a stiffer one does not lower the error";
                 outputs.fields.back(fields);
-                match self.back((step, end), (committed, walk), trial, tried, why) {
+                match self.back((step, end), (committed, walk), trial, tried, &why) {
                     Ok(next) => converged.stiffened(next),
                     Err(failure) => return Ok(Err(failure)),
                 }
@@ -189,6 +192,7 @@ impl<'m> March<'_, 'm> {
                 penalties: softer,
                 errors: ruling,
                 totals: converged.totals.clone(),
+                limit: limit.filter(|_| first),
             };
             match (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial) {
                 Ok(next) => {
@@ -206,6 +210,41 @@ impl<'m> March<'_, 'm> {
                 }
             }
         }
+    }
+
+    /// Why a raise did not serve; nothing where it did. Under the stiffer penalties errors are `ruling` and forces `totals`.
+    fn fails_by(
+        &mut self,
+        tried: &Tried,
+        ruling: &Errors,
+        (time, totals): (f64, &Totals),
+    ) -> Option<String> {
+        let outrun = tried.limit.as_ref();
+        let outrun = outrun.and_then(|limit| limit.outrun(self.model, [&tried.totals, totals]));
+        let raised = |index: usize| self.assembler.penalties[index] > tried.penalties[index];
+        let outrun = outrun.filter(|(index, _)| raised(*index));
+        if let Some((index, [before, after])) = outrun {
+            let head = format!(
+                "contact `{}`: its force follows its penalty",
+                self.model.pairs[index].name
+            );
+            if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
+                self.warn(format!(
+                    "{head}: at time {} it is {}, and under one {} times stiffer {}, far more than the first one gives way. Faces of \
+                     both sides that do not fit each other where they bend press on each other with their corners. The softer one is \
+                     kept; meshes that match there, or finer ones, bring both forces together",
+                    number(time),
+                    number(before),
+                    number(self.assembler.penalties[index] / tried.penalties[index]),
+                    number(after)
+                ));
+            }
+            return Some(
+                "under a stiffer one faces press on each other with their corners".to_owned(),
+            );
+        }
+        let helped = PenaltyRule::helped(&tried.errors, ruling);
+        (!helped).then(|| "a stiffer one does not lower the error".to_owned())
     }
 
     /// Takes a raise back: what is known of the step is again that of the softer penalties.

@@ -35,6 +35,12 @@ const DOUBT: f64 = 3.0;
 /// Part of the sizes of all nodal forces below which a resultant says nothing: forces balance.
 const BALANCED: f64 = 0.05;
 
+/// Part of a pair's force that rigid contact may change for that change to be known by first order.
+const KNOWN: f64 = 0.5;
+/// Times of it that are far more than it, and the part of the largest force below which no change counts.
+const FAR: f64 = 5.0;
+const COUNTS: f64 = 0.2;
+
 impl RigidLimit {
     /// Whether the forces of every pair balance, as between tubes that shrink onto each other.
     fn balances(&self) -> bool {
@@ -69,6 +75,30 @@ impl RigidLimit {
             own[0] = own[0].min(left * (b - a).norm());
         }
         self.moved[0] = self.moved[0].min(left * moved);
+    }
+
+    /// The pair whose force stiffer penalties have changed by far more than was left to rigid contact, with its force before and
+    /// after (force); none where every force went about as far as two springs in series would. It is not the penalty's compliance
+    /// that shows there, but faces of both sides that do not fit each other: where they bend, corners of one press into the
+    /// chords of the other, the harder the stiffer contact is.
+    pub fn outrun(
+        &self,
+        model: &Model,
+        [before, after]: [&Totals; 2],
+    ) -> Option<(usize, [f64; 2])> {
+        let reference = self.force();
+        let all = model.pairs.iter().enumerate().zip(&self.forces);
+        let off = all.filter_map(|((index, pair), [change, own])| {
+            let [a, b] = [before, after].map(|t| force(pair, index, t).force);
+            let changed = (b - a).norm();
+            let part = change / own;
+            let foretold = own * part / (1.0 - part);
+            let far =
+                part < KNOWN && changed > FAR * foretold && changed > own.max(COUNTS * reference);
+            far.then(|| (index, [a.norm(), b.norm()], changed))
+        });
+        let most = off.max_by(|a, b| a.2.total_cmp(&b.2));
+        most.map(|(index, forces, _)| (index, forces))
     }
 
     fn finite(&self) -> bool {
