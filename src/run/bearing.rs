@@ -24,6 +24,17 @@ pub struct Deepest {
     pub normal: Vec3,
 }
 
+/// The point near a sharp convex edge of the master that carries most there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AtEdge {
+    /// Pressure times area (force).
+    pub force: f64,
+    /// The point in space.
+    pub x: Vec3,
+    /// Outward unit normal of the master.
+    pub normal: Vec3,
+}
+
 /// Sums over the points of a pair in contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Bearing {
@@ -35,6 +46,7 @@ pub struct Bearing {
     pub area: f64,
     /// The part of it near sharp convex edges of the master (force).
     pub at_edges: f64,
+    pub at_edge: Option<AtEdge>,
     /// The part of it near these or near free borders of the master (force).
     pub at_rims: f64,
     /// The part of it at points whose penetration is prescribed (force).
@@ -243,6 +255,13 @@ impl Bearings {
             let sharp = (self.edges[pair].as_ref()).is_some_and(|e| e.near(patch, x, *reach));
             if sharp {
                 sum.at_edges += force;
+                if force > sum.at_edge.map_or(0.0, |most| most.force) {
+                    sum.at_edge = Some(AtEdge {
+                        force,
+                        x: place.x,
+                        normal: place.normal,
+                    });
+                }
             }
             if sharp || borders.near(patch, x, *reach) {
                 sum.at_rims += force;

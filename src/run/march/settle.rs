@@ -36,8 +36,13 @@ struct Tried {
     penalties: Vec<f64>,
     errors: Errors,
     totals: Totals,
-    /// What rigid contact would change there, where that was measured and no raise went before.
-    limit: Option<RigidLimit>,
+}
+
+/// The same of the first raise of a step, where it was measured what rigid contact would change.
+struct First {
+    limit: RigidLimit,
+    penalties: Vec<f64>,
+    totals: Totals,
 }
 
 impl Tried {
@@ -112,6 +117,7 @@ impl<'m> March<'_, 'm> {
         let mut rejected = false;
         // What a raise went out from.
         let mut tried: Option<Tried> = None;
+        let mut first: Option<First> = None;
         loop {
             let mut histories = trial.histories.clone();
             let was = (&committed.u[..], start);
@@ -146,9 +152,12 @@ impl<'m> March<'_, 'm> {
             };
             let at = (step, end, last);
             let [errors, ruling] = self.errors(outputs, trial, at, limit.as_ref(), converged)?;
-            let first = tried.is_none();
             if let Some(tried) = tried.take()
-                && let Some(why) = self.fails_by(&tried, &ruling, (end, &converged.totals))
+                && let Some(why) = self.fails_by(
+                    first.as_ref(),
+                    [&tried.errors, &ruling],
+                    (end, &converged.totals),
+                )
             {
                 outputs.fields.back(fields);
                 match self.back((step, end), (committed, walk), trial, tried, &why) {
@@ -192,8 +201,14 @@ impl<'m> March<'_, 'm> {
                 penalties: softer,
                 errors: ruling,
                 totals: converged.totals.clone(),
-                limit: limit.filter(|_| first),
             };
+            if raises + 1 == RAISES {
+                first = limit.map(|limit| First {
+                    limit,
+                    penalties: from.penalties.clone(),
+                    totals: from.totals.clone(),
+                });
+            }
             match (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial) {
                 Ok(next) => {
                     converged.stiffened(next);
@@ -212,18 +227,21 @@ impl<'m> March<'_, 'm> {
         }
     }
 
-    /// Why a raise did not serve; nothing where it did. Under the stiffer penalties errors are `ruling` and forces `totals`.
+    /// Why a raise did not serve; nothing where it did. `errors`: those before and after it; under the stiffer penalties forces are
+    /// `totals`.
     fn fails_by(
         &mut self,
-        tried: &Tried,
-        ruling: &Errors,
+        first: Option<&First>,
+        [before, after]: [&Errors; 2],
         (time, totals): (f64, &Totals),
     ) -> Option<String> {
-        let outrun = tried.limit.as_ref();
-        let outrun = outrun.and_then(|limit| limit.outrun(self.model, [&tried.totals, totals]));
-        let raised = |index: usize| self.assembler.penalties[index] > tried.penalties[index];
-        let outrun = outrun.filter(|(index, _)| raised(*index));
-        if let Some((index, [before, after])) = outrun {
+        let stiffer =
+            |first: &First, index: usize| self.assembler.penalties[index] / first.penalties[index];
+        let outrun = first.and_then(|first| {
+            let (index, forces) = first.limit.outrun(self.model, [&first.totals, totals])?;
+            Some((index, forces, stiffer(first, index)))
+        });
+        if let Some((index, [soft, stiff], times)) = outrun.filter(|(.., times)| *times > 1.0) {
             let head = format!(
                 "contact `{}`: its force follows its penalty",
                 self.model.pairs[index].name
@@ -234,16 +252,16 @@ impl<'m> March<'_, 'm> {
                      both sides that do not fit each other where they bend press on each other with their corners. The softer one is \
                      kept; meshes that match there, or finer ones, bring both forces together",
                     number(time),
-                    number(before),
-                    number(self.assembler.penalties[index] / tried.penalties[index]),
-                    number(after)
+                    number(soft),
+                    number(times),
+                    number(stiff)
                 ));
             }
             return Some(
                 "under a stiffer one faces press on each other with their corners".to_owned(),
             );
         }
-        let helped = PenaltyRule::helped(&tried.errors, ruling);
+        let helped = PenaltyRule::helped(before, after);
         (!helped).then(|| "a stiffer one does not lower the error".to_owned())
     }
 

@@ -36,6 +36,11 @@ struct Watched {
     may: bool,
 }
 
+/// Cosine of the angle between a point's contact normal and the slave's own, from behind, below which the master does not press against
+/// the slave there but along it, and the part of a contact's force above which that counts.
+const ASIDE: f64 = 0.5;
+const COUNTS: f64 = 0.1;
+
 /// Part of a contact's force near edges from which what they carry decides about it.
 const DECIDES: f64 = 0.5;
 
@@ -118,6 +123,7 @@ impl Watched {
             }
         }
         let (depth, at) = deepest?;
+        let aside = self.aside(bearing);
         let way = || {
             let facets = 0..self.faces.len() as u32;
             let nodes = facets.flat_map(|f| self.faces.nodes(f));
@@ -128,14 +134,28 @@ impl Watched {
             nodes.map(way).fold(0.0, f64::max)
         };
         let own = depth - penetration;
-        let sunk =
-            bent || own > NOTHING * self.size && own > (SUNK[0] * self.size).min(SUNK[1] * way());
+        let sunk = bent
+            || aside
+            || own > NOTHING * self.size && own > (SUNK[0] * self.size).min(SUNK[1] * way());
         sunk.then_some(Sunk {
             pair: self.pair,
             may: self.may,
             depth,
             at,
         })
+    }
+}
+
+impl Watched {
+    /// Whether a point of the slave has slipped off an edge onto a side of it that the slave does not face: a node exactly over an edge
+    /// that goes down beside it is held along the slave, and lets the edge in between itself and the next one.
+    fn aside(&self, bearing: &Bearing) -> bool {
+        let strongest = bearing.at_edge.filter(|p| p.force > COUNTS * bearing.force);
+        let Some(point) = strongest else { return false };
+        let foot = self.faces.project(&point.x, None, self.depth, |_| true);
+        // At the border of its faces the slave may be pushed aside.
+        let foot = foot.filter(|f| !edges::at_border(f));
+        foot.is_some_and(|f| -point.normal.dot(&f.normal) < ASIDE)
     }
 }
 
