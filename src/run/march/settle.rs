@@ -36,13 +36,10 @@ struct Tried {
     penalties: Vec<f64>,
     errors: Errors,
     totals: Totals,
-}
-
-/// The same of the first raise of a step, where it was measured what rigid contact would change.
-struct First {
-    limit: RigidLimit,
-    penalties: Vec<f64>,
-    totals: Totals,
+    /// What rigid contact would change there, where that was measured.
+    limit: Option<RigidLimit>,
+    /// The raise that led there, where it changed a force by far more than that said; it went out from there itself.
+    outran: Option<Box<Tried>>,
 }
 
 impl Tried {
@@ -117,7 +114,6 @@ impl<'m> March<'_, 'm> {
         let mut rejected = false;
         // What a raise went out from.
         let mut tried: Option<Tried> = None;
-        let mut first: Option<First> = None;
         loop {
             let mut histories = trial.histories.clone();
             let was = (&committed.u[..], start);
@@ -137,6 +133,7 @@ impl<'m> March<'_, 'm> {
                 true => self.rigid_limit(trial, &histories, bearings, end),
                 false => None,
             };
+            let fresh = limit.clone();
             if let (Some(limit), Some(tried)) = (&mut limit, &tried) {
                 let penalties = &self.assembler.penalties;
                 tried.bound(self.model, limit, (trial, penalties, &converged.totals));
@@ -152,21 +149,36 @@ impl<'m> March<'_, 'm> {
             };
             let at = (step, end, last);
             let [errors, ruling] = self.errors(outputs, trial, at, limit.as_ref(), converged)?;
-            if let Some(tried) = tried.take()
-                && let Some(why) = self.fails_by(
-                    first.as_ref(),
-                    [&tried.errors, &ruling],
-                    (end, &converged.totals),
-                )
-            {
-                outputs.fields.back(fields);
-                match self.back((step, end), (committed, walk), trial, tried, &why) {
-                    Ok(next) => converged.stiffened(next),
-                    Err(failure) => return Ok(Err(failure)),
+            let mut outran = None;
+            if let Some(mut tried) = tried.take() {
+                let beyond = self.outruns(&tried, &converged.totals);
+                let before = tried.outran.take();
+                let (from, why) = match (beyond, before) {
+                    (Some(index), Some(first)) => {
+                        self.tell_outrun(index, end, (&first, &converged.totals));
+                        (
+                            Some(*first),
+                            "under a stiffer one faces press on each other with their corners",
+                        )
+                    }
+                    _ if !PenaltyRule::helped(&tried.errors, &ruling) => {
+                        (Some(tried), "a stiffer one does not lower the error")
+                    }
+                    (beyond, _) => {
+                        outran = beyond.map(|_| Box::new(tried));
+                        (None, "")
+                    }
+                };
+                if let Some(from) = from {
+                    outputs.fields.back(fields);
+                    match self.back((step, end), (committed, walk), trial, from, why) {
+                        Ok(next) => converged.stiffened(next),
+                        Err(failure) => return Ok(Err(failure)),
+                    }
+                    // Where it does not help, half as far would not.
+                    raises = 0;
+                    continue;
                 }
-                // Where it does not help, half as far would not.
-                raises = 0;
-                continue;
             }
             let mut stiffer = self.assembler.penalties.clone();
             let raise = raises > 0 && self.rule.raise(self.model, &ruling, rejected, &mut stiffer);
@@ -201,14 +213,9 @@ impl<'m> March<'_, 'm> {
                 penalties: softer,
                 errors: ruling,
                 totals: converged.totals.clone(),
+                limit: fresh,
+                outran,
             };
-            if raises + 1 == RAISES {
-                first = limit.map(|limit| First {
-                    limit,
-                    penalties: from.penalties.clone(),
-                    totals: from.totals.clone(),
-                });
-            }
             match (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial) {
                 Ok(next) => {
                     converged.stiffened(next);
@@ -227,42 +234,34 @@ impl<'m> March<'_, 'm> {
         }
     }
 
-    /// Why a raise did not serve; nothing where it did. `errors`: those before and after it; under the stiffer penalties forces are
-    /// `totals`.
-    fn fails_by(
-        &mut self,
-        first: Option<&First>,
-        [before, after]: [&Errors; 2],
-        (time, totals): (f64, &Totals),
-    ) -> Option<String> {
-        let stiffer =
-            |first: &First, index: usize| self.assembler.penalties[index] / first.penalties[index];
-        let outrun = first.and_then(|first| {
-            let (index, forces) = first.limit.outrun(self.model, [&first.totals, totals])?;
-            Some((index, forces, stiffer(first, index)))
-        });
-        if let Some((index, [soft, stiff], times)) = outrun.filter(|(.., times)| *times > 1.0) {
-            let head = format!(
-                "contact `{}`: its force follows its penalty",
-                self.model.pairs[index].name
-            );
-            if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
-                self.warn(format!(
-                    "{head}: at time {} it is {}, and under one {} times stiffer {}, far more than the first one gives way. Faces of \
-                     both sides that do not fit each other where they bend press on each other with their corners. The softer one is \
-                     kept; meshes that match there, or finer ones, bring both forces together",
-                    number(time),
-                    number(soft),
-                    number(times),
-                    number(stiff)
-                ));
-            }
-            return Some(
-                "under a stiffer one faces press on each other with their corners".to_owned(),
-            );
+    /// The contact whose penalty was raised and whose force, now of `totals`, has changed by far more than rigid contact would have
+    /// changed it.
+    fn outruns(&self, tried: &Tried, totals: &Totals) -> Option<usize> {
+        let limit = tried.limit.as_ref()?;
+        let index = limit.outrun(self.model, [&tried.totals, totals], tried.outran.is_some())?;
+        (self.assembler.penalties[index] > tried.penalties[index]).then_some(index)
+    }
+
+    /// Tells once of a contact whose force went on to follow its penalty, raise after raise from the first one.
+    fn tell_outrun(&mut self, index: usize, time: f64, (first, totals): (&Tried, &Totals)) {
+        let head = format!(
+            "contact `{}`: its force follows its penalty",
+            self.model.pairs[index].name
+        );
+        if self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
+            return;
         }
-        let helped = PenaltyRule::helped(before, after);
-        (!helped).then(|| "a stiffer one does not lower the error".to_owned())
+        let [soft, stiff] =
+            [&first.totals, totals].map(|t| RigidLimit::of_pair(self.model, index, t));
+        self.warn(format!(
+            "{head}: at time {} it is {}, and under one {} times stiffer {}, far more than the first one gives way. Faces of both sides \
+             that do not fit each other where they bend press on each other with their corners. The softer one is kept; meshes that \
+             match there, or finer ones, bring both forces together",
+            number(time),
+            number(soft),
+            number(self.assembler.penalties[index] / first.penalties[index]),
+            number(stiff)
+        ));
     }
 
     /// Takes a raise back: what is known of the step is again that of the softer penalties.

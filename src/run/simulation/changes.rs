@@ -118,9 +118,9 @@ mod tests {
                 "covact": 1,
                 "materials": {"m": {"neo_hooke": {"E": 1, "nu": 0.3}}},
                 "bodies": {"b": {"mesh": {"block": {"min": [0, 0, 0], "max": [1, 1, 1], "elements": [1, 1, 1]}}, "material": "m"}},
-                "surfaces": {"s": {"plane": {"origin": [0, 0, 2], "normal": [0, 0, 1]}}},
+                "surfaces": {"s": {"plane": {"center": [0, 0, 2], "size": [2, 2]}}},
                 "contacts": {
-                    "c": {"slave": "b.top", "master": "s", "friction": {"coulomb": {"mu": "0.1 + 0.1*t"}}, "penalty": 0.1},
+                    "c": {"slave": "b.top", "master": "s", "friction": {"coulomb": {"mu": "0.1 + 0.1*t"}}, "penalty": {"value": 0.1}},
                     "d": {"slave": "b.bottom", "master": "s"}
                 }
             }"#,

@@ -37,8 +37,9 @@ const BALANCED: f64 = 0.05;
 
 /// Part of a pair's force that rigid contact may change for that change to be known by first order.
 const KNOWN: f64 = 0.5;
-/// Times of it that are far more than it, and the part of the largest force below which no change counts.
-const FAR: f64 = 5.0;
+/// Times of it that are far more than it, at once and after a raise that went as far, and the part of the largest force below which no
+/// change counts.
+const FAR: [f64; 2] = [5.0, 2.0];
 const COUNTS: f64 = 0.2;
 
 impl RigidLimit {
@@ -77,15 +78,16 @@ impl RigidLimit {
         self.moved[0] = self.moved[0].min(left * moved);
     }
 
-    /// The pair whose force stiffer penalties have changed by far more than was left to rigid contact, with its force before and
-    /// after (force); none where every force went about as far as two springs in series would. It is not the penalty's compliance
-    /// that shows there, but faces of both sides that do not fit each other: where they bend, corners of one press into the
-    /// chords of the other, the harder the stiffer contact is.
+    /// The pair whose force stiffer penalties have changed by far more than was left to rigid contact; none where every force went
+    /// about as far as two springs in series would. Once that is what a path does that is about to touch; where every raise does it,
+    /// it is not the penalty's compliance that shows, but faces of both sides that do not fit each other: where they bend, corners
+    /// of one press into the chords of the other, the harder the stiffer contact is.
     pub fn outrun(
         &self,
         model: &Model,
         [before, after]: [&Totals; 2],
-    ) -> Option<(usize, [f64; 2])> {
+        again: bool,
+    ) -> Option<usize> {
         let reference = self.force();
         let all = model.pairs.iter().enumerate().zip(&self.forces);
         let off = all.filter_map(|((index, pair), [change, own])| {
@@ -93,12 +95,18 @@ impl RigidLimit {
             let changed = (b - a).norm();
             let part = change / own;
             let foretold = own * part / (1.0 - part);
-            let far =
-                part < KNOWN && changed > FAR * foretold && changed > own.max(COUNTS * reference);
-            far.then(|| (index, [a.norm(), b.norm()], changed))
+            let far = part < KNOWN
+                && changed > FAR[usize::from(again)] * foretold
+                && changed > own.max(COUNTS * reference);
+            far.then_some((index, changed))
         });
-        let most = off.max_by(|a, b| a.2.total_cmp(&b.2));
-        most.map(|(index, forces, _)| (index, forces))
+        let most = off.max_by(|a, b| a.1.total_cmp(&b.1));
+        most.map(|(index, _)| index)
+    }
+
+    /// Size of the force of a pair (force).
+    pub fn of_pair(model: &Model, index: usize, totals: &Totals) -> f64 {
+        force(&model.pairs[index], index, totals).force.norm()
     }
 
     fn finite(&self) -> bool {
