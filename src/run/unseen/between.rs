@@ -308,3 +308,31 @@ impl Between {
         .collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tool that goes to its depth, stays there, and is drawn back, with the same part of the way between points throughout.
+    #[test]
+    fn the_way_that_is_expected_follows_the_last_step() {
+        let mut travel = Travel::default();
+        let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+        // A tenth of the way to go, and half of it.
+        near(travel.goes(0.1, 0.03, [0.1, 0.9]), 0.03);
+        near(travel.goes(0.5, 0.03, [0.4, 0.5]), 0.03);
+        // It stays: nothing more is to be expected.
+        near(travel.goes(0.5, 0.03, [0.1, 0.4]), 0.06);
+        // Drawn back, the longest way counts, at the end as well.
+        near(travel.goes(0.1, 0.02, [0.1, 0.3]), 0.04);
+        assert_eq!(travel.goes(0.01, 0.0, [0.1, 0.0]), 0.0);
+        let [own, part] = travel.worst();
+        near(own, 0.03);
+        near(part, 0.06);
+        // From a checkpoint.
+        let mut out = Writer::default();
+        travel.put(&mut out);
+        let back = Travel::take(&mut Reader::new(out.bytes())).unwrap();
+        assert_eq!(back, travel);
+    }
+}
