@@ -46,6 +46,7 @@ pub struct Bearing {
     pub area: f64,
     /// The part of it near sharp convex edges of the master (force).
     pub at_edges: f64,
+    /// The point that carries most of that part.
     pub at_edge: Option<AtEdge>,
     /// The part of it near these or near free borders of the master (force).
     pub at_rims: f64,

@@ -123,7 +123,6 @@ impl Watched {
             }
         }
         let (depth, at) = deepest?;
-        let aside = self.aside(bearing);
         let way = || {
             let facets = 0..self.faces.len() as u32;
             let nodes = facets.flat_map(|f| self.faces.nodes(f));
@@ -135,8 +134,8 @@ impl Watched {
         };
         let own = depth - penetration;
         let sunk = bent
-            || aside
-            || own > NOTHING * self.size && own > (SUNK[0] * self.size).min(SUNK[1] * way());
+            || own > NOTHING * self.size && own > (SUNK[0] * self.size).min(SUNK[1] * way())
+            || self.aside(bearing);
         sunk.then_some(Sunk {
             pair: self.pair,
             may: self.may,
@@ -144,9 +143,7 @@ impl Watched {
             at,
         })
     }
-}
 
-impl Watched {
     /// Whether a point of the slave has slipped off an edge onto a side of it that the slave does not face: a node exactly over an edge
     /// that goes down beside it is held along the slave, and lets the edge in between itself and the next one.
     fn aside(&self, bearing: &Bearing) -> bool {
