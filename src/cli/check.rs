@@ -4,7 +4,7 @@ use super::{CheckArgs, print, print_json, report};
 use crate::machine::memory::Size;
 use crate::model::EffectKind;
 use crate::model::error::number;
-use crate::run::{self, BodyReport, CheckReport, PairReport, SurfaceReport};
+use crate::run::{self, BodyReport, CheckReport, PairReport, SetReport, SurfaceReport};
 use crate::scene::{self, LoadedScene, SceneError};
 
 /// Reads a scene and checks what needs no mesh.
@@ -130,6 +130,14 @@ fn body<'n>(out: &mut Paragraphs, b: &BodyReport, notes: impl Iterator<Item = &'
         "mesh",
         &format!("{} elements, {} nodes{parts}", b.elements, b.nodes),
     );
+    if !b.sets.is_empty() {
+        let set = |set: &SetReport| match set.faces {
+            0 => format!("{} ({} nodes)", set.name, set.nodes),
+            n => format!("{} ({n} faces)", set.name),
+        };
+        let sets: Vec<String> = b.sets.iter().map(set).collect();
+        out.line("sets", &sets.join(", "));
+    }
     out.line("element", b.element);
     out.line("material", &b.material);
     out.line("extent", &extent(&b.bounds));

@@ -1,7 +1,7 @@
 //! `covact check`: everything up to the first solve, and nothing of it.
 use super::Estimate;
 use super::RunError;
-use crate::mesh::Range;
+use crate::mesh::{Mesh, Range};
 use crate::model::error::number;
 use crate::model::initial::{initial_gap, point_spacing};
 use crate::model::{self, BodyModel, Model, SurfaceModel};
@@ -9,6 +9,7 @@ use crate::plan::Plan;
 use crate::scene::{Element, LoadedScene, Penalty, Points, Scene, Support};
 use crate::shell::distortion::most_distorted;
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// What a scene amounts to. Lengths are in the scene's unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -46,6 +47,8 @@ pub struct BodyReport {
     pub elements: usize,
     /// Parts that share no node.
     pub parts: usize,
+    /// What supports, loads and contacts may name of it, by name.
+    pub sets: Vec<SetReport>,
     /// Formulation of the elements.
     pub element: &'static str,
     /// Law and constants of the material.
@@ -60,6 +63,18 @@ pub struct BodyReport {
     pub worst_shape: f64,
     /// The most distorted element; none: the body has no elements.
     pub distortion: Option<DistortionReport>,
+}
+
+/// A set of a body's mesh, given by it or by the scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SetReport {
+    pub name: String,
+    /// Faces of elements; none in a set of nodes.
+    pub faces: usize,
+    /// Nodes, those of its faces included.
+    pub nodes: usize,
+    /// Lowest and highest coordinates; of an empty set those of the origin.
+    pub bounds: [[f64; 3]; 2],
 }
 
 /// The most distorted element of a body; see [`crate::shell::distortion`].
@@ -250,6 +265,7 @@ fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
             Some(sheet) => sheet.parts(),
             None => body.mesh.components(),
         },
+        sets: sets(&body.mesh),
         element,
         material,
         bounds: body.mesh.bounds().map(Into::into),
@@ -270,6 +286,30 @@ fn body_report(scene: &Scene, body: &BodyModel) -> BodyReport {
             above: d.above,
         }),
     }
+}
+
+/// Sets of nodes and of faces under one name are one to whoever names it.
+fn sets(mesh: &Mesh) -> Vec<SetReport> {
+    let names: BTreeSet<&String> = mesh.node_sets.keys().chain(mesh.face_sets.keys()).collect();
+    let report = |name: &String| {
+        let faces = mesh.face_sets.get(name).map_or(&[][..], |f| f);
+        let mut nodes = mesh.node_sets.get(name).cloned().unwrap_or_default();
+        for face in faces {
+            nodes.extend_from_slice(mesh.face_nodes(*face).nodes());
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        let mut places = nodes.iter().map(|n| mesh.nodes[*n as usize]);
+        let first = places.next().unwrap_or_default();
+        let bounds = places.fold([first; 2], |[low, high], x| [low.inf(&x), high.sup(&x)]);
+        SetReport {
+            name: name.clone(),
+            faces: faces.len(),
+            nodes: nodes.len(),
+            bounds: bounds.map(Into::into),
+        }
+    };
+    names.into_iter().map(report).collect()
 }
 
 fn surface_report(scene: &Scene, surface: &SurfaceModel) -> SurfaceReport {

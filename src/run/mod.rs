@@ -48,7 +48,7 @@ mod validity;
 pub(crate) mod watch;
 
 pub use check::{
-    BodyReport, CheckReport, LoadReport, PairReport, SupportReport, SurfaceReport, check,
+    BodyReport, CheckReport, LoadReport, PairReport, SetReport, SupportReport, SurfaceReport, check,
 };
 pub use checkpoint::CheckpointError;
 pub use claim::{ClaimError, FolderError, vacant};

@@ -30,6 +30,7 @@ fn everything_a_scene_amounts_to() {
             // 50 nodes: 5 x 5 on two faces; 4 x 4 pairs are free, in two components on the two symmetry planes.
             "16 elements, 50 nodes, 80 unknown displacements (dofs), 400 contact points; lengths in mm\n",
             "body `plate`\n",
+            "  sets            bottom (16 faces), top (16 faces), x_max (4 faces), x_min (4 faces), y_max (4 faces), y_min",
             "St. Venant-Kirchhoff, E 12000, nu 0.3\n",
             "x 0 to 40, y 0 to 40, z -1 to 1\n",
             "edges 10, layers 2 thick\n",
@@ -91,6 +92,16 @@ fn the_same_as_data() {
     assert!(gap[0].as_f64().unwrap().abs() < 1e-12, "{gap:?}");
     assert!((gap[1].as_f64().unwrap() - far).abs() < 1e-10, "{gap:?}");
     assert_eq!(found["bodies"][0]["worst_shape"], 1.0);
+    // 5 x 5 nodes on the upper face, at half of the thickness.
+    let top = json!({ "name": "top", "faces": 16, "nodes": 25, "bounds": [[0.0, 0.0, 1.0], [40.0, 40.0, 1.0]] });
+    assert!(
+        found["bodies"][0]["sets"]
+            .as_array()
+            .unwrap()
+            .contains(&top),
+        "{}",
+        found["bodies"][0]["sets"]
+    );
 }
 
 /// A plate of 2 x 2 elements from a file, its middle vertex moved along the diagonal by a part of the elements' length.
