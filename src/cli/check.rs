@@ -131,9 +131,13 @@ fn body<'n>(out: &mut Paragraphs, b: &BodyReport, notes: impl Iterator<Item = &'
         &format!("{} elements, {} nodes{parts}", b.elements, b.nodes),
     );
     if !b.sets.is_empty() {
+        let count = |n: usize, what: &str| match n {
+            1 => format!("1 {what}"),
+            n => format!("{n} {what}s"),
+        };
         let set = |set: &SetReport| match set.faces {
-            0 => format!("{} ({} nodes)", set.name, set.nodes),
-            n => format!("{} ({n} faces)", set.name),
+            0 => format!("{} ({})", set.name, count(set.nodes, "node")),
+            n => format!("{} ({})", set.name, count(n, "face")),
         };
         let sets: Vec<String> = b.sets.iter().map(set).collect();
         out.line("sets", &sets.join(", "));

@@ -65,7 +65,8 @@ pub struct BodyReport {
     pub distortion: Option<DistortionReport>,
 }
 
-/// A set of a body's mesh, given by it or by the scene.
+/// A set of a body's mesh, given by it or by the scene. Of a CAD surface that bends, faces are its elements and nodes its control
+/// points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SetReport {
     pub name: String,
@@ -293,10 +294,8 @@ fn sets(mesh: &Mesh) -> Vec<SetReport> {
     let names: BTreeSet<&String> = mesh.node_sets.keys().chain(mesh.face_sets.keys()).collect();
     let report = |name: &String| {
         let faces = mesh.face_sets.get(name).map_or(&[][..], |f| f);
-        let mut nodes = mesh.node_sets.get(name).cloned().unwrap_or_default();
-        for face in faces {
-            nodes.extend_from_slice(mesh.face_nodes(*face).nodes());
-        }
+        let mut nodes = mesh.nodes_of(faces);
+        nodes.extend(mesh.node_sets.get(name).into_iter().flatten());
         nodes.sort_unstable();
         nodes.dedup();
         let mut places = nodes.iter().map(|n| mesh.nodes[*n as usize]);

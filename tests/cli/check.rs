@@ -104,6 +104,29 @@ fn the_same_as_data() {
     );
 }
 
+/// Both faces of a CAD surface that bends are all of its elements, and a corner is one control point.
+#[test]
+fn sets_of_a_surface_that_bends() {
+    let scene = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/examples/scenes/panel_pressed.json"
+    );
+    let output = covact(std::path::Path::new("."), &["check", "--json", scene]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let found: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let body = &found["bodies"][0];
+    let set = |name: &str| {
+        let mut sets = body["sets"].as_array().unwrap().iter();
+        sets.find(|s| s["name"] == name).unwrap().clone()
+    };
+    for face in ["bottom", "top"] {
+        assert_eq!(set(face)["faces"], body["elements"]);
+    }
+    let corner = set("corner.1");
+    assert_eq!([&corner["faces"], &corner["nodes"]], [&json!(0), &json!(1)]);
+    assert_eq!(corner["bounds"][0], corner["bounds"][1]);
+}
+
 /// A plate of 2 x 2 elements from a file, its middle vertex moved along the diagonal by a part of the elements' length.
 fn distorted_plate(folder: &std::path::Path, part: f64) -> Output {
     let mut text = "*NODE\n".to_owned();
