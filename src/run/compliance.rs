@@ -14,7 +14,8 @@
 //!
 //! What such measures do not show, a wrap whose pressure is concentrated or a path that is about to turn, the linear answer to
 //! the tractions of the step itself does ([`RigidLimit`]): it is what the user is told, of the last step and of that of the
-//! largest force, and it rules the penalty where two steps in a row show too much, and at the last step. It costs as much as a few
+//! largest force, and it rules the penalty where two steps in a row show too much, at the last step, and where a first touch gives way beside bodies that are
+//! bent far. It costs as much as a few
 //! assemblies of contact: as long as it shows little it is made at fewer and fewer steps, and wherever forces have grown or motions
 //! have turned.
 mod kept;
@@ -49,6 +50,8 @@ const WARNED: f64 = 0.01;
 /// which none is left out.
 const SELDOM: u32 = 8;
 const LARGER: f64 = 1.2;
+/// Part of a force that rigid contact would have to change for it to rule the penalty where no energy tells of it.
+const UNFELT: f64 = 0.2;
 /// Part of the smallest error that raises a penalty below which fewer steps are measured.
 const LITTLE: f64 = 0.4;
 /// Part of the error to rigid contact that a raise between two steps may leave for another one to follow.
@@ -112,8 +115,9 @@ pub struct Compliance {
     /// Steps from the last one to the next that is to show it, and the largest force between bodies at such steps.
     gap: u32,
     bearing: f64,
-    /// That error of the last step.
+    /// That error of the last step, and what it was there and at the one before alike.
     before: f64,
+    lasting: f64,
     /// That error when it last raised a penalty, while it is too large; else infinite.
     raised: f64,
     /// Energy of contact and work at the last two steps, the last one first.
@@ -189,6 +193,7 @@ impl Compliance {
             gap: 0,
             bearing: 0.0,
             before: 0.0,
+            lasting: 0.0,
             raised: f64::INFINITY,
             path: [[0.0; 2]; 2],
             penalties: Vec::new(),
@@ -262,6 +267,14 @@ impl Compliance {
         last == 0 || step >= last + self.gap || bearings.force() > LARGER * self.bearing
     }
 
+    /// Whether a force that is larger than all before gives way by so much that its penalty is ruled by what rigid contact would
+    /// change, in this very step: beside bodies that are bent far, what little it stores shows in no energy.
+    pub fn unfelt(&self, model: &Model, limit: Option<&RigidLimit>, errors: &Errors) -> bool {
+        limit.is_some_and(|limit| {
+            limit.force() > LARGER * self.force && limit.change() > UNFELT * limit.force()
+        }) && errors.sum() <= penalty_rule::raises_from(model)
+    }
+
     /// The error below which it does not matter how it comes about, given penalties included.
     pub fn little(model: &Model) -> f64 {
         LITTLE * penalty_rule::raises_from(model).min(WARNED)
@@ -269,15 +282,14 @@ impl Compliance {
 
     /// Raises the errors of a step to what rigid contact would change, each pair's by its share of the energy of contact.
     pub fn add_limit(&self, model: &Model, end: &StepEnd, errors: &mut Errors) {
-        let pairs = &end.bearings.pairs;
-        let all: f64 = pairs.iter().map(|p| p.energy).sum();
-        let Some(limit) = end.limit.filter(|_| all > 0.0) else {
-            return;
-        };
-        let error = self.relative(model, limit);
-        for (own, pair) in errors.forces.iter_mut().zip(pairs) {
-            *own = own.max(error * pair.energy / all);
+        if let Some(limit) = end.limit {
+            add(self.relative(model, limit), end, errors);
         }
+    }
+
+    /// The same for an accepted step, with what showed in the last two steps that were measured.
+    pub fn add_lasting(&self, end: &StepEnd, errors: &mut Errors) {
+        add(self.lasting, end, errors);
     }
 
     /// The deepest penetration of a pair over the approach of its bodies.
@@ -351,10 +363,10 @@ impl Compliance {
         }
         *last = here;
         // A single step may be that of a point just about to slide.
-        let lasting = here
+        self.lasting = here
             .error
             .min(std::mem::replace(&mut self.before, here.error));
-        if lasting <= penalty_rule::raises_from(model) {
+        if self.lasting <= penalty_rule::raises_from(model) {
             self.raised = f64::INFINITY;
             return Ok(measures.growth);
         }
@@ -363,7 +375,7 @@ impl Compliance {
             return Ok(measures.growth);
         }
         self.raised = here.error;
-        Ok(measures.growth.max(lasting))
+        Ok(measures.growth.max(self.lasting))
     }
 
     /// How far the bodies of a pair have moved towards each other along the normal at its deepest point: the spread of the
@@ -403,6 +415,18 @@ impl Compliance {
             }),
         }
         Ok(high - low)
+    }
+}
+
+/// Raises the errors of all pairs by what rigid contact would change, each by its share of the energy of contact.
+fn add(error: f64, end: &StepEnd, errors: &mut Errors) {
+    let pairs = &end.bearings.pairs;
+    let all: f64 = pairs.iter().map(|p| p.energy).sum();
+    if all <= 0.0 {
+        return;
+    }
+    for (own, pair) in errors.forces.iter_mut().zip(pairs) {
+        *own = own.max(error * pair.energy / all);
     }
 }
 

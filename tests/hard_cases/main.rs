@@ -7,6 +7,7 @@ mod cost;
 mod defaults;
 mod far;
 mod first_iterates;
+mod first_touch;
 mod folds;
 mod friction;
 mod friction_driven;

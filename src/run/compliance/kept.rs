@@ -13,6 +13,7 @@ impl Compliance {
             gap,
             bearing,
             before,
+            lasting,
             raised,
             force,
             displacement,
@@ -22,7 +23,15 @@ impl Compliance {
             // Known from the model.
             poses: _,
         } = self;
-        out.f64s(&[*largest, *bearing, *before, *raised, *force, *displacement]);
+        out.f64s(&[
+            *largest,
+            *bearing,
+            *before,
+            *lasting,
+            *raised,
+            *force,
+            *displacement,
+        ]);
         out.u32(*gap);
         for measured in [worst, &limits[0], &limits[1]] {
             measured.put(out);
@@ -39,12 +48,13 @@ impl Compliance {
         model: &Model,
         from: &mut Reader,
     ) -> Result<(), Malformed> {
-        let mut sums = [0.0; 6];
+        let mut sums = [0.0; 7];
         from.f64s(&mut sums)?;
         [
             self.largest,
             self.bearing,
             self.before,
+            self.lasting,
             self.raised,
             self.force,
             self.displacement,

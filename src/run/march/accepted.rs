@@ -182,8 +182,10 @@ impl March<'_, '_> {
             Some(_) => 0.0,
             None => (self.compliance.step(self.model, &end)).map_err(|e| RunError::internal(&e))?,
         };
+        let mut all = errors.clone();
+        self.compliance.add_lasting(&end, &mut all);
         self.tell_sunk(&errors);
-        self.adapt(errors, growth, converged);
+        self.adapt([errors, all], growth, converged);
         let bearings = &outputs.fields.bearings;
         let residual = converged.history.last().map_or(0.0, |last| last.0);
         (self.peaks).step(self.model, (step, time, residual), bearings, &totals.pairs);

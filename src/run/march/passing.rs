@@ -22,6 +22,8 @@ const STRONGER: f64 = 10.0;
 const WEAKER: f64 = 0.5;
 /// How much farther than the step itself what is let go may move: an equilibrium beyond is not the one that the path leads to.
 const FAR: f64 = 2.0;
+/// Most steps without another try after one at which it was not let go; the double from each such step to the next.
+const PAUSE: u32 = 8;
 /// Steps in which a jump has to be over.
 const STEPS: u32 = 60;
 /// Part of the forces below which what is left may be let go: farther from an equilibrium a search for one may end in any.
@@ -39,6 +41,9 @@ pub(in crate::run) struct Jump {
     pub time: f64,
     /// What the viscous forces had taken when it began (energy).
     pub taken: f64,
+    /// Steps until it may be let go again, and those that there were to be since the last time it was not.
+    pub left: u32,
+    pub pause: u32,
 }
 
 impl Jump {
@@ -48,11 +53,15 @@ impl Jump {
             step,
             time,
             taken,
+            left,
+            pause,
         } = *self;
         out.f64(rate);
         out.u32(step);
         out.f64(time);
         out.f64(taken);
+        out.u32(left);
+        out.u32(pause);
     }
 
     pub fn take(from: &mut Reader) -> Result<Self, Malformed> {
@@ -61,6 +70,8 @@ impl Jump {
             step: from.u32()?,
             time: from.f64()?,
             taken: from.f64()?,
+            left: from.u32()?,
+            pause: from.u32()?,
         })
     }
 }
@@ -116,6 +127,8 @@ impl March<'_, '_> {
                 step,
                 time,
                 taken: committed.stabilized,
+                left: 0,
+                pause: 0,
             },
             Some(jump) => Jump { rate, ..jump },
         });
@@ -143,11 +156,14 @@ impl March<'_, '_> {
         };
         let residual = self.workspace.residual();
         let share = self.assembler.drag(&trial.u, residual).share;
-        walk.jump = Some(Jump {
+        let waits = jump.left > 0 && !walk.stepping.done(end);
+        let weaker = Jump {
             rate: WEAKER * jump.rate,
+            left: jump.left.saturating_sub(1),
             ..jump
-        });
-        if share > SMALL {
+        };
+        walk.jump = Some(weaker);
+        if share > SMALL || waits {
             return Ok(());
         }
         let held = trial.clone();
@@ -165,6 +181,12 @@ impl March<'_, '_> {
             Err(StepFailure::Interrupted) => return Err(StepFailure::Interrupted),
             // Not found, or another one far away.
             Ok(_) | Err(_) => {
+                let pause = (2 * jump.pause).clamp(1, PAUSE);
+                walk.jump = Some(Jump {
+                    left: pause,
+                    pause,
+                    ..weaker
+                });
                 self.assembler.pass(&committed.u, jump.rate);
                 trial.copy_from(&held);
                 let again =

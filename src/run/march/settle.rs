@@ -339,7 +339,7 @@ impl<'m> March<'_, 'm> {
         let errors =
             (self.compliance.errors(self.model, &end)).map_err(|e| RunError::internal(&e))?;
         let mut ruling = errors.clone();
-        if last {
+        if last || self.compliance.unfelt(self.model, limit, &errors) {
             self.compliance.add_limit(self.model, &end, &mut ruling);
         }
         Ok([errors, ruling])
@@ -360,8 +360,14 @@ impl<'m> March<'_, 'm> {
     }
 
     /// Adapts the penalties that the run may choose to an accepted step, for the next one. `errors` are those at its end, `growth`
-    /// the one that shows over the last steps.
-    pub(super) fn adapt(&mut self, mut errors: Errors, growth: f64, converged: &Converged) {
+    /// the one that shows over the last steps. `errors` are first those of energies and depths, then with what rigid contact has been
+    /// found to change in two steps alike: a penalty that bears little beside bodies that bend is not lowered for its little energy.
+    pub(super) fn adapt(
+        &mut self,
+        [mut errors, all]: [Errors; 2],
+        growth: f64,
+        converged: &Converged,
+    ) {
         if errors.forces.is_empty() {
             return;
         }
@@ -369,7 +375,7 @@ impl<'m> March<'_, 'm> {
         let iterations = converged.iterations + self.failed;
         let mut penalties = self.assembler.penalties.clone();
         let last = errors.clone();
-        self.rule.lower(model, &errors, iterations, &mut penalties);
+        self.rule.lower(model, &all, iterations, &mut penalties);
         let sum = errors.sum();
         if growth > sum && sum > 0.0 {
             errors.forces.iter_mut().for_each(|e| *e *= growth / sum);
