@@ -408,6 +408,11 @@ impl PairModel {
 }
 
 impl BodyModel {
+    /// Whether it has nodes inside its thickness, or no thickness of its own: no shell of one layer.
+    pub fn is_block(&self) -> bool {
+        self.mesh.opposite_nodes().contains(&None)
+    }
+
     /// Node numbers of an element in the model; `block` holds the body's elements.
     #[inline]
     pub fn nodes_of<const N: usize>(&self, block: &impl ElementBlock<N>, e: usize) -> [u32; N] {

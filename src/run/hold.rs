@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 /// Cuts of a step after which elements that turn inside out are given up where others may replace them.
 pub(super) const HOPELESS: u32 = 3;
-/// Cuts of a step after which squeezed elements are looked into.
+/// Cuts of a step after which squeezed elements of shells are replaced.
 pub(super) const SUSPECT: u32 = 2;
 /// Part of its length that an edge of an element has to have lost for the element to count as squeezed, and for it to be looked
 /// into: thin shells, whose elements rightly give way where they buckle, are not shortened as much, and stocky elements do not

@@ -404,10 +404,9 @@ impl March<'_, '_> {
             // Elements that another variant would replace are not followed down to the smallest step.
             let turned = hold::turned(self.model, &failure);
             walk.turned.extend(turned.and_then(number_of));
-            let lost = match cuts >= hold::SUSPECT {
-                true => self.may_be_replaced(&hold::lost(self.model, committed)),
-                false => Vec::new(),
-            };
+            let mut lost = self.may_be_replaced(&hold::lost(self.model, committed));
+            // Those of a block give way for themselves; a shell may buckle, and follow in smaller steps.
+            lost.retain(|b| cuts >= hold::SUSPECT || self.model.bodies[*b].is_block());
             // What is bent far in a step that is too large turns inside out as well, and is not squeezed when it begins.
             let squeezed = |b: &BodyModel| {
                 self.replaceable.contains(&b.name) && hold::compressed(b, &committed.u)

@@ -162,13 +162,14 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             if self.interrupt.load(Ordering::Relaxed) {
                 return Err(StepFailure::Interrupted);
             }
-            let norms = self.norms(trial, &totals);
+            let own = self.norms(trial, &totals);
+            let (norms, vanished) = own.beside(self.workspace.largest_force);
             floor = floor.max(norms.floor / norms.force.max(f64::MIN_POSITIVE));
             history.push((norms.relative(), totals.changed));
             keep |= iteration >= 2 || hops(&history);
             let held = self.assembler.linearization.keep_active;
             // The state before the first solve may be converged as it stands only if nothing was prescribed to move.
-            let settled = !pending && !held && (iteration == 0 || totals.changed == 0);
+            let settled = !pending && !held && (iteration == 0 || totals.changed == 0 || vanished);
             observer.event(&Event::Iteration {
                 step,
                 iteration,
@@ -206,6 +207,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                         augmentations: 0,
                         augmenting: 0,
                         totals,
+                        force: own.force,
                         history,
                         floor,
                         factorization,

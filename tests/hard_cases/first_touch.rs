@@ -1,4 +1,4 @@
-//! First touches under the penalty that a run starts with, against the same under a stiffer one.
+//! First touches under the penalty that a run starts with, against the same under a stiffer one; and touches that end.
 use crate::support::solve;
 use covact::output::RunStatus;
 use serde_json::json;
@@ -40,4 +40,46 @@ fn a_small_force_beside_much_bending_is_not_lost() {
     println!("{own} of {stiff}");
     assert!((stiff / 13.17 - 1.0).abs() < 1e-3, "{stiff}");
     assert!((own / stiff - 1.0).abs() < 0.03, "{own} of {stiff}");
+}
+
+/// A sheet of one Q18 layer squeezed between two plates and let go to exactly where it began: in the end no force is left to measure a
+/// residual by, and points open and close by what rounding leaves. Forces that have vanished are measured by those that were.
+#[test]
+fn what_is_let_go_to_where_it_began_ends() {
+    let plate = |z: f64, normal: f64, way: f64| {
+        json!({
+            "plane": { "center": [0, 0, z], "normal": [0, 0, normal], "size": [400, 400] },
+            "motion": { "translation": [0, 0, { "table": [[0, 0], [1, way], [2, 0]] }] }
+        })
+    };
+    let scene = json!({
+        "covact": 1,
+        "materials": { "aluminium": { "st_venant_kirchhoff": { "E": 70000, "nu": 0.33 } } },
+        "bodies": { "sheet": {
+            "mesh": { "plate": { "size": [100, 100], "thickness": 0.2, "elements": [3, 3], "origin": [0, 0, 0.1] } },
+            "material": "aluminium", "element": "q18"
+        } },
+        "surfaces": { "lower": plate(0.0, 1.0, 0.0), "upper": plate(0.2, -1.0, -0.01) },
+        "contacts": {
+            "l": { "slave": "sheet.bottom", "master": "lower", "friction": 0.3 },
+            "u": { "slave": "sheet.top", "master": "upper", "friction": 0.3 }
+        },
+        "supports": {
+            "x": { "on": "sheet.x_min", "symmetry": "x" },
+            "y": { "on": "sheet.y_min", "symmetry": "y" }
+        },
+        "solution": { "end_time": 2 },
+        "output": { "every": 0 }
+    });
+    let run = solve(&scene);
+    let s = &run.summary;
+    println!("{} iterations in {} steps", s.newton_iterations, s.steps);
+    assert_eq!(s.status, RunStatus::Done, "{:?}", s.reason);
+    let [squeezed, free] = [1.0, 2.0].map(|t| -run.at("force.upper.z", t));
+    println!("{squeezed}, then {free}");
+    // Between uniaxial stress and uniaxial strain of 5 %: friction holds the faces.
+    assert!(squeezed > 3.3e7 && squeezed < 5.3e7, "{squeezed}");
+    assert!(free.abs() < 1e-4 * squeezed, "{free}");
+    // Regression: 294 before they were.
+    assert!(s.newton_iterations < 200, "{}", s.newton_iterations);
 }

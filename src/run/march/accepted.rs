@@ -89,6 +89,10 @@ impl March<'_, '_> {
                 self.warn_of_step(step, &text);
             }
         }
+        if self.model.dynamics.is_none() {
+            let largest = &mut self.workspace.largest_force;
+            *largest = largest.max(converged.force);
+        }
         let spent = self.progress.iterations - self.progress.counted;
         self.progress.counted = self.progress.iterations;
         self.progress.accepted += u64::from(converged.iterations);

@@ -42,6 +42,7 @@ pub struct Kept {
     pub(super) travels: Vec<Travel>,
     pub(super) files: KeptFiles,
     pub(super) factorizations: BTreeMap<Method, u64>,
+    pub(super) largest_force: f64,
     pub assembler: AssemblerMemory,
     pub expects_indefinite: bool,
     pub(super) spent: ResourceUse,
@@ -96,9 +97,15 @@ impl Kept {
         let before = from.section("before", |r| {
             r.option(|r| Ok((state::take_before(model, &committed, r)?, r.f64()?)))
         })?;
-        let (assembler, expects_indefinite, factorizations) = from.section("solver", |r| {
-            Ok((take_assembler(model, r)?, r.bool()?, take_counts(r)?))
-        })?;
+        let (assembler, expects_indefinite, factorizations, largest_force) =
+            from.section("solver", |r| {
+                Ok((
+                    take_assembler(model, r)?,
+                    r.bool()?,
+                    take_counts(r)?,
+                    r.f64()?,
+                ))
+            })?;
         let (table, written) = from.section("output", |r| {
             let table = HistoryMark {
                 length: r.u64()?,
@@ -129,6 +136,7 @@ impl Kept {
                 written,
             },
             factorizations,
+            largest_force,
             assembler,
             expects_indefinite,
             spent,
@@ -228,7 +236,9 @@ impl RunState<'_> {
                 put_assembler(&memory, out);
                 // A pattern that is still to be analysed makes the solver forget.
                 out.bool(!memory.new_pattern && solver.expects_indefinite());
-                put_counts(workspace.kept(), out);
+                let (counts, largest_force) = workspace.kept();
+                put_counts(counts, out);
+                out.f64(largest_force);
             });
             out.section("output", |out| {
                 let HistoryMark { length, sum } = table;

@@ -219,6 +219,7 @@ impl<'m> RunState<'m> {
             peaks,
             travels,
             factorizations,
+            largest_force,
             // The rest was given back where the pattern is analysed.
             assembler: AssemblerMemory { motion, .. },
             expects_indefinite: _,
@@ -229,6 +230,7 @@ impl<'m> RunState<'m> {
         self.files = Some(files);
         self.stages = stages;
         self.workspace.factorizations = factorizations;
+        self.workspace.largest_force = largest_force;
         (self.progress, self.touched, self.touching) = (progress, touched, touching);
         (self.watch, self.compliance, self.peaks) = (watch, compliance, peaks);
         self.rule = rule;

@@ -284,7 +284,7 @@ impl<'o> Simulation<'o> {
             // In a block elements that give way do so without them as well; a shell of other elements would bend too little,
             // and a run that was given up for their sake may come to its end without them.
             Rims::Instead => {
-                let block = |b: &usize| bodies[*b].mesh.opposite_nodes().contains(&None);
+                let block = |b: &usize| bodies[*b].is_block();
                 let found = ending.squeezed.iter().all(block).then(safe).flatten();
                 (found.map(|safe| (safe, Rims::Instead))).or_else(|| {
                     let found = stopped.then(|| seeing_less(&self.scene, before, Some(time)));

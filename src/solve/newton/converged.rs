@@ -10,6 +10,8 @@ pub struct Converged {
     pub augmentations: u32,
     pub augmenting: u32,
     pub totals: Totals,
+    /// Norm of the forces at the equilibrium.
+    pub force: f64,
     /// Relative residual and points whose status changed, per linearisation.
     pub history: Vec<(f64, usize)>,
     /// Largest round-off floor met, relative to the forces.
@@ -29,6 +31,7 @@ impl Converged {
         self.augmenting += next.iterations;
         self.augmentations += 1;
         self.totals = next.totals;
+        self.force = next.force;
         self.history.extend(next.history);
         self.floor = self.floor.max(next.floor);
         self.factorization = next.factorization.or(self.factorization.take());

@@ -73,6 +73,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                         augmentations: 0,
                         augmenting: 0,
                         totals,
+                        force: norms.force,
                         history,
                         floor,
                         factorization,

@@ -18,6 +18,8 @@ pub struct Workspace {
     pub(super) factored: bool,
     /// By how much of their distance the first increment of the last solution moved neighbouring nodes against each other, at most.
     pub bend: f64,
+    /// Largest norm of the forces of an accepted step, where nothing has inertia.
+    pub largest_force: f64,
     /// The last tangent with negative pivots, since this was last reset.
     pub unstable: Option<Unstable>,
     /// Factorizations made so far, of failed attempts too.
@@ -37,6 +39,7 @@ impl Workspace {
             base: State::new(model),
             factored: false,
             bend: 0.0,
+            largest_force: 0.0,
             unstable: None,
             factorizations: BTreeMap::new(),
         }
@@ -54,6 +57,7 @@ impl Workspace {
             base,
             factored: _,
             bend: _,
+            largest_force: _,
             unstable: _,
             // A few counts.
             factorizations: _,
@@ -64,8 +68,8 @@ impl Workspace {
         parts
     }
 
-    /// What outlives an accepted step: the factorizations made. All else is written by every step before it is read.
-    pub fn kept(&self) -> &BTreeMap<Method, u64> {
+    /// What outlives an accepted step: the factorizations made, and the largest force. All else is written by every step before it is read.
+    pub fn kept(&self) -> (&BTreeMap<Method, u64>, f64) {
         let Workspace {
             residual: _,
             rhs: _,
@@ -76,10 +80,11 @@ impl Workspace {
             base: _,
             factored: _,
             bend: _,
+            largest_force,
             unstable: _,
             factorizations,
         } = self;
-        factorizations
+        (factorizations, *largest_force)
     }
 
     /// [`Self::residual`], to write to.
