@@ -5,8 +5,10 @@ use crate::output::RunStatus;
 use crate::run::bearing::Bearing;
 use crate::run::progress::Progress;
 
-/// Iterations of failed attempts from which on a run works in vain, where they are twice those of steps.
+/// Iterations of failed attempts from which on a run may work in vain.
 const IN_VAIN: u64 = 100;
+/// Times the iterations of a run without failed attempts that what is left may cost, at the pace so far.
+const WORTH: f64 = 2.0;
 /// Cuts of a run from which on it crawls, where there are more than one in so many steps.
 const CRAWLS: u32 = 10;
 const MANY_CUTS: u32 = 5;
@@ -50,15 +52,14 @@ impl March<'_, '_> {
         })
     }
 
-    /// Whether most of the work is done in attempts that fail.
     fn fails_often(&self) -> bool {
         let Progress {
             iterations,
             accepted,
+            time,
             ..
         } = &*self.progress;
-        let failed = iterations.saturating_sub(*accepted);
-        failed > IN_VAIN.max(2 * accepted)
+        in_vain(*iterations, *accepted, time / self.scene.solution.end_time)
     }
 
     /// Whether steps are cut again and again.
@@ -72,5 +73,32 @@ impl March<'_, '_> {
         let mut pairs = self.model.pairs.iter().zip(&*self.touching);
         self.cut_often()
             && pairs.any(|(pair, touching)| *touching && self.model.between_bodies(pair))
+    }
+}
+
+/// Whether attempts that fail make what is left of a run, of which a part is done, cost more than twice another one that begins again and
+/// has none: near its end a run is worth more of them.
+fn in_vain(iterations: u64, accepted: u64, done: f64) -> bool {
+    // Both relative to the part that is done.
+    let left = iterations as f64 * (1.0 - done);
+    iterations.saturating_sub(accepted) > IN_VAIN && left > WORTH * accepted as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_vain;
+
+    #[test]
+    fn a_run_near_its_end_is_worth_more_attempts() {
+        // Few attempts say nothing.
+        assert!(!in_vain(110, 10, 0.1));
+        assert!(in_vain(111, 10, 0.1));
+        // A tenth of the way for 200 iterations: 1,800 are left, and all of it without failed attempts would take 900.
+        assert!(!in_vain(200, 90, 0.1));
+        assert!(in_vain(201, 90, 0.1));
+        // As many failed attempts half way, and near the end.
+        assert!(in_vain(361, 90, 0.5));
+        assert!(!in_vain(359, 90, 0.5));
+        assert!(!in_vain(900, 90, 0.8));
     }
 }
