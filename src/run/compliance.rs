@@ -14,10 +14,9 @@
 //!
 //! What such measures do not show, a wrap whose pressure is concentrated or a path that is about to turn, the linear answer to
 //! the tractions of the step itself does ([`RigidLimit`]): it is what the user is told, of the last step and of that of the
-//! largest force, and it rules the penalty where two steps in a row show too much, at the last step, and where a first touch gives way beside bodies that are
-//! bent far. It costs as much as a few
-//! assemblies of contact: as long as it shows little it is made at fewer and fewer steps, and wherever forces have grown or motions
-//! have turned.
+//! largest force, and it rules the penalty where two steps in a row show too much, at the last step, and where a first touch gives
+//! way beside bodies that are bent far. It costs as much as a few assemblies of contact: as long as it shows little it is made at
+//! fewer and fewer steps, and wherever forces have grown or motions have turned.
 mod kept;
 mod sticking;
 mod told;
