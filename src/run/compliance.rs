@@ -50,7 +50,7 @@ const WARNED: f64 = 0.01;
 const SELDOM: u32 = 8;
 const LARGER: f64 = 1.2;
 /// Part of a force that rigid contact would have to change for it to rule the penalty where no energy tells of it.
-const UNFELT: f64 = 0.2;
+const GIVES_WAY: f64 = 0.2;
 /// Part of the smallest error that raises a penalty below which fewer steps are measured.
 const LITTLE: f64 = 0.4;
 /// Part of the error to rigid contact that a raise between two steps may leave for another one to follow.
@@ -268,9 +268,9 @@ impl Compliance {
 
     /// Whether a force that is larger than all before gives way by so much that its penalty is ruled by what rigid contact would
     /// change, in this very step: beside bodies that are bent far, what little it stores shows in no energy.
-    pub fn unfelt(&self, model: &Model, limit: Option<&RigidLimit>, errors: &Errors) -> bool {
+    pub fn gives_way(&self, model: &Model, limit: Option<&RigidLimit>, errors: &Errors) -> bool {
         limit.is_some_and(|limit| {
-            limit.force() > LARGER * self.force && limit.change() > UNFELT * limit.force()
+            limit.force() > LARGER * self.force && limit.change() > GIVES_WAY * limit.force()
         }) && errors.sum() <= penalty_rule::raises_from(model)
     }
 

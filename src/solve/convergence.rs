@@ -3,7 +3,8 @@
 //! A thin shell under a stiff penalty cannot reach a small residual relative to its load: rounding of the
 //! displacements alone leaves about `eps |K| |u|`, which grows with (length / thickness)^3 and with the penalty. The
 //! test therefore compares the residual with the larger of a tolerance on the forces and a small multiple of that
-//! floor, and never stops while points still change their status, but where next to no force is left for them to change.
+//! floor, and never stops while points still change their status, but where next to no force is left for
+//! them to change, iteration after iteration.
 
 /// Norms of one linearisation, all over the free degrees of freedom.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -339,7 +339,7 @@ impl<'m> March<'_, 'm> {
         let errors =
             (self.compliance.errors(self.model, &end)).map_err(|e| RunError::internal(&e))?;
         let mut ruling = errors.clone();
-        if last || self.compliance.unfelt(self.model, limit, &errors) {
+        if last || self.compliance.gives_way(self.model, limit, &errors) {
             self.compliance.add_limit(self.model, &end, &mut ruling);
         }
         Ok([errors, ruling])
