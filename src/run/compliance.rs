@@ -274,6 +274,11 @@ impl Compliance {
         }) && errors.sum() <= penalty_rule::raises_from(model)
     }
 
+    /// Whether a force is as large as any before.
+    pub fn is_largest(&self, limit: Option<&RigidLimit>) -> bool {
+        limit.is_some_and(|limit| limit.force() >= self.force)
+    }
+
     /// The error below which it does not matter how it comes about, given penalties included.
     pub fn little(model: &Model) -> f64 {
         LITTLE * penalty_rule::raises_from(model).min(WARNED)

@@ -126,8 +126,10 @@ impl<'m> March<'_, 'm> {
             let last = walk.stepping.done(end);
             let bearings = &outputs.fields.bearings;
             let turned = walk.stepping.at_kink(start);
+            let turns = walk.stepping.at_kink(end);
             let due = self.compliance.is_due(step, bearings, turned)
                 || self.compliance.sticking.is_due()
+                || turns
                 || last;
             let mut limit = match due && reliable(converged) {
                 true => self.rigid_limit(trial, &histories, bearings, end),
@@ -147,7 +149,7 @@ impl<'m> March<'_, 'm> {
                     sticking,
                 }));
             };
-            let at = (step, end, last);
+            let at = (step, end, [turns, last]);
             let [errors, ruling] = self.errors(outputs, trial, at, limit.as_ref(), converged)?;
             let mut outran = None;
             if let Some(mut tried) = tried.take() {
@@ -312,12 +314,12 @@ impl<'m> March<'_, 'm> {
     }
 
     /// The errors that show at the end of a step, and those that rule its penalties: what rigid contact would change shows the
-    /// same from one step to the next, and only the last one has no next.
+    /// same from one step to the next, and only the last one has no next, nor has a peak where motions turn.
     fn errors(
         &self,
         outputs: &Outputs,
         state: &State,
-        (step, time, last): (u32, f64, bool),
+        (step, time, [turns, last]): (u32, f64, [bool; 2]),
         limit: Option<&RigidLimit>,
         converged: &Converged,
     ) -> Result<[Errors; 2], RunError> {
@@ -339,8 +341,12 @@ impl<'m> March<'_, 'm> {
         let errors =
             (self.compliance.errors(self.model, &end)).map_err(|e| RunError::internal(&e))?;
         let mut ruling = errors.clone();
-        if last || self.compliance.gives_way(self.model, limit, &errors) {
-            self.compliance.add_limit(self.model, &end, &mut ruling);
+        let compliance = &self.compliance;
+        if last
+            || turns && compliance.is_largest(limit)
+            || compliance.gives_way(self.model, limit, &errors)
+        {
+            compliance.add_limit(self.model, &end, &mut ruling);
         }
         Ok([errors, ruling])
     }
