@@ -15,6 +15,7 @@ mod start;
 mod summary;
 mod telling;
 
+pub(super) use giving_up::Patience;
 pub(super) use outcome::{AcceptedStep, Outcome};
 pub(super) use restart::{Kept, KeptFiles, take_variant};
 use settle::Settled;
@@ -116,8 +117,8 @@ pub(super) struct March<'a, 'm> {
     exchangeable: bool,
     /// What slave points do not see.
     unseen: &'a mut Unseen,
-    /// Steps that are cut again and again end the run: another one stands ready.
-    impatient: bool,
+    /// How long the run is followed where it goes on badly.
+    patience: Patience,
     pub peaks: &'a mut Peaks,
 }
 
@@ -332,7 +333,7 @@ impl March<'_, '_> {
                     if walk.stepping.at_kink(end) {
                         walk.before = None;
                     }
-                    self.accept(step, end, &converged);
+                    self.accept(step, end, &converged, work.external);
                     let jumped = self.record(
                         outputs,
                         committed,

@@ -10,6 +10,8 @@ use crate::solve::newton::{Converged, StepFailure};
 /// Part of the size of the model that a body without supports may move in the time of a run and still be at rest, and the
 /// part of [`RESTS`] that the stabilisation has to carry for it to be told.
 const MOVES: f64 = 0.05;
+/// Part of the largest forces of a run from which on those at its end are taken for what acts there.
+const REMEMBERED: f64 = 0.01;
 
 impl March<'_, '_> {
     /// Ends a run whose body runs away, and says at the end whether the answer rests on the stabilisation.
@@ -49,7 +51,14 @@ impl March<'_, '_> {
         let slides = self.model.pairs.iter().any(|p| p.friction.is_some());
         let (all, name) = match later || slides || converged.totals.plastic_work > 0.0 {
             true => (self.watch.turned_over(), "work"),
-            false => (converged.totals.internal_energy, "strain energy"),
+            // Of what was loaded and let go again no strain is left at the end.
+            false => {
+                let most = 0.5 * self.watch.turned_over();
+                match converged.totals.internal_energy {
+                    strain if strain >= most => (strain, "strain energy"),
+                    _ => (most, "work"),
+                }
+            }
         };
         if state.stabilized > DISSIPATES * all {
             self.warn(format!(
@@ -77,7 +86,7 @@ impl March<'_, '_> {
                 number(v.z),
                 piece.motion.motion
             ));
-        } else if drag.share > RESTS {
+        } else if drag.share * self.loaded(converged) > RESTS {
             self.warn(format!(
                 "the answer rests on the stabilization: at the end its forces are {:.2e} of the others, more than {RESTS}: \
                  something still moves; give it time to come to rest, hold it, or take a smaller `factor`",
@@ -85,5 +94,11 @@ impl March<'_, '_> {
             ));
         }
         None
+    }
+
+    /// How much of what once acted still does, from 0 to 1: where next to nothing is left, no answer rests on what holds the rest.
+    fn loaded(&self, converged: &Converged) -> f64 {
+        let once = REMEMBERED * self.workspace.largest_force;
+        converged.force / once.max(converged.force).max(f64::MIN_POSITIVE)
     }
 }

@@ -25,6 +25,7 @@ mod seen;
 mod simulation;
 mod soak;
 mod stabilization;
+mod substitutes;
 #[path = "../verification/support.rs"]
 #[allow(dead_code)]
 mod support;

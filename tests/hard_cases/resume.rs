@@ -241,7 +241,8 @@ fn friction_with_augmentation() {
         json!({"augmentation": {"gap": 1e-3, "slip": 1e-3, "max": 25}}),
     ));
     assert_eq!(found.status, RunStatus::Done);
-    assert!(found.warnings.iter().any(|w| w.contains("opened at step")));
+    // The tool is drawn back at the end.
+    assert!(!found.warnings.iter().any(|w| w.contains("opened at step")));
 }
 
 /// A kill or a crash in the middle of writing a checkpoint: the one before counts, whose step is done again, and what was

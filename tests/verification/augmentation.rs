@@ -85,16 +85,8 @@ fn a_body_that_leaves_and_returns_starts_anew() {
     assert_eq!(force(2.0), 0.0);
     assert!(outcome.at("energy.internal", 2.0) < 1e-20);
     assert!((force(3.0) / force(1.0) - 1.0).abs() < 2e-6);
-    let opened = |w: &String| w.contains("opened at step");
-    assert_eq!(
-        outcome
-            .summary
-            .warnings
-            .iter()
-            .filter(|w| opened(w))
-            .count(),
-        1
-    );
+    let opened = |e: &&Event| matches!(e, Event::Note { text } if text.contains("opened at step"));
+    assert_eq!(outcome.events.iter().filter(opened).count(), 1);
 }
 
 #[test]

@@ -1,4 +1,5 @@
 //! What is told of an accepted step, and its line of the history.
+use super::ending::UNSTABLE;
 use super::{March, Outputs, energy};
 use crate::assembly::Drag;
 use crate::model::error::number;
@@ -18,7 +19,8 @@ use crate::system::linear::Method;
 const SUNK: f64 = 5.0;
 
 impl March<'_, '_> {
-    pub(super) fn accept(&mut self, step: u32, end: f64, converged: &Converged) {
+    /// Counts the step, and tells what has shown in it; `work` is what was done on the bodies from outside (energy).
+    pub(super) fn accept(&mut self, step: u32, end: f64, converged: &Converged, work: f64) {
         self.progress.steps = step;
         self.progress.time = end;
         let touching = &converged.totals.touching;
@@ -35,11 +37,16 @@ impl March<'_, '_> {
             let lasting = self.model.dynamics.is_none() && !ends;
             if lasting && self.either(&before, i) && !self.either(touching, i) && !pair.is_second()
             {
-                self.warn(format!(
+                let text = format!(
                     "contact `{}` opened at step {step} (time {}): none of its points touches any more",
                     pair.name,
                     number(end)
-                ));
+                );
+                // Bodies that push back what is taken from them are let go.
+                match work < 0.0 {
+                    true => self.observer.event(&Event::Note { text }),
+                    false => self.warn(text),
+                }
             }
             let allowed = penalty::TOLERATED * pair.element_size;
             if pair.ruled.is_none() && pair.augmentation.is_none() && deepest > allowed {
@@ -73,11 +80,12 @@ impl March<'_, '_> {
         if let Some(last) = converged.factorization {
             let negative = last.negative_pivots;
             if negative > 0 && last.method == Method::Lu {
-                let text = "the determinant of the step's last tangent is negative: the equilibrium may be unstable";
-                self.warn_of_step(step, text);
+                let text =
+                    format!("the determinant of the step's last tangent is negative: {UNSTABLE}");
+                self.warn_of_step(step, &text);
             } else if negative > 0 {
                 let text = format!(
-                    "the last tangent of the step has {negative} negative pivot(s): the equilibrium may be unstable"
+                    "the last tangent of the step has {negative} negative pivot(s): {UNSTABLE}"
                 );
                 self.warn_of_step(step, &text);
             }

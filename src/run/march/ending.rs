@@ -6,6 +6,9 @@ use crate::output::RunStatus;
 use crate::solve::event::Event;
 use std::collections::BTreeSet;
 
+/// What accepted steps tell of equilibria that would not last.
+pub(super) const UNSTABLE: &str = "the equilibrium may be unstable";
+
 impl March<'_, '_> {
     /// How a run that reached its end time ended.
     pub(super) fn ending(&self) -> Ending {
@@ -13,8 +16,17 @@ impl March<'_, '_> {
         if never.is_empty() {
             return Ending::new(RunStatus::Done, None);
         }
+        // A straight body under more than its critical load stays straight: nothing tells Newton's method which way to bend.
+        let unstable = (self.progress.warnings.iter()).find(|w| w.contains(UNSTABLE));
+        let unstable = unstable.map_or(String::new(), |told| {
+            format!(
+                "; or the bodies would have buckled, as the tangent tells ({}): take smaller steps, and give them a small load or \
+                 motion to the side",
+                told.split(": ").next().unwrap_or_default()
+            )
+        });
         let reason = format!(
-            "the surfaces of contact `{}` never touched: check the motion, the `side` and the `depth` of the surface",
+            "the surfaces of contact `{}` never touched: check the motion, the `side` and the `depth` of the surface{unstable}",
             never.join("`, `")
         );
         Ending::new(RunStatus::NoContact, Some(reason))

@@ -5,20 +5,36 @@ use crate::output::RunStatus;
 use crate::run::bearing::Bearing;
 use crate::run::progress::Progress;
 
-/// Iterations of failed attempts from which on a run may work in vain.
+/// Iterations of failed attempts from which on a run may work in vain: one that another may stand for, and one of which the other is
+/// known to be worse.
 const IN_VAIN: u64 = 100;
+const WORSE_IN_VAIN: u64 = 500;
 /// Times the iterations of a run without failed attempts that what is left may cost, at the pace so far.
 const WORTH: f64 = 2.0;
 /// Cuts of a run from which on it crawls, where there are more than one in so many steps.
 const CRAWLS: u32 = 10;
 const MANY_CUTS: u32 = 5;
 
+/// How long a run is followed that goes on badly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::run) enum Patience {
+    /// To its end: no other stands ready.
+    Full,
+    /// With elements that gave way, since others would bend otherwise.
+    Long,
+    /// Without the edges of rigid surfaces as slaves, or with fewer slave points, it may come to its end.
+    Short,
+}
+
 impl March<'_, '_> {
-    /// Whether a run that goes on badly is given up for one without the edges of rigid surfaces as slaves, or with the sides of contacts
-    /// between bodies exchanged.
+    /// Whether a run that goes on badly is given up for one that stands ready, with the sides of contacts between bodies exchanged, too.
     pub(super) fn gives_up(&self) -> bool {
-        self.impatient && (self.cut_often() || self.fails_often())
-            || self.exchangeable && self.crawls()
+        let vain = match self.patience {
+            Patience::Full => false,
+            Patience::Long => self.fails_often(WORSE_IN_VAIN),
+            Patience::Short => self.cut_often() || self.fails_often(IN_VAIN),
+        };
+        vain || self.exchangeable && self.crawls()
     }
 
     /// Ends a run in which an edge of a master has sunk into its slave and may be a slave in another one, or a surface between slave
@@ -52,14 +68,15 @@ impl March<'_, '_> {
         })
     }
 
-    fn fails_often(&self) -> bool {
+    fn fails_often(&self, from: u64) -> bool {
         let Progress {
             iterations,
             accepted,
             time,
             ..
         } = &*self.progress;
-        in_vain(*iterations, *accepted, time / self.scene.solution.end_time)
+        let done = time / self.scene.solution.end_time;
+        in_vain(from, *iterations, *accepted, done)
     }
 
     /// Whether steps are cut again and again.
@@ -78,15 +95,19 @@ impl March<'_, '_> {
 
 /// Whether attempts that fail make what is left of a run, of which a part is done, cost more than twice another one that begins again and
 /// has none: near its end a run is worth more of them.
-fn in_vain(iterations: u64, accepted: u64, done: f64) -> bool {
+fn in_vain(from: u64, iterations: u64, accepted: u64, done: f64) -> bool {
     // Both relative to the part that is done.
     let left = iterations as f64 * (1.0 - done);
-    iterations.saturating_sub(accepted) > IN_VAIN && left > WORTH * accepted as f64
+    iterations.saturating_sub(accepted) > from && left > WORTH * accepted as f64
 }
 
 #[cfg(test)]
 mod tests {
-    use super::in_vain;
+    use super::{IN_VAIN, WORSE_IN_VAIN};
+
+    fn in_vain(iterations: u64, accepted: u64, done: f64) -> bool {
+        super::in_vain(IN_VAIN, iterations, accepted, done)
+    }
 
     #[test]
     fn a_run_near_its_end_is_worth_more_attempts() {
@@ -96,6 +117,8 @@ mod tests {
         // A tenth of the way for 200 iterations: 1,800 are left, and all of it without failed attempts would take 900.
         assert!(!in_vain(200, 90, 0.1));
         assert!(in_vain(201, 90, 0.1));
+        assert!(!super::in_vain(WORSE_IN_VAIN, 590, 90, 0.1));
+        assert!(super::in_vain(WORSE_IN_VAIN, 591, 90, 0.1));
         // As many failed attempts half way, and near the end.
         assert!(in_vain(361, 90, 0.5));
         assert!(!in_vain(359, 90, 0.5));

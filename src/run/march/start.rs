@@ -1,5 +1,5 @@
 //! What a run is made of, at time 0 or where it was kept.
-use super::{Caller, Course, Kept, KeptFiles, March, Outputs, StepControl};
+use super::{Caller, Course, Kept, KeptFiles, March, Outputs, Patience, StepControl};
 use crate::assembly::{Assembler, AssemblerMemory};
 use crate::machine::clock::Phases;
 use crate::model::Model;
@@ -40,8 +40,8 @@ pub(crate) struct Problem {
     pub exchangeable: bool,
     /// Pairs whose slaves may see more in another variant.
     pub may_see: MaySee,
-    /// Steps that are cut again and again end the run: another one stands ready.
-    pub impatient: bool,
+    /// How long the run is followed where it goes on badly.
+    pub patience: Patience,
     /// What it has other than the scene as given, as checkpoints keep it.
     pub changes: String,
 }
@@ -302,7 +302,7 @@ impl<'m> RunState<'m> {
             replaceable: &problem.replaceable,
             exchangeable: problem.exchangeable,
             unseen,
-            impatient: problem.impatient,
+            patience: problem.patience,
             peaks,
         };
         (march, course)

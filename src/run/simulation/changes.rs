@@ -1,6 +1,7 @@
 //! What a run that was repeated has other than its scene, as checkpoints keep it. Summaries and checkpoints tell of the scene that was
 //! given: whoever looks for a run of it finds one that was repeated as well.
 use super::Rims;
+use super::substitute::Former;
 use super::variant::Safe;
 use crate::run::checkpoint::bytes::{Malformed, Reader};
 use crate::run::checkpoint::{CheckpointError, Sections};
@@ -19,6 +20,8 @@ pub(super) struct Changes {
     warnings: Vec<String>,
     notes: Vec<String>,
     rims: Rims,
+    former: Option<Former>,
+    kept: Vec<String>,
 }
 
 impl Changes {
@@ -30,6 +33,8 @@ impl Changes {
             warnings: Vec::new(),
             notes: Vec::new(),
             rims,
+            former: None,
+            kept: Vec::new(),
         };
         let Some(safe) = safe else {
             return changes;
@@ -51,6 +56,8 @@ impl Changes {
             .collect();
         changes.warnings.clone_from(&safe.changed);
         changes.notes.clone_from(&safe.notes);
+        changes.former.clone_from(&safe.former);
+        changes.kept.clone_from(&safe.kept);
         changes
     }
 
@@ -81,8 +88,10 @@ impl Changes {
             warnings,
             notes,
             rims,
+            former,
+            kept,
         } = serde_json::from_str(text).ok()?;
-        if elements.is_empty() && contacts.is_empty() {
+        if elements.is_empty() && contacts.is_empty() && kept.is_empty() {
             return Some((None, rims));
         }
         let mut loaded = scene.clone();
@@ -96,6 +105,8 @@ impl Changes {
             loaded,
             changed: warnings,
             notes,
+            former,
+            kept,
         };
         Some((Some(safe), rims))
     }
@@ -131,6 +142,8 @@ mod tests {
             loaded: scene.clone(),
             changed: vec!["one".to_owned()],
             notes: vec!["two".to_owned()],
+            former: None,
+            kept: vec!["d".to_owned()],
         };
         safe.loaded.scene.bodies.get_mut("b").unwrap().element = Element::H8MeanDilatation;
         let contact = safe.loaded.scene.contacts.get_mut("c").unwrap();
@@ -143,6 +156,7 @@ mod tests {
         let back = back.unwrap();
         assert_eq!(back.loaded.scene, safe.loaded.scene);
         assert_eq!((back.changed, back.notes), (safe.changed, safe.notes));
+        assert_eq!((back.former, back.kept), (safe.former, safe.kept));
         assert_eq!(rims, Rims::Instead);
         let none = Changes::of(&scene, None, Rims::Settled).text();
         let (back, rims) = Changes::apply(&none, &scene).unwrap();

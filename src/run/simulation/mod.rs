@@ -3,6 +3,7 @@ mod changes;
 mod read;
 mod stages;
 mod stepping;
+mod substitute;
 mod variant;
 
 pub use read::{Force, NodalField, ReadError};
@@ -10,7 +11,7 @@ pub use read::{Force, NodalField, ReadError};
 use super::RunError;
 use super::checkpoint::{self, Fingerprint, Sections};
 use super::cost::Cost;
-use super::march::{Caller, Ending, KeptFiles, Problem, RunState, take_variant};
+use super::march::{Caller, Ending, KeptFiles, Patience, Problem, RunState, take_variant};
 use super::probes;
 use crate::machine;
 use crate::machine::clock::Phases;
@@ -25,6 +26,7 @@ use changes::Changes;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use substitute::instead_of_kept;
 use variant::{
     Safe, edges_may, names_element, points_may, safe_variant, seeing_less, with_edges,
     with_exchanged, with_points, with_rims, with_smooth,
@@ -229,7 +231,7 @@ impl<'o> Simulation<'o> {
         (self.running).with_dependent_mut(|_, run| run.march(caller).0.conclude());
     }
 
-    /// Begins again at time 0 where other elements may replace those that gave way, where the run stopped while an edge of a
+    /// Begins again at time 0 where other elements may replace those that gave way, or do so less well than these, where the run stopped while an edge of a
     /// master lay on its slave, or in contact with a body that is softer than its slave, or with flat faces that may be smooth.
     fn begin_again(&mut self) -> Result<bool, RunError> {
         let Some(ending) = self.ended.clone() else {
@@ -272,12 +274,17 @@ impl<'o> Simulation<'o> {
             let safe = if ending.on_rims { rims() } else { None };
             points(safe.as_ref().or(before)).or(safe)
         };
-        let safe = || safe_variant(&self.scene, before, squeezed, time);
+        let safe = || safe_variant(&self.scene, before, squeezed, (time, &self.history));
         let contacts = || edges().or_else(exchanged).or_else(smooth);
+        let kept = self.kept_elements();
+        let instead = stopped.then(|| instead_of_kept(before));
+        let instead = instead.flatten();
         let found = match self.rims {
+            rims if kept.is_some() => kept.map(|safe| (safe, rims)),
             Rims::Out | Rims::Instead if ending.on_rims || !ending.between.is_empty() => {
                 unseen().map(|safe| (safe, Rims::Instead))
             }
+            rims if instead.is_some() => instead.map(|safe| (safe, rims)),
             Rims::Out => (safe().map(|safe| (safe, Rims::Out)))
                 .or_else(|| Some((rims()?, Rims::Settled)))
                 .or_else(|| Some((contacts()?, Rims::Out))),
@@ -293,9 +300,14 @@ impl<'o> Simulation<'o> {
             }
             Rims::Settled => (safe().or_else(contacts)).map(|safe| (safe, Rims::Settled)),
         };
-        let Some((safe, rims)) = found else {
+        let Some((mut safe, rims)) = found else {
             return Ok(false);
         };
+        // A run with other slaves is no measure of this one.
+        let contacts = |safe: &Safe| safe.loaded.scene.contacts.clone();
+        if before.map_or(&self.scene, |b| &b.loaded).scene.contacts != contacts(&safe) {
+            safe.former = None;
+        }
         let spent = run.give_up();
         let observer = &mut *self.options.observer;
         // What cannot be built in another way stays as it ended.
@@ -389,9 +401,14 @@ fn running(
     observer: &mut (dyn Observer + Send),
 ) -> Result<Running, RunError> {
     let cost = Cost::start();
-    let (loaded, changed, notes) = match safe {
-        None => (scene, &[][..], &[][..]),
-        Some(safe) => (&safe.loaded, &safe.changed[..], &safe.notes[..]),
+    let (loaded, changed, notes, kept) = match safe {
+        None => (scene, &[][..], &[][..], &[][..]),
+        Some(safe) => (
+            &safe.loaded,
+            &safe.changed[..],
+            &safe.notes[..],
+            &safe.kept[..],
+        ),
     };
     let mut phases = Phases::new();
     phases.start("model");
@@ -417,6 +434,7 @@ fn running(
     }
     let replaceable = (loaded.scene.bodies.iter())
         .filter(|(name, body)| body.element == Element::H8 && !names_element(loaded, name))
+        .filter(|(name, _)| !kept.contains(name))
         .map(|(name, _)| name.clone())
         .collect();
     let may = |may: fn(&LoadedScene, &Contact) -> bool| -> Vec<usize> {
@@ -441,7 +459,11 @@ fn running(
         replaceable,
         exchangeable: with_exchanged(loaded, None, None).is_some(),
         may_see,
-        impatient: rims == Rims::Instead,
+        patience: match (rims, kept) {
+            (Rims::Instead, _) => Patience::Short,
+            (_, []) => Patience::Full,
+            _ => Patience::Long,
+        },
         changes: Changes::of(scene, safe, rims).text(),
     });
     let threads = rayon::current_num_threads();

@@ -20,7 +20,7 @@ impl Simulation<'_> {
             replaceable,
             exchangeable,
             may_see,
-            impatient,
+            patience,
             changes,
             ..
         } = &**self.running.borrow_owner();
@@ -37,7 +37,7 @@ impl Simulation<'_> {
             replaceable: replaceable.clone(),
             exchangeable: *exchangeable,
             may_see: may_see.clone(),
-            impatient: *impatient,
+            patience: *patience,
             changes: changes.clone(),
         });
         let (threads, observer) = (rayon::current_num_threads(), &mut *self.options.observer);

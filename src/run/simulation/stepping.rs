@@ -176,14 +176,19 @@ impl Simulation<'_> {
                 (self.running).with_dependent_mut(|_, run| run.end_stage(observer));
                 let run = self.running.borrow_dependent();
                 self.history.rows.push(run.course.outputs.row.clone());
+                let number = run.progress.steps;
+                let time = run.progress.time;
+                if self.ended.is_none() {
+                    self.ended = self.beside_former();
+                }
                 let AcceptedStep {
                     dt,
                     iterations,
                     cuts,
                 } = accepted;
                 Ok(Some(Step {
-                    number: run.progress.steps,
-                    time: run.progress.time,
+                    number,
+                    time,
                     dt,
                     iterations,
                     cuts,

@@ -1,7 +1,9 @@
 //! What a run that stopped is repeated with: bodies with other elements, where their default ones give way in strong
 //! compression, and contacts with the edges of their masters, where such an edge lies on the slave, with their sides exchanged,
 //! where the master is the softer one, or with smooth masters.
+use super::substitute::Former;
 use crate::model::error::number;
+use crate::output::Table;
 use crate::scene::{
     Contact, Element, Friction, Kinematics, LoadedScene, MasterSurface, Passes, Points, pointer,
 };
@@ -16,6 +18,10 @@ pub(super) struct Safe {
     pub changed: Vec<String>,
     /// What is told of it where it leaves no doubt about the answer.
     pub notes: Vec<String>,
+    /// The run before, as long as elements that took the place of others are compared with them.
+    pub former: Option<Former>,
+    /// Bodies whose elements stay as they are, whatever they do.
+    pub kept: Vec<String>,
 }
 
 impl Safe {
@@ -25,6 +31,8 @@ impl Safe {
             loaded: scene.clone(),
             changed: Vec::new(),
             notes: Vec::new(),
+            former: None,
+            kept: Vec::new(),
         })
     }
 }
@@ -36,13 +44,20 @@ pub(super) fn safe_variant<'n>(
     scene: &LoadedScene,
     before: Option<&Safe>,
     squeezed: impl Iterator<Item = &'n str>,
-    time: f64,
+    (time, history): (f64, &Table),
 ) -> Option<Safe> {
     let when = format!("gave way at time {}", number(time));
     let mut safe = None;
+    let mut bodies = Vec::new();
     for body in squeezed {
         let before = safe.as_ref().or(before);
-        safe = replaced(scene, before, body, &when).or(safe);
+        if let Some(found) = replaced(scene, before, body, &when) {
+            safe = Some(found);
+            bodies.push(body.to_owned());
+        }
+    }
+    if let Some(safe) = &mut safe {
+        safe.former = Some(Former::new(bodies, history));
     }
     safe
 }
@@ -52,26 +67,18 @@ fn replaced(scene: &LoadedScene, before: Option<&Safe>, body: &str, when: &str) 
     if names_element(scene, body) {
         return None;
     }
-    let Safe {
-        mut loaded,
-        mut changed,
-        notes,
-    } = Safe::of(scene, before);
-    let element = &mut loaded.scene.bodies.get_mut(body)?.element;
+    let mut safe = Safe::of(scene, before);
+    let element = &mut safe.loaded.scene.bodies.get_mut(body)?.element;
     if *element != Element::H8 {
         return None;
     }
     *element = Element::H8MeanDilatation;
-    changed.push(format!(
+    safe.changed.push(format!(
         "body `{body}`: its default elements (`h8`) {when}, as they do in strong compression; the run was repeated with \
-         `h8_mean_dilatation` for it, which is stiffer in bending: refine it where it bends, and name the `element` to have one of \
-         them from the start"
+         `h8_mean_dilatation` for it, which bends less well: refine it where it bends, and name the `element` to have one of them \
+         from the start"
     ));
-    Some(Safe {
-        loaded,
-        changed,
-        notes,
-    })
+    Some(safe)
 }
 
 /// The scene with the edges of masters as slaves, in every contact with another body that leaves its passes to the default.
@@ -261,14 +268,10 @@ fn with_contacts(
     time: Option<f64>,
     (key, change, text): (&str, impl Fn(&mut Contact) -> bool, &str),
 ) -> Option<Safe> {
-    let Safe {
-        mut loaded,
-        mut changed,
-        notes,
-    } = Safe::of(scene, before);
+    let mut safe = Safe::of(scene, before);
     let mut found = Vec::new();
     let body = |set: &str| set.split('.').next().map(str::to_owned);
-    for (name, contact) in &mut loaded.scene.contacts {
+    for (name, contact) in &mut safe.loaded.scene.contacts {
         let own = body(&contact.slave) == body(&contact.master);
         let rigid = scene.scene.surfaces.contains_key(&contact.master);
         let named = scene.has(&pointer(&["contacts", name, key]));
@@ -281,12 +284,8 @@ fn with_contacts(
     if found.is_empty() {
         return None;
     }
-    changed.push(stopped(&found, time, text));
-    Some(Safe {
-        loaded,
-        changed,
-        notes,
-    })
+    safe.changed.push(stopped(&found, time, text));
+    Some(safe)
 }
 
 /// What is told of contacts with which a run stopped.

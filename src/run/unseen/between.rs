@@ -231,7 +231,11 @@ impl Watched {
             true => None,
             false => self.depth(model, u, to),
         };
-        let own = depth.map_or(0.0, |depth| depth - penetration);
+        // What is left of an overclosure at the start is not to be seen as an overlap, at the points either.
+        let over = (model.pairs[self.pair].overclosure.as_ref()).map_or(0.0, |o| {
+            o.factor(to) * o.z0.iter().fold(0.0f64, |most, z0| most.max(-z0))
+        });
+        let own = depth.map_or(0.0, |depth| depth - penetration - over);
         let own = if own > NOTHING * size { own } else { 0.0 };
         let way = deformed(&self.nodes, u).max(own);
         let part = self.travel.goes(way, own, [to - from, end - to]);
