@@ -168,3 +168,35 @@ fn a_stop_that_is_not_reached_is_told() {
     let reason = missed.summary.reason.as_deref().unwrap_or_default();
     assert!(reason.contains("contact `stop` never touched"), "{reason}");
 }
+
+/// A straight column between two walls that are never reached, shortened at once to far beyond its critical load: it stays straight, and
+/// the walls are not to blame.
+#[test]
+fn a_column_that_stays_straight_is_told_to_be_unstable() {
+    let wall = |z: f64, normal: f64| json!({ "plane": { "size": [240, 20], "center": [50, 0, z], "normal": [0, 0, normal] } });
+    let scene = json!({
+        "covact": 1,
+        "materials": { "m": { "st_venant_kirchhoff": { "E": 210000, "nu": 0.3 } } },
+        "bodies": { "column": {
+            "mesh": { "plate": { "size": [100, 5], "thickness": 1, "elements": [50, 1] } }, "material": "m"
+        } },
+        "surfaces": { "upper": wall(2.5, -1.0), "lower": wall(-2.5, 1.0) },
+        "contacts": {
+            "u": { "slave": "column.top", "master": "upper" },
+            "l": { "slave": "column.bottom", "master": "lower" }
+        },
+        "supports": {
+            "foot": { "on": "column.x_min", "fixed": true },
+            "head": { "on": "column.x_max", "displacement": { "x": "-1.5*t", "z": 0 } },
+            "y": { "on": "column", "plane_strain": "y" }
+        },
+        "output": { "every": 0 }
+    });
+    let outcome = solve(&scene);
+    assert_eq!(outcome.summary.status.name(), "no_contact");
+    let reason = outcome.summary.reason.clone().unwrap_or_default();
+    assert!(
+        reason.contains("never touched") && reason.contains("would have buckled"),
+        "{reason}"
+    );
+}

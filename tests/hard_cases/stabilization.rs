@@ -203,3 +203,42 @@ fn a_block_that_is_pushed_feels_its_friction_only() {
         }
     }
 }
+
+/// A plate that only two planes hold is pressed by one of them and let go again. In the end nothing is stored, by which what was dissipated
+/// while it began could be measured, and hardly a force is left that could rest on anything.
+#[test]
+fn what_is_let_go_again_does_not_rest_on_it() {
+    let plane = |z: f64, normal: f64, way: f64, end: f64| {
+        json!({
+            "plane": { "center": [0, 0, z], "normal": [0, 0, normal], "size": [60, 60] },
+            "motion": { "translation": [0, 0, { "table": [[0, 0], [1, way], [2, end]] }] }
+        })
+    };
+    let scene = json!({
+        "covact": 1,
+        "materials": { "m": { "st_venant_kirchhoff": { "E": 1000, "nu": 0.3 } } },
+        "bodies": { "plate": {
+            "mesh": { "plate": { "size": [10, 10], "thickness": 1, "elements": [4, 4], "origin": [0, 0, 0.5] } },
+            "material": "m"
+        } },
+        "surfaces": { "lower": plane(0.0, 1.0, 0.0, 0.0), "upper": plane(1.0, -1.0, -0.02, 0.1) },
+        "contacts": {
+            "below": { "slave": "plate.bottom", "master": "lower" },
+            "above": { "slave": "plate.top", "master": "upper" }
+        },
+        "supports": {
+            "x": { "on": "plate.x_min", "symmetry": "x" },
+            "y": { "on": "plate.y_min", "symmetry": "y" }
+        },
+        "solution": { "end_time": 2 },
+        "output": { "every": 0 }
+    });
+    let outcome = solve(&scene);
+    let s = &outcome.summary;
+    assert_eq!(s.status, RunStatus::Done, "{:?}", s.reason);
+    // It was at work.
+    let dissipated = outcome.at("energy.stabilization", 2.0);
+    assert!(dissipated > 0.0, "{dissipated}");
+    assert!(outcome.at("energy.internal", 2.0) < 0.1 * dissipated);
+    assert!(s.warnings.is_empty(), "{:?}", s.warnings);
+}

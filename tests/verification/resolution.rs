@@ -230,6 +230,38 @@ fn a_tube_shrinks_onto_a_pin_and_check_says_how_it_was_taken() {
     assert!(told(&self::model(&scene).notes, "start on one side").is_empty());
 }
 
+/// A thick hub on a shaft that is .02 too large, twice as much as the facets of its bore lie off the shaft: what is left of the overclosure
+/// while it shrinks is not sinking in between nodes, and the nodes bear Lame's pressure.
+#[test]
+fn an_overclosure_that_shrinks_is_no_sinking_in() {
+    let mut scene = fit([16, 16], json!("nodes"));
+    scene["bodies"].as_object_mut().unwrap().remove("inner");
+    let supports = scene["supports"].as_object_mut().unwrap();
+    supports.retain(|name, _| name.starts_with("outer"));
+    let mesh = &mut scene["bodies"]["outer"]["mesh"]["cylinder_panel"];
+    (mesh["radius"], mesh["thickness"], mesh["layers"]) = (json!(15), json!(10), json!(5));
+    scene["surfaces"] =
+        json!({ "shaft": { "cylinder": { "radius": 10.02, "length": 4 }, "side": "outward" } });
+    let fit = scene["contacts"]["fit"].as_object_mut().unwrap();
+    fit.insert("slave".to_owned(), json!("outer.inner"));
+    fit.insert("master".to_owned(), json!("shaft"));
+    // Left to the default, they could be repeated with others.
+    fit.remove("points");
+    scene["solution"] = json!({ "step": { "initial": 0.1, "max": 0.1 } });
+    let outcome = run(&scene);
+    assert!(
+        told(&outcome.summary.warnings, "sinks").is_empty(),
+        "{:?}",
+        outcome.summary.warnings
+    );
+    assert_eq!(outcome.summary.given_up.runs, 0);
+    // Plane strain, inner displacement .02 at a = 10, b = 20.
+    let exact = 0.02 * 1000.0 / (1.3 * 10.0 * (0.4 + 4.0) / 3.0);
+    let found = outcome.at("force.shaft.x", 1.0).abs() / 10.0;
+    println!("{found} of {exact}");
+    assert!((found / exact - 1.0).abs() < 0.02, "{found} {exact}");
+}
+
 #[test]
 fn few_points_under_a_force_are_told() {
     // The plate under a ball: one node touches on a coarse mesh, many Gauss points on a finer one.

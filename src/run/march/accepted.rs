@@ -17,6 +17,8 @@ use crate::system::linear::Method;
 
 /// Penetration, over the one from which on a penalty is raised whatever else, above which it is told: half of an element's layer.
 const SUNK: f64 = 5.0;
+/// Part of all works so far below which that of a step is rounding.
+const NOTHING: f64 = 1e-6;
 
 impl March<'_, '_> {
     /// Counts the step, and tells what has shown in it; `work` is what was done on the bodies from outside (energy).
@@ -42,10 +44,10 @@ impl March<'_, '_> {
                     pair.name,
                     number(end)
                 );
-                // Bodies that push back what is taken from them are let go.
-                match work < 0.0 {
-                    true => self.observer.event(&Event::Note { text }),
-                    false => self.warn(text),
+                // Bodies that push back what is taken from them are let go, and where nothing works nothing presses.
+                match work > NOTHING * self.watch.turned_over() {
+                    true => self.warn(text),
+                    false => self.observer.event(&Event::Note { text }),
                 }
             }
             let allowed = penalty::TOLERATED * pair.element_size;

@@ -25,6 +25,9 @@ const NOTHING: f64 = 1e-3;
 /// Angle between the normals at neighbouring places from which on an edge lies between them (radians), as of sharp edges elsewhere.
 const EDGE: f64 = 0.5;
 
+/// Faces around a node that no border goes through.
+const INSIDE: u32 = 4;
+
 /// The pairs that are looked at.
 #[derive(Debug, Default)]
 pub(in crate::run) struct Between {
@@ -140,10 +143,29 @@ fn bulges(mesh: &Mesh, faces: &[Face]) -> Vec<f64> {
         let along = mesh.nodes[b as usize] - mesh.nodes[a as usize];
         along.dot(&(m - n)).abs() / 8.0
     };
-    (faces.iter())
+    let own: Vec<f64> = (faces.iter())
         .map(|face| {
             let [a, b, c, d] = mesh.face_corners(*face);
             edge([a, b]).max(edge([c, d])) + edge([a, c]).max(edge([b, d]))
+        })
+        .collect();
+    // At a border the normal is that of the face alone, which knows half of its curvature there.
+    let mut around: HashMap<u32, (u32, f64)> = HashMap::new();
+    for (face, bulge) in faces.iter().zip(&own) {
+        for node in mesh.face_corners(*face) {
+            let (count, most) = around.entry(node).or_insert((0, 0.0));
+            (*count, *most) = (*count + 1, most.max(*bulge));
+        }
+    }
+    (faces.iter().zip(&own))
+        .map(|(face, bulge)| {
+            let corners = mesh.face_corners(*face).map(|node| around[&node]);
+            match corners.iter().any(|(count, _)| *count < INSIDE) {
+                true => corners
+                    .iter()
+                    .fold(*bulge, |most, (_, near)| most.max(*near)),
+                false => *bulge,
+            }
         })
         .collect()
 }
