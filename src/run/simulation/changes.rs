@@ -20,7 +20,10 @@ pub(super) struct Changes {
     warnings: Vec<String>,
     notes: Vec<String>,
     rims: Rims,
+    /// Those of older checkpoints have none.
+    #[serde(default)]
     former: Option<Former>,
+    #[serde(default)]
     kept: Vec<String>,
 }
 
@@ -162,5 +165,7 @@ mod tests {
         let (back, rims) = Changes::apply(&none, &scene).unwrap();
         assert!(back.is_none() && rims == Rims::Settled);
         assert!(Changes::apply(&changes.text().replace("\"c\"", "\"e\""), &scene).is_none());
+        let older = none.replace(",\"former\":null,\"kept\":[]", "");
+        assert!(older != none && Changes::apply(&older, &scene).is_some());
     }
 }
