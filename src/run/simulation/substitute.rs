@@ -212,6 +212,7 @@ mod tests {
         let [_, later] = former.differs(&history(&[[0.6, 9.0]]));
         assert_eq!([little, later], [0.0; 2]);
     }
+
     /// Elements are taken back, and given again where nothing else is left, with what was found told of both.
     #[test]
     fn elements_come_and_go() {
