@@ -58,7 +58,6 @@ struct Builder<'s> {
     /// Slave nodes with averaged gaps so far.
     averaged: usize,
     /// Slave points with history so far.
-    histories: usize,
     /// Of slave points at a height above a mid-surface so far.
     levers: Vec<Lever>,
     /// On rims of rigid surfaces so far.
@@ -94,7 +93,8 @@ pub fn build_stage(
     };
     let (surfaces, wrong) = builder.surfaces();
     ModelError::all(bodies.err().into_iter().chain(sets).chain(wrong))?;
-    let (pairs, mut surfaces) = builder.contacts(surfaces)?;
+    let (mut pairs, mut surfaces) = builder.contacts(surfaces)?;
+    super::histories::number(&mut pairs);
     let mut held = builder.drive(&mut surfaces)?;
     held.extend(builder.rims.iter().flat_map(RimNodes::dofs));
     // Those of later stages, so that a contradiction is told before anything is solved.
@@ -184,7 +184,6 @@ impl<'s> Builder<'s> {
             notes: Vec::new(),
             warnings: Vec::new(),
             averaged: 0,
-            histories: 0,
             levers: Vec::new(),
             rims: Vec::new(),
         }

@@ -14,6 +14,7 @@ mod found_supports;
 pub(crate) mod free_motion;
 pub(crate) mod friction;
 pub(crate) mod grid;
+pub(crate) mod histories;
 pub(crate) mod initial;
 pub(crate) mod kernel;
 pub mod loads;
@@ -23,6 +24,7 @@ pub(crate) mod overclosure;
 pub(crate) mod pace;
 pub(crate) mod penalty;
 pub(crate) mod probe;
+pub(crate) mod recut;
 pub(crate) mod rims;
 mod sagitta;
 pub mod segments;
@@ -167,7 +169,8 @@ pub struct PairModel {
     pub averaged: Option<SlaveNodes>,
     /// Friction where the scene asks for it.
     pub friction: Option<FrictionModel>,
-    /// Number of the first point among those with history ([`state::State::histories`]); none where the points have none.
+    /// Number of the first point among those with history before anything moves ([`state::State::history`]); none where the
+    /// points have none.
     pub first_history: Option<usize>,
 }
 
@@ -300,12 +303,18 @@ impl Model {
         self.dofs.dofs() - self.dofs.removed().count()
     }
 
-    /// Number of slave points with history.
+    /// Number of slave points with history before anything moves.
     pub fn histories(&self) -> usize {
         let pairs = self.pairs.iter();
         pairs
-            .map(|p| p.history().map_or(0, |range| range.len()))
+            .map(|p| p.first_history.map_or(0, |_| p.points.len()))
             .sum()
+    }
+
+    /// Whether slave points with history are cut anew with every step.
+    pub fn recuts_histories(&self) -> bool {
+        let mut pairs = self.pairs.iter();
+        pairs.any(|p| p.remembers() && p.segments().is_some())
     }
 
     /// Number of slave points.
@@ -399,11 +408,9 @@ impl PairModel {
         }
     }
 
-    /// Where the histories of the points are among all; none where the points have none.
-    #[inline]
-    pub fn history(&self) -> Option<std::ops::Range<usize>> {
-        self.first_history
-            .map(|first| first..first + self.points.len())
+    /// Whether its points have a history.
+    pub fn remembers(&self) -> bool {
+        self.friction.is_some() || self.augmentation.is_some()
     }
 }
 

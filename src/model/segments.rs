@@ -5,18 +5,13 @@
 //! segment-to-segment contact method for large deformation solid mechanics", Computer Methods in Applied Mechanics and
 //! Engineering 193 (2004)), and cut it in its parameters, where it is a square whatever its shape. What no facet covers
 //! keeps its points too.
-use super::Model;
-use super::state::{PointState, State};
 use crate::contact::clip::{self, Point, Polygon};
 use crate::contact::points::{ROUNDING, SlavePoint};
 use crate::fem::FaceNodes;
 use crate::fem::Quad;
 use crate::fem::face::shape;
-use crate::model::master::Masters;
-use crate::scene::ValueError;
 use covact_geometry::{MovingFacets, Vec3};
 use rayon::prelude::*;
-use std::sync::Arc;
 
 /// How far an edge may bend from the straight lines that stand for it, relative to its size. The integrals are wrong by
 /// the square of this, as a kink that is met too early or too late is small near itself.
@@ -28,6 +23,7 @@ const FACING: f64 = -0.1;
 
 /// The border of a master facet.
 struct Outline {
+    facet: u32,
     points: Vec<Vec3>,
     low: Vec3,
     high: Vec3,
@@ -62,7 +58,10 @@ pub fn segments(
             let [low, high] = place.bounds(reach);
             let first = outlines.partition_point(|o| o.low.x < low.x - widest);
             let near = outlines[first..].iter().take_while(|o| o.low.x <= high.x);
-            for outline in near.filter(|o| o.meets(&low, &high)) {
+            let mut near: Vec<_> = near.filter(|o| o.meets(&low, &high)).collect();
+            // The pieces depend on the order, which is not to depend on where the bodies have turned to.
+            near.sort_by_key(|o| o.facet);
+            for outline in near {
                 if outline.normal.dot(&place.normal) > FACING {
                     continue;
                 }
@@ -150,6 +149,7 @@ impl Outline {
         let jet = facets.jet(facet, [0.0; 2]);
         let normal = jet.rho_i[0].cross(&jet.rho_i[1]);
         Outline {
+            facet,
             low: points.iter().fold(corners[0], |l, p| l.inf(p)),
             high: points.iter().fold(corners[0], |h, p| h.sup(p)),
             points,
@@ -288,60 +288,4 @@ impl Place {
 /// of a slave face.
 pub fn reach(depth: f64, element_size: f64) -> f64 {
     2.0 * depth.max(element_size)
-}
-
-/// Cuts the slave faces of every pair with segments anew, by the masters where a state puts them, and starts the points
-/// there: to be called on an accepted state before a step from it is tried. Nothing is done where no pair has segments.
-///
-/// # Errors
-/// A motion without a value at `time`.
-pub fn recut(
-    model: &Model,
-    masters: &mut Masters,
-    state: &mut State,
-    time: f64,
-) -> Result<(), ValueError> {
-    if model.pairs.iter().all(|p| p.segments().is_none()) {
-        return Ok(());
-    }
-    masters.update(model, &state.u);
-    let mut points = Vec::with_capacity(state.points.len());
-    let mut first = 0;
-    for (index, pair) in model.pairs.iter().enumerate() {
-        let range = first..first + state.slaves(model, index).len();
-        first = range.end;
-        let (Some(degree), Some(body), Some(surface)) =
-            (pair.segments(), pair.body_master(), masters.surface(index))
-        else {
-            points.extend_from_slice(&state.points[range]);
-            continue;
-        };
-        let slave = &model.bodies[pair.body];
-        let faces: Vec<FaceNodes> = (pair.faces.iter())
-            .map(|&f| slave.mesh.face_nodes(f).shifted(slave.first_node))
-            .collect();
-        let made = segments(
-            &faces,
-            &surface.facets,
-            |n| model.nodes[n as usize],
-            |n| model.position(n as usize, &state.u),
-            degree,
-            reach(body.depth, pair.element_size) + pair.offset,
-        );
-        let master = masters.at(model, index, &state.u, time)?;
-        let mut hint = None;
-        for (i, p) in made.iter().enumerate() {
-            let seen = master.see(i, &model.point_position(p, &state.u), hint);
-            hint = seen.map(|s| s.hint).or(hint);
-            points.push(PointState {
-                hint: seen.map(|s| s.hint),
-                closed: seen.is_some_and(|s| s.closed(pair.offset)),
-            });
-        }
-        if let Some(cut) = state.cuts.get_mut(index) {
-            *cut = Some(Arc::from(made));
-        }
-    }
-    state.points = points;
-    Ok(())
 }

@@ -5,7 +5,7 @@ use super::error::{At, text};
 use super::loads::DeadLoad;
 use super::motion::WayBack;
 use super::stabilization::StabilizationModel;
-use super::{Model, ModelError, found_supports};
+use super::{Model, ModelError, found_supports, histories};
 use crate::scene::{AUTOMATIC, Load, Points, Scene, TIME, TimeFunction, Value};
 use crate::system::{Dof, DofMapBuilder};
 use std::collections::BTreeSet;
@@ -160,22 +160,19 @@ pub fn enter(
 
 /// Takes the slave points of contacts that do not act.
 fn leave_out(model: &mut Model, active: &BTreeSet<&str>) {
-    let (mut histories, mut nodes) = (0, 0);
+    let mut nodes = 0;
     for pair in &mut model.pairs {
         if !active.contains(pair.name.as_str()) {
             pair.points.clear();
             pair.bow.clear();
             (pair.overclosure, pair.averaged, pair.sampled) = (None, None, Points::Nodes);
         }
-        if let Some(first) = &mut pair.first_history {
-            *first = histories;
-            histories += pair.points.len();
-        }
         if let Some(averaged) = &mut pair.averaged {
             averaged.renumber(nodes);
             nodes += averaged.len();
         }
     }
+    histories::number(&mut model.pairs);
 }
 
 /// Lets surfaces that forces drive stand still where none of their contacts acts; returns their degrees of freedom.

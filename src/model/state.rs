@@ -1,5 +1,5 @@
 //! What a step may change, so that it can be taken back as a whole.
-use super::Model;
+use super::{Model, histories};
 use crate::contact::friction::history::PointHistory;
 use crate::contact::points::SlavePoint;
 use crate::shell::{ElementBlock, ElementFault, Flow, PlasticWork, with_block};
@@ -27,7 +27,7 @@ pub struct State {
     pub points: Vec<PointState>,
     /// Whether slave nodes were closed, pair after pair of those with averaged gaps.
     pub nodes: Vec<bool>,
-    /// What slave points remember, pair after pair of those with friction ([`super::PairModel::history`]).
+    /// What slave points remember, pair after pair of those with friction or augmentation ([`State::history`]).
     pub histories: Vec<PointHistory>,
     /// Per pair, the slave points of its integration segments since they were last cut; none where the points are those
     /// of the model. Empty where no pair has segments.
@@ -69,13 +69,34 @@ impl State {
         slaves(&self.cuts, model, pair)
     }
 
+    /// Where the histories of a pair's points are among all; none where its points have none.
+    #[inline]
+    pub fn history(&self, model: &Model, pair: usize) -> Option<Range<usize>> {
+        histories::range(&self.cuts, model, pair)
+    }
+
+    /// Histories that know of nothing, for as many points as its segments have now.
+    pub fn forget_histories(&mut self, model: &Model) {
+        let pairs = 0..model.pairs.len();
+        let ranges = pairs.filter_map(|index| self.history(model, index));
+        let count = ranges.map(|range| range.len()).sum();
+        self.histories.clear();
+        self.histories.resize(count, PointHistory::default());
+    }
+
+    /// Takes over points with history that were cut anew: each stands for the one of this number before.
+    pub fn recut(&mut self, sources: &[usize]) {
+        let source = |i: &usize| self.histories.get(*i).copied().unwrap_or_default();
+        self.histories = sources.iter().map(source).collect();
+    }
+
     /// Takes over another state, without allocating unless it has more slave points.
     pub fn copy_from(&mut self, other: &State) {
         self.u.copy_from_slice(&other.u);
         self.elements.copy_from_slice(&other.elements);
         self.points.clone_from(&other.points);
         self.nodes.copy_from_slice(&other.nodes);
-        self.histories.copy_from_slice(&other.histories);
+        self.histories.clone_from(&other.histories);
         self.cuts.clone_from(&other.cuts);
         self.stabilized = other.stabilized;
     }
@@ -98,13 +119,9 @@ impl State {
         out.points.clone_from(&self.points);
         out.nodes.copy_from_slice(&self.nodes);
         // Normal multipliers are the tractions of an equilibrium and follow the same path; all else is what was.
-        let histories =
-            (out.histories.iter_mut()).zip(self.histories.iter().zip(&before.histories));
-        for (o, (n, b)) in histories {
-            *o = PointHistory {
-                lambda_n: (n.lambda_n + ratio * (n.lambda_n - b.lambda_n)).min(0.0),
-                ..*n
-            };
+        out.histories.clone_from(&self.histories);
+        for (o, b) in out.histories.iter_mut().zip(&before.histories) {
+            o.lambda_n = (o.lambda_n + ratio * (o.lambda_n - b.lambda_n)).min(0.0);
         }
         out.cuts.clone_from(&self.cuts);
         out.stabilized = self.stabilized;

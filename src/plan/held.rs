@@ -88,6 +88,11 @@ impl Held {
         }
     }
 
+    /// What is held of every point: its number is another one with every step where slave faces are cut anew.
+    pub(super) fn of_points(self, cut: bool) -> Held {
+        if cut { self.growing() } else { self }
+    }
+
     /// Bytes of all copies.
     pub fn bytes(&self) -> usize {
         self.each * self.count * self.copies

@@ -60,8 +60,9 @@ impl Reporter<'_> {
                 held.push(Held::assembler("links", Per::Whole, 0, 1).growing());
                 if let Some([each, fixed]) = sizes::sliding(pair) {
                     let n = told.points();
-                    held.push(Held::assembler("sliding points", Per::Point, each, n));
-                    held.push(Held::assembler("sliding points", Per::Whole, fixed, 1));
+                    let points = Held::assembler("sliding points", Per::Point, each, n);
+                    let room = Held::assembler("sliding points", Per::Whole, fixed, 1);
+                    held.extend([points, room].map(|h| h.of_points(pair.segments().is_some())));
                 }
             }
             let rubs = |p: &PairModel| p.friction.is_some();
@@ -69,7 +70,8 @@ impl Reporter<'_> {
                 let (nodes, n) = (self.model.nodes.len(), self.model.histories());
                 held.push(Held::run("friction fields", Per::Node, 88, nodes));
                 // One list for all points with history.
-                held.push(Held::assembler("slips", Per::Point, sizes::SLIP, n));
+                let slips = Held::assembler("slips", Per::Point, sizes::SLIP, n);
+                held.push(slips.of_points(self.model.recuts_histories()));
             }
             let surface = pair.rigid_master().map(|s| &self.model.surfaces[s]);
             if surface.is_some_and(|s| s.driven.is_some()) {
@@ -93,7 +95,8 @@ impl Reporter<'_> {
     /// Histories, once for friction and augmentation.
     fn history(&self, told: &EffectContext) -> Vec<Held> {
         let each = size_of::<PointHistory>();
-        vec![Held::state("histories", Per::Point, each, told.points())]
+        let histories = Held::state("histories", Per::Point, each, told.points());
+        vec![histories.of_points(told.pair.segments().is_some())]
     }
 
     /// Augmentation, offset, and what becomes of overclosures at the start.
@@ -108,8 +111,10 @@ impl Reporter<'_> {
             if self.model.pairs.iter().position(augmented) == Some(told.index) {
                 // One list for all points with history.
                 let n = self.model.histories();
-                held.push(Held::assembler("answers", Per::Point, sizes::ANSWER, n));
-                held.push(Held::run("multipliers watched", Per::Point, 16, n));
+                let answers = Held::assembler("answers", Per::Point, sizes::ANSWER, n);
+                let watched = Held::run("multipliers watched", Per::Point, 16, n);
+                let cut = self.model.recuts_histories();
+                held.extend([answers, watched].map(|h| h.of_points(cut)));
             }
         }
         let augmentation = self

@@ -156,10 +156,7 @@ impl Reporter<'_> {
             if let (true, Some([each, fixed])) = (large, sizes::meetings(pair)) {
                 let points = Held::assembler("points on bodies", Per::Point, each, told.points());
                 let room = Held::assembler("points on bodies", Per::Whole, fixed, 1);
-                // Segments are cut anew, with other numbers of points.
-                let cut = pair.segments().is_some();
-                let grow = |h: Held| if cut { h.growing() } else { h };
-                held.extend([grow(points), grow(room)]);
+                held.extend([points, room].map(|h| h.of_points(pair.segments().is_some())));
             }
         }
         let deformable = self

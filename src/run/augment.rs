@@ -9,9 +9,10 @@
 //!
 //! [`AugmentationModel::stiffest`]: crate::model::augmentation::AugmentationModel::stiffest
 use crate::assembly::PointAnswer;
-use crate::contact::friction::history::PointHistory;
+use crate::model::state::State;
 use crate::model::{Model, PairModel};
 use crate::solve::newton::StepFailure;
+use std::ops::Range;
 
 /// Part of a gap that an augmentation may leave before the penalty is raised.
 const SLOW: f64 = 0.25;
@@ -34,10 +35,10 @@ pub(super) struct Left {
 
 impl Left {
     /// What the answers of the points leave, for every pair with augmentation.
-    pub fn all(model: &Model, answers: &[Option<PointAnswer>], out: &mut Vec<Left>) {
+    pub fn all(model: &Model, state: &State, answers: &[Option<PointAnswer>], out: &mut Vec<Left>) {
         out.clear();
         for (pair, p) in model.pairs.iter().enumerate() {
-            let (Some(allowed), Some(range)) = (&p.augmentation, p.history()) else {
+            let (Some(allowed), Some(range)) = (&p.augmentation, state.history(model, pair)) else {
                 continue;
             };
             let (mut gap, mut slip) = (0.0f64, 0.0f64);
@@ -89,10 +90,10 @@ pub(super) fn stiffer(pair: &PairModel, eps: f64, left: f64) -> Option<f64> {
 
 /// Makes multipliers of the tractions of a state in equilibrium. An open point has no pressure; its tangential traction stays
 /// what it was tied by, for the case that it closes again.
-pub(super) fn take(model: &Model, answers: &[Option<PointAnswer>], histories: &mut [PointHistory]) {
-    let augmented = model.pairs.iter().filter(|p| p.augmentation.is_some());
-    for range in augmented.filter_map(PairModel::history) {
-        for (history, answer) in histories[range.clone()].iter_mut().zip(&answers[range]) {
+pub(super) fn take(model: &Model, answers: &[Option<PointAnswer>], state: &mut State) {
+    for range in augmented(model, state) {
+        let histories = state.histories[range.clone()].iter_mut();
+        for (history, answer) in histories.zip(&answers[range]) {
             match answer {
                 Some(answer) => {
                     history.lambda_n = answer.n;
@@ -105,9 +106,17 @@ pub(super) fn take(model: &Model, answers: &[Option<PointAnswer>], histories: &m
 }
 
 /// Forgets the normal multipliers: a start that is to come in softly does without them.
-pub(super) fn forget(model: &Model, histories: &mut [PointHistory]) {
-    let augmented = model.pairs.iter().filter(|p| p.augmentation.is_some());
-    for range in augmented.filter_map(PairModel::history) {
-        (histories[range].iter_mut()).for_each(|history| history.lambda_n = 0.0);
+pub(super) fn forget(model: &Model, state: &mut State) {
+    for range in augmented(model, state) {
+        (state.histories[range].iter_mut()).for_each(|history| history.lambda_n = 0.0);
     }
+}
+
+/// Where the histories of the pairs with augmentation are.
+fn augmented(model: &Model, state: &State) -> Vec<Range<usize>> {
+    let pairs = model.pairs.iter().enumerate();
+    let augmented = pairs.filter(|(_, p)| p.augmentation.is_some());
+    augmented
+        .filter_map(|(index, _)| state.history(model, index))
+        .collect()
 }

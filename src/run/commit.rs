@@ -10,7 +10,7 @@ use crate::contact::points::SlavePoint;
 use crate::contact::rigid::RigidMaster;
 use crate::model::friction::with_law;
 use crate::model::master::{Master, Masters};
-use crate::model::state::{PointState, State};
+use crate::model::state::{PointState, State, slaves};
 use crate::model::surface::SurfaceSet;
 use crate::model::{Model, PairModel};
 use covact_geometry::{Hint, Vec3};
@@ -78,11 +78,15 @@ pub fn start(
     for (index, pair) in model.pairs.iter().enumerate() {
         let points = first..first + state.slaves(model, index).len();
         first = points.end;
-        let (Some(range), Some(_), true) = (pair.history(), &pair.friction, begins(index)) else {
+        let (Some(range), Some(_), true) =
+            (state.history(model, index), &pair.friction, begins(index))
+        else {
             continue;
         };
         let Master::Rigid(surface) = &pair.master else {
-            let batch = moving::Batch::new(model, masters, index, &state.u, time, Penalty::of(0.0));
+            let slaves = slaves(&state.cuts, model, index);
+            let at = (slaves, &state.u[..], time);
+            let batch = moving::Batch::new(model, masters, index, at, Penalty::of(0.0));
             if let Some(batch) = batch {
                 batch.start(&state.points[points], &mut state.histories[range]);
             }
@@ -145,7 +149,7 @@ pub fn commit<L: PairLaw>(
     for (index, pair) in model.pairs.iter().enumerate() {
         let points = first..first + state.slaves(model, index).len();
         first = points.end;
-        let Some(range) = pair.history() else {
+        let Some(range) = state.history(model, index) else {
             continue;
         };
         let Some(friction) = &pair.friction else {
@@ -184,13 +188,15 @@ pub fn commit<L: PairLaw>(
                 });
             }
             Master::Body(_) => {
-                let batch = moving::Batch::new(model, masters, index, &state.u, time, law_n);
+                let at = (slaves(&state.cuts, model, index), &state.u[..], time);
+                let batch = moving::Batch::new(model, masters, index, at, law_n);
                 if let Some(batch) = batch {
                     batch.commit(hints, histories, (now, eps_t), &limited)?;
                 }
             }
         }
-        total.add(histories, elastic, &pair.points, eps_t, pair.share());
+        let slaves = slaves(&state.cuts, model, index);
+        total.add(histories, elastic, slaves, eps_t, pair.share());
     }
     Ok(total)
 }

@@ -214,7 +214,7 @@ impl Fields {
             let own = pair.master.is_own();
             let offsets = pair.offsets(time);
             let shrinking = pair.resolved(&start, first);
-            let histories = pair.history().map(|range| &state.histories[range]);
+            let histories = (state.history(model, index)).map(|range| &state.histories[range]);
             let small = match &model.small {
                 Some(small) => Some((&small.pairs[index], model.small_motion(pair, time)?)),
                 None => None,

@@ -125,7 +125,7 @@ pub(super) fn clouds(model: &Model, state: &State, gaps: &[f64]) -> Vec<PointClo
         let points = state.slaves(model, index);
         let own = first..first + points.len();
         first = own.end;
-        let (Some(_), Some(range)) = (&pair.friction, pair.history()) else {
+        let (Some(_), Some(range)) = (&pair.friction, state.history(model, index)) else {
             continue;
         };
         let histories = &state.histories[range];

@@ -8,6 +8,7 @@ pub(in crate::run) mod passing;
 mod released;
 mod replaced;
 mod restart;
+mod segments;
 mod settle;
 mod slip;
 mod stages;
@@ -37,7 +38,7 @@ use crate::assembly::{Assembler, Fault, Totals};
 use crate::contact::law::Penalty;
 use crate::machine::clock::Phases;
 use crate::model::state::State;
-use crate::model::{BodyModel, Model, segments};
+use crate::model::{BodyModel, Model};
 use crate::output::RunStatus;
 use crate::scene::Scene;
 use crate::solve::event::{Event, Observer};
@@ -181,10 +182,7 @@ impl March<'_, '_> {
             let step = self.progress.steps + 1;
             // On the last accepted state, so that a step that is cut has the same segments.
             if segmented && cuts == 0 {
-                let masters = &mut self.assembler.masters;
-                segments::recut(self.model, masters, committed, self.progress.time)?;
-                let time = self.progress.time;
-                (outputs.fields).resample(self.model, masters, committed, time)?;
+                self.recut(committed, walk, outputs)?;
             }
             self.observer.event(&Event::StepStarted {
                 step,

@@ -15,11 +15,12 @@ mod eased;
 mod faint;
 mod jump;
 mod lag;
+mod multipliers;
 #[cfg(test)]
 mod tests;
 mod twist;
 
-use crate::assembly::{Assembler, Fault, PointAnswer, SurfaceForce, Totals};
+use crate::assembly::{Assembler, Fault, SurfaceForce, Totals};
 use crate::contact::law::PairLaw;
 use crate::model::Model;
 use crate::model::error::number;
@@ -134,14 +135,7 @@ impl Watch {
                 .collect(),
             pressed: vec![0.0; model.pairs.len()],
             faint: faint(model),
-            tractions: vec![
-                [0.0; 2];
-                if augmented(model) {
-                    model.histories()
-                } else {
-                    0
-                }
-            ],
+            tractions: multipliers::tractions(model),
             ..Watch::default()
         }
     }
@@ -152,11 +146,6 @@ impl Watch {
         self.reactions.copy_from_slice(&balance[..n]);
         let loads = self.loads.len();
         (self.loads).copy_from_slice(&assembler.external()[..loads]);
-    }
-
-    /// Normal tractions and gaps of the points `range` with multipliers; nothing where the model has none.
-    pub(super) fn tractions(&self, range: std::ops::Range<usize>) -> &[[f64; 2]] {
-        self.tractions.get(range).unwrap_or_default()
     }
 
     /// Goes on in the model of the next stage, whose forces at its start are these: `changed` is what contacts store more there
@@ -272,7 +261,11 @@ impl Watch {
             from.f64s(force.as_mut_slice())?;
             from.f64s(moment.as_mut_slice())?;
         }
-        from.exactly(watch.tractions.len(), "tractions")?;
+        let count = match watch.tractions.is_empty() {
+            true => from.exactly(0, "tractions").map(|()| 0)?,
+            false => from.count(16)?,
+        };
+        watch.tractions.resize(count, [0.0; 2]);
         from.f64s(watch.tractions.as_flattened_mut())?;
         Ok(watch)
     }
@@ -312,7 +305,7 @@ impl Watch {
                 work.add(twist.power(was), twist.power(now));
             }
         }
-        work.adjusted += self.multipliers(model, assembler);
+        work.adjusted += self.multipliers(model, assembler, span.to.0);
         work.changed = self.penalties != assembler.penalties || self.ratios != assembler.ratios;
         work.eased = self.eased([&assembler.penalties, &assembler.ratios]);
         Ok(work)
@@ -459,42 +452,4 @@ impl Watch {
             )
         })
     }
-
-    /// Work of the normal tractions of points with multipliers that their penalties do not store.
-    fn multipliers<L: PairLaw>(&self, model: &Model, assembler: &Assembler<L>) -> f64 {
-        let answers = assembler.answers();
-        let mut adjusted = 0.0;
-        for (index, pair) in model.pairs.iter().enumerate() {
-            let (Some(_), Some(range)) = (&pair.augmentation, pair.history()) else {
-                continue;
-            };
-            let laws = [self.penalties[index], assembler.penalties[index]].map(L::of);
-            let mut sum = 0.0;
-            for ((p, was), now) in (pair.points.iter())
-                .zip(&self.tractions[range.clone()])
-                .zip(&answers[range])
-            {
-                let [n, g] = traction(now);
-                let stored = laws[1].energy(g) - laws[0].energy(was[1]);
-                sum += (stored - 0.5 * (n + was[0]) * (g - was[1])) * p.area;
-            }
-            adjusted += pair.share() * sum;
-        }
-        adjusted
-    }
-
-    fn keep_tractions(&mut self, answers: &[Option<PointAnswer>]) {
-        for (kept, answer) in self.tractions.iter_mut().zip(answers) {
-            *kept = traction(answer);
-        }
-    }
-}
-
-/// Normal traction and gap of a point with multipliers; nothing where it is open.
-fn traction(answer: &Option<PointAnswer>) -> [f64; 2] {
-    answer.as_ref().map_or([0.0; 2], |a| [a.n, a.gap])
-}
-
-fn augmented(model: &Model) -> bool {
-    model.pairs.iter().any(|p| p.augmentation.is_some())
 }

@@ -9,6 +9,7 @@ mod friction;
 mod invariance;
 mod overclosure;
 mod patch;
+mod segment_histories;
 mod segments;
 mod self_contact;
 mod shells;

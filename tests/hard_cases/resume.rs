@@ -357,6 +357,20 @@ fn segments() {
     assert!(found.pattern_rebuilds >= 1, "{}", found.pattern_rebuilds);
 }
 
+/// What slave points that are cut anew remember of friction, and their multipliers.
+#[test]
+fn histories_of_segments() {
+    let found = in_pieces(&sledge(
+        1.3,
+        8,
+        json!({
+            "points": {"segments": 2}, "friction": {"coulomb": {"mu": 0.2}}, "augmentation": {}
+        }),
+    ));
+    assert_eq!(found.status, RunStatus::Done);
+    assert!(found.pattern_rebuilds >= 1, "{}", found.pattern_rebuilds);
+}
+
 /// Averaged gaps with two passes.
 #[test]
 fn averaged_gaps() {

@@ -144,7 +144,7 @@ fn further_effects_one_by_one() {
         }
         with(scene, &[("/solution/dynamics", json!({}))])
     };
-    let cases: [(Value, &[&str]); 11] = [
+    let cases: [(Value, &[&str]); 12] = [
         (
             with(plate(), &[("/solution/stabilization", viscous)]),
             &["stabilization"],
@@ -198,6 +198,17 @@ fn further_effects_one_by_one() {
         ),
         (dense(plate()), &["inertia"]),
         (dense(blocks()), &["inertia"]),
+        (
+            with(
+                blocks(),
+                &[
+                    ("/contacts/press/points", json!({"segments": 2})),
+                    ("/contacts/press/friction", coulomb()),
+                    ("/contacts/press/augmentation", json!({})),
+                ],
+            ),
+            &["segments", "histories", "answers", "transposed matrix"],
+        ),
     ];
     for (scene, on) in &cases {
         let (model, parts) = held(scene, 0.5);

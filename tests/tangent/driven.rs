@@ -128,8 +128,8 @@ fn border_with_friction_is_the_derivative_of_the_residual() {
         state.u[at + 2] -= 1.4;
         // Attraction points beside the points, so that some stick and some slide.
         let pose = surface.pose(1.0, &state.u).unwrap();
-        for pair in &model.pairs {
-            let range = pair.history().unwrap();
+        for (index, pair) in model.pairs.iter().enumerate() {
+            let range = state.history(&model, index).unwrap();
             for (i, (p, h)) in (pair.points.iter().zip(&mut state.histories[range])).enumerate() {
                 let x = model.point_position(p, &state.u);
                 let beside = covact_geometry::Vec3::from_fn(|c, _| 0.3 * noise(7 * i + c));

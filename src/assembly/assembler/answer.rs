@@ -3,7 +3,6 @@ use crate::contact::friction::anchor::Anchor;
 use crate::contact::friction::history::PointHistory;
 use crate::contact::friction::rigid::FrictionTouch;
 use crate::contact::friction::touch::MovingFrictionTouch;
-use crate::model::Model;
 use covact_geometry::{MovingFacets, Vec3};
 
 /// Tractions of a point in contact, and what its penalties leave open.
@@ -19,14 +18,6 @@ pub struct PointAnswer {
     /// (length).
     pub elastic: f64,
     pub slides: bool,
-}
-
-/// Number of answers that an assembler holds: those of all points with history, where any pair has augmentation.
-pub(super) fn count(model: &Model) -> usize {
-    match model.pairs.iter().any(|p| p.augmentation.is_some()) {
-        true => model.histories(),
-        false => 0,
-    }
 }
 
 impl PointAnswer {

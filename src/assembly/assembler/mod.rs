@@ -19,6 +19,7 @@ mod moving;
 mod per_pair;
 mod pressed;
 mod pressing;
+mod remembering;
 mod rigid;
 mod seams;
 mod sliding;
@@ -197,8 +198,8 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
             touches: vec![Ok(None); rigid::most(model)],
             clearances: vec![Clearance::default(); rigid::cleared(model)],
             held: Vec::new(),
-            answers: vec![None; answer::count(model)],
-            slips: vec![Turning::default(); sliding::slips(model)],
+            answers: remembering::answers(model),
+            slips: remembering::slips(model),
             masters,
             couplings,
             meetings: PerPair::new(pairs().map(Meetings::new)),

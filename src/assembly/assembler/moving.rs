@@ -18,13 +18,13 @@ use crate::contact::lever;
 use crate::contact::moving::MovingMaster;
 use crate::contact::points::SlavePoint;
 use crate::contact::scatter::{assemble_point, keep_slave_rows};
-use crate::model::Model;
 use crate::model::kernel::{GapKind, Kernel, SideKind};
 use crate::model::master::{MasterNow, Masters};
 use crate::model::self_contact::{Accept, All, Opposing};
 use crate::model::state::{PointState, State, slaves};
+use crate::model::{Model, histories};
 use covact_geometry::Vec3;
-pub(super) use meetings::{Meetings, room};
+pub(super) use meetings::{Meetings, room, same};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -96,6 +96,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         }
         self.model.move_rims(&mut state.u, time)?;
         self.masters.update(self.model, &state.u);
+        self.follow_cuts(state);
         let mut first = 0;
         let mut missing = false;
         for (index, pair) in self.model.pairs.iter().enumerate() {
@@ -146,12 +147,19 @@ impl<L: PairLaw> Assembler<'_, L> {
                 missing |= averaged.touched().any(|(i, f)| !couplings.holds(i, f));
                 continue;
             }
-            if let (Some(friction), Some(histories), Some(sliding)) =
-                (&pair.friction, pair.history(), self.sliding.get_mut(index))
-            {
+            let remembered = histories::range(&state.cuts, self.model, index);
+            let cut = state.cuts.get(index).cloned().flatten();
+            if let (Some(friction), Some(histories), Some(sliding)) = (
+                &pair.friction,
+                remembered.clone(),
+                self.sliding.get_mut(index),
+            ) {
+                if sliding.follow(&cut, points.len()) {
+                    couplings.resample(points);
+                }
                 let ran = sliding.meet::<L>(
                     self.model,
-                    (pair, &kernel),
+                    (pair, points, &kernel),
                     (master, surface),
                     (
                         friction,
@@ -179,10 +187,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             let Some(meetings) = self.meetings.get_mut(index) else {
                 continue;
             };
-            let cut = state.cuts.get(index).cloned().flatten();
-            if !meetings.holds(&cut) {
-                meetings.cut = cut;
-                meetings.resize(points.len());
+            if meetings.follow(&cut, points.len()) {
                 couplings.resample(points);
             }
             let law = L::of(self.penalties[index]);
@@ -202,7 +207,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             let touches = &mut meetings.touched.all;
             let offsets = pair.offsets(time);
             let histories = match kernel.law {
-                LawKind::Multipliers => pair.history().map(|range| &state.histories[range]),
+                LawKind::Multipliers => remembered.clone().map(|range| &state.histories[range]),
                 _ => None,
             };
             let known = histories.unwrap_or(&[]);
@@ -228,7 +233,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 }
             };
             self.ran[index] = Some(ran);
-            if let (Some(_), Some(range)) = (histories, pair.history()) {
+            if let (Some(_), Some(range)) = (histories, remembered) {
                 let answers = self.answers[range].iter_mut().zip(touches.iter());
                 for (i, (answer, touch)) in answers.enumerate() {
                     let z0 = offsets.as_ref().map_or(0.0, |o| o.at(i));
@@ -262,8 +267,8 @@ impl<L: PairLaw> Assembler<'_, L> {
             let (meetings, averaged) = (self.meetings.get(index), self.averaged.get(index));
             near.extend(meetings.iter().flat_map(|m| m.touched()));
             near.extend(averaged.iter().flat_map(|a| a.touched()));
-            let pair = &self.model.pairs[index];
-            let (Some(sliding), Some(histories)) = (self.sliding.get(index), pair.history()) else {
+            let remembered = state.history(self.model, index);
+            let (Some(sliding), Some(histories)) = (self.sliding.get(index), remembered) else {
                 couplings.couple(&surface.facets, near.into_iter());
                 continue;
             };

@@ -81,6 +81,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             let surface = &self.model.surfaces[number];
             let master = surface.at(time, &state.u)?;
             let n = pair.points.len();
+            let remembered = state.history(self.model, index);
             let points = &mut state.points[first..first + n];
             let Linearization {
                 keep_active: hold,
@@ -96,7 +97,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             known += n;
             let u = &state.u;
             let law = L::of(self.penalties[index]);
-            let friction = match (&pair.friction, pair.history()) {
+            let friction = match (&pair.friction, remembered.clone()) {
                 (Some(friction), Some(range)) => Some((
                     friction.law.at(time)?,
                     self.ratios[index] * self.penalties[index],
@@ -121,16 +122,16 @@ impl<L: PairLaw> Assembler<'_, L> {
                 let offsets = pair.offsets(time);
                 match (kernel.law, &friction) {
                     (_, None) if hold => {
-                        let augmented = pair.history().filter(|_| pair.augmentation.is_some());
+                        let augmented = remembered.filter(|_| pair.augmentation.is_some());
                         let histories = &state.histories[augmented.unwrap_or(0..0)];
                         let held = Held { held: &self.held, histories, offsets };
                         (FrictionKind::None, batch.choose(points, clear, touches, &held))
                     }
                     (LawKind::Multipliers, None) => {
-                        let histories = &state.histories[pair.history().unwrap_or(0..0)];
+                        let histories = &state.histories[remembered.clone().unwrap_or(0..0)];
                         let multipliers = Multipliers { histories, offsets };
                         let ran = batch.choose(points, clear, touches, &multipliers);
-                        let answers = &mut self.answers[pair.history().unwrap_or(0..0)];
+                        let answers = &mut self.answers[remembered.clone().unwrap_or(0..0)];
                         for (answer, touch) in answers.iter_mut().zip(touches.iter()) {
                             *answer = touched::of(touch)
                                 .map(|t| PointAnswer::without_friction(t.n, t.gap));
@@ -146,14 +147,14 @@ impl<L: PairLaw> Assembler<'_, L> {
                     }
                     (planned, Some((now, eps_t, histories))) => with_law!(*now, law => {
                         let friction = Friction { law, eps_t: *eps_t };
-                        let slips = &mut self.slips[pair.history().unwrap_or(0..0)];
+                        let slips = &mut self.slips[remembered.clone().unwrap_or(0..0)];
                         let slips = (slips, Slides {
                             slide,
                             note: TANGENT && slide != Slide::Stick && planned != LawKind::Multipliers,
                         });
                         let ran = match planned {
                             LawKind::Multipliers => {
-                                let told = &mut self.answers[pair.history().unwrap_or(0..0)];
+                                let told = &mut self.answers[remembered.clone().unwrap_or(0..0)];
                                 let (s, c, t) = (&mut *points, &mut *clear, &mut *touches);
                                 batch.slide(s, c, t, told, slips, &friction, histories, offsets, hold)
                             }

@@ -1,7 +1,7 @@
 //! Contact with friction between bodies: as [`super::moving`], with histories, and columns for the facets that hold the
 //! attraction points.
 use super::answer::PointAnswer;
-use super::moving::room;
+use super::moving::{room, same};
 use super::per_pair::PerPair;
 use super::rigid::rounding;
 use super::touched::{self, Touched};
@@ -18,17 +18,19 @@ use crate::contact::kind::{LawKind, TangentKind};
 use crate::contact::law::{Augmented, Offsets, PairLaw};
 use crate::contact::lever;
 use crate::contact::moving::MovingMaster;
+use crate::contact::points::SlavePoint;
 use crate::contact::rigid::PointFault;
 use crate::model::friction::FrictionModel;
 use crate::model::friction::with_law;
 use crate::model::kernel::{GapKind, Kernel, SideKind};
 use crate::model::master::{BodyMaster, BodySurface};
 use crate::model::self_contact::{Accept, All, Opposing};
-use crate::model::state::{PointState, State, heap};
+use crate::model::state::{PointState, State, heap, slaves};
 use crate::model::{Model, PairModel};
 use covact_geometry::{CurvedRows, ShapeRows, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Stands for a slave point itself among the nodes, where that is at a height above a mid-surface.
 const POINT: u32 = u32::MAX;
@@ -44,6 +46,8 @@ pub(super) struct Sliding {
     matrices: Vec<f64>,
     /// Numbers that the largest matrix has.
     stride: usize,
+    /// The segments that the points are of.
+    cut: Option<Arc<[SlavePoint]>>,
 }
 
 /// What is looked up for a point.
@@ -82,22 +86,38 @@ impl Sliding {
             work,
             matrices,
             stride: _,
+            // Shared with the states.
+            cut: _,
         } = self;
         touched.bytes() + heap(work) + heap(matrices)
     }
 
     /// Room for a pair; nothing without friction, or where the master is rigid.
     pub fn new(pair: &PairModel) -> Option<Self> {
-        let stride = Sliding::stride(pair)?;
-        let most = CHUNK.min(pair.points.len());
-        let mut touched = Touched::default();
-        touched.resize(pair.points.len());
-        Some(Sliding {
-            touched,
-            work: vec![PointWork::default(); most],
-            matrices: vec![0.0; most * stride],
-            stride,
-        })
+        let mut out = Sliding {
+            stride: Sliding::stride(pair)?,
+            ..Sliding::default()
+        };
+        out.resize(pair.points.len());
+        Some(out)
+    }
+
+    /// Room for another number of points.
+    fn resize(&mut self, points: usize) {
+        let most = CHUNK.min(points);
+        self.touched.resize(points);
+        self.work.resize(most, PointWork::default());
+        self.matrices.resize(most * self.stride, 0.0);
+    }
+
+    /// Takes over the number of points of segments that were cut anew, and says whether they were.
+    pub(super) fn follow(&mut self, cut: &Option<Arc<[SlavePoint]>>, points: usize) -> bool {
+        let anew = !same(&self.cut, cut);
+        if anew {
+            self.cut.clone_from(cut);
+            self.resize(points);
+        }
+        anew
     }
 
     /// Points in contact, with the facets at their feet and those of their attraction points.
@@ -128,7 +148,7 @@ impl Sliding {
     pub fn meet<L: PairLaw>(
         &mut self,
         model: &Model,
-        (pair, kernel): (&PairModel, &Kernel),
+        (pair, points, kernel): (&PairModel, &[SlavePoint], &Kernel),
         (master, surface): (&BodyMaster, &BodySurface),
         (friction, [penalty, ratio], linearization): (&FrictionModel, [f64; 2], Linearization),
         u: &[f64],
@@ -138,7 +158,7 @@ impl Sliding {
     ) -> Result<Kernel, Fault> {
         let batch = Batch {
             model,
-            pair,
+            points,
             kernel,
             master: MovingMaster {
                 facets: &surface.facets,
@@ -174,7 +194,7 @@ impl Sliding {
                 }
             }
         });
-        (self.touched).settle(pair, |i| model.point_position(&pair.points[i], u))?;
+        (self.touched).settle(pair, |i| model.point_position(&points[i], u))?;
         Ok(Kernel {
             friction: now.kind(),
             ..ran
@@ -232,7 +252,7 @@ impl<L: PairLaw> Assembler<'_, L> {
     ) {
         let model = self.model;
         let pair = &model.pairs[index];
-        let points = &pair.points;
+        let points = slaves(&state.cuts, model, index);
         let u = &state.u[..];
         let half = pair.half.is_some();
         let (Some(surface), Some(couplings), Some(sliding)) = (
@@ -248,6 +268,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             work,
             matrices,
             stride,
+            cut: _,
         } = sliding;
         touched.note(&mut state.points[range], totals);
         let law = L::of(self.penalties[index]);
@@ -380,14 +401,6 @@ impl<L: PairLaw> Assembler<'_, L> {
     }
 }
 
-/// Number of tractions that an assembler keeps: those of all points with history, where any pair has friction.
-pub(super) fn slips(model: &Model) -> usize {
-    match model.pairs.iter().any(|p| p.friction.is_some()) {
-        true => model.histories(),
-        false => 0,
-    }
-}
-
 /// How friction is linearised.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slides {
@@ -400,7 +413,7 @@ pub(super) struct Slides {
 /// The slave points of a pair at one trial state.
 struct Batch<'a, L> {
     model: &'a Model,
-    pair: &'a PairModel,
+    points: &'a [SlavePoint],
     kernel: &'a Kernel,
     master: MovingMaster<'a>,
     law: L,
@@ -438,7 +451,7 @@ impl<L: PairLaw> Batch<'_, L> {
         accept: &A,
         form: &M,
     ) -> Kernel {
-        (self.pair.points.par_iter())
+        (self.points.par_iter())
             .zip(states.par_iter_mut())
             .zip(touches.par_iter_mut())
             .zip(slips.par_iter_mut())

@@ -326,11 +326,6 @@ impl Builder<'_> {
         let friction = self.friction(name, contact, (body, &size), eps_n, automatic)?;
         let augmentation = (contact.augmentation.as_ref())
             .map(|asked| AugmentationModel::new(asked, size.edge, automatic));
-        let first_history = (friction.is_some() || augmentation.is_some()).then(|| {
-            let first = self.histories;
-            self.histories += points.len();
-            first
-        });
         if self.scene.contacts.get(name) == Some(contact) {
             self.tell_extent(name, contact, augmentation.as_ref(), rigid.is_none());
         }
@@ -355,7 +350,7 @@ impl Builder<'_> {
             augmentation,
             averaged,
             friction,
-            first_history,
+            first_history: None,
         })
     }
 

@@ -71,14 +71,16 @@ pub fn take(model: &Model, from: &mut Reader) -> Result<State, Malformed> {
     for node in &mut state.nodes {
         *node = from.bool()?;
     }
+    state.forget_histories(model);
     from.exactly(state.histories.len(), "histories")?;
     for history in &mut state.histories {
         *history = take_history(from)?;
     }
     state.stabilized = from.f64()?;
-    for pair in &model.pairs {
+    for (index, pair) in model.pairs.iter().enumerate() {
         let facets = pair.body_master().map_or(0, |m| m.facets.len());
-        let places = (pair.history().into_iter()).flat_map(|range| &state.histories[range]);
+        let places =
+            (state.history(model, index).into_iter()).flat_map(|range| &state.histories[range]);
         for place in places.filter_map(|h| h.place) {
             if place.patch as usize >= facets || place.xi.iter().any(|x| !x.is_finite()) {
                 return Err(from.malformed("an attraction point on no facet"));

@@ -7,6 +7,7 @@ use crate::contact::friction::rigid::Friction;
 use crate::contact::friction::trial::Traction;
 use crate::contact::law::{Offsets, PairLaw};
 use crate::contact::moving::MovingMaster;
+use crate::contact::points::SlavePoint;
 use crate::model::friction::LawNow;
 use crate::model::friction::with_law;
 use crate::model::master::{BodyMaster, BodySurface, Masters};
@@ -21,6 +22,7 @@ use rayon::prelude::*;
 pub(super) struct Batch<'a, L> {
     model: &'a Model,
     pair: &'a PairModel,
+    points: &'a [SlavePoint],
     body: &'a BodyMaster,
     surface: &'a BodySurface,
     u: &'a [f64],
@@ -29,19 +31,19 @@ pub(super) struct Batch<'a, L> {
 }
 
 impl<'a, L: PairLaw> Batch<'a, L> {
-    /// Of a pair, its master where [`Masters::update`] put it last; none where that is a rigid surface.
+    /// Of a pair with these slave points, its master where [`Masters::update`] put it last; none where that is a rigid surface.
     pub fn new(
         model: &'a Model,
         masters: &'a Masters,
         index: usize,
-        u: &'a [f64],
-        time: f64,
+        (points, u, time): (&'a [SlavePoint], &'a [f64], f64),
         law: L,
     ) -> Option<Self> {
         let pair = &model.pairs[index];
         Some(Batch {
             model,
             pair,
+            points,
             body: pair.body_master()?,
             surface: masters.surface(index)?,
             u,
@@ -144,7 +146,7 @@ impl<'a, L: PairLaw> Batch<'a, L> {
         history: &mut PointHistory,
         accept: impl Fn(u32) -> bool + Copy,
     ) -> Result<(), Fault> {
-        let x = (self.model).point_position(&self.pair.points[i], self.u);
+        let x = (self.model).point_position(&self.points[i], self.u);
         let law = history.law(self.law, self.offset(i));
         let touch = master
             .touch_with_friction(&x, &mut hint, &law, friction, history, &Reduced, accept)
@@ -198,7 +200,7 @@ impl<'a, L: PairLaw> Batch<'a, L> {
         history: &mut PointHistory,
         accept: impl Fn(u32) -> bool,
     ) {
-        let x = (self.model).point_position(&self.pair.points[i], self.u);
+        let x = (self.model).point_position(&self.points[i], self.u);
         let foot = (master.facets).project(&x, hint, f64::INFINITY, accept);
         history.release(
             &x,

@@ -93,7 +93,13 @@ impl Kept {
                 model.pairs.iter().map(|_| Travel::take(r)).collect();
             Ok((compliance, rule, peaks, travels?))
         })?;
-        let committed = from.section("state", |r| state::take(model, r))?;
+        let committed = from.section("state", |r| {
+            let committed = state::take(model, r)?;
+            match watch.fits(&committed) {
+                true => Ok(committed),
+                false => Err(r.malformed("tractions of other slave points")),
+            }
+        })?;
         let before = from.section("before", |r| {
             r.option(|r| Ok((state::take_before(model, &committed, r)?, r.f64()?)))
         })?;

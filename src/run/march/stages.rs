@@ -140,7 +140,7 @@ impl RunState<'_> {
         for (pair, own) in model.pairs.iter().enumerate() {
             let count = state.slaves(model, pair).len();
             let nodes = own.averaged.as_ref().map_or(0..0, |nodes| nodes.range());
-            let history = own.history().unwrap_or(0..0);
+            let history = state.history(model, pair).unwrap_or(0..0);
             pairs.push(PairState {
                 points: state.points[first..first + count].to_vec(),
                 nodes: state.nodes[nodes].to_vec(),
@@ -240,7 +240,7 @@ impl FrictionTotals {
     ) -> FrictionTotals {
         let mut total = FrictionTotals::default();
         for (index, pair) in model.pairs.iter().enumerate().filter(|(i, _)| of(*i)) {
-            let (Some(range), Some(_)) = (pair.history(), &pair.friction) else {
+            let (Some(range), Some(_)) = (state.history(model, index), &pair.friction) else {
                 continue;
             };
             let answers = pair
@@ -248,7 +248,8 @@ impl FrictionTotals {
                 .map(|_| &assembler.answers()[range.clone()]);
             let eps_t = assembler.ratios[index] * assembler.penalties[index];
             let histories = &state.histories[range];
-            total.add(histories, answers, &pair.points, eps_t, pair.share());
+            let points = state.slaves(model, index);
+            total.add(histories, answers, points, eps_t, pair.share());
         }
         total
     }
@@ -313,14 +314,19 @@ impl HandOver {
             if let Some(nodes) = &pair.averaged {
                 state.nodes[nodes.range()].copy_from_slice(&before.nodes);
             }
-            if let Some(range) = pair.history() {
-                state.histories[range].copy_from_slice(&before.histories);
-            }
             if let Some(cut) = state.cuts.get_mut(index) {
                 cut.clone_from(&before.cut);
             }
         }
         state.points = points;
+        state.forget_histories(model);
+        for (index, before) in self.pairs.iter().enumerate() {
+            if let Some(range) = state.history(model, index)
+                && range.len() == before.histories.len()
+            {
+                state.histories[range].copy_from_slice(&before.histories);
+            }
+        }
         if !begins.is_empty() {
             let mut masters = crate::model::master::Masters::new(model);
             let begins = |index: usize| begins.contains(&index);
@@ -364,13 +370,14 @@ impl<'m> RunState<'m> {
         let stored = totals.contact_energy
             + FrictionTotals::of(model, &assembler, &committed, &|_| true).stored;
         let acting = |pair: usize| !model.pairs[pair].points.is_empty();
-        let tractions: Vec<[f64; 2]> = (hand.pairs.iter().enumerate())
-            .filter(|(pair, _)| acting(*pair))
-            .flat_map(|(pair, before)| match before.points.is_empty() {
-                true => vec![[0.0; 2]; model.pairs[pair].history().map_or(0, |r| r.len())],
-                false => before.tractions.clone(),
-            })
-            .collect();
+        let mut tractions = vec![[0.0; 2]; committed.histories.len()];
+        for (pair, before) in hand.pairs.iter().enumerate() {
+            if let Some(range) = committed.history(model, pair)
+                && range.len() == before.tractions.len()
+            {
+                tractions[range].copy_from_slice(&before.tractions);
+            }
+        }
         let HandOver {
             time,
             factorizations,

@@ -19,7 +19,7 @@ impl Attempts<'_, '_> {
         let (mut all, mut before) = (Vec::new(), Vec::<Left>::new());
         let mut raising = true;
         loop {
-            Left::all(self.model, self.assembler.answers(), &mut all);
+            Left::all(self.model, trial, self.assembler.answers(), &mut all);
             let Some(worst) = (all.iter()).max_by(|a, b| a.relative.total_cmp(&b.relative)) else {
                 return Ok(converged);
             };
@@ -41,7 +41,7 @@ impl Attempts<'_, '_> {
             if worst.relative <= 1.0 {
                 return Ok(converged);
             }
-            augment::take(self.model, self.assembler.answers(), &mut trial.histories);
+            augment::take(self.model, self.assembler.answers(), trial);
             let penalties = self.assembler.penalties.clone();
             if raising && self.raise(step, &all, &before) {
                 // A penalty that Newton's method cannot follow is taken back.

@@ -34,7 +34,7 @@ impl Attempts<'_, '_> {
             }
             if i == 0 {
                 self.restart(end, trial)?;
-                augment::forget(self.model, &mut trial.histories);
+                augment::forget(self.model, trial);
             }
             match self.newton(step, end, trial, Patience::Long) {
                 Ok(converged) => iterations += converged.iterations,

@@ -1,6 +1,6 @@
 //! What can be wrong with the augmentation and the offset of a contact.
 use super::checker::Checker;
-use super::{Contact, Gap, Passes, Points, Tangent};
+use super::{Contact, Gap, Passes, Tangent};
 
 /// Problems of augmentation and offset of the contact at `at`.
 pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
@@ -19,7 +19,6 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
         c.positive(&format!("{at}/{name}"), "the tolerance", value);
     }
     c.whole(&format!("{at}/max"), augmentation.max, 1, 1000);
-    // Multipliers belong to points that stay, and there is one traction for both sides.
     let mut without = |with: &str, help: &str| {
         c.add(
             &at,
@@ -27,10 +26,6 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
             Some(help.into()),
         );
     };
-    if let Points::Segments(_) = contact.points {
-        let with = "segments, which are cut anew at every step";
-        without(with, "take `{\"gauss\": n}`");
-    }
     if contact.gap == Gap::Averaged {
         without("averaged gaps", "take `\"gap\": \"pointwise\"`");
     }

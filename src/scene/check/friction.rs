@@ -1,6 +1,6 @@
 //! What can be wrong with the friction of a contact.
 use super::checker::Checker;
-use super::{Contact, Friction, Gap, Penalty, Points, TIME, Tangent, check_penalty};
+use super::{Contact, Friction, Gap, Penalty, TIME, Tangent, check_penalty};
 use crate::scene::Value;
 
 /// Problems of the friction of the contact at `at`.
@@ -50,7 +50,7 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
             }
         }
     }
-    // Histories belong to points that stay, gaps to points of their own, and the published forms are of normal contact.
+    // Averaged gaps are those of nodes, and the published forms are of normal contact.
     let mut without = |field: &str, with: &str, help: &str| {
         c.add(
             &format!("{at}/{field}"),
@@ -58,10 +58,6 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
             Some(help.into()),
         );
     };
-    if let Points::Segments(_) = contact.points {
-        let with = "segments, which are cut anew at every step";
-        without("points", with, "take `{\"gauss\": n}`");
-    }
     if contact.gap == Gap::Averaged {
         without("gap", "averaged gaps", "take `pointwise`");
     }

@@ -161,7 +161,8 @@ impl Workspace {
     pub(super) fn beside(&mut self, state: &State, histories: &[PointHistory]) {
         let base = &mut self.base;
         base.cuts.clone_from(&state.cuts);
-        base.histories.copy_from_slice(histories);
+        base.histories.clear();
+        base.histories.extend_from_slice(histories);
         place(base, state);
     }
 

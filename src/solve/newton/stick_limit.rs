@@ -9,8 +9,8 @@ use super::Workspace;
 use super::rigid_limit::{PART, force, place};
 use crate::assembly::{Assembler, Fault, SurfaceForce};
 use crate::contact::friction::history::{PointHistory, PointStatus};
+use crate::model::Model;
 use crate::model::state::State;
-use crate::model::{Model, PairModel};
 use crate::system::linear::LinearSolver;
 use covact_geometry::Vec3;
 
@@ -65,7 +65,7 @@ impl Workspace {
         time: f64,
     ) -> Result<StickLimit, ()> {
         let pair = &model.pairs[index];
-        let stuck = Stuck::new(model, pair, state);
+        let stuck = Stuck::new(model, index, state);
         let Some(stuck) = stuck.filter(|s| s.sticks()) else {
             return Ok(stuck.map_or(StickLimit::default(), |s| s.missing([0.0; 2])));
         };
@@ -145,9 +145,15 @@ struct Stuck {
 
 impl Stuck {
     /// Nothing without friction.
-    fn new(model: &Model, pair: &PairModel, state: &State) -> Option<Stuck> {
-        let range = pair.history().filter(|_| pair.friction.is_some())?;
-        let at = || (pair.points.iter()).map(|p| (model.point_position(p, &state.u), p.area));
+    fn new(model: &Model, index: usize, state: &State) -> Option<Stuck> {
+        let pair = &model.pairs[index];
+        let range = (state.history(model, index)).filter(|_| pair.friction.is_some())?;
+        let points = state.slaves(model, index);
+        let at = || {
+            points
+                .iter()
+                .map(|p| (model.point_position(p, &state.u), p.area))
+        };
         let area: f64 = at().map(|(_, a)| a).sum();
         let centre = at().map(|(x, a)| x * a).sum::<Vec3>() / area;
         let square: f64 = at().map(|(x, a)| (x - centre).norm_squared() * a).sum();

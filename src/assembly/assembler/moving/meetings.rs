@@ -20,7 +20,7 @@ pub(in crate::assembly::assembler) struct Meetings {
     /// Numbers that the largest matrix has.
     pub(super) stride: usize,
     /// The segments that the points are of.
-    pub(super) cut: Option<Arc<[SlavePoint]>>,
+    cut: Option<Arc<[SlavePoint]>>,
 }
 
 impl Meetings {
@@ -69,7 +69,7 @@ impl Meetings {
     }
 
     /// Room for another number of points.
-    pub(super) fn resize(&mut self, points: usize) {
+    fn resize(&mut self, points: usize) {
         let most = CHUNK.min(points);
         self.touched.resize(points);
         self.rows.resize(most, ShapeRows::default());
@@ -82,13 +82,26 @@ impl Meetings {
         self.touched.active.iter().filter_map(move |&i| facet(i))
     }
 
-    /// Whether the points are those of `cut`.
-    pub(super) fn holds(&self, cut: &Option<Arc<[SlavePoint]>>) -> bool {
-        match (&self.cut, cut) {
-            (None, None) => true,
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            _ => false,
+    /// Takes over the number of points of segments that were cut anew, and says whether they were.
+    pub(super) fn follow(&mut self, cut: &Option<Arc<[SlavePoint]>>, points: usize) -> bool {
+        let anew = !same(&self.cut, cut);
+        if anew {
+            self.cut.clone_from(cut);
+            self.resize(points);
         }
+        anew
+    }
+}
+
+/// Whether the points of two cuts are the same.
+pub(in crate::assembly::assembler) fn same(
+    a: &Option<Arc<[SlavePoint]>>,
+    b: &Option<Arc<[SlavePoint]>>,
+) -> bool {
+    match (a, b) {
+        (None, None) => true,
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        _ => false,
     }
 }
 
