@@ -7,6 +7,8 @@
 //! g_A = int N_A xi3 dS / m_A,    m_A = int N_A dS        lambda_A = N(g_A) where g_A < 0, else 0
 //! ```
 //!
+//! (with a multiplier of the node in the law: where `N(g_A) < 0`).
+//!
 //! With `dg_A = c_A / m_A`, `c_A = int N_A g3 dS` the virtual work `sum_A m_A lambda_A dg_A` is that of the traction
 //! `lambda(q) = sum_A N_A(q) lambda_A` at the points, and the tangent has a rank-one part per node and the geometric part
 //! of every point:
@@ -59,7 +61,7 @@ impl NodalGap {
     /// Traction `lambda_A` and stiffness of the node; zero where it is open.
     pub fn normal<L: NormalLaw>(&self, law: &L) -> Normal {
         match self.gap() {
-            Some(gap) if gap < 0.0 => law.response(gap),
+            Some(gap) if law.closes(gap) => law.response(gap),
             _ => Normal { n: 0.0, dn: 0.0 },
         }
     }

@@ -113,6 +113,17 @@ impl SlaveNodes {
         &self.around[self.starts[place] as usize..self.starts[place + 1] as usize]
     }
 
+    /// The undeformed areas `m_A` of the nodes, over all of their faces; `points` are those of the pair.
+    pub fn areas(&self, points: &[SlavePoint]) -> Vec<f64> {
+        let area = |place| {
+            let around = self.around(place).iter();
+            around
+                .map(|a| a.shape * points[a.point as usize].area)
+                .sum()
+        };
+        (0..self.len()).map(area).collect()
+    }
+
     /// Places of a point's nodes in [`nodes`](Self::nodes), with their shape functions.
     pub fn terms<'a>(
         &'a self,

@@ -15,7 +15,7 @@ pub fn number(pairs: &mut [PairModel]) {
         let own = |p: &&mut PairModel| p.remembers() && p.segments().is_some() == segments;
         for pair in pairs.iter_mut().filter(own) {
             pair.first_history = Some(first);
-            first += pair.points.len();
+            first += pair.carriers();
         }
     }
 }
@@ -31,7 +31,7 @@ pub fn range(
     let own = &model.pairs[pair];
     let first = own.first_history?;
     if cuts.is_empty() || own.segments().is_none() {
-        return Some(first..first + own.points.len());
+        return Some(first..first + own.carriers());
     }
     let cut = |index: &usize| {
         let p = &model.pairs[*index];

@@ -307,7 +307,7 @@ impl Model {
     pub fn histories(&self) -> usize {
         let pairs = self.pairs.iter();
         pairs
-            .map(|p| p.first_history.map_or(0, |_| p.points.len()))
+            .map(|p| p.first_history.map_or(0, |_| p.carriers()))
             .sum()
     }
 
@@ -408,9 +408,17 @@ impl PairModel {
         }
     }
 
-    /// Whether its points have a history.
+    /// Whether its points have a history; where gaps are averaged, its nodes.
     pub fn remembers(&self) -> bool {
         self.friction.is_some() || self.augmentation.is_some()
+    }
+
+    /// Number of its points, or of its nodes where gaps are averaged, before anything moves.
+    pub fn carriers(&self) -> usize {
+        match &self.averaged {
+            Some(nodes) => nodes.len(),
+            None => self.points.len(),
+        }
     }
 }
 

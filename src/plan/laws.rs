@@ -95,7 +95,7 @@ impl Reporter<'_> {
     /// Histories, once for friction and augmentation.
     fn history(&self, told: &EffectContext) -> Vec<Held> {
         let each = size_of::<PointHistory>();
-        let histories = Held::state("histories", Per::Point, each, told.points());
+        let histories = Held::state("histories", Per::Point, each, told.pair.carriers());
         vec![histories.of_points(told.pair.segments().is_some())]
     }
 

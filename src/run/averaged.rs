@@ -1,10 +1,10 @@
 //! Nodes of a pair with averaged gaps, as the output shows them.
 use crate::contact::averaged::NodalGap;
 use crate::contact::law::NormalLaw;
+use crate::model::Model;
 use crate::model::averaged::{Share, SlaveNodes};
 use crate::model::master::MasterNow;
 use crate::model::state::State;
-use crate::model::{Model, PairModel};
 
 /// A slave node.
 pub(super) struct NodeNow {
@@ -32,13 +32,13 @@ struct Sums {
     shrinking: f64,
 }
 
-/// The nodes of a pair in an accepted state; `hints` starts the search of its points at number `first` of the state's,
+/// The nodes of pair `index` in an accepted state; `hints` starts the search of its points at number `first` of the state's,
 /// and `front` becomes whether each is in front of the master or in contact. Also says how many of them are no longer,
 /// but lie below it and deeper than its depth.
 #[allow(clippy::too_many_arguments)]
 pub(super) fn nodes_now<L: NormalLaw>(
     model: &Model,
-    pair: &PairModel,
+    index: usize,
     nodes: &SlaveNodes,
     law: &L,
     master: &MasterNow,
@@ -48,6 +48,7 @@ pub(super) fn nodes_now<L: NormalLaw>(
     front: &mut [bool],
     start: &[f64],
 ) -> (Vec<NodeNow>, usize) {
+    let pair = &model.pairs[index];
     let offsets = pair.offsets(time);
     let reach = pair.reach(model);
     let shrinking = pair.resolved(start, first);
@@ -75,9 +76,15 @@ pub(super) fn nodes_now<L: NormalLaw>(
             }
         }
     }
-    let now = nodes.nodes().iter().zip(&sums).map(|(&node, s)| {
-        let closed = s.gap.gap().filter(|g| *g < 0.0);
-        let n = s.gap.normal(law).n;
+    let known = (state.history(model, index)).map(|range| &state.histories[range]);
+    let now = nodes.nodes().iter().zip(&sums).enumerate();
+    let now = now.map(|(at, (&node, s))| {
+        // With multipliers the step's own, which may be that of a node slightly above the surface.
+        let n = match known {
+            Some(histories) => histories[at].n,
+            None => s.gap.normal(law).n,
+        };
+        let closed = s.gap.gap().filter(|_| n < 0.0);
         NodeNow {
             node: node as usize,
             closed: closed.is_some(),

@@ -180,7 +180,7 @@ impl Fields {
             let fronts = &mut self.front[first..first + points.len()];
             if let Some(nodes) = &pair.averaged {
                 let (now, sunk) = nodes_now(
-                    model, pair, nodes, &law, &master, state, first, time, fronts, &start,
+                    model, index, nodes, &law, &master, state, first, time, fronts, &start,
                 );
                 self.sunk[index] += sunk;
                 self.pressed[index] = now.iter().map(|n| n.pressed).sum();

@@ -1,5 +1,6 @@
 //! Contact between deformable bodies.
 mod averaged;
+mod averaged_multipliers;
 mod bad_input;
 mod blocks;
 mod convergence;

@@ -379,6 +379,14 @@ fn averaged_gaps() {
     assert_eq!(found.status, RunStatus::Done);
 }
 
+/// Multipliers of nodes.
+#[test]
+fn averaged_gaps_with_multipliers() {
+    let contact = json!({"gap": "averaged", "points": {"gauss": 2}, "augmentation": {}});
+    let found = in_pieces(&sledge(0.6, 6, contact));
+    assert_eq!(found.status, RunStatus::Done);
+}
+
 /// A sheet bent over the border of a table and drawn back, with nodes of the border as slaves.
 #[test]
 fn edges_of_a_rigid_surface() {

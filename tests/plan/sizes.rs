@@ -144,7 +144,7 @@ fn further_effects_one_by_one() {
         }
         with(scene, &[("/solution/dynamics", json!({}))])
     };
-    let cases: [(Value, &[&str]); 12] = [
+    let cases: [(Value, &[&str]); 13] = [
         (
             with(plate(), &[("/solution/stabilization", viscous)]),
             &["stabilization"],
@@ -208,6 +208,17 @@ fn further_effects_one_by_one() {
                 ],
             ),
             &["segments", "histories", "answers", "transposed matrix"],
+        ),
+        (
+            with(
+                plate(),
+                &[
+                    gauss(),
+                    ("/contacts/press/gap", json!("averaged")),
+                    ("/contacts/press/augmentation", json!({})),
+                ],
+            ),
+            &["averaged nodes", "averaged gaps", "histories", "answers"],
         ),
     ];
     for (scene, on) in &cases {

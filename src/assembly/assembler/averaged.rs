@@ -2,9 +2,10 @@
 //!
 //! A closed node couples all slave nodes of the faces around it with each other, and with all master nodes that the
 //! points of these faces meet: the rank-one part of [`crate::contact::averaged`].
+mod groups;
 mod rank_one;
 
-use super::couplings::Couplings;
+use super::answer::PointAnswer;
 use super::driven::DrivenBlock;
 use super::per_pair::PerPair;
 use super::rigid::rounding;
@@ -12,6 +13,7 @@ use super::{Assembler, Fault, SurfaceForce, Totals};
 use crate::contact::averaged::{self, GapRow, NodalGap};
 use crate::contact::carried::carried;
 use crate::contact::fault::{Piece, PointFault};
+use crate::contact::friction::history::PointHistory;
 use crate::contact::kernel::{Normal, assemble_force};
 use crate::contact::kind::{LawKind, TangentKind};
 use crate::contact::law::{NoOffset, NormalLaw, PairLaw, PointLaw};
@@ -25,8 +27,9 @@ use crate::model::kernel::Kernel;
 use crate::model::master::Master;
 use crate::model::state::{PointState, State, heap};
 use crate::model::surface::with_patches;
-use crate::model::{Model, PairModel};
+use crate::model::{Model, PairModel, histories};
 use covact_geometry::{Hint, ShapeRows, Vec3};
+pub(super) use groups::groups;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
@@ -109,15 +112,14 @@ impl Averaged {
         })
     }
 
-    /// Finds the closest point of every slave point, and from them the gaps and tractions of the nodes.
-    #[allow(clippy::too_many_arguments)]
-    pub fn meet<L: NormalLaw, F>(
+    /// Finds the closest point of every slave point, and from them the gaps and tractions of the nodes; `histories` have the
+    /// multipliers of these, and are empty where they have none.
+    pub fn meet<L: PairLaw, F>(
         &mut self,
         model: &Model,
         pair: &PairModel,
-        law: &L,
-        u: &[f64],
-        time: f64,
+        (law, histories): (&L, &[PointHistory]),
+        (u, time): (&[f64], f64),
         states: &mut [PointState],
         find: F,
     ) -> Result<LawKind, Fault>
@@ -149,8 +151,11 @@ impl Averaged {
             Some(offsets) => self.share(pair, nodes, reaches, &offsets),
         }
         .map_err(|(i, e)| fault(i, e))?;
-        for (normal, gap) in self.normals.iter_mut().zip(&self.gaps) {
-            *normal = gap.normal(law);
+        for (at, (normal, gap)) in self.normals.iter_mut().zip(&self.gaps).enumerate() {
+            *normal = match histories.get(at) {
+                Some(history) => gap.normal(&history.law(*law, 0.0)),
+                None => gap.normal(law),
+            };
         }
         for (i, p) in pair.points.iter().enumerate() {
             let closed = nodes.terms(i, p).any(|(at, _)| self.closed(at));
@@ -159,7 +164,19 @@ impl Averaged {
                 met.check().map_err(|e| fault(i, e))?;
             }
         }
-        Ok(law_kind)
+        Ok(match histories.is_empty() {
+            true => law_kind,
+            false => LawKind::Multipliers,
+        })
+    }
+
+    /// What an augmentation makes of the nodes evaluated last.
+    pub fn answer(&self, answers: &mut [Option<PointAnswer>]) {
+        let nodes = self.normals.iter().zip(&self.gaps);
+        for ((normal, gap), answer) in nodes.zip(answers) {
+            let closed = gap.gap().filter(|_| normal.n < 0.0);
+            *answer = closed.map(|g| PointAnswer::without_friction(normal.n, g));
+        }
     }
 
     /// Shares the gaps of the points, measured from `offsets`, among the nodes; the fault of the first point that has one.
@@ -183,7 +200,7 @@ impl Averaged {
     }
 
     fn closed(&self, node: usize) -> bool {
-        self.gaps[node].gap().is_some_and(|g| g < 0.0)
+        self.normals[node].n < 0.0
     }
 
     /// Points that carry, with the facets they meet.
@@ -232,48 +249,26 @@ fn facet(met: &Meeting) -> Option<u32> {
     }
 }
 
-/// Nodes that a closed node of the slave couples: those of the faces around it, and those of the facets that these are
-/// coupled with.
-pub(super) fn groups(pair: &PairModel, couplings: Option<&Couplings>, mut add: impl FnMut(&[u32])) {
-    let Some(nodes) = &pair.averaged else { return };
-    let (mut group, mut cells) = (Vec::new(), Vec::new());
-    for place in 0..nodes.len() {
-        group.clear();
-        cells.clear();
-        for around in nodes.around(place) {
-            let point = around.point as usize;
-            let p = &pair.points[point];
-            group.extend_from_slice(&p.nodes[..p.count as usize]);
-            cells.extend(couplings.map(|c| c.cell(point)));
-        }
-        cells.dedup();
-        if let (Some(couplings), Some(master)) = (couplings, pair.body_master()) {
-            for facet in cells.iter().flat_map(|&cell| couplings.facets(cell)) {
-                group.extend_from_slice(master.facets.nodes(facet));
-            }
-        }
-        group.sort_unstable();
-        group.dedup();
-        add(&group);
-    }
-}
-
 impl<L: PairLaw> Assembler<'_, L> {
     /// Finds the points of a pair with a rigid master; those of bodies are found before the pattern is known to do.
     pub(super) fn meet_rigid(
         &mut self,
         index: usize,
-        u: &[f64],
+        first: usize,
+        state: &mut State,
         time: f64,
-        states: &mut [PointState],
     ) -> Result<(), Fault> {
         let (model, pair) = (self.model, &self.model.pairs[index]);
         let (Master::Rigid(number), Some(averaged)) = (&pair.master, self.averaged.get_mut(index))
         else {
             return Ok(());
         };
-        let master = model.surfaces[*number].at(time, u)?;
+        let master = model.surfaces[*number].at(time, &state.u)?;
+        let states = &mut state.points[first..first + pair.points.len()];
         let (of_pair, reach) = (L::of(self.penalties[index]), pair.reach(model));
+        let (known, u) = (histories::range(&state.cuts, model, index), &state.u[..]);
+        let known = known.unwrap_or(0..0);
+        let histories = &state.histories[known.clone()];
         let law = with_patches!(master.surface, patches => {
             let master = RigidMaster {
                 surface: patches,
@@ -281,10 +276,11 @@ impl<L: PairLaw> Assembler<'_, L> {
                 depth: master.depth,
                 keep: false,
             };
-            averaged.meet(model, pair, &of_pair, u, time, states, |_, x, hint| {
+            averaged.meet(model, pair, (&of_pair, histories), (u, time), states, |_, x, hint| {
                 master.meet(x, hint, reach)
             })
         })?;
+        averaged.answer(self.answers.get_mut(known).unwrap_or_default());
         self.ran[index] = Some(Kernel {
             master: model.surfaces[*number].kind(),
             law,

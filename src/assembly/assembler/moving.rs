@@ -118,24 +118,28 @@ impl<L: PairLaw> Assembler<'_, L> {
                     depth: master.depth,
                     keep: false,
                 };
-                let (model, u, law) = (self.model, &state.u, L::of(self.penalties[index]));
+                let (model, law) = (self.model, L::of(self.penalties[index]));
+                let known = histories::range(&state.cuts, model, index).unwrap_or(0..0);
+                let law = (&law, &state.histories[known.clone()]);
+                let at = (&state.u[..], time);
                 let (states, reach) = (&mut state.points[range], pair.reach(model));
                 let law = match &master.own {
-                    None => averaged.meet(model, pair, &law, u, time, states, |_, x, hint| {
+                    None => averaged.meet(model, pair, law, at, states, |_, x, hint| {
                         facets.meet(x, hint, reach, |_| true)
                     }),
                     Some(own) => {
                         let accept = Opposing {
                             own,
                             normals: &surface.normals,
-                            position: |n: u32| model.position(n as usize, u),
+                            position: |n: u32| model.position(n as usize, at.0),
                         };
-                        averaged.meet(model, pair, &law, u, time, states, |i, x, hint| {
+                        averaged.meet(model, pair, law, at, states, |i, x, hint| {
                             let at = accept.point(i);
                             facets.meet(x, hint, reach, |f| accept.facet(at, f))
                         })
                     }
                 }?;
+                averaged.answer(self.answers.get_mut(known).unwrap_or_default());
                 self.ran[index] = Some(Kernel {
                     law,
                     master: match &master.own {

@@ -7,6 +7,7 @@ use super::{Driven, Model, SurfaceModel};
 use crate::contact::carried::{Carried, carried, cross_matrix};
 use crate::contact::friction::history::PointHistory;
 use crate::contact::law::{Augmented, NormalLaw, PairLaw, Penalty};
+use crate::contact::points::SlavePoint;
 use crate::contact::rigid::{Exact, Overhang, PointFault, RigidMaster, behind, free};
 use crate::model::PairModel;
 use crate::model::surface::SurfaceSet;
@@ -113,9 +114,7 @@ impl<'m, L: PairLaw> Presser<'m, L> {
                     x: model.point_position(p, u),
                     area: p.area,
                     overhang: p.overhang(false),
-                    lambda_n: (pair.first_history)
-                        .and_then(|first| histories.get(first + i))
-                        .map_or(0.0, |h| h.lambda_n),
+                    lambda_n: multiplier(pair, (i, p), histories),
                     hint: None,
                 })
                 .collect();
@@ -483,4 +482,16 @@ fn whole_spin_block(
     let spin = turn::spin_of(theta);
     let by_spin = spin_spin - cross_matrix(moment) * 0.5;
     (spin.transpose() * by_spin * spin + turn::moment_slope(theta, moment)) / (lever * lever)
+}
+
+/// Multiplier of a slave point, from those of its nodes where gaps are averaged.
+fn multiplier(pair: &PairModel, (i, p): (usize, &SlavePoint), histories: &[PointHistory]) -> f64 {
+    let Some(first) = pair.first_history else {
+        return 0.0;
+    };
+    let of = |at: usize| histories.get(first + at).map_or(0.0, |h| h.lambda_n);
+    match &pair.averaged {
+        Some(nodes) => nodes.terms(i, p).map(|(at, w)| w * of(at)).sum(),
+        None => of(i),
+    }
 }

@@ -46,13 +46,17 @@ impl Watch {
             };
             let laws = [self.penalties[index], assembler.penalties[index]].map(L::of);
             let mut sum = 0.0;
-            for ((p, was), now) in (state.slaves(model, index).iter())
+            let areas = match &pair.averaged {
+                Some(nodes) => nodes.areas(&pair.points),
+                None => (state.slaves(model, index).iter().map(|p| p.area)).collect(),
+            };
+            for ((area, was), now) in (areas.iter())
                 .zip(&self.tractions[range.clone()])
                 .zip(&answers[range])
             {
                 let [n, g] = traction(now);
                 let stored = laws[1].energy(g) - laws[0].energy(was[1]);
-                sum += (stored - 0.5 * (n + was[0]) * (g - was[1])) * p.area;
+                sum += (stored - 0.5 * (n + was[0]) * (g - was[1])) * area;
             }
             adjusted += pair.share() * sum;
         }

@@ -1,6 +1,6 @@
 //! What can be wrong with the augmentation and the offset of a contact.
 use super::checker::Checker;
-use super::{Contact, Gap, Passes, Tangent};
+use super::{Contact, Passes, Tangent};
 
 /// Problems of augmentation and offset of the contact at `at`.
 pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
@@ -26,9 +26,6 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
             Some(help.into()),
         );
     };
-    if contact.gap == Gap::Averaged {
-        without("averaged gaps", "take `\"gap\": \"pointwise\"`");
-    }
     if contact.passes == Passes::TwoHalf {
         let with = "two half passes, whose multipliers nothing would make agree";
         without(with, "take `\"passes\": \"one\"`");
