@@ -114,6 +114,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             {
                 let facets = MovingMaster {
                     facets: &surface.facets,
+                    undeformed: &master.facets,
                     depth: master.depth,
                     keep: false,
                 };
@@ -191,6 +192,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 points,
                 master: MovingMaster {
                     facets: &surface.facets,
+                    undeformed: &master.facets,
                     depth: master.depth,
                     keep: self.linearization.keep_facets,
                 },

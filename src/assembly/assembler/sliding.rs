@@ -142,6 +142,7 @@ impl Sliding {
             kernel,
             master: MovingMaster {
                 facets: &surface.facets,
+                undeformed: &master.facets,
                 depth: master.depth,
                 keep: linearization.keep_facets,
             },
