@@ -5,10 +5,14 @@ use crate::friction::{Sliding, Where, facets};
 use crate::pairs::{self, Master};
 use crate::support::V;
 use crate::surface::Held;
+use covact::contact::friction::history::PointHistory;
 use covact::contact::friction::law::{Coulomb, FrictionLaw, Slip};
 use covact::contact::friction::moving::Full;
 use covact::contact::friction::orthotropic::Orthotropic;
-use covact_geometry::Frame;
+use covact::contact::friction::rigid::Friction;
+use covact::contact::law::{Augmented, Penalty};
+use covact::contact::moving::MovingMaster;
+use covact_geometry::{Frame, Hint, MovingFacets};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use num_dual::DualNum;
 
@@ -193,4 +197,64 @@ fn equal_coefficients_are_coulombs_law_on_masters_that_deform() {
             }
         }
     }
+}
+
+/// At the tip of triangles, which are collapsed facets, there is no tangent plane and no direction: both coefficients are their root
+/// mean square, and the tangent is the derivative of that.
+#[test]
+fn the_tip_of_triangles_knows_no_direction() {
+    let ring = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
+    let mut nodes = vec![V::zeros()];
+    nodes.extend(ring.map(|(x, y)| V::new(x, y, 0.6)));
+    let faces: Vec<[u32; 4]> = (0..4).map(|k| [1 + k, 1 + (k + 1) % 4, 0, 0]).collect();
+    let list: Vec<(&[u32], [u8; 2])> = faces.iter().map(|f| (&f[..], [2; 2])).collect();
+    let mut pit = MovingFacets::new(&list).expect("a surface");
+    pit.update(|n| nodes[n as usize]);
+    let mut undeformed = pit.clone();
+    undeformed.update(|n| rest(&nodes[n as usize]));
+    let master = MovingMaster {
+        facets: &pit,
+        undeformed: &undeformed,
+        depth: 1.0,
+        keep: false,
+    };
+    let law = Orthotropic::new([0.1, 0.3], Unit::new_normalize(V::new(0.3, 0.8, 0.1)));
+    let normal = Augmented {
+        law: Penalty { eps_n: 3.0 },
+        z0: 0.0,
+        lambda_n: 0.0,
+        held: false,
+    };
+    let mut history = PointHistory {
+        base: V::new(0.3, -0.2, -0.1),
+        ..PointHistory::default()
+    };
+    let hint = Hint {
+        patch: 1,
+        xi: [0.2, -0.1],
+    };
+    master.attach(&mut history, Some(hint));
+    let x = V::new(0.01, 0.02, -0.1);
+    let touch = |mu: f64| {
+        let even = Coulomb { mu };
+        let (one, two) = (
+            Friction {
+                law: even,
+                eps_t: 2.0,
+            },
+            Friction { law, eps_t: 2.0 },
+        );
+        let all = |_: u32| true;
+        let one = master.touch_with_friction(&x, &mut None, &normal, &one, &history, &Full, all);
+        let two = master.touch_with_friction(&x, &mut None, &normal, &two, &history, &Full, all);
+        [one, two].map(|touch| touch.expect("regular").expect("contact"))
+    };
+    let [one, two] = touch(0.05f64.sqrt());
+    let at = undeformed.jet(two.foot.patch, two.foot.xi);
+    assert!(Frame::new(&at, 1.0).is_none(), "{:?}", two.foot);
+    assert!(one.response.slip.slides && two.response.slip.t.norm() > 0.05);
+    let error = (one.response.residual - two.response.residual).norm();
+    assert!(error < 1e-14, "{error:e}");
+    let (k, exact) = (two.response.tangent, one.response.tangent);
+    assert!((k - exact).norm() < 1e-12 * exact.norm(), "{}", k - exact);
 }
