@@ -13,6 +13,8 @@ use covact_geometry::{
 #[derive(Debug, Clone, Copy)]
 pub struct MovingMaster<'a> {
     pub facets: &'a MovingFacets,
+    /// The same, undeformed.
+    pub undeformed: &'a MovingFacets,
     /// Points deeper than this below the surface are not in contact (length).
     pub depth: f64,
     /// Points stay on the facet that their hint names, continued a little past its border, where it meets the next one at a small

@@ -1,7 +1,7 @@
 //! How the contact pairs stand before anything moves.
 use super::error::{number, text};
 use super::friction::LawNow;
-use super::master::{Master, Masters};
+use super::master::{Master, MasterNow, Masters};
 use super::overclosure::{Deepest, treat};
 use super::sagitta::Sides;
 use super::sharp::SharpEdges;
@@ -283,10 +283,10 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
                 number(pair.master.depth(model))
             ));
         }
+        warnings.extend(without_direction(model, index));
         if let Some(number) = pair.rigid_master() {
             warnings.extend(too_coarse(model, index, &model.surfaces[number]));
             warnings.extend(too_hollow(pair, &model.surfaces[number]));
-            warnings.extend(without_direction(model, index, &model.surfaces[number]));
             if let Some(edges) = SharpEdges::of(&model.surfaces[number]) {
                 let name = &model.surfaces[number].name;
                 notes.push(edges.note(&pair.name, name, sharp::spacing(model, pair)));
@@ -353,26 +353,36 @@ fn too_hollow(pair: &PairModel, surface: &SurfaceModel) -> Option<String> {
     })
 }
 
-/// A warning of friction with a direction that means nothing where the body lies on the surface.
-fn without_direction(model: &Model, index: usize, surface: &SurfaceModel) -> Option<String> {
+/// A warning of friction with a direction that means nothing where the body lies on the master.
+fn without_direction(model: &Model, index: usize) -> Option<String> {
     let pair = &model.pairs[index];
     let LawNow::Orthotropic(law) = pair.friction.as_ref()?.law.at(0.0).ok()? else {
         return None;
     };
     let zero = vec![0.0; 3 * model.nodes.len()];
-    let master = surface.at(0.0, &zero).ok()?;
+    let masters = Masters::new(model);
+    let master = masters.at(model, index, &zero, 0.0).ok()?;
     let mut hint = None;
-    let blurred = pair.points.iter().filter(|p| {
-        let foot = master.foot(&model.point_position(p, &zero), hint, f64::INFINITY);
-        hint = foot.as_ref().map(|f| f.hint()).or(hint);
-        foot.is_some_and(|f| law.blurs(&f.normal))
+    let blurred = pair.points.iter().enumerate().filter(|(i, p)| {
+        let x = model.point_position(p, &zero);
+        // In the coordinates that the direction is given in.
+        let found = match &master {
+            MasterNow::Rigid(master) => {
+                let foot = master.foot(&x, hint, f64::INFINITY);
+                foot.map(|f| (f.hint(), f.normal))
+            }
+            MasterNow::Body { .. } => master.see(*i, &x, hint).map(|s| (s.hint, s.normal)),
+        };
+        hint = found.map(|f| f.0).or(hint);
+        found.is_some_and(|(_, normal)| law.blurs(&normal))
     });
     let (blurred, all) = (blurred.count(), pair.points.len());
     (2 * blurred > all).then(|| {
         format!(
-            "contact `{}`: the `direction` of its friction is nearly that of the normal of surface `{}` at {blurred} of {all} \
-             slave points: there the two coefficients are brought nearer to each other",
-            pair.name, surface.name
+            "contact `{}`: the `direction` of its friction is nearly that of the normal of {} at {blurred} of {all} slave points: \
+             there the two coefficients are brought nearer to each other",
+            pair.name,
+            pair.master_words(model)
         )
     })
 }

@@ -75,6 +75,7 @@ pub fn recut(
             let states = &points[points.len() - made.len()..];
             let master = MovingMaster {
                 facets: &surface.facets,
+                undeformed: &body.facets,
                 depth: body.depth,
                 keep: true,
             };

@@ -157,7 +157,12 @@ pub fn commit<L: PairLaw>(
             continue;
         };
         let (was, now) = (friction.law.at(start)?, friction.law.at(time)?);
-        let limited = |trial: &Vec3, normal: &Vec3, pressure: f64| with_law!(was, law => law.slip(trial, normal, pressure).t);
+        let limited = |trial: &Vec3, normal: &Vec3, pressure: f64, along: Option<&Vec3>| {
+            with_law!(was, law => match along {
+                None => law.slip(trial, normal, pressure).t,
+                Some(e) => law.slip_along(trial, normal, pressure, e).0.t,
+            })
+        };
         let law_n = L::of(penalties[index]);
         let eps_t = ratios[index] * penalties[index];
         // What the tangential penalties carry beside the multipliers.
@@ -201,6 +206,10 @@ pub fn commit<L: PairLaw>(
     Ok(total)
 }
 
+/// The traction that a law allows for a trial traction, a normal, a pressure, and the direction of a master that deforms.
+trait Limited: Fn(&Vec3, &Vec3, f64, Option<&Vec3>) -> Vec3 + Sync {}
+impl<F: Fn(&Vec3, &Vec3, f64, Option<&Vec3>) -> Vec3 + Sync> Limited for F {}
+
 /// Points without friction take their tractions as multipliers into the next step.
 fn press(answers: &[Option<PointAnswer>], histories: &mut [PointHistory]) {
     for (history, answer) in histories.iter_mut().zip(answers) {
@@ -235,7 +244,7 @@ impl<L: PairLaw> Batch<'_, L> {
         i: usize,
         state: &PointState,
         friction: &Friction<F>,
-        limited: &impl Fn(&Vec3, &Vec3, f64) -> Vec3,
+        limited: &impl Limited,
         history: &mut PointHistory,
     ) -> Result<(), Fault> {
         let (mut hint, point) = (state.hint, &self.pair.points[i]);
@@ -255,7 +264,7 @@ impl<L: PairLaw> Batch<'_, L> {
             Some(touch) => {
                 let turn = &self.turn;
                 let (n, eps_t) = (touch.touch.n, friction.eps_t);
-                let first = limited(&touch.traction.trial, &touch.normal, -history.n);
+                let first = limited(&touch.traction.trial, &touch.normal, -history.n, None);
                 let (local, traction) = (&touch.local, &touch.traction);
                 match self.pair.augmentation {
                     None => history.accept(local, traction, &first, n, eps_t, turn),

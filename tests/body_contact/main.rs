@@ -8,6 +8,7 @@ mod cut_faces;
 mod edges;
 mod friction;
 mod invariance;
+mod orthotropic;
 mod overclosure;
 mod patch;
 mod segment_histories;

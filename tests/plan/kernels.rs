@@ -31,6 +31,10 @@ fn kernels(scene: &Value) -> Vec<(String, Option<String>)> {
     pairs.map(|p| (p.kernel, p.ran)).collect()
 }
 
+fn orthotropic() -> Value {
+    json!({"orthotropic": {"mu": [0.1, 0.3], "direction": [1, 0, 0]}})
+}
+
 /// Changes of a scene, the kernel that they ask for, and the number of pairs.
 type Case<'c> = (&'c [(&'c str, Value)], &'c str, usize);
 
@@ -46,7 +50,6 @@ fn runs_as(scene: &Value, expected: &str, pairs: usize) {
 #[test]
 fn on_rigid_surfaces() {
     let contact = |key: &str| format!("/contacts/press/{key}");
-    let orthotropic = json!({"orthotropic": {"mu": [0.1, 0.3], "direction": [1, 0, 0]}});
     let facets = |kind: &str| json!({"kind": kind, "count": [6, 6]});
     let published = json!({"published": {"curvature": false}});
     let (offset, none) = (json!(0.1), json!({}));
@@ -57,7 +60,7 @@ fn on_rigid_surfaces() {
             "rigid_nurbs.penalty.coulomb.exact",
         ),
         (
-            &[("friction", orthotropic), ("offset", offset.clone())],
+            &[("friction", orthotropic()), ("offset", offset.clone())],
             "rigid_nurbs.offset.orthotropic.exact",
         ),
         (
@@ -115,7 +118,8 @@ fn between_bodies() {
     let main = json!({"published": {"rotational": false, "curvature": false}});
     let halves = || ("/contacts/press/passes", json!("two_half"));
     let friction = || ("/contacts/press/friction", coulomb());
-    let cases: [Case; 7] = [
+    let ellipse = || ("/contacts/press/friction", orthotropic());
+    let cases: [Case; 8] = [
         (&[], "faces.penalty.frictionless.exact", 1),
         (&[friction()], "faces.penalty.coulomb.exact", 1),
         (
@@ -138,6 +142,7 @@ fn between_bodies() {
             "faces.penalty.coulomb.exact.slave_rows",
             2,
         ),
+        (&[ellipse()], "faces.penalty.orthotropic.exact", 1),
         (
             &[("/contacts/press/tangent", main)],
             "faces.penalty.frictionless.published_main_part",

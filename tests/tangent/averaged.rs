@@ -108,6 +108,7 @@ fn averaged_gap_of_two_faces() {
         let facets = pair.facets();
         let master = MovingMaster {
             facets,
+            undeformed: facets,
             depth: 1.0,
             keep: false,
         };

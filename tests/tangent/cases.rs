@@ -240,6 +240,7 @@ pub fn combine(x: &[V<f64>], shape: &[f64]) -> V<f64> {
 fn on_facets(facets: &MovingFacets, q: &V<f64>) -> Option<Evaluated> {
     let master = MovingMaster {
         facets,
+        undeformed: facets,
         depth: 1.0,
         keep: false,
     };

@@ -14,6 +14,7 @@ fn touch(
 ) -> Result<Option<MovingTouch>, PointFault> {
     let master = MovingMaster {
         facets,
+        undeformed: facets,
         depth: 0.3,
         keep: false,
     };

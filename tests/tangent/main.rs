@@ -8,6 +8,7 @@ mod faults;
 mod follower;
 mod friction;
 mod friction_edges;
+mod friction_orthotropic;
 mod friction_published;
 mod friction_rigid;
 mod friction_support;

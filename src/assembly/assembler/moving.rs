@@ -115,6 +115,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             {
                 let facets = MovingMaster {
                     facets: &surface.facets,
+                    undeformed: &master.facets,
                     depth: master.depth,
                     keep: false,
                 };
@@ -200,6 +201,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 points,
                 master: MovingMaster {
                     facets: &surface.facets,
+                    undeformed: &master.facets,
                     depth: master.depth,
                     keep: self.linearization.keep_facets,
                 },

@@ -162,6 +162,7 @@ impl Sliding {
             kernel,
             master: MovingMaster {
                 facets: &surface.facets,
+                undeformed: &master.facets,
                 depth: master.depth,
                 keep: linearization.keep_facets,
             },

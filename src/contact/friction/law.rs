@@ -45,6 +45,27 @@ pub trait FrictionLaw: Sync + Copy {
         normal: &Vector3<D>,
         pressure: D,
     ) -> Slip<D>;
+
+    /// The direction of the master that the law knows, in the coordinates in which the master is given; none where all directions
+    /// are alike.
+    #[inline]
+    fn direction(&self) -> Option<&Vector3<f64>> {
+        None
+    }
+
+    /// [`Self::slip`] where the direction of the master is the unit vector `direction` at this point, whatever it was given
+    /// as; with the derivative of the traction with respect to that (force / length^2).
+    #[inline]
+    fn slip_along<D: DualNum<f64> + Copy>(
+        &self,
+        trial: &Vector3<D>,
+        normal: &Vector3<D>,
+        pressure: D,
+        _direction: &Vector3<D>,
+    ) -> (Slip<D>, Matrix3<D>) {
+        let slip = self.slip(trial, normal, pressure);
+        (slip, Matrix3::from_element(D::zero()))
+    }
 }
 
 /// Coulomb's law: the traction is at most `mu` times the pressure, and as the trial traction directs.
@@ -112,18 +133,10 @@ pub struct Secant<F> {
     pub last: Vector3<f64>,
 }
 
-impl<F: FrictionLaw> FrictionLaw for Secant<F> {
+impl<F> Secant<F> {
+    /// What a law made of a trial traction, by its secant where that is to be.
     #[inline]
-    fn slip<D: DualNum<f64> + Copy>(
-        &self,
-        trial: &Vector3<D>,
-        normal: &Vector3<D>,
-        pressure: D,
-    ) -> Slip<D> {
-        if self.slide == Slide::Stick {
-            return Slip::stick(trial);
-        }
-        let slip = self.law.slip(trial, normal, pressure);
+    fn held<D: DualNum<f64> + Copy>(&self, trial: &Vector3<D>, slip: Slip<D>) -> Slip<D> {
         let turned = || slip.t.map(|x| x.re()).dot(&self.last) < 0.0;
         let norm = |v: &Vector3<D>| v.map(|x| x.re()).norm();
         if !slip.slides || !(self.slide == Slide::Secant || turned()) {
@@ -133,6 +146,41 @@ impl<F: FrictionLaw> FrictionLaw for Secant<F> {
             d_trial: diagonal(D::from(norm(&slip.t) / norm(trial))),
             ..slip
         }
+    }
+}
+
+impl<F: FrictionLaw> FrictionLaw for Secant<F> {
+    #[inline]
+    fn slip<D: DualNum<f64> + Copy>(
+        &self,
+        trial: &Vector3<D>,
+        normal: &Vector3<D>,
+        pressure: D,
+    ) -> Slip<D> {
+        match self.slide {
+            Slide::Stick => Slip::stick(trial),
+            _ => self.held(trial, self.law.slip(trial, normal, pressure)),
+        }
+    }
+
+    #[inline]
+    fn direction(&self) -> Option<&Vector3<f64>> {
+        self.law.direction()
+    }
+
+    #[inline]
+    fn slip_along<D: DualNum<f64> + Copy>(
+        &self,
+        trial: &Vector3<D>,
+        normal: &Vector3<D>,
+        pressure: D,
+        direction: &Vector3<D>,
+    ) -> (Slip<D>, Matrix3<D>) {
+        if self.slide == Slide::Stick {
+            return (Slip::stick(trial), Matrix3::from_element(D::zero()));
+        }
+        let (slip, by_direction) = self.law.slip_along(trial, normal, pressure, direction);
+        (self.held(trial, slip), by_direction)
     }
 }
 

@@ -18,10 +18,11 @@
 //! - [`law`]: Coulomb's law, and what any law has to give; [`orthotropic`]: a law of two coefficients;
 //! - [`rigid`]: points on rigid masters;
 //! - [`anchor`]: the attraction point on a facet that moves, [`moving`]: the response there in the slots,
-//!   [`touch`]: points on faces of bodies, [`scatter`]: from the slots to their nodes.
+//!   [`heading`]: the direction of a law there, [`touch`]: points on faces of bodies, [`scatter`]: from the slots to their nodes.
 //! - [`published`], [`evolution`]: the published tangents and the rate law in components, to compare with.
 pub mod anchor;
 pub mod evolution;
+pub mod heading;
 pub mod history;
 pub mod law;
 pub mod moving;

@@ -18,7 +18,7 @@
 //!
 //! ```text
 //! T_tr = P v,  P = I - n x n       dT_tr = P dv - (n . v) dn - n (v . dn)       dn = -rho^i q_i
-//! dT   = T,trial dT_tr + T,n dn - T,p dN        v = lambda + eps_T phi (r_s - base), see [`Pull`]
+//! dT   = T,trial dT_tr + T,n dn - T,p dN + T,e de        v = lambda + eps_T phi (r_s - base), see [`Pull`];  e: [`Heading`]
 //! tau^i = rho^i . T        dtau^i = rho^i . dT - tau^j rho^i . (drho_,j + rho_,jk X^k)
 //! ```
 //!
@@ -26,6 +26,7 @@
 //! slot `m` and, in the full form, `xi3 tau^i n x X^m` in the slots of `drho_,im` ([`Response::travel`]). The published
 //! tangents (Konyukhov & Schweizerhof, Comput. Mech. 35 (2005)) are those of a master that stands still, at `xi3 = 0`.
 use super::anchor::{Columns, Pull, dual};
+use super::heading::Heading;
 use super::law::{FrictionLaw, Slip};
 use crate::contact::corner;
 use crate::contact::kernel::{self, Normal, SlotMatrix, Slots, in_slot};
@@ -72,13 +73,15 @@ pub struct Response<D = f64> {
     pub slip: Slip<D>,
 }
 
-/// Residual and exact tangent of a contact point with friction. `pull` is what the history makes of its position.
+/// Residual and exact tangent of a contact point with friction. `pull` is what the history makes of its position,
+/// `heading` the direction there of a law that knows one.
 #[inline]
 pub fn respond_with_friction<D: DualNum<f64> + Copy, F: FrictionLaw, M: Form>(
     geometry: &PointGeometry<D>,
     normal: &Normal<D>,
     law: &F,
     pull: &Pull<D>,
+    heading: Option<&Heading<D>>,
     _form: &M,
 ) -> Response<D> {
     let (mut residual, mut tangent) = respond(geometry, normal, &Exact);
@@ -88,13 +91,24 @@ pub fn respond_with_friction<D: DualNum<f64> + Copy, F: FrictionLaw, M: Form>(
     let v = &pull.v;
     let along = v.dot(&n);
     let trial = v - n * along;
-    let slip = law.slip(&trial, &n, -normal.n);
+    // Nothing of it is left for laws without a direction.
+    let heading = law.direction().and(heading);
+    let (slip, headed) = match heading {
+        None => (law.slip(&trial, &n, -normal.n), None),
+        Some(heading) => {
+            let (slip, by_direction) = law.slip_along(&trial, &n, -normal.n, &heading.e);
+            (slip, Some(by_direction * heading.columns(&travel)))
+        }
+    };
     let t = slip.t;
     let project = |m: &Columns<D>| m - n * (n.transpose() * m);
     let d_trial =
         project(&(pull.along_gap * g3.transpose())) - turn * along - n * (v.transpose() * turn);
-    let dt = slip.d_trial * d_trial + slip.d_normal * turn
+    let mut dt = slip.d_trial * d_trial + slip.d_normal * turn
         - slip.d_pressure * g3.transpose() * normal.dn;
+    if let Some(headed) = headed {
+        dt += headed;
+    }
     let dt_anchor = slip.d_trial * project(&pull.columns);
     let mut anchor = SlotMatrix::from_element(D::zero());
 

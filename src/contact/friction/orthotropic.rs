@@ -1,6 +1,6 @@
 //! Friction with two coefficients, along a direction of the master and across it.
 use super::law::{FrictionLaw, Slip};
-use nalgebra::{Unit, Vector3};
+use nalgebra::{Matrix3, Unit, Vector3};
 use num_dual::DualNum;
 
 /// Sine of the angle between the direction and the normal below which the two coefficients approach each other.
@@ -25,11 +25,13 @@ const STEPS: usize = 40;
 /// Where the direction comes near to the normal it loses its meaning on the surface, and no choice of directions around
 /// such a point is continuous. There (sine of the angle `s` below 0.1) the difference of the squared coefficients is reduced
 /// by `q (2 - q)`, `q = (s / 0.1)^2`: `M` is once differentiable everywhere, and isotropic where direction and normal agree.
+///
+/// On a master that deforms the direction is the one of [`Heading`](super::heading::Heading), fixed to the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Orthotropic {
     /// Coefficients of friction along and across the direction.
     pub mu: [f64; 2],
-    /// Unit vector in the coordinates of the master.
+    /// Unit vector in the coordinates of the master, undeformed.
     direction: Unit<Vector3<f64>>,
 }
 
@@ -42,6 +44,10 @@ struct Axes<D> {
     cot: D,
     /// Derivative of the first squared coefficient with respect to `a . dn`; that of the second is its negative.
     dm: D,
+    /// The reciprocal of the sine of that angle: how the axes turn with the direction; zero where any axes will do.
+    over: D,
+    /// Derivative of the first squared coefficient with respect to `a . de`, where the direction changes by `de`.
+    dm_along: D,
 }
 
 impl Orthotropic {
@@ -56,9 +62,8 @@ impl Orthotropic {
         normal.cross(&self.direction).norm() < STEEP
     }
 
-    fn axes<D: DualNum<f64> + Copy>(&self, n: &Vector3<D>) -> Axes<D> {
-        let e = self.direction.map(D::from);
-        let up = n.dot(&e);
+    fn axes<D: DualNum<f64> + Copy>(&self, n: &Vector3<D>, e: &Vector3<D>) -> Axes<D> {
+        let up = n.dot(e);
         let plane = e - n * up;
         let square = plane.dot(&plane);
         let [m1, m2] = self.mu.map(|mu| mu * mu);
@@ -74,18 +79,22 @@ impl Orthotropic {
                 m: [D::from(mean); 2],
                 cot: D::zero(),
                 dm: D::zero(),
+                over: D::zero(),
+                dm_along: D::zero(),
             };
         }
         let sine = square.sqrt();
-        let a = plane * sine.recip();
+        let over = sine.recip();
+        let a = plane * over;
         let q = square * (STEEP * STEEP).recip();
-        let (share, slope) = match q.re() < 1.0 {
-            // d(sine^2) = -2 up sine a . dn
+        let (share, slope, slope_along) = match q.re() < 1.0 {
+            // d(sine^2) = -2 up sine a . dn + 2 sine a . de
             true => (
                 q * (-q + 2.0),
                 (-q + 1.0) * up * sine * (-4.0 / (STEEP * STEEP)),
+                (-q + 1.0) * sine * (4.0 / (STEEP * STEEP)),
             ),
-            false => (D::one(), D::zero()),
+            false => (D::one(), D::zero(), D::zero()),
         };
         Axes {
             a: [a, n.cross(&a)],
@@ -95,6 +104,8 @@ impl Orthotropic {
             },
             cot: up / sine,
             dm: slope * half,
+            over,
+            dm_along: slope_along * half,
         }
     }
 }
@@ -139,13 +150,52 @@ fn multiplier<D: DualNum<f64> + Copy>(t: &[D; 2], m: &[D; 2], p: D) -> D {
 }
 
 impl FrictionLaw for Orthotropic {
+    #[inline]
     fn slip<D: DualNum<f64> + Copy>(
         &self,
         trial: &Vector3<D>,
         normal: &Vector3<D>,
         pressure: D,
     ) -> Slip<D> {
-        let Axes { a, m, cot, dm } = self.axes(normal);
+        let direction = self.direction.map(D::from);
+        self.slip_by::<D, false>(trial, normal, pressure, &direction)
+            .0
+    }
+
+    #[inline]
+    fn direction(&self) -> Option<&Vector3<f64>> {
+        Some(&self.direction)
+    }
+
+    #[inline]
+    fn slip_along<D: DualNum<f64> + Copy>(
+        &self,
+        trial: &Vector3<D>,
+        normal: &Vector3<D>,
+        pressure: D,
+        direction: &Vector3<D>,
+    ) -> (Slip<D>, Matrix3<D>) {
+        self.slip_by::<D, true>(trial, normal, pressure, direction)
+    }
+}
+
+impl Orthotropic {
+    /// The slip for a direction, with the derivative of the traction with respect to that where `ALONG`, else zero.
+    fn slip_by<D: DualNum<f64> + Copy, const ALONG: bool>(
+        &self,
+        trial: &Vector3<D>,
+        normal: &Vector3<D>,
+        pressure: D,
+        direction: &Vector3<D>,
+    ) -> (Slip<D>, Matrix3<D>) {
+        let Axes {
+            a,
+            m,
+            cot,
+            dm,
+            over: over_sine,
+            dm_along,
+        } = self.axes(normal, direction);
         let t = a.map(|a| a.dot(trial));
         let zero = D::zero();
         // Inside: |M^-1/2 t| <= p, and nothing along an axis without friction.
@@ -157,7 +207,7 @@ impl FrictionLaw for Orthotropic {
         let outside = over(0).hypot(over(1)) > pressure.re();
         let loose = (0..2).any(|i| !held(i) && t[i].re() != 0.0);
         if !outside && !loose {
-            return Slip::stick(trial);
+            return (Slip::stick(trial), Matrix3::from_element(zero));
         }
         // Along the axes: the traction, its derivatives by trial traction (symmetric: 11, 12, 22), pressure and m_1.
         let (mut s, mut j, mut d_pressure, mut d_m) = ([zero; 2], [zero; 3], [zero; 2], [zero; 2]);
@@ -216,14 +266,23 @@ impl FrictionLaw for Orthotropic {
         // The axes turn with the normal: da = -n (a . dn) - cot b (b . dn), db = -n (b . dn) + cot a (b . dn).
         let turned = apply([-t[1], t[0]]);
         let turning = plane([(turned[0] + s[1]) * cot, (turned[1] - s[0]) * cot]);
-        Slip {
+        let by_direction = match ALONG {
+            // And with the direction: da = b (b . de) / sine, db = -a (b . de) / sine.
+            true => {
+                let turning = plane([-(turned[0] + s[1]), s[0] - turned[1]]) * over_sine;
+                turning * a[1].transpose() + plane(d_m) * dm_along * a[0].transpose()
+            }
+            false => Matrix3::from_element(zero),
+        };
+        let slip = Slip {
             t: out,
             d_trial: columns[0] * a[0].transpose() + columns[1] * a[1].transpose(),
             d_pressure: plane(d_pressure),
             d_normal: turning * a[1].transpose() + plane(d_m) * dm * a[0].transpose()
                 - normal * out.transpose(),
             slides: true,
-        }
+        };
+        (slip, by_direction)
     }
 }
 
@@ -231,7 +290,6 @@ impl FrictionLaw for Orthotropic {
 mod tests {
     use super::super::law::Coulomb;
     use super::*;
-    use nalgebra::Matrix3;
     use num_dual::Dual64;
 
     fn law(mu: [f64; 2], direction: [f64; 3]) -> Orthotropic {
@@ -303,7 +361,7 @@ mod tests {
         assert_eq!(law.slip(&trial, &n, 0.0).t, Vector3::zeros());
     }
 
-    /// Derivatives against dual numbers, through the direction of the normal too.
+    /// Derivatives against dual numbers, through the normal and the direction too.
     #[test]
     fn derivatives() {
         let e = Vector3::new(1.0, 0.3, -0.2).normalize();
@@ -322,27 +380,37 @@ mod tests {
             for mu in [[0.1, 0.4], [0.5, 0.2], [0.3, 0.0]] {
                 let law = Orthotropic::new(mu, Unit::new_normalize(e));
                 let pressure = 1.3;
-                let slip = law.slip(&trial, &n, pressure);
+                let (slip, by_direction) = law.slip_along(&trial, &n, pressure, &e);
                 assert!(slip.slides, "{what}");
+                assert_eq!(slip, law.slip(&trial, &n, pressure), "{what}");
+                // Where all directions are alike, or none is left, it means nothing.
+                let means = by_direction.norm() > 1e-3;
+                assert_eq!(means, what != "equal", "{what}: {by_direction}");
                 // A motion in which the normal turns and the trial traction stays in its plane.
                 let mut compared = 0.0;
-                for (turn, stretch, press) in [
-                    (side, other, 0.3),
-                    (other, side, -0.7),
-                    (side * 2.0 - other, Vector3::zeros(), 0.0),
+                for (turn, stretch, press, lean) in [
+                    (side, other, 0.3, Vector3::zeros()),
+                    (other, side, -0.7, side + other),
+                    (side * 2.0 - other, Vector3::zeros(), 0.0, other * 0.5),
+                    (Vector3::zeros(), Vector3::zeros(), 0.0, side - other),
                 ] {
                     let dn = turn - n * n.dot(&turn);
+                    let de = lean - e * e.dot(&lean);
                     let dt = stretch - n * n.dot(&stretch) - n * trial.dot(&dn);
                     let dual = |v: &Vector3<f64>, d: &Vector3<f64>| {
                         Vector3::from_fn(|i, _| Dual64::new(v[i], d[i]))
                     };
-                    let reference = law.slip(
+                    let (reference, _) = law.slip_along(
                         &dual(&trial, &dt),
                         &dual(&n, &dn),
                         Dual64::new(pressure, press),
+                        &dual(&e, &de),
                     );
                     let reference = reference.t.map(|x| x.eps);
-                    let given = slip.d_trial * dt + slip.d_pressure * press + slip.d_normal * dn;
+                    let given = slip.d_trial * dt
+                        + slip.d_pressure * press
+                        + slip.d_normal * dn
+                        + by_direction * de;
                     // The axes are differences of relative size 1e-3, and turn by its reciprocal: so does rounding.
                     let limit = if what == "very near" { 1e-9 } else { 1e-11 };
                     if what == "equal" {

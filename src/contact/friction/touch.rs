@@ -68,13 +68,15 @@ impl MovingMaster<'_> {
             }
         };
         let geometry = &meeting.geometry;
+        let (law, n) = (&friction.law, geometry.normal());
+        let heading = self.heading(law, foot.hint(), &n);
         Ok(Some(MovingFrictionTouch {
             foot: foot.hint(),
             anchor: history.place,
-            response: respond_with_friction(geometry, &normal, &friction.law, &pull, form),
+            response: respond_with_friction(geometry, &normal, law, &pull, heading.as_ref(), form),
             gap,
             n: normal.n,
-            normal: geometry.normal(),
+            normal: n,
         }))
     }
 

@@ -1,4 +1,5 @@
 //! Slave points on faces of bodies: their attraction points are material points of these faces.
+use super::Limited;
 use crate::assembly::Fault;
 use crate::contact::friction::history::{PointHistory, Turn};
 use crate::contact::friction::law::FrictionLaw;
@@ -77,7 +78,7 @@ impl<'a, L: PairLaw> Batch<'a, L> {
     }
 
     /// Takes the end of a step into the histories. `limited` is the traction that the law allowed at its start, for a
-    /// trial traction, a normal and a pressure.
+    /// trial traction, a normal and a pressure, and the direction of the master there.
     ///
     /// # Errors
     /// A point that cannot be evaluated.
@@ -86,7 +87,7 @@ impl<'a, L: PairLaw> Batch<'a, L> {
         points: &[PointState],
         histories: &mut [PointHistory],
         (law, eps_t): (LawNow, f64),
-        limited: &(impl Fn(&Vec3, &Vec3, f64) -> Vec3 + Sync),
+        limited: &impl Limited,
     ) -> Result<(), Fault> {
         with_law!(law, law => {
             let friction = Friction { law, eps_t };
@@ -112,6 +113,7 @@ impl<'a, L: PairLaw> Batch<'a, L> {
     fn master(&self) -> MovingMaster<'a> {
         MovingMaster {
             facets: &self.surface.facets,
+            undeformed: &self.body.facets,
             depth: self.body.depth,
             keep: true,
         }
@@ -122,7 +124,7 @@ impl<'a, L: PairLaw> Batch<'a, L> {
         points: &[PointState],
         histories: &mut [PointHistory],
         friction: &Friction<F>,
-        limited: &(impl Fn(&Vec3, &Vec3, f64) -> Vec3 + Sync),
+        limited: &impl Limited,
         accept: &A,
     ) -> Result<(), Fault> {
         let master = self.master();
@@ -142,7 +144,7 @@ impl<'a, L: PairLaw> Batch<'a, L> {
         i: usize,
         mut hint: Option<Hint>,
         friction: &Friction<F>,
-        limited: &impl Fn(&Vec3, &Vec3, f64) -> Vec3,
+        limited: &impl Limited,
         history: &mut PointHistory,
         accept: impl Fn(u32) -> bool + Copy,
     ) -> Result<(), Fault> {
@@ -164,7 +166,9 @@ impl<'a, L: PairLaw> Batch<'a, L> {
                     slip: touch.response.slip,
                     tangent: Matrix3::zeros(),
                 };
-                let first = limited(&traction.trial, &touch.normal, -history.n);
+                let heading = master.heading(&friction.law, touch.foot, &touch.normal);
+                let along = heading.map(|h| h.e);
+                let first = limited(&traction.trial, &touch.normal, -history.n, along.as_ref());
                 history.accept(&x, &traction, &first, touch.n, friction.eps_t, &still);
                 if self.pair.augmentation.is_some() {
                     history.lambda_n = touch.n;

@@ -81,20 +81,26 @@ fn replaced(scene: &LoadedScene, before: Option<&Safe>, body: &str, when: &str) 
     Some(safe)
 }
 
-/// The scene with the edges of masters as slaves, in every contact with another body that leaves its passes to the default.
+/// The scene with the edges of masters as slaves, in every contact with another body that leaves its passes to the default and whose
+/// friction has no direction of the master.
 pub(super) fn with_edges(
     scene: &LoadedScene,
     before: Option<&Safe>,
     time: Option<f64>,
 ) -> Option<Safe> {
     let change = |contact: &mut Contact| {
-        let default = contact.passes == Passes::Auto;
+        let default = contact.passes == Passes::Auto && !is_directed(contact);
         contact.passes = Passes::Edges;
         default
     };
     let text = "while a sharp edge of the master lay on the slave, between its points; it was repeated with such edges as slaves \
                 too (`\"passes\": \"edges\"`; `\"one\"` leaves them out, and the side with the edge as slave needs none)";
     with_contacts(scene, before, time, ("passes", change, text))
+}
+
+/// Whether friction has a direction of the master, so that the sides of a contact are not alike.
+fn is_directed(contact: &Contact) -> bool {
+    matches!(contact.friction, Some(Friction::Orthotropic { .. }))
 }
 
 /// Whether the edges of the master of a contact may become slaves by themselves: those of another body, or of a rigid surface whose
@@ -107,7 +113,7 @@ pub(super) fn edges_may(scene: &LoadedScene, contact: &Contact) -> bool {
     };
     let solution = &scene.scene.solution;
     contact.passes == Passes::Auto
-        && !matches!(contact.friction, Some(Friction::Orthotropic { .. }))
+        && !is_directed(contact)
         // Pieces of faces end at the edges of the master.
         && !matches!(contact.points, Points::Segments(_))
         && prescribed
@@ -239,7 +245,8 @@ pub(super) fn with_smooth(
     with_contacts(scene, before, time, ("master_surface", change, text))
 }
 
-/// The scene with the sides exchanged of every contact whose master is softer than its slave, unless it names its passes: a soft
+/// The scene with the sides exchanged of every contact whose master is softer than its slave, unless it names its passes or its
+/// friction has a direction of the master: a soft
 /// master bulges out between the points of a stiff slave, which snap from bulge to bulge where they slide.
 pub(super) fn with_exchanged(
     scene: &LoadedScene,
@@ -254,7 +261,9 @@ pub(super) fn with_exchanged(
     let change = |contact: &mut Contact| {
         let stiffer = young(&contact.slave).zip(young(&contact.master));
         std::mem::swap(&mut contact.slave, &mut contact.master);
-        contact.passes == Passes::Auto && stiffer.is_some_and(|(slave, master)| slave > master)
+        contact.passes == Passes::Auto
+            && !is_directed(contact)
+            && stiffer.is_some_and(|(slave, master)| slave > master)
     };
     let text = "in steps cut again and again, its master softer than its slave; it was repeated with the softer side as the slave, \
                 of which now is what is told of a slave (`\"passes\": \"one\"` keeps the sides as they are)";
@@ -301,4 +310,36 @@ fn stopped(contacts: &[String], time: Option<f64>, text: &str) -> String {
 /// Whether a scene names the element of a body, rather than leaving it to its default.
 pub(super) fn names_element(scene: &LoadedScene, body: &str) -> bool {
     scene.has(&pointer(&["bodies", body, "element"]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// Under a direction of the master its sides are not alike: neither are they exchanged, nor does its edge slide over the slave.
+    #[test]
+    fn a_direction_of_the_master_keeps_the_sides_as_they_are() {
+        let changed = |friction: serde_json::Value| {
+            let block = |low: f64| json!({"block": {"min": [0, 0, low], "max": [1, 1, low + 1.0], "elements": [1, 1, 1]}});
+            let scene = json!({
+                "covact": 1,
+                "materials": {
+                    "soft": {"neo_hooke": {"E": 1, "nu": 0.3}}, "stiff": {"neo_hooke": {"E": 9, "nu": 0.3}}
+                },
+                "bodies": {
+                    "lower": {"mesh": block(-1.0), "material": "soft"},
+                    "upper": {"mesh": block(0.0), "material": "stiff"}
+                },
+                "contacts": {"c": {"slave": "upper.bottom", "master": "lower.top", "friction": friction}},
+                "supports": {"ground": {"on": "lower.bottom", "fixed": true}}
+            });
+            let loaded = crate::scene::parse(&scene.to_string(), "scene.json").expect("a scene");
+            let found = [with_exchanged, with_edges].map(|with| with(&loaded, None, Some(0.5)));
+            found.map(|safe| safe.is_some())
+        };
+        assert_eq!(changed(json!({"coulomb": {"mu": 0.3}})), [true; 2]);
+        let two = json!({"orthotropic": {"mu": [0.1, 0.3], "direction": [1, 0, 0]}});
+        assert_eq!(changed(two), [false; 2]);
+    }
 }

@@ -1,6 +1,6 @@
 //! What can be wrong with the friction of a contact.
 use super::checker::Checker;
-use super::{Contact, Friction, Gap, Penalty, TIME, Tangent, check_penalty};
+use super::{Contact, Friction, Gap, Passes, Penalty, TIME, Tangent, check_penalty};
 use crate::scene::Value;
 
 /// Problems of the friction of the contact at `at`.
@@ -29,14 +29,24 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
             not_negative(c, &format!("{at}/limit"), what, limit);
         }
         Friction::Orthotropic { mu, direction } => {
-            let at = format!("{at}/friction/orthotropic");
-            if contact.master.contains('.') {
+            // What slides over the slave would need a direction that turns with the slave's points.
+            let others = match contact.passes {
+                Passes::Edges => Some("edges as slaves"),
+                // A rigid surface has no pass of its own, which is told there.
+                Passes::TwoHalf if contact.master.contains('.') => Some("two half passes"),
+                _ => None,
+            };
+            if let Some(others) = others {
                 c.add(
-                    &at,
-                    "orthotropic friction is for masters that are rigid surfaces: its direction would not turn with a body",
-                    Some("take `coulomb`".into()),
+                    &format!("{at}/passes"),
+                    format!(
+                        "{others} do not go with orthotropic friction: its direction is one of the master, whose points \
+                         slide over the slave there"
+                    ),
+                    Some("leave `passes` out, or take `coulomb`".into()),
                 );
             }
+            let at = format!("{at}/friction/orthotropic");
             for (k, mu) in mu.iter().enumerate() {
                 coefficient(c, &format!("{at}/mu/{k}"), mu);
             }

@@ -110,17 +110,6 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
     let rigid = scene.surfaces.contains_key(&contact.master);
     let solution = &scene.solution;
     let large = solution.kinematics != Kinematics::Small && solution.dynamics.is_none();
-    if contact.passes == Passes::Edges
-        && rigid
-        && matches!(contact.friction, Some(Friction::Orthotropic { .. }))
-    {
-        c.add(
-            &format!("{at}/passes"),
-            "edges as slaves do not go with orthotropic friction: its direction is one of the surface, and they slide over a body"
-                .to_owned(),
-            Some("leave `passes` out, or take `coulomb`".into()),
-        );
-    }
     if contact.passes == Passes::Edges && rigid && !large {
         c.add(
             &format!("{at}/passes"),

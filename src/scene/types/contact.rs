@@ -83,8 +83,9 @@ pub enum Friction {
         mu: Value,
     },
     /// Coulomb's law with two coefficients, along a direction of the master and across it: the traction stays within an
-    /// ellipse. The direction is given in the coordinates in which the master is given, turns with it, and is projected on
-    /// its tangent plane. Both coefficients may vary in time. On rigid surfaces only.
+    /// ellipse. The direction is given in the coordinates in which the master is given, and is projected on its tangent plane. It
+    /// turns with a rigid surface; on faces of a body it turns and stretches with these, as a line drawn on the undeformed
+    /// body. Both coefficients may vary in time.
     Orthotropic {
         /// Coefficients along the direction and across it.
         mu: [Value; 2],
