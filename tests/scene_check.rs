@@ -83,11 +83,6 @@ fn augmentation_and_offset() {
         ),
         (
             "\"points\": {\"gauss\": 2}",
-            "\"points\": {\"gauss\": 2}, \"gap\": \"averaged\", \"augmentation\": {}",
-            "14:106: augmentation does not go with averaged gaps",
-        ),
-        (
-            "\"points\": {\"gauss\": 2}",
             "\"tangent\": {\"published\": {}}, \"offset\": 0.5",
             "14:63: the published tangent, which is right on the surface, does not go with an offset",
         ),
