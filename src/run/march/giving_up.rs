@@ -56,7 +56,8 @@ impl March<'_, '_> {
         }
         let on_rims =
             sunk.iter().any(|s| s.may) || (self.unseen.edges).sunk(self.model, &state.u, by.0);
-        let between = (self.unseen.between).look(self.model, &state.u, span, by.0);
+        let penalties = &self.assembler.penalties;
+        let between = (self.unseen.between).look(self.model, state, span, (by, penalties));
         let text = match on_rims {
             true => "an edge of a master sinks in between slave points",
             false => "a surface sinks in between slave points",

@@ -146,7 +146,7 @@ pub(super) fn with_points(
         }
     }
     let text = format!(
-        "while the surface had sunk into the slave between its nodes; it was repeated with {SEEING} x {SEEING} Gauss points a face as \
+        "while the surface had sunk into the slave between its nodes, or pushed them aside; it was repeated with {SEEING} x {SEEING} Gauss points a face as \
          slave points (`\"points\": \"nodes\"` keeps them)"
     );
     safe.notes.push(stopped(&found, time, &text));

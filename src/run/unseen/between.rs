@@ -4,14 +4,20 @@
 //! lie over one of them. Against the way by which the slave is deformed that is about the part that forces are off by, and
 //! where the tool is not over a point in the middle they point to a side, too.
 //!
+//! Forces that lean aside ([`super::aside`]) are looked at besides: where the slave is deformed by much, or carried by few points, they
+//! tell more.
+//!
 //! That way is the longest so far: where a tool is drawn back forces are small, and so is what they are off by. While it grows it is
 //! taken to go on as in the last step until the end, so that a run is not given up for its first touch.
+use super::aside::{Lean, Leaning};
 use super::deformed;
 use crate::fem::face::Quad;
 use crate::fem::quadrature::lobatto;
 use crate::mesh::{Face, Mesh};
 use crate::model::Model;
 use crate::model::error::number;
+use crate::model::state::State;
+use crate::run::bearing::Bearing;
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::scene::Points;
 use covact_geometry::{EdgeKind, Foot, Location, Vec3};
@@ -20,6 +26,8 @@ use std::collections::HashMap;
 
 /// Part of the way by which the slave is deformed that a surface may sink in between slave points.
 const SUNK: f64 = 0.02;
+/// Part of the force that may act aside.
+const ASIDE: f64 = 0.05;
 /// Part of the slave's elements below which a depth says nothing, however little the slave is deformed.
 const NOTHING: f64 = 1e-3;
 /// Angle between the normals at neighbouring places from which on an edge lies between them (radians), as of sharp edges elsewhere.
@@ -47,6 +55,8 @@ struct Watched {
     bulges: Vec<f64>,
     /// Nodes of the slave faces.
     nodes: Vec<u32>,
+    /// None where points have no normals of their own.
+    leaning: Option<Leaning>,
     travel: Travel,
 }
 
@@ -60,6 +70,8 @@ pub(in crate::run) struct Travel {
     last: [f64; 2],
     /// The same where the way was the longest.
     at_longest: [f64; 2],
+    /// What of its force acts aside.
+    lean: Lean,
 }
 
 impl Travel {
@@ -69,10 +81,12 @@ impl Travel {
             longest,
             last,
             at_longest,
+            lean,
         } = self;
         for x in [way, longest].into_iter().chain(last).chain(at_longest) {
             out.f64(*x);
         }
+        lean.put(out);
     }
 
     pub fn take(from: &mut Reader) -> Result<Self, Malformed> {
@@ -84,6 +98,7 @@ impl Travel {
             longest,
             last: [a, b],
             at_longest: [c, d],
+            lean: Lean::take(from)?,
         })
     }
 
@@ -200,6 +215,7 @@ impl Watched {
             places: places(own.sampled)?,
             bulges: bulges(&body.mesh, &own.faces),
             nodes,
+            leaning: Leaning::new(model, pair),
             travel: Travel::default(),
         })
     }
@@ -244,10 +260,11 @@ impl Watched {
     fn looks(
         &mut self,
         model: &Model,
-        u: &[f64],
+        state: &State,
         [from, to, end]: [f64; 3],
-        penetration: f64,
+        ([penetration, penalty], bearing): ([f64; 2], &Bearing),
     ) -> bool {
+        let u = &state.u[..];
         let size = model.pairs[self.pair].element_size;
         let depth = match model.pairs[self.pair].points.is_empty() {
             true => None,
@@ -261,7 +278,12 @@ impl Watched {
         let own = if own > NOTHING * size { own } else { 0.0 };
         let way = deformed(&self.nodes, u).max(own);
         let part = self.travel.goes(way, own, [to - from, end - to]);
-        self.may && part > SUNK
+        // At a sharp edge or a border of the surface no normal is to be expected.
+        let on_rims = bearing.at_rims > 0.5 * bearing.force;
+        let leaning = self.leaning.as_ref().filter(|_| !on_rims);
+        let forces = leaning.and_then(|l| l.forces(model, self.pair, (state, to), penalty));
+        let aside = forces.map_or(0.0, |forces| self.travel.lean.goes(forces, [from, to, end]));
+        self.may && (part > SUNK || aside > ASIDE)
     }
 }
 
@@ -285,14 +307,16 @@ impl Between {
     pub fn look(
         &mut self,
         model: &Model,
-        u: &[f64],
+        state: &State,
         [from, to]: [f64; 2],
-        penetration: &[f64],
+        ((penetration, bearings), penalties): ((&[f64], &[Bearing]), &[f64]),
     ) -> Vec<usize> {
         let end = self.end;
         let mut found = Vec::new();
         for watched in &mut self.watched {
-            if watched.looks(model, u, [from, to, end], penetration[watched.pair]) {
+            let own = [penetration, penalties].map(|of| of[watched.pair]);
+            let bearing = &bearings[watched.pair];
+            if watched.looks(model, state, [from, to, end], (own, bearing)) {
                 found.push(watched.pair);
             }
         }
@@ -317,8 +341,22 @@ impl Between {
 
     /// What is told at the end of surfaces that have sunk in there.
     pub fn warnings(&self, model: &Model) -> Vec<String> {
-        let sunk = self.watched.iter().filter(|w| w.travel.worst()[1] > SUNK);
-        sunk.map(|w| {
+        let (sunk, others): (Vec<_>, Vec<_>) =
+            (self.watched.iter()).partition(|w| w.travel.worst()[1] > SUNK);
+        let aside = others.into_iter().filter_map(|w| {
+            let [part, time] = w.travel.lean.part();
+            (part > ASIDE).then(|| {
+                format!(
+                    "contact `{}`: up to {:.0} % of its force act aside (at time {}), since {} turns between its slave points, few of which \
+                     carry: forces may be off by as much. Take more `points` a face, or a finer mesh",
+                    model.pairs[w.pair].name,
+                    100.0 * part,
+                    number(time),
+                    model.pairs[w.pair].master_words(model),
+                )
+            })
+        });
+        let sunk = sunk.into_iter().map(|w| {
             let pair = &model.pairs[w.pair];
             let [own, part] = w.travel.worst();
             format!(
@@ -330,8 +368,8 @@ impl Between {
                 pair.slave,
                 100.0 * part
             )
-        })
-        .collect()
+        });
+        sunk.chain(aside).collect()
     }
 }
 

@@ -1,4 +1,5 @@
 //! What slave points do not see: edges of masters, and how deep surfaces sink in, between them.
+mod aside;
 mod between;
 mod edges;
 mod rims;
