@@ -386,6 +386,14 @@ impl<L: PairLaw> Assembler<'_, L> {
         }
     }
 
+    /// Begins a solution that uses no factors of another one: a run that is continued has none.
+    pub fn small_begin(&mut self) {
+        self.begin_solution();
+        if let Some(linear) = self.linear.as_deref_mut() {
+            linear.at_hand = false;
+        }
+    }
+
     /// Tells that the last evaluation was of an equilibrium.
     pub fn small_settled(&mut self) {
         if let Some(linear) = self.linear.as_deref_mut() {

@@ -32,7 +32,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let (mut best, mut since_best) = (f64::INFINITY, 0u32);
         let (mut cycle, mut broken, mut damped) = (Cycle::default(), None::<PingPong>, 0u32);
         let (mut rounds, mut stuck_at) = (0, 0);
-        self.assembler.begin_solution();
+        self.assembler.small_begin();
         self.assembler.linearization = Linearization {
             keep_active: true,
             slide: Slide::Secant,
