@@ -48,6 +48,8 @@ pub(super) struct Linear {
     farthest: f64,
     /// The elements have been evaluated.
     ready: bool,
+    /// Friction has the limits of the last linearisation, whatever its pressures are.
+    searches: bool,
 }
 
 /// What a system at small displacements depends on.
@@ -103,6 +105,7 @@ impl Linear {
             way: 0.0,
             farthest: 0.0,
             ready: false,
+            searches: false,
         })))
     }
 
@@ -120,6 +123,7 @@ impl Linear {
             way: _,
             farthest: _,
             ready: _,
+            searches: _,
         } = self;
         let own = stiffness.bytes()[0] + stiffness.pattern().bytes() + heap(base);
         let known = (factored.as_ref()).map_or(0, |f| heap(&f.closed) + heap(&f.penalties));
@@ -270,17 +274,21 @@ impl<L: PairLaw> Assembler<'_, L> {
                 .zip(&state.points[range.clone()])
                 .enumerate()
             {
-                let (true, Some(at)) = (state.closed, &own.points[i]) else {
-                    continue;
-                };
-                let gap = linear.gaps[range.start + i];
-                totals.active += 1;
-                deepest = deepest.max(-gap);
-                totals.contact_energy += law.energy(gap) * p.area;
-                rounding += (eps * p.area * f64::EPSILON * (at.gap.abs() + linear.largest)).powi(2);
-                let mut f = at.normal * (law.response(gap).n * p.area);
                 let rubs = rubbing.and_then(|rubbing| rubbing[i].of());
                 let drag = rubs.map(|rubs| rubs.t * p.area);
+                let (true, Some(at)) = (state.closed || drag.is_some(), &own.points[i]) else {
+                    continue;
+                };
+                let mut f = Vec3::zeros();
+                if state.closed {
+                    let gap = linear.gaps[range.start + i];
+                    totals.active += 1;
+                    deepest = deepest.max(-gap);
+                    totals.contact_energy += law.energy(gap) * p.area;
+                    let last = eps * p.area * f64::EPSILON * (at.gap.abs() + linear.largest);
+                    rounding += last.powi(2);
+                    f = at.normal * (law.response(gap).n * p.area);
+                }
                 if let Some(drag) = &drag {
                     f += drag;
                 }

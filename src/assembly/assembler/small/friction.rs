@@ -18,6 +18,8 @@ pub(crate) struct Rubbing {
     /// The point is in contact.
     touches: bool,
     slides: bool,
+    /// Pressure that limits friction (force / length^2).
+    pressure: f64,
     /// Traction on the slave, as it stands in the residual (force / length^2).
     pub t: Vec3,
     /// Its derivative with respect to the displacement of the point relative to its master (force / length^3).
@@ -78,7 +80,7 @@ pub(super) fn assemble(
 
 impl<L: PairLaw> Assembler<'_, L> {
     /// Evaluates friction at the gaps of the last evaluation. A point that the first linearisation keeps in contact above its
-    /// master has the limit of the last step.
+    /// master has the limit of the last step, and those of a search along an increment have that of the last linearisation.
     pub(super) fn rub(&mut self, state: &State, time: f64) -> Result<(), Fault> {
         let model = self.model;
         let (Some(linear), Some(small)) = (self.linear.as_deref_mut(), &model.small) else {
@@ -105,23 +107,30 @@ impl<L: PairLaw> Assembler<'_, L> {
                 let law = Directed::new(law, |e| pose * e);
                 let friction = Friction { law, eps_t };
                 for (i, (out, (history, turning))) in out.iter_mut().zip(known).enumerate() {
-                    *out = Rubbing::default();
+                    let before = std::mem::take(out);
                     let gap = linear.gaps[range.start + i];
-                    let (true, Some(at)) = (state.points[range.start + i].closed, &own.points[i])
-                    else {
-                        continue;
-                    };
+                    let closed = state.points[range.start + i].closed;
+                    let Some(at) = &own.points[i] else { continue };
                     let normal = match (gap < 0.0, self.linearization.keep_active) {
+                        _ if linear.searches => {
+                            out.pressure = before.pressure;
+                            Normal { n: -before.pressure, dn: 0.0 }
+                        }
+                        _ if !closed => continue,
                         (true, _) => law_n.response(gap),
                         (false, true) => Normal { n: history.n, dn: 0.0 },
                         (false, false) => continue,
                     };
+                    if normal.n >= 0.0 {
+                        continue;
+                    }
                     let w = own.slip(i, at, &pair.points[i], motion.as_ref(), &state.u);
                     let secant = friction.sliding(slide, turning);
                     let found = secant.steady(history, &w, &at.normal, gap, &normal);
                     *out = Rubbing {
                         touches: true,
                         slides: found.slip.slides,
+                        pressure: -normal.n,
                         t: found.slip.t,
                         tangent: found.tangent,
                     };
@@ -129,6 +138,27 @@ impl<L: PairLaw> Assembler<'_, L> {
             });
         }
         Ok(())
+    }
+
+    /// The residual at another state near the last linearisation, with the limits of friction that its points had there: what acts then
+    /// has a potential, and a convex one.
+    ///
+    /// # Errors
+    /// As [`Self::small_residual`].
+    pub fn small_search(
+        &mut self,
+        state: &State,
+        time: f64,
+        residual: &mut [f64],
+    ) -> Result<(), Fault> {
+        if let Some(linear) = self.linear.as_deref_mut() {
+            linear.searches = true;
+        }
+        let found = self.small_residual(state, time, residual);
+        if let Some(linear) = self.linear.as_deref_mut() {
+            linear.searches = false;
+        }
+        found.map(drop)
     }
 
     /// Takes the tractions of the last evaluation as those that the next linearisation compares with.

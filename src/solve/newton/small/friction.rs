@@ -144,10 +144,10 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             let base = &mut self.workspace.base;
             base.u.copy_from_slice(&trial.u);
             base.points.copy_from_slice(&trial.points);
-            factor = 1.0;
-            if self.settings.line_search && since_best >= UNTIL_SEARCH {
-                factor = self.search_small(trial, time);
-            }
+            factor = match iteration > 0 && self.settings.line_search {
+                true => self.search_small(trial, time),
+                false => 1.0,
+            };
             if damped > 0 {
                 (factor, damped) = (factor.min(0.5), damped - 1);
             }
@@ -172,7 +172,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         Ok(totals)
     }
 
-    /// How far to go along the increment: to where the forces along it have fallen to half of what they were.
+    /// How far to go along the increment: to where the forces along it have fallen to half of what they were, friction limited as
+    /// where it begins.
     fn search_small(&mut self, trial: &mut State, time: f64) -> f64 {
         let w = &*self.workspace;
         let slope = -dot(&w.du, &w.residual);
@@ -182,7 +183,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             self.small_gaps(trial, time).ok()?;
             self.assembler.small_switch(&mut trial.points);
             self.phases.start("line_search");
-            let found = (self.assembler).small_residual(trial, time, &mut self.workspace.scratch);
+            let found = (self.assembler).small_search(trial, time, &mut self.workspace.scratch);
             self.phases.stop("line_search");
             found.ok()?;
             Some(-dot(&self.workspace.du, &self.workspace.scratch))
