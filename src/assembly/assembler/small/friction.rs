@@ -151,14 +151,16 @@ impl<L: PairLaw> Assembler<'_, L> {
         time: f64,
         residual: &mut [f64],
     ) -> Result<(), Fault> {
-        if let Some(linear) = self.linear.as_deref_mut() {
-            linear.searches = true;
-        }
+        self.limits_stay(true);
         let found = self.small_residual(state, time, residual);
-        if let Some(linear) = self.linear.as_deref_mut() {
-            linear.searches = false;
-        }
+        self.limits_stay(false);
         found.map(drop)
+    }
+
+    fn limits_stay(&mut self, on: bool) {
+        if let Some(linear) = self.linear.as_deref_mut() {
+            linear.searches = on;
+        }
     }
 
     /// Takes the tractions of the last evaluation as those that the next linearisation compares with.

@@ -6,8 +6,8 @@
 //! and taken to stick as at large displacements ([`Newton::solve`]), sets that come back are left by half steps.
 use super::super::line_search;
 use super::super::{
-    Converged, Newton, PingPong, ROUNDS, StepFailure, UNTIL_SEARCH, UNTIL_STUCK, Verdict, dot,
-    oscillation, round,
+    Converged, EXTENDED, Newton, PingPong, ROUNDS, SECANTS, StepFailure, UNTIL_SEARCH, UNTIL_STUCK,
+    Verdict, dot, oscillation, round,
 };
 use crate::assembly::{Fault, Linearization, Totals};
 use crate::contact::friction::law::Slide;
@@ -16,6 +16,11 @@ use crate::solve::cycle::Cycle;
 use crate::solve::event::{Event, Observer};
 use crate::solve::place;
 use crate::system::linear::LinearSolver;
+
+/// Relative residual up to which a solution may take more iterations than are allowed.
+const NEARLY: f64 = 1e-2;
+/// Part of an increment below which the next iterations take secants, where a start without them has failed.
+const SHORT: f64 = 0.3;
 
 impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
     /// [`Newton::solve_small`] with friction, from where displacements are as prescribed.
@@ -32,6 +37,8 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let (mut best, mut since_best) = (f64::INFINITY, 0u32);
         let (mut cycle, mut broken, mut damped) = (Cycle::default(), None::<PingPong>, 0u32);
         let (mut rounds, mut stuck_at) = (0, 0);
+        // The start knows nothing of where points slide to.
+        let mut secants = SECANTS;
         self.assembler.small_begin();
         self.assembler.linearization = Linearization {
             keep_active: true,
@@ -93,7 +100,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 }
                 Verdict::Continue => {}
             }
-            if iteration >= self.settings.max_iterations {
+            // One that gets nearer, if slowly, is not cut: its iterations cost little.
+            let most = self.settings.max_iterations;
+            if iteration >= most && (iteration >= EXTENDED * most || norms.relative() > NEARLY) {
                 return Err(StepFailure::TooManyIterations {
                     iterations: iteration,
                     residual: norms.relative(),
@@ -145,16 +154,18 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             base.u.copy_from_slice(&trial.u);
             base.points.copy_from_slice(&trial.points);
             factor = match iteration > 0 && self.settings.line_search {
-                true => self.search_small(trial, time),
+                true => self.search_small(trial, time, since_best)?,
                 false => 1.0,
             };
+            secants = match self.first.secants && factor < SHORT {
+                true => SECANTS,
+                false => secants.saturating_sub(1),
+            };
+            self.assembler.linearization.slide = Slide::secant(secants > 0);
             if damped > 0 {
                 (factor, damped) = (factor.min(0.5), damped - 1);
             }
-            self.walk(trial, factor);
-            trial.points.copy_from_slice(&self.workspace.base.points);
-            self.small_gaps(trial, time)?;
-            changed = self.assembler.small_switch(&mut trial.points);
+            changed = self.follow(trial, time, factor)?;
             totals = self.linearize_small(trial, time)?;
         }
         unreachable!("the loop ends by its own limit")
@@ -172,21 +183,42 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         Ok(totals)
     }
 
-    /// How far to go along the increment: to where the forces along it have fallen to half of what they were, friction limited as
-    /// where it begins.
-    fn search_small(&mut self, trial: &mut State, time: f64) -> f64 {
+    /// How far to go along the increment: all of the way where no point switches, else to where the forces along it have fallen to half of
+    /// what they were, with the limits of friction that there are where it begins, which make what acts the gradient of a convex
+    /// energy. Points that would have turned at the end of the way are linearised by their secants.
+    fn search_small(
+        &mut self,
+        trial: &mut State,
+        time: f64,
+        since_best: u32,
+    ) -> Result<f64, StepFailure> {
         let w = &*self.workspace;
         let slope = -dot(&w.du, &w.residual);
-        line_search::factor(slope, |s| {
-            self.walk(trial, s);
-            trial.points.copy_from_slice(&self.workspace.base.points);
-            self.small_gaps(trial, time).ok()?;
-            self.assembler.small_switch(&mut trial.points);
-            self.phases.start("line_search");
-            let found = (self.assembler).small_search(trial, time, &mut self.workspace.scratch);
-            self.phases.stop("line_search");
-            found.ok()?;
+        let changed = self.follow(trial, time, 1.0)?;
+        if slope <= 0.0 || changed == 0 && since_best < UNTIL_SEARCH {
+            return Ok(1.0);
+        }
+        self.phases.start("line_search");
+        let factor = line_search::factor(slope, |s| {
+            self.follow(trial, time, s).ok()?;
+            (self.assembler)
+                .small_search(trial, time, &mut self.workspace.scratch)
+                .ok()?;
             Some(-dot(&self.workspace.du, &self.workspace.scratch))
-        })
+        });
+        self.phases.stop("line_search");
+        if factor < 1.0 {
+            self.follow(trial, time, 1.0)?;
+            self.linearize_small(trial, time)?;
+        }
+        Ok(factor)
+    }
+
+    /// Moves along the increment from where it begins; returns how many points switch.
+    fn follow(&mut self, trial: &mut State, time: f64, factor: f64) -> Result<usize, StepFailure> {
+        self.walk(trial, factor);
+        trial.points.copy_from_slice(&self.workspace.base.points);
+        self.small_gaps(trial, time)?;
+        Ok(self.assembler.small_switch(&mut trial.points))
     }
 }
