@@ -3,7 +3,8 @@
 //!
 //! Newton's method takes the points in contact by the gaps of every iterate, and the exact tangent of friction there. The first
 //! iteration keeps the points of the last step, as a step without friction does. Points that slide to and fro are held by secants
-//! and taken to stick as at large displacements ([`Newton::solve`]), sets that come back are left by half steps.
+//! and taken to stick as at large displacements ([`Newton::solve`]), sets that come back are left by half steps. With limits of
+//! friction that stay there is a convex energy (Tresca's friction): increments that switch points are searched along it.
 use super::super::line_search;
 use super::super::{
     Converged, EXTENDED, Newton, PingPong, ROUNDS, SECANTS, StepFailure, UNTIL_SEARCH, UNTIL_STUCK,
