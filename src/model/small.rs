@@ -5,6 +5,8 @@
 //! body `sum N_k u_k` of the face there). The contact stiffness `eps_n A n (x) n` then depends on nothing but which points
 //! are in contact. It is the limit of the covariant form for displacements that are small against radii of curvature,
 //! distances to edges and elements; on edges and vertices `n` is the direction of the distance.
+mod friction;
+
 use super::error::{At, number};
 use super::master::{BodyMaster, Master};
 use super::motion::SmallMotion;
@@ -14,6 +16,7 @@ use crate::contact::{moving, rigid};
 use crate::scene::{Kinematics, Scene, ValueError};
 use covact_geometry::moving::{MovingFoot, MovingPlace};
 use covact_geometry::{EdgeKind, Foot, Hint, Location, ShapeRows, Status, Vec3};
+use nalgebra::UnitQuaternion;
 use rayon::prelude::*;
 
 /// Distance from an edge below which the direction of the distance gives way to the pseudo-normal, relative to the size of
@@ -36,6 +39,9 @@ pub struct SmallPair {
     starts: Vec<u32>,
     /// Nodes of the model, and their shape functions at the foot.
     master: Vec<(u32, f64)>,
+    /// For each of them what its displacement along the normal moves a point away along the surface ([`SmallPair::slip`]); empty
+    /// without friction, and for a rigid master.
+    arms: Vec<Vec3>,
 }
 
 /// A slave point and its foot at the start.
@@ -127,6 +133,19 @@ impl Model {
         match pair.rigid_master() {
             None => Ok(None),
             Some(surface) => self.surfaces[surface].motion.small(time).map(Some),
+        }
+    }
+}
+
+impl Model {
+    /// How the coordinates of a pair's master are turned at the start; not at all of a body.
+    ///
+    /// # Errors
+    /// A motion without a value then.
+    pub fn small_pose(&self, pair: &PairModel) -> Result<UnitQuaternion<f64>, ValueError> {
+        match pair.rigid_master() {
+            None => Ok(UnitQuaternion::identity()),
+            Some(surface) => Ok(self.surfaces[surface].motion.pose(0.0)?.rotation),
         }
     }
 }
@@ -226,6 +245,7 @@ fn start(model: &Model, pair: &PairModel) -> Result<(SmallPair, Option<Vec3>), M
         points: Vec::with_capacity(found.len()),
         starts: Vec::new(),
         master: Vec::new(),
+        arms: Vec::new(),
     };
     for point in found {
         out.points.push(point.unwrap_or_else(|x| {
@@ -241,6 +261,9 @@ fn start(model: &Model, pair: &PairModel) -> Result<(SmallPair, Option<Vec3>), M
                 master.facets.shape(at.hint.patch, at.hint.xi, &mut rows);
                 let nodes = master.facets.nodes(at.hint.patch).iter().copied();
                 out.master.extend(nodes.zip(rows.n));
+                if pair.friction.is_some() {
+                    friction::arms(master, at, &rows, &mut out.arms);
+                }
             }
             out.starts.push(out.master.len() as u32);
         }

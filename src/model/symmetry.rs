@@ -24,8 +24,8 @@ pub struct Unsymmetric {
 /// along one that slides in a plane of symmetry.
 pub fn unsymmetric_effects(model: &Model) -> Vec<Unsymmetric> {
     if model.small.is_some() {
-        // Pressures do not follow, and friction and half passes do not go with it.
-        return Vec::new();
+        // Pressures do not follow, and half passes do not go with it.
+        return friction(model).collect();
     }
     let still = still(model);
     let halves = (model.pairs.iter())
@@ -59,8 +59,12 @@ pub fn unsymmetric_effects(model: &Model) -> Vec<Unsymmetric> {
                 ),
             },
         });
-    // Another pair of the same contact has its friction.
-    let friction = (model.pairs.iter())
+    follower.chain(halves).chain(friction(model)).collect()
+}
+
+/// The friction of contacts; another pair of the same contact has its own.
+fn friction(model: &Model) -> impl Iterator<Item = Unsymmetric> + '_ {
+    (model.pairs.iter())
         .filter(|p| !p.is_second())
         .filter_map(|p| {
             Some(Unsymmetric {
@@ -71,8 +75,7 @@ pub fn unsymmetric_effects(model: &Model) -> Vec<Unsymmetric> {
                     p.name
                 ),
             })
-        });
-    follower.chain(halves).chain(friction).collect()
+        })
 }
 
 /// Nodes of the edges that belong to one of the faces only: both ends, and the middle (or again an end).

@@ -23,6 +23,7 @@ impl Reporter<'_> {
             Some(_) => format!("`friction` is not {word}"),
         };
         let moving = pair.body_master().is_some();
+        let large = self.model.small.is_none();
         let asked = pair.friction.as_ref().map(|f| f.law.kind().name());
         let key = asked.map_or(told.key("friction"), |law| {
             told.key(&format!("friction/{law}"))
@@ -47,6 +48,7 @@ impl Reporter<'_> {
                 off(word),
             );
             let cost = match moving {
+                _ if !large => "a 3 x 3 tangent a point, and a factorization in every iteration",
                 true => {
                     "two 9 x 9 tangents a point, and columns of the attraction point's facet; a law"
                 }
@@ -58,7 +60,7 @@ impl Reporter<'_> {
             let mut held = self.history(told);
             if moving {
                 held.push(Held::assembler("links", Per::Whole, 0, 1).growing());
-                if let Some([each, fixed]) = sizes::sliding(pair) {
+                if let (true, Some([each, fixed])) = (large, sizes::sliding(pair)) {
                     let n = told.points();
                     let points = Held::assembler("sliding points", Per::Point, each, n);
                     let room = Held::assembler("sliding points", Per::Whole, fixed, 1);
@@ -72,6 +74,9 @@ impl Reporter<'_> {
                 // One list for all points with history.
                 let slips = Held::assembler("slips", Per::Point, sizes::SLIP, n);
                 held.push(slips.of_points(self.model.recuts_histories()));
+                if !large {
+                    held.push(Held::assembler("linear", Per::Point, sizes::RUBBING, n));
+                }
             }
             let surface = pair.rigid_master().map(|s| &self.model.surfaces[s]);
             if surface.is_some_and(|s| s.driven.is_some()) {

@@ -1,5 +1,6 @@
 //! What slave points with history remember of a step that is accepted.
 mod moving;
+mod small;
 
 use crate::assembly::{Assembler, Fault, PointAnswer};
 use crate::contact::friction::history::{PointHistory, PointStatus, Turn};
@@ -73,6 +74,9 @@ pub fn start(
     if model.histories() == 0 {
         return Ok(());
     }
+    if let Some(small) = &model.small {
+        return small::start(model, small, state, (time, begins));
+    }
     masters.update(model, &state.u);
     let mut first = 0;
     for (index, pair) in model.pairs.iter().enumerate() {
@@ -140,6 +144,11 @@ pub fn commit<L: PairLaw>(
         ..FrictionTotals::default()
     };
     if model.histories() == 0 {
+        return Ok(total);
+    }
+    if let Some(small) = &model.small {
+        let stiffness = (&assembler.penalties[..], &assembler.ratios[..]);
+        small::commit(model, small, stiffness, state, (start, time), &mut total)?;
         return Ok(total);
     }
     assembler.masters.update(model, &state.u);

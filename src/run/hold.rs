@@ -119,6 +119,10 @@ fn h8_bodies<'a>(
 
 /// The bodies that have squeezed elements which give way in a shape that the plain brick resists, and where one of them is.
 pub(super) fn lost(model: &Model, state: &State) -> Vec<(usize, Vec3)> {
+    // Linear elements are as stiff as they were at the start, and have no states.
+    if model.small.is_some() {
+        return Vec::new();
+    }
     let found = h8_bodies(model, state).filter_map(|(number, body, block, states)| {
         let len = block.state_len();
         let mut squeezed: Vec<(f64, usize)> = (0..block.elements())

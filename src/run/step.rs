@@ -149,6 +149,18 @@ impl Attempts<'_, '_> {
         if self.model.small.is_some() {
             // The answer does not depend on the start.
             trial.copy_from(self.committed);
+            let result = self.penalized(step, end, trial, Patience::Long);
+            let slides = self.model.pairs.iter().any(|p| p.friction.is_some());
+            let failure = match result {
+                Err(failure) if slides && another(&failure) => failure,
+                result => return result,
+            };
+            self.again(step, "secants of friction", &failure, penalties);
+            trial.copy_from(self.committed);
+            self.first = Some(First {
+                secants: true,
+                ..First::default()
+            });
             return self.penalized(step, end, trial, Patience::Long);
         }
         let touching = !self.model.pairs.is_empty();

@@ -20,6 +20,7 @@ mod histories;
 mod lost;
 mod parametrisation;
 mod resume;
+mod resume_small;
 mod rollback;
 mod seen;
 mod simulation;

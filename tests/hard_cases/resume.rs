@@ -153,14 +153,14 @@ fn counts(s: &Summary) -> impl PartialEq + std::fmt::Debug {
 }
 
 /// Runs a scene at once and in pieces, two steps long or shorter; returns what both agree on.
-fn in_pieces(scene: &Value) -> Summary {
+pub fn in_pieces(scene: &Value) -> Summary {
     let (found, parts) = pieces(scene);
     assert!(parts >= found.steps / 2, "{parts} parts");
     found
 }
 
 /// Runs a scene at once and in pieces; returns what both agree on, and the number of pieces.
-fn pieces(scene: &Value) -> (Summary, u32) {
+pub fn pieces(scene: &Value) -> (Summary, u32) {
     let scene = loaded(scene);
     let (whole, pieces) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let (expected, _) = part(&scene, whole.path(), false, 1, Stop::Never).unwrap();
@@ -305,7 +305,7 @@ fn a_torn_checkpoint() {
 }
 
 /// Two blocks, the upper one pressed into the lower one and drawn along it over many facets.
-fn sledge(way: f64, steps: u32, contact: Value) -> Value {
+pub fn sledge(way: f64, steps: u32, contact: Value) -> Value {
     let step = 1.0 / f64::from(steps);
     let mut press = json!({"slave": "sledge.bottom", "master": "bed.top", "points": {"gauss": 2}});
     press
@@ -454,7 +454,7 @@ fn raised_penalties() {
 }
 
 /// The penalty that a run of a scene with one contact starts with.
-fn assembled(scene: &Value) -> f64 {
+pub fn assembled(scene: &Value) -> f64 {
     let loaded = covact::scene::parse(&scene.to_string(), "scene.json").expect("a scene");
     (covact::model::build::build(&loaded).expect("a model")).pairs[0].eps_n
 }
@@ -498,33 +498,6 @@ fn a_run_that_does_not_converge() {
     let found = in_pieces(&scene);
     assert_eq!(found.status, RunStatus::NotConverged);
     assert!(found.steps > 5 && found.cuts > 1, "{found:?}");
-}
-
-/// Small displacements: the factorization that a part had at hand is made anew by the next, and does not count again; a
-/// penalty that is raised, doubts that were told.
-#[test]
-fn small_displacements() {
-    let mut scene = ironed(json!({"penalty": "auto"}));
-    let contact = scene["contacts"]["iron"].as_object_mut().unwrap();
-    contact.remove("friction");
-    scene["solution"]["kinematics"] = json!("small");
-    scene["output"] = json!({"every": 2});
-    // Most steps take fewer iterations than some pieces wait for.
-    let (found, parts) = pieces(&scene);
-    assert!(parts >= 3, "{parts} parts");
-    assert_eq!(found.status, RunStatus::Done);
-    let told = |part: &str| found.warnings.iter().any(|w| w.contains(part));
-    assert!(told("displacements may not be small enough"), "{found:?}");
-    let end = found.accuracy.contacts[0].penalty;
-    assert!((end / assembled(&scene) - 1.0).abs() > 0.5, "{end}");
-    // Between bodies, whose set of points in contact stays while they are drawn along.
-    let mut scene = sledge(0.02, 8, json!({}));
-    scene["solution"]["kinematics"] = json!("small");
-    let (found, parts) = pieces(&scene);
-    assert!(parts >= 2, "{parts} parts");
-    assert_eq!(found.status, RunStatus::Done);
-    let factorizations: u64 = found.factorizations.values().sum();
-    assert!(factorizations < found.newton_iterations, "{found:?}");
 }
 
 /// A run that is repeated with the edges of a master as slaves, broken off in its second attempt: it goes on with the edges.

@@ -111,6 +111,8 @@ fn on_rigid_surfaces() {
         "linearised.rigid_nurbs.penalty.frictionless.exact",
         1,
     );
+    let rubbed = with(small, &[("/contacts/press/friction", coulomb())]);
+    runs_as(&rubbed, "linearised.rigid_nurbs.penalty.coulomb.exact", 1);
 }
 
 #[test]

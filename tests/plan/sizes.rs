@@ -2,6 +2,7 @@
 use crate::scenes::{blocks, coulomb, loaded, model, plate, with};
 use covact::assembly::{Assembler, Fault};
 use covact::contact::friction::history::PointHistory;
+use covact::contact::friction::turning::Turning;
 use covact::model::Model;
 use covact::model::state::State;
 use covact::plan::{Holder, Plan};
@@ -144,7 +145,11 @@ fn further_effects_one_by_one() {
         }
         with(scene, &[("/solution/dynamics", json!({}))])
     };
-    let cases: [(Value, &[&str]); 13] = [
+    let small = |scene: Value| {
+        let small = ("/solution/kinematics", json!("small"));
+        with(scene, &[small, ("/contacts/press/friction", coulomb())])
+    };
+    let cases: [(Value, &[&str]); 15] = [
         (
             with(plate(), &[("/solution/stabilization", viscous)]),
             &["stabilization"],
@@ -195,6 +200,14 @@ fn further_effects_one_by_one() {
         (
             with(plate(), &[("/solution/kinematics", json!("small"))]),
             &["linear"],
+        ),
+        (
+            small(plate()),
+            &["linear", "histories", "transposed matrix"],
+        ),
+        (
+            small(blocks()),
+            &["linear", "histories", "transposed matrix"],
         ),
         (dense(plate()), &["inertia"]),
         (dense(blocks()), &["inertia"]),
@@ -248,9 +261,21 @@ fn further_effects_one_by_one() {
         }
     }
     // Elements for small displacements keep nothing, and points have no loops of their own.
-    let (_, parts) = held(&cases[8].0, 0.5);
-    for part in ["element states", "rigid points", "rigid maps"] {
-        assert_eq!(parts[part], 0, "{part}");
+    for (scene, on) in cases.iter().filter(|case| case.1.contains(&"linear")) {
+        let (model, parts) = held(scene, 0.5);
+        for part in [
+            "element states",
+            "rigid points",
+            "rigid maps",
+            "points on bodies",
+            "sliding points",
+            "links",
+        ] {
+            assert_eq!(parts[part], 0, "{part}");
+        }
+        let rubs = on.contains(&"histories");
+        let slips = if rubs { model.contact_points() } else { 0 };
+        assert_eq!(parts["slips"], slips * size_of::<Turning>());
     }
 }
 

@@ -160,7 +160,9 @@ fn what_is_not_there_cannot_be_turned_off() {
         }
         assert!(!folder.join("out").exists());
     }
-    // Friction does not go with small displacements: the scene says so.
+    // Augmentation does not go with small displacements: the scene says so.
+    let augmented = with(rubbed(), &[("/contacts/press/augmentation", json!({}))]);
+    write(folder, "scene.json", &augmented);
     let run = [
         "run",
         "scene.json",
@@ -172,7 +174,7 @@ fn what_is_not_there_cannot_be_turned_off() {
     let output = covact(folder, &run);
     assert_eq!(output.status.code(), Some(3));
     let told = text(&output.stderr);
-    assert!(told.contains("does not go with friction"), "{told}");
+    assert!(told.contains("does not go with augmentation"), "{told}");
     assert!(told.contains("without large_rotation: "), "{told}");
 }
 

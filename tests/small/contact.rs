@@ -1,6 +1,7 @@
 //! Contact linearised at the start: Hertz, superposition, one factorization for every change of the points in contact.
 use crate::support::{Outcome, scene_json, set, solve};
 use crate::{displacements, factorizations, large, off, scene};
+use covact::output::RunStatus;
 use covact::solve::event::Event;
 use serde_json::{Value, json};
 
@@ -288,4 +289,17 @@ fn loads_that_come_back_to_nothing() {
             .iter()
             .any(|w| w.contains("gaps of"))
     );
+}
+
+/// Iterations that are too few fail the step, which is cut until it ends the run; nothing else is made of it.
+#[test]
+fn steps_that_fail_are_told() {
+    let mut small = sandwich(1.0, 1);
+    small["solution"]["newton"] = json!({"max_iterations": 1});
+    small["solution"]["step"]["min"] = json!(0.2);
+    let outcome = solve(&small);
+    assert_eq!(outcome.summary.status, RunStatus::NotConverged);
+    let reason = outcome.summary.reason.unwrap_or_default();
+    println!("{reason}");
+    assert!(reason.contains("iterations"), "{reason}");
 }

@@ -3,6 +3,9 @@
 mod contact;
 mod doubts;
 mod elements;
+mod friction;
+mod friction_limit;
+mod friction_tangent;
 mod refused;
 #[path = "../verification/support.rs"]
 #[allow(dead_code)]

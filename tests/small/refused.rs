@@ -29,12 +29,6 @@ fn by_key_with_place() {
     let body = r#""master": "a.bottom""#;
     let solution = r#""kinematics": "small""#;
     for (from, more, place, what) in [
-        (
-            rigid,
-            r#""friction": {"coulomb": {"mu": 0.1}}"#,
-            "11:",
-            "friction",
-        ),
         (rigid, r#""augmentation": {}"#, "11:", "augmentation"),
         (
             rigid,

@@ -19,7 +19,7 @@ pub(crate) mod sizes {
     use super::super::per_pair::PerPair;
     use super::super::seams::Seams;
     use super::super::sliding::Sliding;
-    use super::super::small::Linear;
+    use super::super::small::{Linear, Rubbing};
     use crate::contact::clearance::Clearance;
     use crate::contact::friction::turning::Turning;
     use crate::contact::points::SlavePoint;
@@ -52,6 +52,8 @@ pub(crate) mod sizes {
     pub const CUT: usize = size_of::<Option<Arc<[SlavePoint]>>>();
     /// What small displacements are computed with, but for what it holds.
     pub const LINEAR: usize = size_of::<Linear>();
+    /// The tangential traction of a point with friction at small displacements.
+    pub const RUBBING: usize = size_of::<Rubbing>();
     /// A slave node of a driven surface.
     pub const BORDER_NODE: usize = DrivenBlock::NODE;
     /// The same with friction: more.

@@ -1,6 +1,8 @@
 //! The model at small displacements: `K u + sum eps_n A g n = f` with one stiffness for the whole run. The elements are
 //! evaluated once, undeformed, where the tangent of the large-rotation element is the stiffness of the linear one.
+mod friction;
 mod line;
+mod matrix;
 
 use super::elements::{Quadratic, Systems, quadratic, undeformed};
 use super::{Assembler, Fault, Kind, PairForce, PatternError, SurfaceForce, Totals};
@@ -14,6 +16,7 @@ use crate::model::state::{PointState, State, heap};
 use crate::scene::ValueError;
 use crate::system::{DofMap, Pattern, SystemMatrix};
 use covact_geometry::Vec3;
+pub(super) use friction::Rubbing;
 pub use line::Line;
 use std::sync::Arc;
 
@@ -25,10 +28,12 @@ const ROUNDING: f64 = 1e-12;
 pub(super) struct Linear {
     /// Of all elements, without constraints: its product with displacements are forces and reactions.
     stiffness: SystemMatrix,
-    /// Values of the system without contact.
+    /// Values of the system without contact, those of its transposed blocks behind them where it is unsymmetric.
     base: Vec<f64>,
     /// Gap per slave point at the last evaluation; NaN where there is no foot.
     gaps: Vec<f64>,
+    /// Per point with history, what friction does there at the last evaluation; empty without friction.
+    rubbing: Vec<Rubbing>,
     /// What was factorized last.
     factored: Option<Factored>,
     /// It is at hand, not only told by the run that is continued.
@@ -43,6 +48,8 @@ pub(super) struct Linear {
     farthest: f64,
     /// The elements have been evaluated.
     ready: bool,
+    /// Friction has the limits of the last linearisation, whatever its pressures are.
+    searches: bool,
 }
 
 /// What a system at small displacements depends on.
@@ -88,8 +95,9 @@ impl Linear {
         own.fits(true)?;
         Ok(Some(Box::new(Linear {
             stiffness: SystemMatrix::new(own),
-            base: vec![0.0; 9 * pattern.blocks()],
+            base: vec![0.0; 9 * pattern.blocks() * if model.symmetric { 1 } else { 2 }],
             gaps: vec![f64::NAN; model.contact_points()],
+            rubbing: friction::rubbing(model),
             factored: None,
             at_hand: false,
             forces: vec![0.0; dofs.dofs()],
@@ -97,6 +105,7 @@ impl Linear {
             way: 0.0,
             farthest: 0.0,
             ready: false,
+            searches: false,
         })))
     }
 
@@ -106,6 +115,7 @@ impl Linear {
             stiffness,
             base,
             gaps,
+            rubbing,
             factored,
             at_hand: _,
             forces,
@@ -113,10 +123,11 @@ impl Linear {
             way: _,
             farthest: _,
             ready: _,
+            searches: _,
         } = self;
         let own = stiffness.bytes()[0] + stiffness.pattern().bytes() + heap(base);
         let known = (factored.as_ref()).map_or(0, |f| heap(&f.closed) + heap(&f.penalties));
-        size_of::<Linear>() + own + heap(gaps) + heap(forces) + known
+        size_of::<Linear>() + own + heap(gaps) + heap(rubbing) + heap(forces) + known
     }
 
     /// What was factorized last.
@@ -153,7 +164,11 @@ impl<L: PairLaw> Assembler<'_, L> {
         self.matrix.clear();
         let known = (&self.kinds[..], &self.element_maps[..]);
         undeformed(self.model, self.dofs, &mut self.matrix, &mut systems, known)?;
-        linear.base.copy_from_slice(self.matrix.values());
+        let (base, transposed) = linear.base.split_at_mut(self.matrix.values().len());
+        base.copy_from_slice(self.matrix.values());
+        if let Some(values) = self.matrix.transposed_values() {
+            transposed.copy_from_slice(values);
+        }
         let (mut maps, mut count) = (Vec::new(), 0);
         for body in &self.model.bodies {
             for e in 0..body.block.elements() {
@@ -237,16 +252,20 @@ impl<L: PairLaw> Assembler<'_, L> {
         totals.pairs = vec![PairForce::default(); self.model.pairs.len()];
         self.contact.fill(0.0);
         let model = self.model;
+        if let Some((linear, small)) = self.linear() {
+            linear.evaluate(model, small, &state.u, time)?;
+        }
+        self.rub(state, time)?;
         let (Some(linear), Some(small)) = (self.linear.as_deref_mut(), &model.small) else {
             return Ok(());
         };
-        linear.evaluate(model, small, &state.u, time)?;
         let (mut first, mut rounding) = (0, 0.0);
         for (index, (pair, own)) in model.pairs.iter().zip(&small.pairs).enumerate() {
             let range = first..first + pair.points.len();
             first = range.end;
             let eps = self.penalties[index];
             let law = Penalty { eps_n: eps };
+            let rubbing = friction::of_pair(&linear.rubbing, model, state, index);
             let before = totals.active;
             let (mut deepest, mut force) = (0.0f64, PairForce::default());
             for (i, (p, state)) in pair
@@ -255,15 +274,24 @@ impl<L: PairLaw> Assembler<'_, L> {
                 .zip(&state.points[range.clone()])
                 .enumerate()
             {
-                let (true, Some(at)) = (state.closed, &own.points[i]) else {
+                let rubs = rubbing.and_then(|rubbing| rubbing[i].of());
+                let drag = rubs.map(|rubs| rubs.t * p.area);
+                let (true, Some(at)) = (state.closed || drag.is_some(), &own.points[i]) else {
                     continue;
                 };
-                let gap = linear.gaps[range.start + i];
-                totals.active += 1;
-                deepest = deepest.max(-gap);
-                totals.contact_energy += law.energy(gap) * p.area;
-                rounding += (eps * p.area * f64::EPSILON * (at.gap.abs() + linear.largest)).powi(2);
-                let f = at.normal * (law.response(gap).n * p.area);
+                let mut f = Vec3::zeros();
+                if state.closed {
+                    let gap = linear.gaps[range.start + i];
+                    totals.active += 1;
+                    deepest = deepest.max(-gap);
+                    totals.contact_energy += law.energy(gap) * p.area;
+                    let last = eps * p.area * f64::EPSILON * (at.gap.abs() + linear.largest);
+                    rounding += last.powi(2);
+                    f = at.normal * (law.response(gap).n * p.area);
+                }
+                if let Some(drag) = &drag {
+                    f += drag;
+                }
                 let contact = &mut self.contact;
                 let mut add = |node: usize, f: Vec3, side: &mut SurfaceForce| {
                     side.force -= f;
@@ -278,6 +306,12 @@ impl<L: PairLaw> Assembler<'_, L> {
                 }
                 for &(node, w) in own.master(i) {
                     add(node as usize, f * -w, &mut force.master);
+                }
+                if let Some(drag) = &drag {
+                    for (&(node, _), arm) in own.master(i).iter().zip(own.arms(i)) {
+                        let f = at.normal * arm.dot(drag);
+                        add(node as usize, f, &mut force.master);
+                    }
                 }
             }
             match pair.rigid_master() {
@@ -348,51 +382,6 @@ impl<L: PairLaw> Assembler<'_, L> {
         }
     }
 
-    /// The system with this set of points in contact, which is then factorized.
-    ///
-    /// # Errors
-    /// [`Fault::Pattern`], which no model has.
-    pub fn small_matrix(&mut self, points: &[PointState]) -> Result<(), Fault> {
-        let model = self.model;
-        let (Some(linear), Some(small)) = (self.linear.as_deref_mut(), &model.small) else {
-            return Ok(());
-        };
-        // Until the solver says so.
-        linear.factored = None;
-        self.matrix.values_mut().copy_from_slice(&linear.base);
-        let (mut nodes, mut weights, mut ke) = (Vec::new(), Vec::new(), Vec::new());
-        let mut first = 0;
-        for (index, (pair, own)) in model.pairs.iter().zip(&small.pairs).enumerate() {
-            let range = first..first + pair.points.len();
-            first = range.end;
-            for (i, (p, state)) in pair.points.iter().zip(&points[range]).enumerate() {
-                let (true, Some(at)) = (state.closed, &own.points[i]) else {
-                    continue;
-                };
-                nodes.clear();
-                weights.clear();
-                nodes.extend_from_slice(&p.nodes[..usize::from(p.count)]);
-                weights.extend_from_slice(&p.shape[..usize::from(p.count)]);
-                for &(node, w) in own.master(i) {
-                    nodes.push(node);
-                    weights.push(-w);
-                }
-                let k = at.normal * at.normal.transpose() * (self.penalties[index] * p.area);
-                ke.clear();
-                for b in &weights {
-                    for c in 0..3 {
-                        for a in &weights {
-                            ke.extend((0..3).map(|r| a * b * k[(r, c)]));
-                        }
-                    }
-                }
-                (self.matrix).scatter_constrained(&nodes, &ke, self.dofs, &mut self.work)?;
-            }
-        }
-        self.matrix.set_identities(self.dofs);
-        Ok(())
-    }
-
     /// Tells that the system with this set has been factorized.
     pub fn small_factored(&mut self, points: &[PointState]) {
         let penalties = self.penalties.clone();
@@ -402,6 +391,14 @@ impl<L: PairLaw> Assembler<'_, L> {
                 penalties,
             });
             linear.at_hand = true;
+        }
+    }
+
+    /// Begins a solution that uses no factors of another one: a run that is continued has none.
+    pub fn small_begin(&mut self) {
+        self.begin_solution();
+        if let Some(linear) = self.linear.as_deref_mut() {
+            linear.at_hand = false;
         }
     }
 

@@ -16,7 +16,7 @@
 //!
 //! - [`trial`]: from the position to the traction and its derivative;
 //! - [`law`]: Coulomb's law, and what any law has to give; [`orthotropic`]: a law of two coefficients;
-//! - [`rigid`]: points on rigid masters;
+//! - [`rigid`]: points on rigid masters; [`steady`]: points whose normals stay, at small displacements;
 //! - [`anchor`]: the attraction point on a facet that moves, [`moving`]: the response there in the slots,
 //!   [`heading`]: the direction of a law there, [`touch`]: points on faces of bodies, [`scatter`]: from the slots to their nodes.
 //! - [`published`], [`evolution`]: the published tangents and the rate law in components, to compare with.
@@ -31,6 +31,7 @@ pub mod published;
 pub mod rigid;
 pub mod scatter;
 pub mod shear_limited;
+pub mod steady;
 pub mod touch;
 pub mod trial;
 pub mod turning;

@@ -27,13 +27,18 @@ impl Turning {
 
     /// Takes what a linearisation found; none where the point is open.
     pub fn note(&mut self, slip: Option<&Slip<f64>>) {
-        let Some(slip) = slip else {
+        self.take(slip.map(|slip| (&slip.t, slip.slides)));
+    }
+
+    /// [`Self::note`] of a traction (force / length^2), and whether the point slides under it.
+    pub fn take(&mut self, found: Option<(&Vec3, bool)>) {
+        let Some((t, slides)) = found else {
             *self = Turning::default();
             return;
         };
-        let turned = slip.slides && slip.t.dot(&self.last) < 0.0;
+        let turned = slides && t.dot(&self.last) < 0.0;
         self.turns = self.turns << 1 | u8::from(turned);
-        self.last = slip.t;
+        self.last = *t;
     }
 }
 

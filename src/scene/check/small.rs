@@ -37,9 +37,6 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact) {
     let mut refuse = |key: &str, what: &str, help: &str| {
         refuse(c, &format!("{at}/{key}"), what, help);
     };
-    if contact.friction.is_some() {
-        refuse("friction", "friction", "leave it out");
-    }
     if contact.augmentation.is_some() {
         let help = "leave it out, and give a `penalty`";
         refuse("augmentation", "augmentation", help);

@@ -34,7 +34,7 @@ pub enum Kinematics {
     Large,
     /// Small: elements are linear, and contact is linearised where it starts, with the normals and feet of the undeformed
     /// bodies. One factorization serves every step with the same points in contact. What is neglected is measured, and
-    /// told where it is not small. Without friction, augmentation and the like.
+    /// told where it is not small. Without augmentation and the like.
     Small,
 }
 

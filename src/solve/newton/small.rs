@@ -7,6 +7,8 @@
 //! a full step does not lower it enough, the minimum along the step does, and no set comes back.
 //!
 //! A factorization is kept for as long as the set stays the same, over iterations, steps and loads.
+mod friction;
+
 use super::{Converged, Newton, StepFailure, Verdict, dot, oscillation};
 use crate::assembly::{Fault, Needed};
 use crate::model::state::State;
@@ -26,12 +28,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         trial: &mut State,
         observer: &mut dyn Observer,
     ) -> Result<Converged, StepFailure> {
-        let w = &mut *self.workspace;
-        (self.model)
-            .increments(&trial.u, time, &mut w.increments)
-            .map_err(Fault::from)?;
-        for (u, g) in trial.u.iter_mut().zip(&w.increments) {
-            *u += g;
+        self.prescribe(trial, time)?;
+        if self.model.pairs.iter().any(|p| p.friction.is_some()) {
+            return self.solve_small_with_friction(step, time, trial, observer);
         }
         let mut factorization = None;
         let mut history = Vec::new();
@@ -102,6 +101,18 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         unreachable!("the loop ends by its own limit")
     }
 
+    /// Moves to the prescribed displacements at once.
+    fn prescribe(&mut self, trial: &mut State, time: f64) -> Result<(), Fault> {
+        let w = &mut *self.workspace;
+        (self.model)
+            .increments(&trial.u, time, &mut w.increments)
+            .map_err(Fault::from)?;
+        for (u, g) in trial.u.iter_mut().zip(&w.increments) {
+            *u += g;
+        }
+        Ok(())
+    }
+
     /// Residual with the points in contact that the state says are.
     fn measure(
         &mut self,
@@ -120,12 +131,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         let needed = self.assembler.small_needs(&trial.points);
         let mut made = None;
         if needed != Needed::Nothing {
-            self.phases.start("assembly");
-            let built = self.assembler.small_matrix(&trial.points);
-            self.phases.stop("assembly");
-            built?;
-            let factored = self.factorize()?;
-            self.assembler.small_factored(&trial.points);
+            let factored = self.factorize_small(trial)?;
             if needed == Needed::Factorization {
                 *(self.workspace.factorizations)
                     .entry(factored.method)
@@ -133,6 +139,23 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             }
             made = Some(factored);
         }
+        self.solve_for_increment()?;
+        Ok(made)
+    }
+
+    /// Factorizes the system of the state.
+    fn factorize_small(&mut self, trial: &State) -> Result<Factorization, StepFailure> {
+        self.phases.start("assembly");
+        let built = self.assembler.small_matrix(trial);
+        self.phases.stop("assembly");
+        built?;
+        let factored = self.factorize()?;
+        self.assembler.small_factored(&trial.points);
+        Ok(factored)
+    }
+
+    /// The increment that the factors at hand make of the residual.
+    fn solve_for_increment(&mut self) -> Result<(), StepFailure> {
         self.phases.start("solve");
         let w = &mut *self.workspace;
         for (du, r) in w.du.iter_mut().zip(&w.residual) {
@@ -144,7 +167,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         solved.map_err(|error| self.unsolvable(error))?;
         let w = &mut *self.workspace;
         self.model.dofs.expand(&mut w.du, None);
-        Ok(made)
+        Ok(())
     }
 
     /// Moves along the increment, and takes the points in contact there; returns how many changed, and the factor. From a
