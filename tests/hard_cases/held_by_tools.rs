@@ -115,8 +115,7 @@ fn a_flange_is_wiped_under_a_pad_whose_border_lies_at_nodes() {
             "side": "outward"
         })
     };
-    let contact =
-        |side: &str, tool: &str| json!({ "slave": side, "master": tool, "friction": 0.1 });
+    let contact = |side: &str, tool: &str| json!({ "slave": side, "master": tool, "points": "nodes", "friction": 0.1 });
     let outcome = solve(&json!({
         "covact": 1,
         "materials": { "steel": { "j2": {

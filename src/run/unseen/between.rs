@@ -28,6 +28,10 @@ use std::collections::HashMap;
 const SUNK: f64 = 0.02;
 /// Part of the force that may act aside.
 const ASIDE: f64 = 0.05;
+/// Part of what is worth a run of its own that is taken along.
+const ALONG: f64 = 0.5;
+/// Part of the force at sharp edges and borders of a surface from which on nothing is known of its direction.
+const ON_RIMS: f64 = 0.5;
 /// Part of the slave's elements below which a depth says nothing, however little the slave is deformed.
 const NOTHING: f64 = 1e-3;
 /// Angle between the normals at neighbouring places from which on an edge lies between them (radians), as of sharp edges elsewhere.
@@ -256,14 +260,15 @@ impl Watched {
         Some(deepest.reduce(|| 0.0, f64::max))
     }
 
-    /// Looks at an accepted step, from time `from` to `to`; whether more slave points are worth a run of their own.
+    /// Looks at an accepted step, from time `from` to `to`. Returns how far off it is, as a multiple of what is worth a run of its own
+    /// with more slave points.
     fn looks(
         &mut self,
         model: &Model,
         state: &State,
         [from, to, end]: [f64; 3],
-        ([penetration, penalty], bearing): ([f64; 2], &Bearing),
-    ) -> bool {
+        ([penetration, penalty], at_rims): ([f64; 2], f64),
+    ) -> f64 {
         let u = &state.u[..];
         let size = model.pairs[self.pair].element_size;
         let depth = match model.pairs[self.pair].points.is_empty() {
@@ -279,11 +284,10 @@ impl Watched {
         let way = deformed(&self.nodes, u).max(own);
         let part = self.travel.goes(way, own, [to - from, end - to]);
         // At a sharp edge or a border of the surface no normal is to be expected.
-        let on_rims = bearing.at_rims > 0.5 * bearing.force;
-        let leaning = self.leaning.as_ref().filter(|_| !on_rims);
+        let leaning = self.leaning.as_ref().filter(|_| at_rims < ON_RIMS);
         let forces = leaning.and_then(|l| l.forces(model, self.pair, (state, to), penalty));
         let aside = forces.map_or(0.0, |forces| self.travel.lean.goes(forces, [from, to, end]));
-        self.may && (part > SUNK || aside > ASIDE)
+        (part / SUNK).max(aside / ASIDE)
     }
 }
 
@@ -315,12 +319,28 @@ impl Between {
         let mut found = Vec::new();
         for watched in &mut self.watched {
             let own = [penetration, penalties].map(|of| of[watched.pair]);
+            // What edges of the surface carry is force of the contact, at rims.
+            let of_edges = (model.pairs.iter().zip(bearings))
+                .filter(|(pair, _)| pair.edges_of == Some(watched.pair))
+                .map(|(_, bearing)| bearing.force)
+                .sum::<f64>();
             let bearing = &bearings[watched.pair];
-            if watched.looks(model, state, [from, to, end], (own, bearing)) {
-                found.push(watched.pair);
+            let at_rims = match bearing.force + of_edges {
+                force if force > 0.0 => (bearing.at_rims + of_edges) / force,
+                _ => 0.0,
+            };
+            let off = watched.looks(model, state, [from, to, end], (own, at_rims));
+            if watched.may {
+                found.push((watched.pair, off));
             }
         }
-        found
+        // A run is given up once: what is half as far off comes along.
+        let enough = match found.iter().any(|(_, off)| *off > 1.0) {
+            true => ALONG,
+            false => f64::INFINITY,
+        };
+        found.retain(|(_, off)| *off > enough);
+        found.into_iter().map(|(pair, _)| pair).collect()
     }
 
     /// How far every pair has got.
