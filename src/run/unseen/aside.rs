@@ -3,13 +3,14 @@
 //! A point is pressed along the normal of the surface, which at single points of a coarse slave on a round tool of radius `R`
 //! leans by up to `s / (2 R)` against the slave's own normal, `s` being the distance of points. Where two smooth surfaces touch
 //! their normals are opposite. Over many points the leanings cancel; where few carry, their sum is about what the force is
-//! wrong by to a side, however little the tool sinks in beside the way by which the slave is deformed.
+//! wrong by to a side, however little the tool sinks in beside the way by which the slave is deformed. Of what the slave's own
+//! roundness adds to it nothing is wrong: no more counts than what the surface turns by within half the distance of points.
 //!
 //! Nothing is known at folds of the slave and at edges of the surface, and at a border of the slave nothing across it: there the
 //! surface may press on a rim.
 use crate::contact::law::{NormalLaw, PairLaw, Penalty};
-use crate::model::Model;
 use crate::model::state::State;
+use crate::model::{Model, sharp};
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use covact_geometry::{EdgeKind, Foot, Location, Vec3};
 use std::collections::HashMap;
@@ -28,6 +29,8 @@ pub(super) struct Leaning {
     corners: Vec<[u32; 4]>,
     /// Faces around every node.
     around: HashMap<u32, Vec<u32>>,
+    /// Half the distance of slave points (length).
+    half: f64,
     /// Edges of one face, with the corner of it that lies opposite to their first node.
     borders: Vec<[u32; 3]>,
 }
@@ -101,6 +104,7 @@ impl Leaning {
         let mut out = Leaning {
             corners: Vec::with_capacity(own.faces.len()),
             around: HashMap::new(),
+            half: 0.5 * sharp::spacing(model, own),
             borders: Vec::new(),
         };
         let mut edges: HashMap<[u32; 2], (u32, [u32; 3])> = HashMap::new();
@@ -160,9 +164,17 @@ impl Leaning {
             all += force;
             let slave = slave.get_or_insert_with(|| SlaveNormals::new(self, model, &state.u));
             let tool = master.pose.rotation * foot.normal;
-            if let Some(leaning) = slave.leaning(p.terms(), &tool).filter(|_| is_smooth(&foot)) {
-                known += force;
-                sum += leaning * force;
+            let Some(leaning) = slave.leaning(p.terms(), &tool).filter(|_| is_smooth(&foot)) else {
+                continue;
+            };
+            known += force;
+            // Where the slave alone is round, the surface is right about the direction.
+            if let Some(along) = leaning.try_normalize(0.0) {
+                let beside =
+                    master.foot(&(x - along * self.half), Some(foot.hint()), f64::INFINITY);
+                let normal = beside.map_or(tool, |foot| master.pose.rotation * foot.normal);
+                let turns = along.dot(&(tool - normal)).max(0.0);
+                sum += along * (leaning.norm().min(turns) * force);
             }
         }
         (known > 0.5 * all || all == 0.0).then_some([all, sum.norm()])
