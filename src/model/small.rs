@@ -109,15 +109,23 @@ impl SmallPair {
         motion: Option<&SmallMotion>,
         u: &[f64],
     ) -> Vec3 {
-        let of = |n: usize| Vec3::new(u[3 * n], u[3 * n + 1], u[3 * n + 2]);
-        let slave = (p.terms()).fold(Vec3::zeros(), |sum, (n, w)| sum + of(n) * w);
         let master = match motion {
             Some(motion) => motion.at(&at.foot),
             None => (self.master(point).iter())
-                .fold(Vec3::zeros(), |sum, &(n, w)| sum + of(n as usize) * w),
+                .fold(Vec3::zeros(), |sum, &(n, w)| sum + moved(n as usize, u) * w),
         };
-        slave - master
+        slave_moved(p, u) - master
     }
+}
+
+/// Displacement of a node (length).
+fn moved(node: usize, u: &[f64]) -> Vec3 {
+    Vec3::new(u[3 * node], u[3 * node + 1], u[3 * node + 2])
+}
+
+/// Displacement of a slave point (length).
+fn slave_moved(p: &SlavePoint, u: &[f64]) -> Vec3 {
+    (p.terms()).fold(Vec3::zeros(), |sum, (n, w)| sum + moved(n, u) * w)
 }
 
 impl Model {

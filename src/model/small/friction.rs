@@ -6,7 +6,7 @@
 //! distance is the normal, `g_0 dn` is left out.
 use super::super::master::BodyMaster;
 use super::super::motion::SmallMotion;
-use super::{SmallPair, SmallPoint};
+use super::{SmallPair, SmallPoint, moved, slave_moved};
 use crate::contact::points::SlavePoint;
 use covact_geometry::{Frame, ShapeRows, Vec3};
 
@@ -42,14 +42,13 @@ impl SmallPair {
         motion: Option<&SmallMotion>,
         u: &[f64],
     ) -> Vec3 {
-        let of = |n: usize| Vec3::new(u[3 * n], u[3 * n + 1], u[3 * n + 2]);
-        let slave = (p.terms()).fold(Vec3::zeros(), |sum, (n, w)| sum + of(n) * w);
+        let slave = slave_moved(p, u);
         if let Some(motion) = motion {
             return slave - motion.at(&(at.foot + at.normal * at.gap));
         }
         let nodes = self.master(point).iter().zip(self.arms(point));
         nodes.fold(slave, |sum, ((n, w), arm)| {
-            let u = of(*n as usize);
+            let u = moved(*n as usize, u);
             sum - u * *w + arm * at.normal.dot(&u)
         })
     }

@@ -182,7 +182,7 @@ impl Leaning {
 }
 
 /// Whether a surface is smooth around a foot.
-fn is_smooth(foot: &Foot) -> bool {
+pub(super) fn is_smooth(foot: &Foot) -> bool {
     match foot.location {
         Location::Face => true,
         Location::Edge { kind, .. } => kind == EdgeKind::Smooth,

@@ -9,7 +9,7 @@
 //!
 //! That way is the longest so far: where a tool is drawn back forces are small, and so is what they are off by. While it grows it is
 //! taken to go on as in the last step until the end, so that a run is not given up for its first touch.
-use super::aside::{Lean, Leaning};
+use super::aside::{Lean, Leaning, is_smooth};
 use super::deformed;
 use crate::fem::face::Quad;
 use crate::fem::quadrature::lobatto;
@@ -20,7 +20,7 @@ use crate::model::state::State;
 use crate::run::bearing::Bearing;
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::scene::Points;
-use covact_geometry::{EdgeKind, Foot, Location, Vec3};
+use covact_geometry::{Foot, Vec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -248,11 +248,7 @@ impl Watched {
             if bent(feet) {
                 return 0.0;
             }
-            let seen = feet.iter().flatten().filter(|foot| match foot.location {
-                Location::Face => true,
-                Location::Edge { kind, .. } => kind == EdgeKind::Smooth,
-                _ => false,
-            });
+            let seen = feet.iter().flatten().filter(|foot| is_smooth(foot));
             let depths = seen.map(|foot| pair.offset - foot.signed_distance);
             let near = depths.filter(|depth| *depth < surface.depth);
             near.fold(0.0, |most: f64, depth| most.max(depth - bulge))
