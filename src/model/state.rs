@@ -49,9 +49,22 @@ impl State {
         for (_, _, driven) in model.driven() {
             u[driven.dof(0)..driven.dof(6)].copy_from_slice(&driven.start);
         }
+        let mut elements = vec![0.0; elements.sum()];
+        let mut rest = &mut elements[..];
+        for body in &model.bodies {
+            let len = model.state_len(body);
+            let (own, others) = rest.split_at_mut(len * body.block.elements());
+            rest = others;
+            if len > 0 && body.block.history_len() > 0 {
+                with_block!(&body.block, block => {
+                    let states = own.chunks_exact_mut(len).enumerate();
+                    states.for_each(|(e, state)| ElementBlock::start(block, e, state));
+                });
+            }
+        }
         State {
             u,
-            elements: vec![0.0; elements.sum()],
+            elements,
             points: vec![PointState::default(); points.sum()],
             nodes: vec![false; nodes.sum()],
             histories: vec![PointHistory::default(); model.histories()],

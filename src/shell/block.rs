@@ -2,7 +2,7 @@
 use super::error::{ElementFault, ShellError};
 use super::h8::{Formulation, H8Block, H8System};
 use super::history::{Flow, PlasticWork};
-use super::material::{J2State, Law, LawState};
+use super::material::{Law, MOST_STATE};
 use super::nurbs::{self, NurbsBlock, NurbsSystem};
 use super::q18::{DOFS, Q18Block, Q18System};
 use super::stress::{extrapolate, extrapolate_quadratic};
@@ -17,7 +17,7 @@ pub const STATES: usize = 5;
 /// Bytes that an element of this kind takes: what is worked out once about its shape, and its states in a run. `flows` as for
 /// [`Formulation::of`].
 pub const fn bytes_per_element(element: Element, flows: bool) -> [usize; 2] {
-    let memory = if flows { J2State::LEN } else { 0 };
+    let memory = if flows { MOST_STATE } else { 0 };
     let (shape, state) = match Formulation::of(element, flows) {
         None if matches!(element, Element::Nurbs) => return [NurbsBlock::BYTES, 0],
         Some(formulation) => (
@@ -49,6 +49,8 @@ pub trait ElementBlock<const N: usize>: Sync {
     fn alpha_len(&self) -> usize;
     /// Numbers that the law remembers per element, at the end of its state.
     fn history_len(&self) -> usize;
+    /// Sets the states of the law to those of an element that nothing has happened to; see [`H8Block::start`].
+    fn start(&self, _e: usize, _state: &mut [f64]) {}
     /// Takes an accepted step into the states of the law; see [`H8Block::remember`].
     fn remember(&self, e: usize, u: &[Vec3; N], state: &mut [f64]) -> Result<Flow, ElementFault>;
     /// Equivalent plastic strain, and equivalent stress over yield stress, at the nodes.
@@ -150,6 +152,9 @@ macro_rules! delegate {
         }
         fn history_len(&self) -> usize {
             self.history_len()
+        }
+        fn start(&self, e: usize, state: &mut [f64]) {
+            self.start(e, state);
         }
         fn remember(
             &self,

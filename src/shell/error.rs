@@ -36,6 +36,11 @@ pub enum ShellError {
         value: f64,
         range: &'static str,
     },
+    /// A rolled sheet whose rolling direction stands on it.
+    #[error(
+        "element {element}: the rolling direction of its material is nearly normal to the sheet there"
+    )]
+    Rolling { element: u32 },
     /// Three enhanced strains lock when the material is nearly incompressible.
     #[error("three enhanced strains lock at nu = {nu} (limit 0.45); use seven")]
     TooFewEnhanced { nu: f64 },

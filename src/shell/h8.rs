@@ -166,6 +166,13 @@ impl H8Block {
                 inverted.get_or_insert((element as u32, jacobian));
             }
         }
+        if let (Law::Hill48(sheet), None) = (&law, inverted) {
+            let across = |re: &Reference| !sheet.lies_in(&Fields::new(&re.nodes).centre());
+            if let Some(element) = reference.iter().position(across) {
+                let element = element as u32;
+                return Err(ShellError::Rolling { element });
+            }
+        }
         match inverted {
             Some((element, jacobian)) => Err(ShellError::Inverted {
                 element,

@@ -27,6 +27,17 @@ impl Sum for Flow {
     }
 }
 
+/// Sets the states of the law at all points of an element to those before anything happens, where its undeformed frame is `frame`.
+pub(super) fn start<L: MaterialLaw>(
+    law: &L,
+    states: &mut [f64],
+    frame: impl Fn(usize) -> [V<f64>; 3],
+) {
+    for (g, state) in states.chunks_exact_mut(L::State::LEN.max(1)).enumerate() {
+        law.start(&frame(g)).write(state);
+    }
+}
+
 /// Advances the states of the law at all points of an element, whose metric and strain `at` gives; returns how it flowed there.
 pub(super) fn advance<L: MaterialLaw>(
     law: &L,

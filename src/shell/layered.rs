@@ -159,9 +159,14 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
     }
 }
 
+/// Undeformed frame at a point.
+pub(super) fn frame(nodes: &[V<f64>; 8], g: usize) -> [V<f64>; 3] {
+    Fields::new(nodes).over(g & 3, RULE[g >> 2].0)
+}
+
 /// Metric at a point.
 pub(super) fn metric(nodes: &[V<f64>; 8], g: usize) -> Metric {
-    metric_of(&Fields::new(nodes).over(g & 3, RULE[g >> 2].0))
+    metric_of(&frame(nodes, g))
 }
 
 /// Volumes of the points.

@@ -3,7 +3,9 @@ mod laws;
 mod refused;
 use super::h8::{Formulation, H8Block, H8System};
 use super::kinematics::{self, V};
-use super::material::{Collapsed, Hardening, J2, Law, LawState, MaterialLaw, Metric, with_law};
+use super::material::{
+    Collapsed, Hardening, Hill48, J2, Law, LawState, MaterialLaw, Metric, with_law,
+};
 use super::reference::Reference;
 use super::tangent::{self, factors};
 use super::{ElementFault, FaultCause, ShellError, brick, layered};
@@ -44,7 +46,7 @@ pub(super) fn mesh(nodes: &[Vec3; 8]) -> Mesh {
     }
 }
 
-pub(super) fn laws() -> [Law; 4] {
+pub(super) fn laws() -> [Law; 5] {
     let elastic = Elastic {
         e: 1000.0,
         nu: 0.3,
@@ -66,7 +68,17 @@ pub(super) fn laws() -> [Law; 4] {
             rate: 15.0,
         },
     });
-    [a, b, c, metal]
+    let sheet = Law::Hill48(Hill48::new(
+        (577.0, 385.0),
+        Hardening::Swift {
+            factor: 60.0,
+            offset: 0.01,
+            exponent: 0.2,
+        },
+        [1.8, 1.4, 2.2],
+        [1.0, 0.3, 0.0],
+    ));
+    [a, b, c, metal, sheet]
 }
 
 const FORMULATIONS: [Formulation; 5] = [

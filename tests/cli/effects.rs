@@ -194,6 +194,12 @@ fn scenes() -> Vec<Value> {
                 json!([{"name": "press", "until": 0.5}, {"name": "back", "release": "forces"}]),
             ),
         ]),
+        plate_with(&[(
+            "/materials/steel",
+            json!({"hill48": {
+                "E": 12000, "nu": 0.3, "hardening": {"linear": {"yield_stress": 20}}, "r": [1.8, 1.4, 2.2], "rolling": [1, 0, 0]
+            }}),
+        )]),
         facets("bilinear"),
         facets("biquadratic"),
         facets("smooth"),

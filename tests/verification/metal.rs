@@ -160,3 +160,79 @@ fn a_bent_strip_springs_back_in_part() {
     println!("deflection {} of which {kept} stays", deflection(1.0));
     assert!((0.05..0.95).contains(&kept), "{kept}");
 }
+
+/// A strip of a rolled sheet, cut at `angle` (degrees) to the rolling direction, free sideways and drawn by a tenth.
+fn rolled(angle: f64, course: &str) -> Value {
+    let plain = json!({ "linear": { "yield_stress": 200, "slope": 400 } });
+    let mut scene = strip("h8", &plain, 1.1, course);
+    let (sin, cos) = angle.to_radians().sin_cos();
+    scene["materials"]["m"] = json!({ "hill48": {
+        "E": E, "nu": 0.3, "hardening": plain, "r": [1.8, 1.4, 2.2], "rolling": [cos, sin, 0]
+    } });
+    scene
+}
+
+/// Hill (1948): a strip along the rolling direction hardens as its curve says, and narrows 1.8 times as much as it thins; one across it
+/// 2.2 times, at `sqrt((1 + r0) r90 / (r0 (1 + r90)))` of the stress at which the other one yields.
+#[test]
+fn a_rolled_strip_narrows_by_its_r_value() {
+    let yields = [0.0, 90.0].map(|angle| {
+        let outcome = solve(&rolled(angle, "t"));
+        assert_eq!(outcome.summary.status.name(), "done");
+        let effects = &outcome.summary.effects;
+        assert!(
+            effects.iter().any(|e| e == "material.hill48"),
+            "{effects:?}"
+        );
+        let end = outcome.body("strip", outcome.summary.steps);
+        let size = |axis: usize| {
+            let now = end
+                .points
+                .iter()
+                .zip(end.field("displacement").chunks(3))
+                .map(|(x, u)| x[axis] + u[axis]);
+            now.clone().fold(f64::NEG_INFINITY, f64::max) - now.fold(f64::INFINITY, f64::min)
+        };
+        let force = outcome
+            .column("force.pull.x")
+            .last()
+            .copied()
+            .unwrap()
+            .abs();
+        let tau = force * 1.1 / 4.0;
+        // What is elastic: tau / E along, nu times that across.
+        let plastic = |axis: usize, length: f64| (size(axis) / length).ln() + 0.3 * tau / E;
+        let found = plastic(1, 4.0) / plastic(2, 1.0);
+        let wanted = if angle == 0.0 { 1.8 } else { 2.2 };
+        println!("{angle}: {found} {tau}");
+        assert!((found / wanted - 1.0).abs() < 2e-3, "{angle}: {found}");
+        tau
+    });
+    let along = tau_of(1.1f64.ln());
+    assert!((yields[0] / along - 1.0).abs() < 1e-5, "{yields:?} {along}");
+    // Equivalent stress and plastic strain do the work of the stress: one is `tau / ratio`, so the other is `ratio` times the strain.
+    let ratio = ((1.0f64 + 1.8) * 2.2 / (1.8 * (1.0 + 2.2))).sqrt();
+    let across = root(|tau| ratio * (200.0 + 400.0 * ratio * (1.1f64.ln() - tau / E)) - tau);
+    assert!(
+        (yields[1] / across - 1.0).abs() < 1e-4,
+        "{yields:?} {across}"
+    );
+}
+
+/// Kirchhoff stress along the rolling direction at a logarithmic strain.
+fn tau_of(log: f64) -> f64 {
+    root(|tau| 200.0 + 400.0 * (log - tau / E) - tau)
+}
+
+/// The root of a falling function of a stress.
+fn root(of: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut high) = (0.0, 2000.0);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        match of(middle) > 0.0 {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    low
+}

@@ -25,13 +25,32 @@ pub(super) fn check(c: &mut Checker, name: &str, material: &MaterialChoice, unit
         let message = format!("Poisson's ratio `nu` is {}", elastic.nu);
         c.add(&format!("{at}/nu"), message, Some(help.into()));
     }
-    if let Material::J2(metal) = law {
+    if let Some(hardening) = law.hardening() {
         if elastic.nu > 0.49 {
             let help = "metals have about 0.3; plastic flow keeps the volume by itself";
             let message = format!("Poisson's ratio `nu` is {}, above 0.49", elastic.nu);
             c.add(&format!("{at}/nu"), message, Some(help.into()));
         }
-        check_hardening(c, &format!("{at}/hardening"), &metal.hardening);
+        check_hardening(c, &format!("{at}/hardening"), hardening);
+    }
+    if let Material::Hill48(sheet) = law {
+        for (i, r) in sheet.r.into_iter().enumerate() {
+            let angle = [
+                "along the rolling direction",
+                "at 45 degrees to it",
+                "across it",
+            ][i];
+            c.positive(&format!("{at}/r/{i}"), &format!("the r-value {angle}"), r);
+        }
+        let length = sheet.rolling.iter().map(|x| x * x).sum::<f64>();
+        if !(length > 0.0 && length.is_finite()) {
+            let help = "a direction in space, as `[1, 0, 0]`";
+            c.add(
+                &format!("{at}/rolling"),
+                "the rolling direction has no length",
+                Some(help.into()),
+            );
+        }
     }
 }
 

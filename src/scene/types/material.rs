@@ -1,5 +1,5 @@
 //! Materials: laws with their constants, and well-known materials by name.
-use super::{Metal, Units};
+use super::{HardeningCurve, Metal, RolledSheet, Units};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,6 +18,9 @@ pub enum MaterialChoice {
     Hencky(Elastic),
     /// Metal plasticity after von Mises (J2) with isotropic hardening, in logarithmic strains: sheets that are formed.
     J2(Metal),
+    /// Metal plasticity after Hill (1948) with isotropic hardening, in logarithmic strains: rolled sheets, which narrow and thin by
+    /// their direction.
+    Hill48(RolledSheet),
     /// Structural steel S235: E 210 GPa, nu 0.3 (EN 1993-1-1, 3.2.6); yield strength 235 MPa (EN 10025-2); 7850 kg/m^3.
     /// St. Venant-Kirchhoff.
     Steel,
@@ -54,6 +57,9 @@ pub enum Material {
     Hencky(Elastic),
     /// Metal plasticity after von Mises (J2) with isotropic hardening, in logarithmic strains: sheets that are formed.
     J2(Metal),
+    /// Metal plasticity after Hill (1948) with isotropic hardening, in logarithmic strains: rolled sheets, which narrow and thin by
+    /// their direction.
+    Hill48(RolledSheet),
 }
 
 impl Material {
@@ -64,6 +70,7 @@ impl Material {
             Material::NeoHooke(_) => "neo_hooke",
             Material::Hencky(_) => "hencky",
             Material::J2(_) => "j2",
+            Material::Hill48(_) => "hill48",
         }
     }
 
@@ -74,6 +81,7 @@ impl Material {
             Material::NeoHooke(_) => "neo-Hooke",
             Material::Hencky(_) => "Hencky",
             Material::J2(_) => "von Mises plasticity",
+            Material::Hill48(_) => "Hill plasticity",
         }
     }
 
@@ -84,12 +92,22 @@ impl Material {
             | Material::NeoHooke(elastic)
             | Material::Hencky(elastic) => *elastic,
             Material::J2(metal) => metal.elastic(),
+            Material::Hill48(sheet) => sheet.elastic(),
+        }
+    }
+
+    /// The yield stress of a law that may flow.
+    pub fn hardening(&self) -> Option<&HardeningCurve> {
+        match self {
+            Material::StVenantKirchhoff(_) | Material::NeoHooke(_) | Material::Hencky(_) => None,
+            Material::J2(metal) => Some(&metal.hardening),
+            Material::Hill48(sheet) => Some(&sheet.hardening),
         }
     }
 
     /// Whether it may flow, so that it remembers what was done to it.
     pub fn flows(&self) -> bool {
-        matches!(self, Material::J2(_))
+        self.hardening().is_some()
     }
 
     /// Whether stress and Green-Lagrange strain are proportional at any strain.
@@ -136,6 +154,7 @@ impl MaterialChoice {
             MaterialChoice::NeoHooke(e) => Some(Material::NeoHooke(e)),
             MaterialChoice::Hencky(e) => Some(Material::Hencky(e)),
             MaterialChoice::J2(metal) => Some(Material::J2(metal)),
+            MaterialChoice::Hill48(sheet) => Some(Material::Hill48(sheet)),
             _ => None,
         }
     }
@@ -163,7 +182,8 @@ impl MaterialChoice {
             MaterialChoice::StVenantKirchhoff(_)
             | MaterialChoice::NeoHooke(_)
             | MaterialChoice::Hencky(_)
-            | MaterialChoice::J2(_) => None,
+            | MaterialChoice::J2(_)
+            | MaterialChoice::Hill48(_) => None,
             MaterialChoice::Steel => metal("steel", 210e9, 235e6, 7850.0),
             MaterialChoice::StainlessSteel => metal("stainless_steel", 200e9, 210e6, 7900.0),
             MaterialChoice::Aluminium => metal("aluminium", 70e9, 240e6, 2700.0),

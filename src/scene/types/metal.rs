@@ -31,6 +31,36 @@ impl Metal {
     }
 }
 
+/// Elastic constants, yield stress along the rolling direction and r-values of a rolled sheet.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RolledSheet {
+    /// Young's modulus (force / length^2).
+    #[serde(rename = "E")]
+    pub e: f64,
+    /// Poisson's ratio, at most 0.49.
+    pub nu: f64,
+    /// Mass per undeformed volume (force time^2 / length^4: t/mm^3 for N, mm and s). Loads by gravity ask for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<f64>,
+    /// Yield stress of a strip along the rolling direction over its plastic strain, as Kirchhoff stress: true stress times the
+    /// change of volume, which is below 0.3 % in metals.
+    pub hardening: HardeningCurve,
+    /// r-values `[r0, r45, r90]` of strips along the rolling direction, at 45 degrees to it and across it: plastic strain across the
+    /// strip over that through its thickness. `[1, 1, 1]` is `j2`.
+    pub r: [f64; 3],
+    /// The rolling direction in space, of any length; in a curved sheet what of it lies in the sheet.
+    pub rolling: [f64; 3],
+}
+
+impl RolledSheet {
+    /// Constants at small strain.
+    pub fn elastic(&self) -> Elastic {
+        let RolledSheet { e, nu, density, .. } = *self;
+        Elastic { e, nu, density }
+    }
+}
+
 /// Yield stress over equivalent plastic strain p, written as `{"linear": {"yield_stress": 200, "slope": 1000}}`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -1,7 +1,7 @@
 //! Elements whose law remembers: what a step leaves in the states of their points, and what these say.
 use super::{Formulation, H8Block, arrays, fault, head};
 use crate::shell::error::ElementFault;
-use crate::shell::history::{Flow, PlasticWork, advance, cauchy, measures, plastic_work};
+use crate::shell::history::{Flow, PlasticWork, advance, cauchy, measures, plastic_work, start};
 use crate::shell::kinematics::Fields;
 use crate::shell::material::with_law;
 use crate::shell::{layered, stress};
@@ -29,6 +29,20 @@ impl H8Block {
             }
         }
         Ok(out)
+    }
+
+    /// Sets the states of the law to those of an element that nothing has happened to.
+    pub fn start(&self, e: usize, state: &mut [f64]) {
+        if self.law.state_len() == 0 {
+            return;
+        }
+        let nodes = &self.reference[e].nodes;
+        let fields = Fields::new(nodes);
+        let states = &mut state[self.condensation_len()..];
+        with_law!(&self.law, law => start(law, states, |g| match self.formulation {
+            Formulation::Layered => layered::frame(nodes, g),
+            _ => fields.at(g),
+        }));
     }
 
     /// Takes a step that is accepted at displacements `u` and the enhanced strains in `state` into the states of the law; returns how it

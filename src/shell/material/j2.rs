@@ -12,7 +12,7 @@
 use super::hardening::Hardening;
 use super::logarithm::{Logarithm, sandwich};
 use super::tensor::{isotropic, raise};
-use super::{Collapsed, LawState, MaterialLaw, Metric, Response};
+use super::{AT_YIELD, Collapsed, LawState, MaterialLaw, Metric, Response, YIELDS};
 use crate::shell::{Flow, PlasticWork};
 use num_dual::DualNum;
 
@@ -67,13 +67,6 @@ impl LawState for J2State {
         to[13] = self.work;
     }
 }
-
-/// Part of the yield stress by which it may be exceeded without flow. A step starts where the one before has ended: on the
-/// yield surface, but for rounding, wherever the material flowed. Its first tangent is the elastic one there, which holds for
-/// unloading; that of flow would let a body that unloads give way without end, and rounding would choose between them.
-const AT_YIELD: f64 = 1e-9;
-/// Part of the yield stress from which on a point counts as flowing where a step starts.
-const YIELDS: f64 = 0.98;
 
 /// The end of a step.
 struct Returned<D> {

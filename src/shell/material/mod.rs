@@ -1,4 +1,4 @@
-//! Isotropic elastic and elastoplastic laws between Green-Lagrange strain and second Piola-Kirchhoff stress.
+//! Elastic and elastoplastic laws between Green-Lagrange strain and second Piola-Kirchhoff stress.
 //!
 //! A law is evaluated in any frame: strain in covariant components `E_ij` (Voigt order 11, 22, 33, 12, 23, 13, shears
 //! `2 E_ij`), stress in contravariant components `S^ij`, and the metric of the undeformed frame ties them together. In
@@ -8,6 +8,7 @@
 //! chapter 6, here in convected components.
 mod hardening;
 mod hencky;
+mod hill;
 mod j2;
 mod logarithm;
 mod neo_hooke;
@@ -19,11 +20,26 @@ use super::history::{Flow, PlasticWork};
 use crate::scene::{Elastic, Material};
 pub use hardening::Hardening;
 pub use hencky::Hencky;
+pub use hill::{Hill48, Hill48State};
 pub use j2::{J2, J2State};
 pub use neo_hooke::NeoHooke;
 use num_dual::DualNum;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub(in crate::shell) use tensor::{cauchy_green, invariants, inverse, isotropic, mixed};
+
+/// Part of the yield stress by which it may be exceeded without flow. A step starts where the one before has ended: on the
+/// yield surface, but for rounding, wherever the material flowed. Its first tangent is the elastic one there, which holds for
+/// unloading; that of flow would let a body that unloads give way without end, and rounding would choose between them.
+const AT_YIELD: f64 = 1e-9;
+/// Part of the yield stress from which on a point counts as flowing where a step starts.
+const YIELDS: f64 = 0.98;
+
+/// Numbers that a point remembers at most, of the laws that flow.
+pub const MOST_STATE: usize = if J2State::LEN > Hill48State::LEN {
+    J2State::LEN
+} else {
+    Hill48State::LEN
+};
 
 /// Metric of the undeformed frame: covariant `G_ij` and contravariant `G^ij`, in Voigt order without factors.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,7 +80,8 @@ pub struct Response {
     pub tangent: [[f64; 6]; 6],
 }
 
-/// What a material point remembers of the accepted steps: plain numbers, zero at first.
+/// What a material point remembers of the accepted steps, and of the axes of its material: plain numbers, zero where the law does
+/// not say otherwise ([`MaterialLaw::start`]).
 pub trait LawState: Copy + Send + Sync {
     /// How many numbers.
     const LEN: usize;
@@ -97,6 +114,12 @@ pub(super) fn state_of<L: MaterialLaw>(states: &[f64], point: usize) -> L::State
 pub trait MaterialLaw: Copy + Send + Sync {
     /// What a point remembers between steps.
     type State: LawState;
+
+    /// The state of a point that nothing has happened to, whose undeformed frame has these vectors in space, the first two along
+    /// the sheet.
+    fn start(&self, _frame: &[[f64; 3]; 3]) -> Self::State {
+        Self::State::UNUSED
+    }
 
     /// Energy per undeformed volume.
     ///
@@ -169,6 +192,7 @@ pub enum Law {
     NeoHooke(NeoHooke),
     Hencky(Hencky),
     J2(J2),
+    Hill48(Hill48),
 }
 
 /// Runs a block of code with `$law` bound to the concrete law of a [`Law`].
@@ -179,6 +203,7 @@ macro_rules! with_law {
             $crate::shell::Law::NeoHooke($law) => $body,
             $crate::shell::Law::Hencky($law) => $body,
             $crate::shell::Law::J2($law) => $body,
+            $crate::shell::Law::Hill48($law) => $body,
         }
     };
 }
@@ -202,6 +227,10 @@ impl Law {
                 mu,
                 hardening: Hardening::from(metal.hardening),
             }),
+            Material::Hill48(sheet) => {
+                let hardening = Hardening::from(sheet.hardening);
+                Law::Hill48(Hill48::new((lambda, mu), hardening, sheet.r, sheet.rolling))
+            }
         })
     }
 

@@ -317,7 +317,7 @@ impl Sheet {
                 law: *law,
                 thickness,
             })),
-            Law::Hencky(_) | Law::J2(_) => None,
+            Law::Hencky(_) | Law::J2(_) | Law::Hill48(_) => None,
         }
     }
 }

@@ -12,7 +12,7 @@ mod tangent;
 mod tests;
 
 use super::error::{ElementFault, FaultCause, ShellError};
-use super::history::{Flow, PlasticWork, advance, cauchy, measures, plastic_work};
+use super::history::{Flow, PlasticWork, advance, cauchy, measures, plastic_work, start};
 use super::kinematics::V;
 use super::material::{Collapsed, Law, with_law};
 use super::stress;
@@ -263,6 +263,14 @@ impl Q18Block {
             .map_err(|c| fault(e, g as u8, c))?;
         }
         Ok(())
+    }
+
+    /// Sets the states of the law to those of an element that nothing has happened to.
+    pub fn start(&self, e: usize, state: &mut [f64]) {
+        let y = &self.reference[e].y;
+        let states = &mut state[tangent::STATE..];
+        let frame = |g: usize| TABLES.points[g].n.map(|n| strain::along(&n, y));
+        with_law!(&self.law, law => start(law, states, frame));
     }
 
     /// Takes an accepted step into the states of the law; see [`H8Block::remember`](super::H8Block::remember).
