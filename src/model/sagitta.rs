@@ -1,7 +1,8 @@
-//! Overclosures beside the sagitta of facets. A flat face of a curved body lies a sagitta off the surface that its nodes are
+//! Overclosures and clearances beside the sagitta of facets. A flat face of a curved body lies a sagitta off the surface that its nodes are
 //! on, most in its middle. Where two such surfaces do not match node by node, overclosures are wrong by that, and with them
-//! the pressures of an interference fit. So the gaps of a pair that starts with an overclosure are measured between the curved
-//! surfaces: what facets change of the gap of each point at the start is taken out of it for the whole run.
+//! the pressures of an interference fit; so is the clearance of a pin in its bore. So the gaps of a pair that starts with an
+//! overclosure, or most of whose slave lies near the master, are measured between the curved surfaces: what facets change of the gap
+//! of each point at the start is taken out of it for the whole run.
 use super::error::number;
 use super::master::{MasterNow, Masters};
 use super::{Model, PairModel};
@@ -11,8 +12,10 @@ use crate::scene::Tangent;
 use covact_geometry::Vec3;
 use std::collections::HashMap;
 
-/// Part of the overclosure above which what facets add to it counts.
+/// Part of the overclosure, or of the distance, above which what facets add to it counts.
 const COUNTS: f64 = 0.01;
+/// Part of the slave that lies near a master that it fits.
+const MOST: f64 = 0.5;
 /// Faces whose normals differ by more than this (radians) meet at an edge of the body, not of its facets.
 const EDGE: f64 = 0.8;
 
@@ -136,6 +139,32 @@ impl Surface {
     }
 }
 
+/// What facets change of the distance of faces that lie close to each other and do not overlap.
+#[derive(Debug, Default)]
+struct Beside {
+    /// Of the points near the master (length^2).
+    area: f64,
+    /// Integrals over it: distance between the curved surfaces, and what facets change of it (length^3).
+    distance: f64,
+    changed: f64,
+    /// Farthest that a facet lies off its surface there (length).
+    largest: f64,
+}
+
+impl Beside {
+    fn add(&mut self, area: f64, bow: f64, distance: f64, off: f64) {
+        self.area += area;
+        self.distance += area * distance;
+        self.changed += area * bow.abs();
+        self.largest = self.largest.max(off);
+    }
+
+    /// Whether most of the slave of area `all` lies near, as a pin in its bore does, and facets count in how near.
+    fn counts(&self, all: f64) -> bool {
+        self.area > MOST * all && self.changed > COUNTS * self.distance
+    }
+}
+
 /// Both sides of a pair, as far as they are curved and made of flat faces.
 pub(super) struct Sides {
     slave: Option<Surface>,
@@ -215,6 +244,7 @@ impl Sides {
         let mut bow = Vec::with_capacity(gaps.len());
         let (mut faceted, mut true_ones, mut area, mut largest) = (0.0, 0.0, 0.0, 0.0f64);
         let mut deepest = 0.0f64;
+        let mut beside = Beside::default();
         for (i, (p, &gap)) in pair.points.iter().zip(gaps).enumerate() {
             let x = model.point_position(p, &zero);
             // Beyond an element nothing of the start is left when the point arrives.
@@ -228,6 +258,7 @@ impl Sides {
                 continue;
             };
             bow.push(gap - curved);
+            beside.add(p.area, gap - curved, curved, off);
             deepest = deepest.min(curved).min(gap);
             faceted -= gap.min(0.0) * p.area;
             true_ones -= curved.min(0.0) * p.area;
@@ -236,7 +267,12 @@ impl Sides {
             }
         }
         let added = faceted - true_ones;
-        if deepest >= -1e-9 * pair.element_size || added.abs() <= COUNTS * true_ones {
+        let overlaps = deepest < -1e-9 * pair.element_size;
+        if overlaps && added.abs() <= COUNTS * true_ones {
+            return None;
+        }
+        let all: f64 = pair.points.iter().map(|p| p.area).sum();
+        if !overlaps && !beside.counts(all) {
             return None;
         }
         let refused = match (pair.tangent, pair.segments()) {
@@ -246,6 +282,19 @@ impl Sides {
             }
             _ => None,
         };
+        if !overlaps {
+            return refused.is_none().then(|| Correction {
+                bow,
+                told: format!(
+                    "contact `{}`: flat facets stand for curved faces, up to {} off them, where the mean distance of both sides is {} \
+                     at the start",
+                    pair.name,
+                    number(beside.largest),
+                    number(beside.distance / beside.area),
+                ),
+                refused: None,
+            });
+        }
         Some(Correction {
             bow,
             told: format!(
