@@ -454,6 +454,17 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 w.scratch[3 * node + c] = u.abs().max(f64::EPSILON * x[c].abs());
             }
         }
+        // The curvatures of a sheet are those of its positions.
+        for body in (self.model.bodies.iter()).filter(|b| b.block.sheet().is_some()) {
+            let first = body.first_node as usize;
+            for node in first..first + body.mesh.nodes.len() {
+                for c in 0..3 {
+                    let at = self.model.nodes[node][c] + trial.u[3 * node + c];
+                    let scratch = &mut w.scratch[3 * node + c];
+                    *scratch = scratch.max(at.abs());
+                }
+            }
+        }
         self.assembler
             .matrix()
             .abs_multiply(&w.scratch, &mut w.absolute);
