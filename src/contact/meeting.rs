@@ -1,5 +1,6 @@
 //! Where a slave point meets a master surface, before any law is asked.
 use super::fault::{Piece, PointFault};
+use super::hanging::Hanging;
 use super::kernel::{Normal, SlotMatrix, Slots};
 use super::law::NormalLaw;
 use super::point::{FaceTangent, PointGeometry, respond};
@@ -14,12 +15,14 @@ pub struct Meeting {
     /// The foot `rho`.
     pub rho: Vec3,
     pub geometry: PointGeometry,
-    /// Normal coordinate (length), negative below the surface.
+    /// Normal coordinate (length), negative below the surface; past a border that is rounded off that over the rounding.
     pub xi3: f64,
     /// Outward unit normal; the pseudo-normal on edges and vertices.
     pub normal: Vec3,
     /// The foot lies on a free border: the point hangs past it, and nothing of the surface stands in its way.
     pub free: bool,
+    /// It hangs over a free border of a body that is rounded off, beyond which the geometry is that of the continued facet.
+    pub hanging: Option<Hanging>,
 }
 
 /// A contact point that presses, per unit area and in space coordinates.
@@ -98,7 +101,15 @@ impl Meeting {
             return Ok(None);
         }
         let normal = self.pressed(law)?;
-        let (residual, tangent) = respond(&self.geometry, &normal, tangent);
+        let (residual, tangent) = match (&self.hanging, &self.geometry) {
+            (Some(hanging), PointGeometry::Face { frame, xi3 }) => {
+                let along = hanging.along_normal(&normal);
+                let (mut residual, mut k) = respond(&self.geometry, &along, tangent);
+                hanging.add_along_facet((frame, *xi3), &normal, &mut residual, &mut k);
+                (residual, k)
+            }
+            _ => respond(&self.geometry, &normal, tangent),
+        };
         Ok(Some(SlotTouch {
             residual,
             tangent,

@@ -3,8 +3,8 @@
 //! - [`kernel`]: face points in nine slots, [`corner`]: edges and vertices, [`published`]: the published tangent;
 //! - [`point`]: one response for all of them, [`law`]: what the traction is;
 //! - [`rigid`], [`moving`]: closest points on masters that do not move or whose nodes do, [`meeting`]: what both give,
-//!   [`placed`]: many points on a rigid one, [`clearance`]: those that are open without a search, `overhang`: those past a free
-//!   border;
+//!   [`placed`]: many points on a rigid one, [`clearance`]: those that are open without a search, `overhang` and [`hanging`]:
+//!   those past a free border of a rigid surface and of a body;
 //! - [`kind`]: what a batch of points is compiled for;
 //! - [`friction`]: slip, its laws and its history;
 //! - [`spin`]: a rigid body's translation and spin in the slots, [`averaged`]: the gap in the mean of slave nodes.
@@ -38,6 +38,7 @@ pub mod closest;
 pub mod corner;
 pub mod fault;
 pub mod friction;
+pub mod hanging;
 mod keep;
 pub mod kernel;
 pub mod kind;

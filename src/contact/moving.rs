@@ -1,9 +1,11 @@
 //! Contact of slave points with a surface whose nodes move: the faces of a body.
 use super::fault::{Piece, PointFault};
+use super::hanging::Hanging;
 use super::keep;
 use super::kernel::{NodeRow, SlotMatrix, Slots};
 use super::law::NormalLaw;
 use super::meeting::Meeting;
+use super::overhang::Overhang;
 use super::point::{FaceTangent, PointGeometry};
 use covact_geometry::{
     EdgeKind, Frame, Hint, Jet, MovingFacets, MovingFoot, MovingPlace, ShapeRows, Status, Vec3,
@@ -50,19 +52,19 @@ pub struct MovingTouch {
 impl MovingMaster<'_> {
     /// Evaluates one slave point; `None` where it is open. Facets that `accept` refuses do not exist for this point.
     ///
-    /// `hint` is where the search starts, and is set to where it ended.
+    /// `hint` is where the search starts, and is set to where it ended; `overhang` says how borders are rounded off for the point.
     ///
     /// # Errors
     /// [`PointFault`] where the point has no reliable closest point.
     pub fn touch<L: NormalLaw, T: FaceTangent>(
         &self,
         x: &Vec3,
-        hint: &mut Option<Hint>,
+        (hint, overhang): (&mut Option<Hint>, Overhang),
         law: &L,
         tangent: &T,
         accept: impl Fn(u32) -> bool,
     ) -> Result<Option<MovingTouch>, PointFault> {
-        let Some((foot, meeting)) = self.contact_at(x, hint, law, accept)? else {
+        let Some((foot, meeting)) = self.contact_at(x, (hint, overhang), law, accept)? else {
             return Ok(None);
         };
         let touch = meeting.respond(law, tangent)?;
@@ -83,7 +85,7 @@ impl MovingMaster<'_> {
     pub(super) fn contact_at<L: NormalLaw>(
         &self,
         x: &Vec3,
-        hint: &mut Option<Hint>,
+        (hint, overhang): (&mut Option<Hint>, Overhang),
         law: &L,
         accept: impl Fn(u32) -> bool,
     ) -> Result<Option<(MovingFoot, Meeting)>, PointFault> {
@@ -92,6 +94,18 @@ impl MovingMaster<'_> {
         let Some(foot) = self.search(x, hint, reach, &accept)? else {
             return Ok(None);
         };
+        if let Some(over) = self.over_border(x, &foot, overhang, law.reach()) {
+            let closes = |h: &Hanging| law.closes(h.gap) && overhang.allows(h.gap - law.reach());
+            let Some((foot, hanging)) = over.filter(|(_, h)| closes(h)) else {
+                return Ok(None);
+            };
+            let meeting = Meeting {
+                xi3: hanging.gap,
+                hanging: Some(hanging),
+                ..self.at(x, &foot)?
+            };
+            return Ok(Some((foot, meeting)));
+        }
         let xi3 = foot.signed_distance;
         if xi3 < -self.depth || !law.closes(xi3) {
             return Ok(None);
@@ -113,6 +127,39 @@ impl MovingMaster<'_> {
         };
         let meeting = self.at(x, &foot)?;
         Ok(Some((foot, meeting)))
+    }
+
+    /// What a point at `x` hangs over whose foot lies on a free border, near enough to be in contact that begins at `reach`: its foot
+    /// on the continued facet and the rounding there, nothing where it lies deeper than that or the surface reaches. None where its foot
+    /// lies elsewhere, borders are sharp for it, or the facet cannot be continued.
+    pub fn over_border(
+        &self,
+        x: &Vec3,
+        foot: &MovingFoot,
+        overhang: Overhang,
+        reach: f64,
+    ) -> Option<Option<(MovingFoot, Hanging)>> {
+        if !on_border(foot) || overhang.rounding == 0.0 || foot.distance > overhang.within(reach) {
+            return None;
+        }
+        let free = match foot.place {
+            MovingPlace::Edge { direction, .. } => direction.map(|along| along == 0.0),
+            _ => [true; 2],
+        };
+        // Of the facet's middle, so that they are numbers of the facet.
+        let width = (self.undeformed.jet(foot.facet, [0.0; 2]).rho_i).map(|t| t.norm());
+        let least = width[0].min(width[1]);
+        let beyond = 0.5 * overhang.within(reach) / least;
+        let on = foot.hint();
+        let kept = (self.facets).project_on(x, on, beyond.max(keep::BEYOND))?;
+        let hanging = Hanging::new(&overhang, kept.signed_distance, kept.xi, width, free);
+        Some(hanging.filter(|h| h.gap >= -self.depth).map(|h| (kept, h)))
+    }
+
+    /// Normal coordinate of a point that is in contact over the rounding of a free border, where its gap is measured from `z0`.
+    pub fn hanging(&self, x: &Vec3, foot: &MovingFoot, z0: f64, overhang: Overhang) -> Option<f64> {
+        let (_, over) = self.over_border(x, foot, overhang, z0)??;
+        (over.gap < z0 && overhang.allows(over.gap - z0)).then_some(over.gap)
     }
 
     /// The foot of a point on the facet `on`, where it may stand for its closest point: across a fold, and at a free border that
@@ -201,6 +248,7 @@ impl MovingMaster<'_> {
             xi3: foot.signed_distance,
             normal: foot.normal,
             free: free(foot, x),
+            hanging: None,
         })
     }
 

@@ -1,4 +1,4 @@
-//! Points that hang over a free border of a rigid surface.
+//! Points that hang over a free border of a rigid surface; over one of a body, see [`hanging`](super::hanging).
 //!
 //! A slave point stands for a piece of the slave's surface. If it were in contact or not by the place of its foot alone, it would
 //! lose all of its force at once where it slides past the border of its master, and Newton's method would take the force away and
@@ -56,7 +56,7 @@ impl Overhang {
         let (mut xi3_x, mut n_x, mut d_x) = (*n, Matrix3::zeros(), Matrix3::identity());
         let beside = d - n * xi3;
         let s = beside.norm();
-        let mut over = (s - FLAT * radius).max(0.0);
+        let mut over = self.past(s);
         if let Some([rho_s, rho_ss, n_s]) = border {
             let length = rho_s.norm_squared();
             let left = corner::curvature(d, &rho_s, &rho_ss);
@@ -98,6 +98,11 @@ impl Overhang {
                 gradient,
             },
         })
+    }
+
+    /// How far a point that hangs over by `s` is past where the rounding begins (length).
+    pub(super) fn past(&self, s: f64) -> f64 {
+        (s - FLAT * self.rounding).max(0.0)
     }
 
     /// Distance from the foot on a border up to which a point may be in contact that begins at `reach` in front of the surface.

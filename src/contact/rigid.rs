@@ -165,6 +165,7 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
                 _ => self.pose.rotation * foot.normal,
             },
             free: free(&foot),
+            hanging: None,
         }))
     }
 

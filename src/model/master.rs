@@ -3,7 +3,7 @@ use super::self_contact::{Accept, Opposing, OwnFacets};
 use super::state::heap;
 use super::surface::SurfaceSet;
 use super::{Model, PairModel};
-use crate::contact::moving;
+use crate::contact::moving::{self, MovingMaster};
 use crate::contact::rigid::{self, Overhang, RigidMaster};
 use crate::mesh::{Face, Mesh};
 use crate::scene::ValueError;
@@ -263,8 +263,12 @@ impl MasterNow<'_> {
         reach: f64,
         (z0, overhang): (f64, Overhang),
     ) -> Option<Seen> {
-        let MasterNow::Rigid(master) = self else {
-            return self.see_within(point, x, hint, reach);
+        let master = match self {
+            MasterNow::Rigid(master) => master,
+            MasterNow::Body { .. } => {
+                let seen = self.see_within(point, x, hint, reach)?;
+                return Some(self.over_border(x, seen, (z0, overhang)).unwrap_or(seen));
+            }
         };
         let foot = master.foot(x, hint, reach)?;
         let seen = Seen::rigid(master, &foot);
@@ -275,6 +279,44 @@ impl MasterNow<'_> {
             free: false,
             ..seen
         }))
+    }
+
+    /// How far a point hangs over the rounding of a free border of a body, as a part of its radius.
+    pub fn past(&self, x: &Vec3, hint: Option<Hint>, overhang: Overhang) -> f64 {
+        let Some(master) = self.moving() else {
+            return 0.0;
+        };
+        let foot = master.facets.project(x, hint, f64::INFINITY, |_| true);
+        let over = foot.and_then(|foot| master.over_border(x, &foot, overhang, 0.0)?);
+        over.map_or(0.0, |(_, over)| over.past)
+    }
+
+    /// The faces of a body.
+    fn moving(&self) -> Option<MovingMaster<'_>> {
+        let MasterNow::Body { body, surface, .. } = self else {
+            return None;
+        };
+        Some(MovingMaster {
+            facets: &(*surface)?.facets,
+            undeformed: &body.facets,
+            depth: body.depth,
+            keep: false,
+        })
+    }
+
+    /// What is seen of a body by a point over the rounding of a free border of it; none where it does not hang there in contact.
+    fn over_border(&self, x: &Vec3, seen: Seen, (z0, overhang): (f64, Overhang)) -> Option<Seen> {
+        let master = self.moving()?;
+        let foot = master
+            .facets
+            .project(x, Some(seen.hint), f64::INFINITY, |f| f == seen.hint.patch)?;
+        let gap = master.hanging(x, &foot, z0, overhang)?;
+        Some(Seen {
+            signed_distance: gap,
+            free: false,
+            behind: false,
+            ..seen
+        })
     }
 
     /// [`MasterNow::see`] up to a distance.

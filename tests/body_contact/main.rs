@@ -3,6 +3,7 @@ mod averaged;
 mod averaged_multipliers;
 mod bad_input;
 mod blocks;
+mod borders;
 mod convergence;
 mod cut_faces;
 mod edges;

@@ -6,7 +6,7 @@ use covact::contact::kernel::{self, NodeRow, Normal, SlotMatrix, Slots};
 use covact::contact::law::NormalLaw;
 use covact::contact::moving::{MovingMaster, master_row};
 use covact::contact::point::{PointGeometry, respond};
-use covact::contact::rigid::Exact;
+use covact::contact::rigid::{Exact, Overhang};
 use covact::fem::quadrature::{self, Rule};
 use covact_geometry::{Bilinear, Biquadratic, Frame, MovingFacets, ShapeRows};
 use nalgebra::{DMatrix, DVector};
@@ -244,7 +244,14 @@ fn on_facets(facets: &MovingFacets, q: &V<f64>) -> Option<Evaluated> {
         depth: 1.0,
         keep: false,
     };
-    let touch = (master.touch(q, &mut None, &Hardening, &Exact, |_| true)).unwrap()?;
+    let touch = (master.touch(
+        q,
+        (&mut None, Overhang::default()),
+        &Hardening,
+        &Exact,
+        |_| true,
+    ))
+    .unwrap()?;
     let meeting = (master.meet(q, &mut None, 1.0, |_| true)).unwrap().unwrap();
     let held = match meeting.geometry {
         PointGeometry::Edge { direction, .. } => Held::Edge(usize::from(direction[0] == 0.0)),

@@ -3,7 +3,7 @@ use crate::cases::{Hardening, mesh, plain};
 use crate::support::V;
 use covact::contact::fault::PointFault;
 use covact::contact::moving::{MovingMaster, MovingTouch};
-use covact::contact::rigid::Exact;
+use covact::contact::rigid::{Exact, Overhang};
 use covact_geometry::{Hint, MovingFacets};
 
 fn touch(
@@ -18,7 +18,13 @@ fn touch(
         depth: 0.3,
         keep: false,
     };
-    master.touch(&V::from(q), hint, &Hardening, &Exact, accept)
+    master.touch(
+        &V::from(q),
+        (hint, Overhang::default()),
+        &Hardening,
+        &Exact,
+        accept,
+    )
 }
 
 #[test]

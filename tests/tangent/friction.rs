@@ -13,6 +13,7 @@ use covact::contact::friction::scatter::PointNodes;
 use covact::contact::friction::touch::MovingFrictionTouch;
 use covact::contact::law::{Augmented, Penalty};
 use covact::contact::moving::MovingMaster;
+use covact::contact::rigid::Overhang;
 use covact_geometry::{CurvedRows, Frame, Hint, MovingFacets, ShapeRows};
 use nalgebra::{DMatrix, DVector};
 use num_dual::{Dual64, DualNum};
@@ -130,7 +131,15 @@ impl<F: FrictionLaw> Sliding<F> {
                 let x = combine(&self.case.slave, &p.shape);
                 let (law, friction) = (Self::law(), &self.friction);
                 master
-                    .touch_with_friction(&x, &mut None, &law, friction, history, form, |_| true)
+                    .touch_with_friction(
+                        &x,
+                        (&mut None, Overhang::default()),
+                        &law,
+                        friction,
+                        history,
+                        form,
+                        |_| true,
+                    )
                     .unwrap()
                     .expect("contact")
             })

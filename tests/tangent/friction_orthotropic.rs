@@ -12,6 +12,7 @@ use covact::contact::friction::orthotropic::Orthotropic;
 use covact::contact::friction::rigid::Friction;
 use covact::contact::law::{Augmented, Penalty};
 use covact::contact::moving::MovingMaster;
+use covact::contact::rigid::Overhang;
 use covact_geometry::{Frame, Hint, MovingFacets};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use num_dual::DualNum;
@@ -245,8 +246,24 @@ fn the_tip_of_triangles_knows_no_direction() {
             Friction { law, eps_t: 2.0 },
         );
         let all = |_: u32| true;
-        let one = master.touch_with_friction(&x, &mut None, &normal, &one, &history, &Full, all);
-        let two = master.touch_with_friction(&x, &mut None, &normal, &two, &history, &Full, all);
+        let one = master.touch_with_friction(
+            &x,
+            (&mut None, Overhang::default()),
+            &normal,
+            &one,
+            &history,
+            &Full,
+            all,
+        );
+        let two = master.touch_with_friction(
+            &x,
+            (&mut None, Overhang::default()),
+            &normal,
+            &two,
+            &history,
+            &Full,
+            all,
+        );
         [one, two].map(|touch| touch.expect("regular").expect("contact"))
     };
     let [one, two] = touch(0.05f64.sqrt());

@@ -12,6 +12,7 @@ mod friction_orthotropic;
 mod friction_published;
 mod friction_rigid;
 mod friction_support;
+mod hanging;
 mod normal;
 mod pairs;
 mod spin;

@@ -100,7 +100,8 @@ impl<L: PairLaw> Batch<'_, L> {
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
                 let law = offsets.law(i, self.law);
-                *out = (self.master).touch(&x, &mut s.hint, &law, tangent, facet);
+                let known = (&mut s.hint, p.overhang(s.closed));
+                *out = (self.master).touch(&x, known, &law, tangent, facet);
             });
         Kernel {
             gap: GapKind::Pointwise,

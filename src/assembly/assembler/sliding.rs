@@ -467,7 +467,7 @@ impl<L: PairLaw> Batch<'_, L> {
                 };
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
-                let hint = &mut s.hint;
+                let hint = (&mut s.hint, p.overhang(s.closed));
                 let secant = friction.sliding(self.slides.slide, slip);
                 *out = (self.master)
                     .touch_with_friction(&x, hint, &law, &secant, history, form, facet);

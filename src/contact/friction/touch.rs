@@ -7,6 +7,8 @@ use super::rigid::Friction;
 use crate::contact::fault::{Piece, PointFault};
 use crate::contact::law::{Augmented, NormalLaw, PairLaw};
 use crate::contact::moving::MovingMaster;
+use crate::contact::overhang::Overhang;
+use crate::contact::point::PointGeometry;
 use covact_geometry::{Hint, Vec3};
 
 /// A point in contact with friction on faces of a body, per unit area and in space coordinates.
@@ -26,7 +28,7 @@ pub struct MovingFrictionTouch {
 }
 
 impl MovingMaster<'_> {
-    /// Evaluates a slave point with friction; `None` where it is open. `hint` and `accept` as for
+    /// Evaluates a slave point with friction; `None` where it is open. `hint`, `overhang` and `accept` as for
     /// [`MovingMaster::touch`].
     ///
     /// # Errors
@@ -35,14 +37,14 @@ impl MovingMaster<'_> {
     pub fn touch_with_friction<L: PairLaw, F: FrictionLaw, M: Form>(
         &self,
         x: &Vec3,
-        hint: &mut Option<Hint>,
+        (hint, overhang): (&mut Option<Hint>, Overhang),
         law: &Augmented<L>,
         friction: &Friction<F>,
         history: &PointHistory,
         form: &M,
         accept: impl Fn(u32) -> bool,
     ) -> Result<Option<MovingFrictionTouch>, PointFault> {
-        let Some((foot, meeting)) = self.contact_at(x, hint, law, accept)? else {
+        let Some((foot, meeting)) = self.contact_at(x, (hint, overhang), law, accept)? else {
             return Ok(None);
         };
         let normal = meeting.pressed(law)?;
@@ -70,10 +72,29 @@ impl MovingMaster<'_> {
         let geometry = &meeting.geometry;
         let (law, n) = (&friction.law, geometry.normal());
         let heading = self.heading(law, foot.hint(), &n);
+        let heading = heading.as_ref();
+        let response = match (&meeting.hanging, geometry) {
+            (Some(hanging), PointGeometry::Face { frame, xi3 }) => {
+                let along = hanging.along_normal(&normal);
+                let mut response =
+                    respond_with_friction(geometry, &along, law, &pull, heading, form);
+                let Response {
+                    residual, tangent, ..
+                } = &mut response;
+                hanging.add_along_facet((frame, *xi3), &normal, residual, tangent);
+                // The limit of friction is that of the pressure along the normal.
+                let change = hanging.normal_along(frame, *xi3, &normal);
+                let rows = response.slip.d_pressure * change.transpose();
+                let mut slot = response.tangent.fixed_rows_mut::<3>(0);
+                slot -= rows;
+                response
+            }
+            _ => respond_with_friction(geometry, &normal, law, &pull, heading, form),
+        };
         Ok(Some(MovingFrictionTouch {
             foot: foot.hint(),
             anchor: history.place,
-            response: respond_with_friction(geometry, &normal, law, &pull, heading.as_ref(), form),
+            response,
             gap,
             n: normal.n,
             normal: n,

@@ -133,7 +133,7 @@ impl<'a, L: PairLaw> Batch<'a, L> {
             .try_for_each(|(i, (history, point))| {
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
-                self.point(&master, i, point.hint, friction, limited, history, facet)
+                self.point(&master, i, *point, friction, limited, history, facet)
             })
     }
 
@@ -142,7 +142,7 @@ impl<'a, L: PairLaw> Batch<'a, L> {
         &self,
         master: &MovingMaster<'_>,
         i: usize,
-        mut hint: Option<Hint>,
+        state: PointState,
         friction: &Friction<F>,
         limited: &impl Limited,
         history: &mut PointHistory,
@@ -150,8 +150,17 @@ impl<'a, L: PairLaw> Batch<'a, L> {
     ) -> Result<(), Fault> {
         let x = (self.model).point_position(&self.points[i], self.u);
         let law = history.law(self.law, self.offset(i));
+        let (mut hint, overhang) = (state.hint, self.points[i].overhang(state.closed));
         let touch = master
-            .touch_with_friction(&x, &mut hint, &law, friction, history, &Reduced, accept)
+            .touch_with_friction(
+                &x,
+                (&mut hint, overhang),
+                &law,
+                friction,
+                history,
+                &Reduced,
+                accept,
+            )
             .map_err(|fault| Fault::contact(self.pair, i, &x, fault))?;
         // Where the master is now, its coordinates are those of space: what follows is as on a rigid master that does not
         // move, until the point is attached again.
@@ -178,7 +187,11 @@ impl<'a, L: PairLaw> Batch<'a, L> {
             }
             None => {
                 let foot = (master.facets).project(&x, hint, f64::INFINITY, accept);
-                let gap = |f: &MovingFoot| f.signed_distance - self.offset(i);
+                let z0 = self.offset(i);
+                let gap = |f: &MovingFoot| {
+                    let over = master.over_border(&x, f, overhang, z0).flatten();
+                    over.map_or(f.signed_distance, |(_, over)| over.gap) - z0
+                };
                 let left = foot.as_ref().map(|f| (gap(f), f.normal));
                 history.leave(&x, left, &self.law, friction.eps_t, &still);
                 foot.map(|f| f.hint())

@@ -4,6 +4,7 @@ use crate::model::state::State;
 use crate::output::RunStatus;
 use crate::run::bearing::Bearing;
 use crate::run::progress::Progress;
+use crate::run::unseen::hanging;
 
 /// Iterations of failed attempts from which on a run may work in vain: one that another may stand for, and one of which the other is
 /// known to be worse.
@@ -57,10 +58,17 @@ impl March<'_, '_> {
         let on_rims =
             sunk.iter().any(|s| s.may) || (self.unseen.edges).sunk(self.model, &state.u, by.0);
         let penalties = &self.assembler.penalties;
-        let between = (self.unseen.between).look(self.model, state, span, (by, penalties));
+        let mut between = (self.unseen.between).look(self.model, state, span, (by, penalties));
+        let masters = &mut self.assembler.masters;
+        between.extend(hanging(
+            self.model,
+            masters,
+            (state, time),
+            &self.unseen.more,
+        ));
         let text = match on_rims {
             true => "an edge of a master sinks in between slave points",
-            false => "a surface sinks in between slave points",
+            false => "a surface sinks in between slave points, or these hang over its border",
         };
         (on_rims || !between.is_empty()).then(|| Ending {
             on_rims,

@@ -309,6 +309,7 @@ impl<'o> Simulation<'o> {
             safe.former = None;
         }
         let spent = run.give_up();
+        let first = first_after_cuts(&self.history);
         let observer = &mut *self.options.observer;
         // What cannot be built in another way stays as it ended.
         let made = running(&self.scene, Some(&safe), None, rims, observer);
@@ -316,7 +317,12 @@ impl<'o> Simulation<'o> {
             return Ok(false);
         };
         self.running = running;
-        (self.running).with_dependent_mut(|_, run| run.charge(spent));
+        (self.running).with_dependent_mut(|_, run| {
+            run.charge(spent);
+            if let Some(dt) = first {
+                run.begin_with(dt);
+            }
+        });
         (self.safe, self.rims) = (Some(safe), rims);
         self.history.rows.clear();
         (self.whole, self.ended, self.concluded) = (true, None, false);
@@ -391,6 +397,16 @@ impl<'o> Simulation<'o> {
     }
 }
 
+/// Size of the first step of a run, where it was cut: what a run that stands for it would fail at, too.
+fn first_after_cuts(history: &Table) -> Option<f64> {
+    let first = history.rows.first()?;
+    let [step, cuts, dt] = ["step", "cuts", "dt"].map(|name| {
+        let at = history.columns.iter().position(|c| c == name)?;
+        first.get(at).copied()
+    });
+    (step? == 1.0 && cuts? > 0.0).then_some(dt?)
+}
+
 /// The model of a scene with its run. One that stands for another is given up where steps are cut again
 /// and again.
 fn running(
@@ -449,7 +465,7 @@ fn running(
         edges: may(edges_may),
         points: match rims {
             Rims::Settled => Vec::new(),
-            _ => may(points_may),
+            _ => may(|_, contact| points_may(contact)),
         },
     };
     let problem = Box::new(Problem {

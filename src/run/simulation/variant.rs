@@ -121,12 +121,13 @@ pub(super) fn edges_may(scene: &LoadedScene, contact: &Contact) -> bool {
         && solution.dynamics.is_none()
 }
 
-/// Whether the slave of a contact may have more points by itself: its nodes on a rigid surface, in a contact that leaves them to the
-/// default and whose tractions are those of penalties at its points.
-pub(super) fn points_may(scene: &LoadedScene, contact: &Contact) -> bool {
+/// Whether the slave of a contact may have more points by itself: its nodes, in a contact with a rigid surface or another body that
+/// leaves them to the default and whose tractions are those of penalties at its points.
+pub(super) fn points_may(contact: &Contact) -> bool {
+    let body = |set: &str| set.split('.').next().map(str::to_owned);
     contact.points == Points::Auto
         && contact.augmentation.is_none()
-        && scene.scene.surfaces.contains_key(&contact.master)
+        && body(&contact.slave) != body(&contact.master)
 }
 
 /// The scene with Gauss points as the slave points of some contacts.
@@ -146,7 +147,7 @@ pub(super) fn with_points(
         }
     }
     let text = format!(
-        "while the surface had sunk into the slave between its nodes, or pushed them aside; it was repeated with {SEEING} x {SEEING} Gauss points a face as \
+        "while the surface had sunk into the slave between its nodes, pushed them aside, or left them hanging over its border; it was repeated with {SEEING} x {SEEING} Gauss points a face as \
          slave points (`\"points\": \"nodes\"` keeps them)"
     );
     safe.notes.push(stopped(&found, time, &text));
@@ -185,11 +186,14 @@ pub(super) fn seeing_less(
             }
             now.passes = Passes::One;
         }
-        if points_may(scene, contact) {
+        if points_may(contact) {
+            let rigid = scene.scene.surfaces.contains_key(&contact.master);
             if now.points != Points::Auto {
                 of_points.push(format!("`{name}`"));
             }
-            now.points = Points::Nodes;
+            if rigid || now.points != Points::Auto {
+                now.points = Points::Nodes;
+            }
         }
     }
     if of_edges.is_empty() && of_points.is_empty() && before.is_some() {

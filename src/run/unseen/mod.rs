@@ -1,11 +1,13 @@
-//! What slave points do not see: edges of masters, and how deep surfaces sink in, between them.
+//! What slave points do not see: edges of masters, how deep surfaces sink in between them, and faces whose nodes hang over a border.
 mod aside;
 mod between;
 mod edges;
+mod hanging;
 mod rims;
 
 use crate::model::Model;
 pub(in crate::run) use between::Travel;
+pub(in crate::run) use hanging::hanging;
 
 use between::Between;
 use covact_geometry::Vec3;
@@ -27,6 +29,8 @@ pub(in crate::run) struct Unseen {
     pub rims: RimWatch,
     pub edges: EdgeWatch,
     pub between: Between,
+    /// Pairs that may have more slave points in another variant of the run.
+    pub more: Vec<usize>,
 }
 
 impl Unseen {
@@ -36,6 +40,7 @@ impl Unseen {
             rims: RimWatch::new(model, end, &may.edges),
             edges: EdgeWatch::new(model, &may.edges),
             between: Between::new(model, end, &may.points),
+            more: may.points.clone(),
         }
     }
 }
