@@ -26,6 +26,7 @@ use super::loads::{DeadLoad, FollowerPressure, LoadPoint, load_points, sheet_loa
 use super::rims::RimNodes;
 use super::sheet_pressure::{FollowingSpan, PressedSpan};
 use super::stages::{self, StageStart};
+use super::stretched::Stretched;
 use super::symmetry::Unsymmetric;
 use super::{BodyModel, Metal, Model, ModelError, SurfaceModel};
 use crate::contact::lever::Lever;
@@ -60,6 +61,8 @@ struct Builder<'s> {
     /// Slave points with history so far.
     /// Of slave points at a height above a mid-surface so far.
     levers: Vec<Lever>,
+    /// Fibres that supports stretch, so far.
+    stretched: Vec<Stretched>,
     /// On rims of rigid surfaces so far.
     rims: Vec<RimNodes>,
 }
@@ -124,6 +127,7 @@ pub fn build_stage(
         dofs: supports.dofs,
         probes,
         levers: builder.levers,
+        stretched: builder.stretched,
         stage: None,
         stabilization: None,
         dynamics: None,
@@ -185,6 +189,7 @@ impl<'s> Builder<'s> {
             warnings: Vec::new(),
             averaged: 0,
             levers: Vec::new(),
+            stretched: Vec::new(),
             rims: Vec::new(),
         }
     }

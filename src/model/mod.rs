@@ -36,6 +36,7 @@ pub(crate) mod small;
 pub(crate) mod stabilization;
 pub(crate) mod stages;
 pub mod state;
+pub mod stretched;
 pub mod surface;
 pub(crate) mod symmetry;
 
@@ -107,6 +108,8 @@ pub struct Model {
     pub probes: Vec<probe::ProbeModel>,
     /// Which part of the run it is the model of; none where the scene has no stages.
     pub stage: Option<StageModel>,
+    /// Fibres of shells that supports stretch where they tilt.
+    pub stretched: Vec<stretched::Stretched>,
     /// Slave points at a height above a mid-surface, by the numbers in them; none where no shell is a CAD surface.
     pub levers: Vec<Lever>,
 }

@@ -99,7 +99,26 @@ impl Builder<'_> {
         Ok((model, labels))
     }
 
+    /// Notes a round surface that is turned about the origin, which stands for a centre that is not given, and so goes round it.
+    fn note_orbit(&mut self, name: &str, surface: &scene::Surface) {
+        let sphere = surface.sphere.as_ref().map(|s| s.center);
+        let cylinder = surface.cylinder.as_ref().map(|c| c.center);
+        let (Some(own), Some(turn)) = (sphere.or(cylinder), &surface.motion.rotation) else {
+            return;
+        };
+        let (own, axis) = (Vec3::from(own), Vec3::from(turn.axis));
+        let radius = own.cross(&axis).norm() / axis.norm();
+        if turn.center == [0.0; 3] && radius > 0.0 {
+            self.notes.push(format!(
+                "surface `{name}`: its axis of rotation passes through the origin, {} away from its own center, so that it goes round \
+                 that axis: `rotation.center` says otherwise",
+                number(radius)
+            ));
+        }
+    }
+
     fn patches(&mut self, name: &str, surface: &scene::Surface) -> Result<Patches, ModelError> {
+        self.note_orbit(name, surface);
         let field = |f: &str| format!("/surfaces/{name}/{f}");
         let made = |f: &str, r: Result<Vec<NurbsPatch>, primitives::PrimitiveError>| {
             r.map(|patches| Patches {

@@ -203,6 +203,7 @@ impl March<'_, '_> {
         let bearings = &outputs.fields.bearings;
         let residual = converged.history.last().map_or(0.0, |last| last.0);
         (self.peaks).step(self.model, (step, time, residual), bearings, &totals.pairs);
+        self.tell_stretched(state, step);
         let doubts = linearity_check::doubts(self.model, &mut self.assembler.masters, state, time);
         for doubt in doubts.map_err(|e| RunError::internal(&e))? {
             self.doubt(doubt);

@@ -1,6 +1,10 @@
 //! Warnings of a run: each is told once, and counted where it comes with several steps.
 use super::March;
+use crate::model::state::State;
 use crate::solve::event::Event;
+
+/// Couple of stretched fibres beside that which bends the shell, from which on a border is held by them.
+const HOLDS: f64 = 0.1;
 
 /// The first of the steps that the head of a warning names, `step 3: ` or `steps 3 to 9 (4 of them): `, and how many they are.
 fn steps_told(head: &str) -> Option<(u32, u32)> {
@@ -13,6 +17,29 @@ fn steps_told(head: &str) -> Option<(u32, u32)> {
 }
 
 impl March<'_, '_> {
+    /// Tells of supports that hold a border as a clamp would, since they stretch the fibres there where these tilt. Of each once.
+    pub(super) fn tell_stretched(&mut self, state: &State, step: u32) {
+        for held in &self.model.stretched {
+            let head = format!(
+                "support `{}`: it moves both faces of body `{}` alike through the thickness",
+                held.support, self.model.bodies[held.body].name
+            );
+            let told = |text: &String| text.starts_with(&head);
+            if self.progress.warnings.iter().any(told) {
+                continue;
+            }
+            let [tilt, holds] = held.worst(self.model, &state.u);
+            if holds > HOLDS {
+                self.warn(format!(
+                    "{head}, where fibres have tilted by {:.1} degrees at step {step}: they are stretched by that, and the border resists \
+                     turning as if it were clamped. With `mid_surface` it turns freely; hold the other components too where a clamp is \
+                     meant",
+                    tilt.to_degrees()
+                ));
+            }
+        }
+    }
+
     /// Reports a warning of a step. What is told of several steps in the same words is reported when it is first, and kept as
     /// one warning that counts them.
     pub(in crate::run) fn warn_of_step(&mut self, step: u32, text: &str) {
