@@ -53,7 +53,9 @@ fn sheared(d: f64) -> [f64; 2] {
 #[test]
 fn a_block_on_a_plane_sticks_in_series_and_slides_under_mu_times_its_load() {
     let way = |t: f64| 0.02 * (t - 0.25).max(0.0);
-    let outcome = done(&on_plane("0.02*max(0, t-0.25)"));
+    let mut scene = on_plane("0.02*max(0, t-0.25)");
+    scene["output"] = json!({"every": 1, "contact_points": true});
+    let outcome = done(&scene);
     let [h, v] = ["x", "z"].map(|c| outcome.column(&format!("force.plane.{c}")));
     let (time, slip) = (outcome.column("time"), outcome.column("points.slip"));
     let (mut stuck, mut slid) = (0, 0);
@@ -77,6 +79,21 @@ fn a_block_on_a_plane_sticks_in_series_and_slides_under_mu_times_its_load() {
         }
     }
     assert!(stuck >= 2 && slid >= 2, "{stuck} {slid}");
+    // The same at nodes and points of the last step.
+    let file = outcome.body("upper", outcome.summary.steps);
+    let (status, t) = (
+        file.field("contact_status"),
+        file.field("friction_traction"),
+    );
+    let rubbing: Vec<usize> = (0..status.len()).filter(|i| status[*i] == 3.0).collect();
+    assert_eq!(rubbing.len(), 12);
+    for i in rubbing {
+        assert!(
+            (t[3 * i] + MU * EPS * SINK).abs() < 1e-9 * EPS * SINK,
+            "{}",
+            t[3 * i]
+        );
+    }
     // What is dissipated is the work along what the top goes on from where the block begins to slide.
     let limit = MU * EPS * SINK;
     let mut begins = 0.0;

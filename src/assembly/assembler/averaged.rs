@@ -6,6 +6,7 @@ mod groups;
 mod masters;
 mod rank_one;
 mod rubbing;
+mod rubs;
 
 use super::answer::PointAnswer;
 use super::driven::DrivenBlock;
@@ -31,8 +32,8 @@ use covact_geometry::{Hint, ShapeRows, Vec3};
 pub(super) use groups::groups;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
-pub use rubbing::RubbedPoints;
-pub(super) use rubbing::Rubs;
+pub use rubs::RubbedPoints;
+pub(super) use rubs::Rubs;
 
 /// On an edge or a corner nearer than this part of an element the direction of the distance is not looked at.
 const NEAR: f64 = 1e-6;
@@ -299,7 +300,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         };
         match self.model.kernel(index).tangent {
             _ if own.rubbing.is_some() => {
-                self.rub_points::<TANGENT>(&at, &mut own, nodes, residual, rhs, totals);
+                self.rub_points::<TANGENT>(&at, &mut own, residual, rhs, totals);
             }
             TangentKind::Exact => {
                 self.points::<TANGENT, _>(&at, &mut own, nodes, &Exact, residual, rhs, totals)
