@@ -164,8 +164,6 @@ fn assembled_tangents_are_derivatives() {
         let mut scene = scene_json("ball_on_plate.json");
         set(&mut scene, "/bodies/plate/mesh/plate/elements", vec![n, n]);
         scene["bodies"]["plate"]["element"] = json!(element);
-        let contact = scene["contacts"]["press"].take();
-        scene["contacts"]["press"] = contact;
         scene
     };
     let arch = |slave: &str, master: &str, surface: &str| {
@@ -178,6 +176,7 @@ fn assembled_tangents_are_derivatives() {
         scene
     };
     let coulomb = |mu: f64| json!({"coulomb": {"mu": mu}});
+    let limited = json!({"shear_limited": {"mu": 0.3, "limit": 0.5}});
     let orthotropic = json!({"orthotropic": {"mu": [0.2, 0.05], "direction": [1, 0.4, 0.1]}});
     let some = coulomb(0.3);
     let (mut slipped, mut stuck) = (0, 0);
@@ -190,6 +189,20 @@ fn assembled_tangents_are_derivatives() {
             &coulomb(1e5),
             "plate",
             3.0,
+        ),
+        (
+            "ball on q18, limited",
+            ball("q18", 4),
+            &limited,
+            "plate",
+            3.0,
+        ),
+        (
+            "q18 on h8, limited",
+            arch("q18", "h8", "faces"),
+            &limited,
+            "arch",
+            -0.2,
         ),
         (
             "ball on h8, orthotropic",
@@ -246,7 +259,7 @@ fn assembled_tangents_are_derivatives() {
         assert!(error < 1e-7, "{name}: {error:e}");
         let sticks = name.ends_with("stuck");
         assert_eq!(slip == 0, sticks, "{name}: {slip} slide");
-        assert!(sticks || skew > 1e-3, "{name}: {skew:e}");
+        assert!(sticks || skew > 1e-4, "{name}: {skew:e}");
         slipped += slip;
         stuck += stick;
     }

@@ -1,8 +1,11 @@
 //! Runs with friction under averaged gaps: closed forms, and the same with gaps of points.
 use crate::blocks::done;
 use crate::friction::{last, layers, stick, stick_as, turn};
+use crate::self_contact::{R, T, pinched};
 use crate::shells::{arch_on_plate, balance};
 use crate::support::Outcome;
+use covact::model::build::build;
+use covact::scene;
 use serde_json::{Value, json};
 
 const MU: f64 = 0.3;
@@ -180,6 +183,45 @@ fn both_sides_feel_the_same() {
     }
 }
 
+/// The walls of a tube that is pinched and sheared, slave and master at once: both sides feel the same.
+#[test]
+fn a_body_rubs_on_itself() {
+    let mut scene = averaged(pinched(2.0 * R - T + 0.6, json!({"gauss": 3})));
+    scene["contacts"]["walls"]["friction"] = json!({"coulomb": {"mu": MU}});
+    let outcome = done(&scene);
+    let [force, sum] = ["force.push.z", "imbalance.force.walls"].map(|c| outcome.at(c, 1.0));
+    let points = ["points.stick", "points.slip"].map(|c| last(&outcome, c));
+    println!("force {force}, off by {sum:.1e}, {points:?} stick and slide");
+    assert!(points[0] + points[1] > 0.0 && force < -0.01 && sum < 1e-12);
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let history = |threads: u32| {
+        let mut scene = averaged(arch_on_plate(2.0, 3, json!({"gauss": 3})));
+        scene["contacts"]["press"]["friction"] = json!({"coulomb": {"mu": MU}});
+        scene["solution"]["threads"] = json!(threads);
+        let outcome = done(&scene);
+        std::fs::read(outcome.folder.path().join("history.csv")).expect("history")
+    };
+    assert!(history(1) == history(2));
+}
+
+/// Multipliers of nodes and friction of points are refused together, by the check and by whoever builds without it.
+#[test]
+fn multipliers_do_not_go_with_it() {
+    let mut scene = on_plane("0.02*max(0, t-0.25)");
+    let loaded = |scene: &Value| scene::parse(&scene.to_string(), "scene.json").expect("a scene");
+    assert_eq!(scene::check(&loaded(&scene)), vec![]);
+    scene["contacts"]["rub"]["augmentation"] = json!({});
+    let problems = scene::check(&loaded(&scene));
+    assert_eq!(problems.len(), 1, "{problems:?}");
+    let told = format!("{:?}", problems[0]);
+    assert!(told.contains("/contacts/rub/augmentation"), "{told}");
+    let error = build(&loaded(&scene)).expect_err("both");
+    assert_eq!(error.pointer, "/contacts/rub/augmentation");
+}
+
 /// A slab that a cylinder is pressed into and drawn over: forces on the cylinder at the end of the way.
 fn ironed(gap: &str, elements: u32, element: &str) -> [f64; 2] {
     let scene = json!({
@@ -211,11 +253,14 @@ fn ironed(gap: &str, elements: u32, element: &str) -> [f64; 2] {
     });
     let outcome: Outcome = done(&scene);
     println!(
-        "{gap}, {elements} {element}: {} iterations, {} cuts, dissipated {}",
+        "{gap}, {elements} {element}: {} iterations, {} cuts, dissipated {}, out of balance by {}",
         outcome.summary.newton_iterations,
         outcome.summary.cuts,
-        last(&outcome, "energy.dissipated")
+        last(&outcome, "energy.dissipated"),
+        last(&outcome, "energy.imbalance")
     );
+    let external = last(&outcome, "energy.external");
+    assert!(last(&outcome, "energy.imbalance").abs() < 0.01 * external.abs());
     ["force.die.x", "force.die.z"].map(|c| last(&outcome, c))
 }
 

@@ -150,7 +150,7 @@ fn further_effects_one_by_one() {
         let small = ("/solution/kinematics", json!("small"));
         with(scene, &[small, ("/contacts/press/friction", coulomb())])
     };
-    let cases: [(Value, &[&str]); 15] = [
+    let cases: [(Value, &[&str]); 17] = [
         (
             with(plate(), &[("/solution/stabilization", viscous)]),
             &["stabilization"],
