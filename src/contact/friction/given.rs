@@ -189,3 +189,94 @@ pub fn work<D: DualNum<f64> + Copy, M: Form>(
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::anchor::{Columns, Pull};
+    use super::super::law::Coulomb;
+    use super::*;
+    use covact_geometry::{Frame, Jet};
+    use num_dual::Dual64;
+
+    type V = Vector3<Dual64>;
+
+    fn vector(x: f64, y: f64, z: f64) -> V {
+        V::new(x.into(), y.into(), z.into())
+    }
+
+    /// A point above a face, beside an edge, at a vertex, and at a pole.
+    fn geometries() -> Vec<(&'static str, PointGeometry<Dual64>)> {
+        let jet = Jet {
+            rho: vector(0.1, 0.2, 0.3),
+            rho_i: [vector(1.1, 0.2, -0.1), vector(-0.3, 0.9, 0.2)],
+            rho_ij: [
+                vector(0.1, 0.0, 0.3),
+                vector(0.0, -0.1, 0.2),
+                vector(0.1, 0.2, -0.4),
+            ],
+        };
+        let frame = Frame::new(&jet, 1.0).expect("a tangent plane");
+        let xi3 = Dual64::from(-0.07);
+        // Orthogonal to the edge.
+        let along = jet.rho_i[0] * Dual64::from(0.8) + jet.rho_i[1] * Dual64::from(0.6);
+        let d = vector(0.2, -0.1, 0.4).cross(&along);
+        let direction = [0.8.into(), 0.6.into()];
+        let short = -d.dot(&d).sqrt();
+        vec![
+            ("face", PointGeometry::Face { frame, xi3 }),
+            ("edge", PointGeometry::edge(&jet, direction, d, short)),
+            ("vertex", PointGeometry::Vertex { d, xi3: short }),
+            (
+                "pole",
+                PointGeometry::Pole {
+                    normal: frame.n,
+                    xi3,
+                },
+            ),
+        ]
+    }
+
+    /// The residual is that of the normal traction and the work of the tangential one, and changes with the former as it is told to, where the
+    /// point slides and where it sticks.
+    #[test]
+    fn residual_follows_the_given_traction() {
+        for (name, geometry) in geometries() {
+            for (mu, slides) in [(0.3, true), (1e3, false)] {
+                let normal = Normal {
+                    n: Dual64::new(-0.9, 1.0),
+                    dn: Dual64::from(0.0),
+                };
+                let pull = Pull {
+                    v: vector(0.7, -1.2, 0.4),
+                    columns: Columns::from_element(0.0.into()),
+                    along_gap: vector(0.0, 0.0, 0.0),
+                };
+                let law = Coulomb { mu };
+                let found = respond_with_friction(&geometry, &normal, &law, &pull, None, &Full);
+                assert_eq!(found.slip.slides, slides, "{name}");
+                let (pressed, _) = respond(&geometry, &normal, &Exact);
+                let rubbed = work::<_, Full>(&geometry, &found.slip.t);
+                let error = (found.residual - pressed - rubbed).map(|x| x.re).norm();
+                assert!(
+                    error < 1e-14 && rubbed.map(|x| x.re).norm() > 0.1,
+                    "{name}: {error:e}"
+                );
+                let told = in_slot(0, &geometry.normal())
+                    + work::<_, Full>(&geometry, &-found.slip.d_pressure);
+                let error = (found.residual.map(|x| x.eps) - told.map(|x| x.re)).norm();
+                assert!(error < 1e-14, "{name}, slides {slides}: {error:e}");
+                let by_friction = found.slip.d_pressure.map(|x| x.re).norm();
+                assert_eq!(by_friction > 0.1, slides, "{name}");
+                let levers = rubbed.rows(3, 6).map(|x| x.re).norm();
+                assert_eq!(levers > 1e-3, name == "face" || name == "edge", "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_drawn_does_not_rub() {
+        let slip = Drawn.slip(&Vec3::x(), &Vec3::z(), -1.0);
+        assert_eq!((slip.t, slip.d_trial), (Vec3::zeros(), Matrix3::zeros()));
+        assert!(!slip.slides);
+    }
+}
