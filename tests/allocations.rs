@@ -116,6 +116,10 @@ fn an_evaluation_of_contact_allocates_no_more_for_many_points() {
             json!({ "friction": { "coulomb": { "mu": 0.3 } }, "augmentation": {} }),
         ),
         ("averaged", json!({ "gap": "averaged" })),
+        (
+            "averaged friction",
+            json!({ "gap": "averaged", "friction": { "coulomb": { "mu": 0.3 } } }),
+        ),
     ] {
         let [few, many] = [4, 16].map(|elements| count(elements, &contact));
         println!("{name}: {few:?} {many:?}");

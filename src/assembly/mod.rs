@@ -4,5 +4,6 @@ mod assembler;
 pub(crate) use assembler::sizes;
 pub use assembler::{
     Assembler, AssemblerMemory, CouplingMemory, Drag, Factored, Fault, Line, Linearization,
-    MemoryError, Needed, PairForce, PointAnswer, Quadratic, StartError, SurfaceForce, Totals,
+    MemoryError, Needed, PairForce, PointAnswer, Quadratic, RubbedPoints, StartError, SurfaceForce,
+    Totals,
 };

@@ -22,7 +22,7 @@
 //! open point of a closed node counts with its positive gap and may carry traction; because this does not vanish with
 //! the distance, use [`Meeting::steady`](super::meeting::Meeting::steady) at edges. The projection is that of the mortar
 //! method with a lumped mass (e.g. Popp, Gitterle, Gee & Wall, IJNME 83 (2010)); its tangential counterpart is not used
-//! here.
+//! here: friction is that of points under `lambda(q)` ([`super::friction::given`]).
 use super::kernel::{self, NodeRow, Normal, SlotMatrix, Slots};
 use super::law::NormalLaw;
 use super::point::{FaceTangent, PointGeometry, respond};

@@ -46,3 +46,10 @@ pub fn range(
     let first = first + more - less;
     Some(first..first + slaves(cuts, model, pair).len())
 }
+
+/// Those of a pair's multipliers; empty where it has none.
+pub fn multipliers(cuts: &[Option<Arc<[SlavePoint]>>], model: &Model, pair: usize) -> Range<usize> {
+    let own = range(cuts, model, pair);
+    own.filter(|_| model.pairs[pair].augmentation.is_some())
+        .unwrap_or(0..0)
+}

@@ -411,17 +411,23 @@ impl PairModel {
         }
     }
 
-    /// Whether its points have a history; where gaps are averaged, its nodes.
+    /// Whether its points have a history; where gaps are averaged and there is no friction, its nodes.
     pub fn remembers(&self) -> bool {
         self.friction.is_some() || self.augmentation.is_some()
     }
 
-    /// Number of its points, or of its nodes where gaps are averaged, before anything moves.
+    /// Number of its points, or of its nodes where gaps are averaged and there is no friction, before anything moves.
     pub fn carriers(&self) -> usize {
-        match &self.averaged {
-            Some(nodes) => nodes.len(),
-            None => self.points.len(),
+        match (&self.averaged, &self.friction) {
+            (Some(nodes), None) => nodes.len(),
+            _ => self.points.len(),
         }
+    }
+
+    /// Whether facets of its master are coupled with each other beside its slave points. A closed node of averaged gaps couples
+    /// all that the points around it feel.
+    pub fn links(&self) -> bool {
+        self.friction.is_some() && self.averaged.is_none()
     }
 }
 

@@ -58,7 +58,7 @@ impl Reporter<'_> {
             };
             let friction = self.effect(effect, key.clone(), reason).costs(cost);
             let mut held = self.history(told);
-            if moving {
+            if pair.links() && moving {
                 held.push(Held::assembler("links", Per::Whole, 0, 1).growing());
                 if let (true, Some([each, fixed])) = (large, sizes::sliding(pair)) {
                     let n = told.points();
@@ -66,6 +66,11 @@ impl Reporter<'_> {
                     let room = Held::assembler("sliding points", Per::Whole, fixed, 1);
                     held.extend([points, room].map(|h| h.of_points(pair.segments().is_some())));
                 }
+            }
+            if let Some([each, room]) = sizes::rubs(pair) {
+                let n = told.points();
+                held.push(Held::assembler("rubbing points", Per::Point, each, n));
+                held.push(Held::assembler("rubbing points", Per::Whole, room, 1).growing());
             }
             let rubs = |p: &PairModel| p.friction.is_some();
             if self.model.pairs.iter().position(rubs) == Some(told.index) {

@@ -1,10 +1,10 @@
 //! Nodes of a pair with averaged gaps, as the output shows them.
 use crate::contact::averaged::NodalGap;
 use crate::contact::law::NormalLaw;
-use crate::model::Model;
 use crate::model::averaged::{Share, SlaveNodes};
 use crate::model::master::MasterNow;
 use crate::model::state::State;
+use crate::model::{Model, histories};
 
 /// A slave node.
 pub(super) struct NodeNow {
@@ -76,12 +76,13 @@ pub(super) fn nodes_now<L: NormalLaw>(
             }
         }
     }
-    let known = (state.history(model, index)).map(|range| &state.histories[range]);
+    let known = histories::multipliers(&state.cuts, model, index);
+    let known = &state.histories[known];
     let now = nodes.nodes().iter().zip(&sums).enumerate();
     let now = now.map(|(at, (&node, s))| {
         // With multipliers the step's own, which may be that of a node slightly above the surface.
-        let n = match known {
-            Some(histories) => histories[at].n,
+        let n = match known.get(at) {
+            Some(history) => history.n,
             None => s.gap.normal(law).n,
         };
         let closed = s.gap.gap().filter(|_| n < 0.0);

@@ -1,4 +1,5 @@
 //! What slave points with history remember of a step that is accepted.
+mod averaged;
 mod moving;
 mod small;
 
@@ -6,7 +7,7 @@ use crate::assembly::{Assembler, Fault, PointAnswer};
 use crate::contact::friction::history::{PointHistory, PointStatus, Turn};
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::rigid::Friction;
-use crate::contact::law::{Offsets, PairLaw, Penalty};
+use crate::contact::law::{NormalLaw, Offsets, PairLaw, Penalty};
 use crate::contact::points::SlavePoint;
 use crate::contact::rigid::RigidMaster;
 use crate::model::friction::with_law;
@@ -176,6 +177,7 @@ pub fn commit<L: PairLaw>(
         let eps_t = ratios[index] * penalties[index];
         // What the tangential penalties carry beside the multipliers.
         let elastic = pair.augmentation.map(|_| &answers[range.clone()]);
+        let rubbed = assembler.rubbed_points(index);
         let (hints, histories) = (&state.points[points], &mut state.histories[range]);
         match pair.master {
             Master::Rigid(surface) => {
@@ -192,20 +194,24 @@ pub fn commit<L: PairLaw>(
                     offsets: pair.offsets(time),
                     law: law_n,
                 };
-                with_law!(now, law => {
+                if let Some(rubbed) = &rubbed {
+                    batch.rubbed(hints, histories, eps_t, &limited, rubbed);
+                } else {
+                    with_law!(now, law => {
                     let friction = Friction { law, eps_t };
                     (histories.par_iter_mut().zip(hints).enumerate())
                         .with_min_len(64)
                         .try_for_each(|(i, (history, point))| {
                             batch.accept(i, point, &friction, &limited, history)
                         })?;
-                });
+                    });
+                }
             }
             Master::Body(_) => {
                 let at = (slaves(&state.cuts, model, index), &state.u[..], time);
                 let batch = moving::Batch::new(model, masters, index, at, law_n);
                 if let Some(batch) = batch {
-                    batch.commit(hints, histories, (now, eps_t), &limited)?;
+                    batch.commit(hints, histories, (now, eps_t), &limited, rubbed.as_ref())?;
                 }
             }
         }
@@ -280,14 +286,26 @@ impl<L: PairLaw> Batch<'_, L> {
                     Some(_) => history.accept_augmented(local, traction, &first, n, eps_t, turn),
                 }
             }
-            None => {
-                let pose = &self.master.pose;
-                let local = (pose.inverse_transform_point(&Point3::from(x))).coords;
-                let foot = self.master.foot(&x, hint, f64::INFINITY);
-                let foot = foot.map(|f| self.master.gap(&x, &f, z0, point.overhang(false)));
-                history.leave(&local, foot, &self.law, friction.eps_t, &self.turn);
-            }
+            None => self.leave(i, hint, &self.law, friction.eps_t, history),
         }
         Ok(())
+    }
+
+    /// History of a point that touches no more, under the law that its traction would have.
+    fn leave(
+        &self,
+        i: usize,
+        hint: Option<Hint>,
+        law: &impl NormalLaw,
+        eps_t: f64,
+        history: &mut PointHistory,
+    ) {
+        let point = &self.pair.points[i];
+        let x = (self.model).point_position(point, self.u);
+        let z0 = self.offsets.map_or(0.0, |o| o.at(i));
+        let local = (self.master.pose.inverse_transform_point(&Point3::from(x))).coords;
+        let foot = self.master.foot(&x, hint, f64::INFINITY);
+        let foot = foot.map(|f| self.master.gap(&x, &f, z0, point.overhang(false)));
+        history.leave(&local, foot, law, eps_t, &self.turn);
     }
 }

@@ -13,11 +13,12 @@ use super::surface_cells::pieces;
 use super::traction_fields::TractionFields;
 use crate::contact::friction::history::PointStatus;
 use crate::contact::law::PairLaw;
+use crate::model::averaged::Around;
 use crate::model::master::{MasterNow, Masters};
 use crate::model::state::State;
 use crate::model::{BodyModel, Model, SurfaceModel};
 use crate::output::{
-    CLOSED, MidSurface, NOT_A_SLAVE, OPEN, OutputError, PartNames, Results, SurfaceOutput,
+    CLOSED, MidSurface, NOT_A_SLAVE, OPEN, OutputError, PartNames, Results, SLIP, SurfaceOutput,
     SurfaceState, von_mises,
 };
 use crate::scene::Output;
@@ -195,6 +196,25 @@ impl Fields {
                     }
                 }
                 now.iter().for_each(|n| self.take(n));
+                if let (Some(_), Some(range)) = (&pair.friction, state.history(model, index)) {
+                    let histories = &state.histories[range];
+                    self.friction.gather(model, points, histories);
+                    for (place, n) in now.iter().enumerate().filter(|(_, n)| n.closed) {
+                        let slides = |a: &Around| histories[a.point as usize].slides();
+                        if nodes.around(place).iter().any(slides) {
+                            self.status[n.node] = SLIP;
+                        }
+                    }
+                }
+                if let Some(gaps) = self.gaps.get_mut(first..first + points.len()) {
+                    let offsets = pair.offsets(time);
+                    for (i, (p, kept)) in points.iter().zip(gaps).enumerate() {
+                        let x = model.point_position(p, &state.u);
+                        let z0 = offsets.map_or(0.0, |o| o.at(i));
+                        let seen = master.see(i, &x, states[i].hint);
+                        *kept = seen.map_or(f64::NAN, |s| s.gap(z0));
+                    }
+                }
                 for (i, n) in now.iter().enumerate().filter(|(_, n)| n.closed) {
                     let carrier = Carrier {
                         index: i,

@@ -96,6 +96,8 @@ fn scenes() -> Vec<(&'static str, Value)> {
     let mut sliding_half = half.clone();
     add(&mut sliding_half, friction.clone());
     half["points"] = json!({"gauss": 3});
+    let mut rubbing = averaged.clone();
+    add(&mut rubbing, friction.clone());
     vec![
         ("rigid", on_plane(json!({}))),
         (
@@ -104,10 +106,12 @@ fn scenes() -> Vec<(&'static str, Value)> {
         ),
         ("rigid, friction", on_plane(friction.clone())),
         ("rigid, averaged", on_plane(averaged.clone())),
+        ("rigid, averaged, friction", on_plane(rubbing.clone())),
         ("rigid, multipliers", on_plane(json!({"augmentation": {}}))),
         ("body", on_block(json!({}))),
         ("body, friction", on_block(friction)),
         ("body, averaged", on_block(averaged)),
+        ("body, averaged, friction", on_block(rubbing)),
         ("body, half passes", on_block(half)),
         ("body, half passes, friction", on_block(sliding_half)),
     ]

@@ -104,6 +104,14 @@ fn a_block_that_slides_is_held_back_by_mu_times_its_load() {
 /// Largest difference of the `x` displacements of the free nodes of the interface from the exact state of two layers in
 /// shear that stick to each other, relative to the shift of the top.
 pub fn stick(points: Value, two_half: bool) -> f64 {
+    match two_half {
+        true => stick_as(points, ("passes", json!("two_half"))),
+        false => stick_as(points, ("gap", json!("pointwise"))),
+    }
+}
+
+/// [`stick`] of a contact with another choice.
+pub fn stick_as(points: Value, (key, choice): (&str, Value)) -> f64 {
     // A hundredth of the penetration: second order terms of a larger shear would act on the free sides.
     let shift = 2e-5;
     let way = format!("{shift}*max(0, t-0.25)/0.75");
@@ -114,9 +122,7 @@ pub fn stick(points: Value, two_half: bool) -> f64 {
     let rub = &mut scene["contacts"]["rub"];
     rub["points"] = points;
     rub["friction"]["coulomb"]["mu"] = json!(10.0);
-    if two_half {
-        rub["passes"] = json!("two_half");
-    }
+    rub[key] = choice;
     scene["output"]["every"] = json!(1);
     let outcome = done(&scene);
     assert_eq!(last(&outcome, "points.slip"), 0.0);
@@ -161,11 +167,11 @@ fn meshes_that_do_not_match_stick_in_uniform_shear() {
 /// every step).
 #[test]
 fn turning_a_sticking_pair_changes_nothing_in_its_traction() {
-    turn(json!({"gauss": 2}), 0);
+    turn(json!({"gauss": 2}), 0, "pointwise");
 }
 
-/// [`turning_a_sticking_pair_changes_nothing_in_its_traction`] with these slave points, from a step on.
-pub fn turn(points: Value, first: usize) {
+/// [`turning_a_sticking_pair_changes_nothing_in_its_traction`] with these slave points and gaps, from a step on.
+pub fn turn(points: Value, first: usize, gap: &str) {
     // Pressed and sheared until t = 1, then turned about y.
     let angle = "1.5707963267948966*max(0, t-1)/6";
     let (c, s) = (format!("cos({angle})"), format!("sin({angle})"));
@@ -188,7 +194,7 @@ pub fn turn(points: Value, first: usize) {
             }}, "material": "m"}
         },
         "contacts": {"stick": {
-            "slave": "upper.bottom", "master": "lower.top", "points": points,
+            "slave": "upper.bottom", "master": "lower.top", "points": points, "gap": gap,
             "penalty": {"value": 2000}, "friction": {"coulomb": {"mu": 5.0}}
         }},
         "supports": {

@@ -1,6 +1,8 @@
 //! Contact between deformable bodies.
 mod averaged;
+mod averaged_friction;
 mod averaged_multipliers;
+mod averaged_rubbing;
 mod bad_input;
 mod blocks;
 mod borders;

@@ -24,7 +24,7 @@ fn meshes_that_do_not_match_stick_in_uniform_shear() {
 /// differ by what that changes, and by nothing from there on.
 #[test]
 fn turning_a_sticking_pair_changes_nothing_in_its_traction() {
-    turn(segments(), 2);
+    turn(segments(), 2, "pointwise");
 }
 
 /// `H = mu V` over edges of facets, and the work of the drag: what is dissipated is the work that is not stored.

@@ -46,11 +46,13 @@ fn way(far: f64) -> Value {
     json!({ "table": [[0, 0], [0.2, 0], [1, far]] })
 }
 
-#[test]
-fn a_cylinder_rolls_on_a_moving_sheet_without_slip() {
+/// The cylinder under gaps of points, or averaged ones.
+fn rolls(gap: &str) {
     // Sunk by s, half a chord c: F = 2/3 eps (2 c) s width for the parabola of depth, c^2 = 2 R s.
     let force = 0.5;
-    let outcome = done(&roller(way(1.0), json!(-force), json!(0), 0.5, 40));
+    let mut scene = roller(way(1.0), json!(-force), json!(0), 0.5, 40);
+    scene["contacts"]["roll"]["gap"] = json!(gap);
+    let outcome = done(&scene);
     println!("{:?}", outcome.summary);
     let depth = outcome.at("penetration.max", 1.0);
     assert!(depth > 1e-4 && depth < 3e-3, "{depth}");
@@ -72,6 +74,16 @@ fn a_cylinder_rolls_on_a_moving_sheet_without_slip() {
         // No moment, no friction in sum: what there is has the arm R at every point but for the depth.
         assert!(outcome.at("force.roller.x", t).abs() < 0.5 * force * depth / RADIUS);
     }
+}
+
+#[test]
+fn a_cylinder_rolls_on_a_moving_sheet_without_slip() {
+    rolls("pointwise");
+}
+
+#[test]
+fn a_cylinder_rolls_without_slip_where_gaps_are_averaged() {
+    rolls("averaged");
 }
 
 #[test]

@@ -387,6 +387,32 @@ fn averaged_gaps_with_multipliers() {
     assert_eq!(found.status, RunStatus::Done);
 }
 
+/// The histories of points whose tractions are those of nodes, on facets that move.
+#[test]
+fn averaged_gaps_with_friction() {
+    let contact = json!({
+        "gap": "averaged", "points": {"gauss": 3}, "friction": {"coulomb": {"mu": 0.2}}
+    });
+    let mut scene = sledge(1.6, 12, contact);
+    scene["output"] = json!({"every": 3, "contact_points": true});
+    let found = in_pieces(&scene);
+    assert_eq!(found.status, RunStatus::Done);
+    assert!(found.pattern_rebuilds >= 2, "{}", found.pattern_rebuilds);
+}
+
+/// The same on a rigid surface that is drawn back at the end.
+#[test]
+fn averaged_gaps_with_friction_on_a_tool() {
+    let mut scene = ironed(json!({"gap": "averaged", "points": {"gauss": 3}}));
+    scene["bodies"]["slab"]["element"] = json!("q18");
+    for scene in [
+        ironed(json!({"gap": "averaged", "points": {"gauss": 3}})),
+        scene,
+    ] {
+        assert_eq!(in_pieces(&scene).status, RunStatus::Done);
+    }
+}
+
 /// A sheet bent over the border of a table and drawn back, with nodes of the border as slaves.
 #[test]
 fn edges_of_a_rigid_surface() {

@@ -53,7 +53,7 @@ fn on_rigid_surfaces() {
     let facets = |kind: &str| json!({"kind": kind, "count": [6, 6]});
     let published = json!({"published": {"curvature": false}});
     let (offset, none) = (json!(0.1), json!({}));
-    let cases: [(&[(&str, Value)], &str); 10] = [
+    let cases: [(&[(&str, Value)], &str); 11] = [
         (&[], "rigid_nurbs.penalty.frictionless.exact"),
         (
             &[("friction", coulomb())],
@@ -82,6 +82,14 @@ fn on_rigid_surfaces() {
         (
             &[("points", json!({"gauss": 2})), ("gap", json!("averaged"))],
             "averaged.rigid_nurbs.penalty.frictionless.exact",
+        ),
+        (
+            &[
+                ("points", json!({"gauss": 2})),
+                ("gap", json!("averaged")),
+                ("friction", coulomb()),
+            ],
+            "averaged.rigid_nurbs.penalty.coulomb.exact",
         ),
         (
             &[("/surfaces/ball/facets", facets("bilinear"))],
@@ -121,7 +129,7 @@ fn between_bodies() {
     let halves = || ("/contacts/press/passes", json!("two_half"));
     let friction = || ("/contacts/press/friction", coulomb());
     let ellipse = || ("/contacts/press/friction", orthotropic());
-    let cases: [Case; 8] = [
+    let cases: [Case; 9] = [
         (&[], "faces.penalty.frictionless.exact", 1),
         (&[friction()], "faces.penalty.coulomb.exact", 1),
         (
@@ -132,6 +140,11 @@ fn between_bodies() {
         (
             &[("/contacts/press/gap", json!("averaged"))],
             "averaged.faces.penalty.frictionless.exact",
+            1,
+        ),
+        (
+            &[("/contacts/press/gap", json!("averaged")), ellipse()],
+            "averaged.faces.penalty.orthotropic.exact",
             1,
         ),
         (

@@ -115,6 +115,7 @@ fn eight_combinations_hold_what_their_effects_need_and_nothing_else() {
             ("links", deformable && friction),
             ("averaged nodes", false),
             ("averaged gaps", false),
+            ("rubbing points", false),
             ("segments", false),
             ("driven", false),
             ("driven friction", false),
@@ -149,7 +150,7 @@ fn further_effects_one_by_one() {
         let small = ("/solution/kinematics", json!("small"));
         with(scene, &[small, ("/contacts/press/friction", coulomb())])
     };
-    let cases: [(Value, &[&str]); 15] = [
+    let cases: [(Value, &[&str]); 17] = [
         (
             with(plate(), &[("/solution/stabilization", viscous)]),
             &["stabilization"],
@@ -164,6 +165,37 @@ fn further_effects_one_by_one() {
         (
             with(blocks(), &[("/contacts/press/gap", json!("averaged"))]),
             &["averaged nodes", "averaged gaps"],
+        ),
+        (
+            with(
+                plate(),
+                &[
+                    gauss(),
+                    ("/contacts/press/gap", json!("averaged")),
+                    ("/contacts/press/friction", coulomb()),
+                ],
+            ),
+            &[
+                "averaged nodes",
+                "averaged gaps",
+                "rubbing points",
+                "histories",
+            ],
+        ),
+        (
+            with(
+                blocks(),
+                &[
+                    ("/contacts/press/gap", json!("averaged")),
+                    ("/contacts/press/friction", coulomb()),
+                ],
+            ),
+            &[
+                "averaged nodes",
+                "averaged gaps",
+                "rubbing points",
+                "histories",
+            ],
         ),
         (
             with(
@@ -240,6 +272,7 @@ fn further_effects_one_by_one() {
             "stabilization",
             "averaged nodes",
             "averaged gaps",
+            "rubbing points",
             "segments",
             "driven",
             "driven friction",

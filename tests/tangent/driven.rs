@@ -89,8 +89,8 @@ fn compare(model: &Model, state: &State) -> Option<(f64, f64)> {
     Some((worst / scale, smallest / scale))
 }
 
-#[test]
-fn border_with_friction_is_the_derivative_of_the_residual() {
+/// The border with friction, of gaps of points or of nodes.
+fn rubs(averaged: bool) {
     let all = json!({ "x": 0.4, "y": -0.3, "z": -50 });
     for (name, force, moment, turned, mu) in [
         ("one axis", &all, json!({ "y": 3 }), [0.0, 0.007, 0.0], 0.3),
@@ -112,6 +112,10 @@ fn border_with_friction_is_the_derivative_of_the_residual() {
         let mut scene = punch(force.clone(), moment);
         for contact in scene["contacts"].as_object_mut().unwrap().values_mut() {
             contact["friction"] = json!({ "coulomb": { "mu": mu } });
+            if averaged {
+                contact["gap"] = json!("averaged");
+                contact["points"] = json!({ "gauss": 2 });
+            }
         }
         let model = model(&scene);
         let mut state = State::new(&model);
@@ -138,10 +142,21 @@ fn border_with_friction_is_the_derivative_of_the_residual() {
             }
         }
         let (error, smallest) = compare(&model, &state).expect("nothing is loose");
-        println!("{name}: {error:.1e}, smallest column {smallest:.1e}");
+        println!("{name}, averaged {averaged}: {error:.1e}, smallest column {smallest:.1e}");
         assert!(error < 1e-6, "{name}: {error:e}");
         assert!(smallest > 1e-6, "{name}: a column is as good as zero");
     }
+}
+
+#[test]
+fn border_with_friction_is_the_derivative_of_the_residual() {
+    rubs(false);
+}
+
+/// The traction of every node moves the surface by friction as well.
+#[test]
+fn border_with_averaged_gaps_that_rub_is_the_derivative_of_the_residual() {
+    rubs(true);
 }
 
 #[test]

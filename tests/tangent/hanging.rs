@@ -21,6 +21,7 @@ const MAY: Overhang = Overhang {
 
 /// Facets between -1 and 1 that bend and twist, and points past x = 1, past y = 1 and past the corner of both: on the flat part
 /// of the rounding, and on its curved part.
+#[allow(clippy::type_complexity)]
 fn facets(order: usize) -> (Vec<V<f64>>, Vec<Vec<u32>>, Vec<V<f64>>) {
     let height = |x: f64, y: f64| 0.1 * x * x - 0.05 * x * y + 0.02 * y;
     let (nodes, list) = mesh(2, order, |x, y| V::new(x, y, height(x, y)));

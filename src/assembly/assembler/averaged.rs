@@ -3,7 +3,10 @@
 //! A closed node couples all slave nodes of the faces around it with each other, and with all master nodes that the
 //! points of these faces meet: the rank-one part of [`crate::contact::averaged`].
 mod groups;
+mod masters;
 mod rank_one;
+mod rubbing;
+mod rubs;
 
 use super::answer::PointAnswer;
 use super::driven::DrivenBlock;
@@ -19,19 +22,18 @@ use crate::contact::kind::{LawKind, TangentKind};
 use crate::contact::law::{NoOffset, NormalLaw, PairLaw, PointLaw};
 use crate::contact::meeting::Meeting;
 use crate::contact::point::FaceTangent;
-use crate::contact::rigid::{Exact, RigidMaster};
+use crate::contact::rigid::Exact;
 use crate::contact::scatter::assemble_point;
 use crate::model::averaged::{Share, SlaveNodes};
 use crate::model::driven::press;
-use crate::model::kernel::Kernel;
-use crate::model::master::Master;
 use crate::model::state::{PointState, State, heap};
-use crate::model::surface::with_patches;
-use crate::model::{Model, PairModel, histories};
+use crate::model::{Model, PairModel};
 use covact_geometry::{Hint, ShapeRows, Vec3};
 pub(super) use groups::groups;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
+pub use rubs::RubbedPoints;
+pub(super) use rubs::Rubs;
 
 /// On an edge or a corner nearer than this part of an element the direction of the distance is not looked at.
 const NEAR: f64 = 1e-6;
@@ -53,6 +55,8 @@ pub(super) struct Averaged {
     keys: Vec<u32>,
     map: Vec<u32>,
     ke: Vec<f64>,
+    /// With friction.
+    rubbing: Option<Box<Rubs>>,
 }
 
 impl Averaged {
@@ -68,7 +72,7 @@ impl Averaged {
         [own + rows, node, PerPair::<Averaged>::HEAD]
     }
 
-    /// Bytes of heap that it holds.
+    /// Bytes of heap that it holds, those of friction left out.
     pub fn bytes(&self) -> usize {
         let Averaged {
             met,
@@ -82,6 +86,7 @@ impl Averaged {
             keys,
             map,
             ke,
+            rubbing: _,
         } = self;
         let points = heap(met) + heap(shares) + heap(carries) + heap(directions) + heap(rows);
         let nodes = heap(gaps) + heap(normals);
@@ -109,6 +114,7 @@ impl Averaged {
             keys: Vec::new(),
             map: Vec::new(),
             ke: Vec::new(),
+            rubbing: Rubs::new(pair),
         })
     }
 
@@ -250,45 +256,6 @@ fn facet(met: &Meeting) -> Option<u32> {
 }
 
 impl<L: PairLaw> Assembler<'_, L> {
-    /// Finds the points of a pair with a rigid master; those of bodies are found before the pattern is known to do.
-    pub(super) fn meet_rigid(
-        &mut self,
-        index: usize,
-        first: usize,
-        state: &mut State,
-        time: f64,
-    ) -> Result<(), Fault> {
-        let (model, pair) = (self.model, &self.model.pairs[index]);
-        let (Master::Rigid(number), Some(averaged)) = (&pair.master, self.averaged.get_mut(index))
-        else {
-            return Ok(());
-        };
-        let master = model.surfaces[*number].at(time, &state.u)?;
-        let states = &mut state.points[first..first + pair.points.len()];
-        let (of_pair, reach) = (L::of(self.penalties[index]), pair.reach(model));
-        let (known, u) = (histories::range(&state.cuts, model, index), &state.u[..]);
-        let known = known.unwrap_or(0..0);
-        let histories = &state.histories[known.clone()];
-        let law = with_patches!(master.surface, patches => {
-            let master = RigidMaster {
-                surface: patches,
-                pose: master.pose,
-                depth: master.depth,
-                keep: false,
-            };
-            averaged.meet(model, pair, (&of_pair, histories), (u, time), states, |_, x, hint| {
-                master.meet(x, hint, reach)
-            })
-        })?;
-        averaged.answer(self.answers.get_mut(known).unwrap_or_default());
-        self.ran[index] = Some(Kernel {
-            master: model.surfaces[*number].kind(),
-            law,
-            ..model.kernel(index)
-        });
-        Ok(())
-    }
-
     /// Sums up pair `index`, whose points are found.
     #[allow(clippy::too_many_arguments)]
     pub(super) fn average<const TANGENT: bool>(
@@ -332,6 +299,9 @@ impl<L: PairLaw> Assembler<'_, L> {
             center,
         };
         match self.model.kernel(index).tangent {
+            _ if own.rubbing.is_some() => {
+                self.rub_points::<TANGENT>(&at, &mut own, residual, rhs, totals);
+            }
             TangentKind::Exact => {
                 self.points::<TANGENT, _>(&at, &mut own, nodes, &Exact, residual, rhs, totals)
             }
@@ -340,7 +310,13 @@ impl<L: PairLaw> Assembler<'_, L> {
             }
         }
         if TANGENT {
-            self.rank_one(&at, &mut own, nodes, rhs);
+            match own.rubbing.take() {
+                None => self.rank_one(&at, &mut own, nodes, rhs),
+                Some(mut rubbing) => {
+                    self.rub_nodes(&at, (&mut own, &mut rubbing), nodes, rhs);
+                    own.rubbing = Some(rubbing);
+                }
+            }
         }
         if let Some(kept) = self.averaged.get_mut(index) {
             *kept = own;

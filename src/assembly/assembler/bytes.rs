@@ -10,7 +10,7 @@ use crate::model::state::heap;
 /// Bytes of heap by what they are for, from the sizes of types alone: for plans.
 pub(crate) mod sizes {
     use super::super::PointAnswer;
-    use super::super::averaged::Averaged;
+    use super::super::averaged::{Averaged, Rubs};
     use super::super::couplings::Couplings;
     use super::super::driven::DrivenBlock;
     use super::super::elements::pairs;
@@ -77,6 +77,11 @@ pub(crate) mod sizes {
     /// For each point of a pair with averaged gaps, for each of its nodes, and for all of the pair.
     pub fn averaged(pair: &PairModel) -> [usize; 3] {
         Averaged::sizes(pair)
+    }
+
+    /// For each point of a pair with averaged gaps and friction, and for all of the pair.
+    pub fn rubs(pair: &PairModel) -> Option<[usize; 2]> {
+        Rubs::sizes(pair)
     }
 
     /// For a driven surface, beside its nodes.
@@ -188,6 +193,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             ("points on bodies", meetings.bytes(Meetings::bytes)),
             ("sliding points", sliding.bytes(Sliding::bytes)),
             ("averaged gaps", averaged.bytes(|a| a.bytes())),
+            ("rubbing points", averaged.inner(|a| a.rubs())),
             ("loads", heap(external)),
             ("contact forces", heap(contact)),
             ("driven", driven[0]),

@@ -178,6 +178,12 @@ impl DrivenBlock {
         &mut self.blocks[self.place[node] as usize]
     }
 
+    /// What the blocks of translation and spin with a slave node's displacement, below the diagonal, have over the transposed
+    /// [`Self::block`]; only with friction.
+    pub fn below(&mut self, node: usize) -> &mut [Matrix3<f64>; 2] {
+        &mut self.below[self.place[node] as usize]
+    }
+
     fn clear(&mut self) {
         self.blocks.fill([Matrix3::zeros(); 2]);
         self.below.fill([Matrix3::zeros(); 2]);

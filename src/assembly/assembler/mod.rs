@@ -57,6 +57,7 @@ use std::marker::PhantomData;
 use std::sync::Arc;
 
 pub use answer::PointAnswer;
+pub use averaged::RubbedPoints;
 pub(crate) use bytes::sizes;
 pub use drag::Drag;
 pub use effects::StartError;

@@ -12,15 +12,15 @@ use super::rigid::rounding;
 use super::touched::{self};
 use super::{Assembler, Fault, PairForce, PatternError, SurfaceForce, Totals, maps, put};
 use crate::contact::kernel::assemble_force;
-use crate::contact::kind::{FrictionKind, LawKind, MasterKind};
+use crate::contact::kind::{FrictionKind, LawKind};
 use crate::contact::law::PairLaw;
 use crate::contact::lever;
 use crate::contact::moving::MovingMaster;
 use crate::contact::points::SlavePoint;
 use crate::contact::scatter::{assemble_point, keep_slave_rows};
-use crate::model::kernel::{GapKind, Kernel, SideKind};
+use crate::model::kernel::SideKind;
 use crate::model::master::{MasterNow, Masters};
-use crate::model::self_contact::{Accept, All, Opposing};
+use crate::model::self_contact::{All, Opposing};
 use crate::model::state::{PointState, State, slaves};
 use crate::model::{Model, histories};
 use covact_geometry::Vec3;
@@ -44,7 +44,7 @@ pub(super) fn first_couplings(model: &Model, masters: &Masters) -> PerPair<Coupl
         }
         let near = near(model, masters, index, &pair.points, &zero, &[]);
         couplings.couple(&surface.facets, near.into_iter());
-        if pair.friction.is_some() {
+        if pair.links() {
             couplings.link(&surface.facets, std::iter::empty());
         }
         Some(couplings)
@@ -103,6 +103,10 @@ impl<L: PairLaw> Assembler<'_, L> {
             let points = slaves(&state.cuts, self.model, index);
             let range = first..first + points.len();
             first = range.end;
+            if self.averaged.get(index).is_some() {
+                missing |= self.meet_bodies::<TANGENT>(index, range, state, time)?;
+                continue;
+            }
             let (Some(master), Some(surface), Some(couplings)) = (
                 pair.body_master(),
                 self.masters.surface(index),
@@ -111,47 +115,6 @@ impl<L: PairLaw> Assembler<'_, L> {
                 continue;
             };
             let kernel = self.model.kernel(index);
-            if let (GapKind::Averaged, Some(averaged)) = (kernel.gap, self.averaged.get_mut(index))
-            {
-                let facets = MovingMaster {
-                    facets: &surface.facets,
-                    undeformed: &master.facets,
-                    depth: master.depth,
-                    keep: false,
-                };
-                let (model, law) = (self.model, L::of(self.penalties[index]));
-                let known = histories::range(&state.cuts, model, index).unwrap_or(0..0);
-                let law = (&law, &state.histories[known.clone()]);
-                let at = (&state.u[..], time);
-                let (states, reach) = (&mut state.points[range], pair.reach(model));
-                let law = match &master.own {
-                    None => averaged.meet(model, pair, law, at, states, |_, x, hint| {
-                        facets.meet(x, hint, reach, |_| true)
-                    }),
-                    Some(own) => {
-                        let accept = Opposing {
-                            own,
-                            normals: &surface.normals,
-                            position: |n: u32| model.position(n as usize, at.0),
-                        };
-                        averaged.meet(model, pair, law, at, states, |i, x, hint| {
-                            let at = accept.point(i);
-                            facets.meet(x, hint, reach, |f| accept.facet(at, f))
-                        })
-                    }
-                }?;
-                averaged.answer(self.answers.get_mut(known).unwrap_or_default());
-                self.ran[index] = Some(Kernel {
-                    law,
-                    master: match &master.own {
-                        None => MasterKind::Faces,
-                        Some(_) => MasterKind::OwnFaces,
-                    },
-                    ..kernel
-                });
-                missing |= averaged.touched().any(|(i, f)| !couplings.holds(i, f));
-                continue;
-            }
             let remembered = histories::range(&state.cuts, self.model, index);
             let cut = state.cuts.get(index).cloned().flatten();
             if let (Some(friction), Some(histories), Some(sliding)) = (
@@ -260,7 +223,7 @@ impl<L: PairLaw> Assembler<'_, L> {
     /// Builds the pattern anew for the points that are in contact or near it.
     fn couple_anew(&mut self, state: &State) -> Result<(), Fault> {
         let mut first = 0;
-        for index in 0..self.model.pairs.len() {
+        for (index, pair) in self.model.pairs.iter().enumerate() {
             let points = state.slaves(self.model, index);
             let states = &state.points[first..first + points.len()];
             first += points.len();
@@ -274,15 +237,17 @@ impl<L: PairLaw> Assembler<'_, L> {
             near.extend(meetings.iter().flat_map(|m| m.touched()));
             near.extend(averaged.iter().flat_map(|a| a.touched()));
             let remembered = state.history(self.model, index);
-            let (Some(sliding), Some(histories)) = (self.sliding.get(index), remembered) else {
+            let (Some(histories), Some(_)) = (remembered, &pair.friction) else {
                 couplings.couple(&surface.facets, near.into_iter());
                 continue;
             };
-            let touched = sliding.touched();
-            near.extend(touched.map(|(i, facet, _)| (i, facet)));
+            let touched = self.sliding.get(index).into_iter();
+            near.extend((touched.flat_map(|s| s.touched())).map(|(i, facet, _)| (i, facet)));
             let links = links::with_anchors(&mut near, &state.histories[histories]);
             couplings.couple(&surface.facets, near.into_iter());
-            couplings.link(&surface.facets, links.into_iter());
+            if pair.links() {
+                couplings.link(&surface.facets, links.into_iter());
+            }
         }
         self.build_pattern()?;
         self.rebuilds += 1;

@@ -62,7 +62,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             let kernel = self.model.kernel(index);
             if kernel.gap == GapKind::Averaged {
                 let n = pair.points.len();
-                self.meet_rigid(index, first, state, time)?;
+                self.meet_rigid::<TANGENT>(index, first, state, time)?;
                 self.average::<TANGENT>(
                     index, first, state, time, increments, residual, rhs, totals,
                 )?;

@@ -71,9 +71,7 @@ impl Sliding {
 
     /// Numbers that the largest matrix of a pair has; none where this is not for the pair.
     fn stride(pair: &PairModel) -> Option<usize> {
-        let (Some(master), Some(_)) = (pair.body_master(), &pair.friction) else {
-            return None;
-        };
+        let master = pair.body_master().filter(|_| pair.links())?;
         let facets = 0..master.facets.len() as u32;
         let facet = facets.map(|f| master.facets.nodes(f).len()).max();
         Some(room(pair, 2 * facet.unwrap_or(0)))

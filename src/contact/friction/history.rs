@@ -62,6 +62,11 @@ impl Turn {
 }
 
 impl PointHistory {
+    /// Whether the point slid at the last accepted step.
+    pub fn slides(&self) -> bool {
+        self.status == PointStatus::Slip
+    }
+
     /// Law of the normal traction of the point under the law of its pair, its gap measured from `z0` (length).
     #[inline]
     pub fn law<L>(&self, law: L, z0: f64) -> Augmented<L> {

@@ -18,10 +18,12 @@
 //! - [`law`]: Coulomb's law, and what any law has to give; [`orthotropic`]: a law of two coefficients;
 //! - [`rigid`]: points on rigid masters; [`steady`]: points whose normals stay, at small displacements;
 //! - [`anchor`]: the attraction point on a facet that moves, [`moving`]: the response there in the slots,
-//!   [`heading`]: the direction of a law there, [`touch`]: points on faces of bodies, [`scatter`]: from the slots to their nodes.
+//!   [`heading`]: the direction of a law there, [`touch`]: points on faces of bodies, [`scatter`]: from the slots to their nodes;
+//! - [`given`]: points whose normal traction is that of the nodes around them;
 //! - [`published`], [`evolution`]: the published tangents and the rate law in components, to compare with.
 pub mod anchor;
 pub mod evolution;
+pub mod given;
 pub mod heading;
 pub mod history;
 pub mod law;

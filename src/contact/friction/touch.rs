@@ -49,26 +49,7 @@ impl MovingMaster<'_> {
         };
         let normal = meeting.pressed(law)?;
         let gap = law.gap(meeting.xi3);
-        let pull = match history.place {
-            None => Pull::none(),
-            Some(place) => {
-                let anchor = Anchor::new(&self.facets.jet(place.patch, place.xi)).ok_or(
-                    PointFault::DegenerateFrame {
-                        piece: Piece::Facet(place.patch),
-                        xi: place.xi,
-                    },
-                )?;
-                let components = [&history.base, &history.lambda];
-                Pull::new(
-                    &anchor,
-                    components,
-                    friction.eps_t,
-                    history.approach,
-                    x,
-                    gap,
-                )
-            }
-        };
+        let pull = self.pull(history, friction.eps_t, x, gap)?;
         let geometry = &meeting.geometry;
         let (law, n) = (&friction.law, geometry.normal());
         let heading = self.heading(law, foot.hint(), &n);
@@ -99,6 +80,38 @@ impl MovingMaster<'_> {
             n: normal.n,
             normal: n,
         }))
+    }
+
+    /// What pulls at a slave point at `x` with this gap, by its history.
+    ///
+    /// # Errors
+    /// The facet of the attraction point has degenerated.
+    #[inline]
+    pub(super) fn pull(
+        &self,
+        history: &PointHistory,
+        eps_t: f64,
+        x: &Vec3,
+        gap: f64,
+    ) -> Result<Pull, PointFault> {
+        let Some(place) = history.place else {
+            return Ok(Pull::none());
+        };
+        let anchor = Anchor::new(&self.facets.jet(place.patch, place.xi)).ok_or(
+            PointFault::DegenerateFrame {
+                piece: Piece::Facet(place.patch),
+                xi: place.xi,
+            },
+        )?;
+        let components = [&history.base, &history.lambda];
+        Ok(Pull::new(
+            &anchor,
+            components,
+            eps_t,
+            history.approach,
+            x,
+            gap,
+        ))
     }
 
     /// Attaches an attraction point and its traction, in space, to the surface at `foot`, to move with it from now on. Where

@@ -326,6 +326,10 @@ impl Builder<'_> {
         let friction = self.friction(name, contact, (body, &size), eps_n, automatic)?;
         let augmentation = (contact.augmentation.as_ref())
             .map(|asked| AugmentationModel::new(asked, size.edge, automatic));
+        if let (Some(_), Some(_), Some(_)) = (&averaged, &friction, &augmentation) {
+            let message = "multipliers of averaged gaps are those of nodes, and do not go with friction, which is that of points";
+            return Err(text(pointer("augmentation"), message).help("leave one of them out"));
+        }
         if self.scene.contacts.get(name) == Some(contact) {
             self.tell_extent(name, contact, augmentation.as_ref(), rigid.is_none());
         }

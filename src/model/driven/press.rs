@@ -490,8 +490,8 @@ fn multiplier(pair: &PairModel, (i, p): (usize, &SlavePoint), histories: &[Point
         return 0.0;
     };
     let of = |at: usize| histories.get(first + at).map_or(0.0, |h| h.lambda_n);
-    match &pair.averaged {
-        Some(nodes) => nodes.terms(i, p).map(|(at, w)| w * of(at)).sum(),
-        None => of(i),
+    match (&pair.averaged, &pair.friction) {
+        (Some(nodes), None) => nodes.terms(i, p).map(|(at, w)| w * of(at)).sum(),
+        _ => of(i),
     }
 }

@@ -1,14 +1,17 @@
 //! Slave points on faces of bodies: their attraction points are material points of these faces.
 use super::Limited;
-use crate::assembly::Fault;
+use super::averaged::Beyond;
+use crate::assembly::{Fault, RubbedPoints};
 use crate::contact::friction::history::{PointHistory, Turn};
 use crate::contact::friction::law::FrictionLaw;
 use crate::contact::friction::moving::Reduced;
 use crate::contact::friction::rigid::Friction;
+use crate::contact::friction::touch::MovingFrictionTouch;
 use crate::contact::friction::trial::Traction;
-use crate::contact::law::{Offsets, PairLaw};
+use crate::contact::law::{NormalLaw, Offsets, PairLaw};
 use crate::contact::moving::MovingMaster;
 use crate::contact::points::SlavePoint;
+use crate::contact::rigid::Overhang;
 use crate::model::friction::LawNow;
 use crate::model::friction::with_law;
 use crate::model::master::{BodyMaster, BodySurface, Masters};
@@ -78,7 +81,8 @@ impl<'a, L: PairLaw> Batch<'a, L> {
     }
 
     /// Takes the end of a step into the histories. `limited` is the traction that the law allowed at its start, for a
-    /// trial traction, a normal and a pressure, and the direction of the master there.
+    /// trial traction, a normal and a pressure, and the direction of the master there; `rubbed` has the points as they were
+    /// evaluated last, where gaps are averaged.
     ///
     /// # Errors
     /// A point that cannot be evaluated.
@@ -88,12 +92,14 @@ impl<'a, L: PairLaw> Batch<'a, L> {
         histories: &mut [PointHistory],
         (law, eps_t): (LawNow, f64),
         limited: &impl Limited,
+        rubbed: Option<&RubbedPoints<'_, L>>,
     ) -> Result<(), Fault> {
         with_law!(law, law => {
             let friction = Friction { law, eps_t };
+            let (friction, with) = (&friction, (limited, rubbed));
             match &self.body.own {
-                None => self.accept(points, histories, &friction, limited, &All),
-                Some(own) => self.accept(points, histories, &friction, limited, &self.opposing(own)),
+                None => self.accept(points, histories, friction, with, &All),
+                Some(own) => self.accept(points, histories, friction, with, &self.opposing(own)),
             }
         })
     }
@@ -124,7 +130,7 @@ impl<'a, L: PairLaw> Batch<'a, L> {
         points: &[PointState],
         histories: &mut [PointHistory],
         friction: &Friction<F>,
-        limited: &impl Limited,
+        (limited, rubbed): (&impl Limited, Option<&RubbedPoints<'_, L>>),
         accept: &A,
     ) -> Result<(), Fault> {
         let master = self.master();
@@ -133,6 +139,13 @@ impl<'a, L: PairLaw> Batch<'a, L> {
             .try_for_each(|(i, (history, point))| {
                 let at = accept.point(i);
                 let facet = |f| accept.facet(at, f);
+                if let Some(rubbed) = rubbed {
+                    let touch = rubbed.moving(i).map(|found| found.touch);
+                    let at = (point.hint, Overhang::default());
+                    let end = (touch, Beyond(rubbed.beyond(i)), at);
+                    self.end(&master, i, end, friction, limited, history, facet);
+                    return Ok(());
+                }
                 self.point(&master, i, *point, friction, limited, history, facet)
             })
     }
@@ -162,6 +175,28 @@ impl<'a, L: PairLaw> Batch<'a, L> {
                 accept,
             )
             .map_err(|fault| Fault::contact(self.pair, i, &x, fault))?;
+        let end = (touch, self.law, (hint, overhang));
+        self.end(master, i, end, friction, limited, history, accept);
+        Ok(())
+    }
+
+    /// Takes the end of a step into the history of a point, which touches or not; `law` is that of its traction where it does not.
+    #[expect(clippy::too_many_arguments)]
+    fn end<F: FrictionLaw>(
+        &self,
+        master: &MovingMaster<'_>,
+        i: usize,
+        (touch, law, (hint, overhang)): (
+            Option<MovingFrictionTouch>,
+            impl NormalLaw,
+            (Option<Hint>, Overhang),
+        ),
+        friction: &Friction<F>,
+        limited: &impl Limited,
+        history: &mut PointHistory,
+        accept: impl Fn(u32) -> bool + Copy,
+    ) {
+        let x = (self.model).point_position(&self.points[i], self.u);
         // Where the master is now, its coordinates are those of space: what follows is as on a rigid master that does not
         // move, until the point is attached again.
         let still = Turn::none();
@@ -193,7 +228,7 @@ impl<'a, L: PairLaw> Batch<'a, L> {
                     over.map_or(f.signed_distance, |(_, over)| over.gap) - z0
                 };
                 let left = foot.as_ref().map(|f| (gap(f), f.normal));
-                history.leave(&x, left, &self.law, friction.eps_t, &still);
+                history.leave(&x, left, &law, friction.eps_t, &still);
                 foot.map(|f| f.hint())
             }
         };
@@ -205,7 +240,6 @@ impl<'a, L: PairLaw> Batch<'a, L> {
         } else {
             master.attach(history, foot);
         }
-        Ok(())
     }
 
     /// History of an open point at the start.

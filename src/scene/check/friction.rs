@@ -60,7 +60,7 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
             }
         }
     }
-    // Averaged gaps are those of nodes, and the published forms are of normal contact.
+    // The published forms are of normal contact, and multipliers of averaged gaps are those of nodes, friction is that of points.
     let mut without = |field: &str, with: &str, help: &str| {
         c.add(
             &format!("{at}/{field}"),
@@ -68,8 +68,9 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
             Some(help.into()),
         );
     };
-    if contact.gap == Gap::Averaged {
-        without("gap", "averaged gaps", "take `pointwise`");
+    if contact.gap == Gap::Averaged && contact.augmentation.is_some() {
+        let with = "averaged gaps and multipliers at once: the latter are those of nodes, whereas points rub";
+        without("augmentation", with, "leave one of them out");
     }
     if let Tangent::Published { .. } = contact.tangent {
         without("tangent", "the published tangent", "take `exact`");

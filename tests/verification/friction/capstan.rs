@@ -133,6 +133,26 @@ fn tensions_of_a_belt() {
     }
 }
 
+/// The same tensions where the pressure is that of nodes with averaged gaps.
+#[test]
+fn tensions_of_a_belt_with_averaged_gaps() {
+    for points in [2, 3] {
+        let mut scene = belt(90.0, 1.5, 2.5);
+        scene["contacts"]["wrap"]["gap"] = json!("averaged");
+        scene["contacts"]["wrap"]["points"] = json!({"gauss": points});
+        set(&mut scene, "/solution/step/initial", 0.05);
+        set(&mut scene, "/solution/step/max", 0.25);
+        let outcome = solve(&scene);
+        report(&outcome);
+        let row = row_at(&outcome, 2.5);
+        assert_eq!(outcome.column("points.stick")[row], 0.0);
+        let (ours, theta) = measured(&outcome, row);
+        let error = ours / ratio(0.3, theta) - 1.0;
+        println!("{points} points: T2/T1 {ours:.5}, off by {error:+.1e}");
+        assert!(error.abs() < 1e-3);
+    }
+}
+
 /// The shipped scene, wrapped by half a turn and drawn by 16 elements.
 #[test]
 fn the_shipped_belt() {
