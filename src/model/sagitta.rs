@@ -1,7 +1,7 @@
 //! Overclosures and clearances beside the sagitta of facets. A flat face of a curved body lies a sagitta off the surface that its nodes are
 //! on, most in its middle. Where two such surfaces do not match node by node, overclosures are wrong by that, and with them
 //! the pressures of an interference fit; so is the clearance of a pin in its bore. So the gaps of a pair that starts with an
-//! overclosure, or most of whose slave lies near the master, are measured between the curved surfaces: what facets change of the gap
+//! overclosure, or both sides of which are curved and lie close to each other, are measured between the curved surfaces: what facets change of the gap
 //! of each point at the start is taken out of it for the whole run.
 use super::error::number;
 use super::master::{MasterNow, Masters};
@@ -272,7 +272,8 @@ impl Sides {
             return None;
         }
         let all: f64 = pair.points.iter().map(|p| p.area).sum();
-        if !overlaps && !beside.counts(all) {
+        let fits = self.slave.is_some() && self.master.is_some() && beside.counts(all);
+        if !overlaps && !fits {
             return None;
         }
         let refused = match (pair.tangent, pair.segments()) {

@@ -4,6 +4,9 @@
 //! chord over a step of length h by up to `|f''| h^2 / 8`, with the bend `f''` as it is both at the largest force and at the nearer
 //! of the forces beside it: a force that rises and stays has none there. Where it rises and drops, as friction does that gives
 //! way, it may have gone on as it rose; a quarter of that is counted, which is the same for a parabola with its top at a step.
+//!
+//! Where a tool turns, friction turns round within a small part of the next step, and falls from there on as the tool goes back: the
+//! top lies near the turn, where the line through the forces after it leads to.
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use covact_geometry::Vec3;
 
@@ -21,11 +24,14 @@ pub(super) struct Crest {
     pub step: u32,
     /// What is prescribed had a kink there, so that the force may have another slope from there on.
     kink: bool,
+    /// The same at the step before it.
+    from_kink: bool,
     /// The two steps before it, and what is known of those after it.
     before: [At; 2],
     after: [Option<At>; 2],
-    /// The last two steps.
+    /// The last two steps, and whether the last one ended with a kink.
     last: [At; 2],
+    last_kink: bool,
 }
 
 impl Crest {
@@ -37,6 +43,7 @@ impl Crest {
                 top: now,
                 step,
                 kink,
+                from_kink: self.last_kink,
                 before: self.last,
                 after: [None; 2],
                 ..*self
@@ -45,6 +52,7 @@ impl Crest {
             *free = Some(now);
         }
         self.last = [self.last[1], now];
+        self.last_kink = kink;
     }
 
     /// The largest force.
@@ -77,7 +85,20 @@ impl Crest {
         };
         let longest = (next[0] - top[0]).max(top[0] - second[0]);
         let smooth = bend(second, top, next).min(beside) * longest * longest / 8.0;
-        let part = smooth.max(0.25 * rise.min(fall)) / top[1];
+        // A force that rises past the turn of a tool and falls evenly from then on.
+        let turned = match (self.from_kink, beyond) {
+            (true, Some(beyond)) if rise > fall => {
+                let falls = -slope(top, next);
+                let straight = bend(top, next, beyond) * longest < falls.max(0.0);
+                if straight {
+                    falls * (top[0] - second[0])
+                } else {
+                    0.0
+                }
+            }
+            _ => 0.0,
+        };
+        let part = smooth.max(0.25 * rise.min(fall)).max(turned) / top[1];
         (part > TOLD).then_some(part)
     }
 
@@ -87,15 +108,19 @@ impl Crest {
             top,
             step,
             kink,
+            from_kink,
             before,
             after,
             last,
+            last_kink,
         } = self;
         for at in [*top].iter().chain(before).chain(last) {
             out.f64s(at);
         }
         out.u32(*step);
-        out.bool(*kink);
+        for kink in [kink, from_kink, last_kink] {
+            out.bool(*kink);
+        }
         for at in after {
             out.bool(at.is_some());
             out.f64s(&at.unwrap_or_default());
@@ -110,7 +135,15 @@ impl Crest {
             from.f64s(at)?;
         }
         crest.step = from.u32()?;
-        crest.kink = from.bool()?;
+        let Crest {
+            kink,
+            from_kink,
+            last_kink,
+            ..
+        } = &mut crest;
+        for kink in [kink, from_kink, last_kink] {
+            *kink = from.bool()?;
+        }
         for at in &mut crest.after {
             let (known, mut value) = (from.bool()?, At::default());
             from.f64s(&mut value)?;
@@ -221,6 +254,23 @@ mod tests {
             (turns.force(), turns.time(), turns.missing()),
             (3.0, 3.0, None)
         );
+    }
+
+    /// Friction that turns round after the third step, at which the tool does: from 109.9 there (air bending, force along the die).
+    #[test]
+    fn a_top_past_a_turn() {
+        let turned = |kink: bool| {
+            let mut crest = crest(&[52.6]);
+            crest.step(2, 2.0, 66.5, kink);
+            let after = [(3.0, 93.55), (3.692, 82.2), (4.384, 71.64)];
+            for (i, (time, force)) in after.into_iter().enumerate() {
+                crest.step(i as u32 + 3, time, force, false);
+            }
+            crest.missing()
+        };
+        let part = turned(true).unwrap();
+        assert!((93.55 * (1.0 + part) - 109.9).abs() < 0.2, "{part}");
+        assert!(turned(false).is_none_or(|part| part < 0.04));
     }
 
     /// A pin that is pushed in under a spring: what holds it back along its way has its top long before the spring's force.

@@ -42,12 +42,17 @@ impl Norms {
     /// what was pressed and is let go to exactly where it began has no forces of its own to be measured by, and its points open
     /// and close by what rounding leaves.
     pub fn beside(self, largest: f64) -> (Self, bool) {
-        let vanished = self.force < NOTHING * largest;
+        let vanished = Norms::vanish(self.force, largest);
         let force = match vanished {
             true => REMEMBERED * largest,
             false => self.force,
         };
         (Norms { force, ..self }, vanished)
+    }
+
+    /// Whether forces are nothing beside the largest that there have been.
+    pub fn vanish(force: f64, largest: f64) -> bool {
+        force < NOTHING * largest
     }
 
     /// Residual relative to the forces (to the floor where there are none).

@@ -454,8 +454,12 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                 w.scratch[3 * node + c] = u.abs().max(f64::EPSILON * x[c].abs());
             }
         }
-        // The curvatures of a sheet are those of its positions.
-        for body in (self.model.bodies.iter()).filter(|b| b.block.sheet().is_some()) {
+        let force = (reactions.sqrt().max(external))
+            .max(totals.contact_norm)
+            .max(totals.effects_norm);
+        // The curvatures of a sheet are those of its positions, and rounding leaves forces of these once there are no others.
+        let sheets = (self.model.bodies.iter()).filter(|b| b.block.sheet().is_some());
+        for body in sheets.filter(|_| Norms::vanish(force, w.largest_force)) {
             let first = body.first_node as usize;
             for node in first..first + body.mesh.nodes.len() {
                 for c in 0..3 {
@@ -473,9 +477,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             0.5 * f64::EPSILON * dot(&w.absolute, &w.absolute).sqrt() + totals.contact_rounding;
         Norms {
             residual,
-            force: (reactions.sqrt().max(external))
-                .max(totals.contact_norm)
-                .max(totals.effects_norm),
+            force,
             floor,
         }
     }

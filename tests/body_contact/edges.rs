@@ -48,14 +48,15 @@ fn an_edge_between_two_nodes_bears_where_it_is() {
     }
 }
 
-/// Two cantilevers across each other: the one above has an edge that leaves the last node on which it rests.
-fn crossed(exchanged: bool) -> Value {
+/// Two cantilevers across each other: the one above has an edge that leaves the last node on which it rests, or lies between nodes, `at` 44
+/// and elsewhere.
+fn crossed(exchanged: bool, at: f64) -> Value {
     let (slave, master) = match exchanged {
         false => ("lower.top", "upper.bottom"),
         true => ("upper.bottom", "lower.top"),
     };
     let plate = json!({"plate": {"size": [50, 8], "thickness": 2, "elements": [25, 2]}});
-    let turned = json!({"axis": [0, 0, 1], "angle": 90, "translation": [44, -25, 2.2]});
+    let turned = json!({"axis": [0, 0, 1], "angle": 90, "translation": [at, -25, 2.2]});
     json!({
         "covact": 1,
         "materials": {"m": {"neo_hooke": {"E": 2000, "nu": 0.35}}},
@@ -71,24 +72,28 @@ fn crossed(exchanged: bool) -> Value {
     })
 }
 
-/// With the edge on the master's side the run stops where the edge comes to lie between two nodes, and is repeated with the edges
-/// as slaves: the same force as with the sides exchanged, where the edge is the slave's from the start.
+/// With the edge on the master's side, between two nodes, the run is repeated with the edges as slaves: the same force as with the sides
+/// exchanged, where the edge is the slave's from the start. Exactly under a row of nodes these slide off it over its rounding, by up
+/// to a quarter of their distance, which moves it by some hundredths of the lever arm.
 #[test]
-fn a_run_that_stops_on_an_edge_is_repeated_with_it() {
-    let [own, exchanged] = [false, true].map(|exchanged| {
-        let outcome = done(&crossed(exchanged));
-        let repeated = |w: &String| w.contains("while a sharp edge of the master lay on the slave");
-        assert_eq!(
-            outcome.summary.warnings.iter().any(repeated),
-            !exchanged,
-            "{:?}",
-            outcome.summary.warnings
-        );
-        *outcome.column("force.wall.z").last().expect("steps")
-    });
-    println!("{own} {exchanged}");
-    assert!(exchanged > 1.0, "{exchanged}");
-    assert!((own / exchanged - 1.0).abs() < 0.01, "{own} {exchanged}");
+fn an_edge_on_the_slave_bears_as_with_the_sides_exchanged() {
+    for (at, repeated, off) in [(43.5, true, 0.01), (44.0, false, 0.02)] {
+        let [own, exchanged] = [false, true].map(|exchanged| {
+            let outcome = done(&crossed(exchanged, at));
+            let again = outcome.summary.given_up.runs > 0;
+            assert_eq!(
+                again,
+                repeated && !exchanged,
+                "{:?}",
+                outcome.summary.warnings
+            );
+            assert!(outcome.summary.newton_iterations < 100);
+            *outcome.column("force.wall.z").last().expect("steps")
+        });
+        println!("{at}: {own} {exchanged}");
+        assert!(exchanged > 1.0, "{exchanged}");
+        assert!((own / exchanged - 1.0).abs() < off, "{own} {exchanged}");
+    }
 }
 
 /// Edges that are flush with the border of the slave are none: `block` on `beam` in plane strain has one edge, two nodes.

@@ -530,7 +530,7 @@ fn a_run_that_does_not_converge() {
 #[test]
 fn a_repetition_with_edges() {
     let plate = json!({"plate": {"size": [50, 8], "thickness": 2, "elements": [25, 2]}});
-    let turned = json!({"axis": [0, 0, 1], "angle": 90, "translation": [44, -25, 2.2]});
+    let turned = json!({"axis": [0, 0, 1], "angle": 90, "translation": [43.5, -25, 2.2]});
     let scene = json!({
         "covact": 1,
         "materials": {"m": {"neo_hooke": {"E": 2000, "nu": 0.35}}},
