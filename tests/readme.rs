@@ -24,6 +24,43 @@ fn docs_lists_the_effects() {
     assert_eq!(rows, covact::model::EffectKind::ALL.len());
 }
 
+/// Names of properties and values of a schema.
+fn names(schema: &Value, found: &mut std::collections::BTreeSet<String>) {
+    match schema {
+        Value::Object(object) => {
+            if let Some(Value::Object(properties)) = object.get("properties") {
+                found.extend(properties.keys().cloned());
+            }
+            let values = object.get("enum").and_then(Value::as_array);
+            let values = values.into_iter().flatten().chain(object.get("const"));
+            found.extend(values.filter_map(|v| v.as_str().map(str::to_owned)));
+            object.values().for_each(|part| names(part, found));
+        }
+        Value::Array(parts) => parts.iter().for_each(|part| names(part, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn docs_has_every_key_of_the_schemas() {
+    let scenes = include_str!("../docs/scene_format.md");
+    let studies = format!("{scenes}{}", include_str!("../docs/studies.md"));
+    for (schema, page, least) in [
+        (covact::scene::schema(), scenes, 200),
+        (covact::study::schema(), &studies, 60),
+    ] {
+        let schema: Value = serde_json::from_str(&schema).expect("JSON");
+        let mut found = std::collections::BTreeSet::new();
+        names(&schema, &mut found);
+        let word = |c: char| !(c.is_alphanumeric() || c == '_' || c == '$');
+        let words: std::collections::BTreeSet<&str> = page.split(word).collect();
+        for name in &found {
+            assert!(words.contains(name.as_str()), "the pages lack `{name}`");
+        }
+        assert!(found.len() > least, "{}", found.len());
+    }
+}
+
 #[test]
 fn docs_lists_the_shipped_scenes() {
     let page = include_str!("../docs/scenes.md");

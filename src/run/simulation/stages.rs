@@ -23,7 +23,8 @@ impl Simulation<'_> {
     /// those of the scene that were to come, and the run ends with it. Tools and loads go on from where they are to what the
     /// stage says for its end. So a program that steps a run decides from its results what comes next.
     ///
-    /// The scene needs [stages](crate::scene::Stage), at least one. Checkpoints are those of the scene as it was given: a run that
+    /// The scene needs [stages](crate::scene::Stage), at least one. A run that begins again ([`Step::attempt`](super::Step)) has the
+    /// stages that were begun at the times at which they were. Checkpoints are those of the scene as it was given: a run that
     /// is continued from its folder goes on from the last step before.
     ///
     /// # Errors
@@ -65,7 +66,10 @@ impl Simulation<'_> {
         let Some(now) = &self.model().stage else {
             return wrong("the scene has no stages, of which one could end: give it a first one");
         };
-        if (self.ended.as_ref()).is_some_and(|e| e.status != RunStatus::Interrupted) {
+        let status = self.status();
+        // A run that is repeated takes the new stage along, which begins at the same time.
+        let repeated = status == Some(RunStatus::NotConverged) && self.closed.is_none();
+        if !(repeated || matches!(status, None | Some(RunStatus::Interrupted))) {
             return wrong("the run has ended: no stage follows it");
         }
         // A stage that ends here by itself has ended; the one after it has not begun.
@@ -76,19 +80,32 @@ impl Simulation<'_> {
         let index = now.start.index;
         let mut scene = self.scene.clone();
         cut(&mut scene.scene, index, time, stage);
-        if scene.scene.finds_supports() && !self.scene.scene.finds_supports() {
-            let text = "supports are found for the new stage, whose columns the history does not have: let a stage of the scene \
-                        find some, or list the `supports` of the new one";
-            return wrong(text);
+        // The history has columns for supports that are found, or it has none.
+        match [&self.scene, &scene].map(|s| s.scene.finds_supports()) {
+            [false, true] => {
+                return wrong(
+                    "the new stage would find supports, which the scene does not: list its `supports`, or let a stage of the \
+                     scene find some",
+                );
+            }
+            [true, false] => {
+                return wrong(
+                    "the scene finds supports in a stage that was to come, and so has to the new one: list `automatic` among its \
+                     `supports`",
+                );
+            }
+            _ => {}
         }
         RunError::of(scene::check(&scene))?;
         let mut loaded = self.running.borrow_owner().loaded.clone();
         (loaded.scene.stages).clone_from(&scene.scene.stages);
         loaded.scene.solution.end_time = scene.scene.solution.end_time;
-        let observer = &mut *self.options.observer;
-        (self.running).with_dependent_mut(|_, run| run.end_stage(observer, true));
-        let pool = std::sync::Arc::clone(&self.pool);
-        pool.install(|| self.go_on_with(loaded.clone()))?;
+        if !repeated {
+            let observer = &mut *self.options.observer;
+            (self.running).with_dependent_mut(|_, run| run.end_stage(observer, true));
+            let pool = std::sync::Arc::clone(&self.pool);
+            pool.install(|| self.go_on_with(loaded.clone()))?;
+        }
         if let Some(safe) = &mut self.safe {
             safe.loaded = loaded;
         }
