@@ -11,6 +11,20 @@ use crate::surface::{Jet, Vec3};
 pub(crate) const DEGENERATE: f64 = 1e-12;
 
 /// The local frame of a surface point: everything the covariant contact formulas ask of a surface.
+///
+/// ```
+/// use covact_geometry::{Frame, NurbsPatch, Surface, Vec3};
+/// // A quarter of a cylinder of radius 2 about the z axis.
+/// let points = [[2., 0., 0.], [2., 2., 0.], [0., 2., 0.], [2., 0., 3.], [2., 2., 3.], [0., 2., 3.]].map(Vec3::from);
+/// let (w, knots) = (0.5f64.sqrt(), [vec![0., 0., 0., 1., 1., 1.], vec![0., 0., 1., 1.]]);
+/// let patch = NurbsPatch::new([2, 1], knots, [3, 2], &points, Some(&[1., w, 1., 1., w, 1.]))?;
+/// let frame = Frame::new(&patch.jet([0.5, 0.5]), 1.0).expect("tangents that span a plane");
+/// // The normal points away from the axis, and the surface curves away from it by 1 / R.
+/// let outward = Vec3::new(1.0, 1.0, 0.0).normalize();
+/// assert!((frame.n - outward).norm() < 1e-12);
+/// assert!((frame.h[0] / frame.a[0] + 0.5).abs() < 1e-12 && frame.h[2].abs() < 1e-12);
+/// # Ok::<(), covact_geometry::PatchError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame<D = f64> {
     /// Surface point.

@@ -154,6 +154,20 @@ class Simulation:
             pass
         return self.result()
 
+    def begin_stage(self, stage: Mapping[str, Any]) -> None:
+        """Ends the present stage of the run at the last accepted step, and goes on in another one, which becomes the last.
+
+        `stage` is a dict of the form of the scene's ``stages``: ``name``, ``until``, ``tools`` with the translations and ``loads``
+        with the factors at its end, which tools and loads reach evenly from where they are, ``contacts``, ``supports``,
+        ``release``. It may be called between steps and in the callback of :meth:`run`; the scene needs at least one stage.
+
+        Raises
+        ------
+        SceneError
+            What is wrong with the stage, or why none can begin; the run is as it was.
+        """
+        self._run.begin_stage(json.dumps(dict(stage), default=_plain))
+
     def result(self) -> Result:
         """All results so far, in arrays of their own."""
         bodies = {name: self.body(name) for name in self.names["bodies"]}

@@ -4,6 +4,7 @@ use crate::scene::Source;
 use crate::work::work;
 use covact::output::Summary;
 use covact::run::{self, Opened, Options, ResultsFolder, RunOptions, Sink, StepError};
+use covact::scene::Stage;
 use covact::solve::event::{Event, Observer, Silent};
 use numpy::ndarray::Array2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, ToPyArray};
@@ -226,6 +227,14 @@ impl Simulation {
         let summary = self.long(py, |run, sinks| run.run(sinks))?;
         let summary = summary.map_err(|e| error::of_run(py, e))?;
         serde_json::to_string(&summary).map_err(error::plain)
+    }
+
+    /// Ends the present stage here and goes on in another one, given as JSON.
+    fn begin_stage(&mut self, py: Python<'_>, stage: &str) -> PyResult<()> {
+        let stage: Stage = serde_json::from_str(stage)
+            .map_err(|e| error::plain(format_args!("this is no stage: {e}")))?;
+        self.long(py, |run, _| run.begin_stage(stage))?
+            .map_err(|e| error::of_run(py, e))
     }
 
     /// The account so far as JSON.

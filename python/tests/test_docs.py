@@ -24,11 +24,31 @@ def test_the_programs_of_the_guide(tmp_path, monkeypatch, capsys):
     assert names["result"].done and (tmp_path / "press.png").stat().st_size > 10_000
     assert names["stress"].shape[1] == 6 and names["simulation"].value("pressure.max") > 200
     assert abs(names["feet"].distance).max() > 0
+    # The ball has come down until it exerted 1, and has gone back.
+    assert names["pressed"].done and 0 < names["reached"][0] < 1
+    assert names["pressed"].history["way.ball.z"][-1] == 0
     assert "done" in capsys.readouterr().out
 
 
-def test_the_first_program_is_as_short_as_it_says():
-    guide = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+def test_the_tutorial(tmp_path, monkeypatch, capsys):
+    page = (ROOT / "docs" / "tutorials" / "python.md").read_text(encoding="utf-8")
+    programs = re.findall(r"```python\n(.*?)```", page, re.S)
+    assert len(programs) >= 4
+    (tmp_path / "assets").symlink_to(ROOT / "assets")
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for program in programs:
+        exec(compile(program, "docs/tutorials/python.md", "exec"), names)
+    assert names["result"].done and (tmp_path / "press.png").stat().st_size > 10_000
+    assert names["simulation"].force("punch")[2] < -10 and not names["simulation"].done
+    # Friction holds the sheet: it is stretched more.
+    assert names["ends"][0.3] < names["ends"][0.0] < -10
+    assert "done" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("page", ["python.md", "tutorials/python.md"])
+def test_the_first_program_is_as_short_as_it_says(page):
+    guide = (ROOT / "docs" / page).read_text(encoding="utf-8")
     first = re.search(r"```python\n(.*?)```", guide, re.S).group(1)
     # From nothing to a picture; closing brackets and the line that prints are no statements of their own.
     lines = [line for line in first.splitlines() if line.strip() not in ("", "})")]

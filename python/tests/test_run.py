@@ -222,3 +222,78 @@ def test_meshes_of_meshio(tmp_path):
     again = meshio.read(tmp_path / "plate.vtu")
     assert np.array_equal(again.point_data["displacement"], body.displacement)
     assert len(again.cells[0].data) == 16
+
+
+def test_meshes_of_pyvista():
+    pyvista = pytest.importorskip("pyvista")
+    # A surface of pyvista is a body once it has a thickness.
+    plane = pyvista.Plane(center=(5, 5, 0), i_size=10, j_size=10, i_resolution=4, j_resolution=4)
+    mesh = covact.Mesh.from_pyvista(plane, thickness=0.5)
+    scene = press(supports={"rim": {"on": "plate.border", "fixed": True}})
+    scene["bodies"]["plate"]["mesh"] = mesh
+    body = covact.run(scene | {"solution": {"end_time": 0.1}}).bodies["plate"]
+    drawn = body.to_pyvista()
+    assert drawn.n_cells == 16 and np.array_equal(drawn.points, body.deformed)
+    assert np.array_equal(drawn.point_data["displacement"], body.displacement)
+    assert drawn.volume == pytest.approx(50, rel=1e-3)
+    # Its hexahedra are a body as they are; other cells are refused.
+    again = covact.Mesh.from_pyvista(body.to_pyvista(deformed=False))
+    assert again.cells["hexahedron"].shape == (16, 8)
+    wedge = pyvista.UnstructuredGrid({pyvista.CellType.WEDGE: np.arange(6)[None]}, np.eye(6)[:, :3])
+    with pytest.raises(ValueError, match="type 13"):
+        covact.Mesh.from_pyvista(wedge)
+
+
+def test_surfaces_of_pyvista(assets):
+    pyvista = pytest.importorskip("pyvista")
+    sphere = covact.geometry.load(assets / "sphere.igs")
+    drawn = sphere.to_pyvista(divisions=24)
+    assert isinstance(drawn, pyvista.PolyData)
+    low, high = sphere.bounds
+    radius = (high - low)[0] / 2
+    assert drawn.area == pytest.approx(4 * np.pi * radius**2, rel=0.01)
+    # Normals point outwards.
+    away = np.asarray(drawn.points) - (low + high) / 2
+    assert ((away * drawn.point_data["Normals"]).sum(axis=1) > 0.9 * radius).all()
+
+
+def staged():
+    scene = press()
+    ball = dict(scene["surfaces"]["ball"])
+    del ball["motion"]
+    stages = [{"name": "down", "tools": {"ball": [0, 0, -1]}}]
+    return scene | {"surfaces": {"ball": ball}, "stages": stages}
+
+
+def test_a_callback_decides_on_what_comes_next():
+    turned = []
+
+    def turn(simulation, step):
+        if not turned and simulation.force("ball")[2] < -0.02:
+            turned.append(step.time)
+            simulation.begin_stage({"name": "up", "until": step.time + 0.4, "tools": {"ball": np.array([0, 0, 0.1])}})
+
+    result = covact.run(staged(), callback=turn)
+    way = result.history["way.ball.z"]
+    assert result.done and 0 < turned[0] < 1
+    assert result.history["time"][-1] == pytest.approx(turned[0] + 0.4)
+    # The ball has turned where it was, and has left the plate.
+    assert way.min() == pytest.approx(-turned[0]) and way[-1] == pytest.approx(0.1)
+    assert result.history["force.ball.z"].min() < -0.02 and result.history["force.ball.z"][-1] == 0
+    assert [stage["name"] for stage in result.summary["stages"]] == ["down", "up"]
+
+
+def test_stages_that_cannot_begin():
+    simulation = covact.Simulation(staged())
+    with pytest.raises(covact.SceneError, match="no step yet"):
+        simulation.begin_stage({"name": "up", "until": 2})
+    simulation.step()
+    with pytest.raises(covact.SceneError, match="bal"):
+        simulation.begin_stage({"name": "up", "until": 2, "tools": {"bal": [0, 0, 0]}})
+    with pytest.raises(covact.Error, match="no stage"):
+        simulation.begin_stage({"name": "up", "til": 2})
+    with pytest.raises(covact.SceneError, match="has no stages"):
+        plain = covact.Simulation(press())
+        plain.step()
+        plain.begin_stage({"name": "up", "until": 2})
+    assert simulation.run().done

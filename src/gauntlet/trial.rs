@@ -17,6 +17,7 @@ use tempfile::TempDir;
 pub struct CaseError(pub(super) String);
 
 impl CaseError {
+    /// With the reason.
     pub fn new(text: impl Into<String>) -> Self {
         CaseError(text.into())
     }

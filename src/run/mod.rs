@@ -94,6 +94,24 @@ impl RunOptions {
 /// # Errors
 /// [`RunError`] where the scene or a file it names is wrong, a result cannot be written, the folder is in use or holds a
 /// run already, or there is no run to continue.
+///
+/// ```
+/// use covact::run::{RunOptions, run};
+/// use covact::solve::event::Silent;
+/// use std::sync::atomic::AtomicBool;
+///
+/// let mut scene = covact::scene::load("examples/scenes/ball_on_plate.json")?;
+/// scene.scene.solution.end_time = 0.1;
+/// let out = tempfile::tempdir()?;
+/// let folder = out.path().join("out");
+/// let summary = run(&scene, &folder, &RunOptions::default(), &mut Silent, &AtomicBool::new(false))?;
+/// assert_eq!(summary.status.name(), "done");
+/// // Every accepted step is a row of the table.
+/// let table = covact::output::read_csv(&folder.join("history.csv"))?;
+/// let force = table.column("force.ball.z").expect("the ball");
+/// assert!(*force.last().expect("a step") < 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn run(
     scene: &LoadedScene,
     out: &Path,

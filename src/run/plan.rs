@@ -28,6 +28,14 @@ pub struct PlanReport {
 ///
 /// # Errors
 /// [`RunError::Scene`] with the place of what is wrong.
+///
+/// ```
+/// let scene = covact::scene::load("examples/scenes/ironing.json")?;
+/// let report = covact::run::plan(&scene)?;
+/// assert!(report.plan.names().contains(&"contact.friction.coulomb".to_owned()));
+/// assert!(report.dofs > 100);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn plan(scene: &LoadedScene) -> Result<PlanReport, RunError> {
     let model = model::build::build(scene).map_err(|e| RunError::model(scene, e))?;
     let memory = super::memory::estimate(scene, &model)?;

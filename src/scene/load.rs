@@ -61,6 +61,22 @@ pub fn load(path: impl AsRef<Path>) -> Result<LoadedScene, SceneError> {
 ///
 /// # Errors
 /// [`SceneError::Wrong`] with all that is wrong with the form, and all that [`super::check`] finds beside it.
+///
+/// ```
+/// use covact::scene::parse;
+/// let text = r#"{
+///     "covact": 1,
+///     "materials": { "rubber": { "neo_hooke": { "E": 2, "nu": 0.45 } } },
+///     "bodies": { "sheet": { "mesh": { "plate": { "size": [50, 40], "thickness": 1, "elements": [20, 16] } }, "material": "ruber" } },
+///     "supports": { "held": { "on": "sheet.x_min", "fixed": true } }
+/// }"#;
+/// let wrong = parse(text, "sheet.json").map(|scene| covact::scene::check(&scene));
+/// // A name that there is not, with its place and the nearest one.
+/// assert!(format!("{wrong:?}").contains("rubber"));
+/// let scene = parse(&text.replace("ruber", "rubber"), "sheet.json")?;
+/// assert!(covact::scene::check(&scene).is_empty());
+/// # Ok::<(), covact::scene::SceneError>(())
+/// ```
 pub fn parse(text: &str, name: &str) -> Result<LoadedScene, SceneError> {
     let (scene, document) = document::parse::<Scene>(text, name)?;
     Ok(LoadedScene { scene, document })

@@ -51,10 +51,12 @@ impl Frame {
         json!({ "axis": axis, "angle": angle, "translation": to })
     }
 
+    /// A vector of the scene in the frame.
     pub fn vector(&self, v: [f64; 3]) -> [f64; 3] {
         (self.0.rotation * Vec3::from(v)).into()
     }
 
+    /// A point of the scene in the frame.
     pub fn point(&self, p: [f64; 3]) -> [f64; 3] {
         (self.0.rotation * Vec3::from(p) + self.0.translation.vector).into()
     }

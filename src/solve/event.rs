@@ -110,6 +110,7 @@ pub enum Event {
 
 /// Receives the events of a run.
 pub trait Observer {
+    /// Takes an event, in the order in which they happen.
     fn event(&mut self, event: &Event);
 }
 

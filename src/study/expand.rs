@@ -46,6 +46,13 @@ pub struct Expansion {
 ///
 /// # Errors
 /// [`SceneError`] about the study, or about the scene that it names.
+///
+/// ```
+/// let study = covact::study::load("examples/studies/shells.json")?;
+/// let expansion = covact::study::expand(&study)?;
+/// assert!(expansion.runs.len() > 5);
+/// # Ok::<(), covact::scene::SceneError>(())
+/// ```
 pub fn expand(loaded: &LoadedStudy) -> Result<Expansion, SceneError> {
     let study = &loaded.study;
     let path = loaded.resolve(&study.scene);

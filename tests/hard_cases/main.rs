@@ -1,5 +1,6 @@
 //! What must not change a result, and what an effect must not cost: invariances on a small plate under a ball.
 mod assembly;
+mod begun_stages;
 mod built;
 mod common;
 mod convergence;

@@ -5,6 +5,17 @@ use crate::surface::Vec3;
 
 /// Facets of `N` nodes each (4 bilinear, 9 biquadratic) over shared nodes: neighbours name the same nodes along their
 /// common edge, so they stay together when the nodes move.
+///
+/// ```
+/// use covact_geometry::{FacetMesh, PatchSet, Vec3};
+/// // Two squares side by side.
+/// let nodes = (0..6).map(|k| Vec3::new(f64::from(k % 3), f64::from(k / 3), 0.0)).collect();
+/// let mesh = FacetMesh { nodes, facets: vec![[0, 1, 3, 4], [1, 2, 4, 5]] };
+/// let set = PatchSet::new(mesh.surfaces()?, None)?;
+/// let foot = set.project(&Vec3::new(1.0, 0.5, 2.0), None, f64::INFINITY).expect("a finite point");
+/// assert!((foot.signed_distance - 2.0).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FacetMesh<const N: usize> {
     /// Node positions.

@@ -50,6 +50,15 @@ pub struct ReadOptions {
 /// # Errors
 /// [`CadError::Read`] when the file cannot be opened, [`CadError::Content`] with line and column when it is damaged,
 /// and [`CadError::Format`] when it is none of these (an STL file, for one).
+///
+/// ```
+/// use covact_geometry::io::{CadFormat, read_path};
+/// let file = read_path("../assets/punch.igs".as_ref())?;
+/// assert_eq!((file.format, file.patches.len()), (CadFormat::Iges, 45));
+/// // What could not be read is named.
+/// assert!(file.skipped.is_empty());
+/// # Ok::<(), covact_geometry::io::CadError>(())
+/// ```
 pub fn read_path(path: &Path) -> Result<CadFile, CadError> {
     read_path_with(path, &ReadOptions::default())
 }

@@ -68,22 +68,31 @@ pub enum EdgeKind {
 /// xi2 = max; `4 + k` is the start of trim curve `k`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Location {
+    /// Inside of a patch.
     Face,
+    /// On an edge of a patch, or on a curve of its trim.
     Edge {
+        /// Number of the edge.
         edge: u32,
+        /// What lies beyond it.
         kind: EdgeKind,
     },
+    /// On a corner of a patch, or at the start of a curve of its trim.
     Corner {
+        /// Number of the corner.
         corner: u32,
+        /// What lies around it.
         kind: EdgeKind,
     },
     /// On a line inside a patch where an inner knot of full multiplicity breaks the tangent; `dir` is the
     /// direction (0 or 1) whose knot it is.
     Crease {
+        /// 0 or 1.
         dir: u8,
     },
     /// On an edge that is one point in space.
     Pole {
+        /// Number of the edge.
         edge: u32,
     },
 }

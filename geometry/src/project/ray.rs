@@ -54,6 +54,17 @@ impl<S: Surface> PatchSet<S> {
     ///
     /// # Errors
     /// [`RayError`].
+    ///
+    /// ```
+    /// use covact_geometry::{Bilinear, PatchSet, Vec3};
+    /// let corners = [[0., 0., 1.], [2., 0., 1.], [0., 2., 1.], [2., 2., 1.]].map(Vec3::from);
+    /// let set = PatchSet::new(vec![Bilinear::new(corners)?], None)?;
+    /// let up = Vec3::new(0.0, 0.0, 2.0);
+    /// let hit = set.first_hit(&Vec3::new(1.0, 0.5, 0.0), &up, 10.0)?.expect("the plate is above");
+    /// assert!((hit.distance - 1.0).abs() < 1e-12 && (hit.point.z - 1.0).abs() < 1e-12);
+    /// assert!(set.first_hit(&Vec3::new(5.0, 0.5, 0.0), &up, 10.0)?.is_none());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn first_hit(
         &self,
         origin: &Vec3,

@@ -53,6 +53,19 @@ impl<S: Surface> PatchSet<S> {
     ///
     /// # Errors
     /// A tolerance or a pose that is not finite.
+    ///
+    /// ```
+    /// use covact_geometry::nalgebra::Isometry3;
+    /// use covact_geometry::{Bilinear, PatchSet, Vec3};
+    /// let corners = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [1., 1., 0.]].map(Vec3::from);
+    /// let plate = PatchSet::new(vec![Bilinear::new(corners)?], None)?;
+    /// // The same plate, put 2 to the side and .5 up: the nearest points lie on edges, 1 and .5 apart.
+    /// let pose = Isometry3::translation(2.0, 0.0, 0.5);
+    /// let found = plate.separation(&plate, &pose, 1e-9)?;
+    /// assert!((found.distance - 1.25f64.sqrt()).abs() < 1e-8);
+    /// assert!(found.at_least <= found.distance);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn separation<T: Surface>(
         &self,
         other: &PatchSet<T>,

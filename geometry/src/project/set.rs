@@ -324,6 +324,21 @@ impl<S: Surface> PatchSet<S> {
     /// bounds the same search: the answer is the same, found sooner. The result is the global minimum up to 1e-11 of the
     /// size of the set plus 1e-14 of the distance; where several points are equally near, which of them is given
     /// depends on the hint.
+    ///
+    /// ```
+    /// use covact_geometry::{Bilinear, Location, PatchSet, Vec3};
+    /// let corners = [[0., 0., 0.], [2., 0., 0.], [0., 1., 0.], [2., 1., 0.]].map(Vec3::from);
+    /// let set = PatchSet::new(vec![Bilinear::new(corners)?], None)?;
+    /// let foot = set.project(&Vec3::new(0.5, 0.5, 0.3), None, f64::INFINITY).expect("a finite point");
+    /// assert_eq!(foot.location, Location::Face);
+    /// assert!((foot.signed_distance.abs() - 0.3).abs() < 1e-15);
+    /// // Beside it the foot lies on the edge, and nothing lies within .1 of the point.
+    /// let q = Vec3::new(2.5, 0.5, 0.0);
+    /// let foot = set.project(&q, None, f64::INFINITY).expect("a finite point");
+    /// assert!(matches!(foot.location, Location::Edge { .. }));
+    /// assert!(set.project(&q, None, 0.1).is_none());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn project(&self, q: &Vec3, hint: Option<Hint>, reach: f64) -> Option<Foot> {
         self.project_above(q, hint, reach, f64::INFINITY)
     }

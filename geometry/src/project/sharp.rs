@@ -37,6 +37,7 @@ pub struct Rim {
 /// A point of a [`Rim`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RimPoint {
+    /// Where it lies.
     pub x: Vec3,
     /// A tangent of the line.
     pub along: Vec3,

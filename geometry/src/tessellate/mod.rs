@@ -115,6 +115,17 @@ impl<S: Surface> PatchSet<S> {
     ///
     /// # Errors
     /// A tolerance that is no positive number, patches whose borders cannot be triangulated, and too many triangles.
+    ///
+    /// ```
+    /// use covact_geometry::io;
+    /// let file = io::read_path("../assets/sphere.igs".as_ref())?;
+    /// let set = file.into_surface()?.into_set();
+    /// let triangles = set.tessellate(1e-2)?;
+    /// // A closed surface, whose flat triangles lose a little of its area.
+    /// assert_eq!(triangles.open_sides(), 0);
+    /// assert!(triangles.triangles().len() > 100 && triangles.deviation() <= 1e-2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn tessellate(&self, tolerance: f64) -> Result<Tessellation, TessellateError> {
         if !(tolerance.is_finite() && tolerance > 0.0) {
             return Err(TessellateError::Tolerance(tolerance));

@@ -103,13 +103,12 @@ impl RunState<'_> {
         self.progress.time >= stage.span[1] - tiny
     }
 
-    /// Takes the run apart for the stage that follows.
+    /// Takes the run apart for the stage of a scene that follows.
     ///
     /// # Errors
     /// A contact that cannot be evaluated at the accepted state, which is a fault of the program.
-    pub(in crate::run) fn hand_over(&mut self) -> Result<HandOver, RunError> {
-        let Problem { model, loaded, .. } = self.problem;
-        let scene = &loaded.scene;
+    pub(in crate::run) fn hand_over(&mut self, scene: &Scene) -> Result<HandOver, RunError> {
+        let model = &self.problem.model;
         let time = self.progress.time;
         let state = &self.course.committed;
         let before = model.stage.as_ref().map(|s| s.start.clone());
@@ -177,10 +176,10 @@ impl RunState<'_> {
         })
     }
 
-    /// Tells what is known of a stage once the last step of it is accepted.
-    pub(in crate::run) fn end_stage(&mut self, observer: &mut (dyn Observer + Send)) {
+    /// Tells what is known of a stage once the last step of it is accepted, or where it is `cut` short.
+    pub(in crate::run) fn end_stage(&mut self, observer: &mut (dyn Observer + Send), cut: bool) {
         let model = &self.problem.model;
-        let Some(stage) = model.stage.as_ref().filter(|s| self.ends(s)) else {
+        let Some(stage) = model.stage.as_ref().filter(|s| cut || self.ends(s)) else {
             return;
         };
         if self.stages.len() > stage.start.index {

@@ -133,6 +133,8 @@ pub struct Simulation<'o> {
     /// The account that the sinks were closed with.
     closed: Option<Summary>,
     attempt: u32,
+    /// A stage was begun that the scene did not have.
+    steered: bool,
 }
 
 impl<'o> Simulation<'o> {
@@ -199,6 +201,7 @@ impl<'o> Simulation<'o> {
             begun: false,
             closed: None,
             attempt: 1,
+            steered: false,
         })
     }
 

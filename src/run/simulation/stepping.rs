@@ -96,7 +96,11 @@ impl Simulation<'_> {
         Ok(step)
     }
 
+    /// Keeps the last accepted step, as long as the scene that was given leads there.
     fn keep(&mut self, sinks: &mut [&mut dyn Sink]) -> Result<(), RunError> {
+        if self.steered {
+            return Ok(());
+        }
         for sink in sinks.iter_mut() {
             self.timed("checkpoint", |run| sink.keep(run))?;
         }
@@ -173,7 +177,7 @@ impl Simulation<'_> {
             Ok(Outcome::Accepted(accepted, ending)) => {
                 self.ended = ending;
                 let observer = &mut *self.options.observer;
-                (self.running).with_dependent_mut(|_, run| run.end_stage(observer));
+                (self.running).with_dependent_mut(|_, run| run.end_stage(observer, false));
                 let run = self.running.borrow_dependent();
                 self.history.rows.push(run.course.outputs.row.clone());
                 let number = run.progress.steps;

@@ -8,6 +8,21 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 /// A mesh as arrays.
+///
+/// ```
+/// use covact::scene::{Body, Elastic, MaterialChoice, MeshArrays, SceneBuilder, Support};
+/// // One cube: nodes along x first, then y, then z.
+/// let nodes = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2].map(f64::from)).collect();
+/// let mut cube = MeshArrays { nodes, nodes_per_element: 8, elements: (0..8).collect(), ..MeshArrays::default() };
+/// cube.node_sets.insert("ground".into(), vec![0, 1, 2, 3]);
+/// let scene = SceneBuilder::new("A cube")
+///     .material("steel", MaterialChoice::StVenantKirchhoff(Elastic::new(210e3, 0.3)))
+///     .body("cube", Body::new(cube, "steel"))
+///     .support("held", Support::fixed("cube.ground"))
+///     .build()?;
+/// assert_eq!(covact::run::plan(&scene)?.dofs, 12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MeshArrays {
     /// Positions of the nodes.
@@ -26,6 +41,27 @@ pub struct MeshArrays {
 
 /// A mesh as points and cells, as mesh files and most mesh libraries have it: hexahedra, or a surface that a thickness makes
 /// a body of. It is taken as a file of the same content is.
+///
+/// ```
+/// use covact::scene::{Body, Elastic, MaterialChoice, MeshCells, MeshFile, SceneBuilder, Support, Thickness};
+/// // A square sheet of one quadrilateral.
+/// let sheet = MeshCells {
+///     points: vec![[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]],
+///     connectivity: vec![0, 1, 2, 3],
+///     ends: vec![4],
+///     types: vec![9],
+///     cell_sets: Default::default(),
+///     point_sets: Default::default(),
+///     file: MeshFile { thickness: Some(Thickness::Uniform(0.1)), ..MeshFile::new("sheet") },
+/// };
+/// let scene = SceneBuilder::new("A sheet")
+///     .material("steel", MaterialChoice::StVenantKirchhoff(Elastic::new(210e3, 0.3)))
+///     .body("sheet", Body::new(sheet, "steel"))
+///     .support("held", Support::fixed("sheet.x_min"))
+///     .build()?;
+/// assert_eq!(covact::run::plan(&scene)?.dofs, 12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshCells {
     /// Positions of the points.

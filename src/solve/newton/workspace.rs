@@ -27,6 +27,7 @@ pub struct Workspace {
 }
 
 impl Workspace {
+    /// Room for the solutions of a model.
     pub fn new(model: &Model) -> Self {
         let n = 3 * model.nodes.len();
         Workspace {
