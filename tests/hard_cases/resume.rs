@@ -25,9 +25,7 @@ enum Stop {
     Iteration(u32),
     /// At another start of a step, or before the step after next.
     Retried,
-    /// After the first step of a repetition of the run.
-    Repeated,
-    /// After the first step of a run with edges of rigid surfaces as slaves.
+    /// After the first step of a run with edges of masters as slaves.
     OnEdges,
     /// The same with Gauss points.
     OnGauss,
@@ -36,7 +34,6 @@ enum Stop {
 struct Stopper<'a> {
     stop: Stop,
     steps: u32,
-    repeated: bool,
     chosen: bool,
     flag: &'a AtomicBool,
     notes: Vec<String>,
@@ -54,7 +51,6 @@ impl Observer for Stopper<'_> {
                 match stop {
                     Stop::Accepted => true,
                     Stop::Retried => self.steps == 2,
-                    Stop::Repeated => self.repeated,
                     Stop::OnEdges | Stop::OnGauss => self.chosen,
                     Stop::Never | Stop::Iteration(_) => false,
                 }
@@ -68,10 +64,6 @@ impl Observer for Stopper<'_> {
                     _ => "contact.points.gauss",
                 };
                 self.chosen = effects.iter().any(|e| e == effect);
-                false
-            }
-            (Stop::Repeated, Event::Warning { text }) => {
-                self.repeated |= text.contains("it was repeated");
                 false
             }
             (Stop::Retried, Event::StepRetried { .. } | Event::StepCut { .. }) => self.steps > 0,
@@ -93,7 +85,6 @@ fn part(
     let mut observer = Stopper {
         stop,
         steps: 0,
-        repeated: false,
         chosen: false,
         flag: &flag,
         notes: Vec::new(),
@@ -549,7 +540,7 @@ fn a_repetition_with_edges() {
     let (ended, _) = part(&scene, whole.path(), false, 1, Stop::Never).unwrap();
     assert_eq!(ended.status, RunStatus::Done);
     assert!(ended.given_up.runs > 0);
-    let (broken, _) = part(&scene, parts.path(), false, 1, Stop::Repeated).unwrap();
+    let (broken, _) = part(&scene, parts.path(), false, 1, Stop::OnEdges).unwrap();
     assert_eq!(broken.status, RunStatus::Interrupted);
     assert!(broken.steps > 0 && broken.given_up.runs > 0);
     let (resumed, _) = part(&scene, parts.path(), true, 1, Stop::Never).unwrap();
