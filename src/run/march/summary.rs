@@ -21,11 +21,6 @@ impl RunState<'_> {
         self.cost.earlier = spent;
     }
 
-    /// Takes a size for the first step.
-    pub fn begin_with(&mut self, dt: f64) {
-        self.course.walk.stepping.set_size(dt);
-    }
-
     /// How the run went so far, and what it cost. Probes and the checksum of the scene are the caller's to add.
     pub fn summary(&self, threads: usize, status: RunStatus, reason: Option<String>) -> Summary {
         let ResourceUse {

@@ -312,7 +312,6 @@ impl<'o> Simulation<'o> {
             safe.former = None;
         }
         let spent = run.give_up();
-        let first = first_after_cuts(&self.history);
         let observer = &mut *self.options.observer;
         // What cannot be built in another way stays as it ended.
         let made = running(&self.scene, Some(&safe), None, rims, observer);
@@ -320,12 +319,7 @@ impl<'o> Simulation<'o> {
             return Ok(false);
         };
         self.running = running;
-        (self.running).with_dependent_mut(|_, run| {
-            run.charge(spent);
-            if let Some(dt) = first {
-                run.begin_with(dt);
-            }
-        });
+        (self.running).with_dependent_mut(|_, run| run.charge(spent));
         (self.safe, self.rims) = (Some(safe), rims);
         self.history.rows.clear();
         (self.whole, self.ended, self.concluded) = (true, None, false);
@@ -398,16 +392,6 @@ impl<'o> Simulation<'o> {
     pub fn done(&self) -> bool {
         matches!(self.status(), Some(RunStatus::Done | RunStatus::NoContact))
     }
-}
-
-/// Size of the first step of a run, where it was cut: what a run that stands for it would fail at, too.
-fn first_after_cuts(history: &Table) -> Option<f64> {
-    let first = history.rows.first()?;
-    let [step, cuts, dt] = ["step", "cuts", "dt"].map(|name| {
-        let at = history.columns.iter().position(|c| c == name)?;
-        first.get(at).copied()
-    });
-    (step? == 1.0 && cuts? > 0.0).then_some(dt?)
 }
 
 /// The model of a scene with its run. One that stands for another is given up where steps are cut again
