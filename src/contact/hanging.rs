@@ -1,4 +1,4 @@
-//! Points that hang over a free border of a body: the same rounding as that of [`overhang`](super::overhang), on a master that
+//! Points that hang over a free border of a body: the same rounding as that of `overhang`, on a master that
 //! deforms.
 //!
 //! The facet at the border is continued by its own polynomial, on which the point has the coordinates `xi3`, `xi^i`. With the widths
