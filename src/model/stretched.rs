@@ -45,11 +45,6 @@ impl Stretched {
         })
     }
 
-    /// Bytes of heap that they hold.
-    pub fn bytes(&self) -> usize {
-        self.support.capacity() + self.fibres.capacity() * size_of::<Fibre>()
-    }
-
     /// The largest tilt of a fibre at displacements `u` (radians), and how much it holds its border beside what bends the shell.
     pub fn worst(&self, model: &Model, u: &[f64]) -> [f64; 2] {
         let at = |node: u32| model.position(node as usize, u);

@@ -452,7 +452,7 @@ fn running(
         edges: may(edges_may),
         points: match rims {
             Rims::Settled => Vec::new(),
-            _ => may(|_, contact| points_may(contact)),
+            _ => may(points_may),
         },
     };
     let problem = Box::new(Problem {

@@ -123,11 +123,12 @@ pub(super) fn edges_may(scene: &LoadedScene, contact: &Contact) -> bool {
 
 /// Whether the slave of a contact may have more points by itself: its nodes, in a contact with a rigid surface or another body that
 /// leaves them to the default and whose tractions are those of penalties at its points.
-pub(super) fn points_may(contact: &Contact) -> bool {
+pub(super) fn points_may(scene: &LoadedScene, contact: &Contact) -> bool {
     let body = |set: &str| set.split('.').next().map(str::to_owned);
     contact.points == Points::Auto
         && contact.augmentation.is_none()
-        && body(&contact.slave) != body(&contact.master)
+        && (scene.scene.surfaces.contains_key(&contact.master)
+            || body(&contact.slave) != body(&contact.master))
 }
 
 /// The scene with Gauss points as the slave points of some contacts.
@@ -186,7 +187,7 @@ pub(super) fn seeing_less(
             }
             now.passes = Passes::One;
         }
-        if points_may(contact) {
+        if points_may(scene, contact) {
             let rigid = scene.scene.surfaces.contains_key(&contact.master);
             if now.points != Points::Auto {
                 of_points.push(format!("`{name}`"));

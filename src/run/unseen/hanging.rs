@@ -2,7 +2,7 @@
 //!
 //! A node stands for half of the faces up to its neighbours. A row of nodes that a squeezed body pushes past the border of the other,
 //! flush with it at the start, lets go one after the other with all of that, and what lies inside of the border is left without a
-//! point. Points within the faces see it.
+//! point. Points within the faces see it. Edges as slaves are left alone, and two half passes, of which the other sees those faces.
 use crate::model::Model;
 use crate::model::master::Masters;
 use crate::model::state::State;
@@ -24,6 +24,8 @@ pub(in crate::run) fn hanging(
         let points = &pair.points;
         pair.body_master().is_some()
             && pair.averaged.is_none()
+            && pair.edges_of.is_none()
+            && pair.half.is_none()
             && points.first().is_some_and(|p| p.count == 1)
     };
     let pairs: Vec<usize> = may.iter().copied().filter(nodal).collect();

@@ -40,7 +40,10 @@ impl Unseen {
             rims: RimWatch::new(model, end, &may.edges),
             edges: EdgeWatch::new(model, &may.edges),
             between: Between::new(model, end, &may.points),
-            more: may.points.clone(),
+            more: match model.small.is_some() || model.dynamics.is_some() {
+                true => Vec::new(),
+                false => may.points.clone(),
+            },
         }
     }
 }
