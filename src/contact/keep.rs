@@ -32,6 +32,16 @@ pub(super) fn may_stand<L: NormalLaw>(
         && n.dot(normal) >= FLAT
 }
 
+/// The same of a point whose traction is that of its nodes: `sunk` is the penetration that it stands for (length).
+#[inline]
+pub(super) fn may_stand_in(
+    sunk: f64,
+    (kept, n): (f64, &Vec3),
+    (xi3, normal): (f64, &Vec3),
+) -> bool {
+    (kept - xi3).abs() <= SHARE * sunk && n.dot(normal) >= FLAT
+}
+
 /// The hint of a point in contact: one that a border holds is told from one outside, whose foot lies on the border as well, by
 /// the last digit of its parameters.
 #[inline]

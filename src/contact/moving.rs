@@ -198,21 +198,32 @@ impl MovingMaster<'_> {
     }
 
     /// The closest point within `reach` on either side, for what needs more than [`Self::touch`], such as an averaged
-    /// gap. `hint` and `accept` as there.
+    /// gap. `hint` and `accept` as there; the traction of the point stands for a penetration of `sunk` (length).
     ///
     /// # Errors
     /// [`PointFault`] as for [`Self::touch`].
     pub fn meet(
         &self,
         x: &Vec3,
-        hint: &mut Option<Hint>,
+        (hint, sunk): (&mut Option<Hint>, f64),
         reach: f64,
         accept: impl Fn(u32) -> bool,
     ) -> Result<Option<Meeting>, PointFault> {
-        match self.search(x, hint, reach, accept)? {
-            Some(foot) => self.at(x, &foot).map(Some),
-            None => Ok(None),
+        let before = *hint;
+        let Some(mut foot) = self.search(x, hint, reach, &accept)? else {
+            return Ok(None);
+        };
+        if let Some(on) = before.filter(|on| self.keep && leaves(&foot, on) && accept(on.patch))
+            && foot.place == MovingPlace::Face
+            && let Some(kept) = self.facets.project_on(x, on, keep::BEYOND)
+        {
+            let then = (kept.signed_distance, &kept.normal);
+            if keep::may_stand_in(sunk, then, (foot.signed_distance, &foot.normal)) {
+                foot = kept;
+                *hint = Some(foot.hint());
+            }
         }
+        self.at(x, &foot).map(Some)
     }
 
     fn search(

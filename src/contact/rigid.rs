@@ -2,6 +2,7 @@
 use super::closest::ClosestPoint;
 use super::corner::{self, Steady};
 pub use super::fault::{Piece, PointFault};
+use super::keep;
 use super::kernel::{self, Normal};
 use super::kind::TangentForm;
 use super::law::NormalLaw;
@@ -136,17 +137,26 @@ impl<P: ClosestPoint> RigidMaster<'_, P> {
     pub fn meet(
         &self,
         x: &Vec3,
-        hint: &mut Option<Hint>,
+        (hint, sunk): (&mut Option<Hint>, f64),
         reach: f64,
     ) -> Result<Option<Meeting>, PointFault> {
         if !(x.x.is_finite() && x.y.is_finite() && x.z.is_finite()) {
             return Err(PointFault::NotFinite);
         }
         let local = self.pose.inverse_transform_point(&Point3::from(*x)).coords;
-        let Some(foot) = self.surface.project(&local, *hint, reach) else {
+        let Some(mut foot) = self.surface.project(&local, *hint, reach) else {
             *hint = None;
             return Ok(None);
         };
+        if let Some(on) = hint.filter(|on| self.keep && on.patch != foot.patch)
+            && foot.location == Location::Face
+            && let Some(kept) = self.surface.project_on(&local, on, keep::BEYOND)
+        {
+            let then = (kept.signed_distance, &kept.normal);
+            if keep::may_stand_in(sunk, then, (foot.signed_distance, &foot.normal)) {
+                foot = kept;
+            }
+        }
         let (patch, xi) = (foot.patch, foot.xi);
         *hint = Some(Hint { patch, xi });
         let piece = Piece::Patch(patch);

@@ -120,7 +120,7 @@ fn averaged_gap_of_two_faces() {
         let met: Vec<_> = (pair.points.iter())
             .map(|p| {
                 let q = combine(&pair.slave, &p.shape);
-                let at = (master.meet(&q, &mut None, 1.0, |_| true))
+                let at = (master.meet(&q, (&mut None, 0.0), 1.0, |_| true))
                     .unwrap()
                     .expect("a foot");
                 assert!(!at.free, "{name}: past the border");

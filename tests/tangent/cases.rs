@@ -252,7 +252,9 @@ fn on_facets(facets: &MovingFacets, q: &V<f64>) -> Option<Evaluated> {
         |_| true,
     ))
     .unwrap()?;
-    let meeting = (master.meet(q, &mut None, 1.0, |_| true)).unwrap().unwrap();
+    let meeting = (master.meet(q, (&mut None, 0.0), 1.0, |_| true))
+        .unwrap()
+        .unwrap();
     let held = match meeting.geometry {
         PointGeometry::Edge { direction, .. } => Held::Edge(usize::from(direction[0] == 0.0)),
         PointGeometry::Vertex { .. } => Held::Vertex,

@@ -200,7 +200,9 @@ fn rigid_patches_give_the_first_block() {
                     "{}",
                     case.name
                 );
-                let meeting = (master.meet(&x.coords, &mut None, 1.0)).unwrap().unwrap();
+                let meeting = (master.meet(&x.coords, (&mut None, 0.0), 1.0))
+                    .unwrap()
+                    .unwrap();
                 let slots = meeting
                     .respond(&Hardening, &Exact)
                     .unwrap()

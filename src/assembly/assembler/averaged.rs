@@ -22,6 +22,7 @@ use crate::contact::kind::{LawKind, TangentKind};
 use crate::contact::law::{NoOffset, NormalLaw, PairLaw, PointLaw};
 use crate::contact::meeting::Meeting;
 use crate::contact::point::FaceTangent;
+use crate::contact::points::SlavePoint;
 use crate::contact::rigid::Exact;
 use crate::contact::scatter::assemble_point;
 use crate::model::averaged::{Share, SlaveNodes};
@@ -130,10 +131,16 @@ impl Averaged {
         find: F,
     ) -> Result<LawKind, Fault>
     where
-        F: Fn(usize, &Vec3, &mut Option<Hint>) -> Result<Option<Meeting>, PointFault> + Sync,
+        F: Fn(usize, &Vec3, (&mut Option<Hint>, f64)) -> Result<Option<Meeting>, PointFault> + Sync,
     {
         let Some(nodes) = &pair.averaged else {
             return Ok(LawKind::Penalty);
+        };
+        // Those of the linearisation before.
+        let gaps = &self.gaps;
+        let sunk = |i: usize, p: &SlavePoint| {
+            (nodes.terms(i, p).filter_map(|(at, _)| gaps[at].gap()))
+                .fold(0.0, |most, gap| (-gap).max(most))
         };
         (pair.points.par_iter())
             .zip(states.par_iter_mut())
@@ -141,7 +148,7 @@ impl Averaged {
             .enumerate()
             .with_min_len(32)
             .for_each(|(i, ((p, s), out))| {
-                *out = find(i, &model.point_position(p, u), &mut s.hint);
+                *out = find(i, &model.point_position(p, u), (&mut s.hint, sunk(i, p)));
             });
         let fault = |point: usize, fault: PointFault| {
             Fault::contact(

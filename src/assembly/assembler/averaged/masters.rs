@@ -32,7 +32,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         state: &mut State,
         time: f64,
     ) -> Result<(), Fault> {
-        let slides = self.slides::<TANGENT>();
+        let (slides, keep) = (self.slides::<TANGENT>(), self.linearization.keep_facets);
         let (model, pair) = (self.model, &self.model.pairs[index]);
         let (Master::Rigid(number), Some(averaged)) = (&pair.master, self.averaged.get_mut(index))
         else {
@@ -51,10 +51,10 @@ impl<L: PairLaw> Assembler<'_, L> {
                 surface: patches,
                 pose: master.pose,
                 depth: master.depth,
-                keep: false,
+                keep,
             };
-            averaged.meet(model, pair, (&of_pair, multipliers), (u, time), states, |_, x, hint| {
-                master.meet(x, hint, reach)
+            averaged.meet(model, pair, (&of_pair, multipliers), (u, time), states, |_, x, at| {
+                master.meet(x, at, reach)
             })
         })?;
         averaged.answer(self.answers.get_mut(known).unwrap_or_default());
@@ -90,7 +90,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         state: &mut State,
         time: f64,
     ) -> Result<bool, Fault> {
-        let slides = self.slides::<TANGENT>();
+        let (slides, keep) = (self.slides::<TANGENT>(), self.linearization.keep_facets);
         let (model, pair) = (self.model, &self.model.pairs[index]);
         let (Some(master), Some(surface), Some(couplings), Some(averaged)) = (
             pair.body_master(),
@@ -104,7 +104,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             facets: &surface.facets,
             undeformed: &master.facets,
             depth: master.depth,
-            keep: false,
+            keep,
         };
         let law = L::of(self.penalties[index]);
         let known = histories::multipliers(&state.cuts, model, index);
@@ -112,8 +112,8 @@ impl<L: PairLaw> Assembler<'_, L> {
         let at = (&state.u[..], time);
         let (states, reach) = (&mut state.points[range], pair.reach(model));
         let law = match &master.own {
-            None => averaged.meet(model, pair, law, at, states, |_, x, hint| {
-                facets.meet(x, hint, reach, |_| true)
+            None => averaged.meet(model, pair, law, at, states, |_, x, at| {
+                facets.meet(x, at, reach, |_| true)
             }),
             Some(own) => {
                 let accept = Opposing {
@@ -121,9 +121,9 @@ impl<L: PairLaw> Assembler<'_, L> {
                     normals: &surface.normals,
                     position: |n: u32| model.position(n as usize, at.0),
                 };
-                averaged.meet(model, pair, law, at, states, |i, x, hint| {
-                    let at = accept.point(i);
-                    facets.meet(x, hint, reach, |f| accept.facet(at, f))
+                averaged.meet(model, pair, law, at, states, |i, x, at| {
+                    let own = accept.point(i);
+                    facets.meet(x, at, reach, |f| accept.facet(own, f))
                 })
             }
         }?;
