@@ -3,6 +3,7 @@
 //! Constructions with a known answer: the same equilibrium reached by force and by displacement, balances of force and
 //! moment, a rigid plane on an elastic foundation.
 use crate::support::{Outcome, scene_json, set, solve};
+use covact::solve::event::Event;
 use serde_json::{Value, json};
 
 /// A quarter of the clamped plate under a ball, on `n` x `n` elements.
@@ -315,6 +316,58 @@ fn forces_that_nothing_resists_are_named() {
 }
 
 /// Problems of a scene before anything is read, then the error of its model: pointer and message.
+/// A cam, a cylinder that turns about an axis 5 beside its own under a moment, below a leaf spring that it does not touch yet. Turned by
+/// about `asin(gap / 5)` it does; from there on the moment of what it lifts is the one that drives it. Friction takes part, but what lies
+/// off the line to the axis is resisted by more than that.
+#[test]
+fn a_cam_is_turned_by_its_moment_until_it_touches() {
+    let gap = 0.06;
+    let outcome = done(&json!({
+        "covact": 1,
+        "materials": { "steel": { "st_venant_kirchhoff": { "E": 206000, "nu": 0.3 } } },
+        "bodies": { "leaf": {
+            "mesh": { "plate": {
+                "size": [60, 10], "thickness": 1, "elements": [40, 2], "origin": [-60, 0, 12.5 + gap]
+            } },
+            "material": "steel"
+        } },
+        "surfaces": { "cam": {
+            "cylinder": { "radius": 12, "length": 40, "center": [-4, 5, 0], "axis": [0, 1, 0] },
+            "motion": { "free": { "moment": { "y": "-60*t" }, "center": [-9, 5, 0] } }
+        } },
+        "contacts": { "lift": { "slave": "leaf.bottom", "master": "cam", "friction": 0.1 } },
+        "supports": {
+            "clamp": { "on": "leaf.x_min", "fixed": true },
+            "side": { "on": "leaf.y_min", "symmetry": "y" }
+        },
+        "output": { "every": 0 }
+    }));
+    let told = outcome.events.iter().find_map(|event| match event {
+        Event::Model { notes, .. } => notes.iter().find(|n| n.contains("until it touches")),
+        _ => None,
+    });
+    let start = told.expect("a note on where it starts");
+    // The first node that it meets lies at x = -4.5; where its axis is by then follows from the angle.
+    let mut angle = 0.0f64;
+    for _ in 0..50 {
+        let aside: f64 = 4.5 - 5.0 * angle.cos();
+        angle = ((12.0 + gap - (144.0 - aside * aside).sqrt()) / 5.0).asin();
+    }
+    let angle = -angle.to_degrees();
+    let told = start
+        .split(['(', ',', ')'])
+        .nth(2)
+        .and_then(|n| n.trim().parse::<f64>().ok());
+    assert!(
+        told.is_some_and(|a| (a / angle - 1.0).abs() < 1e-5),
+        "{start}, {angle}"
+    );
+    let at = |column: &str| outcome.at(column, 1.0);
+    let about = at("moment.cam.y") - 9.0 * at("force.cam.z");
+    assert!((about + 60.0).abs() < 1e-6, "{about}");
+    assert!(at("rotation.cam.y") < -30.0);
+}
+
 fn refused(scene: &Value) -> (String, String) {
     let loaded = covact::scene::parse(&scene.to_string(), "scene.json").unwrap();
     if let Some(problem) = covact::scene::check(&loaded).into_iter().next() {

@@ -13,7 +13,7 @@ use crate::model::PairModel;
 use crate::model::surface::SurfaceSet;
 use crate::scene::ValueError;
 use covact_geometry::{Hint, Vec3};
-use nalgebra::{Isometry3, Matrix6, Vector6};
+use nalgebra::{Isometry3, Matrix3, Matrix6, Vector6};
 use rayon::prelude::*;
 use stiffness::{modified_step, resisted};
 
@@ -40,6 +40,8 @@ pub struct Press {
     pub residual: Vector6<f64>,
     /// Its second derivative.
     pub tangent: Matrix6<f64>,
+    /// Its stiffness against turning if every point were resisted along its way around the center, for a rotation vector.
+    pub swept: Matrix3<f64>,
     /// Points in contact.
     pub active: usize,
 }
@@ -85,9 +87,6 @@ const STRIDE: f64 = 0.25;
 const GRAZE: f64 = 0.01;
 /// Steps of a search.
 const STEPS: usize = 400;
-/// Stiffness against turning, at the lever of the surface, over that against being moved straight on, above which normal tractions
-/// resist. Facets of a pulley have as much as the square of the sine of half the angle between them.
-const RESISTS: f64 = 0.05;
 
 impl<'m, L: PairLaw> Presser<'m, L> {
     /// The slave points of surface `index` at displacements `u`; penalties per pair of the model, histories of all points
@@ -138,27 +137,6 @@ impl<'m, L: PairLaw> Presser<'m, L> {
         self.pairs.iter().all(|p| p.points.is_empty())
     }
 
-    /// Whether friction may be all that works against what drives the surface: no translation is free.
-    pub fn turns_with_friction(&self) -> bool {
-        self.slides && self.driven.free()[..3].iter().all(|free| !free)
-    }
-
-    /// Whether normal tractions resist a motion in direction `e` one stride beyond `q`, as a lid that closes and no pulley is
-    /// resisted: what turns does not press on what it turns past.
-    ///
-    /// # Errors
-    /// A motion without a value, or a point that cannot be evaluated.
-    pub fn resists(
-        &mut self,
-        t: f64,
-        q: &Vector6<f64>,
-        e: &Vector6<f64>,
-    ) -> Result<bool, PressFault> {
-        let press = self.press(t, &(q + e * self.stride))?;
-        let straight = press.tangent.fixed_view::<3, 3>(0, 0).trace();
-        Ok(e.dot(&(press.tangent * e)) > RESISTS * straight)
-    }
-
     fn parts(&self, q: &Vector6<f64>) -> (Vec3, Vec3) {
         let part = |i: usize| Vec3::new(q[i], q[i + 1], q[i + 2]);
         (part(0), part(3) / self.driven.lever)
@@ -188,6 +166,7 @@ impl<'m, L: PairLaw> Presser<'m, L> {
             energy: 0.0,
             residual: Vector6::zeros(),
             tangent: Matrix6::zeros(),
+            swept: Matrix3::zeros(),
             active: 0,
         };
         for pair in &mut self.pairs {
@@ -214,7 +193,9 @@ impl<'m, L: PairLaw> Presser<'m, L> {
                 })?;
                 let Some(touch) = touch else { continue };
                 let (r, k) = (touch.residual * p.area, touch.tangent * p.area);
-                let c = carried(&r, &k, &(p.x - center));
+                let arm = p.x - center;
+                let c = carried(&r, &k, &arm);
+                out.swept += -cross_matrix(&arm).pow(2) * k.trace();
                 out.active += 1;
                 // Its derivative is the traction.
                 out.energy += law_of(point, p).energy(touch.xi3) * p.area;
