@@ -44,8 +44,8 @@ pub struct SurfacePiece {
     /// The outside is against `rho_1 x rho_2`. Such a piece is written with its parameters swapped, so that normals of
     /// the written cells point outside.
     pub reversed: bool,
-    /// Quadrilaterals a side in the flat copy; `None`: as many as are asked for.
-    pub divisions: Option<u32>,
+    /// Quadrilaterals along xi1 and xi2 in the flat copy; `None`: as many as are asked for.
+    pub divisions: Option<[u32; 2]>,
 }
 
 /// Point with outward unit normal.
@@ -110,6 +110,7 @@ impl SurfacePiece {
                 .collect();
             self.points = swapped;
             self.degree = [q, p];
+            self.divisions = self.divisions.map(|[u, v]| [v, u]);
             self.reversed = false;
         }
         self

@@ -16,6 +16,7 @@ mod accuracy;
 pub mod atomic;
 mod bezier;
 mod body;
+mod chords;
 mod cloud;
 mod columns;
 mod compare;

@@ -73,10 +73,24 @@ impl SurfaceOutput {
         pieces: Vec<SurfacePiece>,
         tessellation: u32,
     ) -> Result<Self, OutputError> {
+        Self::within(name, pieces, tessellation, 0.0)
+    }
+
+    /// [`SurfaceOutput::new`] with fewer quadrilaterals in either direction of a piece where these lie within `tolerance` (length) of
+    /// the surface.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn within(
+        name: &str,
+        pieces: Vec<SurfacePiece>,
+        tessellation: u32,
+        tolerance: f64,
+    ) -> Result<Self, OutputError> {
         let mut exact = Exact::default();
         let mut flat = Flat::default();
         let mut left_out = Vec::new();
-        let n = tessellation.max(1) as usize;
+        let most = tessellation.max(1);
         for (number, piece) in pieces.into_iter().enumerate() {
             piece.check().map_err(|reason| OutputError::Piece {
                 surface: name.to_string(),
@@ -89,7 +103,11 @@ impl SurfaceOutput {
             } else {
                 exact.push(&piece);
             }
-            flat.push(&piece, piece.divisions.map_or(n, |d| d.max(1) as usize));
+            let divisions = match piece.divisions {
+                Some(given) => given.map(|n| n.max(1)),
+                None => piece.divisions_within(tolerance, most),
+            };
+            flat.push(&piece, divisions.map(|n| n as usize));
         }
         Ok(SurfaceOutput {
             name: name.to_string(),
@@ -214,16 +232,16 @@ impl Exact {
 }
 
 impl Flat {
-    fn push(&mut self, piece: &SurfacePiece, n: usize) {
+    fn push(&mut self, piece: &SurfacePiece, [n, m]: [usize; 2]) {
         let first = self.points.len();
-        for j in 0..=n {
+        for j in 0..=m {
             for i in 0..=n {
-                let at = piece.evaluate(i as f64 / n as f64, j as f64 / n as f64);
+                let at = piece.evaluate(i as f64 / n as f64, j as f64 / m as f64);
                 self.points.push(at.point.into());
                 self.normals.push(at.normal.into());
             }
         }
-        for j in 0..n {
+        for j in 0..m {
             for i in 0..n {
                 let corner = (first + i + (n + 1) * j) as u64;
                 let up = corner + n as u64 + 1;

@@ -82,7 +82,7 @@ impl Cutter<'_> {
                 patch: self.patch,
                 entity: self.entity,
                 reversed: self.reversed,
-                divisions: Some(1 << (self.halvings - halved)),
+                divisions: Some([1 << (self.halvings - halved); 2]),
             });
         }
     }
@@ -123,7 +123,7 @@ impl Cutter<'_> {
                 patch: self.patch,
                 entity: self.entity,
                 reversed: self.reversed,
-                divisions: Some(1),
+                divisions: Some([1; 2]),
             });
             k += 2;
         }
@@ -186,7 +186,7 @@ mod tests {
         let allowed = 2.0 / 3.0 * h * h / 8.0 * std::f64::consts::TAU;
         assert!((area - exact).abs() < allowed, "{area} {exact}");
         assert!(
-            pieces.iter().any(|p| p.divisions >= Some(4)),
+            pieces.iter().any(|p| p.divisions >= Some([4; 2])),
             "large pieces inside"
         );
         for piece in &pieces {

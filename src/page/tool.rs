@@ -5,13 +5,13 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion};
 /// A grid of points that the writer of flat copies made of one piece of a surface.
 struct Block {
     first: u32,
-    /// Quadrilaterals to a side.
-    n: u32,
+    /// Quadrilaterals along its rows, and rows.
+    n: [u32; 2],
 }
 
 /// The quadrilaterals of a surface without those that change it by less than `tolerance`, as corners in `points`.
 ///
-/// A piece is a square grid, of which every second, third and so on line is kept, each direction for itself. Other
+/// A piece is a grid, of which every second, third and so on line is kept, each direction for itself. Other
 /// quadrilaterals stay as they are.
 pub(super) fn coarsened(points: &[Vec3], quads: &[[u32; 4]], tolerance: f64) -> Vec<[u32; 4]> {
     let mut out = Vec::new();
@@ -20,15 +20,15 @@ pub(super) fn coarsened(points: &[Vec3], quads: &[[u32; 4]], tolerance: f64) -> 
         match block(points, &quads[at..]) {
             Some(block) => {
                 let [su, sv] = strides(points, &block, tolerance);
-                let row = block.n + 1;
-                for j in (0..block.n).step_by(sv as usize) {
-                    for i in (0..block.n).step_by(su as usize) {
+                let row = block.n[0] + 1;
+                for j in (0..block.n[1]).step_by(sv as usize) {
+                    for i in (0..block.n[0]).step_by(su as usize) {
                         let corner = block.first + i + row * j;
                         let up = corner + row * sv;
                         out.push([corner, corner + su, up + su, up]);
                     }
                 }
-                at += (block.n * block.n) as usize;
+                at += block.n[0] as usize * block.n[1] as usize;
             }
             None => {
                 out.push(quads[at]);
@@ -43,37 +43,43 @@ pub(super) fn coarsened(points: &[Vec3], quads: &[[u32; 4]], tolerance: f64) -> 
 fn block(points: &[Vec3], quads: &[[u32; 4]]) -> Option<Block> {
     let [first, _, _, up] = *quads.first()?;
     let n = up.checked_sub(first)?.checked_sub(1).filter(|&n| n > 0)?;
-    let count = (n as usize).checked_mul(n as usize)?;
-    let own = quads.get(..count)?;
-    let last = (first as usize) + (n as usize + 1) * (n as usize + 1);
-    let fits = own.iter().zip(0u32..).all(|(quad, k)| {
+    let fits = |(k, quad): (u32, &[u32; 4])| {
         let corner = first + k % n + (n + 1) * (k / n);
         *quad == [corner, corner + 1, corner + n + 2, corner + n + 1]
-    });
-    (fits && last <= points.len()).then_some(Block { first, n })
+    };
+    let count = (0..).zip(quads).take_while(|at| fits(*at)).count();
+    let rows = count as u32 / n;
+    let last = first as usize + (n as usize + 1) * (rows as usize + 1);
+    (rows > 0 && last <= points.len()).then_some(Block {
+        first,
+        n: [n, rows],
+    })
 }
 
 /// Steps in both directions with which a piece stays within the tolerance.
 fn strides(points: &[Vec3], block: &Block, tolerance: f64) -> [u32; 2] {
-    let row = block.n + 1;
+    let row = block.n[0] + 1;
     let close = |direction: usize, stride: u32| {
         let (along, across) = match direction {
             0 => (1, row),
             _ => (row, 1),
         };
-        (0..row).all(|line| {
+        (0..=block.n[1 - direction]).all(|line| {
             let at = |i: u32| points[(block.first + line * across + i * along) as usize];
-            (0..block.n).step_by(stride as usize).all(|start| {
-                let (a, b) = (at(start), at(start + stride));
-                (1..stride).all(|k| {
-                    let t = f64::from(k) / f64::from(stride);
-                    (at(start + k) - (a + (b - a) * t)).norm() <= tolerance
+            (0..block.n[direction])
+                .step_by(stride as usize)
+                .all(|start| {
+                    let (a, b) = (at(start), at(start + stride));
+                    (1..stride).all(|k| {
+                        let t = f64::from(k) / f64::from(stride);
+                        (at(start + k) - (a + (b - a) * t)).norm() <= tolerance
+                    })
                 })
-            })
         })
     };
     [0, 1].map(|direction| {
-        let divisors = (1..=block.n).rev().filter(|s| block.n.is_multiple_of(*s));
+        let n = block.n[direction];
+        let divisors = (1..=n).rev().filter(|s| n.is_multiple_of(*s));
         (divisors.into_iter())
             .find(|&stride| stride == 1 || close(direction, stride))
             .unwrap_or(1)

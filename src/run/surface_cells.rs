@@ -1,8 +1,9 @@
 //! Rigid surfaces in pieces for output.
+use crate::model::Model;
 use crate::model::surface::{SurfaceModel, SurfaceSet};
 use crate::output::SurfacePiece;
 use crate::scene::FacetKind;
-use covact_geometry::{BezierPiece, PatchSet, Surface};
+use covact_geometry::{BezierPiece, PatchSet, Surface, Vec3};
 
 /// Quadrilaterals of the flat copy of a whole surface of curved facets, roughly and at most.
 const FLAT: f64 = 2e4;
@@ -19,10 +20,10 @@ pub(super) fn pieces(surface: &SurfaceModel, tessellation: u32) -> Vec<SurfacePi
     }
     let divisions = surface.facets.as_ref().map(|facets| {
         if facets.kind == FacetKind::Bilinear {
-            return 1;
+            return [1; 2];
         }
         let share = (FLAT / facets.count.max(1) as f64).sqrt() as u32;
-        share.clamp(2, tessellation.max(2))
+        [share.clamp(2, tessellation.max(2)); 2]
     });
     let origin = |i: usize| {
         let facets = surface.facets.as_ref();
@@ -41,6 +42,28 @@ pub(super) fn pieces(surface: &SurfaceModel, tessellation: u32) -> Vec<SurfacePi
         SurfaceSet::Bilinear(set) => beziers(set).map(piece).collect(),
         SurfaceSet::Biquadratic(set) => beziers(set).map(piece).collect(),
     }
+}
+
+/// Share of the size of what is looked at by which a flat copy may be off: a fifth of a pixel in a picture of 1000.
+const OFF: f64 = 2e-4;
+
+/// How far the flat copy of a surface in these pieces may lie off it (length), by its own size or that of the bodies, whichever is
+/// smaller: of a large tool a small part may be all that they touch.
+pub(super) fn flat_within(pieces: &[SurfacePiece], model: &Model) -> f64 {
+    let points = pieces.iter().flat_map(|piece| &piece.points);
+    let own = diagonal(points.map(|[x, y, z, w]| Vec3::new(*x, *y, *z) / *w));
+    let bodies = diagonal(model.nodes.iter().copied());
+    OFF * own.min(bodies)
+}
+
+/// Diagonal of the box around some points.
+fn diagonal(points: impl Iterator<Item = Vec3>) -> f64 {
+    let none = [
+        Vec3::from_element(f64::INFINITY),
+        Vec3::from_element(f64::NEG_INFINITY),
+    ];
+    let [low, high] = points.fold(none, |[low, high], x| [low.inf(&x), high.sup(&x)]);
+    (high - low).norm()
 }
 
 /// Bezier pieces of all patches with the number of the patch.

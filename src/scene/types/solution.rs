@@ -123,7 +123,8 @@ fn default_factor() -> f64 {
 pub struct Output {
     /// Write fields at every n-th accepted step (the last is always written); 0 writes none.
     pub every: u32,
-    /// Subdivisions of a Bezier piece in the tessellated copy of rigid surfaces.
+    /// Most subdivisions of a Bezier piece, in either direction, in the tessellated copy of rigid surfaces; fewer where the copy is
+    /// within 2e-4 of the size of the surface, or of the bodies.
     pub tessellation: u32,
     /// Write the slave points of contacts with friction too, with their values.
     pub contact_points: bool,
