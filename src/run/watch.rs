@@ -270,6 +270,13 @@ impl Watch {
         Ok(watch)
     }
 
+    /// Gives an assembler the penalties of the last accepted step, under which its state is in equilibrium: those of the next one may
+    /// have been chosen since, and forces under them would be others.
+    pub fn in_equilibrium(&self, assembler: &mut Assembler) {
+        assembler.penalties.copy_from_slice(&self.penalties);
+        assembler.ratios.copy_from_slice(&self.ratios);
+    }
+
     /// Work of a step that is solved. `residual` is that of all degrees of freedom; the assembler has evaluated the end of the
     /// step.
     ///

@@ -191,3 +191,53 @@ fn both_ways_of_release_leave_the_same_shape() {
         }
     }
 }
+
+/// A strip that is bent between a punch and a roller, with friction, and let go by taking the punch back the way it came. The punch has
+/// left after the first step, so that nothing is left to carry: neither at the roller nor anywhere else. The automatic penalty of the
+/// punch is lowered at the end of the first stage; what that changes is no force that acts in the second.
+#[test]
+fn a_punch_that_goes_back_leaves_no_force() {
+    let cylinder = |x: f64, z: f64| json!({ "cylinder": { "radius": 3, "length": 20, "center": [x, 2, z], "axis": [0, 1, 0] } });
+    let scene = json!({
+        "covact": 1,
+        "materials": { "steel": { "j2": {
+            "E": 206000, "nu": 0.3, "hardening": { "swift": { "strength": 560, "offset": 0.008, "exponent": 0.2 } }
+        } } },
+        "bodies": { "strip": {
+            "mesh": { "plate": {
+                "size": [28, 4], "thickness": 1.5, "elements": [56, 1], "origin": [0, 0, 0.75], "layers": 2
+            } },
+            "material": "steel"
+        } },
+        "surfaces": { "roller": cylinder(20.0, -3.0), "punch": cylinder(0.0, 4.5) },
+        "contacts": {
+            "below": { "slave": "strip.bottom", "master": "roller", "friction": 0.1, "points": { "gauss": 3 } },
+            "above": { "slave": "strip.top", "master": "punch", "friction": 0.1, "points": "nodes" }
+        },
+        "supports": {
+            "middle": { "on": "strip.x_min", "symmetry": "x" }, "sides": { "on": ["strip"], "symmetry": "y" }
+        },
+        "solution": { "end_time": 1.3 },
+        "stages": [
+            { "name": "bend", "until": 1, "tools": { "punch": [0, 0, -9] } },
+            { "name": "back", "release": "tools" }
+        ],
+        "output": { "every": 0 }
+    });
+    let loaded = scene::parse(&scene.to_string(), "springback.json").expect("a scene");
+    let mut run = Simulation::new(loaded, Options::default()).expect("a run");
+    let mut bent = 0.0;
+    while let Some(step) = run.step().expect("a step") {
+        let [punch, roller] = ["punch", "roller"].map(|name| run.force(name).unwrap().force.z);
+        println!("{}: {punch}, {roller}", step.time);
+        if step.time < 1.0 + 1e-9 {
+            bent = roller;
+        } else {
+            assert!(
+                bent > 30.0 && punch == 0.0 && roller.abs() < 1e-3 * bent,
+                "{roller} of {bent}"
+            );
+        }
+    }
+    assert!(run.done());
+}

@@ -270,6 +270,7 @@ impl HandOver {
             let mut assembler =
                 Assembler::new(&model, &model.dofs).map_err(|e| memory::pattern(loaded, &e))?;
             self.set(&mut assembler)?;
+            self.watch.in_equilibrium(&mut assembler);
             let (residual, _) = evaluate(&mut assembler, &state, self.time)?;
             let mut free = residual.clone();
             model.dofs.fold(&mut free);
@@ -364,10 +365,12 @@ impl<'m> RunState<'m> {
         let mut assembler =
             Assembler::new(model, &model.dofs).map_err(|e| memory::pattern(loaded, &e))?;
         hand.set(&mut assembler)?;
+        hand.watch.in_equilibrium(&mut assembler);
         let (residual, totals) = evaluate(&mut assembler, &committed, hand.time)?;
         let solver = super::start::analysed(loaded, model, &mut assembler, threads)?;
         let stored = totals.contact_energy
             + FrictionTotals::of(model, &assembler, &committed, &|_| true).stored;
+        hand.set(&mut assembler)?;
         let acting = |pair: usize| !model.pairs[pair].points.is_empty();
         let mut tractions = vec![[0.0; 2]; committed.histories.len()];
         for (pair, before) in hand.pairs.iter().enumerate() {
