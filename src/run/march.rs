@@ -325,6 +325,8 @@ impl March<'_, '_> {
                     let turns = walk.stepping.at_kink(start);
                     let lag = (self.watch).flowed(flow, &work, turns);
                     walk.stepping.flowed(dt, flow.most, lag);
+                    let aside = self.headed(&walk.before, (committed, start, end), turns)?;
+                    walk.stepping.headed(dt, aside);
                     if let Some(jump) = passing.filter(|_| walk.jump.is_none()) {
                         self.tell_jump(&jump, committed);
                     }
@@ -470,9 +472,7 @@ impl March<'_, '_> {
         {
             self.warn(text);
         }
-        if let Some(text) = self.watch.lagging() {
-            self.warn(text);
-        }
+        self.tell_turns();
         let soft = (self.compliance).warning(self.model, &self.assembler.penalties);
         let (penalties, ratios) = (&self.assembler.penalties, &self.assembler.ratios);
         let tangential: Vec<f64> = penalties.iter().zip(ratios).map(|(p, r)| p * r).collect();

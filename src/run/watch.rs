@@ -13,6 +13,7 @@
 //! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
 mod eased;
 mod faint;
+mod heading;
 mod jump;
 mod lag;
 mod multipliers;
@@ -28,6 +29,7 @@ use crate::model::state::State;
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::shell::Flow;
 use faint::faint;
+use heading::Heading;
 pub use jump::Jump;
 use twist::Twist;
 
@@ -57,6 +59,8 @@ pub struct Watch {
     pub turnover: f64,
     /// How materials have flowed.
     flow: Flow,
+    /// How the direction of friction turned.
+    heading: Heading,
     /// The largest change of the imbalance in one step, and that step.
     pub worst: f64,
     pub worst_step: u32,
@@ -173,6 +177,7 @@ impl Watch {
             turnover: self.turnover,
             stored: self.stored + changed,
             flow: self.flow,
+            heading: self.heading.clone(),
             worst: self.worst,
             worst_step: self.worst_step,
             speed: self.speed,
@@ -191,6 +196,7 @@ impl Watch {
             imbalance,
             turnover,
             flow: Flow { most, work, lag },
+            heading,
             worst,
             worst_step,
             speed,
@@ -223,6 +229,7 @@ impl Watch {
         }
         out.count(tractions.len());
         out.f64s(tractions.as_flattened());
+        heading.put(out);
     }
 
     /// [`Self::put`], read back for the same model.
@@ -267,6 +274,7 @@ impl Watch {
         };
         watch.tractions.resize(count, [0.0; 2]);
         from.f64s(watch.tractions.as_flattened_mut())?;
+        watch.heading = Heading::take(model, from)?;
         Ok(watch)
     }
 

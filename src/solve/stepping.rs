@@ -24,6 +24,8 @@ const SMALLER: f64 = 0.7;
 const FLOW: f64 = 0.02;
 /// Part of its work that a step may leave out because flow turns within it.
 const LAG: f64 = 0.08;
+/// Part of friction that may act aside of where it should: a step turns its direction by 6 degrees.
+const ASIDE: f64 = 0.05;
 /// Part of the largest step from which on a step counts as large.
 const LARGE: f64 = 1.0 / 8.0;
 /// Least part that is left of a step that is cut.
@@ -124,6 +126,15 @@ impl Stepping {
         let times = (flow / FLOW).max(lag / LAG);
         if self.settings.adaptive && times > 0.0 {
             let most = (dt / times).max(self.settings.min);
+            self.dt = self.dt.min(most);
+        }
+    }
+
+    /// A part `aside` of friction acted aside in an accepted step of size `dt`, because its direction turned: the next one is no larger
+    /// than what leaves [`ASIDE`].
+    pub fn headed(&mut self, dt: f64, aside: f64) {
+        if self.settings.adaptive && aside > 0.0 {
+            let most = (dt * ASIDE / aside).max(self.settings.min);
             self.dt = self.dt.min(most);
         }
     }

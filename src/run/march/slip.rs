@@ -54,6 +54,31 @@ impl March<'_, '_> {
         found.map_err(|e| RunError::internal(&e))
     }
 
+    /// Takes down how the direction of friction turned in the step that was accepted last; the part that acts aside by it.
+    pub(super) fn headed(
+        &mut self,
+        before: &Option<(State, f64)>,
+        (now, start, end): (&State, f64, f64),
+        turns: bool,
+    ) -> Result<f64, RunError> {
+        let Some((before, _)) = before else {
+            return Ok(0.0);
+        };
+        if self.model.pairs.iter().all(|p| p.friction.is_none()) {
+            return Ok(0.0);
+        }
+        let of = (self.model, &mut self.assembler.masters);
+        (self.watch.headed(of, (before, start), (now, end), turns))
+            .map_err(|e| RunError::internal(&e))
+    }
+
+    /// Tells where the flow of a material or friction turned too far within steps.
+    pub(super) fn tell_turns(&mut self) {
+        for text in [self.watch.lagging(), self.watch.turned(self.model)] {
+            text.into_iter().for_each(|text| self.warn(text));
+        }
+    }
+
     /// Raises the tangential penalties of the next step, where the run may, by what was measured of the elastic slip, and softens
     /// them after a step with friction that took many iterations.
     pub(super) fn adapt_slip(
@@ -90,7 +115,8 @@ impl March<'_, '_> {
         Ok(())
     }
 
-    /// Tangential penalties that are given stay what they are, whatever the normal ones are now.
+    /// Tangential penalties that are given stay what they are, whatever the normal ones are now, and those that the run chooses
+    /// within their bounds.
     pub(super) fn hold_given(&mut self) {
         let ratios = self
             .assembler
@@ -98,7 +124,10 @@ impl March<'_, '_> {
             .iter_mut()
             .zip(&self.assembler.penalties);
         for (pair, (ratio, eps_n)) in self.model.pairs.iter().zip(ratios) {
-            if let Some(eps_t) = pair.friction.as_ref().and_then(|f| f.given) {
+            let Some(friction) = &pair.friction else {
+                continue;
+            };
+            if let Some(eps_t) = friction.given {
                 *ratio = eps_t / eps_n;
             }
         }

@@ -5,4 +5,5 @@ mod loop_;
 mod shear_limited;
 mod stick_limit;
 mod sticking;
+mod turning;
 mod wedge;
