@@ -2,6 +2,7 @@
 use super::March;
 use crate::contact::friction::history::PointHistory;
 use crate::model::PairModel;
+use crate::model::friction::FrictionModel;
 use crate::model::state::State;
 use crate::run::RunError;
 use crate::run::bearing::{Bearing, Bearings};
@@ -103,7 +104,7 @@ impl March<'_, '_> {
             let Some(friction) = pair.friction.as_ref().filter(|f| f.ruled) else {
                 continue;
             };
-            let raised = (*ratio * factor).min(friction.ratio);
+            let raised = (*ratio * factor).min(stiffest(pair, friction, *eps_n));
             if raised > *ratio {
                 *ratio = raised;
             } else if struggles && bearing.area > 0.0 {
@@ -129,7 +130,17 @@ impl March<'_, '_> {
             };
             if let Some(eps_t) = friction.given {
                 *ratio = eps_t / eps_n;
+            } else if friction.ruled {
+                *ratio = ratio.min(stiffest(pair, friction, *eps_n));
             }
         }
     }
+}
+
+/// The largest multiple of a normal penalty that a tangential one is raised to. Friction may need a stiff one where the normal one
+/// serves as it is: a ring that gives way when it is squeezed hardly does along the line where it sticks. It is not to be stiffer
+/// than the stiffest normal one would make it.
+fn stiffest(pair: &PairModel, friction: &FrictionModel, eps_n: f64) -> f64 {
+    let times = pair.ruled.map_or(1.0, |ruled| ruled.stiffest / eps_n);
+    friction.ratio * times.max(1.0)
 }

@@ -2,6 +2,7 @@
 mod belt;
 mod capstan;
 mod loop_;
+mod ring;
 mod shear_limited;
 mod stick_limit;
 mod sticking;
