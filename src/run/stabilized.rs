@@ -6,6 +6,7 @@ use crate::model::stabilization::{DISSIPATES, RESTS};
 use crate::model::state::State;
 use crate::output::RunStatus;
 use crate::solve::newton::{Converged, StepFailure};
+use std::collections::HashSet;
 
 /// Part of the size of the model that a body without supports may move in the time of a run and still be at rest, and the
 /// part of [`RESTS`] that the stabilisation has to carry for it to be told.
@@ -71,7 +72,14 @@ impl March<'_, '_> {
         }
         let moving = model.free.iter().find_map(|piece| {
             let viscous = self.assembler.effects.viscous.as_ref()?;
-            let velocity = viscous.velocity(&state.u, &piece.motion.nodes);
+            let mut velocity = viscous.velocity(&state.u, &piece.motion.nodes);
+            // What is prescribed moves as it is meant to.
+            let nodes: HashSet<u32> = piece.motion.nodes.iter().copied().collect();
+            for p in self.model.prescribed.iter().filter(|p| p.value.is_some()) {
+                if nodes.contains(&(p.dof / 3)) {
+                    velocity[p.dof as usize % 3] = 0.0;
+                }
+            }
             let way = velocity * self.scene.solution.end_time;
             let slides = way.norm() > MOVES * model.size && drag.share > MOVES * RESTS;
             slides.then_some((piece, velocity))
