@@ -79,6 +79,9 @@
 //! open to tests and benchmarks and to those who want to look; their interfaces follow the needs of the program.
 //! `docs/architecture.md` shows how they stand on each other.
 
+// Public items are documented: what is not to be seen from outside is `pub(crate)`.
+#![deny(missing_docs)]
+
 pub mod assembly;
 pub mod contact;
 pub mod effects;

@@ -48,6 +48,8 @@
 
 // The one exception is the evaluation kernel for AVX2.
 #![deny(unsafe_code)]
+// Public items are documented: what is not to be seen from outside is `pub(crate)`.
+#![deny(missing_docs)]
 
 /// The examples of README.md, which are compiled and run as tests.
 #[cfg(doctest)]

@@ -22,15 +22,25 @@ impl fmt::Display for Piece {
 /// What keeps a point from being evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PointFault {
+    /// The search for the closest point did not converge.
     #[error("the closest point search did not converge ({piece}, xi = [{}, {}])", xi[0], xi[1])]
-    ProjectionNotConverged { piece: Piece, xi: [f64; 2] },
+    ProjectionNotConverged {
+        /// The patch, edge or vertex of the master that was reached.
+        piece: Piece,
+        /// Surface coordinates there.
+        xi: [f64; 2],
+    },
+    /// The point is so deep or so far away that its closest point is not unique: `1 - xi3 kappa` is zero or negative.
     #[error(
         "the point lies at or beyond the focal surface of the master ({piece}, xi = [{}, {}], xi3 = {xi3:e})",
         xi[0], xi[1]
     )]
     BeyondFocalSurface {
+        /// The patch, edge or vertex of the master that was reached.
         piece: Piece,
+        /// Surface coordinates there.
         xi: [f64; 2],
+        /// Normal coordinate of the point (length).
         xi3: f64,
     },
     /// The traction of a point on an edge or a corner acts along its distance from it.
@@ -40,12 +50,22 @@ pub enum PointFault {
         xi[0], xi[1]
     )]
     NoDirection {
+        /// The patch, edge or vertex of the master that was reached.
         piece: Piece,
+        /// Surface coordinates there.
         xi: [f64; 2],
+        /// Normal coordinate of the point (length).
         xi3: f64,
     },
+    /// The tangents of the master are parallel or zero.
     #[error("the master has no normal at {piece}, xi = [{}, {}]", xi[0], xi[1])]
-    DegenerateFrame { piece: Piece, xi: [f64; 2] },
+    DegenerateFrame {
+        /// The patch, edge or vertex of the master that was reached.
+        piece: Piece,
+        /// Surface coordinates there.
+        xi: [f64; 2],
+    },
+    /// The position of the slave point is infinite or not a number.
     #[error("the point's position is not finite")]
     NotFinite,
 }

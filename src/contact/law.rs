@@ -84,6 +84,7 @@ pub struct Offsets<'a> {
     pub base: f64,
     /// Per point of the pair, zero or negative (length); empty where all are zero.
     pub z0: &'a [f64],
+    /// Part of `z0` that gaps are measured from, from 1 (all of it) to 0.
     pub factor: f64,
     /// Per point of the pair (length); empty where all are zero.
     pub bow: &'a [f64],
@@ -117,6 +118,7 @@ impl PointLaw for Offsets<'_> {
 /// A law of the gap `xi3 - z0`; the geometry keeps the true `xi3`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shifted<L> {
+    /// The law of the shifted gap.
     pub law: L,
     /// Length; positive where contact begins in front of the surface.
     pub z0: f64,
@@ -154,6 +156,7 @@ impl<L: NormalLaw> NormalLaw for Shifted<L> {
 pub struct Multipliers<'a> {
     /// Per point of the pair.
     pub histories: &'a [PointHistory],
+    /// What gaps are measured from; none: from the surface.
     pub offsets: Option<Offsets<'a>>,
 }
 
@@ -182,6 +185,7 @@ pub struct Held<'a> {
     pub held: &'a [bool],
     /// Per point of the pair; empty without multipliers.
     pub histories: &'a [PointHistory],
+    /// What gaps are measured from; none: from the surface.
     pub offsets: Option<Offsets<'a>>,
 }
 
@@ -250,6 +254,7 @@ impl Normal {
 /// be in contact slightly above the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Augmented<L = Penalty> {
+    /// The law of the penalty, without its multiplier.
     pub law: L,
     /// What the gap is measured from (length).
     pub z0: f64,

@@ -12,6 +12,7 @@ pub const NODES: usize = 16;
 /// A point at a fixed height above a surface of sixteen nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lever {
+    /// Nodes of the surface, by their numbers in the model.
     pub nodes: [u32; NODES],
     /// Shape functions.
     pub n: [f64; NODES],

@@ -9,11 +9,13 @@ use covact_geometry::Vec3;
 /// The closest point of a slave point and what the surface looks like there, in space coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Meeting {
+    /// The patch, edge or vertex that the foot lies on.
     pub piece: Piece,
     /// Parameters of the foot.
     pub xi: [f64; 2],
     /// The foot `rho`.
     pub rho: Vec3,
+    /// What the surface looks like at the foot.
     pub geometry: PointGeometry,
     /// Normal coordinate (length), negative below the surface; past a border that is rounded off that over the rounding.
     pub xi3: f64,

@@ -14,6 +14,7 @@ use covact_geometry::{
 /// A surface of moving facets at its present position.
 #[derive(Debug, Clone, Copy)]
 pub struct MovingMaster<'a> {
+    /// The facets at their present position.
     pub facets: &'a MovingFacets,
     /// The same, undeformed.
     pub undeformed: &'a MovingFacets,

@@ -21,13 +21,19 @@ const STIFFEST: f64 = 1e4;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PointGeometry<D = f64> {
     /// Inside a face. `xi3` is the normal coordinate, negative where the surfaces press (length).
-    Face { frame: Frame<D>, xi3: D },
+    Face {
+        /// Tangents, normal, metric and curvature at the foot.
+        frame: Frame<D>,
+        /// Normal coordinate (length).
+        xi3: D,
+    },
     /// On an edge `rho(s)`, which crosses the parameters of its face along `direction` (`rho' = direction_i rho_i`).
     Edge {
         /// `r_s - rho` (length), orthogonal to `rho_s`.
         d: Vector3<D>,
         /// Signed distance, `-|d|` where the surfaces press (length); not zero.
         xi3: D,
+        /// Components of the direction along the edge in the parameters of the face.
         direction: [D; 2],
         /// First derivative of the edge along `direction`.
         rho_s: Vector3<D>,
@@ -35,10 +41,20 @@ pub enum PointGeometry<D = f64> {
         rho_ss: Vector3<D>,
     },
     /// At a vertex: distance vector and signed distance as on an edge.
-    Vertex { d: Vector3<D>, xi3: D },
+    Vertex {
+        /// `r_s - rho` (length).
+        d: Vector3<D>,
+        /// Signed distance, negative where the surfaces press (length).
+        xi3: D,
+    },
     /// Where the parametrisation has no metric and the surface no curvature (the tip of a cone): only the unit normal is
     /// known. (At the pole of a smooth surface the curvature is that of the ways out of it, and the point one of a face.) The geometric part, smaller than the main part by `xi3 kappa`, is left out of the tangent.
-    Pole { normal: Vector3<D>, xi3: D },
+    Pole {
+        /// Outward unit normal.
+        normal: Vector3<D>,
+        /// Normal coordinate (length).
+        xi3: D,
+    },
 }
 
 impl PointGeometry {

@@ -14,6 +14,7 @@ pub struct SlavePoint {
     pub nodes: [u32; 9],
     /// Shape functions of those nodes at the point.
     pub shape: [f64; 9],
+    /// Number of nodes that the point has.
     pub count: u8,
     /// Tributary area on the undeformed surface (length^2).
     pub area: f64,

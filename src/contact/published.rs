@@ -11,7 +11,9 @@ use num_dual::DualNum;
 /// Which parts beyond the main one are included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Parts {
+    /// The part of turning normals.
     pub rotational: bool,
+    /// The part of the curvature `h^ij`.
     pub curvature: bool,
 }
 

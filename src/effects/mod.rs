@@ -47,8 +47,11 @@ pub enum Turn {
 
 /// The tangent of an evaluation.
 pub struct Tangent<'a> {
+    /// The matrix that blocks are added to.
     pub matrix: &'a mut SystemMatrix,
+    /// Which degrees of freedom are unknown.
     pub dofs: &'a DofMap,
+    /// Work space for adding blocks of constrained degrees of freedom.
     pub work: &'a mut ConstrainedScatter,
     /// Where the blocks of the elements go, element after element ([`crate::system::Pattern::element_map`]).
     pub maps: &'a [u32],

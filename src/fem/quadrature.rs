@@ -66,8 +66,10 @@ pub(crate) const GAUSS_3: Rule = {
 /// A rule that does not exist here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum QuadratureError {
+    /// A Gauss rule with this number of points was asked for.
     #[error("a Gauss rule has 1 to 10 points, not {0}")]
     Gauss(usize),
+    /// A Lobatto rule with this number of points was asked for.
     #[error("a Lobatto rule has 2 to 10 points, not {0}")]
     Lobatto(usize),
 }

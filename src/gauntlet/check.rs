@@ -7,6 +7,7 @@ use serde::Serialize;
 pub struct Check {
     /// What the number is, in words.
     pub what: String,
+    /// The number that came out.
     pub value: f64,
     /// Largest value that passes.
     pub limit: f64,
@@ -31,11 +32,13 @@ impl Check {
 /// How a case came out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verdict {
+    /// All numbers that were compared.
     pub checks: Vec<Check>,
     /// Newton iterations of all runs of the case, those of failed attempts included.
     pub iterations: u64,
     /// Largest number of iterations that passes.
     pub allowed: u64,
+    /// Elapsed time (s).
     pub seconds: f64,
     /// Why the case did not come to its end; none: it did.
     pub broken: Option<String>,

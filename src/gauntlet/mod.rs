@@ -38,7 +38,9 @@ pub struct Case {
 /// Cases of one kind.
 #[derive(Debug, Clone, Copy)]
 pub struct Group {
+    /// What the cases have in common, as the table shows it.
     pub name: &'static str,
+    /// The cases, in the order of the table.
     pub cases: &'static [Case],
 }
 

@@ -36,8 +36,11 @@ pub struct Trial {
 
 /// A run of a scene.
 pub struct Outcome {
+    /// The summary of the run.
     pub summary: Summary,
+    /// The columns of `history.csv`.
     pub history: Table,
+    /// Events of the run, in their order.
     pub events: Vec<Event>,
     /// Holds the results.
     pub folder: TempDir,

@@ -137,6 +137,7 @@ pub enum Format {
     Vtk,
     /// XML files of VTK with an unstructured grid.
     Vtu,
+    /// Triangles, in text or binary form.
     Stl,
 }
 

@@ -48,7 +48,12 @@ pub(super) fn most_members(nodes: usize, elements: usize) -> u64 {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Position {
     /// Text file: line and column, both counted from 1.
-    Text { line: usize, column: usize },
+    Text {
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+    },
     /// Binary file: byte offset from 0.
     Byte(usize),
     /// Arrays that a program gave.
@@ -68,7 +73,9 @@ impl fmt::Display for Position {
 /// What a set holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SetKind {
+    /// Set of nodes.
     Node,
+    /// Set of faces of elements.
     Face,
     /// Set of elements in a file.
     Element,
@@ -94,29 +101,51 @@ pub enum MeshError {
         what: &'static str,
         /// Field of it.
         field: String,
+        /// The value that was given.
         value: String,
+        /// What it may be, in words.
         expected: String,
     },
     /// More nodes than [`MAX_NODES`].
     #[error("{what}: {nodes} nodes are more than the limit of {MAX_NODES}")]
-    TooManyNodes { what: &'static str, nodes: u128 },
+    TooManyNodes {
+        /// Generator or file that asks for them.
+        what: &'static str,
+        /// Number of nodes asked for.
+        nodes: u128,
+    },
     /// The mesh does not fit in memory.
     #[error("{what} of {nodes} nodes: {shortage}")]
     Memory {
+        /// Generator or file that asks for it.
         what: &'static str,
+        /// Number of nodes of the mesh.
         nodes: u64,
+        /// How much there is and how much is needed.
         shortage: Shortage,
     },
     /// Named sets of a file are so long that their lines must be wrong: sets of sets, again and again.
     #[error("{}: its sets hold more than {most} members in all, {MEMBERS} for each node and element", path.display())]
-    LongSets { path: PathBuf, most: u64 },
+    LongSets {
+        /// The mesh file.
+        path: PathBuf,
+        /// Number of members up to which sets are read.
+        most: u64,
+    },
     /// The elements cannot be spaced as asked.
     #[error("spacing along {axis}: {reason}")]
-    Spacing { axis: String, reason: String },
+    Spacing {
+        /// Axis of the generator.
+        axis: String,
+        /// What is wrong with the spacing.
+        reason: String,
+    },
     /// A file cannot be read.
     #[error("cannot read mesh file {}: {source}", path.display())]
     Io {
+        /// The mesh file.
         path: PathBuf,
+        /// What the operating system says.
         source: std::io::Error,
     },
     /// The name of a file does not tell its format.
@@ -124,30 +153,44 @@ pub enum MeshError {
         "{}: mesh files end in .msh (gmsh), .inp (Abaqus, CalculiX), .bdf or .nas (Nastran), .vtk, .vtu or .stl",
         path.display()
     )]
-    UnknownFormat { path: PathBuf },
+    UnknownFormat {
+        /// The mesh file.
+        path: PathBuf,
+    },
     /// A file does not follow its format.
     #[error("{}:{at}: expected {expected}, found {found}", path.display())]
     Syntax {
+        /// The mesh file.
         path: PathBuf,
+        /// Place in the file.
         at: Position,
+        /// What the format asks for there.
         expected: String,
+        /// What stands there.
         found: String,
     },
     /// A file holds something valid that is not supported.
     #[error("{}:{at}: {what} is not supported: {help}", path.display())]
     Unsupported {
+        /// The mesh file.
         path: PathBuf,
+        /// Place in the file.
         at: Position,
+        /// What is not supported.
         what: String,
+        /// What to do about it.
         help: String,
     },
     /// A file holds no elements of the kind that is wanted.
     #[error("{}: no {wanted} in this file (its elements: {found}): {help}", path.display())]
     NoElements {
+        /// The mesh file.
         path: PathBuf,
         /// `hexahedra`, or `quadrilaterals or triangles` for a surface.
         wanted: &'static str,
+        /// The elements of the file, in words.
         found: String,
+        /// What to do about it.
         help: String,
     },
     /// The nodes midway through the thickness of a 20-node hexahedron do not lie midway.
@@ -158,6 +201,7 @@ pub enum MeshError {
         path.display(), position[0], position[1], position[2]
     )]
     Crooked {
+        /// The mesh file.
         path: PathBuf,
         /// Number of the worst element in the file.
         tag: u64,
@@ -168,16 +212,30 @@ pub enum MeshError {
     },
     /// A surface cannot be given a thickness.
     #[error("{}: {source}", path.display())]
-    Surface { path: PathBuf, source: SurfaceError },
+    Surface {
+        /// The mesh file.
+        path: PathBuf,
+        /// What is wrong with the surface.
+        source: SurfaceError,
+    },
     /// A node position is not finite.
     #[error("node {node} has the position ({}, {}, {})", position[0], position[1], position[2])]
-    NotFinite { node: u32, position: [f64; 3] },
+    NotFinite {
+        /// Number of the node, from 0.
+        node: u32,
+        /// Its coordinates.
+        position: [f64; 3],
+    },
     /// An element or a set names a node or an element that does not exist.
     #[error("{what} refers to {kind} {number}, but there are only {count}")]
     OutOfRange {
+        /// The element or set, in words.
         what: String,
+        /// `node`, `element` or what else is referred to.
         kind: &'static str,
+        /// The number that does not exist.
         number: u64,
+        /// How many of the kind there are.
         count: usize,
     },
     /// An element is turned inside out or has no volume.
@@ -206,11 +264,15 @@ pub enum MeshError {
         position[0], position[1], position[2]
     )]
     DuplicateNodes {
+        /// The first node of the first such pair, from 0.
         first: u32,
+        /// The second node of that pair.
         second: u32,
         /// Their numbers in the mesh file.
         tags: Option<[u64; 2]>,
+        /// Where it is.
         position: [f64; 3],
+        /// How many such pairs there are.
         count: usize,
     },
     /// A node belongs to no element.
@@ -219,8 +281,11 @@ pub enum MeshError {
         position[0], position[1], position[2]
     )]
     UnusedNode {
+        /// The first such node, from 0.
         node: u32,
+        /// Where it is.
         position: [f64; 3],
+        /// How many such nodes there are.
         count: usize,
     },
     /// A face is shared by more than two elements, or by two on the same side.
@@ -230,7 +295,9 @@ pub enum MeshError {
         position[0], position[1], position[2]
     )]
     NonManifold {
+        /// The elements that meet there, from 0.
         elements: Vec<u32>,
+        /// Centre of the face.
         position: [f64; 3],
     },
     /// Two elements share the corners of a face, but not the nodes between them.
@@ -240,17 +307,21 @@ pub enum MeshError {
         elements[0], elements[1], position[0], position[1], position[2]
     )]
     UnlikeFaces {
+        /// The two elements, from 0.
         elements: [u32; 2],
+        /// Centre of the face.
         position: [f64; 3],
     },
     /// A file holds elements of another shape than the scene asks for.
     #[error("{}: holds {found}, but {wanted}: {help}", path.display())]
     OtherElements {
+        /// The mesh file.
         path: PathBuf,
         /// The file's elements.
         found: &'static str,
         /// What the scene's element needs.
         wanted: &'static str,
+        /// What to do about it.
         help: &'static str,
     },
     /// No set of this name.
@@ -260,14 +331,21 @@ pub enum MeshError {
         if available.is_empty() { format!("the mesh has no {kind} sets") } else { format!("{kind} sets: {}", listed(available)) }
     )]
     UnknownSet {
+        /// The kind of set that was looked for.
         kind: SetKind,
+        /// The name that was asked for.
         name: String,
+        /// The most similar name of a set.
         suggestion: Option<String>,
+        /// Names of all sets of the kind.
         available: Vec<String>,
     },
     /// A set of this name exists already.
     #[error("the mesh already has a set `{name}`")]
-    SetExists { name: String },
+    SetExists {
+        /// Name of the set.
+        name: String,
+    },
     /// A selection finds nothing.
     #[error(
         "{selection} selects nothing: the nearest {candidate} is {nearest:.6} {unit} away from it"

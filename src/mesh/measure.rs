@@ -8,8 +8,11 @@ use covact_geometry::Vec3;
 /// Smallest, mean and largest value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
+    /// The smallest.
     pub min: f64,
+    /// The mean.
     pub mean: f64,
+    /// The largest.
     pub max: f64,
 }
 

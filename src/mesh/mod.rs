@@ -93,7 +93,9 @@ impl ElementKind {
 /// 5 is t = +1 (top).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Face {
+    /// Number of the element in its mesh, from 0.
     pub element: u32,
+    /// Number of the face in the element, 0 to 5.
     pub face: u8,
 }
 
@@ -110,6 +112,7 @@ pub const H8_FACES: [[u8; 4]; 6] = [
 /// A mesh of one body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
+    /// The kind of its elements.
     pub kind: ElementKind,
     /// Node positions, in the scene's length unit.
     pub nodes: Vec<Vec3>,

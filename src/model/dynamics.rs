@@ -36,6 +36,7 @@ pub struct StartMotion {
     pub velocity: Vec3,
     /// Angular velocity (radians / time).
     pub spin: Vec3,
+    /// Point that the body turns about.
     pub about: Vec3,
 }
 

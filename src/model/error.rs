@@ -14,6 +14,7 @@ use covact_geometry::{MovingError, PatchError};
 pub struct ModelError {
     /// Field of the scene, e.g. `/contacts/punch/slave`.
     pub pointer: String,
+    /// What is wrong.
     #[source]
     pub cause: Box<Cause>,
     /// What to do about it, where the cause does not say.

@@ -14,22 +14,30 @@ use num_dual::DualNum;
 pub enum DeadLoad {
     /// The same force everywhere: each node takes its share of the total.
     Force {
+        /// Nodes and their shares, which add up to 1.
         shares: Vec<(u32, f64)>,
+        /// The total force over time, by components.
         value: [TimeFunction; 3],
     },
     /// Force per undeformed area, sampled at points of the faces.
     Traction {
+        /// Quadrature points of the loaded faces.
         points: Vec<LoadPoint>,
+        /// The traction over time, by components (force / length^2).
         value: [TimeFunction; 3],
     },
     /// Pressure against the undeformed outward normal.
     Pressure {
+        /// Quadrature points of the loaded faces.
         points: Vec<LoadPoint>,
+        /// The pressure over time (force / length^2).
         value: TimeFunction,
     },
     /// Forces on degrees of freedom, all of them times one factor.
     Nodal {
+        /// Degrees of freedom and their forces under a factor of 1.
         forces: Vec<(u32, f64)>,
+        /// The factor over time.
         factor: TimeFunction,
     },
 }
@@ -48,11 +56,13 @@ pub struct LoadPoint {
 /// Pressure that follows the deformed faces, or a couple that follows edges of sheets.
 #[derive(Debug, Clone)]
 pub struct FollowerPressure {
+    /// Faces of solid elements under the pressure.
     pub faces: Vec<FaceNodes>,
     /// Faces of sheets under the pressure, or edges under a couple per length in its place.
     pub spans: Vec<FollowingSpan>,
     /// Lines of nodes around those faces; none where that is not known.
     pub rims: Option<Vec<Vec<u32>>>,
+    /// The pressure over time (force / length^2), or the couple per length (force).
     pub value: TimeFunction,
 }
 

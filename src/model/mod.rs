@@ -69,22 +69,30 @@ pub use surface::SurfaceModel;
 /// Bodies, rigid surfaces, contact pairs, supports and loads, with all names resolved.
 #[derive(Debug)]
 pub struct Model {
+    /// Title of the scene.
     pub title: String,
     /// Undeformed positions of all nodes, body after body, then those on rims of rigid surfaces, then two for every surface driven
     /// by force: its centre, and the origin for its rotation.
     pub nodes: Vec<Vec3>,
+    /// Deformable bodies, sorted by their names.
     pub bodies: Vec<BodyModel>,
+    /// Rigid surfaces, sorted by their names.
     pub surfaces: Vec<SurfaceModel>,
+    /// Contact pairs.
     pub pairs: Vec<PairModel>,
     /// Nodes on the rims of rigid surfaces that are slaves.
     pub rims: Vec<RimNodes>,
     /// Names of the supports.
     pub supports: Vec<String>,
+    /// Degrees of freedom that supports prescribe.
     pub prescribed: Vec<Prescribed>,
+    /// Means of two degrees of freedom that supports at a mid-surface prescribe.
     pub means: Vec<MeanPrescribed>,
     /// Degrees of freedom that supports of sheets tie to others, with those that nothing prescribes.
     pub tied: Vec<Tied>,
+    /// Loads of constant direction, with their names.
     pub dead_loads: Vec<(String, DeadLoad)>,
+    /// Loads that follow the deformed faces, with their names.
     pub follower_loads: Vec<(String, FollowerPressure)>,
     /// Which degrees of freedom are unknown.
     pub dofs: DofMap,
@@ -117,8 +125,11 @@ pub struct Model {
 /// A deformable body.
 #[derive(Debug)]
 pub struct BodyModel {
+    /// Name in the scene.
     pub name: String,
+    /// The undeformed mesh.
     pub mesh: Mesh,
+    /// Its elements, set up.
     pub block: Block,
     /// The law of its elements, in the units of the scene.
     pub material: Material,
@@ -134,12 +145,15 @@ pub type Metal = (&'static str, f64);
 /// A contact pair.
 #[derive(Debug)]
 pub struct PairModel {
+    /// Name of the contact in the scene.
     pub name: String,
     /// The slave faces, `body.set`.
     pub slave: String,
+    /// Number of the slave body.
     pub body: usize,
     /// The slave faces.
     pub faces: Vec<Face>,
+    /// The rigid surface or the faces that the points press on.
     pub master: Master,
     /// Slave points; those of integration segments as they are before anything moves ([`state::State::slaves`]).
     pub points: Vec<SlavePoint>,
@@ -156,6 +170,7 @@ pub struct PairModel {
     pub eps_n: f64,
     /// What the run may choose the penalty by; nothing where it is given, or tractions are augmented.
     pub ruled: Option<penalty::Ruled>,
+    /// Which tangent of contact is used.
     pub tangent: Tangent,
     /// Mean edge length of the slave faces.
     pub element_size: f64,
@@ -360,6 +375,7 @@ impl Model {
 /// The mean of two displacements that a support holds, or one displacement, which stands twice.
 #[derive(Debug, Clone, Copy)]
 pub struct Support<'a> {
+    /// The two degrees of freedom `3 node + component`.
     pub dofs: [u32; 2],
     /// Where it is at the start.
     pub at: Vec3,

@@ -11,7 +11,9 @@ use std::sync::Arc;
 /// Where the last search for a slave point ended, and whether the point was closed. Nothing here outlives the next search.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PointState {
+    /// Where the search ended; none before the first.
     pub hint: Option<Hint>,
+    /// Whether the point was in contact.
     pub closed: bool,
 }
 

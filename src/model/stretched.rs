@@ -9,6 +9,7 @@ use covact_geometry::Vec3;
 /// Fibres of one body that a support holds along them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stretched {
+    /// Name of the support.
     pub support: String,
     /// Number of the body.
     pub body: usize,

@@ -10,11 +10,13 @@ use covact_geometry::{Bilinear, Biquadratic, Foot, Hint, Jet, NurbsPatch, PatchS
 /// A rigid surface.
 #[derive(Debug)]
 pub struct SurfaceModel {
+    /// Name in the scene.
     pub name: String,
     /// Patches or facets in the scene's length unit and the surface's own coordinates.
     pub set: SurfaceSet,
     /// How facets stand for an exact surface; none where the patches are used as they are.
     pub facets: Option<FacetModel>,
+    /// How it moves over time.
     pub motion: Motion,
     /// What forces drive of its motion.
     pub driven: Option<Driven>,
@@ -25,6 +27,7 @@ pub struct SurfaceModel {
 /// Facets in place of an exact surface, or the triangles of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FacetModel {
+    /// The kind of facets.
     pub kind: FacetKind,
     /// Number of facets.
     pub count: usize,
@@ -54,7 +57,9 @@ pub fn facet_bytes(kind: Option<FacetKind>) -> u64 {
 pub enum SurfaceSet {
     /// Exact patches, or the bicubic ones of a smooth surface over facets.
     Nurbs(PatchSet<NurbsPatch>),
+    /// Facets of four nodes.
     Bilinear(PatchSet<Bilinear>),
+    /// Facets of nine nodes.
     Biquadratic(PatchSet<Biquadratic>),
 }
 

@@ -26,6 +26,7 @@ pub struct Accuracy {
 /// Which slave points carried the largest force of a contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ContactAccuracy {
+    /// Name of the contact.
     pub name: String,
     /// Sum of pressure times area (force).
     pub force: f64,
@@ -40,6 +41,7 @@ pub struct ContactAccuracy {
     /// Penalty at the end of the run, and the tangential one (0 without friction; force / length^3).
     #[serde(default)]
     pub penalty: f64,
+    /// Tangential penalty at the end of the run; 0 without friction (force / length^3).
     #[serde(default)]
     pub tangential_penalty: f64,
     /// Estimated relative error of its friction by the elastic slip of points that stick; 0 without friction.

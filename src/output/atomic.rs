@@ -239,7 +239,9 @@ pub fn remove_file(path: &Path) -> Result<(), OutputError> {
 /// What may be replaced by a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Replaceable {
+    /// There is nothing.
     Nothing,
+    /// A regular file.
     File,
     /// A symbolic link, wherever it points to.
     Link,

@@ -20,6 +20,7 @@ pub struct Comparison {
 /// A column of the history.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Compared {
+    /// Name of the column.
     pub name: String,
     /// Value of the last step in both runs; none where the run has no such column, or no steps.
     pub end: [Option<f64>; 2],
@@ -33,15 +34,23 @@ pub struct Compared {
 /// What a run took.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cost {
+    /// How the run ended.
     pub status: RunStatus,
     /// Time that was reached, of the scene's clock.
     pub time: f64,
+    /// Elapsed time (s).
     pub wall_s: f64,
+    /// Processor time of all threads (s); none where it was not measured.
     pub cpu_s: Option<f64>,
+    /// Accepted steps.
     pub steps: u32,
+    /// Newton iterations of all attempts.
     pub iterations: u64,
+    /// Number of factorizations, by method.
     pub factorizations: BTreeMap<String, u64>,
+    /// Largest resident memory (10^6 bytes); none where it was not measured.
     pub peak_memory_mb: Option<f64>,
+    /// Unknowns.
     pub dofs: usize,
 }
 

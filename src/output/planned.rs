@@ -10,12 +10,14 @@ pub struct PlanSummary {
     pub unsymmetric: Vec<String>,
     /// Effects of the scene as a whole that were on.
     pub effects: Vec<EffectSummary>,
+    /// What was done at the points of every contact pair.
     pub pairs: Vec<PairSummary>,
 }
 
 /// An effect that was on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EffectSummary {
+    /// Name of the effect.
     pub name: String,
     /// What of the scene or its geometry decides, in words.
     pub why: String,

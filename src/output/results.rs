@@ -38,10 +38,13 @@ pub struct Results {
 /// Names of the parts of a run, in the order they are written.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct PartNames {
+    /// Deformable bodies.
     pub bodies: Vec<String>,
+    /// Rigid surfaces.
     pub surfaces: Vec<String>,
     /// Those of them that never move.
     pub still: Vec<String>,
+    /// Clouds of slave points.
     pub clouds: Vec<String>,
     /// Mid-surfaces of sheets.
     pub sheets: Vec<String>,

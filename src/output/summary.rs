@@ -158,6 +158,7 @@ impl Summary {
 /// How a stage of a run ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StageSummary {
+    /// Name of the stage.
     pub name: String,
     /// Time at its end.
     pub until: f64,

@@ -7,9 +7,11 @@ use serde::Serialize;
 pub struct Held {
     /// Name of the part, as whoever holds it reports it.
     pub part: &'static str,
+    /// Who holds it.
     pub holder: Holder,
     /// Bytes for one of what it is for.
     pub each: usize,
+    /// What it is held for.
     pub per: Per,
     /// Number of those.
     pub count: usize,

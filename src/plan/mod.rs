@@ -37,6 +37,7 @@ pub struct Plan {
 pub struct Group {
     /// What they are about, e.g. "bodies".
     pub name: &'static str,
+    /// The effects, in the order of the table.
     pub effects: Vec<Effect>,
 }
 
@@ -58,6 +59,7 @@ pub struct PairPlan {
     /// The loop over the points: what the assembly dispatches on.
     #[serde(serialize_with = "as_text")]
     pub kernel: Kernel,
+    /// Effects of the pair, on or off.
     pub effects: Vec<Effect>,
 }
 
@@ -66,6 +68,7 @@ pub struct PairPlan {
 pub struct Effect {
     /// Name; that of a part begins with the name of the whole.
     pub name: &'static str,
+    /// Whether it is on.
     pub on: bool,
     /// What of the scene or of its geometry decides, in words.
     pub why: String,

@@ -21,20 +21,34 @@ pub struct Removable {
 /// Why an effect cannot be turned off.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum WithoutError {
+    /// The program has no effect of this name that can be turned off.
     #[error("there is no effect `{name}` that can be turned off{}; these can: {known}", meant(.nearest))]
     Unknown {
+        /// The name that was asked for.
         name: String,
+        /// The most similar name.
         nearest: Option<&'static str>,
+        /// All effects that can be turned off.
         known: String,
     },
+    /// The effect is off in this scene.
     #[error("the scene has no effect `{name}` to turn off; it has {has}{}", meant(.nearest))]
     NotThere {
+        /// The name that was asked for.
         name: String,
+        /// The most similar name.
         nearest: Option<&'static str>,
+        /// Effects of the scene that can be turned off.
         has: String,
     },
+    /// The scene needs the effect.
     #[error("`{name}` cannot be turned off in this scene: {reason}")]
-    Fixed { name: String, reason: &'static str },
+    Fixed {
+        /// The name that was asked for.
+        name: String,
+        /// Why it has to stay.
+        reason: &'static str,
+    },
 }
 
 fn meant(nearest: &Option<&'static str>) -> String {

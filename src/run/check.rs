@@ -14,10 +14,13 @@ use std::collections::BTreeSet;
 /// What a scene amounts to. Lengths are in the scene's unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CheckReport {
+    /// Title of the scene.
     pub title: String,
     /// Length unit of the scene.
     pub unit: String,
+    /// Nodes of all bodies.
     pub nodes: usize,
+    /// Elements of all bodies.
     pub elements: usize,
     /// Unknowns, prescribed ones left out.
     pub dofs: usize,
@@ -25,10 +28,15 @@ pub struct CheckReport {
     pub contact_points: usize,
     /// Memory that a run takes at its largest, estimated.
     pub memory: Estimate,
+    /// Deformable bodies.
     pub bodies: Vec<BodyReport>,
+    /// Rigid surfaces.
     pub surfaces: Vec<SurfaceReport>,
+    /// Contact pairs.
     pub pairs: Vec<PairReport>,
+    /// Supports.
     pub supports: Vec<SupportReport>,
+    /// Loads.
     pub loads: Vec<LoadReport>,
     /// Effects that are on, by name.
     pub effects: Vec<String>,
@@ -36,14 +44,18 @@ pub struct CheckReport {
     pub details: Vec<String>,
     /// Choices the program made, in words.
     pub notes: Vec<String>,
+    /// Things the user should look at, in words.
     pub warnings: Vec<String>,
 }
 
 /// A body and its mesh.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BodyReport {
+    /// Name in the scene.
     pub name: String,
+    /// Number of nodes.
     pub nodes: usize,
+    /// Number of elements.
     pub elements: usize,
     /// Parts that share no node.
     pub parts: usize,
@@ -69,6 +81,7 @@ pub struct BodyReport {
 /// points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SetReport {
+    /// Name of the set, without that of the body.
     pub name: String,
     /// Faces of elements; none in a set of nodes.
     pub faces: usize,
@@ -96,12 +109,14 @@ pub struct DistortionReport {
 /// A rigid surface at the start.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SurfaceReport {
+    /// Name in the scene.
     pub name: String,
     /// CAD file or shape.
     pub source: String,
     /// Facets in place of the exact surface, or triangles of a file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub facets: Option<FacetsReport>,
+    /// Number of patches or facets.
     pub patches: usize,
     /// Unconnected parts.
     pub parts: usize,
@@ -144,10 +159,13 @@ pub struct FacetsReport {
 /// A contact pair before anything moves.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PairReport {
+    /// Name of the contact.
     pub name: String,
     /// Slave faces, `body.set`.
     pub slave: String,
+    /// Name of the rigid surface, or master faces, `body.set`.
     pub master: String,
+    /// Number of slave points.
     pub points: usize,
     /// Where the slave points lie, in words.
     pub sampling: String,
@@ -166,6 +184,7 @@ pub struct PairReport {
 /// A support.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SupportReport {
+    /// Name in the scene.
     pub name: String,
     /// Set, `body.set`.
     pub on: String,
@@ -178,6 +197,7 @@ pub struct SupportReport {
 /// A load.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LoadReport {
+    /// Name in the scene.
     pub name: String,
     /// Set, `body.set`.
     pub on: String,

@@ -20,7 +20,9 @@ pub enum FolderError {
         folder.display(), words(holder.as_ref())
     )]
     InUse {
+        /// The folder.
         folder: PathBuf,
+        /// Who writes to it; none where that is not known.
         holder: Option<Holder>,
     },
     /// It holds a run, which nobody asked to replace.
@@ -31,6 +33,7 @@ pub enum FolderError {
         match unfinished { true => "continue it with `--resume`", false => "keep it with `--resume`" }
     )]
     Occupied {
+        /// The folder.
         folder: PathBuf,
         /// It can be continued.
         unfinished: bool,
@@ -40,7 +43,10 @@ pub enum FolderError {
         "`{}` was not written by covact, and the run would replace it: move it, or choose another folder",
         path.display()
     )]
-    Foreign { path: PathBuf },
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
 }
 
 fn words(holder: Option<&Holder>) -> String {
@@ -50,8 +56,10 @@ fn words(holder: Option<&Holder>) -> String {
 /// Why a folder cannot be taken.
 #[derive(Debug, thiserror::Error)]
 pub enum ClaimError {
+    /// The folder is in use, or holds what nobody asked to replace.
     #[error(transparent)]
     Folder(#[from] FolderError),
+    /// The folder cannot be made or written to.
     #[error(transparent)]
     Output(#[from] OutputError),
 }

@@ -13,6 +13,7 @@ pub enum RunError {
     /// The scene, or a file it names, is wrong.
     #[error("{message}")]
     Scene {
+        /// What is wrong.
         message: String,
         /// JSON pointer of the field at fault.
         pointer: String,
@@ -23,6 +24,7 @@ pub enum RunError {
         /// What else is wrong with it.
         others: Vec<RunError>,
     },
+    /// A result cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
     /// The folder of the results is in use, or holds what nobody asked to replace.

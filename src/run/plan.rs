@@ -11,8 +11,11 @@ use serde::Serialize;
 pub struct PlanReport {
     /// The scene file as it was named.
     pub file: String,
+    /// Title of the scene.
     pub title: String,
+    /// Nodes of all bodies.
     pub nodes: usize,
+    /// Elements of all bodies.
     pub elements: usize,
     /// Unknowns, prescribed ones left out.
     pub dofs: usize,
@@ -20,6 +23,7 @@ pub struct PlanReport {
     pub contact_points: usize,
     /// Memory that a run takes at its largest, estimated.
     pub memory: Estimate,
+    /// The effects and the contact pairs.
     #[serde(flatten)]
     pub plan: Plan,
 }

@@ -39,6 +39,7 @@ pub struct Document {
     pub name: String,
     /// Folder that paths in the file are relative to.
     pub dir: PathBuf,
+    /// The whole text.
     pub text: String,
     root: Node,
     lines: Lines,

@@ -72,6 +72,7 @@ fn max(a: f64, b: f64) -> f64 {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct ExpressionError {
+    /// What is wrong, in one sentence.
     pub message: String,
     /// What would be right.
     pub help: Option<String>,

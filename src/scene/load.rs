@@ -23,6 +23,7 @@ impl Form for Scene {
 /// A scene with its text, so that everything found later can point into the file.
 #[derive(Debug, Clone)]
 pub struct LoadedScene {
+    /// The scene.
     pub scene: Scene,
     pub(super) document: Document,
 }

@@ -7,7 +7,9 @@ use std::path::PathBuf;
 /// A place in a text file; both numbers start at 1, columns count characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Place {
+    /// Line, from 1.
     pub line: usize,
+    /// Column, from 1, in characters.
     pub column: usize,
 }
 
@@ -27,6 +29,7 @@ pub struct Problem {
     pub help: Option<String>,
     /// JSON pointer (RFC 6901) of the value it belongs to, e.g. `/bodies/sheet/mesh/plate`.
     pub pointer: String,
+    /// Where it stands in the text.
     #[serde(flatten)]
     pub place: Place,
     /// Bytes of the scene's text that are meant.
@@ -52,6 +55,7 @@ pub enum SceneError {
     Missing {
         /// What the file should hold, e.g. "scene".
         what: &'static str,
+        /// The file that was asked for.
         path: PathBuf,
         /// A file of a similar name in the same folder.
         nearest: Option<String>,
@@ -61,7 +65,9 @@ pub enum SceneError {
     Io {
         /// What the file should hold, e.g. "scene".
         what: &'static str,
+        /// The file.
         path: PathBuf,
+        /// What the operating system says.
         reason: String,
     },
     /// The text is no valid scene.

@@ -15,11 +15,14 @@ use std::fmt;
 #[serde(untagged)]
 #[schemars(deny_unknown_fields)]
 pub enum Value {
+    /// A constant.
     Number(f64),
+    /// Linear between its rows, constant beyond.
     Table {
         /// Rows of a time and a value; times increase.
         table: Vec<[f64; 2]>,
     },
+    /// An expression in `t`, and in x, y, z where the field says so.
     Expression(String),
 }
 
@@ -78,38 +81,69 @@ impl<'de> Visitor<'de> for ValueVisitor {
 /// Why a [`Value`] cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ValueError {
+    /// A constant is infinite or not a number.
     #[error("the number {0} is not finite")]
     Number(f64),
+    /// A table has no rows.
     #[error("the table has no rows")]
     EmptyTable,
     /// Row counted from 0.
     #[error("times of a table must increase: row {} has t = {time} after t = {before}", .row + 1)]
-    Order { row: usize, time: f64, before: f64 },
+    Order {
+        /// The later row, from 0.
+        row: usize,
+        /// Its time.
+        time: f64,
+        /// The time of the row before.
+        before: f64,
+    },
+    /// A time or a value of a table is infinite or not a number.
     #[error("row {} of the table is not finite", .row + 1)]
-    Row { row: usize },
+    Row {
+        /// The row, from 0.
+        row: usize,
+    },
+    /// An expression does not follow the rules of expressions.
     #[error("{0}")]
     Expression(#[from] ExpressionError),
     /// An expression without variables that is infinite or no number.
     #[error("the expression `{}` is {value}", shorten(.expression))]
-    NotFinite { expression: String, value: f64 },
+    NotFinite {
+        /// The expression.
+        expression: String,
+        /// What it gives.
+        value: f64,
+    },
+    /// A function of time has no value at some time.
     #[error(transparent)]
     Eval(#[from] EvalError),
+    /// Something that must not be negative becomes so.
     #[error("{what} is {value} at t = {time}, where it must not be negative")]
     Negative {
+        /// What it is, in words.
         what: &'static str,
+        /// Its value.
         value: f64,
+        /// The time of that value.
         time: f64,
     },
+    /// A vector that gives a direction is zero.
     #[error("{what} has no length")]
-    NoLength { what: &'static str },
+    NoLength {
+        /// What it is, in words.
+        what: &'static str,
+    },
 }
 
 /// A [`TimeFunction`] gave something infinite or no number.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("`{}` is {value} at t = {time}{}", shorten(.expression), position(.x))]
 pub struct EvalError {
+    /// The expression, or the table in words.
     pub expression: String,
+    /// What it gives.
     pub value: f64,
+    /// The time.
     pub time: f64,
     /// Where, for functions of position.
     pub x: Option<[f64; 3]>,

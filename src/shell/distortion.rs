@@ -84,9 +84,11 @@ impl Distortion {
 /// The most distorted element of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MostDistorted {
+    /// Number of the element.
     pub element: u32,
     /// Mean of its corners.
     pub place: Vec3,
+    /// How it is distorted.
     pub distortion: Distortion,
     /// [`Distortion::share`].
     pub share: f64,

@@ -6,17 +6,30 @@ use thiserror::Error;
 pub enum ShellError {
     /// The mesh holds another kind of element.
     #[error("the mesh holds {found} elements, not {wanted}")]
-    Kind { wanted: &'static str, found: String },
+    Kind {
+        /// The kind that the block takes.
+        wanted: &'static str,
+        /// The kind of the mesh.
+        found: String,
+    },
     /// An element names a node that the mesh does not have.
     #[error("element {element} refers to node {node}, but the mesh has {nodes} nodes")]
     Node {
+        /// Number of the element, from 0.
         element: u32,
+        /// The node that it names.
         node: u32,
+        /// Number of nodes of the mesh.
         nodes: usize,
     },
     /// The connectivity is not a whole number of elements.
     #[error("{entries} node numbers are not a whole number of {nodes}-node elements")]
-    Connectivity { entries: usize, nodes: usize },
+    Connectivity {
+        /// Number of entries of the connectivity.
+        entries: usize,
+        /// Nodes of an element.
+        nodes: usize,
+    },
     /// Elements whose Jacobian is not positive at a Gauss point.
     #[error(
         "element {element} is inverted or flat: Jacobian determinant {jacobian:e} ({count} such element(s) in all)"
@@ -32,18 +45,27 @@ pub enum ShellError {
     /// A material constant is out of range.
     #[error("material: {name} = {value} must be {range}")]
     Material {
+        /// Name of the constant.
         name: &'static str,
+        /// Its value.
         value: f64,
+        /// What it may be, in words.
         range: &'static str,
     },
     /// A rolled sheet whose rolling direction stands on it.
     #[error(
         "element {element}: the rolling direction of its material is nearly normal to the sheet there"
     )]
-    Rolling { element: u32 },
+    Rolling {
+        /// Number of the element, from 0.
+        element: u32,
+    },
     /// Three enhanced strains lock when the material is nearly incompressible.
     #[error("three enhanced strains lock at nu = {nu} (limit 0.45); use seven")]
-    TooFewEnhanced { nu: f64 },
+    TooFewEnhanced {
+        /// Poisson's ratio of the material.
+        nu: f64,
+    },
     /// The law of a shell on a NURBS patch has to be elastic, with a form in plane stress.
     #[error(
         "a body of kind `nurbs` has the law `st_venant_kirchhoff` or `neo_hooke`: others have no form in plane stress here"
@@ -51,7 +73,10 @@ pub enum ShellError {
     PlaneStress,
     /// The tangents of a surface are parallel at a point of an element.
     #[error("element {element}: the surface has no normal there")]
-    NoNormal { element: u32 },
+    NoNormal {
+        /// Number of the element, from 0.
+        element: u32,
+    },
     /// The elements of a sheet are set up from its patch, not from a mesh.
     #[error("elements of a NURBS patch are set up from its sheet")]
     Sheet,
@@ -63,6 +88,7 @@ pub enum ShellError {
 pub struct ElementFault {
     /// Element number within its block.
     pub element: u32,
+    /// What is wrong with it.
     pub cause: FaultCause,
 }
 
@@ -79,7 +105,12 @@ pub enum FaultCause {
     },
     /// The stiffness of the enhanced strains has a pivot that is zero or not a number.
     #[error("{}", pivot_words(*mode, *pivot))]
-    Pivot { mode: u8, pivot: f64 },
+    Pivot {
+        /// Number of the enhanced strain.
+        mode: u8,
+        /// The pivot.
+        pivot: f64,
+    },
 }
 
 /// What a strain means that no deformation has.

@@ -8,20 +8,37 @@ use std::f64::consts::PI;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BodyKind {
     /// A plate about the origin, its top at z = 0.
-    Sheet { size: [f64; 2], thickness: f64 },
+    Sheet {
+        /// Lengths along x and y.
+        size: [f64; 2],
+        /// Thickness along z.
+        thickness: f64,
+    },
     /// A block about the z axis, its top at z = 0.
-    Block { size: [f64; 2], height: f64 },
+    Block {
+        /// Lengths along x and y.
+        size: [f64; 2],
+        /// Height along z.
+        height: f64,
+    },
     /// Part of a cylinder about the y axis, its crown at z = 0, both straight edges clamped.
     Arch {
+        /// Radius of the mid-surface.
         radius: f64,
+        /// Thickness of the wall.
         thickness: f64,
+        /// Angle from the crown to a straight edge (degrees).
         half_angle: f64,
+        /// Half of its length along y.
         half_width: f64,
     },
     /// A plate, its top at z = 0, at a distance above a block: two bodies.
     SheetOnBlock {
+        /// Lengths of both along x and y.
         size: [f64; 2],
+        /// Thickness of the plate.
         thickness: f64,
+        /// Distance of the plate from the block.
         gap: f64,
     },
 }
@@ -37,14 +54,21 @@ pub enum Held {
 /// The rigid surface that moves.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Tool {
+    /// A ball.
     Sphere {
+        /// Its radius.
         radius: f64,
     },
+    /// A bar.
     Cylinder {
+        /// Its radius.
         radius: f64,
+        /// Direction of its axis.
         axis: [f64; 3],
     },
+    /// A plane.
     Plane {
+        /// Its outward normal.
         normal: [f64; 3],
     },
     /// One patch from a CAD file.
@@ -54,7 +78,9 @@ pub enum Tool {
 /// Displacement of the tool over time, and its turn about the z axis in degrees.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
+    /// Times and displacements.
     pub path: Vec<(f64, [f64; 3])>,
+    /// Turn about the z axis at the end (degrees).
     pub turn: f64,
     /// Whether the tool presses at the end.
     pub pressed: bool,
@@ -67,28 +93,38 @@ pub struct Motion {
 /// A scene drawn from a seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RandomScene {
+    /// The seed that it was drawn from.
     pub seed: u64,
+    /// The body that the tool meets.
     pub body: BodyKind,
+    /// How the body is held.
     pub held: Held,
     /// `h8`, `q18` or `h8_displacement`.
     pub element: &'static str,
     /// Elements along both directions of the surface.
     pub elements: [u32; 2],
+    /// Young's modulus.
     pub e: f64,
+    /// Poisson's ratio.
     pub nu: f64,
+    /// The rigid surface.
     pub tool: Tool,
     /// Position of the tool's reference point at the start: the centre of a sphere, cylinder or plane; a patch is where it
     /// is.
     pub center: [f64; 3],
     /// Facets in place of the exact surface: kind and number along both directions.
     pub facets: Option<(&'static str, u32)>,
+    /// How the tool moves.
     pub motion: Motion,
+    /// Friction coefficient; none: without friction.
     pub mu: Option<f64>,
+    /// Whether tractions are augmented.
     pub augmented: bool,
     /// `nodes`, or a rule and its number.
     pub points: (&'static str, u32),
     /// Multiple of the automatic penalty; none: the automatic one.
     pub penalty: Option<f64>,
+    /// Number of steps that the scene asks for.
     pub steps: u32,
     /// Held at the other end along x.
     pub mirrored: bool,

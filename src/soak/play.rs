@@ -38,14 +38,22 @@ pub enum Ending {
 /// A random scene that was run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Played {
+    /// The seed that it was drawn from.
     pub seed: u64,
+    /// What the scene is, in words.
     pub story: String,
+    /// How the run ended.
     #[serde(flatten)]
     pub ending: Ending,
+    /// Accepted steps.
     pub steps: u32,
+    /// Newton iterations of all attempts.
     pub iterations: u64,
+    /// Steps that were cut.
     pub cuts: u32,
+    /// Number of warnings.
     pub warnings: usize,
+    /// Elapsed time (s).
     pub seconds: f64,
 }
 

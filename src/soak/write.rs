@@ -18,6 +18,7 @@ impl Default for Frame {
 /// A scene and the CAD file it names, if any.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Written {
+    /// The scene as JSON.
     pub scene: Value,
     /// The patches of `tool.json`; empty: the scene names no file.
     pub patches: Vec<NurbsPatch>,

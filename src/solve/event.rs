@@ -7,7 +7,9 @@ use serde::Serialize;
 pub enum Event {
     /// The model is built; nothing has been solved.
     Model {
+        /// Unknowns.
         dofs: usize,
+        /// Slave points of all contacts.
         contact_points: usize,
         /// Effects that are on, by name.
         effects: Vec<String>,
@@ -15,10 +17,19 @@ pub enum Event {
         notes: Vec<String>,
     },
     /// A step from `time - dt` to `time` starts.
-    StepStarted { step: u32, time: f64, dt: f64 },
+    StepStarted {
+        /// Number of the step, from 1.
+        step: u32,
+        /// Time at its end.
+        time: f64,
+        /// Its size (time).
+        dt: f64,
+    },
     /// One Newton iteration is done.
     Iteration {
+        /// Number of the step, from 1.
         step: u32,
+        /// Number of the iteration in the attempt.
         iteration: u32,
         /// Residual relative to the largest force.
         residual: f64,
@@ -33,6 +44,7 @@ pub enum Event {
     },
     /// Tractions have become multipliers, and the step is in equilibrium again.
     Augmented {
+        /// Number of the step, from 1.
         step: u32,
         /// Number of the augmentation within the step; 0 is the equilibrium before the first.
         augmentation: u32,
@@ -45,7 +57,9 @@ pub enum Event {
     },
     /// An augmentation raised a penalty, because the gaps shrank too slowly under it.
     PenaltyRaised {
+        /// Number of the step, from 1.
         step: u32,
+        /// Name of the contact.
         contact: String,
         /// The new penalty (force / length^3).
         penalty: f64,
@@ -54,26 +68,35 @@ pub enum Event {
     },
     /// An automatic penalty made too large an error, and the step is solved again under a stiffer one.
     PenaltyRuled {
+        /// Number of the step, from 1.
         step: u32,
+        /// Name of the contact.
         contact: String,
         /// The new penalty (force / length^3).
         penalty: f64,
         /// Relative error of forces under the one before.
         error: f64,
     },
+    /// A step is in equilibrium, and its results are kept.
     StepAccepted {
+        /// Number of the step, from 1.
         step: u32,
+        /// Time at its end.
         time: f64,
         /// Iterations of the attempt that was accepted.
         iterations: u32,
         /// Iterations of the step's attempts that failed before.
         failed_iterations: u32,
+        /// Points in contact.
         active: usize,
+        /// Largest penetration of a point (length).
         penetration: f64,
     },
     /// Contact points switched between open and closed round and round; the next iterations break the cycle.
     PingPong {
+        /// Number of the step, from 1.
         step: u32,
+        /// Number of the iteration in the attempt.
         iteration: u32,
         /// The contact with most of them.
         contact: String,
@@ -88,24 +111,41 @@ pub enum Event {
     },
     /// An attempt at a step failed, everything was rolled back, and the step is tried again from another start.
     StepRetried {
+        /// Number of the step, from 1.
         step: u32,
         /// The new start, in words.
         start: String,
+        /// Why the attempt failed, in words.
         reason: String,
     },
     /// A step failed from every start, everything was rolled back, and a smaller one is tried.
     StepCut {
+        /// Number of the step, from 1.
         step: u32,
+        /// Size of the step that failed (time).
         dt: f64,
+        /// Size of the step that is tried next (time).
         next_dt: f64,
+        /// Why the step failed, in words.
         reason: String,
     },
     /// Something that is as it should be, in words.
-    Note { text: String },
+    Note {
+        /// The note.
+        text: String,
+    },
     /// Something the user should know.
-    Warning { text: String },
+    Warning {
+        /// The warning.
+        text: String,
+    },
     /// The run ended.
-    Finished { status: String, wall_s: f64 },
+    Finished {
+        /// `status` of `summary.json`, e.g. `done`.
+        status: String,
+        /// Elapsed time (s).
+        wall_s: f64,
+    },
 }
 
 /// Receives the events of a run.

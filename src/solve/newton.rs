@@ -63,18 +63,27 @@ pub struct First {
 
 /// One step of Newton's method.
 pub struct Newton<'a, 'm, S: LinearSolver + ?Sized> {
+    /// The model.
     pub model: &'m Model,
+    /// Evaluates forces and tangent.
     pub assembler: &'a mut Assembler<'m>,
+    /// Solves the linear systems.
     pub solver: &'a mut S,
+    /// Vectors that are allocated once for a run.
     pub workspace: &'a mut Workspace,
+    /// Tolerance and limits of the scene.
     pub settings: &'a scene::Newton,
+    /// How long it goes on without getting nearer.
     pub patience: Patience,
+    /// How contact is linearised at first.
     pub first: First,
     /// Whether corrections that rotate far are followed by mixed integration points.
     pub mixed: bool,
     /// Linearisations that had them.
     pub mixed_iterations: u32,
+    /// Where elapsed times are added up.
     pub phases: &'a mut Phases,
+    /// Set from outside to stop.
     pub interrupt: &'a AtomicBool,
     /// Iterations done, also by a solve that failed.
     pub iterations: u32,

@@ -14,8 +14,18 @@ pub enum StudyError {
     Output(#[from] OutputError),
     /// The folder for results holds a file that is not this study's own.
     #[error("`{}` {what}: it is left alone, and nothing is written; choose another folder with `-o`", path.display())]
-    Occupied { path: PathBuf, what: String },
+    Occupied {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, in words.
+        what: String,
+    },
     /// The program that does the runs cannot be started.
     #[error("cannot start `{}`: {reason}", program.display())]
-    Start { program: PathBuf, reason: String },
+    Start {
+        /// The program.
+        program: PathBuf,
+        /// What the operating system says.
+        reason: String,
+    },
 }

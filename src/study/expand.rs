@@ -31,6 +31,7 @@ pub struct Planned {
 
 /// All runs of a study, equal ones once: those of the grids in their order, then those of references.
 pub struct Expansion {
+    /// The runs.
     pub runs: Vec<Planned>,
     /// Names of the choices, in the order of the study.
     pub choices: Vec<String>,

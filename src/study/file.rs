@@ -14,6 +14,7 @@ pub struct Study {
     /// For editors.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
+    /// What the study is about; it heads the report.
     #[serde(default)]
     pub title: String,
     /// What the study asks, in a sentence or two; the report begins with it.
@@ -31,6 +32,7 @@ pub struct Study {
     pub references: BTreeMap<String, Refinement>,
     /// What is measured; the first one is what the report's sentences are about.
     pub quantities: Vec<Quantity>,
+    /// How often every run is done, on how many threads and for how long at most.
     #[serde(default)]
     pub timing: Timing,
     /// Relative errors that the report says the cost of.
@@ -71,52 +73,78 @@ pub struct Grid {
 pub enum Choice {
     /// What stands for a rigid surface.
     Master {
+        /// Name of the rigid surface.
         #[serde(default)]
         surface: Option<String>,
+        /// The values.
         values: Vec<MasterChoice>,
     },
     /// Element and number of elements of a body with a generated mesh.
     Shell {
+        /// Name of the body.
         #[serde(default)]
         body: Option<String>,
+        /// The values.
         values: Vec<BTreeMap<String, Vec<u32>>>,
     },
     /// Slave points: `"nodes"`, `{"gauss": 3}`, `{"lobatto": 3}`, `{"segments": 3}`, `{"averaged": {"gauss": 3}}`.
     Points {
+        /// Name of the contact.
         #[serde(default)]
         contact: Option<String>,
+        /// The values.
         values: Vec<PointsChoice>,
     },
     /// Tangent of contact.
     Tangent {
+        /// Name of the contact.
         #[serde(default)]
         contact: Option<String>,
+        /// The values.
         values: Vec<TangentChoice>,
     },
     /// Normal penalty, as in a scene.
     Penalty {
+        /// Name of the contact.
         #[serde(default)]
         contact: Option<String>,
+        /// The values.
         values: Vec<crate::scene::Penalty>,
     },
     /// Augmentation: `"none"` or as in a scene.
     Augmentation {
+        /// Name of the contact.
         #[serde(default)]
         contact: Option<String>,
+        /// The values.
         values: Vec<Json>,
     },
     /// Fixed step size.
-    Step { values: Vec<f64> },
+    Step {
+        /// The values.
+        values: Vec<f64>,
+    },
     /// Newton's tolerance.
-    Tolerance { values: Vec<f64> },
+    Tolerance {
+        /// The values.
+        values: Vec<f64>,
+    },
     /// Any keys of the scene, by JSON pointer: all get the value.
     Key {
+        /// Name of the choice in tables.
         name: String,
+        /// JSON pointers of the keys.
         at: Vec<String>,
+        /// The values.
         values: Vec<Json>,
     },
     /// Named sets of changes.
-    Variants { name: String, values: Vec<Variant> },
+    Variants {
+        /// Name of the choice in tables.
+        name: String,
+        /// The values.
+        values: Vec<Variant>,
+    },
 }
 
 /// What stands for a rigid surface: `"exact"`, `{"bilinear": {"chord": 0.1}}`, `{"stl": {"chord": 0.1}}`,
@@ -126,8 +154,11 @@ pub enum Choice {
 pub enum MasterChoice {
     /// The surface as the scene describes it, facets removed.
     Exact,
+    /// Facets of four nodes.
     Bilinear(Fineness),
+    /// Facets of nine nodes.
     Biquadratic(Fineness),
+    /// A smooth bicubic surface through the nodes of facets.
     Smooth(Fineness),
     /// Flat triangles, as an STL file has them.
     Stl(StlSource),
@@ -163,9 +194,13 @@ pub enum StlSource {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum PointsChoice {
+    /// The nodes of the slave faces.
     Nodes,
+    /// Gauss points, this number along both directions of a face.
     Gauss(u8),
+    /// Lobatto points, this number along both directions of a face.
     Lobatto(u8),
+    /// The faces cut by the facets of the master, with a rule of this degree on every piece.
     Segments(u8),
     /// The same points with averaged gaps.
     Averaged(crate::scene::Points),
@@ -179,7 +214,9 @@ pub enum TangentChoice {
     Exact,
     /// The published form with all its parts.
     Published,
+    /// The published form without its rotational part.
     WithoutRotational,
+    /// The published form without its curvature part.
     WithoutCurvature,
     /// The main part alone.
     Main,
@@ -189,6 +226,7 @@ pub enum TangentChoice {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Variant {
+    /// Name of the variant in tables.
     pub label: String,
     /// JSON pointers and their values; null removes a key.
     #[serde(default)]
@@ -223,7 +261,9 @@ fn two() -> f64 {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Quantity {
+    /// Name of the quantity in tables.
     pub name: String,
+    /// What is measured.
     pub of: Measure,
     /// Default: none; the value alone is shown.
     #[serde(default)]
@@ -242,7 +282,9 @@ pub struct Quantity {
 pub enum Measure {
     /// Of a column of `history.csv`.
     Column {
+        /// Name of the column.
         name: String,
+        /// What is taken of it.
         #[serde(default)]
         take: Take,
         /// Only rows whose time lies between these; default: all.
@@ -254,9 +296,17 @@ pub enum Measure {
     },
     /// A field of a body in the last results. Its error is the L2 norm of the difference over the reference
     /// configuration of the body.
-    Field { body: String, name: String },
+    Field {
+        /// Name of the body.
+        body: String,
+        /// Name of the field.
+        name: String,
+    },
     /// A number of `summary.json`.
-    Summary { name: String },
+    Summary {
+        /// Name of the number; a dot leads into an object.
+        name: String,
+    },
 }
 
 /// What is taken of a column.
@@ -266,7 +316,9 @@ pub enum Take {
     /// The last value.
     #[default]
     End,
+    /// The largest value.
     Max,
+    /// The smallest value.
     Min,
     /// Over time.
     Mean,
@@ -284,12 +336,21 @@ pub enum Take {
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Reference {
     /// A number: a closed form or a published value, with its source in words.
-    Value { value: f64, source: String },
+    Value {
+        /// The number.
+        value: f64,
+        /// Where it is from, in words.
+        source: String,
+    },
     /// A curve in a CSV file with a line of names, relative to the folder of the study file.
     Curve {
+        /// The file.
         file: PathBuf,
+        /// Name of the column of the independent variable.
         x: String,
+        /// Name of the column of the values.
         y: String,
+        /// Where it is from, in words.
         source: String,
     },
     /// The last run of one of the study's `references`, by name.

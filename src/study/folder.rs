@@ -19,16 +19,20 @@ const RARELY: u32 = 1_000_000_000;
 /// A study whose scenes are written.
 #[derive(Debug, Clone)]
 pub struct Folder {
+    /// The folder.
     pub path: PathBuf,
     /// In the order of the study.
     pub runs: Vec<Ready>,
+    /// Times that every run is done.
     pub repeats: u32,
+    /// Threads of a run.
     pub threads: u32,
 }
 
 /// A run whose scene is written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ready {
+    /// Name of its folder.
     pub id: String,
     /// Checksum of its scene and of the files that it names.
     pub checksum: String,

@@ -17,6 +17,7 @@ impl Form for Study {
 /// A study with its text, so that everything found later can point into the file.
 #[derive(Debug, Clone)]
 pub struct LoadedStudy {
+    /// The study.
     pub study: Study,
     document: Document,
 }

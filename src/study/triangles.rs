@@ -17,8 +17,10 @@ const TRIES: usize = 8;
 /// Why there are no triangles.
 #[derive(Debug, thiserror::Error)]
 pub enum TriangleError {
+    /// The surface could not be cut into facets.
     #[error(transparent)]
     Facets(#[from] FacetError),
+    /// The triangles do not get as near to the surface as asked for: their distance, and the one asked for.
     #[error("triangles are still {0} away from the surface where {1} is asked for")]
     Chord(String, String),
 }
@@ -26,6 +28,7 @@ pub enum TriangleError {
 /// Flat triangles with nodes on a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Triangles {
+    /// Positions of the nodes.
     pub nodes: Vec<Vec3>,
     /// Counter-clockwise seen from the side of rho_1 x rho_2.
     pub triangles: Vec<[u32; 3]>,

@@ -13,7 +13,12 @@ pub enum Dof {
     /// Its increment is given.
     Prescribed,
     /// Its increment is `coefficient` times that of `dof`, plus a given offset.
-    Tied { dof: u32, coefficient: f64 },
+    Tied {
+        /// The degree of freedom that it is tied to.
+        dof: u32,
+        /// Its increment over that of `dof`.
+        coefficient: f64,
+    },
 }
 
 /// A contradiction between constraints.
@@ -21,23 +26,40 @@ pub enum Dof {
 pub enum ConstraintError {
     /// No such dof.
     #[error("dof {dof} does not exist, there are {dofs}")]
-    OutOfRange { dof: u32, dofs: usize },
+    OutOfRange {
+        /// The degree of freedom `3 node + component`.
+        dof: u32,
+        /// Number of degrees of freedom.
+        dofs: usize,
+    },
     /// Two constraints on one dof that cannot both hold.
     #[error(
         "component {} of node {} is constrained twice, in different ways",
         dof % 3,
         dof / 3
     )]
-    Conflict { dof: u32 },
+    Conflict {
+        /// The degree of freedom `3 node + component`.
+        dof: u32,
+    },
     /// Dofs tied to each other in a circle, or one to itself.
     #[error("component {} of node {} is tied to itself", dof % 3, dof / 3)]
-    Cycle { dof: u32 },
+    Cycle {
+        /// The degree of freedom `3 node + component`.
+        dof: u32,
+    },
     /// A tied dof whose target is not among the nodes of its element matrix.
     #[error("component {} of node {} is tied to a node outside its element matrix", dof % 3, dof / 3)]
-    TargetMissing { dof: u32 },
+    TargetMissing {
+        /// The degree of freedom `3 node + component`.
+        dof: u32,
+    },
     /// A coefficient that is no number.
     #[error("component {} of node {} is tied with a coefficient that is not finite", dof % 3, dof / 3)]
-    Coefficient { dof: u32 },
+    Coefficient {
+        /// The degree of freedom `3 node + component`.
+        dof: u32,
+    },
 }
 
 /// Collects constraints.

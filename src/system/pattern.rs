@@ -7,23 +7,39 @@ pub enum PatternError {
     /// A group names a node that does not exist.
     #[error("group {group} names node {node}, but there are only {nodes} nodes")]
     NodeOutOfRange {
+        /// Number of the group.
         group: usize,
+        /// The node that it names.
         node: u32,
+        /// Number of nodes.
         nodes: usize,
     },
     /// More blocks or nodes than 32-bit indices can count.
     #[error("{nodes} nodes with {blocks} coupled pairs are more than 32-bit indices can count")]
-    TooLarge { nodes: usize, blocks: usize },
+    TooLarge {
+        /// Number of nodes.
+        nodes: usize,
+        /// Number of pairs of nodes that are coupled.
+        blocks: usize,
+    },
     /// The matrix on it does not fit in memory.
     #[error("the matrix of {nodes} nodes with {blocks} coupled pairs: {shortage}")]
     Memory {
+        /// Number of nodes.
         nodes: usize,
+        /// Number of pairs of nodes that are coupled.
         blocks: usize,
+        /// How much there is and how much is needed.
         shortage: Shortage,
     },
     /// Two nodes of an element are not coupled in the pattern.
     #[error("nodes {row} and {column} are not coupled in the pattern")]
-    NotCoupled { row: u32, column: u32 },
+    NotCoupled {
+        /// Node of the row.
+        row: u32,
+        /// Node of the column.
+        column: u32,
+    },
 }
 
 /// The largest number of blocks: a map entry is a block number and two flag bits, and dof entries (nine a block) are

@@ -17,6 +17,7 @@ pub struct PointAnswer {
     /// Distance that the tangential penalty has to stretch for what the multiplier does not carry, `|T - lambda| / eps_T`
     /// (length).
     pub elastic: f64,
+    /// Whether friction has reached its limit at the point.
     pub slides: bool,
 }
 

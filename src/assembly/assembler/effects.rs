@@ -154,8 +154,10 @@ impl<L: PairLaw> Assembler<'_, L> {
 /// Why bodies could not be set in motion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StartError {
+    /// The forces at the start could not be evaluated.
     #[error(transparent)]
     Fault(#[from] Fault),
+    /// The mass matrix could not be factorized or solved with.
     #[error("the mass matrix: {0}")]
     Solve(#[from] LinearError),
 }

@@ -10,13 +10,24 @@ use covact_geometry::Vec3;
 /// What kept the model from being evaluated at a trial state. The step is cut.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Fault {
+    /// An element could not be evaluated.
     #[error("body `{body}`: {fault}")]
-    Element { body: String, fault: ElementFault },
+    Element {
+        /// Name of its body.
+        body: String,
+        /// The element and what is wrong with it.
+        fault: ElementFault,
+    },
+    /// A slave point could not be evaluated.
     #[error("contact `{pair}`, slave point {point} near ({:.6e}, {:.6e}, {:.6e}): {fault}", at[0], at[1], at[2])]
     Contact {
+        /// Name of the contact.
         pair: String,
+        /// Number of the slave point in the contact.
         point: usize,
+        /// Its position.
         at: [f64; 3],
+        /// What is wrong with it.
         fault: PointFault,
     },
     /// A surface driven by force touches no slave point.
@@ -26,7 +37,9 @@ pub enum Fault {
          it{friction}"
     )]
     Untouched {
+        /// Name of the surface.
         surface: String,
+        /// The components of its motion that forces drive, in words.
         free: String,
         /// Empty, or a word on friction that was to hold it.
         friction: String,
@@ -36,7 +49,12 @@ pub enum Fault {
         "nothing resists the motion of surface `{surface}` {motion}, and its forces drive it on: take the component out \
          of `free`, or give its force another direction"
     )]
-    Unresisted { surface: String, motion: String },
+    Unresisted {
+        /// Name of the surface.
+        surface: String,
+        /// The motion that nothing resists, in words.
+        motion: String,
+    },
     /// A surface driven by force could not be placed.
     #[error(transparent)]
     Press(#[from] PressFault),
@@ -45,6 +63,7 @@ pub enum Fault {
         "displacements are small: the system has an assembly of its own, without a tangent at a state"
     )]
     Small,
+    /// A function of time has no value at the time of the step.
     #[error(transparent)]
     Value(#[from] ValueError),
     /// The system has grown too large.

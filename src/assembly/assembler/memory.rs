@@ -9,6 +9,7 @@ use crate::effects::inertia::Motion;
 pub struct AssemblerMemory {
     /// Penalty per pair.
     pub penalties: Vec<f64>,
+    /// Tangential penalty over the normal one per pair, zero without friction.
     pub ratios: Vec<f64>,
     /// Per pair whose master is a body, what the pattern couples. It decides about the order of elimination, and with it
     /// about the last bits.
@@ -30,6 +31,7 @@ pub struct AssemblerMemory {
 pub struct CouplingMemory {
     /// Number of facets per cell, and the facets, cell by cell, ascending.
     pub counts: Vec<u32>,
+    /// The facets of all cells, one cell after the other.
     pub facets: Vec<u32>,
     /// Pairs of facets that are coupled with each other, ascending.
     pub links: Vec<[u32; 2]>,
@@ -38,8 +40,10 @@ pub struct CouplingMemory {
 /// Why a memory is none of this model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MemoryError {
+    /// A part does not fit the model, which the text names.
     #[error("{0}")]
     Misfit(&'static str),
+    /// The pattern that it asks for could not be built.
     #[error(transparent)]
     Pattern(#[from] PatternError),
 }

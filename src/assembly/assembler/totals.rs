@@ -22,7 +22,9 @@ impl SurfaceForce {
 /// What a contact pair does to its two bodies, summed over the nodes of each.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PairForce {
+    /// What acts on the slave body.
     pub slave: SurfaceForce,
+    /// What acts on the master body.
     pub master: SurfaceForce,
 }
 

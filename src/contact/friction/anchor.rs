@@ -17,7 +17,9 @@ pub type Columns<D = f64> = SMatrix<D, 3, 9>;
 /// What a facet looks like at an attraction point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Anchor<D = f64> {
+    /// The attraction point.
     pub rho: Vector3<D>,
+    /// The tangents `rho_1`, `rho_2` there.
     pub rho_i: [Vector3<D>; 2],
     /// `rho^1`, `rho^2`.
     pub dual: [Vector3<D>; 2],
@@ -59,6 +61,7 @@ pub(super) fn dual<D: DualNum<f64> + Copy>(frame: &Frame<D>) -> [Vector3<D>; 2] 
 /// `v = lambda + eps_T phi (r_s - base)` (force / length^2), with its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pull<D = f64> {
+    /// The traction before the law and the tangent plane limit it (force / length^2).
     pub v: Vector3<D>,
     /// With respect to the slots at the attraction point (force / length^3).
     pub columns: Columns<D>,

@@ -14,6 +14,7 @@ use covact_geometry::{Frame, Vec3};
 /// Traction at a place of a patch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CovariantTraction {
+    /// Surface coordinates of the place.
     pub xi: [f64; 2],
     /// Covariant components `t_i` (force / length).
     pub t: [f64; 2],

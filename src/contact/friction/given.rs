@@ -28,6 +28,7 @@ use num_dual::DualNum;
 /// A point with what its residual changes by with its normal traction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Given<T, R> {
+    /// The point under its given normal traction.
     pub touch: T,
     /// `dr/dlambda`, in space.
     pub by_traction: R,

@@ -7,10 +7,12 @@ use nalgebra::UnitQuaternion;
 /// Whether a point touches, and whether it slides there.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum PointStatus {
+    /// Not in contact.
     #[default]
     Open,
     /// In contact without sliding (or without friction).
     Stick,
+    /// In contact, and friction is at its limit.
     Slip,
 }
 
@@ -30,6 +32,7 @@ pub struct PointHistory {
     pub lambda_n: f64,
     /// Gap at the last accepted step where the point was open (length, infinite where no foot was found), else zero.
     pub approach: f64,
+    /// Status at the last accepted step.
     pub status: PointStatus,
     /// Normal traction at the last accepted step, `<= 0` (force / length^2).
     pub n: f64,
@@ -47,7 +50,9 @@ pub struct PointHistory {
 /// What turns the coordinates of the base into those of space, at the start of a step and at its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
+    /// Rotation at the start of the step.
     pub start: UnitQuaternion<f64>,
+    /// Rotation at its end.
     pub end: UnitQuaternion<f64>,
 }
 

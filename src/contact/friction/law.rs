@@ -13,6 +13,7 @@ pub struct Slip<D = f64> {
     pub d_pressure: Vector3<D>,
     /// With respect to the unit normal, for laws that know directions; zero otherwise (force / length^2).
     pub d_normal: Matrix3<D>,
+    /// Whether the traction is at its limit.
     pub slides: bool,
 }
 
@@ -126,7 +127,9 @@ impl Slide {
 /// brings back one that has gone past where it should have stopped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Secant<F> {
+    /// The law itself.
     pub law: F,
+    /// How sliding is linearised.
     pub slide: Slide,
     /// Traction at the last linearisation (force / length^2): a point that slides the other way now has gone too far. Zero where
     /// there is none.

@@ -24,7 +24,9 @@ use num_dual::DualNum;
 /// Which parts beyond the main one are included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FrictionParts {
+    /// The part of turning tangents.
     pub rotational: bool,
+    /// The part of the curvature `h^ij`.
     pub curvature: bool,
     /// Not published: what a change of the tangents along the normal does.
     pub normal_rotational: bool,

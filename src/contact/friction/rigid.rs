@@ -18,6 +18,7 @@ use covact_geometry::{Foot, Hint, Vec3};
 /// Friction of a pair at the present time: a type per law, so that the law is chosen outside the loop over points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction<F> {
+    /// The law of friction.
     pub law: F,
     /// Tangential penalty (force / length^3).
     pub eps_t: f64,

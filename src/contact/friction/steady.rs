@@ -20,7 +20,9 @@ use num_dual::DualNum;
 /// A law whose direction, where it knows one, is a unit vector of space that stays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Directed<F> {
+    /// The law itself.
     pub law: F,
+    /// Its direction in space; none for a law without direction.
     pub e: Option<Vec3>,
 }
 

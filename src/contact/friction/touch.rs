@@ -18,6 +18,7 @@ pub struct MovingFrictionTouch {
     pub foot: Hint,
     /// Facet and parameters of the attraction point, where there is one.
     pub anchor: Option<Hint>,
+    /// Residual and tangent in the slots.
     pub response: Response,
     /// Gap that the law sees, negative in a pure penalty (length).
     pub gap: f64,

@@ -93,7 +93,9 @@ impl<D: DualNum<f64> + Copy> Attraction<D> {
 /// Tangential traction of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Traction<D = f64> {
+    /// The trial traction (force / length^2).
     pub trial: Vector3<D>,
+    /// What the law makes of it.
     pub slip: Slip<D>,
     /// `dT/dx`.
     pub tangent: Matrix3<D>,

@@ -50,12 +50,15 @@ pub struct Inertia {
 pub struct Motion {
     /// Velocities and accelerations, 3 per node.
     pub v: Vec<f64>,
+    /// Accelerations, 3 per node (length / time^2).
     pub a: Vec<f64>,
     /// `R`: all forces that are weighted.
     pub forces: Vec<f64>,
+    /// Energies at the last accepted step.
     pub energy: MotionEnergy,
     /// Largest displacement so far (length), and largest sum of kinetic and strain energy.
     pub farthest: f64,
+    /// Largest sum of kinetic and strain energy so far.
     pub greatest: f64,
     /// Contact opened or closed in the last step: its accelerations say nothing of the next one.
     pub event: bool,
@@ -66,6 +69,7 @@ pub struct Motion {
 pub struct MotionEnergy {
     /// Kinetic energy, and that at the start.
     pub kinetic: f64,
+    /// Kinetic energy at the start.
     pub start: f64,
     /// What damping has taken since the start.
     pub damped: f64,

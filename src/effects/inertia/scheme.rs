@@ -11,6 +11,7 @@ pub struct Scheme {
     pub alpha_f: f64,
     /// Newmark's constants.
     pub beta: f64,
+    /// Newmark's weight of the new acceleration in the velocity.
     pub gamma: f64,
 }
 

@@ -17,13 +17,23 @@ pub enum SurfaceError {
         "element {element} at {} has no area or a corner that sticks inward: repair it in the mesher",
         at(position)
     )]
-    Flat { element: u64, position: Place },
+    Flat {
+        /// The element.
+        element: u64,
+        /// Where it is.
+        position: Place,
+    },
     /// Two elements have the same corners.
     #[error(
         "elements {} and {} have the same corners, at {}: delete one of them",
         elements[0], elements[1], at(position)
     )]
-    Twice { elements: [u64; 2], position: Place },
+    Twice {
+        /// The two elements.
+        elements: [u64; 2],
+        /// Where it is.
+        position: Place,
+    },
     /// More than two elements share an edge.
     #[error(
         "elements {} meet in one edge at {}: the surface branches there. Leave one branch out (`only` takes the elements of \
@@ -31,14 +41,24 @@ pub enum SurfaceError {
         listed(elements),
         at(position)
     )]
-    Branching { elements: Vec<u64>, position: Place },
+    Branching {
+        /// The elements that share the edge.
+        elements: Vec<u64>,
+        /// Where it is.
+        position: Place,
+    },
     /// Parts of the surface hang together by a node only.
     #[error(
         "node {node} at {} joins parts of the surface that have no edge in common there: join them along edges, or give \
          each a node of its own",
         at(position)
     )]
-    Pinched { node: u64, position: Place },
+    Pinched {
+        /// The node.
+        node: u64,
+        /// Where it is.
+        position: Place,
+    },
     /// Borders of one part touch, but are not joined.
     #[error(
         "nodes {} and {} lie at the same place {}; {count} such pair(s) in all: the surface has a slit there, join them in \
@@ -48,7 +68,9 @@ pub enum SurfaceError {
     Unjoined {
         /// The first pair.
         nodes: [u64; 2],
+        /// Where it is.
         position: Place,
+        /// How many such pairs there are.
         count: usize,
     },
     /// The surface has one side only.
@@ -57,13 +79,23 @@ pub enum SurfaceError {
          Moebius strip)",
         elements[0], elements[1], at(position)
     )]
-    OneSided { elements: [u64; 2], position: Place },
+    OneSided {
+        /// Two neighbours that look opposite ways.
+        elements: [u64; 2],
+        /// Where it is.
+        position: Place,
+    },
     /// A fold is too sharp for a thickness.
     #[error(
         "the surface is folded by {angle:.0} degrees at {}: no thickness fits there. Give the fold a radius in the mesher",
         at(position)
     )]
-    SharpFold { angle: f64, position: Place },
+    SharpFold {
+        /// Angle between the sides of the fold (degrees).
+        angle: f64,
+        /// Where it is.
+        position: Place,
+    },
     /// Elements without a thickness.
     #[error(
         "{count} element(s) are in no set of `thickness`, the first is element {element} at {}; element sets of the file: {}",
@@ -71,8 +103,11 @@ pub enum SurfaceError {
         sets
     )]
     NoThickness {
+        /// How many such elements there are.
         count: usize,
+        /// The first of them.
         element: u64,
+        /// Where it is.
         position: Place,
         /// The sets of the file, in words.
         sets: String,
@@ -87,9 +122,11 @@ pub enum SurfaceError {
         if *node > 0 { format!(" (node {node})") } else { String::new() }
     )]
     NotPositive {
+        /// The thickness there (length).
         value: f64,
         /// 0 for nodes that the file does not have.
         node: u64,
+        /// Where it is.
         position: Place,
     },
     /// An element with two thicknesses.
@@ -98,8 +135,11 @@ pub enum SurfaceError {
         at(position), sets[0], sets[1]
     )]
     TwoThicknesses {
+        /// The element.
         element: u64,
+        /// Where it is.
         position: Place,
+        /// Names of both sets.
         sets: [String; 2],
     },
 }

@@ -135,6 +135,7 @@ pub fn side(face: Face) -> Option<f64> {
 pub struct SheetPoint {
     /// Control points, numbered in the sheet.
     pub nodes: [u32; 16],
+    /// Shape functions of those control points.
     pub n: [f64; 16],
     /// Derivatives along xi1 and xi2.
     pub n_i: [[f64; 16]; 2],

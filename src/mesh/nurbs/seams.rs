@@ -25,6 +25,7 @@ const SENSE: [i8; 4] = [-1, 1, 1, -1];
 /// A part of two edges that is one curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seam {
+    /// Both edges.
     pub edges: [Edge; 2],
     /// Parameters along each, ascending.
     pub ranges: [[f64; 2]; 2],
@@ -37,6 +38,7 @@ pub struct Seam {
 /// A free edge that runs near another one without being joined to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Near {
+    /// The free edge, and the edge that it runs near to.
     pub edges: [Edge; 2],
     /// Largest distance of the points that were compared (length).
     pub distance: f64,
@@ -45,11 +47,13 @@ pub struct Near {
 /// Edges of a body's patches.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Joints {
+    /// Parts of edges that are joined.
     pub seams: Vec<Seam>,
     /// Edges that are joined along all of their length.
     pub inner: Vec<Edge>,
     /// Edges that are joined along some of it.
     pub partial: Vec<Edge>,
+    /// Free edges near others, to which they are not joined.
     pub near: Vec<Near>,
     /// Free edges that lie on the inside of a patch, as that of a rib, which is not joined.
     pub inside: Vec<(Edge, usize)>,

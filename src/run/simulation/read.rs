@@ -15,6 +15,7 @@ pub enum ReadError {
     Unknown {
         /// What was looked for, e.g. "body".
         what: &'static str,
+        /// The name that was asked for.
         name: String,
         /// The most similar name.
         nearest: Option<String>,
@@ -39,7 +40,9 @@ fn unknown<'n>(
 /// A force and its moment about the origin.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Force {
+    /// The force.
     pub force: Vec3,
+    /// Its moment about the origin.
     pub moment: Vec3,
 }
 

@@ -24,16 +24,20 @@ pub struct Contact {
     /// Whether every slave point has a gap of its own, or every slave node the mean of those around it.
     #[serde(default)]
     pub gap: Gap,
+    /// Which side of a contact is the slave; `two_half` only for masters that are bodies.
     #[serde(default)]
     pub passes: Passes,
+    /// Normal penalty: traction per penetration (force / length^3).
     #[serde(default)]
     pub penalty: Penalty,
     /// Relative error of forces that the automatic penalty aims at; default: 4e-3, and 1e-4 where a stage releases the contact,
     /// until its penalty is rigid beside the thickness of the body. Only where no penalty is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<f64>,
+    /// Tangent matrix of contact.
     #[serde(default)]
     pub tangent: Tangent,
+    /// What becomes of slave points that start below the master.
     #[serde(default)]
     pub initial_overclosure: InitialOverclosure,
     /// Law of friction; default: none.

@@ -11,10 +11,12 @@ pub struct Dynamics {
     /// What is left after a step of vibrations that are far too fast for it, from 0 (nothing) to 1 (all). Below 1 the method
     /// damps what a step cannot resolve.
     pub rho_inf: f64,
+    /// Forces against the velocity.
     pub damping: Damping,
     /// Error of the displacements that a step may make, relative to the largest displacement so far. It chooses the steps,
     /// where these are `adaptive`.
     pub tolerance: f64,
+    /// When contact and friction act within a step.
     pub contact: ContactTiming,
 }
 

@@ -95,6 +95,7 @@ pub struct Scene {
     /// What the scene is about; it heads reports.
     #[serde(default)]
     pub title: String,
+    /// Units of the scene. CAD files state their own length unit and are converted to the scene's.
     #[serde(default)]
     pub units: Units,
     /// Materials by name.
@@ -119,8 +120,10 @@ pub struct Scene {
     /// Parts of the run in their order, such as forming and release; without them the run is one part.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stages: Vec<Stage>,
+    /// How the problem is solved.
     #[serde(default)]
     pub solution: Solution,
+    /// What is written.
     #[serde(default)]
     pub output: Output,
 }

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Mumps {
+    /// Order of elimination.
     pub ordering: MumpsOrdering,
     /// Keep the factors on the disk instead of in memory: `true` for the folder of temporary files, or a folder, relative to the
     /// scene file.

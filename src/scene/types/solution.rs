@@ -17,9 +17,13 @@ pub struct Solution {
     /// Motion with inertia; without it a run is a sequence of equilibria.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dynamics: Option<Dynamics>,
+    /// Step sizes, in time.
     pub step: Step,
+    /// Newton's method.
     pub newton: Newton,
+    /// Factorization.
     pub linear_solver: LinearSolver,
+    /// Stabilisation, written `"auto"`, `"none"` or `{"viscous": {"factor": 1e-3, "until": 0.5}}`.
     pub stabilization: Stabilization,
     /// Threads; 0 takes what the machine has.
     pub threads: u32,

@@ -30,18 +30,25 @@ impl Units {
 /// Names of force units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum ForceUnit {
+    /// 1e-6 N.
     #[serde(rename = "uN")]
     Micronewton,
+    /// 1e-3 N.
     #[serde(rename = "mN")]
     Millinewton,
+    /// 1 N.
     #[serde(rename = "N")]
     Newton,
+    /// 1e3 N.
     #[serde(rename = "kN")]
     Kilonewton,
+    /// 1e6 N.
     #[serde(rename = "MN")]
     Meganewton,
+    /// Kilogram-force, 9.80665 N.
     #[serde(rename = "kgf")]
     KilogramForce,
+    /// Pound-force, 4.4482216152605 N.
     #[serde(rename = "lbf")]
     PoundForce,
 }
@@ -64,21 +71,29 @@ impl ForceUnit {
 /// Names of length units.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum LengthUnit {
+    /// 1e-9 m.
     #[serde(rename = "nm")]
     Nanometre,
+    /// 1e-6 m.
     #[serde(rename = "um")]
     Micrometre,
+    /// 1e-3 m.
     #[default]
     #[serde(rename = "mm")]
     Millimetre,
+    /// 1e-2 m.
     #[serde(rename = "cm")]
     Centimetre,
+    /// 1 m.
     #[serde(rename = "m")]
     Metre,
+    /// 1e3 m.
     #[serde(rename = "km")]
     Kilometre,
+    /// Inch, 25.4 mm.
     #[serde(rename = "in")]
     Inch,
+    /// Foot, 304.8 mm.
     #[serde(rename = "ft")]
     Foot,
 }

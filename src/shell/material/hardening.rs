@@ -8,15 +8,30 @@ use num_dual::DualNum;
 #[allow(clippy::large_enum_variant)]
 pub enum Hardening {
     /// `initial + slope p`.
-    Linear { initial: f64, slope: f64 },
+    Linear {
+        /// Yield stress of the virgin material (force / length^2).
+        initial: f64,
+        /// Rise of the yield stress with the plastic strain (force / length^2).
+        slope: f64,
+    },
     /// `factor (offset + p)^exponent`.
     Swift {
+        /// Yield stress where `offset + p` is 1 (force / length^2).
         factor: f64,
+        /// Plastic strain that the curve begins at.
         offset: f64,
+        /// Exponent of the power law.
         exponent: f64,
     },
     /// `initial + rise (1 - exp(-rate p))`.
-    Voce { initial: f64, rise: f64, rate: f64 },
+    Voce {
+        /// Yield stress of the virgin material (force / length^2).
+        initial: f64,
+        /// How far the yield stress rises in the end (force / length^2).
+        rise: f64,
+        /// How fast it does, per plastic strain.
+        rate: f64,
+    },
     /// Straight lines between rows, the last yield stress beyond.
     Table(YieldTable),
 }

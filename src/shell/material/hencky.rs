@@ -8,7 +8,9 @@ use num_dual::DualNum;
 /// moderate strains; beyond a stretch of e = 2.72 the force of a bar falls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hencky {
+    /// First constant of Lamé (force / length^2).
     pub lambda: f64,
+    /// Shear modulus (force / length^2).
     pub mu: f64,
 }
 

@@ -34,8 +34,11 @@ const IN_SHEET: f64 = 0.1;
 /// Elastic constants, hardening along the rolling direction, and the modes of the equivalent stress.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hill48 {
+    /// First constant of Lamé (force / length^2).
     pub lambda: f64,
+    /// Shear modulus (force / length^2).
     pub mu: f64,
+    /// Yield stress along the rolling direction over the plastic strain.
     pub hardening: Hardening,
     /// The rolling direction in space, of any length.
     rolling: [f64; 3],

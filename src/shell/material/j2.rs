@@ -19,8 +19,11 @@ use num_dual::DualNum;
 /// Elastic constants and hardening.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct J2 {
+    /// First constant of Lamé (force / length^2).
     pub lambda: f64,
+    /// Shear modulus (force / length^2).
     pub mu: f64,
+    /// Yield stress over the plastic strain.
     pub hardening: Hardening,
 }
 

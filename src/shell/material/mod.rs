@@ -44,7 +44,9 @@ pub const MOST_STATE: usize = if J2State::LEN > Hill48State::LEN {
 /// Metric of the undeformed frame: covariant `G_ij` and contravariant `G^ij`, in Voigt order without factors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Metric {
+    /// Covariant components `G_ij`.
     pub lower: [f64; 6],
+    /// Contravariant components `G^ij`.
     pub upper: [f64; 6],
 }
 
@@ -188,10 +190,15 @@ pub trait MaterialLaw: Copy + Send + Sync {
 // Few of them, and plain values: a box would make them lose `Copy`.
 #[allow(clippy::large_enum_variant)]
 pub enum Law {
+    /// Linear between Green-Lagrange strain and second Piola-Kirchhoff stress.
     StVenantKirchhoff(StVenantKirchhoff),
+    /// Rubber at finite strains.
     NeoHooke(NeoHooke),
+    /// Linear in the logarithmic strain.
     Hencky(Hencky),
+    /// Metal that flows by von Mises' criterion.
     J2(J2),
+    /// Rolled sheet that flows by Hill's criterion of 1948.
     Hill48(Hill48),
 }
 

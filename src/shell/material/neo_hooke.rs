@@ -6,7 +6,9 @@ use num_dual::DualNum;
 /// `W = mu/2 (tr C - 3) - mu ln J + lambda/2 ln^2 J`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NeoHooke {
+    /// First constant of Lamé (force / length^2).
     pub lambda: f64,
+    /// Shear modulus (force / length^2).
     pub mu: f64,
 }
 

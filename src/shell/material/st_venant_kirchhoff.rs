@@ -7,7 +7,9 @@ use num_dual::DualNum;
 /// compression it softens, which is not physical.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StVenantKirchhoff {
+    /// First constant of Lamé (force / length^2).
     pub lambda: f64,
+    /// Shear modulus (force / length^2).
     pub mu: f64,
 }
 

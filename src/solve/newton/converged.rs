@@ -5,10 +5,13 @@ use crate::system::linear::Factorization;
 /// What a converged step took.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Converged {
+    /// Iterations, those of augmentations included.
     pub iterations: u32,
     /// Augmentations, and those of the iterations that they took.
     pub augmentations: u32,
+    /// Iterations that the augmentations took.
     pub augmenting: u32,
+    /// Sums of forces and contact at the equilibrium.
     pub totals: Totals,
     /// Norm of the forces at the equilibrium.
     pub force: f64,

@@ -44,15 +44,21 @@ impl Settings {
 /// A repeat of a run that has ended, or was done before.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event<'a> {
+    /// Name of the run's folder.
     pub id: &'a str,
     /// From 1.
     pub repeat: u32,
+    /// How the run ended.
     pub ending: Ending,
+    /// Elapsed time (s); none where it was not measured.
     pub wall_s: Option<f64>,
+    /// Accepted steps.
     pub steps: u32,
+    /// Newton iterations of all attempts.
     pub newton_iterations: u64,
     /// Repeats that are done, this one too, and all.
     pub done: usize,
+    /// Number of all repeats.
     pub of: usize,
     /// It was done by an earlier call.
     pub before: bool,

@@ -46,6 +46,7 @@ pub struct Account {
     pub covact: String,
     /// Checksum of the scene.
     pub scene: String,
+    /// Threads of the run.
     pub threads: usize,
     /// Elapsed seconds of the process, as seen from outside.
     pub wall_s: f64,

@@ -171,6 +171,7 @@ pub enum OrderingChoice {
 pub struct SolverOptions {
     /// For symmetric matrices; [`LuSolver`] knows one factorization only.
     pub mode: Mode,
+    /// Which orders of the nodes to try.
     pub ordering: OrderingChoice,
     /// Threads of the dense kernels at most; 1 is serial (and does not allocate). More are used only where they help
     /// ([`Analysis::threads`]).
@@ -198,7 +199,9 @@ impl Default for SolverOptions {
 /// How the nodes were ordered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ordering {
+    /// Approximate minimum degree.
     Amd,
+    /// Nested dissection by METIS.
     Metis,
     /// One of another library.
     Other,
@@ -278,6 +281,7 @@ pub struct Factorization {
 /// A degree of freedom in the numbering of the system.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct DofName {
+    /// Number of the node.
     pub node: u32,
     /// 0, 1, 2 for x, y, z.
     pub component: u8,
@@ -307,20 +311,35 @@ impl fmt::Display for DofName {
 /// Why a system could not be solved.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LinearError {
+    /// A factorization was asked for before any pattern was analysed.
     #[error("no pattern has been analysed")]
     NotAnalyzed,
+    /// A solution was asked for before any factorization.
     #[error("no matrix has been factorized")]
     NotFactorized,
+    /// The matrix has another pattern than the analysed one.
     #[error("the matrix has another pattern than the one that was analysed")]
     PatternMismatch,
+    /// The solver takes symmetric matrices only.
     #[error("the matrix is unsymmetric, and the factorization is for symmetric ones")]
     Unsymmetric,
+    /// A vector does not fit the system.
     #[error("a vector has {given} entries, the system has {expected}")]
-    Length { given: usize, expected: usize },
+    Length {
+        /// Its number of entries.
+        given: usize,
+        /// Unknowns of the system.
+        expected: usize,
+    },
+    /// The factor is too large for 32-bit indices.
     #[error("the factor has more entries than 32-bit indices can count")]
     TooLarge,
+    /// The factor could not be allocated.
     #[error("not enough memory for {bytes} bytes of the factorization")]
-    OutOfMemory { bytes: usize },
+    OutOfMemory {
+        /// Bytes that were asked for.
+        bytes: usize,
+    },
     /// A graphics processor was asked for.
     #[error("cuDSS: {0}")]
     Device(#[from] DeviceFault),
@@ -330,32 +349,66 @@ pub enum LinearError {
     /// Found out before the factorization took anything.
     #[error("the factorization of the system: {0}")]
     Memory(Shortage),
+    /// METIS failed.
     #[error("METIS found no ordering (code {code})")]
-    Metis { code: i32 },
+    Metis {
+        /// Its error code.
+        code: i32,
+    },
+    /// The matrix has an entry that is infinite or not a number.
     #[error("the matrix has a value that is not finite in the block of nodes {row} and {column}")]
-    NonFiniteMatrix { row: u32, column: u32 },
+    NonFiniteMatrix {
+        /// Node of its row.
+        row: u32,
+        /// Node of its column.
+        column: u32,
+    },
     /// `L L^t` met a pivot that is zero or negative.
     #[error("the matrix is not positive definite: {dof}")]
-    NonPositivePivot { dof: DofName },
+    NonPositivePivot {
+        /// The degree of freedom of the pivot or entry.
+        dof: DofName,
+    },
     /// `L D L^t` met a pivot that is exactly zero, or that overflowed.
     #[error("the matrix is singular, or cannot be factorized without pivoting: {dof}")]
-    ZeroPivot { dof: DofName },
+    ZeroPivot {
+        /// The degree of freedom of the pivot or entry.
+        dof: DofName,
+    },
     /// Nothing but round-off is left of a pivot.
     #[error("the matrix is singular to working precision: {dof} (pivot ratio {ratio:.1e})")]
-    TinyPivot { dof: DofName, ratio: f64 },
+    TinyPivot {
+        /// The degree of freedom of the pivot or entry.
+        dof: DofName,
+        /// The pivot over the magnitudes that it is the rest of.
+        ratio: f64,
+    },
     /// A row or a column of zeros.
     #[error("the matrix is singular, its row or column is zero: {dof}")]
-    ZeroRow { dof: DofName },
+    ZeroRow {
+        /// The degree of freedom of the pivot or entry.
+        dof: DofName,
+    },
     /// The solution does not satisfy the equations, although it was refined.
     #[error(
         "the solution is inaccurate (backward error {error:.1e}): the matrix is too near to a singular one"
     )]
-    Inaccurate { error: f64 },
+    Inaccurate {
+        /// Backward error of the solution.
+        error: f64,
+    },
+    /// The right-hand side has an entry that is infinite or not a number.
     #[error("the right-hand side is not finite: {dof}")]
-    NonFiniteRightHandSide { dof: DofName },
+    NonFiniteRightHandSide {
+        /// The degree of freedom of the pivot or entry.
+        dof: DofName,
+    },
     /// The solution overflowed; the dof is the first that is affected, not always the one where it began.
     #[error("the solution is not finite: {dof}")]
-    NonFiniteSolution { dof: DofName },
+    NonFiniteSolution {
+        /// The degree of freedom of the pivot or entry.
+        dof: DofName,
+    },
 }
 
 impl LinearError {

@@ -8,23 +8,44 @@ const KNOWN: &str = "5.3 to 5.5 and 5.7 to 5.9";
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MumpsFault {
     /// None of the names under which the library is looked for was found.
-    NoLibrary { name: &'static str },
+    NoLibrary {
+        /// The names that were tried.
+        name: &'static str,
+    },
     /// A library without this function.
-    NoFunction { name: &'static str },
+    NoFunction {
+        /// Name of the function.
+        name: &'static str,
+    },
     /// A version whose interface is not known.
-    Version { found: [u16; 3] },
+    Version {
+        /// The version of the library.
+        found: [u16; 3],
+    },
     /// What was loaded did not say its version.
     NoVersion,
     /// The library was built without this ordering.
-    NoOrdering { asked: &'static str },
+    NoOrdering {
+        /// Name of the ordering.
+        asked: &'static str,
+    },
     /// No folder for the factors can be made.
-    Folder { kind: std::io::ErrorKind },
+    Folder {
+        /// What the operating system says.
+        kind: std::io::ErrorKind,
+    },
     /// The name of the folder for the factors is longer than the library takes.
-    LongFolder { most: usize },
+    LongFolder {
+        /// Bytes that the library takes.
+        most: usize,
+    },
     /// An error of the library: its `INFOG(1)` and `INFOG(2)`.
     Code {
+        /// What was being done.
         phase: &'static str,
+        /// `INFOG(1)`.
         code: i32,
+        /// `INFOG(2)`.
         detail: i32,
     },
 }

@@ -13,6 +13,7 @@ use crate::study::record::{Record, Spread};
 pub struct Section {
     /// What they are about.
     pub title: String,
+    /// The sentences, in their order.
     pub sentences: Vec<String>,
 }
 
