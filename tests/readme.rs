@@ -1,5 +1,6 @@
 //! What README and the pages of docs state is what the program does.
 use covact::output::column_table;
+use covact::run::exit_table;
 use serde_json::{Value, json};
 
 #[test]
@@ -9,6 +10,16 @@ fn docs_lists_the_columns_of_the_history() {
         page.contains(&column_table()),
         "put this into docs/outputs.md:\n{}",
         column_table()
+    );
+}
+
+#[test]
+fn docs_lists_the_exit_codes() {
+    let page = include_str!("../docs/messages.md");
+    assert!(
+        page.contains(&exit_table()),
+        "put this into docs/messages.md:\n{}",
+        exit_table()
     );
 }
 

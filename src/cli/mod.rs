@@ -10,6 +10,7 @@ mod new;
 mod plan;
 mod progress;
 mod project;
+mod reference;
 mod report;
 mod run;
 mod soak;
@@ -17,6 +18,8 @@ mod study;
 mod text;
 mod view;
 mod without;
+
+pub use reference::reference;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
@@ -26,18 +29,22 @@ use std::process::ExitCode;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Exit codes of the program; 0 is success.
+/// The numbers of [`Exit`](crate::run::Exit); 0 is success.
 pub(crate) mod exit {
-    /// A fault of the program itself.
-    pub const BUG: u8 = 1;
-    /// The command line is wrong, or the folder that it names for results is taken.
-    pub const USAGE: u8 = 2;
-    /// The scene, or a file it names, is wrong.
-    pub const SCENE: u8 = 3;
-    /// The run did not reach its end; what was computed is kept.
-    pub const NOT_CONVERGED: u8 = 4;
-    /// Reading or writing failed.
-    pub const IO: u8 = 5;
+    use crate::run::Exit;
+
+    pub const BUG: u8 = Exit::Bug.code();
+    pub const USAGE: u8 = Exit::Usage.code();
+    pub const SCENE: u8 = Exit::Scene.code();
+    pub const NOT_CONVERGED: u8 = Exit::NotConverged.code();
+    pub const IO: u8 = Exit::Io.code();
+    pub const KILLED: u8 = Exit::Killed.code();
+
+    /// All of them in one sentence.
+    pub fn sentence() -> String {
+        let each = Exit::ALL.map(|exit| format!("{} {}", exit.code(), exit.short()));
+        format!("Exit codes: {}.", each.join(", "))
+    }
 }
 
 /// Contact between finite-element shells and CAD surfaces.
@@ -45,8 +52,7 @@ pub(crate) mod exit {
 #[command(
     name = "covact",
     version,
-    after_help = "Exit codes: 0 done, 1 a bug of covact, 2 wrong usage or a folder that is taken, 3 the scene or a file it names is wrong, \
-                  4 not converged or interrupted (what was computed is kept), 5 reading or writing failed."
+    after_help = exit::sentence()
 )]
 struct Cli {
     #[command(subcommand)]

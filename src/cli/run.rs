@@ -31,8 +31,8 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     let flag = Arc::clone(&interrupt);
     let handler = super::interrupt::watch(move || {
         if flag.swap(true, Ordering::Relaxed) {
-            // The second time: at once. 130 is what shells report for this signal.
-            std::process::exit(130);
+            // The second time: at once.
+            std::process::exit(exit::KILLED.into());
         }
         report::stderr(
             "\nstopping after this step, what was computed is kept (again to stop at once)\n",

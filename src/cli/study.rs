@@ -81,7 +81,7 @@ fn watch(interrupt: &Arc<AtomicBool>) {
             while running() > 0 && start.elapsed() < STOPPING {
                 std::thread::sleep(Duration::from_millis(2));
             }
-            std::process::exit(130);
+            std::process::exit(exit::KILLED.into());
         }
         report::stderr("\nstopping, what is done is kept (the same command goes on)\n");
     });

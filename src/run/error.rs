@@ -1,13 +1,12 @@
 //! Why a run could not be done.
 use super::checkpoint::CheckpointError;
 use super::claim::{ClaimError, FolderError};
+use super::exit::Exit;
 use crate::model::ModelError;
 use crate::output::OutputError;
 use crate::scene::{LoadedScene, Place, Problem, ValueError};
 
-/// An error with the process's exit code: 3 where the scene or a file it names is wrong (or not the one that is to be
-/// continued), 2 where the folder of the results is not to be written to, 5 where a result cannot be written or a checkpoint
-/// not be used, 1 where the program is.
+/// An error that has an exit code of the process ([`Exit`]).
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The scene, or a file it names, is wrong.
@@ -88,13 +87,14 @@ impl RunError {
 
     /// Exit code of the process.
     pub fn exit_code(&self) -> u8 {
-        match self {
-            RunError::Scene { .. } => 3,
-            RunError::Folder(_) => 2,
-            RunError::Checkpoint(e) if e.is_scene() => 3,
-            RunError::Output(_) | RunError::Checkpoint(_) | RunError::Sink(_) => 5,
-            RunError::Internal(_) => 1,
-        }
+        let exit = match self {
+            RunError::Scene { .. } => Exit::Scene,
+            RunError::Folder(_) => Exit::Usage,
+            RunError::Checkpoint(e) if e.is_scene() => Exit::Scene,
+            RunError::Output(_) | RunError::Checkpoint(_) | RunError::Sink(_) => Exit::Io,
+            RunError::Internal(_) => Exit::Bug,
+        };
+        exit.code()
     }
 
     /// Where in the scene file the fault lies.

@@ -5,6 +5,7 @@ use super::folder::Folder;
 use super::play::Account;
 use super::record::{Ending, RunRecord, Spread};
 use crate::output::{RunStatus, Summary, read_csv};
+use crate::run::Exit;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -32,7 +33,8 @@ impl State {
     /// Whether it has to be done: it has not been, or it might come out otherwise now.
     pub fn again(&self, limit: f64) -> bool {
         let by_chance = |a: &Account| {
-            a.exit_code == Some(5) || (a.stopped_after.is_none() && a.signal.is_some())
+            a.exit_code == Some(Exit::Io.code().into())
+                || (a.stopped_after.is_none() && a.signal.is_some())
         };
         let too_soon = |a: &Account| a.stopped_after.is_some_and(|after| after < limit);
         self.ending == Ending::Missing

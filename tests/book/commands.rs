@@ -47,3 +47,31 @@ fn commands_and_options_exist() {
     }
     assert!(count > 60 && known.len() >= 12, "{count} {known:?}");
 }
+
+/// The page of the commands lists every command, and ends with what `--help` says of each.
+#[test]
+fn the_page_of_commands_has_all_arguments() {
+    let path = root().join("docs/commands.md");
+    let page = read(&path);
+    let reference = covact::cli::reference();
+    let commands = (reference.lines()).filter_map(|line| line.strip_prefix("### "));
+    let first = &blocks(&page)[0].text;
+    let mut count = 0;
+    for command in commands {
+        let listed = first.lines().any(|line| line.starts_with(command));
+        assert!(listed, "the list at the top of the page lacks {command}");
+        count += 1;
+    }
+    assert!(count > 12, "{count}");
+    const HEADING: &str = "## Arguments\n\n";
+    let (before, after) = page.split_once(HEADING).expect("the arguments");
+    if after.trim_end() != reference.trim_end() {
+        let right = format!("{before}{HEADING}{}\n", reference.trim_end());
+        let wanted = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("commands.md");
+        std::fs::write(&wanted, right).expect("written");
+        panic!(
+            "docs/commands.md is behind the program: replace it by {}",
+            wanted.display()
+        );
+    }
+}
