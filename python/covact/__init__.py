@@ -2,7 +2,8 @@
 
 A scene says what is solved: bodies, rigid surfaces, contacts, supports, loads. It is a dict of the same form as a scene file
 (``covact schema`` prints the form, the reference in docs/scene_format.md explains it), a path of such a file, or its text. Meshes
-and surfaces may be arrays: :class:`Mesh` and :class:`covact.geometry.Surface` stand in a scene wherever a file may.
+and surfaces may be arrays: :class:`Mesh` and :class:`covact.geometry.Surface` stand in a scene wherever a file may. :class:`Scene`
+is such a dict with a method for every part.
 
 >>> import covact
 >>> result = covact.run("press.json")                        # doctest: +SKIP
@@ -12,7 +13,9 @@ and surfaces may be arrays: :class:`Mesh` and :class:`covact.geometry.Surface` s
 from . import geometry
 from ._covact import Error, NotConverged, SceneError, Step, __version__
 from .mesh import Mesh
+from .progress import Progress
 from .results import Body, Result, read
+from .scene import Scene
 from .simulation import Simulation, check, run
 from .study import Study, study
 
@@ -21,7 +24,9 @@ __all__ = [
     "Error",
     "Mesh",
     "NotConverged",
+    "Progress",
     "Result",
+    "Scene",
     "SceneError",
     "Simulation",
     "Step",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import numpy as np
 from . import _covact
 from .geometry import Surface
 from .mesh import Mesh
+from .progress import Progress
 from .results import Body, History, Result
 
 # What stands in the text of a scene where Python has given arrays.
@@ -32,7 +34,7 @@ def _plain(value: Any) -> Any:
 
 def _source(scene: Any, folder: str | os.PathLike | None = None) -> dict[str, Any]:
     """A scene as the compiled half takes it."""
-    source = {"path": None, "text": "", "folder": os.fspath(folder or "."), "meshes": {}, "surfaces": {}}
+    source: dict[str, Any] = {"path": None, "text": "", "folder": os.fspath(folder or "."), "meshes": {}, "surfaces": {}}
     if isinstance(scene, (str, os.PathLike)):
         if isinstance(scene, str) and scene.lstrip().startswith("{"):
             return source | {"text": scene}
@@ -76,6 +78,19 @@ def check(scene: Any, folder: str | os.PathLike | None = None) -> dict[str, Any]
     return json.loads(_covact.check(_source(scene, folder)))
 
 
+def _told(observers: list[Callable[[dict[str, Any]], Any]]) -> Callable[[str], Any] | None:
+    """What hands events, which come as JSON texts, to observers."""
+    if not observers:
+        return None
+
+    def tell(text: str) -> None:
+        event = json.loads(text)
+        for observer in observers:
+            observer(event)
+
+    return tell
+
+
 class Simulation:
     """A run that is stepped, and read in memory.
 
@@ -92,6 +107,8 @@ class Simulation:
     observer: callable, optional
         Gets every event of the run as a dict, e.g. ``{"event": "iteration", "step": 1, ...}``. It may raise an exception,
         which ends the run; it cannot read the simulation, which is at work then.
+    progress: bool
+        Show how far the run has got: a bar in a notebook or a terminal, lines elsewhere (:class:`covact.Progress`).
 
     Raises
     ------
@@ -109,11 +126,28 @@ class Simulation:
         replace: bool = False,
         threads: int = 0,
         observer: Callable[[dict[str, Any]], Any] | None = None,
+        progress: bool = False,
     ) -> None:
-        told = None if observer is None else lambda text: observer(json.loads(text))
+        self._progress = Progress() if progress else None
+        told = _told([one for one in (self._progress, observer) if one is not None])
         where = None if out is None else Path(out)
         self._run = _covact.Simulation(_source(scene, folder), where, resume, replace, threads, told)
         self.out = where
+
+    @contextmanager
+    def _shown(self) -> Iterator[None]:
+        """Shows progress while the run is at work."""
+        if self._progress is None:
+            yield
+            return
+        # A stage that was begun since may end later.
+        self._progress.end = self.end_time
+        try:
+            yield
+        except BaseException:
+            self._progress.pause(keep=True)
+            raise
+        self._progress.pause()
 
     def step(self) -> _covact.Step | None:
         """Goes on to the next accepted step; None at the end of the run.
@@ -128,7 +162,8 @@ class Simulation:
         KeyboardInterrupt
             Ctrl-C; the next call goes on.
         """
-        return self._run.step()
+        with self._shown():
+            return self._run.step()
 
     def __iter__(self) -> Iterator[_covact.Step]:
         while (step := self.step()) is not None:
@@ -141,7 +176,8 @@ class Simulation:
         False. It sees the steps of a run that begins again (:meth:`step`) anew, with another ``step.attempt``.
         """
         if callback is None:
-            self._run.run()
+            with self._shown():
+                self._run.run()
             return self.result()
         try:
             for step in self:
@@ -177,6 +213,11 @@ class Simulation:
     def time(self) -> float:
         """Time at the end of the last accepted step; 0 before the first."""
         return self._run.time
+
+    @property
+    def end_time(self) -> float:
+        """Time at the end of the run, as the scene and the stages that were begun say."""
+        return self._run.end_time
 
     @property
     def steps(self) -> int:
@@ -244,6 +285,7 @@ def run(
     replace: bool = False,
     threads: int = 0,
     observer: Callable[[dict[str, Any]], Any] | None = None,
+    progress: bool = False,
     callback: Callable[[Simulation, _covact.Step], Any] | None = None,
 ) -> Result:
     """Solves a scene; without `out` no file is written. Parameters as those of :class:`Simulation` and its ``run``.
@@ -254,6 +296,6 @@ def run(
         History, fields and account. A run that does not reach its end returns what there is, with a status that says so.
     """
     simulation = Simulation(
-        scene, out, folder=folder, resume=resume, replace=replace, threads=threads, observer=observer
+        scene, out, folder=folder, resume=resume, replace=replace, threads=threads, observer=observer, progress=progress
     )
     return simulation.run(callback)

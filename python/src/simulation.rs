@@ -248,6 +248,12 @@ impl Simulation {
         self.read(|run| run.time())
     }
 
+    /// Time at the end of the run.
+    #[getter]
+    fn end_time(&self) -> f64 {
+        self.read(|run| run.scene().scene.solution.end_time)
+    }
+
     #[getter]
     fn steps(&self) -> u32 {
         self.read(|run| run.steps())

@@ -297,3 +297,62 @@ def test_stages_that_cannot_begin():
         plain.step()
         plain.begin_stage({"name": "up", "until": 2})
     assert simulation.run().done
+
+
+def test_probes_are_what_fields_say():
+    scene = press(
+        probes={
+            "middle": {"near": [5, 5, 0]},
+            "rim": {"on": ["plate.x_min", "plate.x_max", "plate.y_min", "plate.y_max"], "quantity": "reaction"},
+            "stress": {"body": "plate", "quantity": "von_mises"},
+            "deepest": {"body": "plate", "take": "max"},
+            "top": {"on": "plate.top", "take": "mean"},
+        },
+        solution={"end_time": 0.4},
+    )
+    simulation = covact.Simulation(scene)
+    result = simulation.run()
+    plate, history = result.bodies["plate"], result.history
+    near = np.linalg.norm(plate.nodes - [5, 5, 0], axis=1).argmin()
+    for axis, column in enumerate("xyz"):
+        assert history[f"probe.middle.{column}"][-1] == pytest.approx(plate.displacement[near, axis], abs=1e-12)
+    # The rim bears what the ball exerts.
+    assert history["probe.rim.z"][-1] == pytest.approx(-history["force.ball.z"][-1], rel=1e-6)
+    assert history["probe.stress"][-1] == pytest.approx(plate.fields["von_mises"].max(), rel=1e-5)
+    assert history["probe.deepest"][-1] == pytest.approx(np.linalg.norm(plate.displacement, axis=1).max(), rel=1e-9)
+    top = plate.displacement[plate.node_sets["top"]].mean(axis=0)
+    assert history["probe.top.z"][-1] == pytest.approx(top[2], rel=1e-9)
+    assert simulation.value("probe.top.z") == history["probe.top.z"][-1]
+    # Every step has its number.
+    assert len(history["probe.middle.z"]) == len(history["time"]) and np.all(np.diff(history["probe.middle.z"]) < 0)
+    with pytest.raises(KeyError, match="did you mean `probe.middle.z`"):
+        history["probe.midle.z"]
+
+
+def test_probes_that_are_wrong():
+    with pytest.raises(covact.SceneError, match="middel"):
+        covact.check(press(probes={"p": {"on": "plate.middel"}}))
+    with pytest.raises(covact.SceneError, match="von_mises"):
+        covact.check(press(probes={"p": {"near": [5, 5, 0], "quantity": "von_mise"}}))
+
+
+def test_a_callback_changes_loads():
+    scene = press(
+        surfaces={},
+        contacts={},
+        loads={"air": {"on": "plate.top", "pressure": 0.01}},
+        probes={"middle": {"near": [5, 5, 0]}},
+        stages=[{"name": "blow", "loads": {"air": 1}}],
+    )
+    turned = []
+
+    def vent(simulation, step):
+        if not turned and simulation.value("probe.middle.z") < -0.05:
+            turned.append(step.time)
+            simulation.begin_stage({"name": "vent", "until": step.time + 0.5, "loads": {"air": 0}})
+
+    result = covact.run(scene, callback=vent)
+    middle = result.history["probe.middle.z"]
+    assert result.done and 0 < turned[0] < 1 and middle.min() < -0.05
+    # Without the pressure the plate is flat again.
+    assert abs(middle[-1]) < 1e-8 and result.history["time"][-1] == pytest.approx(turned[0] + 0.5)
