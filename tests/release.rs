@@ -68,3 +68,28 @@ fn the_script_says_how_it_is_called() {
         said(&asked)
     );
 }
+
+/// Versions of both crates and of the wheel go together, and the files that name one know it.
+#[test]
+fn versions_go_together() {
+    let version = env!("CARGO_PKG_VERSION");
+    let read = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+        std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{name}: {e}"))
+    };
+    for (file, line) in [
+        ("python/Cargo.toml", format!("version = \"{version}\"")),
+        ("docs/CITATION.cff", format!("version: {version}")),
+    ] {
+        let text = read(file);
+        assert!(text.lines().any(|l| l == line), "{file} lacks `{line}`");
+    }
+    let changes = read("docs/changelog.md");
+    let newest = (changes.lines()).find_map(|l| l.strip_prefix("## "));
+    let newest = newest.expect("a version");
+    assert!(newest.split([',', ' ']).next() == Some(version), "{newest}");
+    for part in ["### Lib", "### CLI", "### Py"] {
+        assert!(changes.contains(part), "docs/changelog.md lacks {part}");
+    }
+    assert!(read("Cargo.toml").contains(&format!("covact-geometry = {{ version = \"{version}\"")));
+}
