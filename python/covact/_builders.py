@@ -1049,6 +1049,7 @@ class Builders:
         every: int, optional
             Write fields at every n-th accepted step (the last is always written); 0 writes none.
         tessellation: int, optional
-            Subdivisions of a Bezier piece in the tessellated copy of rigid surfaces.
+            Most subdivisions of a Bezier piece, in either direction, in the tessellated copy of rigid surfaces; fewer
+            where the copy is within 2e-4 of the size of the surface, or of the bodies.
         """
         return self._set("output", _given(contact_points=contact_points, every=every, tessellation=tessellation))
