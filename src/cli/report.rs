@@ -14,6 +14,9 @@ const SHOWN: usize = 20;
 /// Lines of more bytes than this are not shown: a caret under their end would be nowhere on the screen.
 const LONGEST_LINE: usize = 4000;
 
+/// Lines of a value that are shown.
+const MOST_LINES: usize = 6;
+
 /// Writes to standard error. Nothing can be done when that fails.
 pub(super) fn stderr(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
@@ -64,6 +67,9 @@ impl miette::Diagnostic for Shown<'_> {
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let start = self.problem.span.start.min(self.text.len());
         let end = self.problem.span.end.min(self.text.len());
+        let value = self.text.get(start..end).unwrap_or_default();
+        let cut = value.match_indices('\n').nth(MOST_LINES - 1);
+        let end = cut.map_or(end, |(length, _)| start + length);
         let span = SourceSpan::from((start, end.saturating_sub(start)));
         Some(Box::new(std::iter::once(LabeledSpan::new_with_span(
             None, span,

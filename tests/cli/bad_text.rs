@@ -310,3 +310,15 @@ fn nothing_is_overwritten_by_new() {
         Some(5)
     );
 }
+
+/// Of a value of many lines the first ones are shown, and those around.
+#[test]
+fn a_long_value_is_shown_in_part() {
+    let rows: Vec<String> = (0..30).map(|k| format!("      [{k}, {k}, 0]")).collect();
+    let list = format!("\"translation\": [\n{}\n    ] }}", rows.join(",\n"));
+    let text = refused_with("\"translation\": [0, 0, \"-2*t\"] }", &list);
+    assert_parts(&text, &["expected a list of 3 values", "[4, 4, 0]"]);
+    assert!(!text.contains("[7, 7, 0]"), "{text}");
+    let shown = text.lines().filter(|line| line.contains(" │ ")).count();
+    assert!((6..=9).contains(&shown), "{shown} lines of\n{text}");
+}
