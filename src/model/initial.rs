@@ -3,6 +3,7 @@ use super::error::{number, text};
 use super::friction::LawNow;
 use super::master::{Master, MasterNow, Masters};
 use super::overclosure::{Deepest, treat};
+use super::reach::convex_radius;
 use super::sagitta::Sides;
 use super::sharp::SharpEdges;
 use super::{Model, ModelError, PairModel, SurfaceModel, sharp};
@@ -285,7 +286,12 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
         }
         warnings.extend(without_direction(model, index));
         if let Some(number) = pair.rigid_master() {
-            warnings.extend(too_coarse(model, index, &model.surfaces[number]));
+            warnings.extend(too_coarse(
+                model,
+                index,
+                &model.surfaces[number],
+                scene.solution.end_time,
+            ));
             warnings.extend(too_hollow(pair, &model.surfaces[number]));
             if let Some(edges) = SharpEdges::of(&model.surfaces[number]) {
                 let name = &model.surfaces[number].name;
@@ -318,11 +324,11 @@ fn resolved(scene: &Scene, pair: &PairModel) -> bool {
 }
 
 /// A warning of slave points that are too far apart for a rigid surface.
-fn too_coarse(model: &Model, index: usize, surface: &SurfaceModel) -> Option<String> {
+fn too_coarse(model: &Model, index: usize, surface: &SurfaceModel, end: f64) -> Option<String> {
     let spacing = point_spacing(model, index);
-    let [Some(radius), _] = surface.radii() else {
-        return None;
-    };
+    let [smallest, _] = surface.radii();
+    let smallest = smallest.filter(|radius| spacing > 0.5 * radius)?;
+    let radius = convex_radius(model, (&model.pairs[index], surface), smallest, end)?;
     (spacing > 0.5 * radius).then(|| {
         format!(
             "contact `{}`: its slave points are {} apart, too coarse for the smallest convex radius {} of surface \

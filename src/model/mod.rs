@@ -24,6 +24,7 @@ pub(crate) mod overclosure;
 pub(crate) mod pace;
 pub(crate) mod penalty;
 pub(crate) mod probe;
+pub(crate) mod reach;
 pub(crate) mod recut;
 pub(crate) mod rims;
 mod sagitta;

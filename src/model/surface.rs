@@ -170,6 +170,12 @@ impl SurfaceModel {
         }
     }
 
+    /// Smallest convex radius of those pieces of the patches for whose boxes `counts` holds.
+    pub fn convex_radius_of(&self, counts: impl Fn(&[Vec3; 2]) -> bool) -> Option<f64> {
+        let range = with_patches!(&self.set, s => s.curvature_range_of(&counts));
+        range.convex.map(|c| c.radius())
+    }
+
     /// The surface at its position of time `t` and, where forces drive it, of the displacements `u` of the system.
     pub fn at(&self, t: f64, u: &[f64]) -> Result<RigidMaster<'_, SurfaceSet>, ValueError> {
         Ok(RigidMaster {

@@ -335,6 +335,51 @@ fn slave_points_too_coarse_for_the_tool() {
     );
 }
 
+/// A flat patch above the plate, and far from it a half cylinder, nearly, of a small radius.
+fn flat_and_far() -> String {
+    let patch = |entity: u32, degree: u32, points: Vec<[f64; 4]>| {
+        let knots: Vec<f64> = [
+            vec![0.0; degree as usize + 1],
+            vec![1.0; degree as usize + 1],
+        ]
+        .concat();
+        json!({ "entity": entity, "degree": [degree, 1], "knots": [knots, [0, 0, 1, 1]], "points": points })
+    };
+    let flat = [-60.0, 60.0].map(|y| [[60.0, y, 0.0, 1.0], [-60.0, y, 0.0, 1.0]]);
+    let bent = [0.0, 100.0].map(|y| {
+        [
+            [903.0, y, 0.0, 1.0],
+            [900.0, y, -6.0, 1.0],
+            [897.0, y, 0.0, 1.0],
+        ]
+    });
+    let patches = [patch(1, 1, flat.concat()), patch(2, 2, bent.concat())];
+    json!({ "covact_geometry": 1, "unit": "mm", "resolution": null, "patches": patches })
+        .to_string()
+}
+
+#[test]
+fn radii_that_the_slave_cannot_reach_do_not_count() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("two.json"), flat_and_far()).unwrap();
+    let coarse = |translation: serde_json::Value| {
+        let surface = json!({
+            "cad": "two.json", "side": "as_given", "placement": { "translation": [0, 0, 1.5] },
+            "motion": { "translation": translation },
+        });
+        write_plate(folder.path(), &[("/surfaces/ball", surface)]);
+        let output = covact(folder.path(), &["check", "scene.json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        stderr(&output).contains("too coarse for the smallest convex radius")
+    };
+    assert!(!coarse(json!([0, 0, "-t"])));
+    // On its way it passes the plate.
+    assert!(coarse(json!(["-1800*t", 0, 0])));
+    assert!(coarse(
+        json!([{ "table": [[0, 0], [0.4, -880], [0.5, 0]] }, 0, "-t"])
+    ));
+}
+
 #[test]
 fn tools_in_the_wrong_place() {
     let plane = |z: f64| json!({ "plane": { "center": [20, 20, z], "size": [60, 60] } });

@@ -4,7 +4,7 @@ use super::integrate;
 use super::set::PatchSet;
 use super::topology::EdgeReport;
 use crate::frame::Frame;
-use crate::surface::{Surface, Vec3};
+use crate::surface::{Jet, Surface, Vec3};
 
 /// Where a principal curvature is extreme.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,6 +56,12 @@ impl<S: Surface> PatchSet<S> {
     /// Most convex and most concave principal curvature with the present sides, sampled at 5 x 5 points of every Bezier
     /// piece (corners and edges included) that belong to the surface: between the points it may be more extreme.
     pub fn curvature_range(&self) -> CurvatureRange {
+        self.curvature_range_of(|_| true)
+    }
+
+    /// [`curvature_range`](Self::curvature_range) of the Bezier pieces for which `counts` holds. It is given the lowest and
+    /// highest corner of a box around the sampled points of a piece.
+    pub fn curvature_range_of(&self, counts: impl Fn(&[Vec3; 2]) -> bool) -> CurvatureRange {
         let mut range = CurvatureRange {
             convex: None,
             concave: None,
@@ -66,16 +72,23 @@ impl<S: Surface> PatchSet<S> {
         let flat = 1e-10 / self.size;
         for piece in (0..self.pieces.count() as u32).map(|number| self.piece_place(number)) {
             let patch = &self.patches[piece.patch as usize];
-            for k in 0..25 {
-                let xi = [0, 1].map(|dir| {
+            let places = (0..25).map(|k| {
+                [0, 1].map(|dir| {
                     let [a, b] = piece.domain[dir];
                     let step = if dir == 0 { k % 5 } else { k / 5 };
                     a + (b - a) * step as f64 / 4.0
-                });
-                if patch.trim().is_some_and(|trim| !trim.contains(xi)) {
-                    continue;
-                }
-                let jet = patch.jet_in_span(piece.span, xi);
+                })
+            });
+            let inside = places.filter(|xi| patch.trim().is_none_or(|trim| trim.contains(*xi)));
+            let samples: Vec<([f64; 2], Jet)> = inside
+                .map(|xi| (xi, patch.jet_in_span(piece.span, xi)))
+                .collect();
+            let bounds = samples.iter().map(|(_, jet)| [jet.rho; 2]);
+            let bounds = bounds.reduce(|a, b| [a[0].inf(&b[0]), a[1].sup(&b[1])]);
+            if !bounds.is_some_and(|bounds| counts(&bounds)) {
+                continue;
+            }
+            for (xi, jet) in samples {
                 // Without a side of the component, that of the patch.
                 let side = self.sides[piece.patch as usize];
                 let side = if side == 0.0 { 1.0 } else { side };
