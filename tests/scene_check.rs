@@ -118,9 +118,9 @@ fn names_that_do_not_exist() {
             "14:32: the body `sheet` has no set `tops` (did you mean `top`? sets of `sheet`: `bottom`, `mid`, `top`,",
         ),
         (
-            "sheet.top",
+            "sheet.bottom",
             "sheet",
-            "14:32: `sheet` does not name a set (write body and set, as in `sheet.bottom`)",
+            "16:25: `sheet` does not name a set (write body and set, as in `sheet.bottom`)",
         ),
         (
             "sheet.top",
@@ -530,5 +530,80 @@ fn metals() {
             .iter()
             .any(|p| p.contains("is linear, but the material `steel` of body `sheet` flows")),
         "{found:?}"
+    );
+}
+
+#[test]
+fn sides_of_contacts() {
+    let slave = "\"sheet.top\"";
+    for right in [
+        "\"sheet\"",
+        "[\"sheet.top\"]",
+        "[\"sheet.top\", \"sheet.x_max\"]",
+    ] {
+        assert_eq!(
+            problems(&SCENE.replacen(slave, right, 1)),
+            Vec::<String>::new(),
+            "{right}"
+        );
+    }
+    check_all(&[
+        (slave, "[]", "14:23: the list of sets is empty"),
+        (
+            slave,
+            "[\"sheet.top\", \"sheet.tip\"]",
+            "14:46: the body `sheet` has no set `tip` (did you mean `top`?",
+        ),
+        (
+            slave,
+            "[\"sheet.top\", \"sheet.mid\"]",
+            "14:46: `sheet.mid` is a set of nodes, but contact needs faces",
+        ),
+        (
+            slave,
+            "\"sheets\"",
+            "14:32: `sheets` does not name a set (write `body.set`; bodies: `sheet`)",
+        ),
+        (
+            "\"master\": \"ball\"",
+            "\"master\": [\"ball\", \"sheet.bottom\"]",
+            "14:45: a rigid surface is one of several masters (give every rigid surface a contact of its own",
+        ),
+        (
+            "\"master\": \"ball\"",
+            "\"master\": \"bal\"",
+            "14:55: there is no surface `bal` (did you mean `ball`?",
+        ),
+        // Both sides on one body.
+        (
+            "\"master\": \"ball\", \"points\": {\"gauss\": 2}",
+            "\"master\": [\"sheet.bottom\"], \"points\": {\"segments\": 2}",
+            "14:96: slave and master belong to one body",
+        ),
+    ]);
+    let two = SCENE.replacen(
+        "\"bodies\": {",
+        "\"bodies\": {\"lid\": {\"mesh\": {\"plate\": {\"size\": [1, 1], \"thickness\": 1, \"elements\": [1, 1]}}, \"material\": \"steel\"},",
+        1,
+    );
+    let found = problems(&two.replacen(slave, "[\"sheet.top\", \"lid.bottom\"]", 1));
+    assert_eq!(
+        found,
+        [
+            "14:46: `sheet.top` and `lid.bottom` belong to two bodies (write a contact for each body: a list is for face sets of one body)"
+        ]
+    );
+    let sheet = "{\"plate\": {\"size\": [10, 10], \"thickness\": 0.8, \"elements\": [4, 4]}}";
+    let nurbs = SCENE
+        .replacen(
+            &format!("\"mesh\": {sheet}"),
+            "\"nurbs\": {\"file\": \"assets/panel.igs\", \"thickness\": 1}",
+            1,
+        )
+        .replacen(slave, "\"sheet\"", 1);
+    let found = problems(&nurbs).join("; ");
+    assert!(
+        found.contains("`sheet` is a body of kind `nurbs`, of which contact needs one side (name one: `bottom`, `top`)"),
+        "{found}"
     );
 }

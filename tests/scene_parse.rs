@@ -1,5 +1,8 @@
 //! What is wrong in the text of a scene is found, and its place.
-use covact::scene::{Points, Problem, SceneError, Selection, Spacing, Value, parse, pointer};
+use covact::scene::{
+    Placement, Points, Problem, SceneError, Selection, SetNames, Spacing, Value, check, parse,
+    pointer,
+};
 
 /// A small valid scene; tests replace parts of it.
 const SCENE: &str = r#"{
@@ -411,4 +414,99 @@ fn other_forms_are_read() {
         .compile(&["t"])
         .unwrap();
     assert_eq!(z.eval(0.5).unwrap(), -1.25);
+}
+
+/// The scene with `from` replaced, as it is read.
+fn read(from: &str, to: &str) -> covact::scene::Scene {
+    let text = changed(from, to);
+    parse(&text, "scene.json").unwrap().scene
+}
+
+#[test]
+fn lists_of_three_stand_for_components() {
+    let prescribed = |to: &str| {
+        let scene = read("\"fixed\": true", &format!("\"displacement\": {to}"));
+        scene.supports["edge"].displacement.clone().unwrap()
+    };
+    let object = prescribed(r#"{"x": 0, "z": "-t"}"#);
+    assert_eq!(prescribed(r#"[0, null, "-t"]"#), object);
+    assert_eq!(object.y, None);
+    let free = |to: &str| {
+        let motion = format!(r#""motion": {{"free": {{"force": {to}}}}}"#);
+        let scene = read(r#""motion": {"translation": [0, 0, "-t"]}"#, &motion);
+        scene.surfaces["ball"].motion.free.clone().unwrap().force
+    };
+    assert_eq!(free("[null, null, -5]"), free(r#"{"z": -5}"#));
+    check_all(&[
+        (
+            "\"fixed\": true",
+            "\"displacement\": [0, 0]",
+            "15:62: expected an object, or a list of 3 values, found a list of 2 values (a list has one value each",
+        ),
+        (
+            "\"fixed\": true",
+            "\"displacement\": [0, 0, true]",
+            "15:69: expected a number, `{\"table\": [[t, value], ...]}` or an expression",
+        ),
+        (
+            "\"-t\"",
+            "null",
+            "12:95: expected a number, `{\"table\": [[t, value], ...]}` or an expression",
+        ),
+    ]);
+    // What is wrong with a component is told at its place in the list.
+    let text = changed("\"fixed\": true", "\"displacement\": [0, null, \"s\"]");
+    let loaded = parse(&text, "scene.json").unwrap();
+    let found = check(&loaded);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(
+        (
+            found[0].place.to_string().as_str(),
+            found[0].pointer.as_str()
+        ),
+        ("15:73", "/supports/edge/displacement/z")
+    );
+}
+
+#[test]
+fn placements_are_turned_in_the_words_of_motions() {
+    let placed = |placement: &str| {
+        let to = format!(r#""placement": {placement}, "motion""#);
+        read("\"motion\"", &to).surfaces["ball"].placement
+    };
+    let by_axis = placed(r#"{"axis": [1, 0, 0], "angle": 90}"#);
+    assert_eq!(by_axis.angle, 90.0);
+    let rotation = r#""rotation": {"axis": [1, 0, 0], "angle": 90}"#;
+    assert_eq!(placed(&format!("{{{rotation}}}")), by_axis);
+    let about =
+        placed(r#"{"scale": 2, "rotation": {"axis": [0, 1, 0], "angle": 9, "center": [1, 2, 3]}}"#);
+    let expected = Placement {
+        scale: 2.0,
+        axis: [0.0, 1.0, 0.0],
+        angle: 9.0,
+        center: [1.0, 2.0, 3.0],
+        translation: [0.0; 3],
+    };
+    assert_eq!(about, expected);
+    // What is written is read alike.
+    for placement in [by_axis, about] {
+        let text = serde_json::to_string(&placement).unwrap();
+        assert_eq!(placed(&text), placement, "{text}");
+    }
+    let twice = format!(r#""placement": {{{rotation}, "angle": 3}}, "motion""#);
+    check_all(&[(
+        "\"motion\"",
+        &twice,
+        "12:75: the rotation is given twice, by `rotation` and by `axis` or `angle`: leave one of them out",
+    )]);
+}
+
+#[test]
+fn sides_of_contacts_are_sets_lists_or_bodies() {
+    let slave = |to: &str| read("\"sheet.top\"", to).contacts["c1"].slave.clone();
+    assert_eq!(slave("\"sheet.top\""), SetNames::from("sheet.top"));
+    assert_eq!(slave("\"sheet\""), SetNames::from("sheet"));
+    let list = slave(r#"["sheet.top", "sheet.x_max"]"#);
+    assert_eq!(list, SetNames::from(["sheet.top", "sheet.x_max"]));
+    assert_eq!((list.single(), list.body()), ("", "sheet"));
 }

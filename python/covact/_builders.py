@@ -771,8 +771,8 @@ class Builders:
     def contact(
         self,
         name: str,
-        slave: str,
-        master: str,
+        slave: str | Sequence[str],
+        master: str | Sequence[str],
         *,
         accuracy: float | None = None,
         augmentation: Mapping[str, Any] | None = None,
@@ -794,10 +794,10 @@ class Builders:
         ----------
         name: str
             Name of the contact.
-        slave: str
-            Face set of a body, `body.set`.
-        master: str
-            Name of a rigid surface, or face set of a deformable body, `body.set`.
+        slave: str or list of str
+            Face set of a body, `body.set`, a list of face sets of one body, or a body, `body`: all its outer faces.
+        master: str or list of str
+            Name of a rigid surface, or faces of a deformable body: `body.set`, a list of face sets, or `body`.
         accuracy: float, optional
             Relative error of forces that the automatic penalty aims at; default: 4e-3, and 1e-4 where a stage releases
             the contact, until its penalty is rigid beside the thickness of the body. Only where no penalty is given.
@@ -835,7 +835,7 @@ class Builders:
         on: str | Sequence[str],
         *,
         clamped: bool | None = None,
-        displacement: Mapping[str, Any] | None = None,
+        displacement: Mapping[str, Any] | Sequence[float | Mapping[str, Any] | str] | None = None,
         fixed: bool | None = None,
         mid_surface: bool | None = None,
         plane_strain: Literal["x", "y", "z"] | None = None,
@@ -852,7 +852,7 @@ class Builders:
         clamped: bool, optional
             All three components are zero, and the sheet does not turn about the edge; only for whole edges of a body of
             kind `nurbs`, which `fixed` leaves hinged.
-        displacement: dict, optional
+        displacement: dict or list of (float or dict or str), optional
             Prescribed components.
         fixed: bool, optional
             All three components are zero.

@@ -69,10 +69,10 @@ pub fn rotation(axis: [f64; 3], degrees: f64) -> UnitQuaternion<f64> {
 
 /// Rotation and translation of a placement; its scale is for the caller to apply first.
 pub fn pose(placement: &scene::Placement) -> Isometry3<f64> {
-    Isometry3::from_parts(
-        Translation3::from(Vec3::from(placement.translation)),
-        rotation(placement.axis, placement.angle),
-    )
+    let rotation = rotation(placement.axis, placement.angle);
+    let center = Vec3::from(placement.center);
+    let shift = Vec3::from(placement.translation) + (center - rotation * center);
+    Isometry3::from_parts(Translation3::from(shift), rotation)
 }
 
 impl Motion {

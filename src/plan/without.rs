@@ -170,10 +170,9 @@ pub const REMOVABLE: &[Removable] = &[
         instead: "bodies pass through themselves",
         effects: &["contact.self"],
         remove: |scene| {
-            let body = |set: &str| set.split_once('.').map(|(body, _)| body.to_owned());
             let before = scene.contacts.len();
-            let own = |c: &Contact| body(&c.slave).is_some() && body(&c.slave) == body(&c.master);
-            scene.contacts.retain(|_, c| !own(c));
+            let surfaces = &scene.surfaces;
+            scene.contacts.retain(|_, c| !c.is_own(surfaces));
             scene.contacts.len() < before
         },
     },

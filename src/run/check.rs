@@ -377,8 +377,8 @@ fn pair_report(
     let gap = initial_gap(model, index)?;
     Ok(PairReport {
         name: pair.name.clone(),
-        slave: contact.slave.clone(),
-        master: contact.master.clone(),
+        slave: contact.slave.to_string(),
+        master: contact.master.to_string(),
         points: pair.points.len(),
         sampling: match pair.sampled {
             Points::Nodes if model.bodies[pair.body].block.sheet().is_some() => {

@@ -1,5 +1,5 @@
 //! The JSON schema of scenes, made from the types and their documentation.
-use super::types::{STANDS_FOR, Scene, WITH_DEFAULTS};
+use super::types::{BY_AXIS, STANDS_FOR, Scene, WITH_DEFAULTS};
 use schemars::Schema;
 use serde_json::{Map, Value as Json, json};
 
@@ -45,11 +45,26 @@ fn short_forms(schema: &mut Json) {
             };
             let mut short = short;
             short["description"] = json!(format!("Stands for `{{\"{}\": ...}}`.", form.key));
-            let mut long = definition.take();
-            let description = long.as_object_mut().and_then(|l| l.remove("description"));
-            *definition = json!({ "description": description, "anyOf": [long, short] });
+            or_short(definition, short);
+        }
+        if BY_AXIS.contains(&name.as_str()) {
+            let short = json!({
+                "description": "The values of `x`, `y` and `z`; `null` leaves one out.",
+                "type": "array",
+                "items": { "anyOf": definition["properties"]["x"]["anyOf"].clone() },
+                "minItems": 3,
+                "maxItems": 3,
+            });
+            or_short(definition, short);
         }
     }
+}
+
+/// Allows a short form beside the one that a definition describes.
+fn or_short(definition: &mut Json, short: Json) {
+    let mut long = definition.take();
+    let description = long.as_object_mut().and_then(|l| l.remove("description"));
+    *definition = json!({ "description": description, "anyOf": [long, short] });
 }
 
 /// Lets the names of choices whose settings have defaults stand alone.

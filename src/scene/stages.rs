@@ -66,7 +66,7 @@ impl Scene {
             true => self.ending_contacts(index),
             false => BTreeSet::new(),
         };
-        let master = |name: &str| self.contacts.get(name).map(|c| c.master.as_str());
+        let master = |name: &str| self.contacts.get(name).map(|c| c.master.single());
         (ending.into_iter().filter_map(master))
             .filter(|master| self.surfaces.contains_key(*master))
             .collect()

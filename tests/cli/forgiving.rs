@@ -245,6 +245,45 @@ fn sets_in_a_list_count_as_one() {
     );
 }
 
+/// Faces of both sides of the only contact, and slave points.
+fn sides(slave: &str) -> (usize, usize) {
+    let text = sheet(PLATE, BALL, "", EDGE).replace("\"sheet.top\"", slave);
+    let model = build(&loaded(&text)).unwrap();
+    (model.pairs[0].faces.len(), model.pairs[0].points.len())
+}
+
+#[test]
+fn a_side_of_a_contact_is_a_set_several_or_a_body() {
+    assert_eq!(sides(r#""sheet.top""#), (8, 15));
+    // Each face once, and each node.
+    assert_eq!(sides(r#"["sheet.top", "sheet.x_max"]"#), (10, 18));
+    assert_eq!(
+        sides(r#"["sheet.top", "sheet.x_max", "sheet.top"]"#),
+        (10, 18)
+    );
+    assert_eq!(sides(r#""sheet""#), (8 + 8 + 2 * 4 + 2 * 2, 30));
+}
+
+#[test]
+fn a_placement_turns_about_its_centre() {
+    let placed = |placement: &str| {
+        let surface = format!("{BALL}, \"placement\": {placement}");
+        let model = build(&loaded(&sheet(PLATE, &surface, "", EDGE))).unwrap();
+        let pose = model.surfaces[0].motion.pose(0.0).unwrap();
+        pose.transform_vector(&Vec3::x()) + 100.0 * pose.translation.vector
+    };
+    // A quarter of a turn about z at (1, 0): the origin goes to (1, -1).
+    let about = placed(
+        r#"{"rotation": {"axis": [0, 0, 2], "angle": 90, "center": [1, 0, 7]}, "translation": [0, 0, 0.1]}"#,
+    );
+    let other = placed(r#"{"axis": [0, 0, 1], "angle": 90, "translation": [1, -1, 0.1]}"#);
+    assert!((about - other).norm() < 1e-12, "{about} {other}");
+    assert!(
+        (about - Vec3::new(100.0, -99.0, 10.0)).norm() < 1e-12,
+        "{about}"
+    );
+}
+
 /// A total force on a list of faces is spread over the area of all of them, each counted once.
 #[test]
 fn a_force_on_a_list_is_spread_over_all_of_it() {

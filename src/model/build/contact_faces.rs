@@ -3,6 +3,7 @@ use super::Builder;
 use super::supports::components;
 use crate::mesh::Face;
 use crate::model::error::ModelError;
+use crate::scene::SetNames;
 use std::collections::HashSet;
 
 /// Spread of a face's nodes across a plane of symmetry up to which it lies in it, as a part of the face's size.
@@ -18,10 +19,10 @@ impl Builder<'_> {
     pub(super) fn contact_faces(
         &mut self,
         contact: &str,
-        reference: &str,
+        side: &SetNames,
         pointer: &str,
     ) -> Result<(usize, Vec<Face>), ModelError> {
-        let (body, faces) = self.faces(reference, pointer)?;
+        let (body, faces) = self.side(side, pointer)?;
         let mut cut: HashSet<Face> = HashSet::new();
         for (name, support) in &self.scene.supports {
             let plane = support.symmetry.or(support.plane_strain);
@@ -48,7 +49,7 @@ impl Builder<'_> {
             return Ok((body, faces));
         }
         let note = format!(
-            "contact `{contact}`: {} of the {} faces of `{reference}` lie in a plane of symmetry and are left out: the mirror image \
+            "contact `{contact}`: {} of the {} faces of `{side}` lie in a plane of symmetry and are left out: the mirror image \
              goes on there",
             cut.len(),
             faces.len()

@@ -59,7 +59,7 @@ impl Builder<'_> {
         let surface_index: BTreeMap<&str, usize> = names.map(|(i, n)| (n.as_str(), i)).collect();
         let mut pairs = Vec::new();
         for (name, contact) in &self.scene.contacts {
-            let rigid = surface_index.get(contact.master.as_str()).copied();
+            let rigid = surface_index.get(contact.master.single()).copied();
             let first = pairs.len();
             pairs.push(self.pair(name, contact, rigid, Side::Faces)?);
             if contact.passes == Passes::Edges && rigid.is_none() {
@@ -335,7 +335,7 @@ impl Builder<'_> {
         }
         Ok(PairModel {
             name: name.to_owned(),
-            slave: contact.slave.clone(),
+            slave: contact.slave.to_string(),
             body,
             faces,
             master,

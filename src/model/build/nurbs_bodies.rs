@@ -209,9 +209,8 @@ impl Builder<'_> {
         rigid: Option<usize>,
     ) -> Result<(), ModelError> {
         let at = |field: &str| format!("/contacts/{name}/{field}");
-        let of = |set: &str| {
-            let (body, _) = set.split_once('.').unwrap_or((set, ""));
-            let index = self.body_index.get(body);
+        let of = |side: &SetNames| {
+            let index = self.body_index.get(side.body());
             index.is_some_and(|i| self.bodies[*i].block.sheet().is_some())
         };
         if rigid.is_none() && of(&contact.master) {
@@ -227,15 +226,14 @@ impl Builder<'_> {
             );
             Err(text(at(field), message).help(help.to_owned()))
         };
-        let body = |set: &str| set.split_once('.').map_or(set, |(body, _)| body).to_owned();
-        if rigid.is_none() && body(&contact.slave) == body(&contact.master) {
+        if contact.is_own(&self.scene.surfaces) {
             return refuse(
                 "master",
                 "masters on the same body",
                 "take another body or a rigid surface as master",
             );
         }
-        let described = self.scene.surfaces.get(&contact.master);
+        let described = contact.surface(&self.scene.surfaces);
         if described.is_some_and(|s| s.motion.free.is_some()) {
             return refuse(
                 "master",
@@ -323,11 +321,8 @@ impl Builder<'_> {
         if let Tangent::Published { .. } = contact.tangent {
             return refuse("tangent", "published tangents", "take `exact`");
         }
-        let (name, _) = contact
-            .master
-            .split_once('.')
-            .unwrap_or((&contact.master, ""));
-        let body = self.body_index.get(name).map(|i| &self.bodies[*i]);
+        let index = self.body_index.get(contact.master.body());
+        let body = index.map(|i| &self.bodies[*i]);
         let fold = (body.and_then(|b| b.block.sheet()))
             .and_then(|s| s.sharpest_fold())
             .filter(|(_, angle)| *angle > STEEPEST);

@@ -18,9 +18,9 @@ impl Builder<'_> {
         let mut errors = Vec::new();
         for (name, contact) in &self.scene.contacts {
             let at = |side: &str| format!("/contacts/{name}/{side}");
-            errors.extend(self.faces(&contact.slave, &at("slave")).err());
-            if !self.scene.surfaces.contains_key(&contact.master) {
-                errors.extend(self.faces(&contact.master, &at("master")).err());
+            errors.extend(self.side(&contact.slave, &at("slave")).err());
+            if contact.surface(&self.scene.surfaces).is_none() {
+                errors.extend(self.side(&contact.master, &at("master")).err());
             }
         }
         for (name, load) in &self.scene.loads {
@@ -55,16 +55,29 @@ impl Builder<'_> {
         Ok((index, &body.mesh, body.first_node))
     }
 
-    pub(super) fn faces(
-        &self,
-        reference: &str,
-        pointer: &str,
-    ) -> Result<(usize, Vec<Face>), ModelError> {
+    /// Faces of `body.set`, or all outer faces of `body`.
+    fn faces(&self, reference: &str, pointer: &str) -> Result<(usize, Vec<Face>), ModelError> {
         let (index, mesh, _) = self.body(reference, pointer)?;
+        if !reference.contains('.') {
+            return Ok((index, mesh.outer_faces()));
+        }
         let faces = mesh
             .face_set(split(reference).1)
             .at(|| pointer.to_owned())?;
         Ok((index, faces.to_vec()))
+    }
+
+    /// Faces of a side of a contact, which belong to one body.
+    pub(super) fn side(
+        &self,
+        side: &SetNames,
+        pointer: &str,
+    ) -> Result<(usize, Vec<Face>), ModelError> {
+        let mut parts = self.faces_of(side, pointer)?;
+        match (parts.pop(), parts.is_empty()) {
+            (Some(part), true) => Ok(part),
+            _ => Err(text(pointer, format!("`{side}` are not sets of one body"))),
+        }
     }
 
     /// Nodes of a node set, of a face set where there is no node set of that name, or of a whole body.

@@ -387,7 +387,8 @@ impl Builder<'_> {
         centers: &[Vec3],
     ) {
         let shrinks = self.scene.contacts.values().any(|c| {
-            c.master == name && matches!(c.initial_overclosure, InitialOverclosure::Shrink { .. })
+            c.master.single() == name
+                && matches!(c.initial_overclosure, InitialOverclosure::Shrink { .. })
         });
         if !shrinks {
             return;
@@ -413,9 +414,9 @@ impl Builder<'_> {
     fn slave_element_centers(&self, surface: &str) -> Result<Vec<Vec3>, ModelError> {
         let mut centers = Vec::new();
         for (name, contact) in &self.scene.contacts {
-            if contact.master == surface {
+            if contact.master.single() == surface {
                 let (body, faces) =
-                    self.faces(&contact.slave, &format!("/contacts/{name}/slave"))?;
+                    self.side(&contact.slave, &format!("/contacts/{name}/slave"))?;
                 let mesh = &self.bodies[body].mesh;
                 centers.extend(
                     faces

@@ -5,7 +5,8 @@ use super::substitute::Former;
 use crate::model::error::number;
 use crate::output::Table;
 use crate::scene::{
-    Contact, Element, Friction, Kinematics, LoadedScene, MasterSurface, Passes, Points, pointer,
+    Contact, Element, Friction, Kinematics, LoadedScene, MasterSurface, Passes, Points, SetNames,
+    pointer,
 };
 
 /// Gauss points along each direction of a face that see what its nodes do not.
@@ -106,10 +107,10 @@ fn is_directed(contact: &Contact) -> bool {
 /// Whether the edges of the master of a contact may become slaves by themselves: those of another body, or of a rigid surface whose
 /// motion is prescribed, in a contact that leaves its passes to the default.
 pub(super) fn edges_may(scene: &LoadedScene, contact: &Contact) -> bool {
-    let body = |set: &str| set.split('.').next().map(str::to_owned);
-    let prescribed = match scene.scene.surfaces.get(&contact.master) {
+    let surfaces = &scene.scene.surfaces;
+    let prescribed = match contact.surface(surfaces) {
         Some(surface) => surface.motion.free.is_none(),
-        None => body(&contact.slave) != body(&contact.master),
+        None => !contact.is_own(surfaces),
     };
     let solution = &scene.scene.solution;
     contact.passes == Passes::Auto
@@ -124,11 +125,9 @@ pub(super) fn edges_may(scene: &LoadedScene, contact: &Contact) -> bool {
 /// Whether the slave of a contact may have more points by itself: its nodes, in a contact with a rigid surface or another body that
 /// leaves them to the default and whose tractions are those of penalties at its points.
 pub(super) fn points_may(scene: &LoadedScene, contact: &Contact) -> bool {
-    let body = |set: &str| set.split('.').next().map(str::to_owned);
     contact.points == Points::Auto
         && contact.augmentation.is_none()
-        && (scene.scene.surfaces.contains_key(&contact.master)
-            || body(&contact.slave) != body(&contact.master))
+        && !contact.is_own(&scene.scene.surfaces)
 }
 
 /// The scene with Gauss points as the slave points of some contacts.
@@ -188,7 +187,7 @@ pub(super) fn seeing_less(
             now.passes = Passes::One;
         }
         if points_may(scene, contact) {
-            let rigid = scene.scene.surfaces.contains_key(&contact.master);
+            let rigid = contact.surface(&scene.scene.surfaces).is_some();
             if now.points != Points::Auto {
                 of_points.push(format!("`{name}`"));
             }
@@ -258,8 +257,8 @@ pub(super) fn with_exchanged(
     before: Option<&Safe>,
     time: Option<f64>,
 ) -> Option<Safe> {
-    let young = |set: &str| {
-        let body = scene.scene.bodies.get(set.split('.').next()?)?;
+    let young = |side: &SetNames| {
+        let body = scene.scene.bodies.get(side.body())?;
         let material = scene.scene.materials.get(&body.material)?;
         Some(material.law(&scene.scene.units)?.elastic().e)
     };
@@ -284,10 +283,12 @@ fn with_contacts(
 ) -> Option<Safe> {
     let mut safe = Safe::of(scene, before);
     let mut found = Vec::new();
-    let body = |set: &str| set.split('.').next().map(str::to_owned);
+    let surfaces = &scene.scene.surfaces;
     for (name, contact) in &mut safe.loaded.scene.contacts {
-        let own = body(&contact.slave) == body(&contact.master);
-        let rigid = scene.scene.surfaces.contains_key(&contact.master);
+        let (own, rigid) = (
+            contact.is_own(surfaces),
+            contact.surface(surfaces).is_some(),
+        );
         let named = scene.has(&pointer(&["contacts", name, key]));
         let mut other = contact.clone();
         if !own && !rigid && !named && change(&mut other) {

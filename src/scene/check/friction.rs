@@ -1,10 +1,10 @@
 //! What can be wrong with the friction of a contact.
 use super::checker::Checker;
-use super::{Contact, Friction, Gap, Passes, Penalty, TIME, Tangent, check_penalty};
+use super::{Contact, Friction, Gap, Passes, Penalty, Scene, TIME, Tangent, check_penalty};
 use crate::scene::Value;
 
 /// Problems of the friction of the contact at `at`.
-pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
+pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene) {
     let Some(friction) = &contact.friction else {
         if contact.tangential_penalty != Penalty::Auto {
             c.add(
@@ -33,7 +33,9 @@ pub(super) fn check(c: &mut Checker, at: &str, contact: &Contact) {
             let others = match contact.passes {
                 Passes::Edges => Some("edges as slaves"),
                 // A rigid surface has no pass of its own, which is told there.
-                Passes::TwoHalf if contact.master.contains('.') => Some("two half passes"),
+                Passes::TwoHalf if contact.surface(&scene.surfaces).is_none() => {
+                    Some("two half passes")
+                }
                 _ => None,
             };
             if let Some(others) = others {

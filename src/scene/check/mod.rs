@@ -87,7 +87,7 @@ pub(super) fn problems(scene: &Scene, document: &Document) -> Vec<Problem> {
 }
 
 fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, sets: &Sets) {
-    sets.check(c, &format!("{at}/slave"), &contact.slave, true, "contact");
+    sets.check_side(c, &format!("{at}/slave"), &contact.slave, "contact");
     check_master(c, at, contact, scene, sets);
     match contact.points {
         Points::Auto | Points::Nodes => {}
@@ -97,7 +97,7 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
             check_segments(c, &format!("{at}/points/segments"), n, contact, scene)
         }
     }
-    if contact.passes == Passes::TwoHalf && scene.surfaces.contains_key(&contact.master) {
+    if contact.passes == Passes::TwoHalf && contact.surface(&scene.surfaces).is_some() {
         c.add(
             &format!("{at}/passes"),
             format!(
@@ -107,7 +107,7 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
             Some("`two_half` is for masters that are faces of a body".into()),
         );
     }
-    let rigid = scene.surfaces.contains_key(&contact.master);
+    let rigid = contact.surface(&scene.surfaces).is_some();
     let solution = &scene.solution;
     let large = solution.kinematics != Kinematics::Small && solution.dynamics.is_none();
     if contact.passes == Passes::Edges && rigid && !large {
@@ -170,7 +170,7 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, se
             c.add(&at, message, Some(help.into()));
         }
     }
-    friction::check(c, at, contact);
+    friction::check(c, at, contact, scene);
     augmentation::check(c, at, contact);
 }
 
@@ -187,7 +187,7 @@ fn check_penalty(c: &mut Checker, at: &str, penalty: Penalty) {
 /// Segments need facets to cut with that are not the slave's own, and have no points that last.
 fn check_segments(c: &mut Checker, at: &str, degree: u8, contact: &Contact, scene: &Scene) {
     c.whole(at, degree.into(), 1, 5);
-    if scene.surfaces.contains_key(&contact.master) {
+    if contact.surface(&scene.surfaces).is_some() {
         c.add(
             at,
             format!(
@@ -199,8 +199,7 @@ fn check_segments(c: &mut Checker, at: &str, degree: u8, contact: &Contact, scen
             ),
         );
     }
-    let body = |set: &str| set.split_once('.').map(|(body, _)| body.to_owned());
-    if body(&contact.slave).is_some() && body(&contact.slave) == body(&contact.master) {
+    if contact.is_own(&scene.surfaces) {
         let message = "slave and master belong to one body, whose faces do not cut one another";
         let help = "take `{\"gauss\": n}`";
         c.add(at, message.to_owned(), Some(help.to_owned()));
@@ -219,29 +218,32 @@ fn check_segments(c: &mut Checker, at: &str, degree: u8, contact: &Contact, scen
 /// The master is a rigid surface or a face set of a body.
 fn check_master(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene, sets: &Sets) {
     let pointer = format!("{at}/master");
-    let rigid = scene.surfaces.contains_key(&contact.master);
-    let body = contact.master.contains('.');
-    match (rigid, body) {
-        (true, true) if sets.knows(&contact.master) => c.add(
+    let rigid = contact.surface(&scene.surfaces).is_some();
+    let name = contact.master.single();
+    let of_body = !name.is_empty() && (name.contains('.') || scene.bodies.contains_key(name));
+    match &contact.master {
+        _ if rigid && sets.knows(name) => c.add(
             &pointer,
-            format!(
-                "`{}` is both a rigid surface and a set of a body",
-                contact.master
-            ),
+            format!("`{name}` is both a rigid surface and a set of a body"),
             Some("rename the surface".into()),
         ),
-        (false, true) => sets.check(c, &pointer, &contact.master, true, "a master"),
-        (true, _) => {}
-        (false, false) => {
+        _ if rigid => {}
+        SetNames::One(_) if !of_body => {
             let mut help = suggestion(
-                &contact.master,
+                name,
                 "surfaces",
                 scene.surfaces.keys().map(String::as_str),
             );
             help += "; a face set of a body is written `body.set`";
-            let message = format!("there is no surface `{}`", shorten(&contact.master));
+            let message = format!("there is no surface `{}`", shorten(name));
             c.add(&pointer, message, Some(help));
         }
+        SetNames::List(names) if names.iter().any(|n| scene.surfaces.contains_key(n)) => c.add(
+            &pointer,
+            "a rigid surface is one of several masters",
+            Some("give every rigid surface a contact of its own: a list is for face sets of one body".into()),
+        ),
+        sides => sets.check_side(c, &pointer, sides, "a master"),
     }
     if rigid && contact.master_surface.is_some() {
         c.add(

@@ -147,6 +147,8 @@ struct BodySets<'a> {
     sets: BTreeMap<&'a str, bool>,
     /// A mesh file may hold more.
     open: bool,
+    /// It is a CAD surface that bends.
+    sheet: bool,
 }
 
 impl<'a> Sets<'a> {
@@ -178,7 +180,8 @@ impl<'a> Sets<'a> {
                 MeshSource::Nurbs(nurbs) => nurbs.faces.len() != 1,
                 _ => false,
             };
-            (name.as_str(), BodySets { sets, open })
+            let sheet = matches!(body.mesh, MeshSource::Nurbs(_));
+            (name.as_str(), BodySets { sets, open, sheet })
         });
         Sets {
             bodies: bodies.collect(),
@@ -279,6 +282,47 @@ impl<'a> Sets<'a> {
                     Some(help),
                 );
             }
+        }
+    }
+
+    /// The faces of a side of a contact: sets of one body, or a whole body.
+    pub fn check_side(&self, c: &mut Checker, at: &str, side: &SetNames, user: &str) {
+        if side.iter().next().is_none() {
+            let help = "write `body.set`";
+            return c.add(at, "the list of sets is empty", Some(help.into()));
+        }
+        for (at, name) in side.places(at) {
+            match self.bodies.get(name) {
+                None => self.check(c, &at, name, true, user),
+                Some(body) if body.sheet => {
+                    let message = format!(
+                        "`{}` is a body of kind `nurbs`, of which {user} needs one side",
+                        shorten(name)
+                    );
+                    let help = listed(body.sets.keys().copied().filter(|s| body.sets[s]));
+                    c.add(&at, message, Some(format!("name one: {help}")));
+                }
+                Some(_) => {}
+            }
+            let body = name.split_once('.').map_or(name, |(body, _)| body);
+            if body != side.body() && self.bodies.contains_key(body) {
+                let message = format!(
+                    "`{}` and `{}` belong to two bodies",
+                    shorten(side.iter().next().unwrap_or_default()),
+                    shorten(name)
+                );
+                let help = "write a contact for each body: a list is for face sets of one body";
+                c.add(&at, message, Some(help.into()));
+            }
+        }
+        let several = side.iter().nth(1).is_some();
+        if several && self.bodies.get(side.body()).is_some_and(|b| b.sheet) {
+            let message = format!(
+                "`{}` is a body of kind `nurbs`, of which {user} takes one set",
+                shorten(side.body())
+            );
+            let help = "write a contact for each set";
+            c.add(at, message, Some(help.into()));
         }
     }
 

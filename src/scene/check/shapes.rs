@@ -296,8 +296,17 @@ pub(super) fn check_selection(c: &mut Checker, at: &str, selection: &Selection) 
 
 pub(super) fn check_placement(c: &mut Checker, at: &str, placement: &Placement) {
     c.positive(&format!("{at}/scale"), "the scale", placement.scale);
-    c.direction(&format!("{at}/axis"), "the rotation axis", placement.axis);
-    c.finite(&format!("{at}/angle"), &[placement.angle]);
+    let turned = match c.has(&format!("{at}/rotation")) {
+        true => format!("{at}/rotation"),
+        false => at.to_owned(),
+    };
+    c.direction(
+        &format!("{turned}/axis"),
+        "the rotation axis",
+        placement.axis,
+    );
+    c.finite(&format!("{turned}/angle"), &[placement.angle]);
+    c.finite(&format!("{turned}/center"), &placement.center);
     c.finite(&format!("{at}/translation"), &placement.translation);
 }
 

@@ -14,7 +14,7 @@ pub(super) fn check(c: &mut Checker, scene: &Scene) {
         }
     }
     for (name, contact) in &scene.contacts {
-        check_contact(c, &path(&["contacts", name]), contact);
+        check_contact(c, &path(&["contacts", name]), contact, scene);
     }
     for (name, surface) in &scene.surfaces {
         if surface.motion.free.is_some() {
@@ -33,7 +33,7 @@ pub(super) fn check(c: &mut Checker, scene: &Scene) {
     }
 }
 
-fn check_contact(c: &mut Checker, at: &str, contact: &Contact) {
+fn check_contact(c: &mut Checker, at: &str, contact: &Contact, scene: &Scene) {
     let mut refuse = |key: &str, what: &str, help: &str| {
         refuse(c, &format!("{at}/{key}"), what, help);
     };
@@ -55,8 +55,7 @@ fn check_contact(c: &mut Checker, at: &str, contact: &Contact) {
         let help = "take `exact`: normals stay, so that there is no other part than the main one";
         refuse("tangent", "the published tangent", help);
     }
-    let body = |set: &str| set.split_once('.').map(|(body, _)| body.to_owned());
-    if body(&contact.slave).is_some() && body(&contact.slave) == body(&contact.master) {
+    if contact.is_own(&scene.surfaces) {
         let help = "what touches itself has moved far";
         refuse("master", "contact of a body with itself", help);
     }

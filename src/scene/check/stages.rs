@@ -149,8 +149,8 @@ fn check_release(c: &mut Checker, at: &str, scene: &Scene, index: usize) {
         let Some(contact) = scene.contacts.get(*name) else {
             continue;
         };
-        let master = shorten(&contact.master);
-        let Some(surface) = scene.surfaces.get(&contact.master) else {
+        let master = shorten(contact.master.single());
+        let Some(surface) = contact.surface(&scene.surfaces) else {
             let message = format!(
                 "the master `{master}` of contact `{name}` is a body, which has no way back of its own"
             );
@@ -201,11 +201,11 @@ fn check_starts(c: &mut Checker, at: &str, scene: &Scene, index: usize) {
             let help = "leave `initial_overclosure` out for a contact that begins later";
             c.add(&place, message, Some(help.into()));
         }
-        let gone = (1..index).find(|k| scene.returning_tools(*k).contains(contact.master.as_str()));
+        let gone = (1..index).find(|k| scene.returning_tools(*k).contains(contact.master.single()));
         if let Some(gone) = gone {
             let message = format!(
                 "contact `{name}` begins with this stage, but surface `{}` has gone back in the stage `{}`",
-                shorten(&contact.master),
+                shorten(contact.master.single()),
                 shorten(&scene.stages[gone].name)
             );
             c.add(
@@ -221,12 +221,14 @@ fn check_starts(c: &mut Checker, at: &str, scene: &Scene, index: usize) {
 fn check_driven(c: &mut Checker, at: &str, scene: &Scene) {
     let active = scene.active_contacts(0);
     for (name, contact) in &scene.contacts {
-        let driven = (scene.surfaces.get(&contact.master)).is_some_and(|s| s.motion.free.is_some());
+        let driven = contact
+            .surface(&scene.surfaces)
+            .is_some_and(|s| s.motion.free.is_some());
         if driven && !active.contains(name.as_str()) {
             let message = format!(
                 "contact `{name}` is not active in the first stage, and its surface `{}` is driven by force: its place \
                  would not be known",
-                shorten(&contact.master)
+                shorten(contact.master.single())
             );
             let help = "list the contact in `contacts`, or prescribe the motion of the surface";
             c.add(&format!("{at}/contacts"), message, Some(help.into()));

@@ -10,7 +10,7 @@ mod stop;
 
 use super::json::{Fault, Kind, Member, Node};
 use super::problem::{MOST_PROBLEMS, nearest, shorten, suggestion};
-use super::types::STANDS_FOR;
+use super::types::{BY_AXIS, STANDS_FOR};
 use access::{Items, Members, Variant};
 use placeholder::Placeholder;
 use serde::de::{self, Deserializer, Visitor};
@@ -211,6 +211,23 @@ impl<'de, 'f> Decoder<'de, 'f> {
         })
     }
 
+    /// Reads a list of three values as an object of `x`, `y` and `z`.
+    fn by_axis<V: Visitor<'de>>(self, items: &'de [Node], visitor: V) -> Result<V::Value, Stop> {
+        let [x, y, z] = items else {
+            return Err(self
+                .expected("an object, or a list of 3 values")
+                .help("a list has one value each for `x`, `y` and `z`; `null` leaves one out"));
+        };
+        visitor.visit_map(Members {
+            decoder: self,
+            members: [].iter(),
+            known: None,
+            meant: vec![("x", x), ("y", y), ("z", z)].into_iter(),
+            lacking: [].iter(),
+            value: None,
+        })
+    }
+
     fn object<V: Visitor<'de>>(
         self,
         known: &'static [&'static str],
@@ -382,9 +399,10 @@ impl<'de> Deserializer<'de> for Decoder<'de, '_> {
         if self.is_replaced() {
             return Placeholder.deserialize_struct(name, fields, visitor);
         }
-        match self.stands_for(name) {
-            Some(key) => self.only_member(key, visitor),
-            None => self.object(fields, visitor),
+        match (self.stands_for(name), &self.node.kind) {
+            (Some(key), _) => self.only_member(key, visitor),
+            (None, Kind::Array(items)) if BY_AXIS.contains(&name) => self.by_axis(items, visitor),
+            (None, _) => self.object(fields, visitor),
         }
     }
 

@@ -90,9 +90,13 @@ impl Node {
                 .iter()
                 .find(|m| m.key == token)
                 .map(|m| (&m.value, m.key_span.clone())),
-            Kind::Array(items) => items
-                .get(token.parse::<usize>().ok()?)
-                .map(|n| (n, n.span.clone())),
+            Kind::Array(items) => {
+                // Of a list that stands for an object of `x`, `y` and `z`.
+                let axis = ["x", "y", "z"].iter().position(|axis| *axis == token);
+                let index = axis.filter(|_| items.len() == 3);
+                let node = items.get(index.or_else(|| token.parse().ok())?);
+                node.map(|n| (n, n.span.clone()))
+            }
             _ => None,
         }
     }

@@ -5,7 +5,7 @@ use super::given::{Given, MeshArrays, MeshCells};
 use super::mesh::*;
 use super::mesh_file::MeshFile;
 use super::nurbs::NurbsSurface;
-use super::surface::Placement;
+use super::placement::Placement;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;

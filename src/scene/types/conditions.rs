@@ -46,7 +46,8 @@ pub enum Axis {
     Z,
 }
 
-/// Components of a displacement; what is not named stays free. Expressions may use x, y, z (undeformed) and t.
+/// Components of a displacement; what is not named stays free. Expressions may use x, y, z (undeformed) and t. A list of three
+/// stands for `x`, `y` and `z`, and `null` in it for a component that is not named.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Components {

@@ -1,16 +1,18 @@
 //! Contact pairs.
+use super::{SetNames, Surface};
 use crate::scene::value::Value;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A contact pair.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// Face set of a body, `body.set`.
-    pub slave: String,
-    /// Name of a rigid surface, or face set of a deformable body, `body.set`.
-    pub master: String,
+    /// Face set of a body, `body.set`, a list of face sets of one body, or a body, `body`: all its outer faces.
+    pub slave: SetNames,
+    /// Name of a rigid surface, or faces of a deformable body: `body.set`, a list of face sets, or `body`.
+    pub master: SetNames,
     /// What surface the faces of a body make; only for masters that are bodies. Default: `faces`.
     #[serde(default)]
     pub master_surface: Option<MasterSurface>,
@@ -52,6 +54,18 @@ pub struct Contact {
     /// Contact begins at this distance in front of the master (length), for a thickness that is not modelled.
     #[serde(default)]
     pub offset: f64,
+}
+
+impl Contact {
+    /// The rigid surface that is the master; none: the master is a body.
+    pub fn surface<'s>(&self, surfaces: &'s BTreeMap<String, Surface>) -> Option<&'s Surface> {
+        surfaces.get(self.master.single())
+    }
+
+    /// Whether slave and master belong to one body.
+    pub fn is_own(&self, surfaces: &BTreeMap<String, Surface>) -> bool {
+        self.surface(surfaces).is_none() && self.slave.body() == self.master.body()
+    }
 }
 
 /// Augmentation: within every step the tractions become multipliers, until neither gaps nor elastic slip are left beyond

@@ -137,7 +137,7 @@ impl Surface {
 impl Contact {
     /// Frictionless contact of a face set `body.set` with a surface or another face set, under a penalty that the run
     /// chooses.
-    pub fn new(slave: impl Into<String>, master: impl Into<String>) -> Self {
+    pub fn new(slave: impl Into<SetNames>, master: impl Into<SetNames>) -> Self {
         Contact {
             slave: slave.into(),
             master: master.into(),

@@ -13,6 +13,7 @@ mod metal;
 mod motion;
 mod mumps;
 mod nurbs;
+mod placement;
 mod probe;
 mod set_names;
 mod solution;
@@ -33,6 +34,7 @@ pub use metal::*;
 pub use motion::*;
 pub use mumps::*;
 pub use nurbs::*;
+pub use placement::*;
 pub use probe::*;
 pub use set_names::*;
 pub use solution::*;
@@ -78,6 +80,9 @@ pub(in crate::scene) const STANDS_FOR: [StandsFor; 4] = [
         numbers: false,
     },
 ];
+
+/// Objects of `x`, `y` and `z` that may be written as a list, in which `null` stands for a key that is left out.
+pub(in crate::scene) const BY_AXIS: [&str; 2] = ["Components", "FreeComponents"];
 
 /// Choices with settings that all have defaults: the name alone will do, `"mumps"` for `{"mumps": {}}`.
 pub(in crate::scene) const WITH_DEFAULTS: [&str; 1] = ["mumps"];

@@ -33,7 +33,8 @@ pub struct FreeMotion {
     pub moment: FreeComponents,
 }
 
-/// Free components, with their force or moment as numbers, tables or expressions in `t`; those not named are not free.
+/// Free components, with their force or moment as numbers, tables or expressions in `t`; those not named are not free. A list of
+/// three stands for `x`, `y` and `z`, and `null` in it for a component that is not named.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FreeComponents {

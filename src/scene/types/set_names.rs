@@ -27,7 +27,33 @@ impl<const N: usize> From<[&str; N]> for SetNames {
     }
 }
 
+impl From<String> for SetNames {
+    fn from(set: String) -> Self {
+        SetNames::One(set)
+    }
+}
+
+impl From<&String> for SetNames {
+    fn from(set: &String) -> Self {
+        SetNames::One(set.clone())
+    }
+}
+
 impl SetNames {
+    /// The only name; of several, or none, the empty one, which nothing has.
+    pub fn single(&self) -> &str {
+        match self.as_slice() {
+            [name] => name,
+            _ => "",
+        }
+    }
+
+    /// The body of the first set.
+    pub fn body(&self) -> &str {
+        let first = self.iter().next().unwrap_or_default();
+        first.split_once('.').map_or(first, |(body, _)| body)
+    }
+
     /// The names in their order.
     pub fn iter(&self) -> impl Iterator<Item = &str> {
         self.as_slice().iter().map(String::as_str)

@@ -1,6 +1,7 @@
 //! Rigid surfaces: CAD files and exact shapes, facets in their place, where they are and which side is outside.
 use super::given::Given;
 use super::motion::Motion;
+use super::placement::Placement;
 use covact_geometry::NurbsPatch;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -148,20 +149,6 @@ pub struct PlaneShape {
     pub size: [f64; 2],
 }
 
-/// Rigid placement of a surface before it moves, or of a mesh, with an optional scale.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Placement {
-    /// Multiplies every coordinate (of a CAD file after its units were converted).
-    pub scale: f64,
-    /// Rotation axis through the origin.
-    pub axis: [f64; 3],
-    /// Degrees.
-    pub angle: f64,
-    /// Displacement, after the rotation.
-    pub translation: [f64; 3],
-}
-
 /// Which side of a rigid surface is outside (where the bodies are).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -179,17 +166,6 @@ pub enum Side {
     Inward,
     /// The side on which this point lies.
     Point([f64; 3]),
-}
-
-impl Default for Placement {
-    fn default() -> Self {
-        Placement {
-            scale: 1.0,
-            axis: [0.0, 0.0, 1.0],
-            angle: 0.0,
-            translation: [0.0; 3],
-        }
-    }
 }
 
 fn axis_y() -> [f64; 3] {

@@ -37,7 +37,7 @@ impl Builder<'_> {
         let (facets, height) = match self.sheet_facets(body, &faces) {
             Some(facets) => facets.at(pointer)?,
             None => {
-                master_faces::check(&self.bodies[body].mesh, &faces, &contact.master)
+                master_faces::check(&self.bodies[body].mesh, &faces, &contact.master.to_string())
                     .map_err(|(message, help)| text(pointer(), message).help(help))?;
                 (self.moving_facets(body, &faces, smooth).at(pointer)?, 0.0)
             }
@@ -49,7 +49,7 @@ impl Builder<'_> {
             contact.master
         ));
         let master = BodyMaster {
-            name: contact.master.clone(),
+            name: contact.master.to_string(),
             body,
             faces,
             facets,
