@@ -224,6 +224,40 @@ def test_meshes_of_meshio(tmp_path):
     assert len(again.cells[0].data) == 16
 
 
+def test_files_that_meshio_writes(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    points, quads = grid(4)
+    # A bent sheet: its faces look one way in every file.
+    points = 10 * points + np.outer(np.sin(points[:, 0]), [0, 0, 1])
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    for name, kind, options in [
+        ("gmsh.msh", "gmsh", {"binary": False}),
+        ("gmsh_binary.msh", "gmsh", {"binary": True}),
+        ("gmsh_2.msh", "gmsh22", {"binary": False}),
+        ("gmsh_2_binary.msh", "gmsh22", {"binary": True}),
+        ("abaqus.inp", "abaqus", {}),
+        ("large.bdf", "nastran", {}),
+        ("small.bdf", "nastran", {"point_format": "fixed-small", "cell_format": "fixed-small"}),
+        ("legacy_4.vtk", "vtk42", {"binary": False}),
+        ("legacy_4_binary.vtk", "vtk42", {"binary": True}),
+        ("legacy_5.vtk", "vtk51", {"binary": False}),
+        ("legacy_5_binary.vtk", "vtk51", {"binary": True}),
+        ("text.vtu", "vtu", {"binary": False}),
+        ("zlib.vtu", "vtu", {"compression": "zlib"}),
+        ("plain.vtu", "vtu", {"compression": None}),
+        ("text.stl", "stl", {"binary": False}),
+        ("binary.stl", "stl", {"binary": True}),
+    ]:
+        # Every triangle is cut into three quadrilaterals.
+        cells = [("triangle", triangles, 96)] + ([("quad", quads, 16)] if kind != "stl" else [])
+        for shape, connectivity, elements in cells:
+            meshio.write(tmp_path / name, meshio.Mesh(points, [(shape, connectivity)]), file_format=kind, **options)
+            scene = press(supports={"rim": {"on": "plate.border", "fixed": True}}, contacts={}, surfaces={})
+            scene["bodies"]["plate"]["mesh"] = {"file": {"path": str(tmp_path / name), "thickness": 0.5}}
+            report = covact.check(scene)
+            assert report["bodies"][0]["elements"] == elements, (name, shape)
+
+
 def test_meshes_of_pyvista():
     pyvista = pytest.importorskip("pyvista")
     # A surface of pyvista is a body once it has a thickness.
