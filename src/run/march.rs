@@ -466,7 +466,7 @@ impl March<'_, '_> {
     }
 
     /// Tells what is known once a run has ended, however it did.
-    pub fn conclude(&mut self) {
+    pub fn conclude(&mut self, committed: &State) {
         if self.model.dynamics.is_none()
             && let Some(text) = self.watch.drift(self.model)
         {
@@ -483,7 +483,7 @@ impl March<'_, '_> {
             self.warn(text);
         }
         self.tell_untouched();
-        for text in self.peaks.notes(self.model) {
+        for text in self.peaks.notes(self.model, &committed.u) {
             self.observer.event(&Event::Note { text });
         }
     }

@@ -19,6 +19,7 @@ mod friction_fields;
 mod habit;
 mod history;
 mod hold;
+mod law_range;
 mod linearity_check;
 mod march;
 mod memory;

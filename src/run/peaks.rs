@@ -2,6 +2,7 @@
 //! edges of the tool, each at the step in which the contact's force was the largest.
 use super::bearing::{Bearing, Bearings, FEW};
 use super::crest::Crests;
+use super::law_range;
 use crate::assembly::PairForce;
 use crate::model::error::number;
 use crate::model::initial::point_spacing;
@@ -240,11 +241,13 @@ impl Peaks {
         ))
     }
 
-    /// What else is said at the end of a run.
-    pub fn notes(&self, model: &Model) -> Vec<String> {
+    /// What else is said at the end of a run, with displacements `u`.
+    pub fn notes(&self, model: &Model, u: &[f64]) -> Vec<String> {
         let pairs = model.pairs.iter().zip(&self.0).enumerate();
         let few = pairs.filter_map(|(index, (pair, peak))| peak.few(model, index, pair));
-        few.chain(self.yielded(model)).collect()
+        few.chain(self.yielded(model))
+            .chain(law_range::notes(model, u))
+            .collect()
     }
 
     /// Bodies of a metal of known strength whose stress passed it.

@@ -75,6 +75,16 @@ fn principal(tensor: &Matrix3<f64>) -> [f64; 3] {
     values
 }
 
+/// The principal logarithmic strain of the largest magnitude at the nodes; 0 where there is none.
+pub(super) fn largest_strain(mesh: &Mesh, displacement: &[Vec3]) -> f64 {
+    let all = hencky(mesh, displacement);
+    let finite = all.iter().flat_map(principal).filter(|s| s.is_finite());
+    finite.fold(
+        0.0,
+        |most: f64, s| if s.abs() > most.abs() { s } else { most },
+    )
+}
+
 /// Logarithmic strain `ln U` at the nodes, of the displacements: per element where it is most accurate above and below the
 /// node (of linear elements the middle of the upper or lower face, of quadratic ones the Gauss points next to the node),
 /// averaged between elements by volume. NaN at nodes of no element.

@@ -430,3 +430,50 @@ fn a_metal_beyond_its_yield_strength_is_told() {
     assert!(!run(r#""rubber_40""#).contains("yield"));
     assert!(!run(r#"{"st_venant_kirchhoff": {"E": 210000, "nu": 0.3}}"#).contains("yield"));
 }
+
+/// The note where strains leave the range of a law: of 30 % the one for small strains, of a stretch of 2.2 the one that is linear in
+/// logarithmic strains.
+#[test]
+fn strains_beyond_the_range_of_a_law_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |law: &str, pull: f64| {
+        let text = format!(
+            r#"{{
+  "covact": 1,
+  "materials": {{"m": {{"{law}": {{"E": 1, "nu": 0}}}}}},
+  "bodies": {{"bar": {{"mesh": {{"block": {{"size": [1, 1, 1], "elements": [1, 1, 1]}}}}, "material": "m"}}}},
+  "supports": {{
+    "left": {{"on": "bar.x_min", "fixed": true}},
+    "right": {{"on": "bar.x_max", "displacement": ["{pull}*t", 0, 0]}}
+  }},
+  "output": {{"every": 0}}
+}}"#
+        );
+        std::fs::write(folder.path().join("scene.json"), text).unwrap();
+        let run = covact(
+            folder.path(),
+            &["run", "scene.json", "-o", "out", "--force"],
+        );
+        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+        stderr(&run)
+    };
+    let told = "principal logarithmic strain is ";
+    let said = run("st_venant_kirchhoff", 0.3);
+    assert_parts(
+        &said,
+        &[
+            "note: body `bar`: a principal logarithmic strain is 0.262364 at the end",
+            "`neo_hooke` or `hencky`",
+        ],
+    );
+    assert!(!run("st_venant_kirchhoff", 0.1).contains(told));
+    assert!(!run("hencky", 0.3).contains(told));
+    assert_parts(
+        &run("hencky", 1.2),
+        &[
+            "a principal logarithmic strain is 0.788457 at the end",
+            "up to 0.693147",
+        ],
+    );
+    assert!(!run("neo_hooke", 1.2).contains(told));
+}

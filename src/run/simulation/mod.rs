@@ -231,7 +231,10 @@ impl<'o> Simulation<'o> {
             observer: &mut *self.options.observer,
             interrupt: self.options.interrupt,
         };
-        (self.running).with_dependent_mut(|_, run| run.march(caller).0.conclude());
+        (self.running).with_dependent_mut(|_, run| {
+            let (mut march, course) = run.march(caller);
+            march.conclude(&course.committed);
+        });
     }
 
     /// Begins again at time 0 where other elements may replace those that gave way, or do so less well than these, where the run stopped while an edge of a
