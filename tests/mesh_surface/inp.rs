@@ -85,6 +85,18 @@ fn one_instance_keeps_the_names_of_its_part() {
     assert_eq!(h8(&text, &file(0.1)).unwrap().0.elements(), 1);
 }
 
+/// Elements of plane stress are faces of a surface, triangles too.
+#[test]
+fn plane_stress_elements_are_surfaces() {
+    let quad = format!("{SQUARE}*ELEMENT, TYPE=CPS4\n1, 1, 2, 3, 4\n");
+    let triangles = format!("{SQUARE}*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n2, 1, 3, 4\n");
+    for (text, elements) in [(quad, 1), (triangles, 6)] {
+        let (mesh, _) = h8(&text, &file(0.1)).unwrap();
+        assert_eq!(mesh.elements(), elements);
+        close(mesh.volume(), 0.1, 1e-13);
+    }
+}
+
 /// Sets in any order; a circle is refused where it closes.
 #[test]
 fn sets_before_their_definition() {
