@@ -88,7 +88,10 @@ fn what_belongs_to_the_other_kind_of_master_is_refused() {
     let mut unknown = good.clone();
     unknown["contacts"]["press"]["master"] = json!("lower.tpo");
     assert!(problems(&unknown)[0].contains("the body `lower` has no set `tpo`"));
+    // All outer faces of a body; a name that nothing has is refused.
     unknown["contacts"]["press"]["master"] = json!("lower");
+    assert_eq!(problems(&unknown), Vec::<String>::new());
+    unknown["contacts"]["press"]["master"] = json!("lowr");
     let found = problems(&unknown);
-    assert!(found[0].contains("there is no surface `lower`") && found[0].contains("`body.set`"));
+    assert!(found[0].contains("there is no surface `lowr`") && found[0].contains("`body.set`"));
 }
