@@ -73,24 +73,10 @@ impl SurfaceOutput {
         pieces: Vec<SurfacePiece>,
         tessellation: u32,
     ) -> Result<Self, OutputError> {
-        Self::within(name, pieces, tessellation, 0.0)
-    }
-
-    /// [`SurfaceOutput::new`] with fewer quadrilaterals in either direction of a piece where these lie within `tolerance` (length) of
-    /// the surface.
-    ///
-    /// # Errors
-    /// As there.
-    pub fn within(
-        name: &str,
-        pieces: Vec<SurfacePiece>,
-        tessellation: u32,
-        tolerance: f64,
-    ) -> Result<Self, OutputError> {
         let mut exact = Exact::default();
         let mut flat = Flat::default();
         let mut left_out = Vec::new();
-        let most = tessellation.max(1);
+        let most = [tessellation.max(1); 2];
         for (number, piece) in pieces.into_iter().enumerate() {
             piece.check().map_err(|reason| OutputError::Piece {
                 surface: name.to_string(),
@@ -103,11 +89,8 @@ impl SurfaceOutput {
             } else {
                 exact.push(&piece);
             }
-            let divisions = match piece.divisions {
-                Some(given) => given.map(|n| n.max(1)),
-                None => piece.divisions_within(tolerance, most),
-            };
-            flat.push(&piece, divisions.map(|n| n as usize));
+            let divisions = piece.divisions.unwrap_or(most);
+            flat.push(&piece, divisions.map(|n| n.max(1) as usize));
         }
         Ok(SurfaceOutput {
             name: name.to_string(),

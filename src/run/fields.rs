@@ -9,7 +9,7 @@ use super::friction_fields::{self, FrictionFields};
 use super::motion_fields::MotionFields;
 use super::sheet_fields::{mid_surface, sheet_name};
 use super::stresses::{follows_stress, nodal_stresses};
-use super::surface_cells::{flat_within, pieces};
+use super::surface_cells::pieces;
 use super::traction_fields::TractionFields;
 use crate::contact::friction::history::PointStatus;
 use crate::contact::law::PairLaw;
@@ -70,10 +70,8 @@ impl Fields {
         let mut notes = Vec::new();
         let mut surfaces = Vec::new();
         for surface in model.surfaces.iter().filter(|_| output.every > 0) {
-            let pieces = pieces(surface, output.tessellation);
-            let tolerance = flat_within(&pieces, model);
-            let most = output.tessellation;
-            let written = SurfaceOutput::within(&surface.name, pieces, most, tolerance)?;
+            let pieces = pieces(surface, output.tessellation, model);
+            let written = SurfaceOutput::new(&surface.name, pieces, output.tessellation)?;
             if !written.left_out().is_empty() {
                 notes.push(format!(
                     "surface `{}`: {} Bezier piece(s) have a degree too high for VTK and are in the tessellated \

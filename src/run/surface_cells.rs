@@ -8,15 +8,27 @@ use covact_geometry::{BezierPiece, PatchSet, Surface, Vec3};
 /// Quadrilaterals of the flat copy of a whole surface of curved facets, roughly and at most.
 const FLAT: f64 = 2e4;
 
-/// The surface in exact pieces, whose degree is that of the patches or facets. `tessellation` quadrilaterals a side are
-/// asked for in the flat copy; facets, which are small, get fewer, and bilinear ones are their own flat copy.
-pub(super) fn pieces(surface: &SurfaceModel, tessellation: u32) -> Vec<SurfacePiece> {
+/// The surface in exact pieces, whose degree is that of the patches or facets. In the flat copy whole patches have as many
+/// quadrilaterals as their curvature asks for, `tessellation` a side of a piece at most; facets, which are small, get fewer, and
+/// bilinear ones are their own flat copy.
+pub(super) fn pieces(
+    surface: &SurfaceModel,
+    tessellation: u32,
+    model: &Model,
+) -> Vec<SurfacePiece> {
     let sides = surface.set.sides();
     if let (SurfaceSet::Nurbs(set), None) = (&surface.set, &surface.facets) {
-        let patches = set.patches().iter().enumerate();
-        return patches
-            .flat_map(|(i, p)| SurfacePiece::of_patch(p, i as u32, i as u32, sides[i] < 0.0))
-            .collect();
+        let of = |(i, p)| SurfacePiece::of_patch(p, i as u32, i as u32, sides[i] < 0.0);
+        let mut patches: Vec<_> = set.patches().iter().enumerate().map(of).collect();
+        let tolerance = flat_within(patches.iter().flatten(), model);
+        for (pieces, patch) in patches.iter_mut().zip(set.patches()) {
+            // Those along trim curves have their own.
+            if patch.trim().is_none() {
+                let columns = patch.basis(0).span_count();
+                SurfacePiece::divide(pieces, columns, tolerance, tessellation);
+            }
+        }
+        return patches.into_iter().flatten().collect();
     }
     let divisions = surface.facets.as_ref().map(|facets| {
         if facets.kind == FacetKind::Bilinear {
@@ -49,8 +61,8 @@ const OFF: f64 = 2e-4;
 
 /// How far the flat copy of a surface in these pieces may lie off it (length), by its own size or that of the bodies, whichever is
 /// smaller: of a large tool a small part may be all that they touch.
-pub(super) fn flat_within(pieces: &[SurfacePiece], model: &Model) -> f64 {
-    let points = pieces.iter().flat_map(|piece| &piece.points);
+fn flat_within<'a>(pieces: impl Iterator<Item = &'a SurfacePiece>, model: &Model) -> f64 {
+    let points = pieces.flat_map(|piece| &piece.points);
     let own = diagonal(points.map(|[x, y, z, w]| Vec3::new(*x, *y, *z) / *w));
     let bodies = diagonal(model.nodes.iter().copied());
     OFF * own.min(bodies)

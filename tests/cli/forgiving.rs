@@ -4,6 +4,7 @@ use covact::contact::closest::ClosestPoint;
 use covact::model::build::build;
 use covact::scene::{self, LoadedScene};
 use covact_geometry::Vec3;
+use std::path::Path;
 
 fn loaded(text: &str) -> LoadedScene {
     let loaded = scene::parse(text, "scene.json").unwrap_or_else(|e| panic!("{e}"));
@@ -410,13 +411,7 @@ fn a_metal_beyond_its_yield_strength_is_told() {
   "output": {{"every": 0}}
 }}"#
         );
-        std::fs::write(folder.path().join("scene.json"), text).unwrap();
-        let run = covact(
-            folder.path(),
-            &["run", "scene.json", "-o", "out", "--force"],
-        );
-        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
-        stderr(&run)
+        said_by_run(folder.path(), &text)
     };
     // 0.5 % of strain, 1000 MPa.
     let said = run(r#""steel""#);
@@ -429,6 +424,14 @@ fn a_metal_beyond_its_yield_strength_is_told() {
     );
     assert!(!run(r#""rubber_40""#).contains("yield"));
     assert!(!run(r#"{"st_venant_kirchhoff": {"E": 210000, "nu": 0.3}}"#).contains("yield"));
+}
+
+/// What a run of a scene says, which ends.
+fn said_by_run(folder: &Path, scene: &str) -> String {
+    std::fs::write(folder.join("scene.json"), scene).unwrap();
+    let run = covact(folder, &["run", "scene.json", "-o", "out", "--force"]);
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    stderr(&run)
 }
 
 /// The note where strains leave the range of a law: of 30 % the one for small strains, of a stretch of 2.2 the one that is linear in
@@ -449,13 +452,7 @@ fn strains_beyond_the_range_of_a_law_are_told() {
   "output": {{"every": 0}}
 }}"#
         );
-        std::fs::write(folder.path().join("scene.json"), text).unwrap();
-        let run = covact(
-            folder.path(),
-            &["run", "scene.json", "-o", "out", "--force"],
-        );
-        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
-        stderr(&run)
+        said_by_run(folder.path(), &text)
     };
     let told = "principal logarithmic strain is ";
     let said = run("st_venant_kirchhoff", 0.3);

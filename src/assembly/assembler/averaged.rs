@@ -120,13 +120,14 @@ impl Averaged {
     }
 
     /// Finds the closest point of every slave point, and from them the gaps and tractions of the nodes; `histories` have the
-    /// multipliers of these, and are empty where they have none.
+    /// multipliers of these, and are empty where they have none. `find` is given the hint of a point and, where points `keep` their
+    /// facets, the penetration that its traction stands for.
     pub fn meet<L: PairLaw, F>(
         &mut self,
         model: &Model,
         pair: &PairModel,
         (law, histories): (&L, &[PointHistory]),
-        (u, time): (&[f64], f64),
+        (u, time, keep): (&[f64], f64, bool),
         states: &mut [PointState],
         find: F,
     ) -> Result<LawKind, Fault>
@@ -136,11 +137,12 @@ impl Averaged {
         let Some(nodes) = &pair.averaged else {
             return Ok(LawKind::Penalty);
         };
-        // Those of the linearisation before.
+        // Those of the linearisation before, asked for only where points keep their facets.
         let gaps = &self.gaps;
-        let sunk = |i: usize, p: &SlavePoint| {
-            (nodes.terms(i, p).filter_map(|(at, _)| gaps[at].gap()))
-                .fold(0.0, |most, gap| (-gap).max(most))
+        let sunk = |i: usize, p: &SlavePoint| match keep {
+            true => (nodes.terms(i, p).filter_map(|(at, _)| gaps[at].gap()))
+                .fold(0.0, |most, gap| (-gap).max(most)),
+            false => 0.0,
         };
         (pair.points.par_iter())
             .zip(states.par_iter_mut())

@@ -15,7 +15,7 @@ use nalgebra::UnitQuaternion;
 use std::ops::Range;
 
 /// Part of the largest friction of a contact that may act aside before the user is told.
-const TOLD: f64 = 0.05;
+const TOLD: f64 = 0.03;
 
 /// What acts aside because the direction of friction turns within steps.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -53,7 +53,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 depth: master.depth,
                 keep,
             };
-            averaged.meet(model, pair, (&of_pair, multipliers), (u, time), states, |_, x, at| {
+            averaged.meet(model, pair, (&of_pair, multipliers), (u, time, keep), states, |_, x, at| {
                 master.meet(x, at, reach)
             })
         })?;
@@ -109,7 +109,7 @@ impl<L: PairLaw> Assembler<'_, L> {
         let law = L::of(self.penalties[index]);
         let known = histories::multipliers(&state.cuts, model, index);
         let law = (&law, &state.histories[known.clone()]);
-        let at = (&state.u[..], time);
+        let at = (&state.u[..], time, keep);
         let (states, reach) = (&mut state.points[range], pair.reach(model));
         let law = match &master.own {
             None => averaged.meet(model, pair, law, at, states, |_, x, at| {
