@@ -315,6 +315,35 @@ fn a_surface_starts_at_its_first_place_and_has_its_displacement() {
     }
 }
 
+/// What is written of a surface a second time is what one would write that was never written before: at another place, from another
+/// start, and where the way is too long for single precision.
+#[test]
+fn a_surface_written_again_is_as_if_written_first() {
+    let new = || SurfaceOutput::new("tool", vec![quarter_cylinder(false)], 4).unwrap();
+    let surface = new();
+    let at = |z: f64, angle: f64| {
+        let turn = UnitQuaternion::from_euler_angles(0.0, 0.0, angle);
+        Isometry3::from_parts(Translation3::new(1.0, 0.0, z), turn)
+    };
+    let [start, other] = [at(0.0, 0.0), at(2.0, 0.3)];
+    let ways = [
+        [start, start],
+        [start, at(3.0, 0.5)],
+        [start, at(1e300, 0.0)],
+        [start, at(4.0, 0.5)],
+        [other, at(4.0, 0.7)],
+        [other, at(5.0, 0.7)],
+    ];
+    for [from, to] in &ways {
+        let poses = [from, to];
+        assert!(surface.to_vtu(poses).unwrap() == new().to_vtu(poses).unwrap());
+        let flat = [&surface, &new()].map(|s| s.to_tessellated_vtu(poses).unwrap());
+        assert!(flat[0] == flat[1], "{to}");
+    }
+    let [first, second] = [1, 3].map(|k| surface.to_vtu([&ways[k][0], &ways[k][1]]).unwrap());
+    assert!(first != second);
+}
+
 /// Programs that know version 1.0 only read all grids without curved cells.
 #[test]
 fn only_curved_cells_need_a_later_version() {

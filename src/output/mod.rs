@@ -31,6 +31,7 @@ mod results;
 pub(crate) mod sum;
 mod summary;
 mod surface;
+mod template;
 mod trimmed;
 mod vtu;
 

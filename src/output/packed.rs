@@ -21,6 +21,11 @@ pub(super) fn packed(text: &[u8]) -> Option<String> {
     if u64::from_le_bytes(length.try_into().ok()?) != data.len() as u64 {
         return None;
     }
+    compressed(data)
+}
+
+/// An array in compressed blocks, as [`packed`] leaves it.
+pub(super) fn compressed(data: &[u8]) -> Option<String> {
     let blocks = data.chunks(BLOCK);
     let mut head = vec![blocks.len(), BLOCK, data.len() % BLOCK];
     let mut body = Vec::with_capacity(data.len() / 2);

@@ -1,6 +1,7 @@
 //! Rigid surfaces as exact rational Bezier cells, bilinear ones as plain quadrilaterals, and as flat quadrilaterals.
 use super::OutputError;
 use super::bezier::{MAX_DEGREE, SurfacePiece, vtk_order};
+use super::template::LastFile;
 use super::vtu::{Array, DEGREES, Grid, WEIGHTS, single};
 use crate::machine::memory::times;
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -9,7 +10,7 @@ use vtkio::model::CellType;
 /// Bytes of a quadrilateral of the flat copy of a surface: four indices, patch, entity, and a corner with its normal.
 const FLAT: u64 = 4 * 8 + 2 * 4 + 2 * 24;
 /// The flat copy is held once, and moved and as the bytes of a file while it is written.
-const COPIES: u64 = 3;
+const COPIES: u64 = 4;
 
 /// Bytes of the flat copies of a surface, `each` quadrilaterals for every one of so many polynomial pieces.
 pub fn flat_bytes(pieces: u64, each: u64) -> u64 {
@@ -24,6 +25,8 @@ pub struct SurfaceOutput {
     exact: Exact,
     flat: Flat,
     left_out: Vec<usize>,
+    /// What was written last of the exact surface and of the flat copy.
+    last: [LastFile; 2],
 }
 
 /// Bezier cells, and quadrilaterals where the degree is one.
@@ -97,6 +100,7 @@ impl SurfaceOutput {
             exact,
             flat,
             left_out,
+            last: Default::default(),
         })
     }
 
@@ -134,16 +138,14 @@ impl SurfaceOutput {
     pub fn to_vtu(&self, [start, at]: [&Isometry3<f64>; 2]) -> Result<Vec<u8>, OutputError> {
         let e = &self.exact;
         let points = moved(&e.points, start);
-        Grid {
+        let way = displacement(&points, moved(&e.points, at));
+        self.last[0].bytes(&points, way, |way| Grid {
             part: self.name.clone(),
             connectivity: (0..e.points.len() as u64).collect(),
             offsets: e.offsets.clone(),
             types: e.types.clone(),
-            point_data: vec![
-                displacement(&points, moved(&e.points, at)),
-                Array::new(WEIGHTS, 1, e.weights.clone()),
-            ],
-            points,
+            point_data: vec![way, Array::new(WEIGHTS, 1, e.weights.clone())],
+            points: points.clone(),
             cell_data: vec![
                 Array::new(DEGREES, 3, e.degrees.clone()),
                 Array::new("patch", 1, e.patch.clone()),
@@ -152,8 +154,7 @@ impl SurfaceOutput {
             vectors: Some(DISPLACEMENT),
             normals: None,
             rational: true,
-        }
-        .into_bytes()
+        })
     }
 
     /// The surface as flat quadrilaterals, as the bytes of a `.vtu` file; as [`SurfaceOutput::to_vtu`]. Point data: outward
@@ -164,23 +165,19 @@ impl SurfaceOutput {
     ) -> Result<Vec<u8>, OutputError> {
         let f = &self.flat;
         let points = moved(&f.points, start);
-        let normals: Vec<f64> = f
-            .normals
-            .iter()
-            .map(|n| start.rotation * n)
-            .flat_map(|n| [n.x, n.y, n.z])
-            .collect();
+        let way = displacement(&points, moved(&f.points, at));
         let cells = f.patch.len();
-        Grid {
+        let normals = || -> Vec<f64> {
+            let turned = f.normals.iter().map(|n| start.rotation * n);
+            turned.flat_map(|n| [n.x, n.y, n.z]).collect()
+        };
+        self.last[1].bytes(&points, way, |way| Grid {
             part: self.name.clone(),
             connectivity: f.connectivity.clone(),
             offsets: (1..=cells as u64).map(|c| 4 * c).collect(),
             types: vec![CellType::Quad; cells],
-            point_data: vec![
-                displacement(&points, moved(&f.points, at)),
-                Array::new("normal", 3, single(&normals)),
-            ],
-            points,
+            point_data: vec![way, Array::new("normal", 3, single(&normals()))],
+            points: points.clone(),
             cell_data: vec![
                 Array::new("patch", 1, f.patch.clone()),
                 Array::new("entity", 1, f.entity.clone()),
@@ -188,8 +185,7 @@ impl SurfaceOutput {
             vectors: Some(DISPLACEMENT),
             normals: Some("normal"),
             rational: false,
-        }
-        .into_bytes()
+        })
     }
 }
 
