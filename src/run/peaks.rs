@@ -3,7 +3,7 @@
 use super::bearing::{Bearing, Bearings, FEW};
 use super::crest::Crests;
 use super::law_range;
-use crate::assembly::PairForce;
+use crate::assembly::{PairForce, Totals};
 use crate::model::error::number;
 use crate::model::initial::point_spacing;
 use crate::model::{Model, PairModel, sharp};
@@ -135,14 +135,14 @@ impl Peaks {
         Ok(())
     }
 
-    /// Takes an accepted step and its end, at which `forces` act on both sides of every pair, and all are balanced but for a part
-    /// `residual` of them.
+    /// Takes an accepted step and its end, at which the forces of `totals` act, and all are balanced but for a part `residual` of
+    /// them. Those along axes are, where the master is a rigid surface, all that act on it, as histories have them.
     pub fn step(
         &mut self,
         model: &Model,
         (step, time, residual): (u32, f64, f64),
         bearings: &Bearings,
-        forces: &[PairForce],
+        totals: &Totals,
     ) {
         let kink = (model.kinks.iter()).any(|k| (k - time).abs() <= 1e-9 * time);
         let carried = bearings.force();
@@ -158,7 +158,7 @@ impl Peaks {
                 };
             }
         }
-        let pairs = model.pairs.iter().zip(forces);
+        let pairs = model.pairs.iter().zip(&totals.pairs);
         let pairs = self.0.iter_mut().zip(&bearings.pairs).zip(pairs);
         for ((peak, sum), (pair, PairForce { slave, master })) in pairs {
             let Bearing {
@@ -179,7 +179,11 @@ impl Peaks {
                     ..*peak
                 };
             }
-            peak.crests.step(step, time, (force, slave.force), kink);
+            let along = match pair.rigid_master() {
+                Some(surface) => totals.surfaces[surface].force,
+                None => slave.force,
+            };
+            peak.crests.step(step, time, (force, along), kink);
             let unbalanced = match pair.half {
                 Some(half) if !half.back => (slave.force + master.force).norm(),
                 _ => 0.0,

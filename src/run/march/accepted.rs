@@ -202,7 +202,7 @@ impl March<'_, '_> {
         self.adapt([errors, all], growth, converged);
         let bearings = &outputs.fields.bearings;
         let residual = converged.history.last().map_or(0.0, |last| last.0);
-        (self.peaks).step(self.model, (step, time, residual), bearings, &totals.pairs);
+        (self.peaks).step(self.model, (step, time, residual), bearings, totals);
         self.tell_stretched(state, step);
         let doubts = linearity_check::doubts(self.model, &mut self.assembler.masters, state, time);
         for doubt in doubts.map_err(|e| RunError::internal(&e))? {
