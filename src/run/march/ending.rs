@@ -35,7 +35,8 @@ impl March<'_, '_> {
     /// Contacts that never touched: those that were to, and those that only might have, with whether that is to be a warning. A body
     /// in contact with itself guards against what need not happen, and so does a contact of which both sides have touched in others;
     /// a surface that stands still, in front of which a slave starts that has touched elsewhere, may be a stop that was not reached,
-    /// or one that was to be: a warning. Where nothing has touched at all, every contact was to.
+    /// or one that was to be, and one that moves with a surface that has touched may be the part of a tool that the slave bends away
+    /// from: a warning. Where nothing has touched at all, every contact was to.
     pub(super) fn untouched(&self) -> (Vec<&str>, Vec<(&str, bool)>) {
         let pairs = &self.model.pairs;
         let sides = |pair: &PairModel| match &pair.master {
@@ -59,7 +60,10 @@ impl March<'_, '_> {
                 let surface = &self.model.surfaces[surface];
                 !surface.motion.moves() && surface.driven.is_none()
             });
-            let stop = still && pair.starts_in_front && met.contains(&own[0]);
+            let stop = still && pair.starts_in_front;
+            let part =
+                (pair.rigid_master()).is_some_and(|surface| self.moves_with_one_of(surface, &met));
+            let stop = (stop || part) && met.contains(&own[0]);
             match (guards && !met.is_empty(), stop) {
                 (true, _) => out.1.push((name, false)),
                 (false, true) => out.1.push((name, true)),
@@ -67,6 +71,27 @@ impl March<'_, '_> {
             }
         }
         out
+    }
+
+    /// Whether a rigid surface goes the prescribed way of another one, which has touched.
+    fn moves_with_one_of(&self, surface: usize, met: &BTreeSet<(bool, usize)>) -> bool {
+        let scene = self.scene;
+        let of = |surface: usize| {
+            let name = &self.model.surfaces[surface].name;
+            let ways = scene.stages.iter().map(move |stage| stage.tools.get(name));
+            Some((&scene.surfaces.get(name)?.motion, ways))
+        };
+        let same = |other: usize| {
+            let Some(((motion, ways), (its, others))) = of(surface).zip(of(other)) else {
+                return false;
+            };
+            motion.free.is_none() && motion == its && ways.eq(others)
+        };
+        let moves = self.model.surfaces[surface].motion.moves();
+        let mut touched = met
+            .iter()
+            .filter(|(rigid, other)| *rigid && *other != surface);
+        moves && touched.any(|(_, other)| same(*other))
     }
 
     /// Tells which contacts never touched that only might have.
@@ -81,8 +106,8 @@ impl March<'_, '_> {
         let note = (!notes.is_empty()).then(|| text(&notes));
         let warning = (!stops.is_empty()).then(|| {
             format!(
-                "{}: what stands still there may be a stop that was not reached; where it was to be, check the motion of the rest \
-                 and the `side` of the surface",
+                "{}: a surface that stands still may be a stop that was not reached, and one that moves with another a part of a tool; \
+                 where it was to touch, check the motions and the `side` of the surface",
                 text(&stops)
             )
         });

@@ -30,7 +30,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Part of the largest force up to which the reactions of supports that were found are nothing.
+/// Part of the largest force up to which the reactions of supports that were found, and what contacts that end still bear, are nothing.
 const NOTHING: f64 = 1e-6;
 
 /// What a contact pair remembers.
@@ -190,9 +190,12 @@ impl RunState<'_> {
         let reaction = held.fold(0.0f64, |most, (dof, _)| {
             most.max(residual[*dof as usize].abs())
         });
+        let forces = &self.course.outputs.fields.bearings.pairs;
         let bears = |name: &&String| {
-            let mut pairs = model.pairs.iter().zip(&self.touching);
-            pairs.any(|(pair, touching)| *touching && pair.name == **name)
+            let mut pairs = model.pairs.iter().zip(self.touching.iter().zip(forces));
+            pairs.any(|(pair, (touching, bearing))| {
+                *touching && pair.name == **name && bearing.force > NOTHING * stage.start.force
+            })
         };
         let bearing: Vec<String> = stage.ending.iter().filter(bears).cloned().collect();
         let mut texts = Vec::new();
