@@ -116,6 +116,8 @@ pub(super) struct March<'a, 'm> {
     replaceable: &'a [String],
     /// Whether another variant may exchange the sides of a contact.
     exchangeable: bool,
+    /// Whether another variant may have all faces of a body as a master.
+    sides_may: bool,
     /// What slave points do not see.
     unseen: &'a mut Unseen,
     /// How long the run is followed where it goes on badly.
@@ -422,7 +424,7 @@ impl March<'_, '_> {
                 (_, None) => 1.0 / self.workspace.bend,
                 _ => 0.5,
             };
-            let hopeless = hopeless || self.gives_up();
+            let hopeless = hopeless || self.gives_up(committed);
             let next = walk.stepping.failed(dt, part).filter(|_| !hopeless);
             let Some(next_dt) = next else {
                 let unstable = self.workspace.unstable.map_or_else(String::new, |u| {

@@ -11,6 +11,7 @@ mod cut_faces;
 mod edges;
 mod friction;
 mod invariance;
+mod neighbours;
 mod orthotropic;
 mod overclosure;
 mod patch;

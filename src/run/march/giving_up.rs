@@ -1,5 +1,6 @@
 //! When a run is given up, since another one stands ready to take its place.
 use super::{Ending, March};
+use crate::model::edges;
 use crate::model::state::State;
 use crate::output::RunStatus;
 use crate::run::bearing::Bearing;
@@ -28,14 +29,19 @@ pub(in crate::run) enum Patience {
 }
 
 impl March<'_, '_> {
-    /// Whether a run that goes on badly is given up for one that stands ready, with the sides of contacts between bodies exchanged, too.
-    pub(super) fn gives_up(&self) -> bool {
+    /// Whether a run that goes on badly is given up for one that stands ready, with the sides of contacts between bodies exchanged, too,
+    /// or with the faces beside an edge that lies on the slave.
+    pub(super) fn gives_up(&self, state: &State) -> bool {
         let vain = match self.patience {
             Patience::Full => false,
             Patience::Long => self.fails_often(WORSE_IN_VAIN),
             Patience::Short => self.cut_often() || self.fails_often(IN_VAIN),
         };
-        vain || self.exchangeable && self.crawls()
+        let edged = || {
+            let on_slave = |pair| edges::on_slave(self.model, pair, &state.u);
+            self.sides_may && self.model.pairs.iter().any(on_slave)
+        };
+        vain || self.crawls() && (self.exchangeable || edged())
     }
 
     /// Ends a run in which an edge of a master has sunk into its slave and may be a slave in another one, or a surface between slave
@@ -94,10 +100,11 @@ impl March<'_, '_> {
         cuts >= CRAWLS && MANY_CUTS * cuts > steps
     }
 
-    /// Whether steps in contact with a body are cut again and again.
+    /// Whether steps in contact with a body are cut again and again, in vain.
     fn crawls(&self) -> bool {
         let mut pairs = self.model.pairs.iter().zip(&*self.touching);
         self.cut_often()
+            && self.fails_often(IN_VAIN)
             && pairs.any(|(pair, touching)| *touching && self.model.between_bodies(pair))
     }
 }

@@ -38,6 +38,8 @@ pub(crate) struct Problem {
     pub replaceable: Vec<String>,
     /// Whether another variant may exchange the sides of a contact.
     pub exchangeable: bool,
+    /// Whether another variant may have all faces of a body as a master, where its edge lies on the slave.
+    pub sides_may: bool,
     /// Pairs whose slaves may see more in another variant.
     pub may_see: MaySee,
     /// How long the run is followed where it goes on badly.
@@ -301,6 +303,7 @@ impl<'m> RunState<'m> {
             rule,
             replaceable: &problem.replaceable,
             exchangeable: problem.exchangeable,
+            sides_may: problem.sides_may,
             unseen,
             patience: problem.patience,
             peaks,

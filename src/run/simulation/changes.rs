@@ -1,6 +1,7 @@
 //! What a run that was repeated has other than its scene, as checkpoints keep it. Summaries and checkpoints tell of the scene that was
 //! given: whoever looks for a run of it finds one that was repeated as well.
 use super::Rims;
+use super::again::Farthest;
 use super::substitute::Former;
 use super::variant::Safe;
 use crate::run::checkpoint::bytes::{Malformed, Reader};
@@ -25,6 +26,10 @@ pub(super) struct Changes {
     former: Option<Former>,
     #[serde(default)]
     kept: Vec<String>,
+    #[serde(default)]
+    farthest: Option<Farthest>,
+    #[serde(default)]
+    joined: Vec<String>,
 }
 
 impl Changes {
@@ -38,6 +43,8 @@ impl Changes {
             rims,
             former: None,
             kept: Vec::new(),
+            farthest: None,
+            joined: Vec::new(),
         };
         let Some(safe) = safe else {
             return changes;
@@ -61,6 +68,8 @@ impl Changes {
         changes.notes.clone_from(&safe.notes);
         changes.former.clone_from(&safe.former);
         changes.kept.clone_from(&safe.kept);
+        changes.farthest.clone_from(&safe.farthest);
+        changes.joined.clone_from(&safe.joined);
         changes
     }
 
@@ -84,7 +93,8 @@ impl Changes {
         })
     }
 
-    fn apply(text: &str, scene: &LoadedScene) -> Option<(Option<Safe>, Rims)> {
+    /// Those of [`Self::text`] on a scene; nothing where they do not fit it.
+    pub fn apply(text: &str, scene: &LoadedScene) -> Option<(Option<Safe>, Rims)> {
         let Changes {
             elements,
             contacts,
@@ -93,8 +103,11 @@ impl Changes {
             rims,
             former,
             kept,
+            farthest,
+            joined,
         } = serde_json::from_str(text).ok()?;
-        if elements.is_empty() && contacts.is_empty() && kept.is_empty() {
+        let told = !warnings.is_empty();
+        if elements.is_empty() && contacts.is_empty() && kept.is_empty() && !told {
             return Some((None, rims));
         }
         let mut loaded = scene.clone();
@@ -104,13 +117,18 @@ impl Changes {
         for (name, contact) in contacts {
             *loaded.scene.contacts.get_mut(&name)? = contact;
         }
-        let safe = Safe {
+        let mut safe = Safe {
             loaded,
             changed: warnings,
             notes,
             former,
             kept,
+            farthest,
+            joined: Vec::new(),
         };
+        for name in joined {
+            safe.remove(&name);
+        }
         Some((Some(safe), rims))
     }
 }
@@ -147,6 +165,8 @@ mod tests {
             notes: vec!["two".to_owned()],
             former: None,
             kept: vec!["d".to_owned()],
+            farthest: None,
+            joined: Vec::new(),
         };
         safe.loaded.scene.bodies.get_mut("b").unwrap().element = Element::H8MeanDilatation;
         let contact = safe.loaded.scene.contacts.get_mut("c").unwrap();

@@ -1,5 +1,7 @@
 //! A run in memory: stepped from outside or run through, with its results at hand and no file touched.
+mod again;
 mod changes;
+mod joined;
 mod read;
 mod stages;
 mod stepping;
@@ -23,14 +25,11 @@ use crate::run::unseen::MaySee;
 use crate::scene::{self, Contact, Element, LoadedScene};
 use crate::solve::event::{Event, Observer, Silent};
 use changes::Changes;
+use joined::with_joined;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use substitute::instead_of_kept;
-use variant::{
-    Safe, edges_may, names_element, points_may, safe_variant, seeing_less, with_edges,
-    with_exchanged, with_points, with_rims, with_smooth,
-};
+use variant::{Safe, edges_may, names_element, points_may, with_exchanged, with_sides};
 
 /// Nobody interrupts.
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -108,6 +107,8 @@ enum Rims {
     Instead,
     /// What the run is repeated with next is no question of theirs.
     Settled,
+    /// The run that came farthest is followed to its end: nothing is left to repeat it with.
+    Last,
 }
 
 /// A run of a scene: it starts at time 0 and goes on a step at a time ([`Self::step`]) or to its end ([`Self::run`]).
@@ -178,7 +179,7 @@ impl<'o> Simulation<'o> {
         let observer = &mut *options.observer;
         let (safe, rims) = match sections {
             Some(sections) => Changes::read(sections, &scene)?,
-            None => (None, Rims::Out),
+            None => (pool.install(|| with_joined(&scene)), Rims::Out),
         };
         let running = pool.install(|| running(&scene, safe.as_ref(), sections, rims, observer))?;
         let run = running.borrow_dependent();
@@ -221,7 +222,8 @@ impl<'o> Simulation<'o> {
     fn conclude(&mut self) {
         // What is repeated has nothing to say of the answer.
         let unseen = |e: &Ending| e.on_rims || !e.between.is_empty();
-        if self.rims != Rims::Settled && self.ended.as_ref().is_some_and(unseen) {
+        let settled = matches!(self.rims, Rims::Settled | Rims::Last);
+        if !settled && self.ended.as_ref().is_some_and(unseen) {
             return;
         }
         if std::mem::replace(&mut self.concluded, true) {
@@ -235,100 +237,6 @@ impl<'o> Simulation<'o> {
             let (mut march, course) = run.march(caller);
             march.conclude(&course.committed);
         });
-    }
-
-    /// Begins again at time 0 where other elements may replace those that gave way, or do so less well than these, where the run stopped while an edge of a
-    /// master lay on its slave, or in contact with a body that is softer than its slave, or with flat faces that may be smooth.
-    fn begin_again(&mut self) -> Result<bool, RunError> {
-        let Some(ending) = self.ended.clone() else {
-            return Ok(false);
-        };
-        let rims_sunk = ending.on_rims
-            || ending.status == RunStatus::NotConverged
-                && (self.running).with_dependent_mut(|_, run| run.rims_sunk());
-        let bodies = &self.running.borrow_owner().model.bodies;
-        let squeezed = (ending.squeezed.iter()).map(|&body| bodies[body].name.as_str());
-        let before = self.safe.as_ref();
-        let time = self.time();
-        // A run that reached its end is kept, whatever is to be said of its last state.
-        let run = self.running.borrow_dependent();
-        let stopped =
-            ending.status == RunStatus::NotConverged && !run.course.walk.stepping.done(time);
-        let edges = || {
-            let found = stopped && run.edges_on_slaves();
-            found.then(|| with_edges(&self.scene, before, Some(time)))?
-        };
-        let exchanged = || {
-            let found = stopped && run.on_bodies();
-            found.then(|| with_exchanged(&self.scene, before, Some(time)))?
-        };
-        let smooth = || {
-            let found = stopped && run.on_bodies();
-            found.then(|| with_smooth(&self.scene, before, Some(time)))?
-        };
-        let rims = || {
-            let found = rims_sunk && (stopped || ending.on_rims);
-            found.then(|| with_rims(&self.scene, before, Some(time)))?
-        };
-        let points = |before: Option<&Safe>| {
-            let pairs = &self.running.borrow_owner().model.pairs;
-            let names = ending.between.iter().map(|&pair| pairs[pair].name.as_str());
-            with_points(&self.scene, before, Some(time), &names.collect::<Vec<_>>())
-        };
-        // What is seen of both in the same step is changed at once.
-        let unseen = || {
-            let safe = if ending.on_rims { rims() } else { None };
-            points(safe.as_ref().or(before)).or(safe)
-        };
-        let safe = || safe_variant(&self.scene, before, squeezed, (time, &self.history));
-        let contacts = || edges().or_else(exchanged).or_else(smooth);
-        let kept = self.kept_elements();
-        let instead = stopped.then(|| instead_of_kept(before));
-        let instead = instead.flatten();
-        let found = match self.rims {
-            rims if kept.is_some() => kept.map(|safe| (safe, rims)),
-            Rims::Out | Rims::Instead if ending.on_rims || !ending.between.is_empty() => {
-                unseen().map(|safe| (safe, Rims::Instead))
-            }
-            rims if instead.is_some() => instead.map(|safe| (safe, rims)),
-            Rims::Out => (safe().map(|safe| (safe, Rims::Out)))
-                .or_else(|| Some((rims()?, Rims::Settled)))
-                .or_else(|| Some((contacts()?, Rims::Out))),
-            // In a block elements that give way do so without them as well; a shell of other elements would bend too little,
-            // and a run that was given up for their sake may come to its end without them.
-            Rims::Instead => {
-                let block = |b: &usize| bodies[*b].is_block();
-                let found = ending.squeezed.iter().all(block).then(safe).flatten();
-                (found.map(|safe| (safe, Rims::Instead))).or_else(|| {
-                    let found = stopped.then(|| seeing_less(&self.scene, before, Some(time)));
-                    Some((found??, Rims::Settled))
-                })
-            }
-            Rims::Settled => (safe().or_else(contacts)).map(|safe| (safe, Rims::Settled)),
-        };
-        let Some((mut safe, rims)) = found else {
-            return Ok(false);
-        };
-        // A run with other slaves is no measure of this one.
-        let contacts = |safe: &Safe| safe.loaded.scene.contacts.clone();
-        if before.map_or(&self.scene, |b| &b.loaded).scene.contacts != contacts(&safe) {
-            safe.former = None;
-        }
-        let spent = run.give_up();
-        let observer = &mut *self.options.observer;
-        // What cannot be built in another way stays as it ended.
-        let made = running(&self.scene, Some(&safe), None, rims, observer);
-        let Ok(running) = made else {
-            return Ok(false);
-        };
-        self.running = running;
-        (self.running).with_dependent_mut(|_, run| run.charge(spent));
-        (self.safe, self.rims) = (Some(safe), rims);
-        self.history.rows.clear();
-        (self.whole, self.ended, self.concluded) = (true, None, false);
-        (self.begun, self.closed) = (false, None);
-        self.attempt += 1;
-        Ok(true)
     }
 
     /// How the run went so far. Before its end the status is [`RunStatus::Interrupted`].
@@ -438,7 +346,9 @@ fn running(
     for text in &model.warnings {
         observer.event(&Event::Warning { text: text.clone() });
     }
+    let last = rims == Rims::Last;
     let replaceable = (loaded.scene.bodies.iter())
+        .filter(|_| !last)
         .filter(|(name, body)| body.element == Element::H8 && !names_element(loaded, name))
         .filter(|(name, _)| !kept.contains(name))
         .map(|(name, _)| name.clone())
@@ -452,22 +362,28 @@ fn running(
             .collect()
     };
     let may_see = MaySee {
-        edges: may(edges_may),
+        edges: match last {
+            true => Vec::new(),
+            false => may(edges_may),
+        },
         points: match rims {
-            Rims::Settled => Vec::new(),
+            Rims::Settled | Rims::Last => Vec::new(),
             _ => may(points_may),
         },
     };
+    let block = |name: &str| again::is_block(&model.bodies, name);
+    let sides_may = with_sides(loaded, None, None, &block).is_some();
     let problem = Box::new(Problem {
         loaded: loaded.clone(),
         model,
         plan,
         replaceable,
-        exchangeable: with_exchanged(loaded, None, None).is_some(),
+        exchangeable: !last && with_exchanged(loaded, None, None, &|_| false).is_some(),
+        sides_may: !last && sides_may,
         may_see,
         patience: match (rims, kept) {
             (Rims::Instead, _) => Patience::Short,
-            (_, []) => Patience::Full,
+            (Rims::Last, _) | (_, []) => Patience::Full,
             _ => Patience::Long,
         },
         changes: Changes::of(scene, safe, rims).text(),

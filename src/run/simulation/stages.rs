@@ -1,4 +1,5 @@
 //! From one stage of the scene to the next: the run goes on with another model.
+use super::joined::take_out;
 use super::{Running, Simulation};
 use crate::output::RunStatus;
 use crate::run::RunError;
@@ -100,6 +101,8 @@ impl Simulation<'_> {
         let mut loaded = self.running.borrow_owner().loaded.clone();
         (loaded.scene.stages).clone_from(&scene.scene.stages);
         loaded.scene.solution.end_time = scene.scene.solution.end_time;
+        let joined = self.safe.as_ref().map_or(&[][..], |safe| &safe.joined);
+        take_out(&mut loaded.scene.stages, joined);
         if !repeated {
             let observer = &mut *self.options.observer;
             (self.running).with_dependent_mut(|_, run| run.end_stage(observer, true));
@@ -120,6 +123,7 @@ impl Simulation<'_> {
             plan,
             replaceable,
             exchangeable,
+            sides_may,
             may_see,
             patience,
             changes,
@@ -137,6 +141,7 @@ impl Simulation<'_> {
             plan: plan.clone(),
             replaceable: replaceable.clone(),
             exchangeable: *exchangeable,
+            sides_may: *sides_may,
             may_see: may_see.clone(),
             patience: *patience,
             changes: changes.clone(),

@@ -1,6 +1,7 @@
 //! What a run that stopped is repeated with: bodies with other elements, where their default ones give way in strong
 //! compression, and contacts with the edges of their masters, where such an edge lies on the slave, with their sides exchanged,
 //! where the master is the softer one, or with smooth masters.
+use super::again::Farthest;
 use super::substitute::Former;
 use crate::model::error::number;
 use crate::output::Table;
@@ -23,17 +24,23 @@ pub(super) struct Safe {
     pub former: Option<Former>,
     /// Bodies whose elements stay as they are, whatever they do.
     pub kept: Vec<String>,
+    /// Of the runs before that stopped, the one that came farthest.
+    pub farthest: Option<Farthest>,
+    /// Contacts of the scene that it has no more, since another one stands for them as well.
+    pub joined: Vec<String>,
 }
 
 impl Safe {
     /// The one before, or the scene as it is.
-    fn of(scene: &LoadedScene, before: Option<&Safe>) -> Self {
+    pub fn of(scene: &LoadedScene, before: Option<&Safe>) -> Self {
         before.cloned().unwrap_or_else(|| Safe {
             loaded: scene.clone(),
             changed: Vec::new(),
             notes: Vec::new(),
             former: None,
             kept: Vec::new(),
+            farthest: None,
+            joined: Vec::new(),
         })
     }
 }
@@ -179,7 +186,9 @@ pub(super) fn seeing_less(
     let mut safe = Safe::of(scene, before);
     let [mut of_edges, mut of_points] = [Vec::new(), Vec::new()];
     for (name, contact) in &scene.scene.contacts {
-        let now = safe.loaded.scene.contacts.get_mut(name)?;
+        let Some(now) = safe.loaded.scene.contacts.get_mut(name) else {
+            continue;
+        };
         if edges_may(scene, contact) {
             if now.passes == Passes::Edges {
                 of_edges.push(format!("`{name}`"));
@@ -199,7 +208,7 @@ pub(super) fn seeing_less(
     if of_edges.is_empty() && of_points.is_empty() && before.is_some() {
         return None;
     }
-    safe.notes.clear();
+    safe.notes.retain(|text| !text.contains(STOPPED));
     for (found, text) in [(of_edges, edges), (of_points, points)] {
         if !found.is_empty() {
             safe.changed.push(stopped(&found, time, text));
@@ -218,8 +227,9 @@ fn with_these(
     let mut safe = Safe::of(scene, before);
     let mut found = Vec::new();
     for (name, contact) in &scene.scene.contacts {
-        if may(contact) {
-            safe.loaded.scene.contacts.get_mut(name)?.passes = passes;
+        let now = safe.loaded.scene.contacts.get_mut(name);
+        if let Some(now) = now.filter(|_| may(contact)) {
+            now.passes = passes;
             found.push(format!("`{name}`"));
         }
     }
@@ -251,11 +261,13 @@ pub(super) fn with_smooth(
 
 /// The scene with the sides exchanged of every contact whose master is softer than its slave, unless it names its passes or its
 /// friction has a direction of the master: a soft
-/// master bulges out between the points of a stiff slave, which snap from bulge to bulge where they slide.
+/// master bulges out between the points of a stiff slave, which snap from bulge to bulge where they slide. Of a `block` all faces
+/// are the master: what is pressed in beside its edge comes up in front of the faces round it.
 pub(super) fn with_exchanged(
     scene: &LoadedScene,
     before: Option<&Safe>,
     time: Option<f64>,
+    block: &dyn Fn(&str) -> bool,
 ) -> Option<Safe> {
     let young = |side: &SetNames| {
         let body = scene.scene.bodies.get(side.body())?;
@@ -265,13 +277,48 @@ pub(super) fn with_exchanged(
     let change = |contact: &mut Contact| {
         let stiffer = young(&contact.slave).zip(young(&contact.master));
         std::mem::swap(&mut contact.slave, &mut contact.master);
+        let bodies = [&contact.slave, &contact.master].map(SetNames::body);
+        if block(bodies[1]) && contacts_of(scene, bodies) == 1 {
+            contact.master = SetNames::One(bodies[1].to_owned());
+        }
         contact.passes == Passes::Auto
             && !is_directed(contact)
             && stiffer.is_some_and(|(slave, master)| slave > master)
     };
     let text = "in steps cut again and again, its master softer than its slave; it was repeated with the softer side as the slave, \
-                of which now is what is told of a slave (`\"passes\": \"one\"` keeps the sides as they are)";
+                of which now is what is told of a slave, and all faces of the other one as its master, where that is a block \
+                (`\"passes\": \"one\"` keeps the sides as they are)";
     with_contacts(scene, before, time, ("passes", change, text))
+}
+
+/// The scene with all faces of a `block` as the master, in every contact whose master is only a part of them, unless it names its
+/// passes: what is pressed in beside an edge comes up in front of the faces round it.
+pub(super) fn with_sides(
+    scene: &LoadedScene,
+    before: Option<&Safe>,
+    time: Option<f64>,
+    block: &dyn Fn(&str) -> bool,
+) -> Option<Safe> {
+    let change = |contact: &mut Contact| {
+        let bodies = [&contact.slave, &contact.master].map(SetNames::body);
+        let whole = SetNames::One(bodies[1].to_owned());
+        let part = contact.master != whole && block(bodies[1]);
+        let alone = contacts_of(scene, bodies) == 1;
+        contact.master = whole;
+        part && alone
+    };
+    let text = "while a sharp edge of the master lay on the slave; it was repeated with all faces of that body as the master, since the \
+                slave comes up in front of those beside the edge (`\"passes\": \"one\"` keeps the faces as they are)";
+    with_contacts(scene, before, time, ("passes", change, text))
+}
+
+/// How many contacts there are between two bodies.
+fn contacts_of(scene: &LoadedScene, [one, other]: [&str; 2]) -> usize {
+    let contacts = scene.scene.contacts.values();
+    let bodies = contacts.map(|c| [c.slave.body(), c.master.body()]);
+    bodies
+        .filter(|both| both.contains(&one) && both.contains(&other))
+        .count()
 }
 
 /// The scene with a change to every contact with another body that does not name a key; `change` tells whether it applies.
@@ -303,11 +350,13 @@ fn with_contacts(
     Some(safe)
 }
 
+const STOPPED: &str = "the run stopped";
+
 /// What is told of contacts with which a run stopped.
 fn stopped(contacts: &[String], time: Option<f64>, text: &str) -> String {
     let space = if text.starts_with(';') { "" } else { " " };
     format!(
-        "contact {}: the run stopped{}{space}{text}",
+        "contact {}: {STOPPED}{}{space}{text}",
         contacts.join(", "),
         time.map_or(String::new(), |t| format!(" at time {}", number(t)))
     )
@@ -341,8 +390,18 @@ mod tests {
                 "supports": {"ground": {"on": "lower.bottom", "fixed": true}}
             });
             let loaded = crate::scene::parse(&scene.to_string(), "scene.json").expect("a scene");
-            let found = [with_exchanged, with_edges].map(|with| with(&loaded, None, Some(0.5)));
-            found.map(|safe| safe.is_some())
+            let exchanged = with_exchanged(&loaded, None, Some(0.5), &|body| body == "upper");
+            if let Some(safe) = &exchanged {
+                // The bottom of the stiff block alone would end at its edges.
+                let contact = &safe.loaded.scene.contacts["c"];
+                let sides = [&contact.slave, &contact.master].map(ToString::to_string);
+                assert_eq!(sides, ["lower.top", "upper"]);
+            }
+            let whole = |body: &str| with_sides(&loaded, None, None, &|block| block == body);
+            assert!(whole("upper").is_none());
+            let master = &whole("lower").unwrap().loaded.scene.contacts["c"].master;
+            assert_eq!(master.to_string(), "lower");
+            [exchanged, with_edges(&loaded, None, Some(0.5))].map(|safe| safe.is_some())
         };
         assert_eq!(changed(json!({"coulomb": {"mu": 0.3}})), [true; 2]);
         let two = json!({"orthotropic": {"mu": [0.1, 0.3], "direction": [1, 0, 0]}});
