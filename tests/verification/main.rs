@@ -3,6 +3,7 @@ mod augmentation;
 mod ball_by_weight;
 mod body_scenes;
 mod compliance;
+mod cyclic_metal;
 mod die;
 mod draw_bead;
 mod drawn_scenes;
