@@ -69,6 +69,7 @@ effects! {
     Viscous, "stabilization.viscous", listed: "a small viscous force holds bodies until contact does";
     Inertia, "dynamics.inertia", listed: "bodies have inertia: they move, vibrate and rebound";
     MassDamping, "dynamics.damping", listed: "forces against the velocity, in proportion to the mass";
+    Viscosity, "dynamics.viscosity", listed: "viscous stresses against the rate of strain (Kelvin-Voigt)";
     UnsymmetricSystem, "system.unsymmetric", listed: "unsymmetric tangent matrix, factorized by LU";
     EnergyWatch, "energy.watch", detail: "work and energies are balanced at every step";
     OutputFields, "output.fields", detail: "displacements, stresses and contact fields are written";

@@ -237,7 +237,7 @@ fn scenes() -> Vec<Value> {
             ("/materials/m/st_venant_kirchhoff/density", json!(1)),
             (
                 "/solution",
-                json!({"dynamics": {"damping": {"mass": 1}}}),
+                json!({"dynamics": {"damping": {"mass": 1, "viscosity": 0.01}}}),
             ),
         ]),
         blocks(&[("/contacts/press/master_surface", json!("smooth"))]),
