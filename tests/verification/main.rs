@@ -5,6 +5,7 @@ mod body_scenes;
 mod compliance;
 mod cyclic_metal;
 mod die;
+mod draped;
 mod draw_bead;
 mod drawn_scenes;
 mod driven;
