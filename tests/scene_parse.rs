@@ -105,8 +105,7 @@ fn misspelt_keys() {
 
 #[test]
 fn missing_keys_and_unknown_names() {
-    let names =
-        "known names: `st_venant_kirchhoff`, `neo_hooke`, `hencky`, `j2`, `hill48`, `steel`, ";
+    let names = "known names: `st_venant_kirchhoff`, `neo_hooke`, `hencky`, `j2`, `hill48`, `armstrong_frederick`, `steel`, ";
     let kirchoff = format!(
         "4:27: unknown name `st_venant_kirchoff` (did you mean `st_venant_kirchhoff`? {names}"
     );

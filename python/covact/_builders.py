@@ -168,6 +168,36 @@ class Builders:
         """
         return self._put("materials", name, {"hill48": _given(E=E, nu=nu, hardening=hardening, r=r, rolling=rolling, density=density)})
 
+    def armstrong_frederick(
+        self,
+        name: str,
+        *,
+        E: float,
+        nu: float,
+        hardening: Mapping[str, Any],
+        back_stress: Mapping[str, Any],
+        density: float | None = None,
+    ) -> Self:
+        """A material. Metal plasticity after von Mises with kinematic hardening after Armstrong and Frederick beside
+        the isotropic one, in logarithmic strains: metal that is bent and straightened, or loaded back and forth.
+
+        Parameters
+        ----------
+        name: str
+            Name of the material.
+        E: float
+            Young's modulus (force / length^2).
+        nu: float
+            Poisson's ratio, at most 0.49.
+        hardening: dict
+            Yield stress over equivalent plastic strain, as Kirchhoff stress: half of the width of the elastic range.
+        back_stress: dict
+            Kinematic hardening: by how much the elastic range moves with the flow.
+        density: float, optional
+            Mass per undeformed volume (force time^2 / length^4: t/mm^3 for N, mm and s). Loads by gravity ask for it.
+        """
+        return self._put("materials", name, {"armstrong_frederick": _given(E=E, nu=nu, hardening=hardening, back_stress=back_stress, density=density)})
+
     def plate(
         self,
         name: str,

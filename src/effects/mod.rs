@@ -97,7 +97,7 @@ impl Effects {
     }
 
     /// Bytes of heap by part, also of those that there are not.
-    pub fn parts(&self) -> [(&'static str, usize); 3] {
+    pub fn parts(&self) -> [(&'static str, usize); 4] {
         let Effects {
             inertia,
             viscous,
@@ -105,6 +105,7 @@ impl Effects {
         } = self;
         [
             ("inertia", inertia.as_ref().map_or(0, |e| e.bytes())),
+            ("dashpots", inertia.as_ref().map_or(0, |e| e.dashpots())),
             ("stabilization", viscous.as_ref().map_or(0, |e| e.bytes())),
             ("jumps", passing.bytes()),
         ]

@@ -35,7 +35,7 @@ use crate::mesh::{self, Edge, Face, Mesh};
 use crate::scene::{
     self, LoadedScene, Material, MeshSource, POSITION_AND_TIME, Scene, Stabilization, TIME, Value,
 };
-use crate::shell::{Block, HeldNormal, Law, bytes_per_element};
+use crate::shell::{Block, HeldNormal, Law, Memory, bytes_per_element};
 use covact_geometry::{PatchSet, Vec3};
 use nalgebra::Point3;
 use nurbs_bodies::sheet_rims;
@@ -274,7 +274,7 @@ impl<'s> Builder<'s> {
             let (mesh, block) = self.sheet(name, nurbs, body, law)?;
             return self.push_body(name, mesh, block, (material, metal));
         }
-        room(name, body, material.flows())?;
+        room(name, body, Memory::of(&material))?;
         let (mut mesh, report) = mesh::build(&body.mesh, body.element.into(), self.dir)
             .map_err(|e| mesh_error(name, &body.mesh, e))?;
         place(&mut mesh, &body.placement);
@@ -292,7 +292,7 @@ impl<'s> Builder<'s> {
         (self.notes).extend(report.notes.iter().map(|n| format!("body `{name}`: {n}")));
         let law = Law::new(&material).at(|| format!("/bodies/{name}/material"))?;
         let elements = mesh.elements() as u64;
-        let each: usize = bytes_per_element(body.element, material.flows())
+        let each: usize = bytes_per_element(body.element, Memory::of(&material))
             .iter()
             .sum();
         memory::ask(memory::times(elements, each as u64)).map_err(|shortage| {

@@ -3,6 +3,7 @@ use super::error::{At, number, text};
 use super::{Model, ModelError, penalty};
 use crate::contact::points::SlavePoint;
 use crate::scene::{self, Scene, ValueError};
+use crate::shell::Block;
 use covact_geometry::Vec3;
 
 /// Part of the time of a run over which the velocity of a support at the start is measured.
@@ -11,7 +12,7 @@ const INSTANT: f64 = 1e-5;
 const AT_REST: f64 = 1e-9;
 
 /// Inertia of a model.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct DynamicsModel {
     /// What the scene asks for.
     pub settings: scene::Dynamics,
@@ -23,10 +24,12 @@ pub struct DynamicsModel {
     pub waves: Vec<f64>,
     /// Largest area that a node of the slave stands for over its mass, per pair (length^2 / mass).
     pub lightest: Vec<f64>,
+    /// Dashpots beside the elements of every body; nothing where material is not viscous.
+    pub dashpots: Vec<Block>,
     /// Diagonal of the box around all bodies (length).
     pub size: f64,
     /// Time in which velocities of supports at the start are measured.
-    instant: f64,
+    pub instant: f64,
 }
 
 /// Velocity of a rigid motion.
@@ -80,8 +83,18 @@ pub(super) fn dynamics(scene: &Scene, model: &Model) -> Result<Option<DynamicsMo
     let start = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
     let body_nodes = model.nodes[..model.body_nodes()].iter();
     let (low, high) = body_nodes.fold(start, |(low, high), x| (low.inf(x), high.sup(x)));
+    let viscous = model
+        .bodies
+        .iter()
+        .filter(|_| settings.damping.viscosity > 0.0);
+    let dashpots = viscous.map(|body| {
+        let pointer = || format!("/bodies/{}", body.name);
+        body.block.dashpots(&body.mesh).at(pointer)
+    });
+    let dashpots = dashpots.collect::<Result<_, _>>()?;
     let own = DynamicsModel {
         settings,
+        dashpots,
         waves: waves.collect(),
         lightest: lightest(model, &densities),
         densities,

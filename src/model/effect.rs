@@ -58,6 +58,8 @@ effects! {
     Hencky, "material.hencky", listed: "linear law in logarithmic strains, for moderately large strains";
     J2, "material.j2", listed: "metal that yields and hardens (von Mises), for forming and springback";
     Hill48, "material.hill48", listed: "rolled metal that yields and narrows by its direction (Hill 1948)";
+    ArmstrongFrederick, "material.armstrong_frederick", listed:
+        "metal whose yield surface moves with its flow (Armstrong and Frederick), for cyclic loads";
     DrivenByForce, "surface.driven_by_force", listed: "components of a surface's motion are unknowns with given forces";
     SurfaceMotion, "surface.motion", detail: "rigid surfaces move as prescribed";
     MidSurface, "support.mid_surface", listed: "supports on the mean of both faces of a shell";
@@ -67,6 +69,7 @@ effects! {
     Viscous, "stabilization.viscous", listed: "a small viscous force holds bodies until contact does";
     Inertia, "dynamics.inertia", listed: "bodies have inertia: they move, vibrate and rebound";
     MassDamping, "dynamics.damping", listed: "forces against the velocity, in proportion to the mass";
+    Viscosity, "dynamics.viscosity", listed: "viscous stresses against the rate of strain (Kelvin-Voigt)";
     UnsymmetricSystem, "system.unsymmetric", listed: "unsymmetric tangent matrix, factorized by LU";
     EnergyWatch, "energy.watch", detail: "work and energies are balanced at every step";
     OutputFields, "output.fields", detail: "displacements, stresses and contact fields are written";

@@ -3,7 +3,7 @@ use crate::machine::memory::times;
 use crate::mesh::ElementKind;
 use crate::mesh::size::FACES;
 use crate::scene::Element;
-use crate::shell::bytes_per_element;
+use crate::shell::{Memory, bytes_per_element};
 use std::collections::HashMap;
 
 /// A generated mesh before it is made: `counts` elements along r, s and t.
@@ -11,8 +11,8 @@ use std::collections::HashMap;
 pub struct Grid {
     pub element: Element,
     pub counts: [u32; 3],
-    /// Whether the material may flow.
-    pub flows: bool,
+    /// What its material remembers.
+    pub memory: Memory,
 }
 
 /// Bytes of a node in a mesh (position) and in the vectors of a solution (six of three numbers, seven fields).
@@ -77,7 +77,7 @@ impl Grid {
         let elements = self.elements();
         let nodes = self.kind().nodes() as u64;
         let maps = 4 * nodes * (nodes + 1) / 2;
-        let [block, states] = bytes_per_element(self.element, self.flows).map(|b| b as u64);
+        let [block, states] = bytes_per_element(self.element, self.memory).map(|b| b as u64);
         let each = 4 * nodes + FACES + maps + block + states;
         let both = if symmetric { 1 } else { 2 };
         let factor = times(self.factor_blocks(), 72 * both);
@@ -160,7 +160,7 @@ mod tests {
             let grid = Grid {
                 element,
                 counts,
-                flows: false,
+                memory: Memory::NONE,
             };
             let mesh = mesh(&grid);
             assert_eq!(grid.nodes(), mesh.nodes.len() as u64);
@@ -181,14 +181,17 @@ mod tests {
         let grid = Grid {
             element: Element::Q18,
             counts: [u32::MAX; 3],
-            flows: false,
+            memory: Memory::NONE,
         };
         assert_eq!(grid.bytes(false), u64::MAX);
         assert!(grid.bytes(true) > 1 << 62);
         let plate = Grid {
             element: Element::H8,
             counts: [u32::MAX, u32::MAX, 1],
-            flows: true,
+            memory: Memory {
+                numbers: 14,
+                symmetric: true,
+            },
         };
         assert!(plate.bytes(true) > 1 << 62);
     }

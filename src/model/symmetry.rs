@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unsymmetric {
     pub effect: EffectKind,
-    /// The contact or load that has it.
+    /// The contact, load or material that has it.
     pub of: String,
     /// Why, in a sentence.
     pub why: String,
@@ -59,7 +59,34 @@ pub fn unsymmetric_effects(model: &Model) -> Vec<Unsymmetric> {
                 ),
             },
         });
-    follower.chain(halves).chain(friction(model)).collect()
+    let materials = materials(model);
+    (materials.into_iter())
+        .chain(follower)
+        .chain(halves)
+        .chain(friction(model))
+        .collect()
+}
+
+/// Laws of materials whose tangents are not symmetric, once for every kind of law.
+fn materials(model: &Model) -> Vec<Unsymmetric> {
+    let mut out: Vec<Unsymmetric> = Vec::new();
+    for body in &model.bodies {
+        let law = &body.material;
+        let effect = EffectKind::named(&format!("material.{}", law.key()));
+        if let Some(effect) = effect.filter(|_| !law.is_symmetric())
+            && out.iter().all(|u| u.of != law.key())
+        {
+            out.push(Unsymmetric {
+                effect,
+                of: law.key().to_owned(),
+                why: format!(
+                    "the back stress of the material of body `{}` recovers as it flows",
+                    body.name
+                ),
+            });
+        }
+    }
+    out
 }
 
 /// The friction of contacts; another pair of the same contact has its own.

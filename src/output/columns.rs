@@ -196,6 +196,11 @@ pub const COLUMNS: &[ColumnDoc] = &[
         "energy that damping has taken since the start; only with inertia",
     ),
     doc(
+        "energy.viscosity",
+        "energy",
+        "the part of `energy.damping` that viscous material has taken; only with a `viscosity`",
+    ),
+    doc(
         "energy.integrator",
         "energy",
         "in place of `energy.imbalance` with inertia: external and adjusted less stored, dissipated, damping and what the kinetic \

@@ -208,7 +208,7 @@ impl Reporter<'_> {
                 },
                 format!("no body has a `{word}` material"),
             );
-            Some(self.effect(*effect, at, reason))
+            Some(self.unsymmetric(self.effect(*effect, at, reason), word))
         };
         EffectKind::ALL.iter().filter_map(effect).collect()
     }

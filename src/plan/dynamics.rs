@@ -6,8 +6,8 @@ use crate::model::error::number;
 use crate::scene::ContactTiming;
 
 impl Reporter<'_> {
-    /// Inertia, and damping.
-    pub(super) fn dynamics(&self) -> [Effect; 2] {
+    /// Inertia, damping, and viscous material.
+    pub(super) fn dynamics(&self) -> [Effect; 3] {
         let model = self.model;
         let own = model.dynamics.as_ref().map(|d| d.settings);
         let mut held = vec![Held::assembler(
@@ -51,6 +51,44 @@ impl Reporter<'_> {
                 ),
             )
             .costs("a product with the mass for each evaluation");
-        [inertia, damping]
+        [inertia, damping, self.viscosity()]
+    }
+
+    fn viscosity(&self) -> Effect {
+        let model = self.model;
+        let own = model.dynamics.as_ref().map(|d| d.settings);
+        let mut held: Vec<Held> = (model.bodies.iter())
+            .map(|body| {
+                let (each, count) = (sizes::Dashpots::of_element(body), body.block.elements());
+                Held::assembler("dashpots", Per::Element, each, count)
+            })
+            .collect();
+        held.push(Held::assembler(
+            "dashpots",
+            Per::Node,
+            24,
+            model.nodes.len(),
+        ));
+        held.extend(model.bodies.iter().map(|body| {
+            let (each, count) = (body.block.shape_bytes(), body.block.elements());
+            Held::model("dashpots", Per::Element, each, count)
+        }));
+        let room = sizes::Dashpots::room(model);
+        held.push(Held::assembler("dashpots", Per::Whole, room, 1));
+        let time = own.map_or(0.0, |d| d.damping.viscosity);
+        self.effect(
+            EffectKind::Viscosity,
+            "/solution/dynamics/damping/viscosity",
+            why(
+                time > 0.0,
+                format!("`viscosity` of {} times the moduli", number(time)),
+                match own {
+                    Some(_) => "no `viscosity`",
+                    None => "no `dynamics`",
+                },
+            ),
+        )
+        .costs("dashpots beside all elements: as many tangents of elements once more")
+        .holds(held)
     }
 }

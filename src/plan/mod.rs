@@ -224,7 +224,7 @@ impl Reporter<'_> {
         }
     }
 
-    /// The effect of `of`, a contact or a load, takes the symmetry where the model says so.
+    /// The effect of `of`, a contact, a load or a law, takes the symmetry where the model says so.
     fn unsymmetric(&self, mut effect: Effect, of: &str) -> Effect {
         let takes = |u: &Unsymmetric| u.effect.name() == effect.name && u.of == of;
         effect.unsymmetric = effect.on && self.model.unsymmetric.iter().any(takes);

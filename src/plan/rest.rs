@@ -249,8 +249,8 @@ impl Reporter<'_> {
                 24,
                 model.body_nodes(),
             )]);
-        let [inertia, damping] = self.dynamics();
-        vec![viscous, inertia, damping, unsymmetric, watch]
+        let [inertia, damping, viscosity] = self.dynamics();
+        vec![viscous, inertia, damping, viscosity, unsymmetric, watch]
     }
 
     pub(super) fn output(&self) -> Vec<Effect> {

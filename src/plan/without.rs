@@ -229,7 +229,7 @@ pub const REMOVABLE: &[Removable] = &[
     Removable {
         name: "damping",
         instead: "nothing but the time integration damps",
-        effects: &["dynamics.damping"],
+        effects: &["dynamics.damping", "dynamics.viscosity"],
         remove: |scene| {
             let dynamics = scene.solution.dynamics.as_mut();
             dynamics.is_some_and(|d| std::mem::take(&mut d.damping) != Default::default())

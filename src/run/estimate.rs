@@ -6,7 +6,7 @@ use crate::model::state::State;
 use crate::model::surface::{SurfaceModel, facet_bytes};
 use crate::output::flat_bytes;
 use crate::scene::Element;
-use crate::shell::{STATES, bytes_per_element};
+use crate::shell::{Memory, STATES, bytes_per_element};
 use crate::system::Pattern;
 use crate::system::linear::Analysis;
 use serde::Serialize;
@@ -49,7 +49,7 @@ impl Estimate {
             let count = body.block.elements() as u64;
             let nodes = body.mesh.kind.nodes() as u64;
             let [shape, mut states] =
-                bytes_per_element(element, body.material.flows()).map(|b| b as u64);
+                bytes_per_element(element, Memory::of(&body.material)).map(|b| b as u64);
             if model.small.is_some() {
                 // While the stiffness is made.
                 states /= STATES as u64;

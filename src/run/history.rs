@@ -104,6 +104,9 @@ pub fn columns(model: &Model) -> Vec<String> {
     }
     if model.dynamics.is_some() {
         names.extend(["energy.kinetic", "energy.damping"].map(String::from));
+        if viscous(model) {
+            names.push("energy.viscosity".into());
+        }
     }
     names.extend(["energy.external", "energy.adjusted"].map(String::from));
     names.push(match model.dynamics {
@@ -184,10 +187,19 @@ pub fn row(r: &Record) -> Vec<f64> {
     }
     if r.model.dynamics.is_some() {
         out.extend([totals.motion.kinetic, totals.motion.damped]);
+        if viscous(r.model) {
+            out.push(totals.motion.viscous);
+        }
     }
     out.extend([r.watch.external, r.watch.adjusted, r.watch.imbalance]);
     out.extend(probes::values(r.model, r.time, r.u, r.residual, r.fields));
     out
+}
+
+/// Whether material is viscous.
+fn viscous(model: &Model) -> bool {
+    let own = model.dynamics.as_ref();
+    own.is_some_and(|d| !d.dashpots.is_empty())
 }
 
 /// Whether any contact has multipliers.

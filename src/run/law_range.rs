@@ -23,7 +23,10 @@ fn note(body: &BodyModel, u: &[f64]) -> Option<String> {
     let (limit, help) = match body.material {
         Material::StVenantKirchhoff(_) => (SMALL, "take `neo_hooke` or `hencky`"),
         Material::Hencky(_) => (MODERATE, "take `neo_hooke`"),
-        Material::NeoHooke(_) | Material::J2(_) | Material::Hill48(_) => return None,
+        Material::NeoHooke(_)
+        | Material::J2(_)
+        | Material::Hill48(_)
+        | Material::ArmstrongFrederick(_) => return None,
     };
     let nodes = body.first_node as usize..body.first_node as usize + body.mesh.nodes.len();
     let displacement: Vec<Vec3> = nodes

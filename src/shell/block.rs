@@ -2,7 +2,7 @@
 use super::error::{ElementFault, ShellError};
 use super::h8::{Formulation, H8Block, H8System};
 use super::history::{Flow, PlasticWork};
-use super::material::{Law, MOST_STATE};
+use super::material::{DashpotState, Law, LawState, Memory};
 use super::nurbs::{self, NurbsBlock, NurbsSystem};
 use super::q18::{DOFS, Q18Block, Q18System};
 use super::stress::{extrapolate, extrapolate_quadratic};
@@ -14,17 +14,15 @@ use covact_geometry::Vec3;
 /// the attempts at a step.
 pub const STATES: usize = 5;
 
-/// Bytes that an element of this kind takes: what is worked out once about its shape, and its states in a run. `flows` as for
-/// [`Formulation::of`].
-pub const fn bytes_per_element(element: Element, flows: bool) -> [usize; 2] {
-    let memory = if flows { MOST_STATE } else { 0 };
-    let (shape, state) = match Formulation::of(element, flows) {
+/// Bytes that an element of this kind takes: what is worked out once about its shape, and its states in a run.
+pub const fn bytes_per_element(element: Element, memory: Memory) -> [usize; 2] {
+    let (shape, state) = match Formulation::of(element, memory.flows()) {
         None if matches!(element, Element::Nurbs) => return [NurbsBlock::BYTES, 0],
         Some(formulation) => (
             H8Block::BYTES,
-            formulation.state_len() + formulation.points() * memory,
+            formulation.state_len(memory.symmetric) + formulation.points() * memory.numbers,
         ),
-        None => (Q18Block::BYTES, Q18Block::STATE_LEN + 18 * memory),
+        None => (Q18Block::BYTES, Q18Block::STATE_LEN + 18 * memory.numbers),
     };
     [shape, STATES * 8 * state]
 }
@@ -408,11 +406,45 @@ impl Block {
     /// # Errors
     /// Those of [`H8Block::new`] and [`Q18Block::new`]; [`ShellError::Sheet`] for elements of a NURBS patch.
     pub fn new(mesh: &Mesh, element: Element, law: Law) -> Result<Block, ShellError> {
-        Ok(match Formulation::of(element, law.state_len() > 0) {
+        Ok(match Formulation::of(element, law.flows()) {
             None if matches!(element, Element::Nurbs) => return Err(ShellError::Sheet),
             Some(formulation) => Block::H8(H8Block::new(mesh, formulation, law)?),
             None => Block::Q18(Q18Block::new(mesh, law)?),
         })
+    }
+
+    /// Dashpots beside these elements, of the same shape, on the same mesh.
+    ///
+    /// # Errors
+    /// Those of [`Block::new`].
+    pub fn dashpots(&self, mesh: &Mesh) -> Result<Block, ShellError> {
+        let law = self.law().dashpot();
+        Ok(match self {
+            Block::H8(b) => Block::H8(H8Block::new(mesh, b.formulation().elastic(), law)?),
+            Block::Q18(_) => Block::Q18(Q18Block::new(mesh, law)?),
+            Block::Nurbs(_) => return Err(ShellError::Sheet),
+        })
+    }
+
+    /// Bytes of what is worked out once about the shape of an element.
+    pub const fn shape_bytes(&self) -> usize {
+        match self {
+            Block::H8(_) => H8Block::BYTES,
+            Block::Q18(_) => Q18Block::BYTES,
+            Block::Nurbs(_) => NurbsBlock::BYTES,
+        }
+    }
+
+    /// Numbers of state of an element of [`Self::dashpots`].
+    pub fn dashpot_state_len(&self) -> usize {
+        match self {
+            Block::H8(b) => {
+                let elastic = b.formulation().elastic();
+                elastic.state_len(true) + elastic.points() * DashpotState::LEN
+            }
+            Block::Q18(_) => Q18Block::STATE_LEN + 18 * DashpotState::LEN,
+            Block::Nurbs(_) => 0,
+        }
     }
 
     /// Number of elements.

@@ -83,9 +83,15 @@ pub(super) fn evaluate<L: MaterialLaw>(
         out.energy += response.energy * dv;
         let frame = now.at(g);
         add_forces(g, &frame, &response.stress, dv, &mut out.f);
-        Pointwise::new(&frame, &response.stress, &response.tangent, dv).add_to(g, &mut out.k);
+        Pointwise::new(&frame, &response.stress, &response.tangent, dv).add_to(
+            g,
+            &mut out.k,
+            law.symmetric(),
+        );
     }
-    mirror(&mut out.k);
+    if law.symmetric() {
+        mirror(&mut out.k);
+    }
     Ok(())
 }
 
@@ -147,9 +153,9 @@ impl Pointwise {
         Pointwise(q)
     }
 
-    /// Adds it to the upper triangle of an element's tangent, by columns.
+    /// Adds it to an element's tangent, by columns; to the upper triangle only where it is symmetric.
     #[inline(always)]
-    pub fn add_to(&self, g: usize, k: &mut [f64; 576]) {
+    pub fn add_to(&self, g: usize, k: &mut [f64; 576], symmetric: bool) {
         let (n, Pointwise(q)) = (derivatives(g), self);
         for b in 0..8 {
             let mut column = [[[0.0; 3]; 3]; 3];
@@ -162,7 +168,8 @@ impl Pointwise {
                     }
                 }
             }
-            for a in 0..=b {
+            let last = if symmetric { b } else { 7 };
+            for a in 0..=last {
                 for y in 0..3 {
                     for x in 0..3 {
                         k[(3 * b + y) * 24 + 3 * a + x] += n[0][a] * column[0][x][y]

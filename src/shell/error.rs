@@ -66,6 +66,11 @@ pub enum ShellError {
         /// Poisson's ratio of the material.
         nu: f64,
     },
+    /// Elements that put their tangent together from one half of it, with a law whose tangent is not symmetric.
+    #[error(
+        "the tangent of the material is not symmetric, which elements of this kind do not take"
+    )]
+    Unsymmetric,
     /// The law of a shell on a NURBS patch has to be elastic, with a form in plane stress.
     #[error(
         "a body of kind `nurbs` has the law `st_venant_kirchhoff` or `neo_hooke`: others have no form in plane stress here"

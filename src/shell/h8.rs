@@ -6,6 +6,7 @@ mod stresses;
 
 use super::error::{ElementFault, FaultCause, ShellError};
 use super::kinematics::{self, Fields, V};
+use super::layered::unsymmetric;
 use super::material::{Collapsed, Law, MaterialLaw, with_law};
 use super::reference::Reference;
 use super::{brick, layered, mean_dilatation, tangent};
@@ -55,9 +56,20 @@ impl Formulation {
         }
     }
 
-    /// Numbers of state per element.
-    pub(super) const fn state_len(self) -> usize {
-        tangent::state_len(self.modes())
+    /// The formulation of the same element with a law that does not flow.
+    pub(super) const fn elastic(self) -> Formulation {
+        match self {
+            Formulation::Layered => Formulation::Eas7,
+            other => other,
+        }
+    }
+
+    /// Enhanced strains and the condensation cache of an element, whose law may have symmetric tangents.
+    pub(super) const fn state_len(self, symmetric: bool) -> usize {
+        match symmetric {
+            true => tangent::state_len(self.modes()),
+            false => unsymmetric::state_len(self.modes()),
+        }
     }
 }
 
@@ -80,7 +92,7 @@ impl Formulation {
 pub struct H8System {
     /// Internal forces, condensed: `f - L^T D^-1 h`.
     pub f: [f64; 24],
-    /// Tangent `K - L^T D^-1 L`, full and exactly symmetric, by columns.
+    /// Tangent `K - L^T D^-1 L`, full, by columns; exactly symmetric if the law is.
     pub k: [f64; 576],
     /// Strain energy.
     pub energy: f64,
@@ -122,7 +134,8 @@ impl H8Block {
     ///
     /// # Errors
     /// Elements that refer to missing nodes, inverted elements (Jacobian not positive at a Gauss point or the centre),
-    /// and three enhanced strains with nu above 0.45.
+    /// three enhanced strains with nu above 0.45, and assumed strains at two points over the thickness with laws whose tangent is
+    /// not symmetric.
     pub fn new(mesh: &Mesh, formulation: Formulation, law: Law) -> Result<H8Block, ShellError> {
         if mesh.kind != ElementKind::H8 {
             return Err(ShellError::Kind {
@@ -132,6 +145,13 @@ impl H8Block {
         }
         if formulation == Formulation::Eas3 && law.nu() > 0.45 {
             return Err(ShellError::TooFewEnhanced { nu: law.nu() });
+        }
+        let halved = matches!(
+            formulation,
+            Formulation::Eas7 | Formulation::Eas3 | Formulation::Eas0
+        );
+        if halved && !law.symmetric() {
+            return Err(ShellError::Unsymmetric);
         }
         let (chunks, rest) = mesh.connectivity.as_chunks::<8>();
         if !rest.is_empty() {
@@ -219,8 +239,8 @@ impl H8Block {
     }
 
     /// Enhanced strains and the condensation cache.
-    const fn condensation_len(&self) -> usize {
-        tangent::state_len(self.formulation.modes())
+    fn condensation_len(&self) -> usize {
+        self.formulation.state_len(self.law.symmetric())
     }
 
     /// Numbers of enhanced strains per element, at the start of its state.
@@ -284,6 +304,9 @@ impl H8Block {
         let re = &self.reference[e];
         with_law!(&self.law, law => match self.formulation {
             Formulation::Eas7 => tangent::evaluate::<_, 7>(law, re, &u, du, state, out),
+            Formulation::Layered if !law.symmetric() => {
+                unsymmetric::evaluate(law, &re.nodes, &u, state, out)
+            }
             Formulation::Layered => layered::evaluate(law, &re.nodes, &u, state, out),
             Formulation::Eas3 => tangent::evaluate::<_, 3>(law, re, &u, du, state, out),
             Formulation::Eas0 => tangent::evaluate::<_, 0>(law, re, &u, du, state, out),
@@ -343,7 +366,13 @@ impl H8Block {
             Formulation::Layered => {
                 let states = &state[self.condensation_len()..];
                 layered::forces(law, &re.nodes, &u, &head(state), states)
-                    .map(|(energy, forces, h)| condensed(energy, (forces, h), state, f))
+                    .map(|(energy, forces, h)| match law.symmetric() {
+                        true => condensed(energy, (forces, h), state, f),
+                        false => {
+                            *f = unsymmetric::condensed(forces, &h, state);
+                            energy
+                        }
+                    })
             }
             Formulation::Eas3 => residual::<_, 3>(law, re, &u, state, f),
             Formulation::Eas0 => residual::<_, 0>(law, re, &u, state, f),
@@ -357,6 +386,9 @@ impl H8Block {
 
     /// `alpha = alpha_from - scale D^-1 (h + L du)`, with D, h, L of the evaluation that produced `du`.
     pub fn update_alpha(&self, state: &mut [f64], du: &[Vec3; 8], scale: f64, alpha_from: &[f64]) {
+        if self.formulation == Formulation::Layered && !self.law.symmetric() {
+            return unsymmetric::update_alpha(state, du, scale, alpha_from);
+        }
         let ne = self.formulation.modes();
         let mut step = [0.0; layered::MODES];
         for m in 0..ne {

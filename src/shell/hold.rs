@@ -61,7 +61,9 @@ fn unstable(system: &H8System, x: &[Vec3; 8]) -> usize {
         }
         rigid.extend(motion.try_normalize(0.0));
     }
-    let mut k = Matrix::from_column_slice(&system.k);
+    let k = Matrix::from_column_slice(&system.k);
+    // Of laws whose tangents are not symmetric the symmetric part, which does the work.
+    let mut k = (k + k.transpose()) * 0.5;
     for motion in &rigid {
         let less = Matrix::identity() - motion * motion.transpose();
         k = less * k * less;

@@ -7,6 +7,8 @@
 //!
 //! The tangent is put together as that of the element with two points over the thickness ([`super::tangent`]): what a point adds
 //! is a few products along t, and shape functions along r and s are applied once per in-plane point.
+pub(super) mod unsymmetric;
+
 use super::error::FaultCause;
 use super::h8::H8System;
 use super::kinematics::{Fields, V, add, shear, stretch, tying};

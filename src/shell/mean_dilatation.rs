@@ -147,6 +147,8 @@ struct Answer {
     moduli: [[f64; 6]; 6],
     /// `a^2/3 D C + 2a/3 S`.
     h: [f64; 6],
+    /// `a^2/3 C D + 2a/3 S`, the same where D is symmetric.
+    across: [f64; 6],
     /// `a^2/9 C D C + 2/3 p`.
     k: f64,
     /// Mean stress.
@@ -188,6 +190,12 @@ pub(super) fn evaluate<L: MaterialLaw>(
         let dc = moduli.map(|row| with_c(&row, &point.c));
         let p = with_c(&stress, &point.c) / 3.0;
         let h: [f64; 6] = std::array::from_fn(|v| dc[v] / 3.0 + stress[v] * (2.0 / 3.0));
+        let across = match law.symmetric() {
+            true => h,
+            false => std::array::from_fn(|w| {
+                with_c(&moduli.map(|row| row[w]), &point.c) / 3.0 + stress[w] * (2.0 / 3.0)
+            }),
+        };
         let k = with_c(&dc, &point.c) / 9.0 + p * (2.0 / 3.0);
         pressure += p * dv;
         volume += point.ln_j.exp() * dv;
@@ -196,17 +204,19 @@ pub(super) fn evaluate<L: MaterialLaw>(
             stress,
             moduli,
             h,
+            across,
             k,
             p,
         };
     }
     let mean = pressure / volume;
-    let (mut y, mut b) = ([0.0; 24], [0.0; 24]);
+    let (mut y, mut b, mut z) = ([0.0; 24], [0.0; 24], [0.0; 24]);
     for (g, (point, own)) in points.iter().zip(own).enumerate() {
         let Answer {
             stress,
             moduli,
             h,
+            across,
             k,
             p,
         } = own;
@@ -217,16 +227,29 @@ pub(super) fn evaluate<L: MaterialLaw>(
         let mut tangent = isotropic(ci, k + mean * j, -more);
         for v in 0..6 {
             for w in 0..6 {
-                tangent[v][w] += moduli[v][w] - h[v] * ci[w] - ci[v] * h[w];
+                tangent[v][w] += moduli[v][w] - h[v] * ci[w] - ci[v] * across[w];
             }
         }
         brick::add_forces(g, &frame, &s, dv, &mut out.f);
-        Pointwise::new(&frame, &s, &tangent, dv).add_to(g, &mut out.k);
+        Pointwise::new(&frame, &s, &tangent, dv).add_to(g, &mut out.k, law.symmetric());
         let coupled: [f64; 6] = std::array::from_fn(|v| h[v] - k * ci[v]);
         brick::add_forces(g, &frame, &coupled, dv, &mut y);
+        if !law.symmetric() {
+            let coupled: [f64; 6] = std::array::from_fn(|v| across[v] - k * ci[v]);
+            brick::add_forces(g, &frame, &coupled, dv, &mut z);
+        }
         brick::add_forces(g, &frame, ci, dv * j / volume, &mut b);
     }
     bb -= pressure;
+    if !law.symmetric() {
+        for column in 0..24 {
+            for row in 0..24 {
+                out.k[24 * column + row] +=
+                    y[row] * b[column] + b[row] * z[column] + bb * b[row] * b[column];
+            }
+        }
+        return Ok(());
+    }
     for column in 0..24 {
         for row in 0..=column {
             out.k[24 * column + row] +=

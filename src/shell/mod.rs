@@ -39,7 +39,7 @@ pub use block::{Block, ElementBlock, ElementSystem, STATES, bytes_per_element};
 pub use error::{ElementFault, FaultCause, ShellError};
 pub use h8::{Formulation, H8Block, H8System};
 pub use history::{Flow, PlasticWork};
-pub use material::{Law, MaterialLaw, Metric, NeoHooke, Response, StVenantKirchhoff};
+pub use material::{Law, MaterialLaw, Memory, Metric, NeoHooke, Response, StVenantKirchhoff};
 pub use nurbs::{
     HeldNormal, NurbsBlock, NurbsSystem, SEAM_DOFS, SEAM_NODES, SeamSpan, SheetResultants,
 };

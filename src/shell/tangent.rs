@@ -351,9 +351,9 @@ fn times_rows<const P: usize>(
     sum
 }
 
-/// Half of the initial-stress stiffness of the transverse strains, a scalar per pair of nodes.
+/// Half of the initial-stress stiffness of the transverse strains, a scalar per pair of nodes; its transpose is the rest.
 #[inline(always)]
-fn transverse_geometric(force: &[f64; TYING]) -> [[f64; 8]; 8] {
+pub(super) fn transverse_geometric(force: &[f64; TYING]) -> [[f64; 8]; 8] {
     let mut k = [[0.0; 8]; 8];
     for c in 0..4 {
         let value = 0.125 * force[c];

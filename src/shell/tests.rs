@@ -4,7 +4,7 @@ mod refused;
 use super::h8::{Formulation, H8Block, H8System};
 use super::kinematics::{self, V};
 use super::material::{
-    Collapsed, Hardening, Hill48, J2, Law, LawState, MaterialLaw, Metric, with_law,
+    Collapsed, Dashpot, Hardening, Hill48, J2, Law, LawState, MaterialLaw, Metric, with_law,
 };
 use super::reference::Reference;
 use super::tangent::{self, factors};
@@ -46,7 +46,7 @@ pub(super) fn mesh(nodes: &[Vec3; 8]) -> Mesh {
     }
 }
 
-pub(super) fn laws() -> [Law; 5] {
+pub(super) fn laws() -> [Law; 6] {
     let elastic = Elastic {
         e: 1000.0,
         nu: 0.3,
@@ -78,7 +78,11 @@ pub(super) fn laws() -> [Law; 5] {
         [1.8, 1.4, 2.2],
         [1.0, 0.3, 0.0],
     ));
-    [a, b, c, metal, sheet]
+    let dashpot = Law::Dashpot(Dashpot {
+        lambda: 577.0,
+        mu: 385.0,
+    });
+    [a, b, c, metal, sheet, dashpot]
 }
 
 const FORMULATIONS: [Formulation; 5] = [

@@ -68,6 +68,26 @@ fn a_symmetric_factorization_of_an_unsymmetric_system() {
     }
 }
 
+/// The back stress of a metal recovers.
+#[test]
+fn a_symmetric_factorization_of_a_metal_whose_yield_surface_moves() {
+    let metal = json!({ "armstrong_frederick": {
+        "E": 12000, "nu": 0.3, "hardening": { "linear": { "yield_stress": 200 } },
+        "back_stress": { "modulus": 1000, "recovery": 20 }
+    } });
+    plate_refused(
+        &[
+            ("/materials/steel", metal),
+            ("/solution/linear_solver", json!("llt")),
+        ],
+        "/solution/linear_solver",
+        &[
+            "`llt` is for symmetric systems, and this one is not",
+            "the back stress of the material of body `plate` recovers as it flows",
+        ],
+    );
+}
+
 /// A program that was built without it is asked to factorize on a graphics processor, or by MUMPS.
 #[test]
 fn a_factorization_that_the_program_does_not_have() {

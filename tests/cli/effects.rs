@@ -200,6 +200,13 @@ fn scenes() -> Vec<Value> {
                 "E": 12000, "nu": 0.3, "hardening": {"linear": {"yield_stress": 20}}, "r": [1.8, 1.4, 2.2], "rolling": [1, 0, 0]
             }}),
         )]),
+        plate_with(&[(
+            "/materials/steel",
+            json!({"armstrong_frederick": {
+                "E": 12000, "nu": 0.3, "hardening": {"linear": {"yield_stress": 20}},
+                "back_stress": {"modulus": 100, "recovery": 20}
+            }}),
+        )]),
         facets("bilinear"),
         facets("biquadratic"),
         facets("smooth"),
@@ -228,7 +235,10 @@ fn scenes() -> Vec<Value> {
         blocks(&[("/contacts/press/points", json!({"segments": 2}))]),
         blocks(&[
             ("/materials/m/st_venant_kirchhoff/density", json!(1)),
-            ("/solution", json!({"dynamics": {"damping": {"mass": 1}}})),
+            (
+                "/solution",
+                json!({"dynamics": {"damping": {"mass": 1, "viscosity": 0.01}}}),
+            ),
         ]),
         blocks(&[("/contacts/press/master_surface", json!("smooth"))]),
         tube(),

@@ -202,6 +202,25 @@ fn killed_while_it_flows() {
     }));
 }
 
+/// A metal sheet whose yield surface moves, bent to and fro in steps of which some are too large: its back stress is continued.
+#[test]
+fn killed_while_its_yield_surface_moves() {
+    killed(&json!({
+        "covact": 1,
+        "materials": {"metal": {"armstrong_frederick": {
+            "E": 200e3, "nu": 0.3, "hardening": {"linear": {"yield_stress": 200}},
+            "back_stress": {"modulus": 20e3, "recovery": 100}
+        }}},
+        "bodies": strip(),
+        "supports": {
+            "clamped": {"on": "strip.x_min", "fixed": true},
+            "side": {"on": "strip.y_min", "symmetry": "y"},
+            "tip": {"on": "strip.x_max", "displacement": {"z": {"table": [[0, 0], [0.4, 8], [1, -8]]}}}
+        },
+        "solution": {"step": {"initial": 0.02, "max": 0.02}},
+    }));
+}
+
 /// A metal strip that a tool bends with friction and that is released in a second stage: what is let down and what holds the strip is
 /// continued.
 #[test]

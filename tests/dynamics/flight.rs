@@ -55,6 +55,36 @@ fn a_spinning_strip_keeps_its_momentum() {
     assert!((order - 2.0).abs() < 0.4, "order {order}");
 }
 
+/// Rigid motions strain nothing, so that viscous material leaves them free, however viscous it is: linear momentum is kept to rounding,
+/// angular momentum to what the step leaves (viscous forces act where the step ends), and dashpots take no more than the strip vibrates by.
+#[test]
+fn viscous_material_leaves_rigid_motions_free() {
+    let runs = [(0.0, 0.02), (0.05, 0.02), (0.05, 0.01)].map(|(viscosity, dt)| {
+        let mut scene = strip(dt);
+        scene["solution"]["dynamics"]["damping"] = json!({ "viscosity": viscosity });
+        let start = crate::support::simulation(&scene);
+        let [p0, l0] = start.momentum().expect("inertia");
+        let (mut linear, mut angular) = (0.0f64, 0.0f64);
+        let simulation = run(&scene, |s| {
+            let [p, l] = s.momentum().expect("inertia");
+            linear = linear.max((p - p0).norm() / p0.norm());
+            angular = angular.max((l - l0).norm() / l0.norm());
+        });
+        let last = |name: &str| {
+            let column = crate::support::column(&simulation, name);
+            column.last().copied().expect("a step")
+        };
+        let (kinetic, taken) = (last("energy.kinetic"), last("energy.damping"));
+        println!("{viscosity} {dt}: linear {linear:.1e}, angular {angular:.2e}, kinetic {kinetic}, damping {taken}");
+        assert!(linear < 1e-12, "{linear}");
+        (angular, kinetic, taken)
+    });
+    let [(_, kinetic, _), (coarse, slower, taken), (fine, _, _)] = runs;
+    assert!(coarse < 6e-3 && fine < 0.6 * coarse, "{coarse} {fine}");
+    assert!(taken > 0.0 && taken < 0.02 * kinetic, "{taken}");
+    assert!((slower / kinetic - 1.0).abs() < 0.02, "{slower} {kinetic}");
+}
+
 /// A body that turns about a point given: velocities are `w x (X - about)`.
 #[test]
 fn a_spin_is_about_its_point() {

@@ -76,6 +76,12 @@ fn by_key_with_place() {
         ),
         (
             r#""dynamics": {}"#,
+            r#""dynamics": {"damping": {"viscosity": -1e-3}}"#,
+            "10:",
+            "the viscosity is -0.001",
+        ),
+        (
+            r#""dynamics": {}"#,
             r#""dynamics": {"damping": {"stiffness": 1}}"#,
             "10:",
             "`mass`",

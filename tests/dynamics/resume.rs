@@ -50,7 +50,7 @@ fn a_run_goes_on_with_the_same_bits() {
         "surfaces": { "floor": { "plane": { "center": [0.7, 0.2, 0], "size": [8, 8] }, "side": { "point": [0, 0, 1] } } },
         "contacts": { "c": { "slave": "s.bottom", "master": "floor", "friction": 0.2 } },
         "loads": { "weight": { "on": "s", "gravity": [0, 0, -9.81] } },
-        "solution": { "dynamics": { "damping": { "mass": 0.5 } }, "end_time": 0.05 },
+        "solution": { "dynamics": { "damping": { "mass": 0.5, "viscosity": 1e-4 } }, "end_time": 0.05 },
         "output": { "every": 5 }
     }));
     let (whole, pieces) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());

@@ -119,6 +119,68 @@ fn damping_takes_its_part() {
     assert!(last("energy.integrator").abs() < 2e-3 * work);
 }
 
+/// The same with `a = eta w^2`: viscous material of Kelvin and Voigt, in elements of every kind.
+#[test]
+fn viscous_material_takes_its_part() {
+    let (g, w) = (1e-5, omega());
+    let rest = -RHO * HEIGHT * HEIGHT * g / (2.0 * E);
+    let period = std::f64::consts::TAU / w;
+    let a = 0.2 * w;
+    for element in ["h8", "h8_displacement", "h8_mean_dilatation", "q18"] {
+        let mut solution = fixed(period / 150.0, 12.0 * period);
+        solution["dynamics"]["damping"] = json!({ "viscosity": a / (w * w) });
+        let mut scene = bar(solution);
+        scene["bodies"]["b"]["element"] = json!(element);
+        scene["loads"] = json!({ "weight": { "on": "b", "gravity": [0, 0, -g] } });
+        let damped = (w * w - 0.25 * a * a).sqrt();
+        let exact = |t: f64| {
+            let swing = (damped * t).cos() + 0.5 * a / damped * (damped * t).sin();
+            rest * (1.0 - (-0.5 * a * t).exp() * swing)
+        };
+        let (mut error, mut smallest) = (0.0f64, 0.0f64);
+        let simulation = run(&scene, |s| {
+            error = error.max((top(s) - exact(s.time())).abs() / rest.abs());
+            smallest = smallest.min(top(s) / rest.abs());
+        });
+        let last = |name: &str| column(&simulation, name).last().copied().expect("a step");
+        let (work, taken) = (last("energy.external"), last("energy.viscosity"));
+        println!(
+            "{element}: error {error:.1e}, farthest {smallest:.4}, viscosity took {:.5} of the work",
+            taken / work
+        );
+        assert!(error < 2e-3, "{element}: {error}");
+        assert!(smallest < -1.7, "{element}: {smallest}");
+        assert!((taken / work - 0.5).abs() < 2e-3, "{taken} {work}");
+        assert_eq!(taken, last("energy.damping"));
+        let column = column(&simulation, "energy.viscosity");
+        assert!(column.windows(2).all(|w| w[1] >= w[0]));
+        assert!(last("energy.integrator").abs() < 2e-3 * work);
+    }
+}
+
+/// Motion at the start is resisted at once: from `v` at rest, `u = v / w_d exp(-a t / 2) sin(w_d t)`, and the first step has no less
+/// than the order of the others.
+#[test]
+fn viscous_material_resists_motion_at_the_start() {
+    let (v, w) = (1e-6, omega());
+    let period = std::f64::consts::TAU / w;
+    let a = 0.2 * w;
+    let damped = (w * w - 0.25 * a * a).sqrt();
+    let exact = |t: f64| v / damped * (-0.5 * a * t).exp() * (damped * t).sin();
+    let errors = [50, 100].map(|n| {
+        let mut solution = fixed(period / f64::from(n), 2.0 * period);
+        solution["dynamics"]["damping"] = json!({ "viscosity": a / (w * w) });
+        solution["dynamics"]["rho_inf"] = json!(1.0);
+        let mut scene = bar(solution);
+        // About the base: the top alone moves up at `v`, as the base is held.
+        scene["bodies"]["b"]["velocity"] = json!([0, 0, v]);
+        error(&scene, exact) * damped / v
+    });
+    let order = (errors[0] / errors[1]).log2();
+    println!("errors {errors:?}, order {order:.3}");
+    assert!(errors[1] < 3e-3 && (order - 2.0).abs() < 0.15, "{errors:?}");
+}
+
 /// Closed form: a base that moves by `B sin(W t)` drives the top by `u'' + w^2 u = (w^2 + W^2 / 2) B sin(W t)`: a sixth of the
 /// mass couples base and top. Supports start with the velocity that they prescribe.
 #[test]

@@ -124,6 +124,7 @@ fn eight_combinations_hold_what_their_effects_need_and_nothing_else() {
             ("stabilization", false),
             ("linear", false),
             ("inertia", false),
+            ("dashpots", false),
         ] {
             assert_eq!(parts[part] > 0, on, "{part}: {} ({which})", parts[part]);
         }
@@ -150,7 +151,7 @@ fn further_effects_one_by_one() {
         let small = ("/solution/kinematics", json!("small"));
         with(scene, &[small, ("/contacts/press/friction", coulomb())])
     };
-    let cases: [(Value, &[&str]); 17] = [
+    let cases: [(Value, &[&str]); 18] = [
         (
             with(plate(), &[("/solution/stabilization", viscous)]),
             &["stabilization"],
@@ -245,6 +246,16 @@ fn further_effects_one_by_one() {
         (dense(blocks()), &["inertia"]),
         (
             with(
+                dense(blocks()),
+                &[(
+                    "/solution/dynamics",
+                    json!({"damping": {"viscosity": 0.01}}),
+                )],
+            ),
+            &["inertia", "dashpots"],
+        ),
+        (
+            with(
                 blocks(),
                 &[
                     ("/contacts/press/points", json!({"segments": 2})),
@@ -283,6 +294,7 @@ fn further_effects_one_by_one() {
             "transposed matrix",
             "linear",
             "inertia",
+            "dashpots",
         ] {
             // A follower pressure may keep the symmetry.
             if part == "transposed matrix" {

@@ -24,7 +24,7 @@ pub(crate) mod sizes {
     use crate::contact::friction::turning::Turning;
     use crate::contact::points::SlavePoint;
     use crate::contact::rigid::{PointFault, Touch};
-    pub use crate::effects::inertia::{Inertia, Mass};
+    pub use crate::effects::inertia::{Dashpots, Inertia, Mass};
     use crate::model::kernel::Kernel;
     use crate::model::master::BodySurface;
     use crate::model::{Model, PairModel};

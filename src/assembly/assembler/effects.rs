@@ -110,7 +110,7 @@ impl<L: PairLaw> Assembler<'_, L> {
             increments: None,
             rhs: &mut rhs,
         };
-        inertia.start_system(self.model, &mut to);
+        inertia.start_system(self.model, &state.u, &mut to);
         self.dofs.fold(&mut rhs);
         if rhs.iter().any(|b| *b != 0.0) {
             self.matrix.set_identities(self.dofs);

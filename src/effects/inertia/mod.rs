@@ -6,10 +6,13 @@
 //! ([`Scheme`]). Forces are weighted, and nothing is evaluated between the ends of a step, so that what depends on history sees
 //! these alone. Contact forces `f_c` are not weighted but act at the end: weighted ones vibrate between two steps under a stiff
 //! penalty and gain energy without bound, while these never gained more than half a hundredth of it in any case that was tried.
-//! Where the scene asks for it, they are a part of `R`.
+//! Where the scene asks for it, they are a part of `R`. Viscous stresses of the material act in full, too, at the middle of the step
+//! ([`Dashpots`]).
+mod dashpots;
 mod mass;
 mod scheme;
 
+pub use dashpots::Dashpots;
 pub use mass::Mass;
 pub use scheme::Scheme;
 
@@ -31,6 +34,8 @@ pub struct Inertia {
     damping: f64,
     timing: ContactTiming,
     mass: Mass,
+    /// Where material is viscous.
+    dashpots: Option<Box<Dashpots>>,
     /// At the last accepted step.
     motion: Motion,
     /// Displacements there.
@@ -73,6 +78,8 @@ pub struct MotionEnergy {
     pub start: f64,
     /// What damping has taken since the start.
     pub damped: f64,
+    /// The part of it that viscous material has taken.
+    pub viscous: f64,
 }
 
 impl MotionEnergy {
@@ -95,6 +102,7 @@ impl Inertia {
             damping: own.settings.damping.mass,
             timing: own.settings.contact,
             mass: Mass::new(model, &own.densities),
+            dashpots: Dashpots::new(model).map(Box::new),
             motion: Motion {
                 v: zero.clone(),
                 a: zero.clone(),
@@ -107,6 +115,11 @@ impl Inertia {
             room: [zero.clone(), zero],
             norm: 0.0,
         })
+    }
+
+    /// Bytes of heap that viscous material takes.
+    pub fn dashpots(&self) -> usize {
+        self.dashpots.as_ref().map_or(0, |d| d.bytes())
     }
 
     /// What a checkpoint keeps.
@@ -134,10 +147,21 @@ impl Inertia {
         Ok(())
     }
 
-    /// The tangent `M`, and a right-hand side that gives the accelerations of the start: `rhs` holds the forces that act on the
+    /// The tangent `M`, and a right-hand side that gives the accelerations of the start at the displacements `u`: `rhs` holds the forces that act on the
     /// nodes, without inertia, and prescribed accelerations are taken from it.
-    pub fn start_system(&mut self, model: &Model, to: &mut Tangent<'_>) {
-        let [accelerations, _] = &mut self.room;
+    pub fn start_system(&mut self, model: &Model, u: &[f64], to: &mut Tangent<'_>) {
+        let [accelerations, forces] = &mut self.room;
+        if let (Some(dashpots), Some(own)) = (&mut self.dashpots, &model.dynamics) {
+            let dt = own.instant;
+            let soon = u.iter().zip(&self.motion.v).map(|(u, v)| u + dt * v);
+            let soon: Vec<f64> = soon.collect();
+            forces.fill(0.0);
+            dashpots.begin(model, u);
+            dashpots.add(model, (&soon, dt), forces, None);
+            for (b, f) in to.rhs.iter_mut().zip(forces.iter()) {
+                *b -= *f;
+            }
+        }
         accelerations.fill(0.0);
         (self.mass).add_product(model, &self.motion.a, accelerations);
         for (b, f) in to.rhs.iter_mut().zip(accelerations.iter()) {
@@ -182,7 +206,16 @@ impl Inertia {
             .collect();
         let mut out = vec![0.0; u.len()];
         self.mass.add_product(model, &a, &mut out);
+        self.add_viscous(&mut out);
         out
+    }
+
+    fn add_viscous(&self, out: &mut [f64]) {
+        if let Some(dashpots) = &self.dashpots {
+            for (out, f) in out.iter_mut().zip(dashpots.forces()) {
+                *out += f;
+            }
+        }
     }
 
     /// The balance of all forces at the end of the step, of which `contact` are those of contact: what supports exert, and zero
@@ -193,6 +226,7 @@ impl Inertia {
             .collect();
         out.copy_from_slice(&self.trial);
         self.mass.add_product(model, &a, out);
+        self.add_viscous(out);
         if self.timing == ContactTiming::Implicit {
             for (out, f) in out.iter_mut().zip(contact) {
                 *out += f;
@@ -236,7 +270,7 @@ impl Inertia {
         0.5 * v.iter().zip(&momentum).map(|(v, p)| v * p).sum::<f64>()
     }
 
-    /// Energies at the end of the step to `u`. Damping takes the mean of its forces at both ends along the way.
+    /// Energies at the end of the step to `u`, the state evaluated last. Damping by mass takes the mean of its forces at both ends along the way.
     pub fn energy(&self, model: &Model, u: &[f64]) -> MotionEnergy {
         let v = self.velocities(u);
         let mut damped = self.motion.energy.damped;
@@ -249,9 +283,11 @@ impl Inertia {
             let way = u.iter().zip(&self.base).map(|(u, base)| u - base);
             damped += force.iter().zip(way).map(|(f, way)| f * way).sum::<f64>();
         }
+        let taken = self.dashpots.as_ref().map_or(0.0, |d| d.taken());
         MotionEnergy {
             kinetic: self.kinetic(model, &v),
-            damped,
+            damped: damped + taken,
+            viscous: self.motion.energy.viscous + taken,
             ..self.motion.energy
         }
     }
@@ -290,13 +326,22 @@ impl Inertia {
 }
 
 impl Contribution for Inertia {
-    fn begin(&mut self, _: &Model, u: &[f64], [start, end]: [f64; 2]) {
+    fn begin(&mut self, model: &Model, u: &[f64], [start, end]: [f64; 2]) {
         self.base.copy_from_slice(u);
         self.dt = end - start;
+        if let Some(dashpots) = &mut self.dashpots {
+            dashpots.begin(model, u);
+        }
     }
 
     /// Weights what is in the residual and in the tangent, and adds inertia and damping.
-    fn add(&mut self, model: &Model, u: &[f64], residual: &mut [f64], to: Option<&mut Tangent>) {
+    fn add(
+        &mut self,
+        model: &Model,
+        u: &[f64],
+        residual: &mut [f64],
+        mut to: Option<&mut Tangent>,
+    ) {
         let mut room = std::mem::take(&mut self.room);
         let [a, forces] = &mut room;
         if self.damping > 0.0 {
@@ -324,12 +369,15 @@ impl Contribution for Inertia {
             for ((r, inertia), before) in sums {
                 *r = (1.0 - alpha_f) * *r + alpha_f * before + inertia;
             }
-            if let Some(to) = to {
+            if let Some(to) = to.as_deref_mut() {
                 to.matrix.scale(1.0 - alpha_f);
                 to.rhs.iter_mut().for_each(|b| *b *= 1.0 - alpha_f);
                 let [inertia, damping] = self.scheme.tangent(self.dt);
                 let factor = inertia + damping * self.damping;
                 self.mass.add_tangent(model, factor, to);
+            }
+            if let Some(dashpots) = &mut self.dashpots {
+                dashpots.add(model, (u, self.dt), residual, to);
             }
         }
         self.room = room;

@@ -6,6 +6,7 @@ use crate::model::error::{number, text};
 use crate::model::motion::pose;
 use crate::model::{ModelError, grid};
 use crate::scene::{self, MeshSource};
+use crate::shell::Memory;
 use nalgebra::Point3;
 
 /// An error of a body's mesh, told with the name of its file where it has one.
@@ -58,8 +59,8 @@ pub(super) fn mesh_error(body: &str, source: &MeshSource, error: mesh::MeshError
     error
 }
 
-/// Whether a run on the mesh of a body, whose material may flow, fits in memory, as far as its counts of elements tell before it is made.
-pub(super) fn room(name: &str, body: &scene::Body, flows: bool) -> Result<(), ModelError> {
+/// Whether a run on the mesh of a body, whose material remembers this, fits in memory, as far as its counts of elements tell before it is made.
+pub(super) fn room(name: &str, body: &scene::Body, memory: Memory) -> Result<(), ModelError> {
     let counts = match &body.mesh {
         MeshSource::Plate(p) => [p.elements[0], p.elements[1], p.layers],
         MeshSource::CylinderPanel(p) => [p.elements[0], p.elements[1], p.layers],
@@ -74,7 +75,7 @@ pub(super) fn room(name: &str, body: &scene::Body, flows: bool) -> Result<(), Mo
     let grid = grid::Grid {
         element,
         counts,
-        flows,
+        memory,
     };
     // Half of the estimate, which may be wrong by so much: the rest is checked when the system is known.
     memory::ask(grid.bytes(true) / 2).map_err(|mut shortage| {

@@ -13,7 +13,7 @@ use crate::machine::memory;
 use crate::mesh::nurbs::{Fineness, side};
 use crate::mesh::{Edge, Face, Mesh, NurbsError, NurbsSheet};
 use crate::scene::{self, Contact, Gap, NurbsSurface, Passes, Points, SetNames, Tangent};
-use crate::shell::{Block, Law, NurbsBlock, bytes_per_element};
+use crate::shell::{Block, Law, Memory, NurbsBlock, bytes_per_element};
 use covact_geometry::{MovingError, MovingFacets, NurbsPatch, PatchSpans, Vec3, io};
 
 /// Largest angle between neighbouring patches of a master (degrees): at a seam the side of a point is told by one of both normals.
@@ -59,7 +59,7 @@ impl Builder<'_> {
                 },
             )?;
         let elements = sheet.elements() as u64;
-        let each: usize = bytes_per_element(body.element, false).iter().sum();
+        let each: usize = bytes_per_element(body.element, Memory::NONE).iter().sum();
         memory::ask(memory::times(elements, each as u64)).map_err(|shortage| {
             let message = format!("body `{name}` with its {elements} elements: {shortage}");
             text(elements_key(name, &body.mesh), message).help(FEWER)

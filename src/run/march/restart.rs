@@ -360,6 +360,7 @@ fn put_assembler(memory: &AssemblerMemory, out: &mut Writer) {
                     kinetic,
                     start,
                     damped,
+                    viscous,
                 },
             farthest,
             greatest,
@@ -367,7 +368,7 @@ fn put_assembler(memory: &AssemblerMemory, out: &mut Writer) {
         } = motion;
         out.count(v.len());
         [v, a, forces].into_iter().for_each(|x| out.f64s(x));
-        out.f64s(&[*kinetic, *start, *damped, *farthest, *greatest]);
+        out.f64s(&[*kinetic, *start, *damped, *viscous, *farthest, *greatest]);
         out.bool(*event);
     });
 }
@@ -379,9 +380,9 @@ fn take_motion(model: &Model, from: &mut Reader) -> Result<Motion, Malformed> {
     for x in [&mut v, &mut a, &mut forces] {
         from.f64s(x)?;
     }
-    let mut sums = [0.0; 5];
+    let mut sums = [0.0; 6];
     from.f64s(&mut sums)?;
-    let [kinetic, start, damped, farthest, greatest] = sums;
+    let [kinetic, start, damped, viscous, farthest, greatest] = sums;
     Ok(Motion {
         v,
         a,
@@ -390,6 +391,7 @@ fn take_motion(model: &Model, from: &mut Reader) -> Result<Motion, Malformed> {
             kinetic,
             start,
             damped,
+            viscous,
         },
         farthest,
         greatest,

@@ -50,11 +50,15 @@ fn check_numbers(c: &mut Checker, dynamics: &Dynamics) {
             Some(help.into()),
         );
     }
-    let mass = dynamics.damping.mass;
-    if !(mass >= 0.0 && mass.is_finite()) {
-        let help = "it must not be negative: energy would come from nowhere";
-        let message = format!("the damping is {mass}");
-        c.add(&at("damping/mass"), message, Some(help.into()));
+    for (key, what, value) in [
+        ("mass", "damping", dynamics.damping.mass),
+        ("viscosity", "viscosity", dynamics.damping.viscosity),
+    ] {
+        if !(value >= 0.0 && value.is_finite()) {
+            let help = "it must not be negative: energy would come from nowhere";
+            let message = format!("the {what} is {value}");
+            c.add(&at(&format!("damping/{key}")), message, Some(help.into()));
+        }
     }
     let tolerance = dynamics.tolerance;
     if !(1e-8..=0.1).contains(&tolerance) {

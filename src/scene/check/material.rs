@@ -33,6 +33,25 @@ pub(super) fn check(c: &mut Checker, name: &str, material: &MaterialChoice, unit
         }
         check_hardening(c, &format!("{at}/hardening"), hardening);
     }
+    if let Material::ArmstrongFrederick(metal) = law {
+        for (key, value) in [
+            ("modulus", metal.back_stress.modulus),
+            ("recovery", metal.back_stress.recovery),
+        ] {
+            if !(value >= 0.0 && value.is_finite()) {
+                let help = match key {
+                    "modulus" => "it must not be negative; 0 is isotropic hardening alone (`j2`)",
+                    _ => "it must not be negative; 0 is a back stress without limit",
+                };
+                let message = format!("the `{key}` of the back stress is {value}");
+                c.add(
+                    &format!("{at}/back_stress/{key}"),
+                    message,
+                    Some(help.into()),
+                );
+            }
+        }
+    }
     if let Material::Hill48(sheet) = law {
         for (i, r) in sheet.r.into_iter().enumerate() {
             let angle = [

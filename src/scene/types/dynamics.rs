@@ -27,6 +27,10 @@ pub struct Damping {
     /// Force over mass and velocity (1 / time). It slows rigid motions too. A vibration of circular frequency `w` has the
     /// damping ratio `mass / (2 w)`.
     pub mass: f64,
+    /// Viscosity of the material over its moduli (time), after Kelvin and Voigt: stresses against the rate of strain, with the
+    /// moduli at small strain. Rigid motions are free. A vibration of circular frequency `w` has the damping ratio
+    /// `viscosity w / 2`.
+    pub viscosity: f64,
 }
 
 /// When contact and friction act within a step.

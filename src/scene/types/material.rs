@@ -1,5 +1,5 @@
 //! Materials: laws with their constants, and well-known materials by name.
-use super::{HardeningCurve, Metal, RolledSheet, Units};
+use super::{CyclicMetal, HardeningCurve, Metal, RolledSheet, Units};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,9 @@ pub enum MaterialChoice {
     /// Metal plasticity after Hill (1948) with isotropic hardening, in logarithmic strains: rolled sheets, which narrow and thin by
     /// their direction.
     Hill48(RolledSheet),
+    /// Metal plasticity after von Mises with kinematic hardening after Armstrong and Frederick beside the isotropic one, in
+    /// logarithmic strains: metal that is bent and straightened, or loaded back and forth.
+    ArmstrongFrederick(CyclicMetal),
     /// Structural steel S235: E 210 GPa, nu 0.3 (EN 1993-1-1, 3.2.6); yield strength 235 MPa (EN 10025-2); 7850 kg/m^3.
     /// St. Venant-Kirchhoff.
     Steel,
@@ -60,6 +63,9 @@ pub enum Material {
     /// Metal plasticity after Hill (1948) with isotropic hardening, in logarithmic strains: rolled sheets, which narrow and thin by
     /// their direction.
     Hill48(RolledSheet),
+    /// Metal plasticity after von Mises with kinematic hardening after Armstrong and Frederick beside the isotropic one, in
+    /// logarithmic strains: metal that is bent and straightened, or loaded back and forth.
+    ArmstrongFrederick(CyclicMetal),
 }
 
 impl Material {
@@ -71,6 +77,7 @@ impl Material {
             Material::Hencky(_) => "hencky",
             Material::J2(_) => "j2",
             Material::Hill48(_) => "hill48",
+            Material::ArmstrongFrederick(_) => "armstrong_frederick",
         }
     }
 
@@ -82,6 +89,7 @@ impl Material {
             Material::Hencky(_) => "Hencky",
             Material::J2(_) => "von Mises plasticity",
             Material::Hill48(_) => "Hill plasticity",
+            Material::ArmstrongFrederick(_) => "Armstrong-Frederick plasticity",
         }
     }
 
@@ -93,6 +101,7 @@ impl Material {
             | Material::Hencky(elastic) => *elastic,
             Material::J2(metal) => metal.elastic(),
             Material::Hill48(sheet) => sheet.elastic(),
+            Material::ArmstrongFrederick(metal) => metal.elastic(),
         }
     }
 
@@ -102,12 +111,23 @@ impl Material {
             Material::StVenantKirchhoff(_) | Material::NeoHooke(_) | Material::Hencky(_) => None,
             Material::J2(metal) => Some(&metal.hardening),
             Material::Hill48(sheet) => Some(&sheet.hardening),
+            Material::ArmstrongFrederick(metal) => Some(&metal.hardening),
         }
     }
 
     /// Whether it may flow, so that it remembers what was done to it.
     pub fn flows(&self) -> bool {
         self.hardening().is_some()
+    }
+
+    /// Whether its tangent is symmetric: that of a back stress that recovers is not.
+    pub fn is_symmetric(&self) -> bool {
+        match self {
+            Material::ArmstrongFrederick(metal) => {
+                metal.back_stress.modulus == 0.0 || metal.back_stress.recovery == 0.0
+            }
+            _ => true,
+        }
     }
 
     /// Whether stress and Green-Lagrange strain are proportional at any strain.
@@ -155,6 +175,7 @@ impl MaterialChoice {
             MaterialChoice::Hencky(e) => Some(Material::Hencky(e)),
             MaterialChoice::J2(metal) => Some(Material::J2(metal)),
             MaterialChoice::Hill48(sheet) => Some(Material::Hill48(sheet)),
+            MaterialChoice::ArmstrongFrederick(metal) => Some(Material::ArmstrongFrederick(metal)),
             _ => None,
         }
     }
@@ -183,7 +204,8 @@ impl MaterialChoice {
             | MaterialChoice::NeoHooke(_)
             | MaterialChoice::Hencky(_)
             | MaterialChoice::J2(_)
-            | MaterialChoice::Hill48(_) => None,
+            | MaterialChoice::Hill48(_)
+            | MaterialChoice::ArmstrongFrederick(_) => None,
             MaterialChoice::Steel => metal("steel", 210e9, 235e6, 7850.0),
             MaterialChoice::StainlessSteel => metal("stainless_steel", 200e9, 210e6, 7900.0),
             MaterialChoice::Aluminium => metal("aluminium", 70e9, 240e6, 2700.0),

@@ -61,6 +61,45 @@ impl RolledSheet {
     }
 }
 
+/// Elastic constants, yield stress and back stress of a metal that is loaded back and forth.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CyclicMetal {
+    /// Young's modulus (force / length^2).
+    #[serde(rename = "E")]
+    pub e: f64,
+    /// Poisson's ratio, at most 0.49.
+    pub nu: f64,
+    /// Mass per undeformed volume (force time^2 / length^4: t/mm^3 for N, mm and s). Loads by gravity ask for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<f64>,
+    /// Yield stress over equivalent plastic strain, as Kirchhoff stress: half of the width of the elastic range.
+    pub hardening: HardeningCurve,
+    /// Kinematic hardening: by how much the elastic range moves with the flow.
+    pub back_stress: BackStress,
+}
+
+impl CyclicMetal {
+    /// Constants at small strain.
+    pub fn elastic(&self) -> Elastic {
+        let CyclicMetal { e, nu, density, .. } = *self;
+        Elastic { e, nu, density }
+    }
+}
+
+/// Constants of a back stress that follows plastic flow, `X' = 2/3 modulus Ep' - recovery X p'`, written
+/// `{"modulus": 4000, "recovery": 40}`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BackStress {
+    /// Slope of the back stress over plastic strain in tension, where it begins (force / length^2).
+    pub modulus: f64,
+    /// How fast it saturates: in tension it tends to `modulus / recovery`, of which 63 % are reached after a plastic strain of
+    /// `1 / recovery`. 0 (default): it grows without limit (Prager).
+    #[serde(default)]
+    pub recovery: f64,
+}
+
 /// Yield stress over equivalent plastic strain p, written as `{"linear": {"yield_stress": 200, "slope": 1000}}`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

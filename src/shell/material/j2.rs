@@ -84,7 +84,7 @@ struct Returned<D> {
 }
 
 /// `a_ij b^ij` of contravariant components.
-fn contract<D: DualNum<f64> + Copy>(metric: &Metric, a: &[D; 6], b: &[D; 6]) -> D {
+pub(super) fn contract<D: DualNum<f64> + Copy>(metric: &Metric, a: &[D; 6], b: &[D; 6]) -> D {
     let lower = sandwich(&metric.lower.map(D::from), a);
     let normal = lower[0] * b[0] + lower[1] * b[1] + lower[2] * b[2];
     normal + (lower[3] * b[3] + lower[4] * b[4] + lower[5] * b[5]) * 2.0
@@ -99,13 +99,17 @@ impl J2State {
 
     /// Equivalent stress (von Mises).
     fn equivalent(&self, metric: &Metric) -> f64 {
-        let s = self.deviator(metric);
-        (1.5 * contract(metric, &s, &s)).sqrt()
+        equivalent(metric, &self.deviator(metric))
     }
 }
 
+/// Equivalent (von Mises) of a deviator.
+pub(super) fn equivalent(metric: &Metric, s: &[f64; 6]) -> f64 {
+    (1.5 * contract(metric, s, s)).sqrt()
+}
+
 /// `G_ij a^ij`.
-fn lowered_trace(metric: &Metric, a: &[f64; 6]) -> f64 {
+pub(super) fn lowered_trace(metric: &Metric, a: &[f64; 6]) -> f64 {
     let g = &metric.lower;
     g[0] * a[0] + g[1] * a[1] + g[2] * a[2] + 2.0 * (g[3] * a[3] + g[4] * a[4] + g[5] * a[5])
 }

@@ -125,6 +125,41 @@ impl<D: DualNum<f64> + Copy> Logarithm<D> {
 impl Logarithm<f64> {
     /// `dS^ij / dE_kl` from the stress T and its derivative by H, which is symmetric.
     pub fn tangent(&self, metric: &Metric, t: &[f64; 6], moduli: &[[f64; 6]; 6]) -> [[f64; 6]; 6] {
+        let (first, turned, mut tangent) = self.parts(metric, t, moduli);
+        for v in 0..6 {
+            for c in v..6 {
+                tangent[v][c] += (0..6).map(|k| first[k][v] * turned[k][c]).sum::<f64>();
+                tangent[c][v] = tangent[v][c];
+            }
+        }
+        tangent
+    }
+
+    /// The same where the derivative of T is not symmetric.
+    pub fn unsymmetric_tangent(
+        &self,
+        metric: &Metric,
+        t: &[f64; 6],
+        moduli: &[[f64; 6]; 6],
+    ) -> [[f64; 6]; 6] {
+        let (first, turned, at_constant) = self.parts(metric, t, moduli);
+        std::array::from_fn(|v| {
+            std::array::from_fn(|c| {
+                let change = at_constant[v.min(c)][v.max(c)];
+                change + (0..6).map(|k| first[k][v] * turned[k][c]).sum::<f64>()
+            })
+        })
+    }
+
+    /// `dH / dE`, its product with the derivative of T, and the upper triangle of what the change of `dH / dE` makes of T.
+    #[inline(always)]
+    #[allow(clippy::type_complexity)]
+    fn parts(
+        &self,
+        metric: &Metric,
+        t: &[f64; 6],
+        moduli: &[[f64; 6]; 6],
+    ) -> ([[f64; 6]; 6], [[f64; 6]; 6], [[f64; 6]; 6]) {
         let lower = full(&metric.lower, 1.0);
         let lowered = sandwich(&metric.lower, t);
         // dH / dE, and the change of dH / dE at constant T.
@@ -158,13 +193,7 @@ impl Logarithm<f64> {
                 }
             }
         }
-        for v in 0..6 {
-            for c in v..6 {
-                tangent[v][c] += (0..6).map(|k| first[k][v] * turned[k][c]).sum::<f64>();
-                tangent[c][v] = tangent[v][c];
-            }
-        }
-        tangent
+        (first, turned, tangent)
     }
 }
 

@@ -6,10 +6,12 @@
 //!
 //! Source of the formulas: J. Bonet and R. D. Wood, *Nonlinear Continuum Mechanics for Finite Element Analysis*, 2008,
 //! chapter 6, here in convected components.
+mod dashpot;
 mod hardening;
 mod hencky;
 mod hill;
 mod j2;
+mod kinematic;
 mod logarithm;
 mod neo_hooke;
 mod st_venant_kirchhoff;
@@ -18,10 +20,12 @@ mod tensor;
 use super::error::ShellError;
 use super::history::{Flow, PlasticWork};
 use crate::scene::{Elastic, Material};
+pub use dashpot::{Dashpot, DashpotState};
 pub use hardening::Hardening;
 pub use hencky::Hencky;
 pub use hill::{Hill48, Hill48State};
 pub use j2::{J2, J2State};
+pub use kinematic::{ArmstrongFrederick, ArmstrongFrederickState};
 pub use neo_hooke::NeoHooke;
 use num_dual::DualNum;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
@@ -34,12 +38,41 @@ const AT_YIELD: f64 = 1e-9;
 /// Part of the yield stress from which on a point counts as flowing where a step starts.
 const YIELDS: f64 = 0.98;
 
-/// Numbers that a point remembers at most, of the laws that flow.
-pub const MOST_STATE: usize = if J2State::LEN > Hill48State::LEN {
-    J2State::LEN
-} else {
-    Hill48State::LEN
-};
+/// What the size of an element in memory depends on, of its law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Memory {
+    /// Numbers that a point remembers.
+    pub numbers: usize,
+    /// Whether the tangent of the law is symmetric.
+    pub symmetric: bool,
+}
+
+impl Memory {
+    /// Of an elastic law.
+    pub const NONE: Memory = Memory {
+        numbers: 0,
+        symmetric: true,
+    };
+
+    /// That of a material.
+    pub fn of(material: &Material) -> Memory {
+        let numbers = match material {
+            Material::StVenantKirchhoff(_) | Material::NeoHooke(_) | Material::Hencky(_) => 0,
+            Material::J2(_) => J2State::LEN,
+            Material::Hill48(_) => Hill48State::LEN,
+            Material::ArmstrongFrederick(_) => ArmstrongFrederickState::LEN,
+        };
+        Memory {
+            numbers,
+            symmetric: material.is_symmetric(),
+        }
+    }
+
+    /// Whether the law may flow.
+    pub const fn flows(self) -> bool {
+        self.numbers > 0
+    }
+}
 
 /// Metric of the undeformed frame: covariant `G_ij` and contravariant `G^ij`, in Voigt order without factors.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,7 +111,7 @@ pub struct Response {
     pub energy: f64,
     /// `S^ij` (force per undeformed area).
     pub stress: [f64; 6],
-    /// `dS^ij / dE_kl` against Voigt strains; symmetric.
+    /// `dS^ij / dE_kl` against Voigt strains, row by row; symmetric if the law is.
     pub tangent: [[f64; 6]; 6],
 }
 
@@ -111,8 +144,8 @@ pub(super) fn state_of<L: MaterialLaw>(states: &[f64], point: usize) -> L::State
     L::State::read(&states[point * L::State::LEN..][..L::State::LEN])
 }
 
-/// A law whose stress is the gradient of an energy at constant `old`, the state at the end of the last accepted step.
-/// Energy and stress are generic over the scalar, so that dual numbers can check derivatives.
+/// A law whose stress is the gradient of an energy at constant `old`, the state at the end of the last accepted step, unless its
+/// tangent is not symmetric. Energy and stress are generic over the scalar, so that dual numbers can check derivatives.
 pub trait MaterialLaw: Copy + Send + Sync {
     /// What a point remembers between steps.
     type State: LawState;
@@ -121,6 +154,12 @@ pub trait MaterialLaw: Copy + Send + Sync {
     /// the sheet.
     fn start(&self, _frame: &[[f64; 3]; 3]) -> Self::State {
         Self::State::UNUSED
+    }
+
+    /// Whether its tangents are symmetric.
+    #[inline(always)]
+    fn symmetric(&self) -> bool {
+        true
     }
 
     /// Energy per undeformed volume.
@@ -200,6 +239,10 @@ pub enum Law {
     J2(J2),
     /// Rolled sheet that flows by Hill's criterion of 1948.
     Hill48(Hill48),
+    /// Metal whose yield surface moves with the flow.
+    ArmstrongFrederick(ArmstrongFrederick),
+    /// Dashpots beside an elastic material; no material of a scene.
+    Dashpot(Dashpot),
 }
 
 /// Runs a block of code with `$law` bound to the concrete law of a [`Law`].
@@ -211,6 +254,8 @@ macro_rules! with_law {
             $crate::shell::Law::Hencky($law) => $body,
             $crate::shell::Law::J2($law) => $body,
             $crate::shell::Law::Hill48($law) => $body,
+            $crate::shell::Law::ArmstrongFrederick($law) => $body,
+            $crate::shell::Law::Dashpot($law) => $body,
         }
     };
 }
@@ -238,6 +283,13 @@ impl Law {
                 let hardening = Hardening::from(sheet.hardening);
                 Law::Hill48(Hill48::new((lambda, mu), hardening, sheet.r, sheet.rolling))
             }
+            Material::ArmstrongFrederick(metal) => Law::ArmstrongFrederick(ArmstrongFrederick {
+                lambda,
+                mu,
+                hardening: Hardening::from(metal.hardening),
+                modulus: metal.back_stress.modulus,
+                recovery: metal.back_stress.recovery,
+            }),
         })
     }
 
@@ -259,6 +311,27 @@ impl Law {
             L::State::LEN
         }
         with_law!(self, law => len(law))
+    }
+
+    /// Whether material may flow.
+    pub fn flows(&self) -> bool {
+        match self {
+            Law::J2(_) | Law::Hill48(_) | Law::ArmstrongFrederick(_) => true,
+            Law::StVenantKirchhoff(_) | Law::NeoHooke(_) | Law::Hencky(_) | Law::Dashpot(_) => {
+                false
+            }
+        }
+    }
+
+    /// Dashpots with its moduli at small strain.
+    pub fn dashpot(&self) -> Law {
+        let (lambda, mu) = self.lame();
+        Law::Dashpot(Dashpot { lambda, mu })
+    }
+
+    /// Whether tangents are symmetric.
+    pub fn symmetric(&self) -> bool {
+        with_law!(self, law => law.symmetric())
     }
 
     fn lame(&self) -> (f64, f64) {

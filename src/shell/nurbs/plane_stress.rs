@@ -317,7 +317,11 @@ impl Sheet {
                 law: *law,
                 thickness,
             })),
-            Law::Hencky(_) | Law::J2(_) | Law::Hill48(_) => None,
+            Law::Hencky(_)
+            | Law::J2(_)
+            | Law::Hill48(_)
+            | Law::ArmstrongFrederick(_)
+            | Law::Dashpot(_) => None,
         }
     }
 }

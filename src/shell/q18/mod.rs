@@ -71,13 +71,17 @@ impl Q18Block {
     /// Sets up the elements of a mesh.
     ///
     /// # Errors
-    /// Elements that refer to missing nodes, and inverted elements (Jacobian not positive at a Gauss point or the centre).
+    /// Elements that refer to missing nodes, inverted elements (Jacobian not positive at a Gauss point or the centre), and laws whose
+    /// tangent is not symmetric.
     pub fn new(mesh: &Mesh, law: Law) -> Result<Q18Block, ShellError> {
         if mesh.kind != ElementKind::Q18 {
             return Err(ShellError::Kind {
                 wanted: "Q18",
                 found: format!("{:?}", mesh.kind),
             });
+        }
+        if !law.symmetric() {
+            return Err(ShellError::Unsymmetric);
         }
         let (chunks, rest) = mesh.connectivity.as_chunks::<18>();
         if !rest.is_empty() {

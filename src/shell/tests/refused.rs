@@ -6,7 +6,9 @@ pub(super) fn impossible_strain_is_a_typed_fault() {
     let x = nodes();
     // Pressed flat and through: det F < 0 at all Gauss points, and NaN.
     let mut out = H8System::default();
-    for law in laws() {
+    // Dashpots take any change of strain: the elements beside them refuse.
+    let laws_of_scenes = laws().into_iter().filter(|l| !matches!(l, Law::Dashpot(_)));
+    for law in laws_of_scenes {
         let block = H8Block::new(&mesh(&x), Formulation::Eas7, law).unwrap();
         let mut state = vec![0.0; block.state_len()];
         state[0] = 50.0;

@@ -56,6 +56,11 @@ pub fn flanged_panel(scene: &mut Value) {
     scene["solution"]["end_time"] = json!(0.5);
 }
 
+/// Coarser.
+pub fn gravity_drape(scene: &mut Value) {
+    elements(scene, "sheet", "plate", json!([18, 12]));
+}
+
 pub fn hat_pressed(_: &mut Value) {}
 
 pub fn hertz_block(scene: &mut Value) {
