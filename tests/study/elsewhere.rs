@@ -271,3 +271,51 @@ fn a_job_at_its_limit_goes_on_with_a_higher_one() {
     );
     assert_eq!(account["elsewhere"], json!(true));
 }
+
+/// A system asks a job to end before it kills it; two jobs never do the same run at once.
+#[cfg(unix)]
+#[test]
+fn a_job_that_is_asked_to_end_goes_on_later() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let step = json!({ "/solution/step": { "initial": 2e-3, "max": 2e-3, "min": 1e-6 } });
+    prepare(path, &[step]);
+    written(path, "parallel", &[]);
+    let (out, run) = (path.join("out"), "001_it_s_0/1");
+    let mut first = command(&out, &["job", ".", run])
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let kept = out.join("runs").join(run).join("checkpoint.1.bin");
+    let start = std::time::Instant::now();
+    while !kept.exists() {
+        assert!(start.elapsed().as_secs() < 60);
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    let second = job(&out, run);
+    assert_eq!(second.status.code(), Some(5), "{}", stderr(&second));
+    assert!(
+        stderr(&second).contains("is written to by another run"),
+        "{}",
+        stderr(&second)
+    );
+    let asked = Command::new("kill").arg(first.id().to_string()).status();
+    assert!(asked.unwrap().success() && first.try_wait().unwrap().is_none());
+    let first = first.wait_with_output().unwrap();
+    assert_eq!(first.status.code(), Some(4), "{}", stderr(&first));
+    assert!(
+        stderr(&first).contains("error: 001_it_s_0/1: interrupted; called again, it goes on"),
+        "{}",
+        stderr(&first)
+    );
+    // It is open, and neither done nor failed.
+    let output = written(path, "parallel", &[]);
+    assert!(stderr(&output).starts_with("1 runs open, 0 done, 0 failed"));
+    let third = job(&out, run);
+    assert_eq!(third.status.code(), Some(0), "{}", stderr(&third));
+    let summary = json_of(&out.join("runs").join(run).join("summary.json"));
+    assert_eq!(
+        (&summary["resumed"], &summary["steps"]),
+        (&json!(1), &json!(500))
+    );
+}
