@@ -12,6 +12,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 const RUNS: usize = 24;
+const STEPS: usize = 50;
 
 /// Two meshes, twelve depths, in steps that are small enough to be killed between two of them.
 fn prepare(folder: &Path) {
@@ -24,7 +25,8 @@ fn prepare(folder: &Path) {
     let shell = json!({ "shell": { "values": [{ "h8": [3, 3] }, { "h8": [4, 4] }] } });
     let study = study(json!([{ "choices": [shell, depth] }]));
     let mut scene = scene();
-    scene["solution"] = json!({ "step": { "initial": 0.02, "max": 0.02 } });
+    scene["solution"] =
+        json!({ "step": { "initial": 1.0 / STEPS as f64, "max": 1.0 / STEPS as f64 } });
     write(folder, "scene.json", &scene);
     write(folder, "study.json", &study);
 }
@@ -126,7 +128,12 @@ impl Place {
             .unwrap();
         let start = Instant::now();
         loop {
-            let far = self.accounts().len() >= 5 && !self.under_way().is_empty();
+            // So early that none can have ended before it is killed.
+            let early = |results: &PathBuf| {
+                let table = std::fs::read_to_string(results.join("history.csv"));
+                (3..STEPS / 2).contains(&table.unwrap_or_default().lines().count())
+            };
+            let far = self.accounts().len() >= 5 && self.under_way().iter().any(early);
             if far {
                 break;
             }
