@@ -204,7 +204,8 @@ impl Place {
 }
 
 fn is_there(command: &str) -> bool {
-    let there = Command::new(command).arg("--version").output().is_ok();
+    let told = Command::new(command).arg("--version").output();
+    let there = told.is_ok_and(|o| o.status.success());
     if !there {
         eprintln!("no {command}: it is not tried");
     }
