@@ -51,7 +51,8 @@ struct Stopped {
 }
 
 fn kept(folder: &Path) -> Vec<u8> {
-    let slots = (0..3).filter_map(|i| std::fs::read(folder.join(format!("checkpoint.{i}.bin"))).ok());
+    let slots =
+        (0..3).filter_map(|i| std::fs::read(folder.join(format!("checkpoint.{i}.bin"))).ok());
     // The number of a checkpoint grows by one with each.
     let newest = slots.max_by_key(|bytes| bytes[20..28].iter().rev().copied().collect::<Vec<u8>>());
     newest.expect("a checkpoint")
@@ -64,13 +65,28 @@ fn stopped() -> &'static Stopped {
         let scene = scene::parse(SCENE, "scene.json").expect("a scene");
         let folder = tempfile::tempdir().expect("a folder");
         let flag = AtomicBool::new(false);
-        let options = RunOptions { threads: 1, ..RunOptions::default() };
-        run(&scene, folder.path(), &options, &mut StopAfter(2, &flag), &flag).expect("two steps");
+        let options = RunOptions {
+            threads: 1,
+            ..RunOptions::default()
+        };
+        run(
+            &scene,
+            folder.path(),
+            &options,
+            &mut StopAfter(2, &flag),
+            &flag,
+        )
+        .expect("two steps");
         let mut checkpoint = kept(folder.path());
         let length = u64::from_le_bytes(checkpoint[12..20].try_into().expect("eight bytes"));
         checkpoint.truncate(length as usize);
         let history = std::fs::read(folder.path().join("history.csv")).expect("a table");
-        Stopped { scene, folder, checkpoint, history }
+        Stopped {
+            scene,
+            folder,
+            checkpoint,
+            history,
+        }
     })
 }
 
@@ -96,7 +112,11 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     std::fs::write(folder.join("history.csv"), &stopped.history).expect("written");
     bounded(Budget::projection(), || {
         let flag = AtomicBool::new(false);
-        let options = RunOptions { threads: 1, resume: true, ..RunOptions::default() };
+        let options = RunOptions {
+            threads: 1,
+            resume: true,
+            ..RunOptions::default()
+        };
         let caller = Options {
             threads: 1,
             observer: Box::new(StopAfter(3, &flag)),
