@@ -5,6 +5,7 @@ mod convert;
 mod gauntlet;
 mod inspect;
 mod interrupt;
+mod job;
 mod log;
 mod new;
 mod plan;
@@ -83,6 +84,8 @@ enum Command {
     Soak(SoakArgs),
     /// Run a scene over a grid of choices, and compare errors and times
     Study(StudyArgs),
+    /// Do one run of a study for a script of `covact study --for`: unless it has ended, from where it was cut short
+    Job(JobArgs),
     /// Print the JSON schema of scenes
     Schema(SchemaArgs),
     /// Write a scene to start from
@@ -255,13 +258,17 @@ struct StudyArgs {
     #[arg(short, long, value_name = "FOLDER")]
     out: PathBuf,
     /// Run nothing; write the scenes and `jobs.txt`, a command a line, for other machines
-    #[arg(long, conflicts_with = "collect")]
+    #[arg(long, group = "elsewhere")]
     jobs: bool,
-    /// The program's name in `jobs.txt`
-    #[arg(long, value_name = "NAME", requires = "jobs")]
+    /// Run nothing; write the scenes and a script that has the runs done that are open: `job.slurm`, `parallel.sh` or
+    /// `Snakefile`
+    #[arg(long = "for", value_name = "SYSTEM", group = "elsewhere")]
+    system: Option<study::Target>,
+    /// The program's name in `jobs.txt` or in the script
+    #[arg(long, value_name = "NAME", requires = "elsewhere")]
     program: Option<String>,
     /// Run nothing; take the results that are there
-    #[arg(long)]
+    #[arg(long, conflicts_with = "elsewhere")]
     collect: bool,
     /// Print one JSON object per event and line
     #[arg(long, conflicts_with = "quiet")]
@@ -269,6 +276,14 @@ struct StudyArgs {
     /// Print errors and warnings only
     #[arg(short, long)]
     quiet: bool,
+}
+
+#[derive(Debug, Args)]
+struct JobArgs {
+    /// Folder of the study
+    folder: PathBuf,
+    /// The run, `RUN/REPEAT`, of those that `jobs.json` lists
+    run: String,
 }
 
 #[derive(Debug, Args)]
@@ -371,6 +386,7 @@ pub fn main_of(arguments: impl Iterator<Item = OsString>, called: Option<PathBuf
         Command::Gauntlet(args) => gauntlet::gauntlet(&args),
         Command::Soak(args) => soak::soak(&args),
         Command::Study(args) => study::study(&args),
+        Command::Job(args) => job::job(&args),
         Command::Schema(args) => print(&match args.study {
             true => crate::study::schema(),
             false => crate::scene::schema(),

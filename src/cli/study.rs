@@ -3,7 +3,7 @@ use super::{StudyArgs, exit, report};
 use crate::machine;
 use crate::study::record::{Ending, Record};
 use crate::study::{
-    Event, Folder, LoadedStudy, Settings, StudyError, conclude, expand, load, play, running,
+    Event, Folder, LoadedStudy, Settings, StudyError, System, conclude, expand, load, play, running,
 };
 use serde_json::json;
 use std::path::PathBuf;
@@ -34,6 +34,9 @@ fn run(args: &StudyArgs) -> Result<u8, StudyError> {
         }
         return Ok(0);
     }
+    if let Some(target) = args.system {
+        return script(args, &loaded, &folder, target.system());
+    }
     let interrupt = Arc::new(AtomicBool::new(false));
     if !args.collect {
         watch(&interrupt);
@@ -60,19 +63,83 @@ fn run(args: &StudyArgs) -> Result<u8, StudyError> {
     ))
 }
 
+/// A system that `--for` names.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub(super) enum Target {
+    /// An array of jobs of Slurm
+    Slurm,
+    /// GNU parallel, here or by ssh
+    Parallel,
+    /// Snakemake
+    Snakemake,
+}
+
+impl Target {
+    fn system(self) -> System {
+        match self {
+            Target::Slurm => System::Slurm,
+            Target::Parallel => System::Parallel,
+            Target::Snakemake => System::Snakemake,
+        }
+    }
+}
+
+/// Writes a script that has another system do what is open, and names what has failed.
+fn script(
+    args: &StudyArgs,
+    loaded: &LoadedStudy,
+    folder: &Folder,
+    system: System,
+) -> Result<u8, StudyError> {
+    let program = args.program.as_deref().unwrap_or("covact");
+    let standing = folder.write_script(&loaded.study, system, program)?;
+    let (open, done) = (standing.open.len(), standing.done);
+    for text in &standing.failed {
+        report::error(&format!("failed: {text}"));
+    }
+    if args.json {
+        let line = json!({
+            "event": "script",
+            "file": (open > 0).then(|| args.out.join(system.file())),
+            "command": system.command(),
+            "open": open,
+            "done": done,
+            "failed": standing.failed.len(),
+        });
+        super::print(&format!("{line}\n"));
+    } else if !args.quiet {
+        let left = match open {
+            0 => "nothing to do: take the results with `--collect`".to_owned(),
+            _ => format!("`{}` in {} does them", system.command(), args.out.display()),
+        };
+        report::stderr(&format!(
+            "{open} runs open, {done} done, {} failed; {left}\n",
+            standing.failed.len()
+        ));
+    }
+    match standing.failed.is_empty() || loaded.study.may_fail {
+        true => Ok(0),
+        false => Ok(exit::NOT_CONVERGED),
+    }
+}
+
 fn settings(loaded: &LoadedStudy) -> Result<Settings, StudyError> {
-    let program = super::program().map_err(|e| StudyError::Start {
+    Ok(Settings::of(&loaded.study.timing, program()?))
+}
+
+/// The program that does the runs: this one.
+pub(super) fn program() -> Result<PathBuf, StudyError> {
+    super::program().map_err(|e| StudyError::Start {
         program: PathBuf::from("covact"),
         reason: format!("cannot tell where this program is: {e}"),
-    })?;
-    Ok(Settings::of(&loaded.study.timing, program))
+    })
 }
 
 /// Time for the processes of runs to be stopped and waited for.
 const STOPPING: Duration = Duration::from_secs(5);
 
 /// An interrupt ends the study; what is done is kept.
-fn watch(interrupt: &Arc<AtomicBool>) {
+pub(super) fn watch(interrupt: &Arc<AtomicBool>) {
     let flag = Arc::clone(interrupt);
     let handler = super::interrupt::watch(move || {
         if flag.swap(true, Ordering::SeqCst) {

@@ -53,6 +53,8 @@ pub use check::{
     BodyReport, CheckReport, LoadReport, PairReport, SetReport, SupportReport, SurfaceReport, check,
 };
 pub use checkpoint::CheckpointError;
+#[doc(hidden)]
+pub use checkpoint::resealed;
 pub use claim::{ClaimError, FolderError, vacant};
 pub use error::RunError;
 pub use estimate::Estimate;
@@ -175,6 +177,12 @@ pub fn open<'o>(
         simulation.set_earlier(folder.earlier());
     }
     Ok(Opened::Going(Box::new(simulation), Box::new(folder)))
+}
+
+/// Whether `folder` holds a run of this scene that was cut short and that [`RunOptions::resume`] goes on with.
+pub fn is_unfinished(loaded: &LoadedScene, folder: &Path) -> bool {
+    let found = checkpoint::find(folder, &Fingerprint::new(loaded));
+    matches!(found, Ok(Found::Unfinished(_)))
 }
 
 /// Checksum of a scene and of the files that it names, as [`Summary::scene`] tells it.

@@ -20,6 +20,14 @@ pub enum StudyError {
         /// What is wrong with it, in words.
         what: String,
     },
+    /// The list of runs in the folder of a study does not do.
+    #[error("`{}` {reason}", path.display())]
+    Jobs {
+        /// The list.
+        path: PathBuf,
+        /// What is wrong with it, in words.
+        reason: String,
+    },
     /// The program that does the runs cannot be started.
     #[error("cannot start `{}`: {reason}", program.display())]
     Start {

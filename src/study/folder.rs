@@ -4,11 +4,14 @@ use super::error::StudyError;
 use super::expand::{Expansion, Planned};
 use super::file::{Measure, Study};
 use super::gather::state;
+use super::jobs::{Jobs, Standing};
 use super::record::{Ending, Record};
+use super::scripts::{System, Work};
 use crate::output::OutputError;
 use crate::output::atomic::{make_folder, remove_file, write_whole};
 use crate::run;
 use crate::scene::{self, pointer};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -30,7 +33,7 @@ pub struct Folder {
 }
 
 /// A run whose scene is written.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Ready {
     /// Name of its folder.
     pub id: String,
@@ -76,8 +79,8 @@ impl Folder {
         self.path.join("runs").join(id).join(repeat.to_string())
     }
 
-    /// Arguments of the program, in the study's folder, for a repeat of a run.
-    pub fn arguments(&self, id: &str, repeat: u32) -> [String; 9] {
+    /// Arguments of the program, in the study's folder, for a repeat of a run that begins, or that goes on.
+    pub fn arguments(&self, id: &str, repeat: u32, resume: bool) -> [String; 9] {
         [
             "run".to_owned(),
             format!("runs/{id}/scene.json"),
@@ -85,8 +88,11 @@ impl Folder {
             format!("runs/{id}/{repeat}"),
             "--quiet".to_owned(),
             "--no-report".to_owned(),
-            // A job that was cut short begins anew when it is called again.
-            "--force".to_owned(),
+            match resume {
+                true => "--resume".to_owned(),
+                // What an earlier process has left is replaced.
+                false => "--force".to_owned(),
+            },
             "--threads".to_owned(),
             self.threads.to_string(),
         ]
@@ -106,7 +112,7 @@ impl Folder {
         let mut text = String::new();
         let mut count = 0;
         for (run, repeat) in self.rounds() {
-            let arguments = self.arguments(&self.runs[run].id, repeat);
+            let arguments = self.arguments(&self.runs[run].id, repeat, false);
             text += &format!("{} {}\n", quoted(program), arguments.join(" "));
             count += 1;
             if state(self, run, repeat).ending != Ending::Done {
@@ -116,6 +122,51 @@ impl Folder {
         }
         write_whole(&self.path.join("jobs.txt"), text.as_bytes())?;
         Ok(count)
+    }
+
+    /// Writes the list of the study's runs, and the script that has a system do those that are open; no script where none
+    /// is.
+    ///
+    /// # Errors
+    /// [`StudyError::Occupied`]: there is a file of others in the script's place. A file cannot be written or removed.
+    pub fn write_script(
+        &self,
+        study: &Study,
+        system: System,
+        program: &str,
+    ) -> Result<Standing, StudyError> {
+        let path = self.path.join(system.file());
+        match std::fs::read_to_string(&path) {
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => {}
+            Ok(text) if text.lines().take(2).any(|l| l.starts_with(&system.mark())) => {}
+            _ => {
+                return Err(StudyError::Occupied {
+                    path,
+                    what: "was not written by this program".to_owned(),
+                });
+            }
+        }
+        let jobs = Jobs::of(self, study.timing.limit, study.may_fail);
+        jobs.write(&self.path)?;
+        let standing = jobs.standing(&self.path);
+        // Snakemake's marks of what is not done, or not any more.
+        for name in &standing.open {
+            remove_file(&self.path.join("runs").join(format!("{name}.done")))?;
+        }
+        if standing.open.is_empty() {
+            remove_file(&path)?;
+            return Ok(standing);
+        }
+        let text = system.script(&Work {
+            program,
+            open: &standing.open,
+            threads: self.threads,
+            limit: study.timing.limit,
+            one_at_a_time: study.timing.one_at_a_time,
+            files: self.path.join("files").is_dir(),
+        });
+        write_whole(&path, text.as_bytes())?;
+        Ok(standing)
     }
 }
 
@@ -147,7 +198,7 @@ fn own(path: &Path, study: &Study) -> Result<(), StudyError> {
 }
 
 /// As one word for a shell.
-fn quoted(word: &str) -> String {
+pub(super) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+:@".contains(c);
     match !word.is_empty() && word.chars().all(plain) {
         true => word.to_owned(),

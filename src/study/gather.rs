@@ -156,7 +156,9 @@ pub(super) fn gather(
             }
         }
         elsewhere += (states.iter())
-            .filter(|s| s.ending != Ending::Missing && s.account.is_none())
+            .filter(|s| {
+                s.ending != Ending::Missing && s.account.as_ref().is_none_or(|a| a.elsewhere)
+            })
             .count();
         // One that fails now and then has failed.
         let failed = states.iter().position(|s| is_failed(&s.ending));

@@ -254,6 +254,19 @@ fn checked(path: &Path, bytes: &mut Vec<u8>) -> Result<(), CheckpointError> {
     }
 }
 
+/// The bytes with the length and the checksum that fit them, for those who try what else a reader makes of changed ones.
+#[doc(hidden)]
+pub fn resealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let length = bytes.len() as u64;
+    if let Some(place) = bytes.get_mut(HEAD - 16..HEAD - 8) {
+        place.copy_from_slice(&length.to_le_bytes());
+    }
+    bytes.truncate(bytes.len().saturating_sub(8));
+    let sum = Sum::of(&bytes);
+    bytes.extend_from_slice(&sum.to_le_bytes());
+    bytes
+}
+
 /// Checks everything that needs no model.
 fn open(
     path: PathBuf,

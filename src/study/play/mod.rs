@@ -23,6 +23,17 @@ pub struct Settings {
     pub together: usize,
     /// A run that takes longer is stopped.
     pub limit: Duration,
+    /// Whose runs these are.
+    pub place: Place,
+}
+
+/// Where runs are done, and what a run that was cut short does there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// By the study, which wants to know how long they take: one that was cut short begins anew.
+    Here,
+    /// By a system that ends them and starts them again: one that was cut short goes on from its last checkpoint.
+    Elsewhere,
 }
 
 impl Settings {
@@ -37,6 +48,7 @@ impl Settings {
             },
             // Longer than any run.
             limit: Duration::try_from_secs_f64(timing.limit).unwrap_or(Duration::MAX),
+            place: Place::Here,
         }
     }
 }
@@ -105,6 +117,33 @@ pub fn play(
         }) => Err(failure),
         _ => Ok(()),
     }
+}
+
+/// Does one repeat of a run, unless it has ended before, and says why results that are there are not taken, where that is
+/// so. None where the user interrupts it.
+pub(super) fn one<'f>(
+    folder: &'f Folder,
+    (run, repeat): (usize, u32),
+    settings: &Settings,
+    interrupt: &AtomicBool,
+) -> Result<Option<(Event<'f>, Option<String>)>, StudyError> {
+    let before = state(folder, run, repeat);
+    if !before.again(settings.limit.as_secs_f64()) {
+        let event = event(folder, (run, repeat), &before, (1, 1), true);
+        return Ok(Some((event, None)));
+    }
+    let process = Process {
+        folder,
+        run,
+        repeat,
+        settings,
+    };
+    if let Ended::Interrupted = process.run(interrupt)? {
+        return Ok(None);
+    }
+    let after = state(folder, run, repeat);
+    let event = event(folder, (run, repeat), &after, (1, 1), false);
+    Ok(Some((event, after.stale)))
 }
 
 /// What workers share.

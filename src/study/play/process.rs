@@ -1,9 +1,10 @@
 //! One repeat of a run: a process, its limit, and the account of it.
-use super::Settings;
-use crate::output::atomic::{make_folder, write_whole};
+use super::{Place, Settings};
+use crate::output::atomic::{make_folder, remove_file, write_whole};
 use crate::output::{FolderLock, LOCK_FILE, Locking, OutputError, RunStatus, Summary};
 use crate::study::error::StudyError;
 use crate::study::folder::Folder;
+use crate::{run, scene};
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
 use std::io;
@@ -60,6 +61,9 @@ pub struct Account {
     pub signal: Option<i32>,
     /// Seconds after which it was stopped, where it was.
     pub stopped_after: Option<f64>,
+    /// A job of another system did the run, perhaps on another machine than others.
+    #[serde(default)]
+    pub elsewhere: bool,
 }
 
 impl Account {
@@ -95,18 +99,25 @@ pub(super) struct Process<'a> {
 }
 
 impl Process<'_> {
-    /// Does the run anew.
+    /// Does the run: anew, or from where it was cut short.
     pub fn run(&self, interrupt: &AtomicBool) -> Result<Ended, StudyError> {
         let ready = &self.folder.runs[self.run];
         let results = self.folder.results(&ready.id, self.repeat);
-        clear(&results)?;
+        let resume = self.settings.place == Place::Elsewhere && self.can_go_on(&results);
+        match resume {
+            true => {
+                let _free = unused(&results)?;
+                remove_file(&results.join("process.json"))?;
+            }
+            false => clear(&results)?,
+        }
         let _running = Running::new();
         // Asked after it is counted: whoever interrupts and then sees none running can rely on it.
         if interrupt.load(Ordering::SeqCst) {
             return Ok(Ended::Interrupted);
         }
         let start = Instant::now();
-        let mut child = self.start(&results)?;
+        let mut child = self.start(&results, resume)?;
         let mut stopped_after = None;
         let status = loop {
             let over = start.elapsed() > self.settings.limit;
@@ -133,6 +144,11 @@ impl Process<'_> {
         if (summary.as_ref()).is_some_and(|s| s.status == RunStatus::Interrupted) {
             return Ok(Ended::Interrupted);
         }
+        // Of all parts of a run that was continued, the run itself tells.
+        let wall_s = match &summary {
+            Some(s) if resume && s.resumed > 0 => wall_s.max(s.wall_s),
+            _ => wall_s,
+        };
         let account = Account {
             threads: self.folder.threads as usize,
             cpu_s: summary.as_ref().and_then(|s| s.cpu_s),
@@ -143,17 +159,25 @@ impl Process<'_> {
             exit_code: status.code(),
             signal: signal(status),
             stopped_after,
+            elsewhere: self.settings.place == Place::Elsewhere,
         };
         account.write(&results)?;
         Ok(Ended::Done)
     }
 
-    fn start(&self, results: &Path) -> Result<Child, StudyError> {
+    /// Whether the results are those of this run as far as it came, with a checkpoint to go on from.
+    fn can_go_on(&self, results: &Path) -> bool {
+        let id = &self.folder.runs[self.run].id;
+        let scene = self.folder.path.join("runs").join(id).join("scene.json");
+        scene::load(&scene).is_ok_and(|loaded| run::is_unfinished(&loaded, results))
+    }
+
+    fn start(&self, results: &Path, resume: bool) -> Result<Child, StudyError> {
         let said = results.join("stderr.txt");
         let said = File::create(&said).map_err(|e| OutputError::io("write", &said, e))?;
         let id = &self.folder.runs[self.run].id;
         let program = &self.settings.program;
-        (Command::new(program).args(self.folder.arguments(id, self.repeat)))
+        (Command::new(program).args(self.folder.arguments(id, self.repeat, resume)))
             .current_dir(&self.folder.path)
             .stdin(Stdio::null())
             .stdout(Stdio::null())
@@ -176,17 +200,10 @@ fn clear(results: &Path) -> Result<(), StudyError> {
         });
     }
     // Held until the folder is gone.
-    let lock = match results.is_dir() {
-        true => Some(FolderLock::take(results)?),
+    let _lock = match results.is_dir() {
+        true => Some(unused(results)?),
         false => None,
     };
-    if let Some(Locking::InUse(holder)) = &lock {
-        let by = (holder.as_ref()).map_or(String::new(), |holder| format!(" ({holder})"));
-        return Err(StudyError::Occupied {
-            path: results.to_path_buf(),
-            what: format!("is written to by another run{by}"),
-        });
-    }
     match fs::remove_dir_all(results) {
         Err(e) if e.kind() != io::ErrorKind::NotFound => {
             return Err(OutputError::io("remove the folder", results, e).into());
@@ -194,6 +211,20 @@ fn clear(results: &Path) -> Result<(), StudyError> {
         _ => {}
     }
     Ok(make_folder(results)?)
+}
+
+/// The lock of a folder that no other run is writing to.
+fn unused(results: &Path) -> Result<Locking, StudyError> {
+    match FolderLock::take(results)? {
+        Locking::InUse(holder) => {
+            let by = (holder.as_ref()).map_or(String::new(), |holder| format!(" ({holder})"));
+            Err(StudyError::Occupied {
+                path: results.to_path_buf(),
+                what: format!("is written to by another run{by}"),
+            })
+        }
+        lock => Ok(lock),
+    }
 }
 
 /// Files that tell a folder of results from others; a job that was killed early leaves no more than its history.
