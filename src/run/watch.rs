@@ -37,6 +37,8 @@ use twist::Twist;
 const JUMP: f64 = 0.01;
 /// The same of a step that was solved from a softened penalty only.
 const OTHER: f64 = 1e-3;
+/// Part of the work turned over so far that was there before a step, below which it is one of first touches, whose trapezoid is coarse.
+const FIRST: f64 = 0.5;
 /// Multiple of the speed of the last step above which such a step is told.
 const FASTER: f64 = 10.0;
 /// Share of the work turned over above which the sum of all steps is told.
@@ -410,6 +412,7 @@ impl Watch {
         }
         self.stored = stored;
         self.adjusted += work.adjusted;
+        let earlier = self.turnover;
         self.turnover += work.turnover;
         let before = self.imbalance;
         self.imbalance = self.external + self.adjusted - energy;
@@ -424,6 +427,11 @@ impl Watch {
             self.snaps |= softened;
             let text = Jump { lost, part }.told(model, (step, [from, to]), softened);
             return Some((text, !work.changed));
+        }
+        // Where points with friction come to rest on the way there, the path decides about what they keep.
+        let first = earlier < FIRST * self.turnover;
+        if softened && !first && part > JUMP && model.pairs.iter().any(|p| p.friction.is_some()) {
+            return Some((Jump { lost, part }.rubbed(model, (step, [from, to])), true));
         }
         let [speed, last] = self.speed;
         if !softened || last <= 0.0 || speed <= FASTER * last {
