@@ -336,17 +336,6 @@ impl Builder<'_> {
             let help = "take the faces on one side of the fold as masters of contacts of their own";
             return Err(text(at("master"), message).help(help));
         }
-        let rational = body
-            .and_then(|b| b.block.sheet())
-            .is_some_and(|s| s.patches.iter().any(|p| p.patch.is_rational()));
-        if rational {
-            let message = format!(
-                "`{}` is a face of a rational surface (a cylinder, a sphere, an arc), which cannot be a master yet",
-                contact.master
-            );
-            let help = "exchange slave and master, or take a face without weights";
-            return Err(text(at("master"), message).help(help));
-        }
         Ok(())
     }
 
