@@ -9,6 +9,7 @@ mod nonlinear;
 mod pair;
 mod panel;
 mod refusals;
+mod scenes;
 mod seams;
 
 use crate::support::{Outcome, solve_in};
@@ -88,8 +89,13 @@ impl Patch {
 
 /// Runs a scene whose body `sheet` is a shell of this patch; the scene gives the rest of it.
 pub fn solve_sheet(patch: &Patch, scene: &Value) -> Outcome {
+    solve_sheet_file(&patch.json(), scene)
+}
+
+/// Runs a scene beside which this geometry lies as `face.json`.
+pub fn solve_sheet_file(geometry: &Value, scene: &Value) -> Outcome {
     let folder = tempfile::tempdir().expect("temporary folder");
-    std::fs::write(folder.path().join("face.json"), patch.json().to_string()).expect("written");
+    std::fs::write(folder.path().join("face.json"), geometry.to_string()).expect("written");
     solve_in(scene, folder.path())
 }
 
