@@ -11,6 +11,7 @@ mod panel;
 mod refusals;
 mod scenes;
 mod seams;
+mod trims;
 
 use crate::support::{Outcome, solve_in};
 use serde_json::{Value, json};
