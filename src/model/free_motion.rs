@@ -1,9 +1,11 @@
 //! Can a body move without being strained? Six rigid motions against its supports.
 use super::{Model, Support};
+use crate::mesh::nurbs::Kept;
 use crate::scene::ValueError;
 use crate::shell::{Block, SEAM_NODES};
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
+use std::collections::BTreeSet;
 
 /// A rigid motion that no support hinders.
 #[derive(Debug, Clone, PartialEq)]
@@ -155,7 +157,10 @@ fn pieces(nodes: usize, body: &super::BodyModel) -> Vec<Vec<u32>> {
         }
         i
     }
-    for e in 0..body.mesh.elements() {
+    // What a trim cuts away joins nothing, and its control points are no pieces.
+    let trimmed = body.block.sheet().filter(|s| s.is_trimmed());
+    let gone = |e: &usize| trimmed.is_some_and(|s| *s.kept(*e) == Kept::Nothing);
+    for e in (0..body.mesh.elements()).filter(|e| !gone(e)) {
         let conn = body.mesh.element(e);
         let first = root(&mut parent, conn[0]);
         for &n in &conn[1..] {
@@ -168,7 +173,9 @@ fn pieces(nodes: usize, body: &super::BodyModel) -> Vec<Vec<u32>> {
         parent[b as usize] = a;
     }
     let mut groups = std::collections::BTreeMap::<u32, Vec<u32>>::new();
-    for n in 0..nodes as u32 {
+    let unused = trimmed.map(|s| s.unused()).unwrap_or_default();
+    let unused: BTreeSet<u32> = unused.into_iter().map(|[n, _]| n).collect();
+    for n in (0..nodes as u32).filter(|n| !unused.contains(n)) {
         let r = root(&mut parent, n);
         groups.entry(r).or_default().push(n);
     }

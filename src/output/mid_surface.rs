@@ -21,10 +21,12 @@ pub struct MidSurface {
     pub pressure: Option<Vec<f64>>,
     /// Thickness of the undeformed sheet (length).
     pub thickness: f64,
+    /// Elements that are shown; none where all of them are.
+    pub kept: Option<Vec<bool>>,
 }
 
 impl MidSurface {
-    /// The surface as the bytes of a `.vtu` file: a Bezier cell for every element, patch after patch. Point data, at the control points of the
+    /// The surface as the bytes of a `.vtu` file: a Bezier cell for every element, patch after patch; elements that a trim cuts are whole. Point data, at the control points of the
     /// cells: `displacement`, the weights, `contact_pressure`; cell data: `sheet_element` (counted from 0), `thickness` and the
     /// degrees.
     ///
@@ -43,7 +45,12 @@ impl MidSurface {
         };
         let (mut points, mut way, mut weights) = (Vec::new(), Vec::new(), Vec::new());
         let (mut offsets, mut degrees, mut pressures) = (Vec::new(), Vec::new(), Vec::new());
+        let mut numbers = Vec::new();
         for (k, (rest, now)) in rest.iter().zip(&now).enumerate() {
+            if self.kept.as_ref().is_some_and(|kept| !kept[k]) {
+                continue;
+            }
+            numbers.push(k as u32);
             for at in vtk_order(rest.degree) {
                 let [a, b] = [rest, now].map(|piece| {
                     let [x, y, z, w] = piece.points[at];
@@ -78,7 +85,7 @@ impl MidSurface {
             point_data,
             cell_data: vec![
                 Array::new(DEGREES, 3, degrees),
-                Array::new(SHEET, 1, (0..cells as u32).collect::<Vec<_>>()),
+                Array::new(SHEET, 1, numbers),
                 Array::new("thickness", 1, vec![self.thickness; cells]),
             ],
             vectors: Some("displacement"),

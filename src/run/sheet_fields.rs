@@ -1,6 +1,6 @@
 //! Fields of sheets for the output: on a mesh of quadratic bricks between both faces, as they are deformed.
-use crate::mesh::nurbs::SheetPatch;
-use crate::mesh::{ElementKind, Face, Mesh};
+use crate::mesh::nurbs::{Kept, SheetPatch};
+use crate::mesh::{ElementKind, Face, Mesh, NurbsSheet};
 use crate::model::BodyModel;
 use crate::output::{ContactFields, Field, MidSurface, Place};
 use crate::shell::{Block, NurbsBlock};
@@ -47,6 +47,10 @@ pub(super) fn mid_surface(
         rest: sheet.patches.iter().map(|p| p.patch.clone()).collect(),
         pressure: pressure.map(|all| all[first..first + sheet.nodes()].to_vec()),
         thickness: sheet.thickness,
+        kept: sheet.is_trimmed().then(|| {
+            let all = 0..sheet.elements();
+            all.map(|e| *sheet.kept(e) != Kept::Nothing).collect()
+        }),
     })
 }
 
@@ -106,7 +110,7 @@ impl SheetFields {
                 shapes.push((numbers, std::array::from_fn(|a| room.n[a])));
             }
         }
-        let mesh = bricks(nodes, &grids);
+        let mesh = bricks(nodes, &grids, sheet);
         let stress = stresses(body, block, u, &grids);
         Some(SheetFields {
             mesh,
@@ -151,22 +155,27 @@ fn grid_point(k: [usize; 2], spans: [usize; 2]) -> GridPoint {
     }
 }
 
-/// Bricks over grids of so many nodes along both directions, one for each patch; all nodes of the bottom first.
-fn bricks(nodes: Vec<Vec3>, grids: &[[usize; 2]]) -> Mesh {
+/// Bricks over grids of so many nodes along both directions, one for each patch; all nodes of the bottom first. Those over elements of
+/// which a trim leaves nothing are left out.
+fn bricks(nodes: Vec<Vec3>, grids: &[[usize; 2]], sheet: &NurbsSheet) -> Mesh {
     let count = nodes.len() / 2;
     let mut connectivity = Vec::new();
     let (mut first, mut elements) = (0, 0);
-    for along in grids {
+    for (along, part) in grids.iter().zip(&sheet.patches) {
+        let nu = part.spans()[0];
         let cells = along.map(|n| (n - 1) / 2);
         for j in 0..cells[1] {
             for i in 0..cells[0] {
+                if *part.kept(i / DIVISIONS + nu * (j / DIVISIONS)) == Kept::Nothing {
+                    continue;
+                }
+                elements += 1;
                 for k in 0..18 {
                     let (a, b) = (2 * i + k % 3, 2 * j + k / 3 % 3);
                     connectivity.push((first + a + along[0] * b + count * (k / 9)) as u32);
                 }
             }
         }
-        elements += (cells[0] * cells[1]) as u32;
         first += along[0] * along[1];
     }
     let faces = |face: u8| {

@@ -344,7 +344,12 @@ impl Sliding<Coulomb> {
 #[test]
 fn friction_on_faces_that_move() {
     let mut worst_reduced = 0.0f64;
-    for master in [Master::Bilinear, Master::Biquadratic, Master::Smooth] {
+    for master in [
+        Master::Bilinear,
+        Master::Biquadratic,
+        Master::Smooth,
+        Master::Rational,
+    ] {
         for place in [Where::Same, Where::Neighbour, Where::Far] {
             for (mu, approach) in [(0.1, 0.0), (0.1, 0.02), (50.0, 0.0), (50.0, 0.02)] {
                 for full in [true, false] {

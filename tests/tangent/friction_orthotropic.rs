@@ -86,7 +86,12 @@ fn left_out(case: Case, place: Where, law: Orthotropic) -> f64 {
 fn the_direction_is_fixed_to_faces_that_bend_and_turn() {
     let mut worst = 0.0f64;
     let (mut blurred, mut counted) = (0, f64::INFINITY);
-    for master in [Master::Bilinear, Master::Biquadratic, Master::Smooth] {
+    for master in [
+        Master::Bilinear,
+        Master::Biquadratic,
+        Master::Smooth,
+        Master::Rational,
+    ] {
         let new = || pairs::case(1, Scheme::Gauss(2), master);
         for (what, direction) in directions(&new()) {
             for place in [Where::Same, Where::Neighbour, Where::Far] {
@@ -183,7 +188,7 @@ fn the_direction_is_a_fibre_of_the_master() {
 
 #[test]
 fn equal_coefficients_are_coulombs_law_on_masters_that_deform() {
-    for master in [Master::Bilinear, Master::Smooth] {
+    for master in [Master::Bilinear, Master::Smooth, Master::Rational] {
         let new = || pairs::case(1, Scheme::Gauss(2), master);
         for (what, direction) in directions(&new()) {
             for mu in [0.1, 50.0] {

@@ -21,6 +21,8 @@ pub enum Master {
     Bilinear,
     Biquadratic,
     Smooth,
+    /// A rational patch whose control points move.
+    Rational,
     Nurbs,
 }
 
@@ -47,6 +49,36 @@ fn facets(master: Master) -> (Vec<V<f64>>, MovingFacets) {
     }
 }
 
+/// The spans of a rational bicubic patch, whose weights differ by up to a half.
+fn rational() -> (Vec<V<f64>>, Surface) {
+    let knots = [&[0.0; 4][..], &[0.25, 0.5, 0.75], &[1.0; 4]].concat();
+    let at = |k: usize| 2.0 * knots[k + 1..k + 4].iter().sum::<f64>() / 3.0 - 1.0;
+    let nodes: Vec<V<f64>> = (0..49).map(|k| warped(at(k % 7), at(k / 7))).collect();
+    let weights: Vec<f64> = (0..49)
+        .map(|k| 1.0 + 0.5 * ((7 * k + 3) % 11) as f64 / 11.0)
+        .collect();
+    let patch = |points: &[V<f64>], weights: Option<&[f64]>| {
+        let knots = [knots.clone(), knots.clone()];
+        NurbsPatch::new([3, 3], knots, [7, 7], points, weights).unwrap()
+    };
+    let spans: Vec<usize> = (0..16).collect();
+    let of = patch(&nodes, Some(&weights));
+    let mut facets = MovingFacets::of_patch(&of, &spans, false, |n| n).unwrap();
+    facets.update(|n| nodes[n as usize]);
+    // The weight function as a coordinate of a polynomial patch.
+    let heights: Vec<V<f64>> = weights.iter().map(|w| V::new(*w, 0.0, 0.0)).collect();
+    let weight = patch(&heights, None);
+    let surface = Surface::weighted(
+        facets,
+        Some(|facet: u32, xi: [f64; 2]| {
+            let span = [facet % 4, facet / 4].map(f64::from);
+            let at = [0, 1].map(|k| 0.25 * (span[k] + 0.5 * (xi[k] + 1.0)));
+            weight.point(at).x
+        }),
+    );
+    (nodes, surface)
+}
+
 pub fn case(slave_order: usize, scheme: Scheme, master: Master) -> Case {
     // A slave face that cuts 0.02 to 0.06 below the surface, turned against the facets.
     let (slave, nodes, surface) = if master == Master::Nurbs {
@@ -58,12 +90,22 @@ pub fn case(slave_order: usize, scheme: Scheme, master: Master) -> Case {
         let surface = Surface::Patch { weights: p.weights };
         (slave, p.points.to_vec(), surface)
     } else {
-        let (nodes, facets) = facets(master);
+        let (nodes, surface) = match master {
+            Master::Rational => rational(),
+            _ => {
+                let (nodes, facets) = facets(master);
+                (nodes, Surface::of(facets))
+            }
+        };
+        let facets = match &surface {
+            Surface::Facets { facets, .. } => facets,
+            Surface::Patch { .. } => unreachable!("facets"),
+        };
         let (slave, _) = mesh(1, slave_order, |x, y| {
             let (u, v) = (0.3 * x - 0.07 * y + 0.08, 0.09 * x + 0.28 * y - 0.06);
-            below(&facets, 4, u, v, 0.04 + 0.012 * x - 0.008 * x * y)
+            below(facets, 4, u, v, 0.04 + 0.012 * x - 0.008 * x * y)
         });
-        (slave, nodes, Surface::of(facets))
+        (slave, nodes, surface)
     };
     Case {
         name: format!(
@@ -83,6 +125,7 @@ fn cases() -> Vec<Case> {
         Master::Bilinear,
         Master::Biquadratic,
         Master::Smooth,
+        Master::Rational,
         Master::Nurbs,
     ] {
         for (order, schemes) in [

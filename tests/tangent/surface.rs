@@ -1,5 +1,5 @@
-//! Master surfaces in any scalar: the polynomials of moving facets, recovered from their shape functions, and a rational
-//! patch; closest points on their faces, edges and vertices.
+//! Master surfaces in any scalar: the (rational) polynomials of moving facets, recovered from their shape functions, and a
+//! rational patch; closest points on their faces, edges and vertices.
 use crate::support::{self, V};
 use covact_geometry::{Jet, MovingFacets, ShapeRows};
 use nalgebra::DMatrix;
@@ -16,10 +16,12 @@ pub enum Held {
 
 /// A surface whose points are fixed combinations of nodes.
 pub enum Surface {
-    /// Facets with the coefficients of their shape functions: `[facet][node][power of xi1 + m power of xi2]`.
+    /// Facets with the coefficients of their shape functions: `[facet][node][power of xi1 + m power of xi2]`; of rational
+    /// ones of the numerators, whose sum is the denominator.
     Facets {
         facets: Box<MovingFacets>,
         coefficients: Vec<Vec<Vec<f64>>>,
+        rational: bool,
     },
     /// A rational bicubic patch over `[0, 1]^2` whose control points are the nodes.
     Patch { weights: [f64; 16] },
@@ -28,6 +30,11 @@ pub enum Surface {
 impl Surface {
     /// Shape functions of every facet sampled on a grid and interpolated: exact, for they are polynomials.
     pub fn of(facets: MovingFacets) -> Self {
+        Self::weighted(facets, None::<fn(u32, [f64; 2]) -> f64>)
+    }
+
+    /// The same for facets whose shape functions are polynomials over the weight function `weight(facet, xi)`.
+    pub fn weighted(facets: MovingFacets, weight: Option<impl Fn(u32, [f64; 2]) -> f64>) -> Self {
         let m = facets.degree() + 1;
         let at = |i: usize| -1.0 + 2.0 * i as f64 / (m - 1) as f64;
         let power =
@@ -42,7 +49,8 @@ impl Surface {
                 let mut values = DMatrix::zeros(m * m, n);
                 for (i, xi) in grid.iter().enumerate() {
                     facets.shape(facet, *xi, &mut rows);
-                    (0..n).for_each(|k| values[(i, k)] = rows.n[k]);
+                    let w = weight.as_ref().map_or(1.0, |w| w(facet, *xi));
+                    (0..n).for_each(|k| values[(i, k)] = rows.n[k] * w);
                 }
                 let c = &inverse * values;
                 (0..n)
@@ -53,6 +61,7 @@ impl Surface {
         Surface::Facets {
             facets: Box::new(facets),
             coefficients,
+            rational: weight.is_some(),
         }
     }
 
@@ -76,13 +85,14 @@ impl Surface {
             Surface::Facets {
                 facets,
                 coefficients,
+                rational,
             } => {
                 let m = facets.degree() + 1;
                 let [u, v] = xi.map(powers);
                 let orders = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)];
                 let monomials = orders
                     .map(|(a, b)| std::array::from_fn::<D, 16, _>(|k| u[a][k % 4] * v[b][k / 4]));
-                (coefficients[facet as usize].iter())
+                let numerators: Vec<[D; 6]> = (coefficients[facet as usize].iter())
                     .map(|c| {
                         std::array::from_fn(|o| {
                             (c.iter().enumerate()).fold(D::zero(), |s, (k, c)| {
@@ -90,7 +100,11 @@ impl Surface {
                             })
                         })
                     })
-                    .collect()
+                    .collect();
+                match rational {
+                    true => quotients(&numerators),
+                    false => numerators,
+                }
             }
         }
     }
@@ -141,6 +155,24 @@ impl Surface {
         }
         xi
     }
+}
+
+/// Functions over their sum: value and derivatives 1, 2, 11, 12, 22.
+fn quotients<D: DualNum<f64> + Copy>(numerators: &[[D; 6]]) -> Vec<[D; 6]> {
+    let w: [D; 6] = std::array::from_fn(|o| numerators.iter().fold(D::zero(), |s, n| s + n[o]));
+    let quotient = |p: &[D; 6]| {
+        let r = p[0] / w[0];
+        let [r1, r2] = [1, 2].map(|i| (p[i] - r * w[i]) / w[0]);
+        [
+            r,
+            r1,
+            r2,
+            (p[3] - r1 * w[1] * 2.0 - r * w[3]) / w[0],
+            (p[4] - r1 * w[2] - r2 * w[1] - r * w[4]) / w[0],
+            (p[5] - r2 * w[2] * 2.0 - r * w[5]) / w[0],
+        ]
+    };
+    numerators.iter().map(quotient).collect()
 }
 
 /// Powers 0 to 3 with first and second derivatives.

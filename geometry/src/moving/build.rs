@@ -126,6 +126,7 @@ impl Parts {
     pub fn finish(self, degree: usize, topology: Topology) -> MovingFacets {
         let count = self.operator_of.len();
         let points = (degree + 1) * (degree + 1);
+        let rational = self.operators.iter().any(Operator::is_rational);
         MovingFacets {
             degree,
             positions: vec![Vec3::zeros(); self.order.len()],
@@ -137,6 +138,7 @@ impl Parts {
             operator_of: self.operator_of,
             source: self.source,
             topology,
+            rational,
             nets: vec![[0.0; 4]; count * points],
             boxes: vec![EMPTY_BOX; count],
             tree: None,

@@ -36,6 +36,7 @@ impl MovingFacets {
             q,
             range: [[-1.0 - 2.0 * beyond, 1.0 + 2.0 * beyond]; 2],
             size: self.size,
+            rational: self.rational,
         };
         let mut local = problem.solve::<M>(on.xi);
         problem.refine::<M>(&mut local);

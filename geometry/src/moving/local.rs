@@ -45,6 +45,8 @@ pub(super) struct Problem<'a> {
     pub q: &'a Vec3,
     pub range: [[f64; 2]; 2],
     pub size: f64,
+    /// Whether the net has weights.
+    pub rational: bool,
 }
 
 impl Problem<'_> {
@@ -61,7 +63,7 @@ impl Problem<'_> {
                 (x[k], at[k]) = (high, 1);
             }
         }
-        let jet = jet::<M>(self.net, x);
+        let jet = jet::<M>(self.net, x, self.rational);
         let d = self.q - jet.rho;
         let [r1, r2] = &jet.rho_i;
         let gradient = [-r1.dot(&d), -r2.dot(&d)];

@@ -8,7 +8,8 @@
 //! - [`MovingFacets::new`]: the facets as they are, degree 1 where all have 2 x 2 nodes, else degree 2 (a direction with
 //!   two nodes is raised).
 //! - [`MovingFacets::smooth`]: one bicubic surface over the mesh.
-//! - [`MovingFacets::of_patches`]: the spans of bicubic B-spline patches whose control points move.
+//! - [`MovingFacets::of_patches`]: the spans of bicubic NURBS patches whose control points move. Their weights are constant,
+//!   `w_c p_c = sum_k E_ck w_k x_k` with `w_c = sum_k E_ck w_k`, so that shape functions are rational but constant in time, too.
 //!
 //! [`update`](MovingFacets::update) moves the control points and refits the search tree, [`project`](MovingFacets::project)
 //! gives the closest point, proved to be the closest as for [`PatchSet`](crate::PatchSet). Neither allocates once the
@@ -22,6 +23,8 @@ mod net;
 mod patch;
 mod place;
 mod prove;
+#[cfg(test)]
+mod rational;
 mod search;
 mod smooth;
 mod topology;
@@ -38,8 +41,8 @@ pub use smooth::CREASE;
 /// Most nodes that a facet may depend on.
 pub const MAX: usize = 32;
 
-/// Facets whose nodes move. Every facet is one tensor-product Bezier piece (degree 1, 2 or 3 for the whole set) whose
-/// control points are fixed linear combinations of nodes. Parameters are `xi in [-1, 1]^2`; `rho_1 x rho_2` points
+/// Facets whose nodes move. Every facet is one tensor-product Bezier piece (degree 1, 2 or 3 for the whole set, rational where
+/// it comes from a patch with weights) whose control points are fixed linear combinations of nodes. Parameters are `xi in [-1, 1]^2`; `rho_1 x rho_2` points
 /// outwards.
 #[derive(Debug, Clone)]
 pub struct MovingFacets {
@@ -57,7 +60,9 @@ pub struct MovingFacets {
     /// Number of the facet given, where one was cut into several.
     source: Vec<u32>,
     topology: Topology,
-    /// Control points (w = 1), `(degree + 1)^2` of each facet, xi1 fastest.
+    /// Whether facets have weights.
+    rational: bool,
+    /// Control points (homogeneous), `(degree + 1)^2` of each facet, xi1 fastest.
     nets: Vec<[f64; 4]>,
     boxes: Vec<[Vec3; 2]>,
     /// None before the first update.
@@ -204,8 +209,8 @@ pub enum MovingError {
     /// A reference position that is infinite or not a number.
     #[error("node {0} is not at a finite position")]
     Position(u32),
-    /// A patch whose spans are no polynomial bicubic facets.
-    #[error("the patch is not bicubic with equal weights, or has no such span")]
+    /// A patch whose spans are no bicubic facets.
+    #[error("the patch is not bicubic, or has no such span")]
     Patch,
     /// Too many elements meet around a facet.
     #[error(
@@ -234,6 +239,7 @@ impl MovingFacets {
             operator_of,
             source,
             topology,
+            rational: _,
             nets,
             boxes,
             tree,
@@ -302,7 +308,7 @@ impl MovingFacets {
 
     fn jet_of<const M: usize>(&self, facet: u32, xi: [f64; 2]) -> Jet {
         match self.nets.get(facet as usize * M * M..) {
-            Some(net) if net.len() >= M * M => net::jet::<M>(&net[..M * M], xi),
+            Some(net) if net.len() >= M * M => net::jet::<M>(&net[..M * M], xi, self.rational),
             _ => Jet {
                 rho: Vec3::zeros(),
                 rho_i: [Vec3::zeros(); 2],
@@ -381,7 +387,7 @@ impl MovingFacets {
             let range = self.first[facet] as usize..self.first[facet + 1] as usize;
             let operator = &self.operators[self.operator_of[facet] as usize];
             operator.apply(&self.places[range], &self.positions, net);
-            *bounds = net::bounds(net);
+            *bounds = net::bounds(net, self.rational);
         }
     }
 }

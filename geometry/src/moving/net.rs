@@ -1,4 +1,6 @@
-//! Polynomial Bezier nets of `M x M` control points over `[-1, 1]^2`: jets, shape weights, boxes, sub-pieces.
+//! Bezier nets of `M x M` control points over `[-1, 1]^2`, polynomial or rational: jets, shape weights, boxes, sub-pieces.
+//!
+//! Control points are homogeneous, `(w x, w y, w z, w)`. Where all weights are 1 nothing looks at them.
 
 use num_dual::DualNum;
 
@@ -51,27 +53,11 @@ pub(super) fn bernstein<D: DualNum<f64> + Copy, const M: usize>(xi: D) -> [[D; M
 
 /// Point with first and second derivatives.
 #[inline]
-pub(super) fn jet<const M: usize>(net: &[[f64; 4]], xi: [f64; 2]) -> Jet {
-    let [u, v] = xi.map(bernstein::<f64, M>);
-    let mut sums = [[0.0; 3]; 6];
-    for (j, row) in net.chunks_exact(M).enumerate().take(M) {
-        // Value and derivatives along the row.
-        let mut along = [[0.0; 3]; 3];
-        for (i, p) in row.iter().enumerate() {
-            for (along, u) in along.iter_mut().zip(&u) {
-                for k in 0..3 {
-                    along[k] += u[i] * p[k];
-                }
-            }
-        }
-        let orders = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)];
-        for (sum, (a, b)) in sums.iter_mut().zip(orders) {
-            for k in 0..3 {
-                sum[k] += v[b][j] * along[a][k];
-            }
-        }
+pub(super) fn jet<const M: usize>(net: &[[f64; 4]], xi: [f64; 2], rational: bool) -> Jet {
+    if rational {
+        return rational_jet::<M>(net, xi);
     }
-    let [rho, r1, r2, r11, r12, r22] = sums.map(Vec3::from);
+    let [rho, r1, r2, r11, r12, r22] = sums::<M, 3>(net, xi).map(Vec3::from);
     Jet {
         rho,
         rho_i: [r1, r2],
@@ -79,13 +65,66 @@ pub(super) fn jet<const M: usize>(net: &[[f64; 4]], xi: [f64; 2]) -> Jet {
     }
 }
 
-/// Box around the control points, which holds the piece; empty where one of them is not finite.
+/// [`jet`] of a rational piece, by the quotient rule.
+#[inline(never)]
+fn rational_jet<const M: usize>(net: &[[f64; 4]], xi: [f64; 2]) -> Jet {
+    let [a, a1, a2, a11, a12, a22] =
+        sums::<M, 4>(net, xi).map(|[x, y, z, w]| (Vec3::new(x, y, z), w));
+    let rho = a.0 / a.1;
+    let [r1, r2] = [a1, a2].map(|b| (b.0 - rho * b.1) / a.1);
+    Jet {
+        rho,
+        rho_i: [r1, r2],
+        rho_ij: [
+            (a11.0 - r1 * (2.0 * a1.1) - rho * a11.1) / a.1,
+            (a12.0 - r1 * a2.1 - r2 * a1.1 - rho * a12.1) / a.1,
+            (a22.0 - r2 * (2.0 * a2.1) - rho * a22.1) / a.1,
+        ],
+    }
+}
+
+/// The first `K` components of a net at `xi`, with derivatives 1, 2, 11, 12, 22.
+#[inline(always)]
+fn sums<const M: usize, const K: usize>(net: &[[f64; 4]], xi: [f64; 2]) -> [[f64; K]; 6] {
+    let [u, v] = xi.map(bernstein::<f64, M>);
+    let mut sums = [[0.0; K]; 6];
+    for (j, row) in net.chunks_exact(M).enumerate().take(M) {
+        // Value and derivatives along the row.
+        let mut along = [[0.0; K]; 3];
+        for (i, p) in row.iter().enumerate() {
+            for (along, u) in along.iter_mut().zip(&u) {
+                for k in 0..K {
+                    along[k] += u[i] * p[k];
+                }
+            }
+        }
+        let orders = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)];
+        for (sum, (a, b)) in sums.iter_mut().zip(orders) {
+            for k in 0..K {
+                sum[k] += v[b][j] * along[a][k];
+            }
+        }
+    }
+    sums
+}
+
+/// A control point in space.
 #[inline]
-pub(super) fn bounds(net: &[[f64; 4]]) -> [Vec3; 2] {
+pub(super) fn point(&[x, y, z, w]: &[f64; 4], rational: bool) -> Vec3 {
+    match rational {
+        true => Vec3::new(x, y, z) / w,
+        false => Vec3::new(x, y, z),
+    }
+}
+
+/// Box around the control points, which holds the piece (weights are positive); empty where one of them is not finite.
+#[inline]
+pub(super) fn bounds(net: &[[f64; 4]], rational: bool) -> [Vec3; 2] {
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
     let mut sum = 0.0;
     for p in net {
+        let p = point(p, rational);
         for k in 0..3 {
             low[k] = if p[k] < low[k] { p[k] } else { low[k] };
             high[k] = if p[k] > high[k] { p[k] } else { high[k] };

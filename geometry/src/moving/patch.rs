@@ -1,4 +1,4 @@
-//! The knot spans of a B-spline patch whose control points move.
+//! The knot spans of a NURBS patch whose control points move.
 
 use super::build::Parts;
 use super::extraction::Operator;
@@ -15,7 +15,7 @@ const M: usize = 4;
 /// Some spans of a patch, as [`MovingFacets::of_patches`] takes them.
 #[derive(Debug, Clone, Copy)]
 pub struct PatchSpans<'a> {
-    /// Bicubic, without weights that differ.
+    /// Bicubic.
     pub patch: &'a NurbsPatch,
     /// Numbers of spans, xi1 fastest.
     pub spans: &'a [usize],
@@ -49,8 +49,7 @@ impl MovingFacets {
     /// Patches share no nodes; a foot at an edge where they are joined counts as one at a sharp edge.
     ///
     /// # Errors
-    /// [`MovingError::Empty`], [`MovingError::TooMany`]; [`MovingError::Patch`] for degrees other than 3, weights that differ, and
-    /// spans that there are not.
+    /// [`MovingError::Empty`], [`MovingError::TooMany`]; [`MovingError::Patch`] for degrees other than 3 and spans that there are not.
     pub fn of_patches(
         parts: &[PatchSpans],
         reversed: bool,
@@ -76,7 +75,7 @@ impl MovingFacets {
             } = part;
             let counts = [0, 1].map(|dir| patch.basis(dir).span_count());
             let fits = spans.iter().all(|span| *span < counts[0] * counts[1]);
-            if patch.degree() != [M - 1; 2] || patch.is_rational() || !fits {
+            if patch.degree() != [M - 1; 2] || !fits {
                 return Err(MovingError::Patch);
             }
             let extractions = [0, 1].map(|dir| -> Vec<Matrix4<f64>> {
@@ -96,8 +95,14 @@ impl MovingFacets {
                 patch.shape_in_span(at, middle, &mut room);
                 let nodes: Vec<u32> = room.indices.iter().map(|n| number(place, *n)).collect();
                 let [first, second] = [0, 1].map(|dir| &extractions[dir][at[dir]]);
+                let rational = patch.is_rational();
+                let factor = |a: usize| match rational {
+                    true => patch.homogeneous()[room.indices[a] as usize][3],
+                    false => 1.0,
+                };
                 let row = |i: usize, j: usize| -> Vec<(u16, f64)> {
-                    let entry = |a: usize| (a as u16, first[(i, a % M)] * second[(j, a / M)]);
+                    let entry =
+                        |a: usize| (a as u16, first[(i, a % M)] * second[(j, a / M)] * factor(a));
                     (0..M * M).map(entry).collect()
                 };
                 // Exchanged parameters: row (i, j) of the facet is (j, i) of the span.
@@ -106,7 +111,11 @@ impl MovingFacets {
                     true => row(c / M, c % M),
                 });
                 let facet = outlines.len();
-                set.push(facet, &nodes, Operator::new(rows))?;
+                let operator = match rational {
+                    true => Operator::rational(rows),
+                    false => Operator::new(rows),
+                };
+                set.push(facet, &nodes, operator)?;
                 for (_, side) in joined.iter().filter(|(of, _)| of == span) {
                     borders.push((facet, if reversed { (side + 2) % 4 } else { *side }));
                 }
@@ -325,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_polynomial_bicubic_is_refused() {
+    fn what_is_not_bicubic_is_refused() {
         let of = |patch: &NurbsPatch, spans: &[usize]| {
             MovingFacets::of_patch(patch, spans, false, |n| n).map(|_| ())
         };
@@ -333,10 +342,5 @@ mod tests {
         assert_eq!(of(&patch(), &[]), Err(MovingError::Empty));
         let high = patch().elevated(0, 1).unwrap();
         assert_eq!(of(&high, &[0]), Err(MovingError::Patch));
-        let points = patch().points();
-        let weights: Vec<f64> = (0..30).map(|k| 1.0 + 0.1 * f64::from(k % 2)).collect();
-        let knots = [0, 1].map(|dir| patch().knots(dir).to_vec());
-        let rational = NurbsPatch::new([3, 3], knots, [6, 5], &points, Some(&weights)).unwrap();
-        assert_eq!(of(&rational, &[0]), Err(MovingError::Patch));
     }
 }

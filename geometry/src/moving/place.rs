@@ -1,7 +1,7 @@
 //! Where a foot lies, and the normal there.
 
 use super::local::Local;
-use super::net::jet;
+use super::net;
 use super::topology::{EDGES_AT, ENDS, corner_xi, on_edge};
 use super::{MovingFacets, MovingPlace};
 use crate::frame::DEGENERATE;
@@ -120,10 +120,7 @@ impl MovingFacets {
     fn angle<const M: usize>(&self, facet: u32, corner: usize) -> f64 {
         let net = self.net::<M>(facet);
         let [i, j] = [corner & 1, corner >> 1];
-        let point = |i: usize, j: usize| {
-            let p = &net[i + M * j];
-            Vec3::new(p[0], p[1], p[2])
-        };
+        let point = |i: usize, j: usize| net::point(&net[i + M * j], self.rational);
         // Direction of the first control point that is elsewhere, along the edge `fixed` from its end `end`.
         let leaves = |dir: usize, fixed: usize, end: usize| {
             let at = |k: usize| {
@@ -154,7 +151,10 @@ impl MovingFacets {
     /// has none anywhere near.
     fn normal_near<const M: usize>(&self, facet: u32, xi: [f64; 2]) -> Vec3 {
         let net = self.net::<M>(facet);
-        let near = |step: f64| unit_normal(&jet::<M>(net, xi.map(|x| x * (1.0 - step))));
+        let near = |step: f64| {
+            let xi = xi.map(|x| x * (1.0 - step));
+            unit_normal(&net::jet::<M>(net, xi, self.rational))
+        };
         [0.0, 1e-7, 1e-5, 1e-3, 0.1]
             .into_iter()
             .find_map(near)

@@ -25,11 +25,27 @@ pub(super) enum Verdict {
 /// Judges a net of `M x M` control points; `L = 2 M - 1`.
 #[inline]
 pub(super) fn judge<const M: usize, const L: usize>(net: &[[f64; 4]], q: &Vec3) -> Verdict {
-    let f = coefficients::<M, L>(net, q);
+    verdict(&coefficients::<M, L, false>(net, q, 0.0))
+}
+
+/// Judges a rational net by `|w (rho - q)|^2 - c^2 w^2`, a polynomial. It is zero at a point at the distance `c`, and stationary
+/// there, with the same active bounds, where the distance is. Where it is convex it is therefore positive elsewhere, and
+/// nothing is nearer than that point; the same along an edge.
+#[inline]
+pub(super) fn judge_rational<const M: usize, const L: usize>(
+    net: &[[f64; 4]],
+    q: &Vec3,
+    c: f64,
+) -> Verdict {
+    verdict(&coefficients::<M, L, true>(net, q, c))
+}
+
+#[inline]
+fn verdict<const L: usize>(f: &[[f64; L]; L]) -> Verdict {
     let p = (L - 1) as f64;
     // Second derivatives, up to a common factor: f_uu, f_vv from second differences, f_uv from mixed ones.
     let (mut uu, mut vv, mut uv) = (f64::INFINITY, f64::INFINITY, 0.0f64);
-    for row in &f {
+    for row in f {
         for w in row.windows(3) {
             uu = uu.min(w[0] - 2.0 * w[1] + w[2]);
         }
@@ -82,19 +98,25 @@ pub(super) fn judge<const M: usize, const L: usize>(net: &[[f64; 4]], q: &Vec3) 
     Verdict::Unknown
 }
 
-/// Bernstein coefficients of `|rho - q|^2`, `[second direction][first]`.
+/// Bernstein coefficients of `|rho - q|^2`, or of `|w (rho - q)|^2 - c^2 w^2` of a rational net, `[second direction][first]`.
 #[inline]
-fn coefficients<const M: usize, const L: usize>(net: &[[f64; 4]], q: &Vec3) -> [[f64; L]; L] {
+fn coefficients<const M: usize, const L: usize, const RATIONAL: bool>(
+    net: &[[f64; 4]],
+    q: &Vec3,
+    radius: f64,
+) -> [[f64; L]; L] {
     let p = M - 1;
-    let mut points = [[[0.0; 3]; M]; M];
+    let mut points = [[[0.0; 4]; M]; M];
     for (j, row) in points.iter_mut().enumerate() {
         for (i, out) in row.iter_mut().enumerate() {
             let c = &net[i + M * j];
             let factor = BINOMIALS[p][i] * BINOMIALS[p][j];
+            let w = if RATIONAL { c[3] } else { 1.0 };
             *out = [
-                (c[0] - q.x) * factor,
-                (c[1] - q.y) * factor,
-                (c[2] - q.z) * factor,
+                (c[0] - q.x * w) * factor,
+                (c[1] - q.y * w) * factor,
+                (c[2] - q.z * w) * factor,
+                radius * w * factor,
             ];
         }
     }
@@ -106,7 +128,11 @@ fn coefficients<const M: usize, const L: usize>(net: &[[f64; 4]], q: &Vec3) -> [
             for (i, a) in points[j].iter().enumerate() {
                 let a = a.map(|a| a * double);
                 for (k, b) in points[l].iter().enumerate() {
-                    out[j + l][i + k] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+                    let mut product = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+                    if RATIONAL {
+                        product -= a[3] * b[3];
+                    }
+                    out[j + l][i + k] += product;
                 }
             }
         }

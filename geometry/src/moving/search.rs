@@ -1,7 +1,7 @@
 //! Closest point over all facets: tree descent by boxes, iteration on a facet, and the proof that nothing nearer was missed.
 
 use super::local::{ALL, Local, Problem};
-use super::prove::{Verdict, judge};
+use super::prove::{Verdict, judge, judge_rational};
 use super::topology::{corner_xi, on_edge};
 use super::{MovingFacets, MovingFoot, net};
 use crate::project::ball::outside_ball;
@@ -141,6 +141,7 @@ impl MovingFacets {
             q,
             range: ALL,
             size: self.size,
+            rational: self.rational,
         };
         let mut best = (facet, *found);
         if !found.converged || !found.whole {
@@ -232,6 +233,7 @@ impl<'a, const M: usize, const L: usize> Search<'a, M, L> {
             q: self.q,
             range,
             size: self.set.size,
+            rational: self.set.rational,
         }
     }
 
@@ -272,7 +274,9 @@ impl<'a, const M: usize, const L: usize> Search<'a, M, L> {
         if self.excluded(net) {
             return;
         }
-        let local = self.problem(facet, ALL).solve::<M>(seed::<M>(net, self.q));
+        let local = self
+            .problem(facet, ALL)
+            .solve::<M>(seed::<M>(net, self.q, self.set.rational));
         self.offer(facet, &local);
         self.prove(facet, &local);
     }
@@ -308,6 +312,19 @@ impl<'a, const M: usize, const L: usize> Search<'a, M, L> {
         known: &Local,
     ) -> bool {
         let within = |k: usize| known.xi[k] >= range[k][0] && known.xi[k] <= range[k][1];
+        if self.set.rational {
+            let local = match known.converged && within(0) && within(1) {
+                true => *known,
+                false => self.problem(facet, range).solve::<M>(known.xi),
+            };
+            self.offer(facet, &local);
+            return local.converged
+                && match judge_rational::<M, L>(net, self.q, local.d2.sqrt()) {
+                    Verdict::Unknown => false,
+                    Verdict::Convex => true,
+                    Verdict::ConvexEdge { dir, end } => local.xi[dir] == range[dir][end],
+                };
+        }
         let mut range = range;
         match judge::<M, L>(net, self.q) {
             Verdict::Unknown => return false,
@@ -339,7 +356,7 @@ impl<'a, const M: usize, const L: usize> Search<'a, M, L> {
         depth: usize,
     ) {
         let own = &mut net[..M * M];
-        let extent = extents::<M>(own);
+        let extent = extents::<M>(own, self.set.rational);
         if extent[0].max(extent[1]) < 1e-8 * self.set.size || self.parts >= MOST_PARTS {
             self.complete &= self.parts < MOST_PARTS;
             return;
@@ -372,8 +389,8 @@ impl<'a, const M: usize, const L: usize> Search<'a, M, L> {
 
 /// Where the mean plane of a facet is nearest.
 #[inline]
-fn seed<const M: usize>(net: &[[f64; 4]], q: &Vec3) -> [f64; 2] {
-    let point = |k: usize| Vec3::new(net[k][0], net[k][1], net[k][2]);
+fn seed<const M: usize>(net: &[[f64; 4]], q: &Vec3, rational: bool) -> [f64; 2] {
+    let point = |k: usize| net::point(&net[k], rational);
     let c = [0, M - 1, M * (M - 1), M * M - 1].map(point);
     let middle = (c[0] + c[1] + c[2] + c[3]) * 0.25;
     let one = (c[1] - c[0] + c[3] - c[2]) * 0.25;
@@ -394,11 +411,9 @@ fn seed<const M: usize>(net: &[[f64; 4]], q: &Vec3) -> [f64; 2] {
 }
 
 /// Longest control polygon in each direction.
-fn extents<const M: usize>(net: &[[f64; 4]]) -> [f64; 2] {
-    let step = |k: usize, l: usize| {
-        let d = [0, 1, 2].map(|i| net[k][i] - net[l][i]);
-        (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()
-    };
+fn extents<const M: usize>(net: &[[f64; 4]], rational: bool) -> [f64; 2] {
+    let point = |k: usize| net::point(&net[k], rational);
+    let step = |k: usize, l: usize| (point(k) - point(l)).norm_squared().sqrt();
     let mut out = [0.0f64; 2];
     for line in 0..M {
         let (mut row, mut column) = (0.0, 0.0);

@@ -5,11 +5,13 @@
 //! cut into monotone pieces with a tree over them; a test then costs O(log n) for n pieces.
 
 mod attach;
+mod cells;
 mod index;
 mod monotone;
 mod polygon;
 
 pub use attach::{TrimNote, TrimNoteKind, Trimmed};
+pub use cells::RulePoint;
 pub use index::{BorderPoint, Part};
 
 use nalgebra::Vector2;

@@ -4,10 +4,11 @@ use covact_geometry::{PatchShape, Vec3};
 use std::collections::BTreeMap;
 
 impl NurbsSheet {
-    /// Edges that are not joined to another one, all along or in part.
+    /// Edges that are not joined to another one, all along or in part, and of which a trim leaves something.
     pub fn free_edges(&self) -> Vec<Edge> {
         let all = (0..self.patches.len()).flat_map(Edge::of);
         all.filter(|edge| !self.joints.inner.contains(edge))
+            .filter(|edge| self.patches[edge.patch()].keeps(*edge))
             .collect()
     }
 

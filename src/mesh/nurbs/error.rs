@@ -5,9 +5,14 @@ use covact_geometry::patch::PatchError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NurbsError {
-    /// Part of the patch is cut away.
-    #[error("the face is trimmed: only whole patches can be shells")]
+    /// Part of the patch is cut away, and there are others.
+    #[error(
+        "the face is trimmed: several faces are one shell only where all of them are whole patches"
+    )]
     Trimmed,
+    /// A trim leaves nothing of the patch.
+    #[error("the trim of the face leaves nothing of it")]
+    Empty,
     /// The elements are cubic, and a degree cannot be lowered without another shape.
     #[error("the face has degree {degree} along xi{}, above {}", direction + 1, super::DEGREE)]
     Degree {

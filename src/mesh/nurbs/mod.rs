@@ -5,6 +5,7 @@ mod error;
 mod refine;
 pub(crate) mod seams;
 mod select;
+mod trims;
 
 use super::{ElementKind, Face, Mesh};
 use covact_geometry::{NurbsPatch, PatchShape, Vec3};
@@ -12,6 +13,7 @@ pub use error::NurbsError;
 pub use refine::Fineness;
 pub use seams::{Joints, Near, Seam};
 use std::collections::BTreeMap;
+pub use trims::{Cut, GROUP, Kept};
 
 /// Degree of the elements along both directions.
 pub const DEGREE: usize = 3;
@@ -72,6 +74,8 @@ pub struct SheetPatch {
     pub first_node: u32,
     /// Number of its first element in the sheet.
     pub first_element: u32,
+    /// What a trim leaves of it; none where it is whole.
+    pub cut: Option<Cut>,
 }
 
 impl SheetPatch {
@@ -266,7 +270,7 @@ impl NurbsSheet {
         part.iter().enumerate().filter(|(k, p)| k == *p).count()
     }
 
-    /// `n x n` Gauss points of some elements, element after element, xi1 fastest.
+    /// `n x n` Gauss points of some elements, element after element, xi1 fastest (see [`Self::sampled`]).
     ///
     /// # Errors
     /// A number of points that no rule has.
@@ -279,7 +283,7 @@ impl NurbsSheet {
         Ok(self.sampled(elements, &rule))
     }
 
-    /// As [`Self::points`] with any rule.
+    /// As [`Self::points`] with any rule. Elements that a trim cuts have the points of what is left of them.
     pub fn sampled(
         &self,
         elements: impl Iterator<Item = usize>,
@@ -294,6 +298,21 @@ impl NurbsSheet {
                 Some((of, positions)) if std::ptr::eq(of, patch) => positions,
                 _ => patch.patch.points(),
             };
+            match self.kept(e) {
+                trims::Kept::Whole => {}
+                trims::Kept::Nothing => {
+                    known = Some((patch, positions));
+                    continue;
+                }
+                trims::Kept::Part(points) => {
+                    let of = points.iter();
+                    out.extend(
+                        of.map(|p| patch.point(span, p.xi, p.weight, &positions, &mut room)),
+                    );
+                    known = Some((patch, positions));
+                    continue;
+                }
+            }
             let [u, v] = [0, 1].map(|dir| patch.patch.basis(dir).span_range(span[dir]));
             for (t, wt) in rule.iter() {
                 for (s, ws) in rule.iter() {
@@ -332,8 +351,10 @@ impl NurbsSheet {
         let mut connectivity = Vec::with_capacity(16 * count);
         let (mut node_sets, mut face_sets) = (BTreeMap::new(), BTreeMap::new());
         let nodes = self.positions();
+        let left: Vec<bool> = (0..count).map(|e| *self.kept(e) != Kept::Nothing).collect();
         let faces = |first: u32, count: usize, face: u8| -> Vec<Face> {
             (first..first + count as u32)
+                .filter(|element| left[*element as usize])
                 .map(|element| Face { element, face })
                 .collect()
         };
@@ -350,11 +371,12 @@ impl NurbsSheet {
                 }
             }
             for edge in Edge::of(k) {
-                if !self.joints.inner.contains(&edge) {
+                if !self.joints.inner.contains(&edge) && part.keeps(edge) {
                     edge_sets.push((self.edge_name(edge), vec![edge]));
                 }
             }
-            for (c, corner) in part.corners().into_iter().enumerate() {
+            let corners = part.corners().into_iter().enumerate();
+            for (c, corner) in corners.filter(|(c, _)| part.keeps_corner(*c)) {
                 let number = 1 + if part.reversed { c ^ 1 } else { c };
                 let name = self.name(k, &format!("corner.{number}"));
                 node_sets.insert(name, vec![corner]);

@@ -1,5 +1,5 @@
 //! A patch as a file gives it made bicubic and fine, without a change of shape.
-use super::{DEGREE, Edge, Joints, NurbsError, NurbsSheet, SheetPatch};
+use super::{Cut, DEGREE, Edge, Joints, NurbsError, NurbsSheet, SheetPatch};
 use covact_geometry::{NurbsPatch, Vec3};
 use std::collections::BTreeMap;
 
@@ -48,6 +48,10 @@ impl NurbsSheet {
         assumed_membrane: bool,
     ) -> Result<NurbsSheet, (usize, NurbsError)> {
         let mut elements = 0;
+        let trimmed = faces.iter().position(|(_, p)| p.trim().is_some());
+        if let (Some(k), 2..) = (trimmed, faces.len()) {
+            return Err((k, NurbsError::Trimmed));
+        }
         let mut fine = Vec::with_capacity(faces.len());
         for (k, (_, patch)) in faces.iter().enumerate() {
             let patch = refined(patch, fineness, &mut elements).map_err(|e| (k, e))?;
@@ -72,13 +76,18 @@ impl NurbsSheet {
         }
         let (mut first_node, mut first_element) = (0, 0);
         let mut patches = Vec::with_capacity(fine.len());
-        for ((patch, reversed), (face, _)) in fine.into_iter().zip(turned).zip(faces) {
+        for ((patch, reversed), (face, given)) in fine.into_iter().zip(turned).zip(faces) {
+            let cut = given.trim().and_then(|trim| Cut::new(&patch, trim));
+            if cut.as_ref().is_some_and(Cut::is_empty) {
+                return Err((patches.len(), NurbsError::Empty));
+            }
             let part = SheetPatch {
                 patch,
                 face: *face,
                 reversed,
                 first_node,
                 first_element,
+                cut,
             };
             first_node += part.nodes() as u32;
             first_element += part.elements() as u32;
@@ -110,10 +119,7 @@ fn refined(
     fineness: Fineness,
     total: &mut u64,
 ) -> Result<NurbsPatch, NurbsError> {
-    if patch.trim().is_some() {
-        return Err(NurbsError::Trimmed);
-    }
-    let given = patch.cut_to_domain()?;
+    let given = patch.clone().with_trim(None).cut_to_domain()?;
     let [low, high] = given.bounds();
     let size = (high - low).norm();
     let poles = given.degenerate_edges(1e-9 * size);

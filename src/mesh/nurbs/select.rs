@@ -1,7 +1,7 @@
 //! Selections by geometry on a sheet: control points do not lie on the surface, so nodes are chosen as whole edges, or corners.
 use super::super::sets::{boxed, corners, not_negative, outside_box, slack, unit, vector, words};
 use super::super::{Face, Mesh, MeshError};
-use super::{Edge, NurbsSheet, SheetPatch, side, sorted};
+use super::{Edge, Kept, NurbsSheet, SheetPatch, side, sorted};
 use crate::scene::{Corners, Selection};
 use covact_geometry::Vec3;
 
@@ -43,7 +43,15 @@ impl NurbsSheet {
         let edges: Vec<Edge> = (self.free_edges().into_iter())
             .filter(|edge| within(miss(edge)))
             .collect();
-        let corners: Vec<u32> = (self.patches.iter().flat_map(SheetPatch::corners))
+        let kept = |p: &SheetPatch| {
+            let corners = p.corners().into_iter().enumerate();
+            let kept: Vec<u32> = corners
+                .filter(|(c, _)| p.keeps_corner(*c))
+                .map(|(_, node)| node)
+                .collect();
+            kept
+        };
+        let corners: Vec<u32> = (self.patches.iter().flat_map(kept))
             .filter(|&n| within(picked.miss(&mesh.nodes[n as usize])))
             .collect();
         let nodes = match edges.is_empty() {
@@ -82,7 +90,7 @@ impl NurbsSheet {
         }
         let mut nearest = f64::INFINITY;
         let mut faces = Vec::new();
-        for element in 0..mesh.elements() {
+        for element in (0..mesh.elements()).filter(|e| *self.kept(*e) != Kept::Nothing) {
             let [u, v] = self.range(element);
             let xi = |s: f64, t: f64| [u[0] + s * (u[1] - u[0]), v[0] + t * (v[1] - v[0])];
             let patch = &self.place(element).0.patch;

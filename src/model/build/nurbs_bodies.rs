@@ -10,7 +10,7 @@ use crate::contact::points::SlavePoint;
 use crate::fem::quadrature::QuadratureError;
 use crate::fem::{gauss, lobatto};
 use crate::machine::memory;
-use crate::mesh::nurbs::{Fineness, side};
+use crate::mesh::nurbs::{Fineness, SheetPatch, side};
 use crate::mesh::{Edge, Face, Mesh, NurbsError, NurbsSheet};
 use crate::scene::{self, Contact, Gap, NurbsSurface, Passes, Points, SetNames, Tangent};
 use crate::shell::{Block, Law, Memory, NurbsBlock, bytes_per_element};
@@ -94,6 +94,12 @@ impl Builder<'_> {
                 false => "",
             }
         ));
+        if let [SheetPatch { cut: Some(cut), .. }] = &sheet.patches[..] {
+            let [_, parts, gone] = cut.counts();
+            self.notes.push(format!(
+                "body `{name}`: its trim cuts {parts} of the elements, which are integrated along it, and leaves nothing of {gone}"
+            ));
+        }
         if sheet.patches.len() == 1 {
             return;
         }
@@ -270,6 +276,7 @@ impl Builder<'_> {
         on: &SetNames,
         at: &str,
     ) -> Result<Vec<FollowingSpan>, ModelError> {
+        self.whole_edges(on, at)?;
         let mut spans = Vec::new();
         for (pointer, reference) in on.places(at) {
             let (name, set) = reference.split_once('.').unwrap_or((reference, ""));
@@ -323,6 +330,13 @@ impl Builder<'_> {
         }
         let index = self.body_index.get(contact.master.body());
         let body = index.map(|i| &self.bodies[*i]);
+        if body.is_some_and(|b| b.block.sheet().is_some_and(|s| s.is_trimmed())) {
+            let message = format!(
+                "`{}` is a face that is trimmed, which cannot be a master yet",
+                contact.master
+            );
+            return Err(text(at("master"), message).help("exchange slave and master"));
+        }
         let fold = (body.and_then(|b| b.block.sheet()))
             .and_then(|s| s.sharpest_fold())
             .filter(|(_, angle)| *angle > STEEPEST);
@@ -334,17 +348,6 @@ impl Builder<'_> {
                 contact.master, angle
             );
             let help = "take the faces on one side of the fold as masters of contacts of their own";
-            return Err(text(at("master"), message).help(help));
-        }
-        let rational = body
-            .and_then(|b| b.block.sheet())
-            .is_some_and(|s| s.patches.iter().any(|p| p.patch.is_rational()));
-        if rational {
-            let message = format!(
-                "`{}` is a face of a rational surface (a cylinder, a sphere, an arc), which cannot be a master yet",
-                contact.master
-            );
-            let help = "exchange slave and master, or take a face without weights";
             return Err(text(at("master"), message).help(help));
         }
         Ok(())
@@ -436,6 +439,10 @@ pub(super) fn sheet_rims(
     faces: &[Face],
     first_node: u32,
 ) -> Option<Vec<Vec<u32>>> {
+    // The border of a trimmed sheet is more than its edges.
+    if sheet.is_trimmed() {
+        return None;
+    }
     let elements = sheet.elements();
     let of = |side: u8| faces.iter().filter(|f| f.face == side).count();
     let whole = [4, 5].iter().all(|side| [0, elements].contains(&of(*side)));
@@ -459,7 +466,7 @@ pub(super) fn sheet_size(sheet: &NurbsSheet) -> FaceSize {
 /// A face that cannot be a sheet.
 fn refused(file: &str, elements: &str, label: &str, error: NurbsError) -> ModelError {
     let help = match &error {
-        NurbsError::Trimmed => Some("give the face without its trim, or mesh it (`mesh`)"),
+        NurbsError::Trimmed => Some("make a body of each face, or mesh them (`mesh`)"),
         NurbsError::Degree { .. } => Some("export it with degree 3 at most, or mesh it (`mesh`)"),
         NurbsError::Crease { .. } | NurbsError::Closed { .. } => {
             Some("cut the face there in the CAD program, and take one of its parts")

@@ -7,7 +7,7 @@ use super::{BodyModel, Builder, ModelError};
 use crate::mesh::{Edge, ThicknessColumns};
 use crate::scene::{AUTOMATIC, Axis, POSITION_AND_TIME, Support, TimeFunction, Value};
 use crate::shell::HeldNormal;
-use crate::system::{DofMap, DofMapBuilder};
+use crate::system::{Dof, DofMap, DofMapBuilder};
 use covact_geometry::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -107,6 +107,17 @@ impl Builder<'_> {
         }
         let owner = |dof: u32| all.owners.get(&dof).map(|(support, _)| *support);
         let tied = (sheets.tie(&mut all.dofs, owner)).at(|| "/supports".to_owned())?;
+        for body in &self.bodies {
+            let unused = body.block.sheet().map(|s| s.unused());
+            for pair in unused.into_iter().flatten() {
+                for c in 0..3 {
+                    let [dof, to] = pair.map(|n| 3 * (n + body.first_node) + c);
+                    if all.dofs.get(dof) == Some(Dof::Free) {
+                        (all.dofs.tie(dof, to, 1.0)).at(|| "/supports".to_owned())?;
+                    }
+                }
+            }
+        }
         let dofs = all.dofs.build().at(|| "/supports".to_owned())?;
         Ok(Supports {
             names: all.names,

@@ -26,6 +26,7 @@ use super::kinematics::V;
 use super::material::Law;
 use crate::fem::gauss;
 use crate::mesh::NurbsSheet;
+use crate::mesh::nurbs::{GROUP, Kept};
 pub use borders::HeldNormal;
 use covact_geometry::{PatchShape, Vec3};
 pub use frame::{DOFS, NODES};
@@ -33,6 +34,7 @@ use num_dual::DualNum;
 use plane_stress::Sheet;
 use point::{ASSUMED, BorderPoint, GaussPoint, PLAIN, TyingPoint, biquadratic, shapes};
 pub use seam::{SEAM_DOFS, SEAM_NODES, SeamSpan};
+use std::ops::Range;
 use strain::Strains;
 pub use stress::SheetResultants;
 
@@ -79,9 +81,13 @@ pub struct NurbsBlock {
     nodes: Vec<[u32; NODES]>,
     /// Undeformed positions of the elements' control points.
     reference: Vec<[V<f64>; NODES]>,
-    /// Gauss points of an element.
+    /// Gauss points of an element that no trim cuts.
     per: usize,
     points: Vec<GaussPoint>,
+    /// Groups of points, where a trim cuts something away; empty where every element has one, of its number.
+    groups: Vec<Group>,
+    /// Where the groups of each element begin, and the end; empty likewise.
+    first_group: Vec<u32>,
     /// Nine per element; none where membrane strains are not assumed.
     ties: Vec<TyingPoint>,
     /// The biquadratic functions at the Gauss points of any element.
@@ -91,6 +97,15 @@ pub struct NurbsBlock {
     starts: Vec<u32>,
     /// Where patches are joined.
     seams: Vec<SeamSpan>,
+}
+
+/// Points that strains are worked out at together: all of an element, or those in a part of one that a trim cuts, whose membrane
+/// strains are taken as they are.
+#[derive(Debug, Clone)]
+struct Group {
+    element: u32,
+    points: Range<usize>,
+    ties: Range<usize>,
 }
 
 impl NurbsBlock {
@@ -119,6 +134,8 @@ impl NurbsBlock {
             reference: Vec::with_capacity(count),
             per,
             points: Vec::with_capacity(count * per),
+            groups: Vec::new(),
+            first_group: Vec::new(),
             ties: Vec::new(),
             functions: [[0.0; ASSUMED]; ASSUMED],
             borders: Vec::new(),
@@ -149,17 +166,28 @@ impl NurbsBlock {
             let first = frame::combine(&centre.second[0], &x);
             block.nodes.push(centre.nodes);
             block.reference.push(x);
-            for (t, wt) in &places {
-                for (s, ws) in &places {
-                    let shape = shapes(patch, span, at(*s, *t), &mut room);
-                    let point = GaussPoint::new(&shape, &x, &first, ws * wt * size);
-                    if !(point.weight > 0.0 && point.weight.is_finite()) {
-                        return Err(ShellError::NoNormal { element: e as u32 });
-                    }
-                    block.points.push(point);
+            let kept = sheet.kept(e);
+            let own = match kept {
+                Kept::Whole => {
+                    let all = places.iter().flat_map(|(t, wt)| {
+                        let of = move |(s, ws): &(f64, f64)| (at(*s, *t), ws * wt * size);
+                        places.iter().map(of)
+                    });
+                    all.collect()
                 }
+                Kept::Part(points) => points.iter().map(|p| (p.xi, p.weight)).collect(),
+                Kept::Nothing => Vec::new(),
+            };
+            let starts = [block.points.len(), block.ties.len()];
+            for (xi, weight) in own {
+                let shape = shapes(patch, span, xi, &mut room);
+                let point = GaussPoint::new(&shape, &x, &first, weight);
+                if !(point.weight > 0.0 && point.weight.is_finite()) {
+                    return Err(ShellError::NoNormal { element: e as u32 });
+                }
+                block.points.push(point);
             }
-            if sheet.assumed_membrane {
+            if sheet.assumed_membrane && *kept == Kept::Whole {
                 for c in 0..ASSUMED {
                     let place = at(0.5 * (c % 3) as f64, 0.5 * (c / 3) as f64);
                     let shape = shapes(patch, span, place, &mut room);
@@ -170,8 +198,38 @@ impl NurbsBlock {
                     block.ties.push(tie);
                 }
             }
+            if sheet.is_trimmed() {
+                block.group(e, kept, starts);
+            }
         }
         Ok(block)
+    }
+
+    /// Adds the groups of element `e`, whose points and tying points begin here.
+    fn group(&mut self, e: usize, kept: &Kept, [points, ties]: [usize; 2]) {
+        if e == 0 {
+            self.first_group.push(0);
+        }
+        let size = match kept {
+            Kept::Whole => self.per,
+            _ => GROUP,
+        };
+        for start in (points..self.points.len()).step_by(size) {
+            self.groups.push(Group {
+                element: e as u32,
+                points: start..start + size,
+                ties: ties..self.ties.len(),
+            });
+        }
+        self.first_group.push(self.groups.len() as u32);
+    }
+
+    /// Groups of points of an element.
+    fn groups_of(&self, e: usize) -> Range<usize> {
+        match self.first_group.is_empty() {
+            true => e..e + 1,
+            false => self.first_group[e] as usize..self.first_group[e + 1] as usize,
+        }
     }
 
     /// The surface with its thickness.
@@ -201,26 +259,45 @@ impl NurbsBlock {
 
     /// Undeformed volume of element `e`.
     pub fn volume(&self, e: usize) -> f64 {
-        self.sheet.thickness * self.gauss(e).iter().map(|p| p.weight).sum::<f64>()
+        let all = self.groups_of(e).flat_map(|group| self.gauss(group));
+        self.sheet.thickness * all.map(|p| p.weight).sum::<f64>()
     }
 
     /// Bytes of heap that the points on borders and seams take.
     pub fn border_bytes(&self) -> usize {
-        let seams =
-            size_of_val(&self.seams[..]) + self.seams.iter().map(SeamSpan::bytes).sum::<usize>();
+        let groups = size_of_val(&self.groups[..]) + size_of_val(&self.first_group[..]);
+        let seams = groups
+            + size_of_val(&self.seams[..])
+            + self.seams.iter().map(SeamSpan::bytes).sum::<usize>();
         size_of_val(&self.borders[..]) + size_of_val(&self.starts[..]) + seams
     }
 
-    /// Gauss points of an element.
-    fn gauss(&self, e: usize) -> &[GaussPoint] {
-        &self.points[self.per * e..self.per * (e + 1)]
+    /// Gauss points of a group.
+    fn gauss(&self, group: usize) -> &[GaussPoint] {
+        match self.groups.is_empty() {
+            true => &self.points[self.per * group..self.per * (group + 1)],
+            false => &self.points[self.groups[group].points.clone()],
+        }
     }
 
-    /// Tying points of an element; none where membrane strains are not assumed.
-    fn tying(&self, e: usize) -> &[TyingPoint] {
-        match self.ties.is_empty() {
-            true => &[],
-            false => &self.ties[ASSUMED * e..ASSUMED * (e + 1)],
+    /// Tying points of a group; none where membrane strains are not assumed.
+    fn tying(&self, group: usize) -> &[TyingPoint] {
+        match (self.ties.is_empty(), self.groups.is_empty()) {
+            (true, _) => &[],
+            (false, true) => &self.ties[ASSUMED * group..ASSUMED * (group + 1)],
+            (false, false) => &self.ties[self.groups[group].ties.clone()],
+        }
+    }
+
+    /// Points of the borders of an element, with the first of its groups.
+    fn held_in(&self, group: usize) -> &[BorderPoint] {
+        let e = match self.groups.is_empty() {
+            true => group,
+            false => self.groups[group].element as usize,
+        };
+        match self.groups_of(e).start == group {
+            true => self.held(e),
+            false => &[],
         }
     }
 
@@ -246,9 +323,18 @@ impl NurbsBlock {
         e: usize,
         u: &[V<D>; NODES],
     ) -> Result<(D, [V<D>; NODES]), ElementFault> {
-        let strains = Strains::new(self, e, &self.positions(e, u));
-        with_sheet!(&self.plane, law => strains.forces(self, e, law))
-            .map_err(|cause| fault(e, cause))
+        let x = self.positions(e, u);
+        let (mut energy, mut forces) = (D::zero(), [[D::zero(); 3]; NODES]);
+        for group in self.groups_of(e) {
+            let strains = Strains::new(self, group, &x);
+            let (w, f) = with_sheet!(&self.plane, law => strains.forces(self, group, law))
+                .map_err(|cause| fault(e, cause))?;
+            energy += w;
+            for (sum, f) in forces.iter_mut().zip(f) {
+                (0..3).for_each(|c| sum[c] += f[c]);
+            }
+        }
+        Ok((energy, forces))
     }
 
     /// Forces, tangent and energy at displacements `u`.
@@ -262,9 +348,16 @@ impl NurbsBlock {
         out: &mut NurbsSystem,
     ) -> Result<(), ElementFault> {
         let u: [V<f64>; NODES] = u.map(Into::into);
-        let strains = Strains::new(self, e, &self.positions(e, &u));
-        with_sheet!(&self.plane, law => tangent::linearize(&strains, self, e, law, out))
-            .map_err(|cause| fault(e, cause))
+        let x = self.positions(e, &u);
+        out.f.fill(0.0);
+        out.k.fill(0.0);
+        out.energy = 0.0;
+        for group in self.groups_of(e) {
+            let strains = Strains::new(self, group, &x);
+            with_sheet!(&self.plane, law => tangent::linearize(&strains, self, group, law, out))
+                .map_err(|cause| fault(e, cause))?;
+        }
+        Ok(())
     }
 
     /// Forces at displacements `u`; returns the energy.

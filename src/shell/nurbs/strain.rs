@@ -1,4 +1,5 @@
-//! Strains of an element, assumed or compatible, and the forces of their resultants.
+//! Strains of an element, assumed or compatible, and the forces of their resultants. Points come in groups: one for a whole element,
+//! one for each part of one that a trim cuts.
 use super::super::error::FaultCause;
 use super::super::kinematics::V;
 use super::frame::{Components, Frame, NODES, Normal, combine, metric};
@@ -7,7 +8,7 @@ use super::point::{ASSUMED, PLAIN, Turn};
 use super::{NurbsBlock, borders};
 use num_dual::DualNum;
 
-/// What the displacements of an element give at its points. Only the first points of each array are used.
+/// What the displacements of an element give at the points of a group. Only the first points of each array are used.
 pub(super) struct Strains<D> {
     /// At the Gauss points.
     pub frames: [Frame<D>; PLAIN],
@@ -29,8 +30,8 @@ pub(super) struct Mix {
 
 impl Mix {
     #[inline(always)]
-    pub fn new(block: &NurbsBlock, e: usize) -> Mix {
-        let points = block.gauss(e);
+    pub fn new(block: &NurbsBlock, group: usize) -> Mix {
+        let points = block.gauss(group);
         let area: f64 = points.iter().map(|p| p.weight).sum();
         let mut part = [0.0; ASSUMED];
         let mut mean = [0.0; ASSUMED];
@@ -66,7 +67,7 @@ fn membrane<D: DualNum<f64> + Copy>(r: &[V<D>; 2], big: &Components<f64>) -> Com
 
 impl<D: DualNum<f64> + Copy> Strains<D> {
     #[inline(always)]
-    pub fn new(block: &NurbsBlock, e: usize, x: &[V<D>; NODES]) -> Self {
+    pub fn new(block: &NurbsBlock, group: usize, x: &[V<D>; NODES]) -> Self {
         let zero = [D::zero(); 3];
         let still = Frame {
             at: Normal {
@@ -84,7 +85,7 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
             strains: [[D::zero(); 6]; PLAIN],
             x: *x,
         };
-        for (g, p) in block.gauss(e).iter().enumerate() {
+        for (g, p) in block.gauss(group).iter().enumerate() {
             let frame = Frame::new(&p.n, x);
             let eps = membrane(&frame.at.r, &p.place.metric);
             for i in 0..3 {
@@ -94,18 +95,18 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
             }
             out.frames[g] = frame;
         }
-        out.assume(block, e);
+        out.assume(block, group);
         out
     }
 
     /// Puts the assumed membrane strains in the place of the compatible ones.
-    fn assume(&mut self, block: &NurbsBlock, e: usize) {
-        let ties = block.tying(e);
+    fn assume(&mut self, block: &NurbsBlock, group: usize) {
+        let ties = block.tying(group);
         if ties.is_empty() {
             return;
         }
-        let mix = Mix::new(block, e);
-        let points = block.gauss(e);
+        let mix = Mix::new(block, group);
+        let points = block.gauss(group);
         let mut tied = [[D::zero(); 3]; ASSUMED];
         for (c, tie) in ties.iter().enumerate() {
             self.tangents[c] = tie.n.each_ref().map(|n| combine(n, &self.x));
@@ -133,19 +134,19 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
     #[allow(clippy::type_complexity)]
     pub fn spread(
         block: &NurbsBlock,
-        e: usize,
+        group: usize,
         resultants: &[Resultants<D>; PLAIN],
     ) -> ([Components<D>; PLAIN], [Components<D>; ASSUMED]) {
-        let points = block.gauss(e);
+        let points = block.gauss(group);
         let (mut own, mut tied) = ([[D::zero(); 3]; PLAIN], [[D::zero(); 3]; ASSUMED]);
         for (g, p) in points.iter().enumerate() {
             (0..3).for_each(|i| own[g][i] = resultants[g][i] * p.weight);
         }
-        let ties = block.tying(e);
+        let ties = block.tying(group);
         if ties.is_empty() {
             return (own, tied);
         }
-        let mix = Mix::new(block, e);
+        let mix = Mix::new(block, group);
         let mut total = [D::zero(); 3];
         for (g, p) in points.iter().enumerate() {
             let s = transposed(&p.back, &own[g]);
@@ -169,10 +170,10 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
     pub fn forces<L: PlaneStress>(
         &self,
         block: &NurbsBlock,
-        e: usize,
+        group: usize,
         law: &L,
     ) -> Result<(D, [V<D>; NODES]), FaultCause> {
-        let points = block.gauss(e);
+        let points = block.gauss(group);
         let mut energy = D::zero();
         let mut f = [[D::zero(); 3]; NODES];
         let mut resultants = [[D::zero(); 6]; PLAIN];
@@ -188,7 +189,7 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
                 (0..3).for_each(|c| f[c] -= frame.at.n[c] * moment * p.weight);
             }
         }
-        let (own, tied) = Self::spread(block, e, &resultants);
+        let (own, tied) = Self::spread(block, group, &resultants);
         let mut press = |n: [&[f64; NODES]; 2], r: &[V<D>; 2], s: &Components<D>| {
             let along = |i: usize, c: usize| match i {
                 0 => s[0] * r[0][c] + s[2] * r[1][c],
@@ -202,10 +203,10 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
         for (g, p) in points.iter().enumerate() {
             press([&p.n[0], &p.n[1]], &self.frames[g].at.r, &own[g]);
         }
-        for (c, tie) in block.tying(e).iter().enumerate() {
+        for (c, tie) in block.tying(group).iter().enumerate() {
             press([&tie.n[0], &tie.n[1]], &self.tangents[c], &tied[c]);
         }
-        for held in block.held(e) {
+        for held in block.held_in(group) {
             energy += borders::forces(held, &self.x, &mut f);
         }
         Ok((energy, f))

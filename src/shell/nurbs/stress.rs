@@ -7,6 +7,7 @@ use super::point::PLAIN;
 use super::strain::Strains;
 use super::{NurbsBlock, fault, with_sheet};
 use crate::fem::gauss;
+use crate::mesh::nurbs::Kept;
 use covact_geometry::Vec3;
 
 /// Membrane forces and moments of an element per undeformed length, Cartesian, in its mean.
@@ -31,36 +32,44 @@ impl NurbsBlock {
         u: &[Vec3; NODES],
     ) -> Result<SheetResultants, ElementFault> {
         let u: [V<f64>; NODES] = u.map(Into::into);
-        let strains = Strains::new(self, e, &self.positions(e, &u));
-        with_sheet!(&self.plane, law => self.mean(e, &strains, law))
-            .map_err(|cause| fault(e, cause))
-    }
-
-    fn mean<L: PlaneStress>(
-        &self,
-        e: usize,
-        strains: &Strains<f64>,
-        law: &L,
-    ) -> Result<SheetResultants, FaultCause> {
-        let all = self.at_points(e, strains, law)?;
-        let points = self.gauss(e);
-        let area: f64 = points.iter().map(|p| p.weight).sum();
+        let x = self.positions(e, &u);
+        let groups = self.groups_of(e);
+        let points = groups.clone().flat_map(|group| self.gauss(group));
+        let area: f64 = points.map(|p| p.weight).sum();
         let mut out = SheetResultants::default();
-        for (point, p) in all.iter().zip(points) {
-            out.add(point, p.weight / area);
+        for group in groups {
+            let strains = Strains::new(self, group, &x);
+            with_sheet!(&self.plane, law => self.mean(group, &strains, law, area, &mut out))
+                .map_err(|cause| fault(e, cause))?;
         }
         Ok(out)
+    }
+
+    /// Adds the share of a group in the mean over an element of this area.
+    fn mean<L: PlaneStress>(
+        &self,
+        group: usize,
+        strains: &Strains<f64>,
+        law: &L,
+        area: f64,
+        out: &mut SheetResultants,
+    ) -> Result<(), FaultCause> {
+        let all = self.at_points(group, strains, law)?;
+        for (point, p) in all.iter().zip(self.gauss(group)) {
+            out.add(point, p.weight / area);
+        }
+        Ok(())
     }
 
     /// The resultants at the Gauss points; only the first are used.
     fn at_points<L: PlaneStress>(
         &self,
-        e: usize,
+        group: usize,
         strains: &Strains<f64>,
         law: &L,
     ) -> Result<[SheetResultants; PLAIN], FaultCause> {
         let mut out = [SheetResultants::default(); PLAIN];
-        for (g, p) in self.gauss(e).iter().enumerate() {
+        for (g, p) in self.gauss(group).iter().enumerate() {
             let (_, r) = law.resultants(g, &p.place, &strains.strains[g])?;
             let at = &strains.frames[g].at;
             let [a11, a22, a12] = p.place.metric;
@@ -82,7 +91,7 @@ impl NurbsBlock {
     }
 
     /// Cauchy stress of the bottom and the top at places in [0, 1]^2 of an element: linear through the current thickness, with
-    /// resultants extended from the Gauss points.
+    /// resultants extended from the Gauss points; their mean in an element that a trim cuts, nothing where it leaves none.
     ///
     /// # Errors
     /// As [`Self::mean_resultants`].
@@ -92,9 +101,23 @@ impl NurbsBlock {
         u: &[Vec3; NODES],
         places: &[[f64; 2]],
     ) -> Result<Vec<[[f64; 6]; 2]>, ElementFault> {
+        let faces = |at: &SheetResultants| {
+            let thickness = self.sheet.thickness * at.thinning;
+            [-6.0, 6.0].map(|far| {
+                std::array::from_fn(|c| {
+                    at.membrane[c] / thickness + far * at.moment[c] / (thickness * thickness)
+                })
+            })
+        };
+        match self.sheet.kept(e) {
+            Kept::Whole => {}
+            Kept::Part(_) => return Ok(vec![faces(&self.mean_resultants(e, u)?); places.len()]),
+            Kept::Nothing => return Ok(vec![[[0.0; 6]; 2]; places.len()]),
+        }
         let u: [V<f64>; NODES] = u.map(Into::into);
-        let strains = Strains::new(self, e, &self.positions(e, &u));
-        let points = with_sheet!(&self.plane, law => self.at_points(e, &strains, law))
+        let group = self.groups_of(e).start;
+        let strains = Strains::new(self, group, &self.positions(e, &u));
+        let points = with_sheet!(&self.plane, law => self.at_points(group, &strains, law))
             .map_err(|cause| fault(e, cause))?;
         let side = if self.per == PLAIN { 4 } else { 3 };
         let rule = gauss(side).expect("a rule of three or four points exists");
@@ -105,12 +128,7 @@ impl NurbsBlock {
             for (g, point) in points[..self.per].iter().enumerate() {
                 at.add(point, along[g % side] * across[g / side]);
             }
-            let thickness = self.sheet.thickness * at.thinning;
-            [-6.0, 6.0].map(|far| {
-                std::array::from_fn(|c| {
-                    at.membrane[c] / thickness + far * at.moment[c] / (thickness * thickness)
-                })
-            })
+            faces(&at)
         });
         Ok(out.collect())
     }
@@ -120,6 +138,9 @@ impl NurbsBlock {
     /// # Errors
     /// As [`Self::mean_resultants`].
     pub fn mean_stress(&self, e: usize, u: &[Vec3; NODES]) -> Result<[f64; 6], ElementFault> {
+        if *self.sheet.kept(e) == Kept::Nothing {
+            return Ok([0.0; 6]);
+        }
         let mean = self.mean_resultants(e, u)?;
         let thickness = self.sheet.thickness * mean.thinning;
         Ok(mean.membrane.map(|n| n / thickness))

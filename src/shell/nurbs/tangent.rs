@@ -42,19 +42,17 @@ fn turn(m: &[[f64; 3]; 3], rows: &[[f64; DOFS]; 3], out: &mut [[f64; DOFS]; 3]) 
     }
 }
 
+/// Adds what a group of points gives.
 pub(super) fn linearize<L: PlaneStress>(
     at: &Strains<f64>,
     block: &NurbsBlock,
-    e: usize,
+    group: usize,
     law: &L,
     out: &mut NurbsSystem,
 ) -> Result<(), FaultCause> {
     let NurbsSystem { f, k, energy, work } = out;
-    let points = block.gauss(e);
-    rows(at, block, e, work);
-    f.fill(0.0);
-    k.fill(0.0);
-    *energy = 0.0;
+    let points = block.gauss(group);
+    rows(at, block, group, work);
     let mut resultants = [[0.0; 6]; PLAIN];
     let mut pushed = [[0.0; DOFS]; 6];
     for (g, p) in points.iter().enumerate() {
@@ -83,12 +81,12 @@ pub(super) fn linearize<L: PlaneStress>(
             }
         }
     }
-    let (own, tied) = Strains::spread(block, e, &resultants);
+    let (own, tied) = Strains::spread(block, group, &resultants);
     let mut scalars = [0.0; NODES * NODES];
     for (p, n) in points.iter().zip(&own) {
         stretch([&p.n[0], &p.n[1]], n, &mut scalars);
     }
-    for (tie, n) in block.tying(e).iter().zip(&tied) {
+    for (tie, n) in block.tying(group).iter().zip(&tied) {
         stretch([&tie.n[0], &tie.n[1]], n, &mut scalars);
     }
     for b in 0..NODES {
@@ -124,7 +122,7 @@ pub(super) fn linearize<L: PlaneStress>(
             }
         }
     }
-    for held in block.held(e) {
+    for held in block.held_in(group) {
         *energy += borders::linearize(held, &at.x, f, &mut k[..]);
     }
     // Blocks on the diagonal are symmetric; what is above it is complete.
@@ -151,8 +149,8 @@ fn stretch(d: [&[f64; NODES]; 2], n: &Components<f64>, out: &mut [f64; NODES * N
 }
 
 /// Rows of all strains at the Gauss points.
-fn rows(at: &Strains<f64>, block: &NurbsBlock, e: usize, work: &mut Work) {
-    let points = block.gauss(e);
+fn rows(at: &Strains<f64>, block: &NurbsBlock, group: usize, work: &mut Work) {
+    let points = block.gauss(group);
     let mut plain = [[0.0; DOFS]; 3];
     for (g, p) in points.iter().enumerate() {
         let frame = &at.frames[g];
@@ -168,11 +166,11 @@ fn rows(at: &Strains<f64>, block: &NurbsBlock, e: usize, work: &mut Work) {
         membrane_rows([&p.n[0], &p.n[1]], &frame.at.r, &mut plain);
         membrane.copy_from_slice(&plain);
     }
-    let ties = block.tying(e);
+    let ties = block.tying(group);
     if ties.is_empty() {
         return;
     }
-    let mix = Mix::new(block, e);
+    let mix = Mix::new(block, group);
     for (c, tie) in ties.iter().enumerate() {
         membrane_rows([&tie.n[0], &tie.n[1]], &at.tangents[c], &mut plain);
         turn(&tie.turn, &plain, &mut work.tied[c]);

@@ -92,8 +92,10 @@ histories!(
     q18_on_h8,
     sandwiched_shell,
     sheet_in_die,
+    sheet_over_hills,
     strip_drawn,
     strip_over_cylinder,
+    tubes_crossed_nurbs,
 );
 
 /// Names of the files of a folder with this ending, less the ending.

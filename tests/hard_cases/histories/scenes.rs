@@ -112,3 +112,17 @@ pub fn strip_drawn(scene: &mut Value) {
 }
 
 pub fn strip_over_cylinder(_: &mut Value) {}
+
+/// Coarser, and drawn a little.
+pub fn sheet_over_hills(scene: &mut Value) {
+    set(scene, "/bodies/sheet/nurbs/size", 4);
+    end(scene, 1.6);
+}
+
+/// Coarser, and until the upper tube slides.
+pub fn tubes_crossed_nurbs(scene: &mut Value) {
+    for body in ["lower", "upper"] {
+        set(scene, &format!("/bodies/{body}/nurbs/size"), 10);
+    }
+    end(scene, 1.2);
+}

@@ -9,7 +9,9 @@ mod nonlinear;
 mod pair;
 mod panel;
 mod refusals;
+mod scenes;
 mod seams;
+mod trims;
 
 use crate::support::{Outcome, solve_in};
 use serde_json::{Value, json};
@@ -88,8 +90,13 @@ impl Patch {
 
 /// Runs a scene whose body `sheet` is a shell of this patch; the scene gives the rest of it.
 pub fn solve_sheet(patch: &Patch, scene: &Value) -> Outcome {
+    solve_sheet_file(&patch.json(), scene)
+}
+
+/// Runs a scene beside which this geometry lies as `face.json`.
+pub fn solve_sheet_file(geometry: &Value, scene: &Value) -> Outcome {
     let folder = tempfile::tempdir().expect("temporary folder");
-    std::fs::write(folder.path().join("face.json"), patch.json().to_string()).expect("written");
+    std::fs::write(folder.path().join("face.json"), geometry.to_string()).expect("written");
     solve_in(scene, folder.path())
 }
 

@@ -1,6 +1,6 @@
 //! Shells on NURBS patches in contact with each other, both with their thickness.
 use super::seams::geometry;
-use super::{knots, off};
+use super::{arc, knots, off};
 use crate::support::{Outcome, solve_in};
 use covact::assembly::Assembler;
 use covact::model::build::build;
@@ -20,6 +20,28 @@ fn dish(z0: f64, a: f64, b: f64) -> NurbsPatch {
         })
         .collect();
     NurbsPatch::new([2, 2], [knots(2), knots(2)], [3, 3], &points, None).expect("a patch")
+}
+
+/// A part of a torus with its apex at the origin, where the radii of curvature are 80 and 60; 40 wide along x and y, with weights that
+/// differ in both directions.
+fn vault() -> NurbsPatch {
+    let (big, small) = (20.0, 60.0);
+    let (mut points, mut weights) = (Vec::new(), Vec::new());
+    for [c, s, w] in arc(-0.34, 0.34) {
+        for [d, t, v] in arc(-0.26, 0.26) {
+            let r = big + small * c;
+            points.push(Vec3::new(r * t, small * s, r * d - big - small));
+            weights.push(w * v);
+        }
+    }
+    NurbsPatch::new(
+        [2, 2],
+        [knots(2), knots(2)],
+        [3, 3],
+        &points,
+        Some(&weights),
+    )
+    .expect("a patch")
 }
 
 /// A flat sheet over a dome, half of both thicknesses and a gap of .05 apart, whose border goes down by `depth`.
@@ -70,6 +92,7 @@ fn folder() -> tempfile::TempDir {
     };
     write("lower.json", dish(0.0, -0.006, -0.004));
     write("upper.json", dish(1.3, 0.0, 0.0));
+    write("vault.json", vault());
     write("bulge.json", dish(1.3, 0.004, 0.003));
     folder
 }
@@ -138,6 +161,26 @@ fn two_sheets_bend() {
     }
 }
 
+/// The same where the lower sheet is rational: a part of a torus held as a whole is that surface of the file, to the last digits.
+#[test]
+fn a_held_torus_is_the_rigid_surface() {
+    let friction = json!({"friction": {"coulomb": {"mu": 0.2}}});
+    let mut held = scene(json!("lower.top"), friction.clone(), 1.0);
+    held["bodies"]["lower"]["nurbs"]["file"] = json!("vault.json");
+    let mut contact = friction;
+    contact["offset"] = json!(0.75);
+    let mut rigid = scene(Value::Null, contact, 1.0);
+    rigid["surfaces"]["lower"]["cad"]["file"] = json!("vault.json");
+    let [held, rigid] = [held, rigid].map(|s| solve(&s));
+    let size = held.at("force.border.z", 1.0).abs();
+    assert!(size > 50.0, "{size}");
+    for c in ["x", "y", "z"] {
+        let [a, b] = [&held, &rigid].map(|o| o.at(&format!("force.border.{c}"), 1.0));
+        println!("{c}: {a} {b}");
+        assert!((a - b).abs() < 1e-10 * size, "{c}: {a} {b}");
+    }
+}
+
 /// Values without a pattern between -1 and 1.
 fn noise(k: usize) -> f64 {
     let x = (12.9898 * k as f64 + 4.1).sin() * 43758.5453;
@@ -145,12 +188,20 @@ fn noise(k: usize) -> f64 {
 }
 
 /// The assembled contact of both sheets at displacements without a pattern: forces and moments of all control points cancel at
-/// round-off, and the tangent is the derivative of the forces.
+/// round-off, and the tangent is the derivative of the forces. The lower sheet is polynomial, then rational.
 #[test]
 fn balance_and_tangent_of_two_sheets() {
+    for lower in ["lower.json", "vault.json"] {
+        balance_and_tangent(lower);
+    }
+}
+
+fn balance_and_tangent(lower: &str) {
     let folder = folder();
     let all = json!("lower.corner.1");
-    let text = serde_json::to_string_pretty(&scene(all, json!({}), 2.0)).expect("serialisable");
+    let mut scene = scene(all, json!({}), 2.0);
+    scene["bodies"]["lower"]["nurbs"]["file"] = json!(lower);
+    let text = serde_json::to_string_pretty(&scene).expect("serialisable");
     let mut loaded = scene::parse(&text, "scene.json").expect("a scene");
     loaded.dir = folder.path().to_path_buf();
     loaded.scene.solution.stabilization = scene::Stabilization::Auto;

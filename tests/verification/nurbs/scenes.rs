@@ -1,0 +1,72 @@
+//! Shipped scenes of NURBS shells that slide, at coarser meshes.
+use super::off;
+use crate::support::{Outcome, scene_json, set, solve};
+use serde_json::json;
+
+/// A scene that must end at the defaults with no more than 12 iterations a step on average, failed ones included, and without
+/// warnings.
+fn run_to_end(scene: &serde_json::Value) -> Outcome {
+    let outcome = solve(scene);
+    let summary = &outcome.summary;
+    assert_eq!(summary.status.name(), "done", "{:?}", summary.reason);
+    assert!(summary.warnings.is_empty(), "{:?}", summary.warnings);
+    let sum = |name: &str| outcome.column(name).iter().sum::<f64>();
+    let steps = outcome.column("time").len() as f64;
+    let mean = (sum("iterations") + sum("iterations.failed")) / steps;
+    println!("{steps} steps, {mean:.1} iterations a step");
+    assert!(mean <= 12.0, "{mean} iterations a step");
+    outcome
+}
+
+/// `tubes_crossed_nurbs`: forces and moments of both tubes balance, through pressing and drawing; the tubes stick, then the upper one
+/// slides.
+#[test]
+fn crossed_tubes_balance() {
+    let mut scene = scene_json("tubes_crossed_nurbs.json");
+    for body in ["lower", "upper"] {
+        set(&mut scene, &format!("/bodies/{body}/nurbs/size"), 10);
+    }
+    scene["solution"]["end_time"] = json!(1.3);
+    scene["output"] = json!({"every": 0});
+    let outcome = run_to_end(&scene);
+    let last = |name: &str| *outcome.column(name).last().expect("steps");
+    let [x, y, z] = ["x", "y", "z"].map(|c| last(&format!("slave.force.tubes.{c}")));
+    let force = (x * x + y * y + z * z).sqrt();
+    let worst = |name: &str| outcome.column(name).into_iter().fold(0.0, f64::max);
+    // The tubes are 60 long.
+    let left = [
+        worst("imbalance.force.tubes") / force,
+        worst("imbalance.moment.tubes") / (60.0 * force),
+    ];
+    println!("force {force}, left {left:?}");
+    assert!(force > 1.0 && left.iter().all(|l| *l < 1e-12), "{left:?}");
+    // Coulomb's law on a tube that bends in where it is pressed.
+    let ratio = (y / z).abs();
+    assert!(last("points.slip") > 0.0 && ratio > 0.2, "{ratio}");
+}
+
+/// `sheet_over_hills`: the same hills as one patch take the same forces while the sheet is drawn over the borders of the eight.
+#[test]
+fn a_sheet_over_hills_does_not_feel_borders() {
+    let run = |file: &str| {
+        let mut scene = scene_json("sheet_over_hills.json");
+        set(&mut scene, "/bodies/sheet/nurbs/size", 4);
+        let path = format!("../../assets/cad/{file}");
+        set(&mut scene, "/surfaces/hills/cad/file", path);
+        scene["solution"]["end_time"] = json!(3.5);
+        scene["solution"]["newton"] = json!({"tolerance": 1e-10});
+        scene["output"] = json!({"every": 0});
+        run_to_end(&scene)
+    };
+    let [eight, one] = ["hills.igs", "hills_one.json"].map(run);
+    for name in [
+        "force.hills.x",
+        "force.hills.z",
+        "energy.dissipated",
+        "energy.internal",
+    ] {
+        let [a, b] = [&eight, &one].map(|o| o.at(name, 3.5));
+        println!("{name}: {a} {b}");
+        assert!(a.abs() > 0.1 && off(a, b) < 1e-6, "{name}: {a} {b}");
+    }
+}
