@@ -54,3 +54,53 @@ fn elements_that_bend_better_are_kept() {
     assert!(fine > 1.0, "{fine}");
     assert!((own / fine - 1.0).abs() < 0.1, "{own} of {fine}");
 }
+
+/// A stiff block pressed into rubber and slid over it, with these faces of it as the master.
+fn sledge(master: &str) -> Value {
+    json!({
+        "covact": 1,
+        "materials": {
+            "p": { "st_venant_kirchhoff": { "E": 2000, "nu": 0.38 } },
+            "r": { "neo_hooke": { "E": 4, "nu": 0.46 } }
+        },
+        "bodies": {
+            "p": { "mesh": { "block": { "min": [-8, 0, 0], "max": [8, 1, 8], "elements": [4, 1, 2] } }, "material": "p" },
+            "m": {
+                "mesh": { "block": { "min": [-20, 0, -8], "max": [20, 1, 0], "elements": [24, 1, 4] } },
+                "material": "r", "element": "h8_mean_dilatation"
+            }
+        },
+        "contacts": { "k": { "slave": "m.top", "master": master, "friction": 0.4 } },
+        "supports": {
+            "f": { "on": "m.bottom", "fixed": true },
+            "y": { "on": ["p", "m"], "symmetry": "y" },
+            "h": { "on": "p.top", "displacement": {
+                "x": { "table": [[0, 0], [0.5, 0], [1, 4]] }, "z": { "table": [[0, 0], [0.5, -0.8], [1, -0.8]] }
+            } }
+        },
+        "solution": { "threads": 1 },
+        "output": { "every": 0 }
+    })
+}
+
+/// The rubber comes up in front of the block, beside the edge of its bottom, where that alone holds nothing and then, a step later,
+/// is .8 above it: with all faces of the block the run ends, and has the forces of the scene that says so.
+#[test]
+fn what_comes_up_beside_an_edge_meets_the_faces_there() {
+    let [part, whole] = ["p.bottom", "p"].map(|master| solve(&sledge(master)));
+    for outcome in [&part, &whole] {
+        assert_eq!(outcome.summary.status.name(), "done");
+    }
+    let told = part.summary.warnings.iter();
+    let count = told
+        .filter(|w| w.contains("with all faces of that body as the master"))
+        .count();
+    assert_eq!(count, 1, "{:?}", part.summary.warnings);
+    for axis in ["force.h.x", "force.h.z"] {
+        let [part, whole] = [&part, &whole].map(|outcome| outcome.at(axis, 1.0));
+        assert!(
+            whole.abs() > 5.0 && (part / whole - 1.0).abs() < 1e-9,
+            "{axis}: {part} {whole}"
+        );
+    }
+}
