@@ -64,8 +64,9 @@ impl Exit {
             }
             Exit::NotConverged => {
                 "not converged, interrupted, or a contact that never touched (told only: a body's contact with itself, \
-                 contacts of which both sides have touched in others, and surfaces at rest in front of a slave that has \
-                 touched elsewhere, which may be stops); what was computed is kept"
+                 contacts of which both sides have touched in others, surfaces at rest in front of a slave that has \
+                 touched elsewhere, which may be stops, and surfaces that move with one that has touched, as parts of a \
+                 tool); what was computed is kept"
             }
             Exit::Io => {
                 "reading or writing failed, or there is no run to continue; what was written before is intact"

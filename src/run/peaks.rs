@@ -9,6 +9,7 @@ use crate::model::initial::point_spacing;
 use crate::model::{Model, PairModel, sharp};
 use crate::output::ContactAccuracy;
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
+use covact_geometry::Vec3;
 
 /// Part of a force at sharp convex edges above which the user is warned.
 const AT_EDGES: f64 = 0.1;
@@ -180,6 +181,8 @@ impl Peaks {
                 };
             }
             let along = match pair.rigid_master() {
+                // Friction on what vibrates comes and goes with the normal force, which is looked at already.
+                Some(_) if model.dynamics.is_some() => Vec3::zeros(),
                 Some(surface) => totals.surfaces[surface].force,
                 None => slave.force,
             };

@@ -17,6 +17,7 @@ mod heading;
 mod jump;
 mod lag;
 mod multipliers;
+
 #[cfg(test)]
 mod tests;
 mod twist;
@@ -430,7 +431,7 @@ impl Watch {
         }
         // Where points with friction come to rest on the way there, the path decides about what they keep.
         let first = earlier < FIRST * self.turnover;
-        if softened && !first && part > JUMP && model.pairs.iter().any(|p| p.friction.is_some()) {
+        if softened && !first && lost > 0.0 && part > JUMP && slides(model) {
             return Some((Jump { lost, part }.rubbed(model, (step, [from, to])), true));
         }
         let [speed, last] = self.speed;
@@ -462,9 +463,8 @@ impl Watch {
     /// What is said of a run with friction whose energies are out of balance at its end. Without friction a state does not
     /// depend on the steps that led to it, only the sums of this watch do.
     pub fn drift(&self, model: &Model) -> Option<String> {
-        let slides = model.pairs.iter().any(|p| p.friction.is_some());
         let part = self.imbalance.abs() / self.turnover;
-        (slides && part > DRIFT).then(|| {
+        (slides(model) && part > DRIFT).then(|| {
             format!(
                 "the energies are out of balance by {:.3e} at the end, {:.1} % of the work, most of it in step {} ({:.3e}): the \
                  steps are too large for what happens in them, or the path jumped there. Take a smaller `solution.step.max`",
@@ -475,4 +475,9 @@ impl Watch {
             )
         })
     }
+}
+
+/// Whether any contact has friction.
+fn slides(model: &Model) -> bool {
+    model.pairs.iter().any(|p| p.friction.is_some())
 }

@@ -108,7 +108,7 @@ fn limits_of_the_process_count() {
             ],
             "/output/tessellation",
             &[
-                "200 x 200 quadrilaterals for each of 16 pieces of surfaces: about 1",
+                "200 x 200 quadrilaterals for each of 16 pieces of surfaces: about 2",
                 "help: take a smaller number",
             ],
         ),

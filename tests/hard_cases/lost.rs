@@ -125,8 +125,8 @@ fn a_balance_that_only_rounding_accepts_is_told() {
     assert!(far.column("residual").iter().all(|r| *r > 1e-4));
 }
 
-/// A plate that a punch presses towards a floor. Where the floor stands still and is not reached it may be a stop, which is told; where
-/// it moves it was to be touched.
+/// A plate that a punch presses towards a floor. Where the floor stands still and is not reached it may be a stop, and where it
+/// moves with the punch a part of it, which is told; where it moves in another way it was to be touched.
 #[test]
 fn a_stop_that_is_not_reached_is_told() {
     let scene = |floor: serde_json::Value| {
@@ -163,6 +163,14 @@ fn a_stop_that_is_not_reached_is_told() {
         "{told:?}"
     );
     assert!(warnings(&stop, "press").is_empty());
+    // What goes the punch's way may be a part of it.
+    let part = solve(&scene(plane(json!([0, 0, "-0.5*t"]))));
+    assert_eq!(part.summary.status.name(), "done");
+    let told = warnings(&part, "contact `stop` never touched");
+    assert!(
+        told.len() == 1 && told[0].contains("a part of a tool"),
+        "{told:?}"
+    );
     let missed = solve(&scene(plane(json!([0, 0, "0.2*t"]))));
     assert_eq!(missed.summary.status.name(), "no_contact");
     let reason = missed.summary.reason.as_deref().unwrap_or_default();

@@ -100,11 +100,10 @@ impl March<'_, '_> {
         cuts >= CRAWLS && MANY_CUTS * cuts > steps
     }
 
-    /// Whether steps in contact with a body are cut again and again, in vain.
+    /// Whether steps in contact with a body are cut again and again.
     fn crawls(&self) -> bool {
         let mut pairs = self.model.pairs.iter().zip(&*self.touching);
         self.cut_often()
-            && self.fails_often(IN_VAIN)
             && pairs.any(|(pair, touching)| *touching && self.model.between_bodies(pair))
     }
 }

@@ -40,8 +40,8 @@ impl Farthest {
         }
     }
 
-    /// The scene of this run, to be followed to its end, where the last one of `runs` stopped long before it (`time` of `end`).
-    fn again(self, scene: &LoadedScene, (time, end): (f64, f64), runs: u32) -> Option<Safe> {
+    /// The scene of this run, to be followed to its end, where the last one stopped long before it (`time` of `end`).
+    fn again(self, scene: &LoadedScene, (time, end): (f64, f64)) -> Option<Safe> {
         if self.time < time + FARTHER * end {
             return None;
         }
@@ -49,8 +49,8 @@ impl Farthest {
         let mut safe = Safe::of(scene, safe.as_ref());
         safe.former = None;
         safe.changed.push(format!(
-            "none of {runs} runs came to the end of the scene, and the last one stopped at time {}: the one that came farthest, to time {}, \
-             was repeated and followed as far as it goes",
+            "no run came to the end of the scene, and the last one stopped at time {}: the one that came farthest, to time {}, was \
+             repeated and followed as far as it goes",
             number(time),
             number(self.time)
         ));
@@ -65,10 +65,12 @@ pub(super) fn is_block(bodies: &[BodyModel], name: &str) -> bool {
 }
 
 impl Simulation<'_> {
-    /// Begins again at time 0 where other elements may replace those that gave way, or do so less well than these, where the run stopped while an edge of a
-    /// master lay on its slave, or in contact with a body that is softer than its slave, or with flat faces that may be smooth.
+    /// Begins again at time 0 where other elements may replace those that gave way, or do so less well than these, where the run
+    /// stopped while an edge of a master lay on its slave, or in contact with a body that is softer than its slave, or with flat
+    /// faces that may be smooth; and where nothing of that is left, with the run that came farthest.
     pub(super) fn begin_again(&mut self) -> Result<bool, RunError> {
-        let Some(ending) = self.ended.clone() else {
+        let ending = self.ended.clone().filter(|_| self.rims != Rims::Last);
+        let Some(ending) = ending else {
             return Ok(false);
         };
         let rims_sunk = ending.on_rims
@@ -151,7 +153,7 @@ impl Simulation<'_> {
         let found = found.or_else(|| {
             let farthest = farthest.take().filter(|_| stopped)?;
             let end = self.scene.scene.solution.end_time;
-            let safe = farthest.again(&self.scene, (time, end), self.attempt)?;
+            let safe = farthest.again(&self.scene, (time, end))?;
             Some((safe, Rims::Last))
         });
         let Some((mut safe, rims)) = found else {
@@ -205,19 +207,23 @@ mod tests {
         safe.loaded.scene.bodies.get_mut("b").unwrap().element = Element::H8MeanDilatation;
         safe.changed.push("bricks".to_owned());
         let far = Farthest::new(&scene, Some(&safe), 0.8);
-        assert!(far.clone().again(&scene, (0.79, 1.0), 3).is_none());
-        let again = far.again(&scene, (0.5, 1.0), 3).unwrap();
+        assert!(far.clone().again(&scene, (0.79, 1.0)).is_none());
+        let again = far.again(&scene, (0.5, 1.0)).unwrap();
         assert_eq!(again.loaded.scene, safe.loaded.scene);
         assert_eq!(again.changed[0], "bricks");
         let told = &again.changed[1];
         assert!(
-            ["none of 3 runs", "stopped at time 0.5", "to time 0.8"]
-                .iter()
-                .all(|part| told.contains(part)),
+            [
+                "no run came to the end",
+                "stopped at time 0.5",
+                "to time 0.8"
+            ]
+            .iter()
+            .all(|part| told.contains(part)),
             "{told}"
         );
         // Of the scene as it was given nothing is other but what is told.
-        let given = Farthest::new(&scene, None, 0.8).again(&scene, (0.5, 1.0), 3);
+        let given = Farthest::new(&scene, None, 0.8).again(&scene, (0.5, 1.0));
         let given = given.unwrap();
         assert!(given.loaded.scene == scene.scene && given.changed.len() == 1);
         let kept = Changes::of(&scene, Some(&given), Rims::Last).text();

@@ -20,7 +20,10 @@ impl Jump {
         (step, [from, to]): (u32, [f64; 2]),
         softened: bool,
     ) -> String {
-        let (did, what) = self.words();
+        let (did, what) = match self.lost > 0.0 {
+            true => ("lost", "went"),
+            false => ("gained", "came"),
+        };
         let why = match softened {
             true => {
                 "it was solved from a softened penalty only, and may have come to another equilibrium"
@@ -36,24 +39,16 @@ impl Jump {
             smoother(model, from)
         )
     }
-    /// The same of a step with friction that was solved from a softened penalty only, and whose size may explain it.
+    /// The same of a step with friction that was solved from a softened penalty and lost some, and whose size may explain it.
     pub(super) fn rubbed(&self, model: &Model, (step, [from, to]): (u32, [f64; 2])) -> String {
-        let (did, what) = self.words();
         format!(
-            "step {step} (time {}) {did} an energy of {:.3e} that {what} nowhere, {:.1} % of the work so far, and was solved from a \
+            "step {step} (time {}) lost an energy of {:.3e} that went nowhere, {:.1} % of the work so far, and was solved from a \
              softened penalty only: with friction points may have come to rest at other places on that way, and keep what they have \
              there. {}, and compare",
             number(to),
-            self.lost.abs(),
+            self.lost,
             100.0 * self.part,
             smoother(model, from)
         )
-    }
-
-    fn words(&self) -> (&'static str, &'static str) {
-        match self.lost > 0.0 {
-            true => ("lost", "went"),
-            false => ("gained", "came"),
-        }
     }
 }
