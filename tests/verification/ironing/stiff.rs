@@ -145,6 +145,7 @@ fn a_run_that_crawls_is_repeated_with_the_softer_side_as_the_slave() {
         let [a, b] = [&given, &exchanged].map(|outcome| outcome.at(name, 1.5));
         println!("{name}: {a}");
         assert!(a.abs() > 0.1);
-        assert_eq!(a, b);
+        // All faces of the die are the master of the repeated run.
+        assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
     }
 }
