@@ -5,7 +5,7 @@ use super::master::moving_facets;
 use super::{Model, PairModel};
 use crate::mesh::{Face, Mesh};
 use covact_geometry::{EdgeKind, MovingFacets, MovingFoot, MovingPlace, Vec3};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Angle between the normals of both faces from which on their edge is sharp (radians), as of rigid surfaces
 /// ([`super::sharp`]).
@@ -40,6 +40,35 @@ impl Edge {
             _ => false,
         }
     }
+}
+
+/// Outward unit normal and middle of a face; `position` gives the place of a node. Nothing for one without area.
+fn facing(mesh: &Mesh, face: Face, position: impl Fn(u32) -> Vec3) -> Option<[Vec3; 2]> {
+    let corners = mesh.face_corners(face).map(position);
+    let [a, b, c, d] = corners;
+    let normal = (d - a).cross(&(c - b)).try_normalize(0.0)?;
+    Some([normal, corners.iter().sum::<Vec3>() / 4.0])
+}
+
+/// The ends of a line of nodes, whichever way it is gone.
+fn ends(nodes: &[u32]) -> [u32; 2] {
+    let [a, b] = [nodes[0], nodes[nodes.len() - 1]];
+    [a.min(b), a.max(b)]
+}
+
+/// The edges that belong to one of these faces only, by their end nodes, with the outward unit normal and the middle of that face.
+pub fn border(mesh: &Mesh, faces: &[Face]) -> HashMap<[u32; 2], [Vec3; 2]> {
+    let mut edges: HashMap<[u32; 2], Option<[Vec3; 2]>> = HashMap::new();
+    for &face in faces {
+        let here = facing(mesh, face, |n| mesh.nodes[n as usize]);
+        for nodes in sides(mesh, face) {
+            let edge = edges.entry(ends(&nodes));
+            edge.and_modify(|face| *face = None).or_insert(here);
+        }
+    }
+    let once = edges.into_iter();
+    once.filter_map(|(edge, face)| Some((edge, face?)))
+        .collect()
 }
 
 /// The lines of nodes around a face.
@@ -123,22 +152,17 @@ pub fn sharp_edges(mesh: &Mesh, faces: &[Face], position: impl Fn(u32) -> Vec3) 
     let own: BTreeSet<Face> = faces.iter().copied().collect();
     let mut edges: BTreeMap<[u32; 2], Edge> = BTreeMap::new();
     for face in mesh.outer_faces() {
-        let corners = mesh.face_corners(face).map(&position);
-        let middle = corners.iter().sum::<Vec3>() / 4.0;
-        let [a, b, c, d] = corners;
-        let Some(normal) = (d - a).cross(&(c - b)).try_normalize(0.0) else {
+        let Some(facing) = facing(mesh, face, &position) else {
             continue;
         };
         for nodes in sides(mesh, face) {
-            let ends = [nodes[0], nodes[nodes.len() - 1]];
-            let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-            let edge = edges.entry(key).or_insert(Edge {
+            let edge = edges.entry(ends(&nodes)).or_insert(Edge {
                 nodes,
                 of_master: false,
                 faces: Vec::new(),
             });
             edge.of_master |= own.contains(&face);
-            edge.faces.push([normal, middle]);
+            edge.faces.push(facing);
         }
     }
     (edges.into_values())

@@ -9,7 +9,7 @@ use vtkio::model::CellType;
 
 /// Bytes of a quadrilateral of the flat copy of a surface: four indices, patch, entity, and a corner with its normal.
 const FLAT: u64 = 4 * 8 + 2 * 4 + 2 * 24;
-/// The flat copy is held once, and moved and as the bytes of a file while it is written.
+/// The flat copy is held once, with the file written last, and moved and as the bytes of a file while it is written.
 const COPIES: u64 = 4;
 
 /// Bytes of the flat copies of a surface, `each` quadrilaterals for every one of so many polynomial pieces.

@@ -1,8 +1,8 @@
 //! Contacts that are one: those of the same slave with neighbouring faces of a body. Taken each by itself their masters end at the edge
 //! between them: a slave point that comes round it is beside one of them, and deep below the other, which it never touched.
 use super::variant::Safe;
-use crate::mesh::{Face, Mesh};
 use crate::model::build::build_stage;
+use crate::model::edges::border;
 use crate::model::stages::StageStart;
 use crate::model::{Model, PairModel};
 use crate::scene::{Contact, LoadedScene, Scene, SetNames, Stage};
@@ -101,29 +101,8 @@ fn meet(one: &Border, other: &Border) -> bool {
         let way = beside - at;
         way.dot(n) > HOLLOW * way.norm()
     };
-    let hollow: Vec<bool> = common.map(hollow).collect();
-    !hollow.is_empty() && hollow.iter().all(|hollow| !hollow)
-}
-
-/// The edges that belong to one of these faces only, by their end nodes.
-fn border(mesh: &Mesh, faces: &[Face]) -> Border {
-    let mut edges: HashMap<[u32; 2], Option<[Vec3; 2]>> = HashMap::new();
-    for face in faces {
-        let corners = mesh.face_corners(*face);
-        let [a, b, c, d] = corners.map(|n| mesh.nodes[n as usize]);
-        let normal = (d - a).cross(&(c - b)).try_normalize(0.0);
-        let here = normal.map(|n| [n, (a + b + c + d) * 0.25]);
-        // Corners run along u first.
-        for [from, to] in [[0, 1], [2, 3], [0, 2], [1, 3]] {
-            let (from, to) = (corners[from], corners[to]);
-            (edges.entry([from.min(to), from.max(to)]))
-                .and_modify(|face| *face = None)
-                .or_insert(here);
-        }
-    }
-    let once = edges.into_iter();
-    once.filter_map(|(edge, face)| Some((edge, face?)))
-        .collect()
+    let mut hollow = common.map(hollow).peekable();
+    hollow.peek().is_some() && !hollow.any(|hollow| hollow)
 }
 
 impl Safe {
