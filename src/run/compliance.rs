@@ -17,7 +17,9 @@
 //! largest force, and it rules the penalty where two steps in a row show too much, at the last step, and where a first touch gives
 //! way beside bodies that are bent far. It costs as much as a few assemblies of contact: as long as it shows little it is made at
 //! fewer and fewer steps, and wherever forces have grown or motions have turned.
+mod growing;
 mod kept;
+mod lasting;
 mod sticking;
 mod told;
 
@@ -29,6 +31,8 @@ use crate::model::{Model, PairModel};
 use crate::scene::ValueError;
 use crate::solve::newton::RigidLimit;
 use covact_geometry::Vec3;
+use growing::Growing;
+use lasting::Lasting;
 use nalgebra::Isometry3;
 use sticking::Sticking;
 
@@ -114,15 +118,14 @@ pub struct Compliance {
     /// Steps from the last one to the next that is to show it, and the largest force between bodies at such steps.
     gap: u32,
     bearing: f64,
-    /// That error of the last step, and what it was there and at the one before alike.
-    before: f64,
-    lasting: f64,
-    /// That error when it last raised a penalty, while it is too large; else infinite.
-    raised: f64,
+    /// What steps in a row showed of that error.
+    lasting: Lasting,
     /// Energy of contact and work at the last two steps, the last one first.
     path: [[f64; 2]; 2],
     /// Penalty per pair at the last step; empty before the first.
     penalties: Vec<f64>,
+    /// How fast the energy of contact grows beside metal that flows.
+    growing: Growing,
     /// Largest force and displacement so far.
     force: f64,
     displacement: f64,
@@ -169,6 +172,8 @@ pub struct StepEnd<'a> {
     pub bearings: &'a Bearings,
     /// Strain energy.
     pub internal: f64,
+    /// What elements have taken, plastic work included (energy).
+    pub taken: f64,
     /// Work of supports, loads and surfaces since the start.
     pub work: f64,
     /// Penalty per pair.
@@ -191,11 +196,10 @@ impl Compliance {
             limits: [Measured::default(); 2],
             gap: 0,
             bearing: 0.0,
-            before: 0.0,
-            lasting: 0.0,
-            raised: f64::INFINITY,
+            lasting: Lasting::NONE,
             path: [[0.0; 2]; 2],
             penalties: Vec::new(),
+            growing: Growing::new(model),
             sticking: Sticking::default(),
             force: 0.0,
             displacement: 0.0,
@@ -238,6 +242,8 @@ impl Compliance {
             }
             if !judges {
                 measures.energy = 0.0;
+            } else if model.flows() {
+                measures.energy = measures.energy.max(self.growing.of(index, end));
             }
             *error = measures.largest();
         }
@@ -293,7 +299,7 @@ impl Compliance {
 
     /// The same for an accepted step, with what showed in the last two steps that were measured.
     pub fn add_lasting(&self, end: &StepEnd, errors: &mut Errors) {
-        add(self.lasting, end, errors);
+        add(self.lasting.now, end, errors);
     }
 
     /// The deepest penetration of a pair over the approach of its bodies.
@@ -313,12 +319,17 @@ impl Compliance {
         let pairs = &end.bearings.pairs;
         let stored: f64 = pairs.iter().map(|p| p.energy).sum();
         self.largest = self.largest.max(end.internal);
+        if model.flows() {
+            self.growing.step(end);
+        }
         let [before, first] = match self.penalties == end.penalties {
             true => self.path,
             // Energies under two penalties say nothing of growth.
             false => [[0.0; 2]; 2],
         };
         self.path = [[stored, end.work], before];
+        let raises = end.penalties.iter().zip(&self.penalties);
+        let stiffened = raises.fold(1.0f64, |most, (now, before)| most.max(now / before));
         self.penalties.clear();
         self.penalties.extend_from_slice(end.penalties);
         if stored <= 0.0 || !self.judges(end) {
@@ -366,20 +377,11 @@ impl Compliance {
             *peak = here;
         }
         *last = here;
-        // A single step may be that of a point just about to slide.
-        self.lasting = here
-            .error
-            .min(std::mem::replace(&mut self.before, here.error));
-        if self.lasting <= penalty_rule::raises_from(model) {
-            self.raised = f64::INFINITY;
-            return Ok(measures.growth);
+        let bound = penalty_rule::raises_from(model);
+        match self.lasting.step(here.error, stiffened, bound) {
+            true => Ok(measures.growth.max(self.lasting.now)),
+            false => Ok(measures.growth),
         }
-        // What a stiffer penalty did not lower, another will not.
-        if here.error > HELPED * self.raised {
-            return Ok(measures.growth);
-        }
-        self.raised = here.error;
-        Ok(measures.growth.max(self.lasting))
     }
 
     /// How far the bodies of a pair have moved towards each other along the normal at its deepest point: the spread of the

@@ -7,7 +7,9 @@ use crate::contact::law::PairLaw;
 pub struct Drag {
     /// Energy that its forces took.
     pub work: f64,
-    /// Its forces (sum of the magnitudes at nodes) relative to those of loads, supports or contacts, whichever are largest.
+    /// Its forces (sum of the magnitudes at nodes) relative to those of loads, supports or contacts, whichever are largest. Where
+    /// it stands for contact, as the run brings it in, those of supports do not count as long as others act: a bending moment is
+    /// held by pairs of forces that are large beside what bends.
     pub share: f64,
 }
 
@@ -59,7 +61,17 @@ impl<L: PairLaw> Assembler<'_, L> {
             own += drag.sqrt();
             (0..3).for_each(|i| forces[i] += node[i].sqrt());
         }
-        let largest = forces.iter().fold(0.0f64, |a, f| a.max(*f));
+        let [loads, contacts, supports] = forces;
+        let stands_for_contact = self
+            .model
+            .stabilization
+            .as_ref()
+            .is_some_and(|s| s.released)
+            && !passing.acts();
+        let largest = match loads.max(contacts) {
+            most if most > 0.0 && stands_for_contact => most,
+            most => most.max(supports),
+        };
         out.share = match own > 0.0 {
             true => own / largest.max(f64::MIN_POSITIVE),
             false => 0.0,

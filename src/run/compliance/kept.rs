@@ -1,4 +1,5 @@
 //! What has been measured since the start, in a checkpoint.
+use super::lasting::Lasting;
 use super::{Compliance, Measured, Measures};
 use crate::model::Model;
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
@@ -12,26 +13,17 @@ impl Compliance {
             limits,
             gap,
             bearing,
-            before,
             lasting,
-            raised,
             force,
             displacement,
             path,
             penalties,
+            growing,
             sticking,
             // Known from the model.
             poses: _,
         } = self;
-        out.f64s(&[
-            *largest,
-            *bearing,
-            *before,
-            *lasting,
-            *raised,
-            *force,
-            *displacement,
-        ]);
+        out.f64s(&[*largest, *bearing, *force, *displacement]);
         out.u32(*gap);
         for measured in [worst, &limits[0], &limits[1]] {
             measured.put(out);
@@ -39,6 +31,8 @@ impl Compliance {
         out.f64s(path.as_flattened());
         out.count(penalties.len());
         out.f64s(penalties);
+        growing.put(out);
+        lasting.put(out);
         sticking.put(out);
     }
 
@@ -48,17 +42,9 @@ impl Compliance {
         model: &Model,
         from: &mut Reader,
     ) -> Result<(), Malformed> {
-        let mut sums = [0.0; 7];
+        let mut sums = [0.0; 4];
         from.f64s(&mut sums)?;
-        [
-            self.largest,
-            self.bearing,
-            self.before,
-            self.lasting,
-            self.raised,
-            self.force,
-            self.displacement,
-        ] = sums;
+        [self.largest, self.bearing, self.force, self.displacement] = sums;
         self.gap = from.u32()?;
         self.worst = Measured::take(model, from)?;
         self.limits = [Measured::take(model, from)?, Measured::take(model, from)?];
@@ -69,6 +55,8 @@ impl Compliance {
         }
         self.penalties.resize(count, 0.0);
         from.f64s(&mut self.penalties)?;
+        self.growing.take(from)?;
+        self.lasting = Lasting::take(from)?;
         self.sticking.take(model, from)
     }
 }

@@ -187,6 +187,7 @@ impl March<'_, '_> {
             state,
             bearings: &outputs.fields.bearings,
             internal: totals.internal_energy,
+            taken: totals.internal_energy + state.plastic_work(self.model).in_energy,
             work: self.watch.external,
             penalties: &self.assembler.penalties,
             limit: limit.as_ref(),

@@ -334,6 +334,7 @@ impl<'m> March<'_, 'm> {
             state,
             bearings: &outputs.fields.bearings,
             internal: converged.totals.internal_energy,
+            taken: converged.totals.internal_energy,
             work: 0.0,
             penalties: &self.assembler.penalties,
             limit,
