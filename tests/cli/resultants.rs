@@ -17,7 +17,9 @@ struct Last {
 impl Last {
     fn read(folder: &Path, file: &str) -> Last {
         use vtkio::model::{Attribute, DataSet, Piece, Vtk};
-        let vtk = Vtk::import(folder.join("out").join(file)).unwrap();
+        let bytes = std::fs::read(folder.join("out").join(file)).unwrap();
+        let bytes = covact::output::inlined(&bytes).unwrap();
+        let vtk = Vtk::parse_xml(&bytes[..]).unwrap();
         let DataSet::UnstructuredGrid { pieces, .. } = vtk.data else {
             panic!("no grid");
         };
