@@ -149,7 +149,13 @@ def visit(browser, text, size):
 def picture(browser, page, size, path, *more):
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         options = [f"--screenshot={path}", "--virtual-time-budget=6000", *more]
-        subprocess.run([*command(browser, profile, size), *options, page.as_uri()], capture_output=True, timeout=120)
+        # On a busy machine the browser may hang once.
+        for attempt in range(2):
+            try:
+                subprocess.run([*command(browser, profile, size), *options, page.as_uri()], capture_output=True, timeout=60)
+                return
+            except subprocess.TimeoutExpired:
+                print(f"{path}: no picture within 60 s" + (", once more" if attempt == 0 else ""), file=sys.stderr)
 
 
 def check(browser, page, size, seconds):
