@@ -1,7 +1,7 @@
 //! Files whose arrays stand behind the tree, as they are (VTK's "raw" appended data).
 //!
-//! vtkio writes arrays inline in base64 and reads no compressed ones that are appended: [`Appended`] moves them behind the tree,
-//! and [`inlined`] takes them back before it reads a file.
+//! vtkio writes arrays inline in base64 and reads no raw ones: [`Appended`] moves them behind the tree, and [`inlined`] takes them
+//! back before it reads a file.
 use super::packed::{first_array, packed};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

@@ -297,3 +297,19 @@ fn the_middle_of_a_strip_that_flows_is_not_the_mean_of_its_faces() {
     }
     assert!(compared > 50);
 }
+
+/// Of a body that is no shell there are no stresses over the thickness, which is said.
+#[test]
+fn a_block_has_no_stresses_over_a_thickness() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene = scene_of("h8", [json!("t"), json!(0), json!(0)]);
+    scene["bodies"]["strip"]["mesh"]["block"]["max"] = json!([4, 1, 4]);
+    scene["output"] = json!({"shell_stresses": true});
+    let last = run(&scene, folder.path());
+    assert!(last.fields.iter().all(|f| !f.0.starts_with("stress_")));
+    let log = std::fs::read_to_string(folder.path().join("out/run.log")).unwrap();
+    assert!(
+        log.contains("`output.shell_stresses`: no body is a shell"),
+        "{log}"
+    );
+}
