@@ -4,7 +4,7 @@
 A copy of each page, served on this machine, gets a script that turns, cuts and plays the bodies, changes every choice and says what it saw. A page
 passes if the console stays empty, it opens within 1 s (--seconds) and its 3-D view within 3 s (drawn without a graphics card,
 whose start alone takes .5 s to 1 s), the picture shows something and changes with the
-step, and nothing is wider than the window, at 1280 and at 390 pixels. Needs Python's standard library and `chromium`
+step, warnings with a place have their marks in the view, and nothing is wider than the window, at 1280 and at 390 pixels. Needs Python's standard library and `chromium`
 only; exits with 2 where there is no browser.
 """
 import argparse
@@ -30,6 +30,7 @@ CHECKS = """
   found.width = innerWidth;
   found.overflow = root.scrollWidth - root.clientWidth;
   found.stages = [];
+  const runs = JSON.parse(document.getElementById('head').textContent);
   for (const canvas of document.querySelectorAll('.stage canvas')) {
     const gl = canvas.getContext('webgl2'), box = canvas.closest('[id^=view]');
     const picture = () => {
@@ -43,7 +44,14 @@ CHECKS = """
       return { part: other / (pixels.length / 4), sum: sum };
     };
     const change = (e, v) => { e.value = v; e.dispatchEvent(new Event(e.type === 'range' ? 'input' : 'change')); };
-    const stage = { steps: 0, pictures: [] };
+    const stage = { steps: 0, pictures: [], marks: 0 };
+    const frame = canvas.getBoundingClientRect();
+    stage.places = runs[found.stages.length].marks.length;
+    for (const label of box.querySelectorAll('.stage .mark')) {
+      const at = label.getBoundingClientRect(), x = at.left + at.width / 2, y = at.top + at.height / 2;
+      const inside = x > frame.left && x < frame.right && y > frame.top && y < frame.bottom;
+      if (at.width > 0 && inside && label.title && box.parentNode.querySelector('li[id$="-' + label.textContent + '"]')) stage.marks++;
+    }
     const slider = box.querySelector('.time input');
     stage.steps = Number(slider.max) + 1;
     change(slider, slider.max);
@@ -141,7 +149,13 @@ def visit(browser, text, size):
 def picture(browser, page, size, path, *more):
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         options = [f"--screenshot={path}", "--virtual-time-budget=6000", *more]
-        subprocess.run([*command(browser, profile, size), *options, page.as_uri()], capture_output=True, timeout=120)
+        # On a busy machine the browser may hang once.
+        for attempt in range(2):
+            try:
+                subprocess.run([*command(browser, profile, size), *options, page.as_uri()], capture_output=True, timeout=60)
+                return
+            except subprocess.TimeoutExpired:
+                print(f"{path}: no picture within 60 s" + (", once more" if attempt == 0 else ""), file=sys.stderr)
 
 
 def check(browser, page, size, seconds):
@@ -169,6 +183,8 @@ def check(browser, page, size, seconds):
         wrong.append("no 3-D view")
     for stage in found["stages"]:
         pictures = stage["pictures"]
+        if stage["marks"] != stage["places"]:
+            wrong.append(f"{stage['places']} warnings with a place, {stage['marks']} marks in the view")
         if stage["error"] != 0:
             wrong.append(f"WebGL error {stage['error']}")
         if min(p["part"] for p in pictures[:3]) < 0.002:

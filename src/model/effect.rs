@@ -74,6 +74,7 @@ effects! {
     EnergyWatch, "energy.watch", detail: "work and energies are balanced at every step";
     OutputFields, "output.fields", detail: "displacements, stresses and contact fields are written";
     OutputContactPoints, "output.contact_points", detail: "gaps, tractions and slip are written for every slave point";
+    OutputShellStresses, "output.shell_stresses", detail: "stresses of shells at bottom, middle and top are written";
     NormalPenalty, "contact.normal.penalty", listed: "contact pressure = penalty times penetration";
     MasterRigid, "contact.master.rigid", listed: "rigid surfaces";
     MasterDeformable, "contact.master.deformable", listed: "faces of bodies that deform";

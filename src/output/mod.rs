@@ -13,6 +13,7 @@
 //! Subdivision Level" is raised.
 
 mod accuracy;
+mod appended;
 pub mod atomic;
 mod bezier;
 mod body;
@@ -36,6 +37,7 @@ mod trimmed;
 mod vtu;
 
 pub use accuracy::{Accuracy, ContactAccuracy};
+pub use appended::inlined;
 pub use bezier::{BezierError, MAX_DEGREE, SurfacePiece};
 pub use body::{
     BodyFields, CLOSED, ContactFields, NOT_A_SLAVE, OPEN, SLIP, STRESS_COMPONENTS, von_mises,

@@ -12,10 +12,10 @@ const BLOCK: usize = 1 << 20;
 /// Bytes of the length that stands in front of an array.
 const LENGTH: usize = 8;
 
-/// An array in base64 behind its length, as the serialiser writes it, in compressed blocks: in base64 their number, their
-/// length and that of a shorter last one before compression, and their lengths after it, then in base64 the blocks (format:
-/// "VTK file formats", VTK user's guide). None where the text is not such an array.
-pub(super) fn packed(text: &[u8]) -> Option<String> {
+/// An array in base64 behind its length, as the serialiser writes it, in compressed blocks: their number, their length and
+/// that of a shorter last one before compression, and their lengths after it, then the blocks (format: "VTK file formats",
+/// VTK user's guide). None where the text is not such an array.
+pub(super) fn packed(text: &[u8]) -> Option<Vec<u8>> {
     let bytes = STANDARD.decode(text.trim_ascii()).ok()?;
     let (length, data) = bytes.split_at_checked(LENGTH)?;
     if u64::from_le_bytes(length.try_into().ok()?) != data.len() as u64 {
@@ -25,24 +25,44 @@ pub(super) fn packed(text: &[u8]) -> Option<String> {
 }
 
 /// An array in compressed blocks, as [`packed`] leaves it.
-pub(super) fn compressed(data: &[u8]) -> Option<String> {
+pub(super) fn compressed(data: &[u8]) -> Option<Vec<u8>> {
     let blocks = data.chunks(BLOCK);
-    let mut head = vec![blocks.len(), BLOCK, data.len() % BLOCK];
-    let mut body = Vec::with_capacity(data.len() / 2);
-    for block in blocks {
-        let before = body.len();
-        let mut encoder = ZlibEncoder::new(&mut body, Compression::fast());
+    let head = [blocks.len(), BLOCK, data.len() % BLOCK];
+    let start = LENGTH * (head.len() + blocks.len());
+    let mut out: Vec<u8> = head.into_iter().flat_map(number).collect();
+    out.reserve(start + data.len() / 2);
+    out.resize(start, 0);
+    for (k, block) in blocks.enumerate() {
+        let before = out.len();
+        let mut encoder = ZlibEncoder::new(&mut out, Compression::fast());
         encoder.write_all(block).ok()?;
         encoder.finish().ok()?;
-        head.push(body.len() - before);
+        let size = number(out.len() - before);
+        out[LENGTH * (head.len() + k)..][..LENGTH].copy_from_slice(&size);
     }
-    let head: Vec<u8> = head
-        .iter()
-        .flat_map(|n| (*n as u64).to_le_bytes())
-        .collect();
-    let mut out = STANDARD.encode(head);
-    STANDARD.encode_string(body, &mut out);
     Some(out)
+}
+
+fn number(n: usize) -> [u8; LENGTH] {
+    (n as u64).to_le_bytes()
+}
+
+/// The array at the start of `data`, in compressed blocks: what tells of the blocks, and the blocks. None where it is cut off.
+pub(super) fn first_array(data: &[u8]) -> Option<(&[u8], &[u8])> {
+    let at = |k: usize| {
+        let bytes = data.get(LENGTH * k..)?.first_chunk()?;
+        usize::try_from(u64::from_le_bytes(*bytes)).ok()
+    };
+    let count = at(0)?;
+    if count > data.len() {
+        return None;
+    }
+    let mut length = 0usize;
+    for k in 0..count {
+        length = length.checked_add(at(3 + k)?)?;
+    }
+    let (head, rest) = data.split_at_checked(LENGTH * (3 + count))?;
+    Some((head, rest.get(..length)?))
 }
 
 #[cfg(test)]
@@ -52,19 +72,31 @@ mod tests {
     use std::io::Read;
 
     #[test]
+    fn numbers_of_blocks_that_are_too_large() {
+        for numbers in [[u64::MAX, 1, 1, 1], [2, 1, 1, u64::MAX]] {
+            let data: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
+            assert_eq!(first_array(&data), None);
+        }
+    }
+
+    #[test]
     fn blocks_lead_back() {
         for n in [0, 1, 1000, BLOCK, 2 * BLOCK + 5] {
             let data: Vec<u8> = (0..n).map(|k| (k / 7 % 251) as u8).collect();
             let text = STANDARD.encode([&(n as u64).to_le_bytes()[..], &data].concat());
-            let packed = packed(text.as_bytes()).unwrap();
+            let mut packed = packed(text.as_bytes()).unwrap();
+            let length = packed.len();
+            packed.extend_from_slice(b"what follows");
             let count = n.div_ceil(BLOCK);
-            let head = 4 * ((3 + count) * 8).div_ceil(3);
-            let numbers = STANDARD.decode(&packed[..head]).unwrap();
-            let number = |k: usize| {
-                u64::from_le_bytes(numbers[8 * k..8 * k + 8].try_into().unwrap()) as usize
-            };
+            let (head, body) = first_array(&packed).unwrap();
+            assert_eq!(
+                (head.len(), head.len() + body.len()),
+                (8 * (3 + count), length)
+            );
+            assert_eq!(first_array(&packed[..length - 1]), None);
+            let number =
+                |k: usize| u64::from_le_bytes(head[8 * k..8 * k + 8].try_into().unwrap()) as usize;
             assert_eq!([number(0), number(1), number(2)], [count, BLOCK, n % BLOCK]);
-            let body = STANDARD.decode(&packed[head..]).unwrap();
             let (mut at, mut back) = (0, Vec::new());
             for k in 0..count {
                 let block = &body[at..at + number(3 + k)];

@@ -1,4 +1,5 @@
 //! Bodies and rigid surfaces read back from their files of results.
+use super::appended::inlined;
 use super::body::vtk_cell;
 use super::mid_surface::SHEET;
 use super::vtu::escaped;
@@ -184,6 +185,7 @@ fn grid(path: &Path) -> Result<GridFile, String> {
     let bytes =
         std::fs::read(path).map_err(|e| format!("cannot read `{}`: {e}", path.display()))?;
     let bad = |what: &str| bad(path, what);
+    let bytes = inlined(&bytes).ok_or_else(|| bad("cannot be read: its arrays are cut off"))?;
     let text = String::from_utf8_lossy(&bytes);
     let piece = tags(&text, "<Piece ").next();
     let piece = piece.ok_or_else(|| bad("is no grid"))?;

@@ -1,40 +1,17 @@
 //! Files of which one array changes from step to step: the rest is serialised and compressed once.
 use super::OutputError;
+use super::appended::Appended;
 use super::packed::compressed;
 use super::vtu::{Array, Grid};
 use std::sync::{Mutex, PoisonError};
 use vtkio::model::IOBuffer;
 
-/// A file around the contents of one of its arrays.
+/// A file without the array that changes, its last.
 #[derive(Debug)]
 struct Template {
-    head: Vec<u8>,
-    tail: Vec<u8>,
+    file: Appended,
     /// Whether the array is in double precision, which its tag says.
     double: bool,
-}
-
-impl Template {
-    /// The file around the array `name`; none where it has none.
-    fn new(file: &[u8], name: &str, double: bool) -> Option<Self> {
-        let tag = format!(" Name=\"{name}\"");
-        let find = |from: usize, what: &[u8]| {
-            let rest = file.get(from..)?;
-            let at = rest.windows(what.len()).position(|w| w == what)?;
-            Some(from + at)
-        };
-        let contents = find(find(0, tag.as_bytes())?, b">")? + 1;
-        let end = find(contents, b"<")?;
-        Some(Template {
-            head: file[..contents].to_vec(),
-            tail: file[end..].to_vec(),
-            double,
-        })
-    }
-
-    fn file(&self, contents: &str) -> Vec<u8> {
-        [&self.head, contents.as_bytes(), &self.tail].concat()
-    }
 }
 
 /// The last file of a surface at one start, whose displacement alone leads to the next one.
@@ -49,8 +26,8 @@ impl Clone for LastFile {
 }
 
 impl LastFile {
-    /// The bytes of the file with the array `changing` of its point data, whose other arrays and points follow from `key`: those of
-    /// `grid`, which is made where they are not at hand.
+    /// The bytes of the file with the array `changing` of its point data, its [`Grid::vectors`], whose other arrays and points
+    /// follow from `key`: those of `grid`, which is made where they are not at hand.
     ///
     /// # Errors
     /// [`OutputError`] of the grid.
@@ -60,7 +37,6 @@ impl LastFile {
         changing: Array,
         grid: impl FnOnce(Array) -> Grid,
     ) -> Result<Vec<u8>, OutputError> {
-        let name = changing.name.clone();
         let numbers = match &changing.data {
             IOBuffer::F32(data) => Some((false, bytes(data, f32::to_le_bytes))),
             IOBuffer::F64(data) => Some((true, bytes(data, f64::to_le_bytes))),
@@ -72,12 +48,12 @@ impl LastFile {
             && template.double == *double
             && let Some(contents) = compressed(numbers)
         {
-            return Ok(template.file(&contents));
+            return Ok(template.file.file_with(&contents));
         }
-        let file = grid(changing).into_bytes()?;
-        let template = numbers.and_then(|(double, _)| Template::new(&file, &name, double));
-        *last = template.map(|template| (key.to_vec(), template));
-        Ok(file)
+        let file = grid(changing).into_parts()?;
+        let whole = file.file();
+        *last = numbers.map(|(double, _)| (key.to_vec(), Template { file, double }));
+        Ok(whole)
     }
 }
 

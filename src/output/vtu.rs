@@ -2,9 +2,11 @@
 //!
 //! The serialiser is vtkio's. What its data model lacks is added to the tags it wrote: names of tensor components, the
 //! attributes that make ParaView use rational weights. The ranges it writes are dropped: they would be those of single
-//! components where VTK means magnitudes, and NaN where a field has one.
+//! components where VTK means magnitudes, and NaN where a field has one. Its arrays, inline in base64, are compressed and moved
+//! behind the tree (`appended.rs`).
 use super::OutputError;
-use super::packed::{COMPRESSOR, packed};
+use super::appended::Appended;
+use super::packed::COMPRESSOR;
 use std::fmt::Write;
 use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
@@ -116,10 +118,16 @@ pub(crate) const WEIGHTS: &str = "RationalWeights";
 pub(crate) const DEGREES: &str = "HigherOrderDegrees";
 
 impl Grid {
-    /// The grid as the bytes of a `.vtu` file, little endian, compressed by zlib, base64. Version 1.0 of the format, which every reader knows,
-    /// where all cells are linear; else 2.2 (up to 2.0 VTK permutes edge nodes of higher-order cells).
+    /// The grid as the bytes of a `.vtu` file, little endian, compressed by zlib, appended. Version 1.0 of the format, which
+    /// every reader knows, where all cells are linear; else 2.2 (up to 2.0 VTK permutes edge nodes of higher-order cells).
     pub fn into_bytes(self) -> Result<Vec<u8>, OutputError> {
+        self.into_parts().map(|parts| parts.file())
+    }
+
+    /// The same in parts, the array that ParaView warps by as the last of the appended ones.
+    pub fn into_parts(self) -> Result<Appended, OutputError> {
         let patch = TagPatch::of(&self);
+        let last = self.vectors;
         let linear = |cell: &CellType| {
             matches!(
                 cell,
@@ -173,7 +181,7 @@ impl Grid {
                 part,
                 reason: e.to_string(),
             })?;
-        Ok(patch.apply(&bytes))
+        Ok(Appended::new(&bytes, last, |tag| patch.tag(tag)))
     }
 }
 
@@ -205,31 +213,6 @@ impl TagPatch {
             rational: grid.rational,
             degrees: grid.cell_data.iter().any(|a| a.name == DEGREES),
         }
-    }
-
-    /// Copies the file with its tags patched and its arrays compressed. Between tags there is base64, which has no `<`.
-    fn apply(&self, bytes: &[u8]) -> Vec<u8> {
-        let mut out = Vec::with_capacity(bytes.len() + 1024);
-        let mut rest = bytes;
-        let mut in_array = false;
-        while let Some(start) = rest.iter().position(|&b| b == b'<') {
-            let end = rest[start..]
-                .iter()
-                .position(|&b| b == b'>')
-                .map_or(rest.len(), |n| start + n + 1);
-            match in_array.then(|| packed(&rest[..start])).flatten() {
-                Some(text) => out.extend_from_slice(text.as_bytes()),
-                None => out.extend_from_slice(&rest[..start]),
-            }
-            in_array = rest[start..].starts_with(b"<DataArray ");
-            match std::str::from_utf8(&rest[start..end]) {
-                Ok(tag) => out.extend_from_slice(self.tag(tag).as_bytes()),
-                Err(_) => out.extend_from_slice(&rest[start..end]),
-            }
-            rest = &rest[end..];
-        }
-        out.extend_from_slice(rest);
-        out
     }
 
     fn tag(&self, tag: &str) -> String {

@@ -267,7 +267,7 @@ fn accuracy(out: &mut String, of: &str, summary: &Summary) {
         "on sharp edges",
         "penalty",
     ];
-    table(out, &heads, rows);
+    table(out, "plain", &heads, rows);
 }
 
 fn cost(out: &mut String, of: &str, s: &Summary) {
@@ -325,7 +325,7 @@ fn plan(out: &mut String, of: &str, summary: &Summary) {
         p.effects.iter().map(move |e| (name.clone(), e))
     });
     let rows = (whole.chain(paired)).map(|(pair, e)| vec![pair, e.name.clone(), e.why.clone()]);
-    table(out, &["contact", "effect", "why"], rows);
+    table(out, "plain plan", &["contact", "effect", "why"], rows);
     for pair in &plan.pairs {
         let _ = writeln!(
             out,
@@ -366,12 +366,12 @@ fn differences(out: &mut String, names: &[&str], comparison: &Comparison) {
         "change".to_owned(),
     ];
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    table(out, &heads, rows);
+    table(out, "plain", &heads, rows);
 }
 
-/// A table; cells after the first are numbers where they begin like one.
-fn table(out: &mut String, heads: &[&str], rows: impl Iterator<Item = Vec<String>>) {
-    out.push_str("<div class=\"plain\"><table>\n<thead><tr>");
+/// A table of a class of the page's rules.
+fn table(out: &mut String, class: &str, heads: &[&str], rows: impl Iterator<Item = Vec<String>>) {
+    let _ = write!(out, "<div class=\"{class}\"><table>\n<thead><tr>");
     for head in heads {
         let _ = write!(out, "<th>{}</th>", escaped(head));
     }

@@ -287,6 +287,15 @@ impl Reporter<'_> {
                 size_of::<f64>(),
                 self.model.contact_points(),
             )]);
-        vec![fields, points]
+        let through = self.effect(
+            EffectKind::OutputShellStresses,
+            "/output/shell_stresses",
+            why(
+                output.shell_stresses,
+                "`shell_stresses` is true",
+                "no `shell_stresses`",
+            ),
+        );
+        vec![fields, points, through]
     }
 }

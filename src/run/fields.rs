@@ -8,6 +8,7 @@ use super::edge_fields::{self, EdgeForce};
 use super::friction_fields::{self, FrictionFields};
 use super::motion_fields::MotionFields;
 use super::sheet_fields::{mid_surface, sheet_name};
+use super::strain_fields::is_shell;
 use super::stresses::{follows_stress, nodal_stresses};
 use super::surface_cells::pieces;
 use super::traction_fields::TractionFields;
@@ -23,6 +24,9 @@ use crate::output::{
 };
 use crate::scene::Output;
 use covact_geometry::Vec3;
+
+/// What is said where `output.shell_stresses` asks for nothing.
+const NO_SHELL: &str = "`output.shell_stresses`: no body is a shell, at most a quarter as thick as it is long: none are written";
 
 /// Contact fields on all nodes, and totals over all slave points. [`Fields::gather`] makes all of them from an accepted
 /// state, so that a run that is continued has the same.
@@ -62,6 +66,8 @@ pub struct Fields {
     start: Vec<f64>,
     gathered: bool,
     pub motion: Option<MotionFields>,
+    /// Stresses of shells at the bottom, in the middle and at the top are written.
+    shell_stresses: bool,
 }
 
 impl Fields {
@@ -81,6 +87,9 @@ impl Fields {
                 ));
             }
             surfaces.push(written);
+        }
+        if output.shell_stresses && !model.bodies.iter().any(is_shell) {
+            notes.push(NO_SHELL.to_owned());
         }
         let n = model.nodes.len();
         Ok(Fields {
@@ -114,6 +123,7 @@ impl Fields {
             start: Vec::new(),
             gathered: false,
             motion: None,
+            shell_stresses: output.shell_stresses,
         })
     }
 

@@ -36,6 +36,7 @@ mod remedy;
 mod resting;
 mod resultants;
 mod sheet_fields;
+mod shell_stresses;
 mod simulation;
 mod sink;
 mod stabilized;

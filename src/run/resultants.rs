@@ -32,21 +32,9 @@ impl Resultants {
             moment: vec![f64::NAN; 3 * n],
             shear: vec![f64::NAN; 2 * n],
         };
-        let columns = ThicknessColumns::new(mesh);
-        let normals = layer_normals(mesh, positions);
-        let mut column = Vec::new();
-        for bottom in 0..n as u32 {
-            if columns.ends(bottom).is_none_or(|ends| ends[0] != bottom) {
-                continue;
-            }
-            column.clear();
-            column.extend(columns.upwards(bottom).map(|node| node as usize));
-            let normal: Vec3 = column.iter().map(|&node| normals[node]).sum();
-            let Some(axes) = local_axes(normal) else {
-                continue;
-            };
-            out.integrate(&column, &axes, positions, stress);
-        }
+        each_column(mesh, positions, |column, axes| {
+            out.integrate(column, axes, positions, stress);
+        });
         out
     }
 
@@ -98,7 +86,29 @@ impl Resultants {
     }
 }
 
-fn tensor([xx, yy, zz, xy, yz, xz]: &[f64; 6]) -> Matrix3<f64> {
+/// Calls `of` for every column of nodes, from the bottom to the top, with the directions of the mid-surface there.
+pub(super) fn each_column(
+    mesh: &Mesh,
+    positions: &[Vec3],
+    mut of: impl FnMut(&[usize], &[Vec3; 3]),
+) {
+    let columns = ThicknessColumns::new(mesh);
+    let normals = layer_normals(mesh, positions);
+    let mut column = Vec::new();
+    for bottom in 0..mesh.nodes.len() as u32 {
+        if columns.ends(bottom).is_none_or(|ends| ends[0] != bottom) {
+            continue;
+        }
+        column.clear();
+        column.extend(columns.upwards(bottom).map(|node| node as usize));
+        let normal: Vec3 = column.iter().map(|&node| normals[node]).sum();
+        if let Some(axes) = local_axes(normal) {
+            of(&column, &axes);
+        }
+    }
+}
+
+pub(super) fn tensor([xx, yy, zz, xy, yz, xz]: &[f64; 6]) -> Matrix3<f64> {
     Matrix3::new(*xx, *xy, *xz, *xy, *yy, *yz, *xz, *yz, *zz)
 }
 

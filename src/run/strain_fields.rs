@@ -2,6 +2,7 @@
 //! and thinning.
 use crate::fem::{shape, shape_derivatives};
 use crate::mesh::{ElementKind, Mesh, ThicknessColumns};
+use crate::model::BodyModel;
 use crate::output::{Field, Place};
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, SymmetricEigen};
@@ -173,18 +174,31 @@ fn thickness(mesh: &Mesh, displacement: &[Vec3]) -> Option<[Vec<f64>; 2]> {
     };
     let all = || ends.iter().flatten();
     let mean = all().map(|e| before(*e)).sum::<f64>() / all().count() as f64;
-    let (low, high) = mesh.nodes.iter().fold(
-        (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
-        |(low, high), x| (low.inf(x), high.sup(x)),
-    );
-    // NaN where there is no column.
-    if mean.is_nan() || mean > SHELL * (high - low).norm() {
+    if !is_thin(mesh, mean) {
         return None;
     }
     let of = |f: &dyn Fn([usize; 2]) -> f64| -> Vec<f64> {
         ends.iter().map(|e| e.map_or(f64::NAN, f)).collect()
     };
     Some([of(&now), of(&|e| 1.0 - now(e) / before(e))])
+}
+
+/// Whether a body of this mean thickness is a shell; it is NaN where there is no column.
+fn is_thin(mesh: &Mesh, mean: f64) -> bool {
+    let (low, high) = mesh.nodes.iter().fold(
+        (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
+        |(low, high), x| (low.inf(x), high.sup(x)),
+    );
+    mean <= SHELL * (high - low).norm()
+}
+
+/// Whether a body is a shell: [`StrainFields::of_shell`] before there are any fields.
+pub(super) fn is_shell(body: &BodyModel) -> bool {
+    if let Some(sheet) = body.block.sheet() {
+        return is_thin(&body.mesh, sheet.thickness);
+    }
+    let still = vec![Vec3::zeros(); body.mesh.nodes.len()];
+    thickness(&body.mesh, &still).is_some()
 }
 
 #[cfg(test)]

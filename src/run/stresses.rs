@@ -3,7 +3,7 @@ use crate::model::probe::ProbeModel;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::scene::ProbeQuantity;
-use crate::shell::{ElementBlock, ElementFault, with_block};
+use crate::shell::{Block, ElementBlock, ElementFault, Formulation, with_block};
 use covact_geometry::Vec3;
 
 /// Whether the stress of a body is asked for in every step: by a probe, or because it is a metal of known strength.
@@ -40,6 +40,31 @@ pub fn nodal_stresses(
         }));
     }
     out
+}
+
+/// Cauchy stress in the middle of the layer of elements above each node, of a body whose elements have points over the
+/// thickness of their own; none of another, whose stress is linear between both faces of a layer.
+pub fn middle_stresses(model: &Model, state: &State) -> Vec<Option<Vec<[f64; 6]>>> {
+    let mut first = 0;
+    let bodies = model.bodies.iter().map(|body| {
+        let len = model.state_len(body);
+        let own = first..first + len * body.block.elements();
+        first = own.end;
+        let Block::H8(block) = &body.block else {
+            return None;
+        };
+        if block.formulation() != Formulation::Layered {
+            return None;
+        }
+        let states = &state.elements[own];
+        let nodes = body.mesh.nodes.len();
+        Some(averaged_over(4, block, nodes, |e, nodal| {
+            let u = body.displacements(block, e, &state.u);
+            *nodal = block.middle_stresses(e, &u, &states[e * len..(e + 1) * len])?;
+            Ok(())
+        }))
+    });
+    bodies.collect()
 }
 
 /// Equivalent plastic strain and equivalent stress over yield stress at the nodes of each body that flows, else nothing;
@@ -99,6 +124,16 @@ fn body_stresses<const N: usize>(
 fn averaged<const N: usize, const K: usize>(
     block: &impl ElementBlock<N>,
     nodes: usize,
+    of: impl FnMut(usize, &mut [[f64; K]; N]) -> Result<(), ElementFault>,
+) -> Vec<[f64; K]> {
+    averaged_over(N, block, nodes, of)
+}
+
+/// The same over the first nodes of every element only.
+fn averaged_over<const N: usize, const K: usize>(
+    count: usize,
+    block: &impl ElementBlock<N>,
+    nodes: usize,
     mut of: impl FnMut(usize, &mut [[f64; K]; N]) -> Result<(), ElementFault>,
 ) -> Vec<[f64; K]> {
     let mut sum = vec![[0.0; K]; nodes];
@@ -109,7 +144,7 @@ fn averaged<const N: usize, const K: usize>(
             continue;
         }
         let volume = block.volume(e);
-        for (n, nodal) in block.nodes_of(e).into_iter().zip(&nodal) {
+        for (n, nodal) in block.nodes_of(e).into_iter().zip(&nodal).take(count) {
             weight[n as usize] += volume;
             for (s, v) in sum[n as usize].iter_mut().zip(nodal) {
                 *s += volume * v;

@@ -186,6 +186,11 @@ pub(super) const fn outer(g: usize) -> [usize; 2] {
     }
 }
 
+/// The points below and above the middle of the thickness at in-plane point `q`.
+pub(super) const fn inner(q: usize) -> [usize; 2] {
+    [q + 4 * (LAYERS / 2 - 1), q + 4 * (LAYERS / 2)]
+}
+
 /// Values at the nodes, from those at the lowest and highest points and the ones next to them: along the straight line
 /// through both to the face, because stresses have a kink where flow begins, and bilinearly in the plane.
 pub(super) fn to_nodes<const K: usize>(outer: &[[[f64; K]; 2]; 8]) -> [[f64; K]; 8] {
@@ -194,16 +199,20 @@ pub(super) fn to_nodes<const K: usize>(outer: &[[[f64; K]; 2]; 8]) -> [[f64; K];
     let face = outer.map(|[at, inwards]| {
         std::array::from_fn::<f64, K, _>(|v| at[v] + beyond * (at[v] - inwards[v]))
     });
-    let mut nodes = [[0.0; K]; 8];
-    for (a, node) in nodes.iter_mut().enumerate() {
-        for q in 0..4 {
-            let w = (0..2).fold(0.25, |w, bit| w * (1.0 + sign(a, bit) * sign(q, bit) / GP));
-            for (n, f) in node.iter_mut().zip(face[q + 4 * (a >> 2)]) {
-                *n += w * f;
-            }
+    let (bottom, top) = face.split_at(4);
+    std::array::from_fn(|a| in_plane(a, if a < 4 { bottom } else { top }))
+}
+
+/// The value at node `a` of those at the four points of its layer, bilinearly.
+pub(super) fn in_plane<const K: usize>(a: usize, points: &[[f64; K]]) -> [f64; K] {
+    let mut node = [0.0; K];
+    for (q, point) in points.iter().enumerate() {
+        let w = (0..2).fold(0.25, |w, bit| w * (1.0 + sign(a, bit) * sign(q, bit) / GP));
+        for (n, p) in node.iter_mut().zip(point) {
+            *n += w * p;
         }
     }
-    nodes
+    node
 }
 
 /// Rows of the assumed strains' derivatives by the dofs (`3 node + axis`) that do not depend on the point.

@@ -169,7 +169,10 @@ fn scenes() -> Vec<Value> {
             ),
             ("/contacts/press/points", json!({"gauss": 2})),
             ("/contacts/press/friction", json!({"coulomb": {"mu": 0.3}})),
-            ("/output", json!({"contact_points": true})),
+            (
+                "/output",
+                json!({"contact_points": true, "shell_stresses": true}),
+            ),
         ]),
         plate_with(&[
             ("/bodies/plate/element", json!("h8_displacement")),

@@ -3,6 +3,7 @@ mod bad_files;
 mod bad_model;
 mod bad_pairs;
 mod bad_text;
+mod bytes;
 mod check;
 mod completions;
 mod convert;

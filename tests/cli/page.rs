@@ -171,8 +171,8 @@ fn a_page_that_cannot_be_made_says_what_is_missing() {
     covact(folder.path(), &[&RUN[..], &["--no-report"]].concat());
     // A field cut short.
     let field = folder.path().join("out/plate_0002.vtu");
-    let text = fs::read_to_string(&field).unwrap();
-    fs::write(&field, &text[..text.len() / 2]).unwrap();
+    let bytes = fs::read(&field).unwrap();
+    fs::write(&field, &bytes[..bytes.len() / 2]).unwrap();
     let view = covact(folder.path(), &["view", "out"]);
     assert_eq!(view.status.code(), Some(5));
     assert_parts(&stderr(&view), &["plate_0002.vtu` "]);
@@ -218,4 +218,38 @@ fn two_runs_stand_side_by_side() {
         &["compare", "out", "st<iff", "-o", "both.html"],
     );
     assert_eq!(refused.status.code(), Some(2));
+}
+
+/// A ball that starts in the plate is told with the place of the deepest of the points: the nine of each face are Gauss's, and
+/// four of them are as near to the axis of the ball as any. The mark in 3-D, its text and the warning go by one number.
+#[test]
+fn warnings_are_marked_at_their_places() {
+    let folder = tempfile::tempdir().unwrap();
+    write_plate(
+        folder.path(),
+        &[
+            ("/surfaces/ball/sphere/center", json!([10, 20, 25.5])),
+            ("/contacts/press/points", json!({ "gauss": 3 })),
+        ],
+    );
+    let output = covact(folder.path(), &RUN);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let page = Page::read(&folder.path().join("out/report.html"));
+    let marks = page.runs[0]["marks"].as_array().unwrap();
+    assert_eq!(marks.len(), 1, "{marks:?}");
+    let at = [0, 1, 2].map(|k| marks[0]["at"][k].as_f64().unwrap());
+    let aside = 5.0 * (1.0 - 0.6f64.sqrt());
+    for (found, expected) in at.iter().zip([10.0, 20.0]) {
+        assert!(((found - expected).abs() - aside).abs() < 1e-3, "{at:?}");
+    }
+    assert!((at[2] - 1.0).abs() < 1e-9, "{at:?}");
+    let text = marks[0]["text"].as_str().unwrap();
+    assert_parts(text, &["starts with an overclosure of", "4 point(s)"]);
+    let number = marks[0]["number"].as_u64().unwrap();
+    let marked = format!("<li id=\"w0-{number}\"><span class=\"mark\">{number}</span>");
+    assert!(page.text.contains(&marked), "{marked}");
+    // Other warnings name no place.
+    let all = page.text.matches("<li id=\"w0-").count();
+    assert!(all > 1);
+    assert_eq!(page.text.matches("<span class=\"mark\">").count(), 1);
 }

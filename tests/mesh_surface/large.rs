@@ -1,5 +1,5 @@
 //! A mid-surface mesh of the size of a real part: 10,000 quadrilaterals with folds and a hole.
-use crate::support::{Surface, close, file, h8};
+use crate::support::{Surface, close, file, h8, load};
 use std::time::{Duration, Instant};
 
 /// A hat profile 60 long: a crown with a square hole of 12 by 12 in its middle, two webs and two feet, all in squares.
@@ -87,4 +87,52 @@ fn ten_thousand_quadrilaterals() {
         .sum();
     close(volume, 0.4 * area, 1e-9);
     assert!(took < Duration::from_secs(10), "{took:?}");
+}
+
+/// A bracket that a CAD kernel wrote and gmsh read and meshed (assets/mesh/make_bracket.py): its sets have the areas of the part, its
+/// straight lengths and bends of radius 4 by 60 less the holes, as far as chords of bends and holes have them, and the volume is that
+/// by the thickness.
+#[test]
+fn a_part_from_a_file_of_a_cad_kernel() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/mesh/bracket.msh");
+    let bytes = std::fs::read(path).unwrap();
+    let (mesh, _) = load(&bytes, "msh", &file(1.0), covact::mesh::ElementKind::H8).unwrap();
+    let area = |set: &str| -> f64 {
+        let middle = |f: &covact::mesh::Face, k: usize| {
+            let nodes = mesh.element(f.element as usize);
+            0.5 * (mesh.nodes[nodes[k] as usize] + mesh.nodes[nodes[k + 4] as usize])
+        };
+        let faces = &mesh.face_sets[set];
+        // Corners 0, 1, 2, 3 of the lower face are its nodes 0, 1, 3, 2.
+        faces
+            .iter()
+            .map(|f| {
+                let [a, b, d, c] = [0, 1, 2, 3].map(|k| middle(f, k));
+                0.5 * (c - a).cross(&(d - b)).norm()
+            })
+            .sum()
+    };
+    let circle = |r: f64| std::f64::consts::PI * r * r;
+    for (set, expected) in [
+        ("foot_top", 26.0 * 60.0 - 2.0 * circle(3.5)),
+        ("web_top", 17.0 * 60.0 - circle(5.0)),
+        (
+            "flange_top",
+            37.0 * 60.0 - circle(6.0) - 14.0 * 7.0 - circle(3.5),
+        ),
+        ("lip_top", 3.0 * 60.0),
+    ] {
+        let found = area(set);
+        assert!(
+            (found / expected - 1.0).abs() < 0.015,
+            "{set}: {found} {expected}"
+        );
+    }
+    // Two or three chords of each bend.
+    let bends = area("bends_top") / (3.0 * 60.0 * 2.0 * std::f64::consts::PI);
+    let chords =
+        |n: f64| (std::f64::consts::PI / (4.0 * n)).sin() / (std::f64::consts::PI / (4.0 * n));
+    assert!(bends > chords(2.0) - 1e-6 && bends < chords(3.0), "{bends}");
+    assert_eq!(mesh.face_sets["bolts"].len() % 2, 0);
+    assert!(mesh.face_sets["bolts"].len() >= 16);
 }

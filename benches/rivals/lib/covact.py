@@ -45,34 +45,23 @@ def run(folder, scene):
 
 def point_field(path, name):
     """Values at the points of a `.vtu` file, and the points (rows)."""
-    import base64
     import re
     import zlib
 
     import numpy as np
 
-    with open(path) as file:
-        text = file.read()
-
-    def unpacked(raw):
-        if "vtkZLibDataCompressor" not in text[:400]:
-            return np.frombuffer(base64.b64decode(raw), dtype=np.uint8)[8:]
-        # The number of blocks, their sizes before compression and after it, then the blocks.
-        raw = raw.strip()
-        blocks = int.from_bytes(base64.b64decode(raw[:12])[:8], "little")
-        head = 4 * -(-8 * (3 + blocks) // 3)
-        sizes = np.frombuffer(base64.b64decode(raw[:head]), dtype="<u8")[3:]
-        body, ends = base64.b64decode(raw[head:]), np.cumsum(sizes)
-        parts = [zlib.decompress(body[int(end - size) : int(end)]) for size, end in zip(sizes, ends)]
-        return np.frombuffer(b"".join(parts), dtype=np.uint8)
+    # Arrays stand behind the tree: the number of blocks, their sizes before compression and after it, then the blocks.
+    with open(path, "rb") as file:
+        head, _, data = file.read().partition(b'<AppendedData encoding="raw">_')
+    text = head.decode()
 
     def array(tag):
-        found = re.search(rf"<DataArray [^>]*{tag}[^>]*>([^<]*)</DataArray>", text)
-        kind = np.float32 if 'type="Float32"' in found.group(0)[:200] else np.float64
-        return unpacked(found.group(1)).view(kind)
+        blocks, _, _ = np.frombuffer(data, "<u8", 3, offset := int(re.search(r' offset="(\d+)"', tag).group(1)))
+        sizes = np.frombuffer(data, "<u8", int(blocks), offset + 24)
+        ends = offset + 24 + 8 * int(blocks) + np.cumsum(sizes)
+        parts = [zlib.decompress(data[int(end - size) : int(end)]) for size, end in zip(sizes, ends)]
+        return np.frombuffer(b"".join(parts), np.float32 if 'type="Float32"' in tag else np.float64)
 
     points = re.search(r"<Points>(.*?)</Points>", text, re.S).group(1)
-    raw = re.search(r">([^<]*)</DataArray>", points).group(1)
-    where = unpacked(raw)
-    where = where.view(np.float32 if "Float32" in points else np.float64).reshape(-1, 3)
-    return array(f'Name="{name}"'), where
+    field = re.search(rf'<DataArray [^>]*Name="{name}"[^>]*>', text).group(0)
+    return array(field), array(points).reshape(-1, 3)

@@ -3,14 +3,25 @@ use super::super::flow_fields::FlowFields;
 use super::super::reaction_fields::reactions;
 use super::super::resultants::Resultants;
 use super::super::sheet_fields::{SheetFields, Spread};
+use super::super::shell_stresses::ShellStresses;
 use super::super::strain_fields::StrainFields;
-use super::super::stresses::nodal_stresses;
+use super::super::stresses::{middle_stresses, nodal_stresses};
 use super::Fields;
 use crate::mesh::Mesh;
 use crate::model::state::State;
 use crate::model::{BodyModel, Model};
 use crate::output::{BodyFields, ContactFields, Field, Place};
 use covact_geometry::Vec3;
+
+/// Where the nodes of a body are; with small displacements where they started.
+fn positions(model: &Model, mesh: &Mesh, displacement: &[Vec3]) -> Vec<Vec3> {
+    match model.small {
+        None => (mesh.nodes.iter().zip(displacement))
+            .map(|(x, u)| x + u)
+            .collect(),
+        Some(_) => mesh.nodes.clone(),
+    }
+}
 
 impl Fields {
     /// All fields of all bodies at an accepted step, for `read`.
@@ -49,14 +60,13 @@ impl Fields {
             .collect();
         let resultants: Vec<Option<Resultants>> = (meshes.iter().enumerate())
             .map(|(i, mesh)| {
-                let u = displacements[i].iter();
-                let now: Vec<Vec3> = match model.small {
-                    None => mesh.nodes.iter().zip(u).map(|(x, u)| x + u).collect(),
-                    Some(_) => mesh.nodes.clone(),
-                };
+                let now = positions(model, mesh, &displacements[i]);
                 (strains[i].of_shell()).then(|| Resultants::new(mesh, &now, &stresses[i]))
             })
             .collect();
+        let through = self.through_thickness(model, state, (&meshes, &displacements), |i| {
+            strains[i].of_shell().then_some(&stresses[i][..])
+        });
         let flow = FlowFields::of(model, state);
         let acting = (&self.status[..], self.motion.as_ref());
         let reactions = reactions(model, state, acting, time);
@@ -70,7 +80,8 @@ impl Fields {
                 let slave = model.pairs.iter().any(|p| p.body == i);
                 let worked_out = (strains[i].fields())
                     .chain(flow[i].fields())
-                    .chain(resultants[i].iter().flat_map(Resultants::fields));
+                    .chain(resultants[i].iter().flat_map(Resultants::fields))
+                    .chain((through.get(i).into_iter().flatten()).flat_map(ShellStresses::fields));
                 if let Some(spread) = &spread[i] {
                     return BodyFields {
                         name: &body.name,
@@ -108,6 +119,28 @@ impl Fields {
             })
             .collect();
         read(&bodies)
+    }
+
+    /// Stresses at the bottom, in the middle and at the top of the bodies that `of` has nodal stresses of; empty where they are not
+    /// asked for.
+    fn through_thickness<'a>(
+        &self,
+        model: &Model,
+        state: &State,
+        (meshes, displacements): (&[&Mesh], &[Vec<Vec3>]),
+        of: impl Fn(usize) -> Option<&'a [[f64; 6]]>,
+    ) -> Vec<Option<ShellStresses>> {
+        if !self.shell_stresses {
+            return Vec::new();
+        }
+        let middle = middle_stresses(model, state);
+        (meshes.iter().enumerate())
+            .map(|(i, mesh)| {
+                let now = positions(model, mesh, &displacements[i]);
+                let middle = middle[i].as_deref();
+                of(i).map(|stress| ShellStresses::new(mesh, &now, stress, middle))
+            })
+            .collect()
     }
 
     /// Contact fields of a sheet on the mesh of its output.

@@ -132,6 +132,9 @@ pub struct Output {
     pub tessellation: u32,
     /// Write the slave points of contacts with friction too, with their values.
     pub contact_points: bool,
+    /// Write the stresses of shells at the bottom, in the middle and at the top of the thickness too, in the directions of the
+    /// mid-surface.
+    pub shell_stresses: bool,
 }
 
 impl Default for Solution {
@@ -178,6 +181,7 @@ impl Default for Output {
             every: 1,
             tessellation: 16,
             contact_points: false,
+            shell_stresses: false,
         }
     }
 }

@@ -15,20 +15,49 @@ impl H8Block {
         u: &[Vec3; 8],
         state: &[f64],
     ) -> Result<[[[f64; 6]; 2]; 8], ElementFault> {
+        let mut out = [[[0.0; 6]; 2]; 8];
+        let points = std::array::from_fn(layered::outer);
+        self.stresses_at(e, (u, state), &points, &mut out)?;
+        Ok(out)
+    }
+
+    /// Stresses in the middle of the thickness of [`Formulation::Layered`] at the nodes, those above each other the same: the mean
+    /// of the points next to it.
+    ///
+    /// # Errors
+    /// [`ElementFault`] where the strain is impossible.
+    pub fn middle_stresses(
+        &self,
+        e: usize,
+        u: &[Vec3; 8],
+        state: &[f64],
+    ) -> Result<[[f64; 6]; 8], ElementFault> {
+        let mut pairs = [[[0.0; 6]; 2]; 4];
+        let points = std::array::from_fn(layered::inner);
+        self.stresses_at(e, (u, state), &points, &mut pairs)?;
+        let mean = pairs.map(|[a, b]| std::array::from_fn::<f64, 6, _>(|v| 0.5 * (a[v] + b[v])));
+        Ok(std::array::from_fn(|a| layered::in_plane(a, &mean)))
+    }
+
+    /// Stresses at pairs of points of [`Formulation::Layered`].
+    fn stresses_at<const P: usize>(
+        &self,
+        e: usize,
+        (u, state): (&[Vec3; 8], &[f64]),
+        points: &[[usize; 2]; P],
+        out: &mut [[[f64; 6]; 2]; P],
+    ) -> Result<(), ElementFault> {
         let nodes = &self.reference[e].nodes;
         let strains = layered::Strains::new(nodes, &arrays(u), &head(state));
         let states = &state[self.condensation_len()..];
-        let mut out = [[[0.0; 6]; 2]; 8];
-        for (corner, out) in out.iter_mut().enumerate() {
-            for (out, g) in out.iter_mut().zip(layered::outer(corner)) {
-                let (place, du, strain) = strains.at(g);
-                *out = with_law!(&self.law, law => cauchy(
-                    law, (&place.metric, g), &place.frame, &du, &strain, states
-                ))
-                .map_err(|c| fault(e, g as u8, c))?;
-            }
+        for (out, g) in out.as_flattened_mut().iter_mut().zip(points.as_flattened()) {
+            let (place, du, strain) = strains.at(*g);
+            *out = with_law!(&self.law, law => cauchy(
+                law, (&place.metric, *g), &place.frame, &du, &strain, states
+            ))
+            .map_err(|c| fault(e, *g as u8, c))?;
         }
-        Ok(out)
+        Ok(())
     }
 
     /// Sets the states of the law to those of an element that nothing has happened to.
