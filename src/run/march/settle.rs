@@ -17,6 +17,8 @@ use crate::solve::newton::{Converged, RigidLimit, StepFailure, StickLimit};
 
 /// Times that penalties may be raised within a step.
 const RAISES: usize = 6;
+/// Part of the largest force that a raise at the last step may change without a word on the steps before.
+const AT_LAST: f64 = 0.02;
 
 /// What is known of a step that is solved.
 #[derive(Debug, Clone, Default)]
@@ -114,6 +116,8 @@ impl<'m> March<'_, 'm> {
         let mut rejected = false;
         // What a raise went out from.
         let mut tried: Option<Tried> = None;
+        // The penalties that the steps before had, and what they came to in this one.
+        let mut first: Option<(Vec<f64>, Totals)> = None;
         loop {
             let mut histories = trial.histories.clone();
             let was = (&committed.u[..], start);
@@ -194,6 +198,9 @@ impl<'m> March<'_, 'm> {
                 }));
             }
             if !raise {
+                if let Some(first) = first.as_ref().filter(|_| last) {
+                    self.tell_raised_at_last(first, &converged.totals);
+                }
                 let bearings = &outputs.fields.bearings;
                 let sticking = self.sticking(limit.is_some(), trial, &histories, bearings, end)?;
                 return Ok(Ok(Settled {
@@ -210,6 +217,7 @@ impl<'m> March<'_, 'm> {
             let softer = std::mem::replace(&mut self.assembler.penalties, stiffer);
             self.hold_given();
             self.tell_raise(step, &softer, error);
+            first.get_or_insert_with(|| (softer.clone(), converged.totals.clone()));
             let from = Tried {
                 state: trial.clone(),
                 penalties: softer,
@@ -263,6 +271,36 @@ impl<'m> March<'_, 'm> {
             number(soft),
             number(self.assembler.penalties[index] / first.penalties[index]),
             number(stiff)
+        ));
+    }
+
+    /// Tells of a penalty that was raised at the last step alone by how much forces changed there: those of the steps before were
+    /// off by about as much.
+    fn tell_raised_at_last(&mut self, (softer, before): &(Vec<f64>, Totals), totals: &Totals) {
+        if self.model.dynamics.is_some() || self.progress.steps == 0 {
+            return;
+        }
+        let of = |index: usize, t: &Totals| RigidLimit::of_pair(self.model, index, t);
+        let pairs = 0..self.model.pairs.len();
+        let largest = pairs.clone().map(|i| of(i, totals)).fold(0.0, f64::max);
+        let changed = pairs
+            .filter(|i| self.assembler.penalties[*i] > softer[*i])
+            .map(|i| (i, of(i, before), of(i, totals)))
+            .max_by(|a, b| (a.2 - a.1).abs().total_cmp(&(b.2 - b.1).abs()));
+        let Some((index, soft, stiff)) = changed else {
+            return;
+        };
+        if (stiff - soft).abs() <= AT_LAST * largest {
+            return;
+        }
+        self.warn(format!(
+            "contact `{}`: forces of the steps before the last one are off by up to about {:.0} %: its penalty was raised at the last \
+             step, which changed its force there from {} to {}; a `penalty` of about {} from the start shows what came before",
+            self.model.pairs[index].name,
+            100.0 * (stiff - soft).abs() / largest,
+            number(soft),
+            number(stiff),
+            number(self.assembler.penalties[index])
         ));
     }
 
