@@ -31,7 +31,7 @@ use super::symmetry::Unsymmetric;
 use super::{BodyModel, Metal, Model, ModelError, SurfaceModel};
 use crate::contact::lever::Lever;
 use crate::machine::memory;
-use crate::mesh::{self, Edge, Face, Mesh};
+use crate::mesh::{self, Border, Face, Mesh};
 use crate::scene::{
     self, LoadedScene, Material, MeshSource, POSITION_AND_TIME, Scene, Stabilization, TIME, Value,
 };
@@ -107,7 +107,7 @@ pub fn build_stage(
     }
     builder.stage = start.index;
     let supports = builder.supports(&held)?;
-    builder.hold_normals(&supports.held_normals)?;
+    builder.hold_normals(&supports)?;
     builder.held_fibres()?;
     let (dead_loads, follower_loads) = builder.loads()?;
     let probes = builder.probes()?;
@@ -328,11 +328,15 @@ impl<'s> Builder<'s> {
         Ok(())
     }
 
-    /// Holds the normals of sheets along edges.
-    fn hold_normals(&mut self, held: &[(usize, Edge, HeldNormal)]) -> Result<(), ModelError> {
+    /// Holds the normals of sheets along borders, and curves of trims.
+    fn hold_normals(&mut self, held: &supports::Supports) -> Result<(), ModelError> {
         for (index, body) in self.bodies.iter_mut().enumerate() {
-            let own = held.iter().filter(|(of, ..)| *of == index);
-            let own: Vec<(Edge, HeldNormal)> = own.map(|(_, edge, to)| (*edge, *to)).collect();
+            let own = (held.held_normals.iter()).filter(|(of, ..)| *of == index);
+            let own: Vec<(Border, HeldNormal)> = own.map(|(_, edge, to)| (*edge, *to)).collect();
+            let anchors = &held.held_anchors[index];
+            if let (Block::Nurbs(block), false) = (&mut body.block, anchors.is_empty()) {
+                block.hold_anchors(anchors);
+            }
             if let (Block::Nurbs(block), false) = (&mut body.block, own.is_empty()) {
                 let name = &body.name;
                 block

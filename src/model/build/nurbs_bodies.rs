@@ -10,7 +10,7 @@ use crate::contact::points::SlavePoint;
 use crate::fem::quadrature::QuadratureError;
 use crate::fem::{gauss, lobatto};
 use crate::machine::memory;
-use crate::mesh::nurbs::{Fineness, SheetPatch, side};
+use crate::mesh::nurbs::{Fineness, side};
 use crate::mesh::{Edge, Face, Mesh, NurbsError, NurbsSheet};
 use crate::scene::{self, Contact, Gap, NurbsSurface, Passes, Points, SetNames, Tangent};
 use crate::shell::{Block, Law, Memory, NurbsBlock, bytes_per_element};
@@ -71,6 +71,14 @@ impl Builder<'_> {
                 .at(|| format!("/bodies/{name}/sets/{set}"))
                 .map_err(|e| e.help(extent(name, &mesh)))?;
         }
+        // Supports hold curves of trims by nodes on them.
+        let supports = self.scene.supports.values();
+        let held = supports.flat_map(|s| s.on.places(""));
+        let sets = held.filter_map(|(_, reference)| {
+            let (body, set) = reference.split_once('.')?;
+            (body == name).then_some(set)
+        });
+        sheet.anchor(&mut mesh, sets);
         let block = NurbsBlock::new(&sheet, law).at(|| at("file"))?;
         self.tell_sheet(name, nurbs, &sheet);
         Ok((mesh, Block::Nurbs(Box::new(block))))
@@ -94,10 +102,14 @@ impl Builder<'_> {
                 false => "",
             }
         ));
-        if let [SheetPatch { cut: Some(cut), .. }] = &sheet.patches[..] {
-            let [_, parts, gone] = cut.counts();
+        let cut = sheet.patches.iter().filter_map(|p| p.cut.as_ref());
+        if sheet.is_trimmed() {
+            let [_, parts, gone] = cut.fold([0; 3], |sum, cut| {
+                let own = cut.counts();
+                [0, 1, 2].map(|k| sum[k] + own[k])
+            });
             self.notes.push(format!(
-                "body `{name}`: its trim cuts {parts} of the elements, which are integrated along it, and leaves nothing of {gone}"
+                "body `{name}`: trims cut {parts} of the elements, which are integrated along them, and leave nothing of {gone}"
             ));
         }
         if sheet.patches.len() == 1 {
@@ -127,18 +139,18 @@ impl Builder<'_> {
         for edge in &joints.partial {
             self.notes.push(format!(
                 "body `{name}`: `{}` is joined along a part of its length",
-                sheet.edge_name(*edge)
+                sheet.border_name(*edge)
             ));
         }
         for (edge, patch) in &joints.inside {
             self.warnings.push(format!(
                 "body `{name}`: the free edge `{}` lies on the inside of face {}, and is not joined to it: only edges are",
-                sheet.edge_name(*edge),
+                sheet.border_name(*edge),
                 sheet.patches[*patch].face
             ));
         }
         for near in &joints.near {
-            let [a, b] = near.edges.map(|e| sheet.edge_name(e));
+            let [a, b] = near.edges.map(|e| sheet.border_name(e));
             self.warnings.push(format!(
                 "body `{name}`: the free edge `{a}` runs within {} of `{b}`, less than the thickness, but is not joined to it: the gap \
                  is larger than CAD files leave",
@@ -276,7 +288,6 @@ impl Builder<'_> {
         on: &SetNames,
         at: &str,
     ) -> Result<Vec<FollowingSpan>, ModelError> {
-        self.whole_edges(on, at)?;
         let mut spans = Vec::new();
         for (pointer, reference) in on.places(at) {
             let (name, set) = reference.split_once('.').unwrap_or((reference, ""));
@@ -285,7 +296,7 @@ impl Builder<'_> {
             let edges = sheet.and_then(|(b, s)| Some((b, s, s.edge_sets.get(set)?)));
             let Some((body, sheet, edges)) = edges else {
                 let message = format!("`{reference}` is no edge of a body of kind `nurbs`");
-                let help = "a couple acts along edges: `edge.1` to `edge.4`, or a set of nodes that holds a whole edge";
+                let help = "a couple acts along edges: `edge.1` to `edge.4`, a curve of a trim (`trim.1`), or a set of nodes that holds a whole one";
                 return Err(text(pointer, message).help(help));
             };
             for edge in edges {
@@ -466,7 +477,6 @@ pub(super) fn sheet_size(sheet: &NurbsSheet) -> FaceSize {
 /// A face that cannot be a sheet.
 fn refused(file: &str, elements: &str, label: &str, error: NurbsError) -> ModelError {
     let help = match &error {
-        NurbsError::Trimmed => Some("make a body of each face, or mesh them (`mesh`)"),
         NurbsError::Degree { .. } => Some("export it with degree 3 at most, or mesh it (`mesh`)"),
         NurbsError::Crease { .. } | NurbsError::Closed { .. } => {
             Some("cut the face there in the CAD program, and take one of its parts")

@@ -2,9 +2,9 @@
 use super::super::Tied;
 use super::super::constraints::{MeanPrescribed, Prescribed};
 use super::super::error::{At, number, text};
-use super::sheet_supports::SheetSupports;
+use super::sheet_supports::{SheetSupports, held_anchors};
 use super::{BodyModel, Builder, ModelError};
-use crate::mesh::{Edge, ThicknessColumns};
+use crate::mesh::{Border, ThicknessColumns};
 use crate::scene::{AUTOMATIC, Axis, POSITION_AND_TIME, Support, TimeFunction, Value};
 use crate::shell::HeldNormal;
 use crate::system::{Dof, DofMap, DofMapBuilder};
@@ -19,8 +19,10 @@ pub(super) struct Supports {
     pub means: Vec<MeanPrescribed>,
     pub tied: Vec<Tied>,
     pub dofs: DofMap,
-    /// Edges of sheets, by body, whose normal is held.
-    pub held_normals: Vec<(usize, Edge, HeldNormal)>,
+    /// Borders of sheets, by body, whose normal is held.
+    pub held_normals: Vec<(usize, Border, HeldNormal)>,
+    /// Of each body the anchors on curves of trims that are held, with the components that are.
+    pub held_anchors: Vec<Vec<(usize, [bool; 3])>>,
 }
 
 /// Displacement over time, `None` standing for zero.
@@ -118,6 +120,8 @@ impl Builder<'_> {
                 }
             }
         }
+        let held_anchors =
+            held_anchors(&self.bodies, &mut all.dofs).at(|| "/supports".to_owned())?;
         let dofs = all.dofs.build().at(|| "/supports".to_owned())?;
         Ok(Supports {
             names: all.names,
@@ -126,6 +130,7 @@ impl Builder<'_> {
             tied,
             dofs,
             held_normals: sheets.held,
+            held_anchors,
         })
     }
 }
