@@ -21,6 +21,12 @@ pub struct TrimEdge {
 }
 
 impl TrimEdge {
+    /// The first of the first patch.
+    #[cfg(test)]
+    pub const fn first() -> Self {
+        TrimEdge { patch: 0, curve: 0 }
+    }
+
     /// Number of the curve, counted over all loops.
     pub const fn curve(self) -> usize {
         self.curve as usize

@@ -12,7 +12,7 @@ use crate::scene::{Axis, Support};
 use crate::shell::HeldNormal;
 use crate::system::{ConstraintError, Dof, DofMapBuilder};
 use covact_geometry::Vec3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Part of a length, or sine of an angle, that counts as round-off of a control net.
 const ROUND: f64 = 1e-9;
@@ -240,13 +240,15 @@ impl SheetSupports {
         }
     }
 
-    /// Ties everything that goes together to one of its members: to a prescribed one where there is any.
+    /// Ties everything that goes together to one of its members: to a prescribed one where there is any. `unused` nodes, which a trim
+    /// cuts away, follow others already.
     ///
     /// # Errors
     /// Degrees of freedom that are tied otherwise.
     pub fn tie(
         &self,
         dofs: &mut DofMapBuilder,
+        unused: &BTreeSet<u32>,
         owner: impl Fn(u32) -> Option<u32>,
     ) -> Result<Vec<Tied>, ConstraintError> {
         let mut parent: BTreeMap<u32, u32> = BTreeMap::new();
@@ -269,7 +271,7 @@ impl SheetSupports {
             parent.insert(a.max(b), a.min(b));
         }
         let mut groups: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for dof in support.keys() {
+        for dof in support.keys().filter(|dof| !unused.contains(&(**dof / 3))) {
             let root = root(&mut parent, *dof);
             groups.entry(root).or_default().push(*dof);
         }

@@ -108,7 +108,11 @@ impl Builder<'_> {
             (all.dofs.prescribe(dof)).at(|| "/surfaces".to_owned())?;
         }
         let owner = |dof: u32| all.owners.get(&dof).map(|(support, _)| *support);
-        let tied = (sheets.tie(&mut all.dofs, owner)).at(|| "/supports".to_owned())?;
+        let unused: BTreeSet<u32> = (self.bodies.iter())
+            .filter_map(|body| Some((body.block.sheet()?, body.first_node)))
+            .flat_map(|(sheet, first)| sheet.unused().into_iter().map(move |[n, _]| n + first))
+            .collect();
+        let tied = (sheets.tie(&mut all.dofs, &unused, owner)).at(|| "/supports".to_owned())?;
         for body in &self.bodies {
             let unused = body.block.sheet().map(|s| s.unused());
             for pair in unused.into_iter().flatten() {
