@@ -7,6 +7,7 @@ mod fibres;
 pub(crate) mod master_faces;
 mod meshes;
 mod nurbs_bodies;
+mod nurbs_masters;
 mod probes;
 mod rims;
 mod seams;

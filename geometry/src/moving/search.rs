@@ -160,6 +160,9 @@ impl MovingFacets {
                 }
                 let mut t = problem(facet).solve::<M>(xi);
                 problem(facet).refine::<M>(&mut t);
+                if !self.trims.holds(facet, t.xi) {
+                    return;
+                }
                 let now = nearer.as_ref().map_or(s.d2, |n| n.1.d2);
                 // Equally near but not held by its border is better.
                 let free = s.active != [false; 2] && t.active == [false; 2] && t.converged;
@@ -241,6 +244,9 @@ impl<'a, const M: usize, const L: usize> Search<'a, M, L> {
     #[inline]
     fn offer(&mut self, facet: u32, local: &Local) {
         let distance = local.d2.sqrt();
+        if !self.set.trims.holds(facet, local.xi) {
+            return;
+        }
         if distance < self.distance || self.best.is_none() && distance <= self.reach {
             let tolerance = 1e-11 * self.set.size + 1e-14 * distance;
             self.distance = distance;

@@ -238,8 +238,9 @@ impl NurbsSheet {
         }
     }
 
-    /// The seam with the largest angle between the normals of its two sides, and that angle (degrees); none without seams.
-    pub fn sharpest_fold(&self) -> Option<(&Seam, f64)> {
+    /// The seam with the largest angle between the normals of its two sides, and that angle (degrees); none without seams. All seams
+    /// are looked at, or those along curves of trims.
+    pub fn sharpest_fold(&self, trims: bool) -> Option<(&Seam, f64)> {
         let normal = |edge: Border, s: f64| {
             let part = &self.patches[edge.patch()];
             let jet = part.patch.jet(part.line(edge).xi(s));
@@ -258,7 +259,10 @@ impl NurbsSheet {
                 })
                 .fold(0.0, f64::max)
         };
-        let all = self.joints.seams.iter().map(|seam| (seam, angle(seam)));
+        let of_trim = |seam: &&Seam| seam.edges.iter().any(|e| matches!(e, Border::Trim(_)));
+        let seams = self.joints.seams.iter();
+        let all = seams.filter(|seam| !trims || of_trim(seam));
+        let all = all.map(|seam| (seam, angle(seam)));
         all.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 

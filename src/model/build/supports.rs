@@ -263,8 +263,14 @@ fn agree(others: &[(&Prescription, Vec3)], value: &Prescription, x: Vec3, end: f
 
 /// Constrained components of a support, `None` standing for zero.
 pub(super) fn components(support: &Support) -> Vec<(u32, Option<Value>)> {
+    let zero = |v: &Value| *v == Value::Number(0.0);
     if support.fixed || support.clamped {
-        return (0..3).map(|c| (c, None)).collect();
+        let moved = support.displacement.as_ref().filter(|_| support.clamped);
+        let value = |c: u32| {
+            let d = moved.map(|d| [&d.x, &d.y, &d.z][c as usize]);
+            d.and_then(|v| v.as_ref().filter(|v| !zero(v)).cloned())
+        };
+        return (0..3).map(|c| (c, value(c))).collect();
     }
     if let Some(axis) = support.symmetry.or(support.plane_strain) {
         let c = match axis {
@@ -277,7 +283,6 @@ pub(super) fn components(support: &Support) -> Vec<(u32, Option<Value>)> {
     let Some(d) = &support.displacement else {
         return Vec::new();
     };
-    let zero = |v: &Value| *v == Value::Number(0.0);
     ([&d.x, &d.y, &d.z].into_iter().enumerate())
         .filter_map(|(c, v)| {
             v.as_ref()
