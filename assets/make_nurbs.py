@@ -1,10 +1,9 @@
-"""Writes faces that the NURBS shells of shipped scenes are made of, lengths in mm, as cad/tube.json, cad/dish.json, cad/clip.json and cad/flat.json.
+"""Writes faces that the NURBS shells of shipped scenes are made of, lengths in mm, as cad/tube.json, cad/dish.json and cad/flat.json.
 `covact convert cad/tube.json -o cad/tube.igs` makes the IGES file that the scene reads; the others likewise.
 
 tube  a cylinder about y, radius 20, from y = -30 to 30: two rational half-turns, the upper one (z > 0) and the lower one
 dish  z = .02 x^2 + .025 y^2 over 30 by 24 about the origin, polynomial
 flat  1: a square of 50 from the origin in z = 0; 2: a strip of 130 by 2 from the origin in z = .5 (for studies, read as JSON)
-clip  a strip of width 6 along y and length 30 along x with a bump across it, 1.6 high, about x = 22: a cubic spline
 """
 
 import json
@@ -53,14 +52,6 @@ def flat():
         yield patch(entity + 1, name, [1, 1], [LINEAR, LINEAR], points)
 
 
-def clip():
-    profile = [(0, 0), (3, 0), (8, 0), (13, 0), (17, 0), (20, 1.7), (22, 1.85), (24, 1.7), (27, 0), (29, 0), (30, 0)]
-    inner = [k / (len(profile) - 3) for k in range(1, len(profile) - 3)]
-    knots = [0.0] * 4 + inner + [1.0] * 4
-    points = [[x, y, z, 1.0] for y in (0.0, 6.0) for x, z in profile]
-    yield patch(1, "clip", [3, 1], [knots, LINEAR], points)
-
-
 def write(name, patches):
     geometry = {"covact_geometry": 1, "unit": "mm", "resolution": None, "patches": list(patches)}
     with open(os.path.join(HERE, "cad", f"{name}.json"), "w") as file:
@@ -71,5 +62,4 @@ def write(name, patches):
 if __name__ == "__main__":
     write("tube", tube())
     write("dish", dish())
-    write("clip", clip())
     write("flat", flat())

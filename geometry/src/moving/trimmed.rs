@@ -38,6 +38,11 @@ impl Trims {
         self.facets.push(Some(placed));
     }
 
+    /// Whether any facet is trimmed.
+    pub fn any(&self) -> bool {
+        !self.facets.is_empty()
+    }
+
     /// Whether there are feet at parameters of a facet.
     #[inline]
     pub fn holds(&self, facet: u32, xi: [f64; 2]) -> bool {

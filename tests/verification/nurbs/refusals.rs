@@ -122,7 +122,9 @@ fn faces_that_cannot_be_sheets() {
     trimmed["patches"][1]["points"] =
         json!([[1, 0, 0, 1], [2, 0, 0, 1], [1, 1, 0, 1], [2, 1, 0, 1]]);
     trimmed["patches"][1]["trim"] = json!([[side(0, 1), side(1, 2), side(2, 0)]]);
-    assert_eq!(problems(&scene, &trimmed), Vec::<String>::new());
+    let mut beside = scene.clone();
+    beside["supports"]["all"]["on"] = json!(["sheet.1.edge.1", "sheet.1.edge.3", "sheet.2.trim.1"]);
+    assert_eq!(problems(&beside, &trimmed), Vec::<String>::new());
     trimmed["patches"]
         .as_array_mut()
         .expect("patches")

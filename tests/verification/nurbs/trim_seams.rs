@@ -2,7 +2,7 @@
 use super::trim_supports::{corner, quarter};
 use super::trims::{face, file, line};
 use super::{arc, off, solve_sheet_file};
-use crate::support::{Outcome, scene_json, set, solve, solve_in};
+use crate::support::{scene_json, set, solve};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -43,7 +43,8 @@ fn trimmed() -> Value {
 fn whole() -> Value {
     let mut points = Vec::new();
     for radius in [INNER, 1.0] {
-        points.extend(arc(0.0, FRAC_PI_2).map(|[x, y, w]| [radius * x, radius * y, 0.0, w]));
+        points
+            .extend(arc(0.0, FRAC_PI_2).map(|[x, y, w]| [w * radius * x, w * radius * y, 0.0, w]));
     }
     face(2, [2, 1], &points, Value::Null)
 }
@@ -83,7 +84,7 @@ fn discs_of_two_faces() {
                 },
                 "loads": {"q": {"on": "plate.top", "traction": [0, 0, -q]}},
                 "probes": {"w": {"on": "plate.1.corner.1", "quantity": "displacement"}},
-                "solution": {"step": {"initial": 1.0, "max": 1.0}, "newton": {"tolerance": 1e-8}},
+                "solution": {"step": {"initial": 1.0, "max": 1.0}, "newton": {"tolerance": 1e-6}},
                 "output": {"every": 0}
             });
             let outcome = solve_sheet_file(&file(vec![inner(), outer.clone()]), &scene);
@@ -96,80 +97,22 @@ fn discs_of_two_faces() {
     }
 }
 
-/// `folded_panel`, coarser and with the first part of the punch's way: the same panel whose face with the hole is four faces without a
-/// trim takes the same force.
+/// `folded_panel`, coarser and with the first part of the punch's way. The reference is the same panel with four faces without a trim in place
+/// of the one with the hole, at elements of 3; without the hole it is 4 % more.
 #[test]
 fn a_folded_panel_with_a_hole() {
     let mut scene = scene_json("folded_panel.json");
-    set(&mut scene, "/bodies/panel/nurbs/size", 6);
-    scene["solution"]["end_time"] = json!(0.4);
+    set(&mut scene, "/bodies/panel/nurbs/size", 5);
+    scene["solution"] = json!({"end_time": 0.4, "step": {"initial": 0.2, "max": 0.2}});
     scene["output"] = json!({"every": 0});
-    let force = |outcome: Outcome| {
-        assert_eq!(
-            outcome.summary.status.name(),
-            "done",
-            "{:?}",
-            outcome.summary.reason
-        );
-        outcome.at("force.punch.z", 0.4)
-    };
-    let trimmed = force(solve(&scene));
-    // From the hole outwards: the middle (-34, 25), radius 9; the sides are those of the face.
-    let sides = [[-60.0, 0.0], [0.0, 0.0], [0.0, 50.0], [-60.0, 50.0]];
-    let (c, radius): ([f64; 2], f64) = ([-34.0, 25.0], 9.0);
-    let (sin, cos) = 25f64.to_radians().sin_cos();
-    let down = [40.0 * cos, -40.0 * sin];
-    let mut all = Vec::new();
-    // The first one says which side is the top.
-    for (entity, [x, z], [x1, z1]) in [(5, [0.0, 0.0], down), (6, down, [down[0] + 20.0, down[1]])]
-    {
-        let points = [[x, 0.0, z], [x1, 0.0, z1], [x, 50.0, z], [x1, 50.0, z1]];
-        all.push(face(
-            entity,
-            [1, 1],
-            &points.map(|[x, y, z]| [x, y, z, 1.0]),
-            Value::Null,
-        ));
-    }
-    for k in 0..4 {
-        // Counter-clockwise from the right-hand side.
-        let ends = [[1, 2], [2, 3], [3, 0], [0, 1]][k].map(|i: usize| sides[i]);
-        let angles = ends.map(|[x, y]| (y - c[1]).atan2(x - c[0]));
-        let [a, mut b] = angles;
-        if b < a {
-            b += 2.0 * PI;
-        }
-        let inner = arc(a, b);
-        let mut points: Vec<[f64; 4]> = (inner.iter())
-            .map(|[x, y, w]| [w * (c[0] + radius * x), w * (c[1] + radius * y), 0.0, *w])
-            .collect();
-        for (i, inner) in inner.iter().enumerate() {
-            let (w, s) = (inner[2], 0.5 * i as f64);
-            let at = [0, 1].map(|d| ends[0][d] + s * (ends[1][d] - ends[0][d]));
-            points.push([w * at[0], w * at[1], 0.0, w]);
-        }
-        all.push(face(k as u32 + 1, [2, 1], &points, Value::Null));
-    }
-    let mut other = scene.clone();
-    other["bodies"]["panel"]["nurbs"]["file"] = json!("face.json");
-    let punch = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/cad/round_punch.step");
-    other["surfaces"]["punch"]["cad"]["file"] = json!(punch);
-    other["supports"]["frame"]["on"] = json!([
-        "panel.2.edge.4",
-        "panel.3.edge.4",
-        "panel.4.edge.4",
-        "panel.5.edge.3",
-        "panel.5.edge.4",
-        "panel.6.edge.2",
-        "panel.6.edge.3",
-        "panel.6.edge.4"
-    ]);
-    let folder = tempfile::tempdir().expect("temporary folder");
-    std::fs::write(folder.path().join("face.json"), file(all).to_string()).expect("written");
-    let whole = force(solve_in(&other, folder.path()));
-    println!("{trimmed} trimmed, {whole} of faces without a trim");
-    assert!(
-        trimmed.abs() > 1.0 && off(trimmed, whole) < 1e-2,
-        "{trimmed} {whole}"
+    let outcome = solve(&scene);
+    assert_eq!(
+        outcome.summary.status.name(),
+        "done",
+        "{:?}",
+        outcome.summary.reason
     );
+    let force = outcome.at("force.punch.z", 0.4);
+    println!("{force}");
+    assert!(off(force, -1.45149) < 1e-2, "{force}");
 }
