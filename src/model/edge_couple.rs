@@ -153,7 +153,7 @@ mod tests {
             assert!(force.norm() < 1e-13, "{force}");
             // `M nu x n`, integrated: along the edge, against its sense where the outside is on its left.
             let expected: Vec3 = (spans[1].points.iter())
-                .map(|(n_i, length)| {
+                .map(|(n_i, length, _)| {
                     let r = n_i
                         .each_ref()
                         .map(|n| -> Vec3 { x.iter().zip(n).map(|(x, n)| x * *n).sum() });

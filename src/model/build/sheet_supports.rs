@@ -17,6 +17,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Part of a length, or sine of an angle, that counts as round-off of a control net.
 const ROUND: f64 = 1e-9;
 
+/// Numbers of the anchors of a body that are held, with the components that are.
+pub(super) type HeldAnchors = Vec<(usize, [bool; 3])>;
+
 /// What supports ask of sheets beside prescribed displacements.
 #[derive(Default)]
 pub(super) struct SheetSupports {
@@ -148,7 +151,7 @@ fn extruded(sheet: &NurbsSheet, axis: usize) -> Option<Vec<Vec<u32>>> {
 pub(super) fn held_anchors(
     bodies: &[BodyModel],
     dofs: &mut DofMapBuilder,
-) -> Result<Vec<Vec<(usize, [bool; 3])>>, ConstraintError> {
+) -> Result<Vec<HeldAnchors>, ConstraintError> {
     let mut out = Vec::with_capacity(bodies.len());
     for body in bodies {
         let mut own = Vec::new();

@@ -2,7 +2,7 @@
 use super::super::Tied;
 use super::super::constraints::{MeanPrescribed, Prescribed};
 use super::super::error::{At, number, text};
-use super::sheet_supports::{SheetSupports, held_anchors};
+use super::sheet_supports::{HeldAnchors, SheetSupports, held_anchors};
 use super::{BodyModel, Builder, ModelError};
 use crate::mesh::{Border, ThicknessColumns};
 use crate::scene::{AUTOMATIC, Axis, POSITION_AND_TIME, Support, TimeFunction, Value};
@@ -21,8 +21,8 @@ pub(super) struct Supports {
     pub dofs: DofMap,
     /// Borders of sheets, by body, whose normal is held.
     pub held_normals: Vec<(usize, Border, HeldNormal)>,
-    /// Of each body the anchors on curves of trims that are held, with the components that are.
-    pub held_anchors: Vec<Vec<(usize, [bool; 3])>>,
+    /// Of each body the anchors on curves of trims that are held.
+    pub held_anchors: Vec<HeldAnchors>,
 }
 
 /// Displacement over time, `None` standing for zero.

@@ -2,7 +2,7 @@
 use super::plane_stress::{Place, PlaneStress, Sheet};
 use super::*;
 use crate::mesh::nurbs::Fineness;
-use crate::mesh::{Edge, Mesh};
+use crate::mesh::{Border, Edge, Mesh};
 use crate::scene::{Elastic, Material};
 use crate::shell::material::{MaterialLaw, Metric};
 use covact_geometry::basis::Basis;
@@ -71,8 +71,8 @@ fn disc(assumed: bool) -> NurbsSheet {
 fn held(block: &mut NurbsBlock) {
     let plane = Vec3::new(0.6, 0.0, 0.8);
     let both = [
-        (Edge::ALL[0], HeldNormal::Clamped),
-        (Edge::ALL[3], HeldNormal::InPlane(plane)),
+        (Border::Edge(Edge::ALL[0]), HeldNormal::Clamped),
+        (Border::Edge(Edge::ALL[3]), HeldNormal::InPlane(plane)),
     ];
     block.hold(&both).unwrap();
     assert_eq!(block.borders.len(), 16);
