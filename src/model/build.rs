@@ -335,14 +335,10 @@ impl<'s> Builder<'s> {
             let own = (held.held_normals.iter()).filter(|(of, ..)| *of == index);
             let own: Vec<(Border, HeldNormal)> = own.map(|(_, edge, to)| (*edge, *to)).collect();
             let anchors = &held.held_anchors[index];
-            if let (Block::Nurbs(block), false) = (&mut body.block, anchors.is_empty()) {
+            if let Block::Nurbs(block) = &mut body.block {
                 block.hold_anchors(anchors);
-            }
-            if let (Block::Nurbs(block), false) = (&mut body.block, own.is_empty()) {
-                let name = &body.name;
-                block
-                    .hold(&own)
-                    .at(|| format!("/bodies/{name}/nurbs/file"))?;
+                let at = || format!("/bodies/{}/nurbs/file", body.name);
+                block.hold(&own).at(at)?;
             }
         }
         Ok(())
